@@ -81,6 +81,7 @@ def print_fit(fit: "Fit") -> None:
         _print_prediction(p)
     _print_k_step_errors(fit)
     _print_frequency_responses(fit)
+    _print_thruster_craft(fit)
     _print_model_selection(fit)
     _print_baselines(fit)
     _print_identifiability(fit)
@@ -182,6 +183,18 @@ def _print_frequency_responses(fit: "Fit") -> None:
         print_lines([f"frequency response, model inside the records' 95 % region: {', '.join(texts)}"])
 
 
+def _print_thruster_craft(fit: "Fit") -> None:
+    """One line: what a craft with thrusters does at full command."""
+    from seatrial.core.text.numbers import exact
+
+    if fit.thruster_craft is not None and fit.thruster_craft.measures:
+        texts = []
+        for name, m in fit.thruster_craft.measures.items():
+            interval = "" if m.lower is None else f" [{exact(m.lower, ERROR_DIGITS)}, {exact(m.upper, ERROR_DIGITS)}]"
+            texts.append(f"{name} {exact(m.value, ERROR_DIGITS)}{interval}")
+        print_lines([f"at full command: {', '.join(texts)}"])
+
+
 def _print_window(w: "WindowScore") -> None:
     """Where a baseline errs less that comes first; then the scores by channel with those of the baselines."""
     from seatrial.core.text.numbers import fixed
@@ -193,7 +206,7 @@ def _print_window(w: "WindowScore") -> None:
     rows = [["", "rms", "fit %", "R2", "in band", *(b.name for b in w.baselines)]]
     for name, s in w.scores.items():
         band = "" if s.inside_band is None else f"{100.0 * s.inside_band:.0f} %"
-        rivals = [error_text(name, b.rms[name]) if name in b.rms else "" for b in w.baselines]
+        rivals = [error_text(name, b.scores[name].rms) if name in b.scores else "" for b in w.baselines]
         name_and_unit, error = ", ".join(label_and_unit(name)), error_text(name, s.rms)
         rows.append([name_and_unit, error, fixed(s.fit_percent, 1), fixed(s.r_squared, 3), band, *rivals])
     print_table(rows, indent="    ")

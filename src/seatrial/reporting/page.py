@@ -22,6 +22,7 @@ from seatrial.reporting import (
     seakeeping_chapter,
     summary,
     tables,
+    thruster_chapter,
 )
 from seatrial.reporting.citations import Citations
 from seatrial.reporting.correlations import correlation_text
@@ -40,6 +41,7 @@ TITLES = {
     "findings": "Findings",
     "coefficients": "Coefficients",
     "rolling": "Roll: period, damping, metacentric height",
+    "thrusters": "The craft: speed, turn, stop, thrust, matrices",
     "prediction": "Prediction of held-out runs",
     "training": "Fit of the training runs",
     "ahead": "Prediction some samples ahead",
@@ -64,13 +66,15 @@ def html(fit: Fit) -> str:
         fit.seakeeping,
         baselines.baseline_chapter(fit),
     )
+    has_thrusters = bool(fit.model.equations.layout)
     is_steered = "psi" in fit.model.states or "delta" in fit.model.input_names
     has_content = {
         "published": fit.reference is not None,
         "identifiability": bool(identifiability),
         "rolling": fit.roll is not None,
+        "thrusters": fit.thruster_craft is not None,
         "waves": seakeeping is not None,
-        "standards": is_steered,
+        "standards": is_steered and not has_thrusters,  # they are for ships of 100 m and more
         "training": bool(fit.predictions),
         "ahead": bool(fit.k_step_errors),
         "frequency": bool(fit.frequency_responses),
@@ -87,12 +91,13 @@ def html(fit: Fit) -> str:
         "rolling": None
         if fit.roll is None
         else {"tables": roll_chapter.tables(fit.roll, fit.ship.scale), "figures": roll_chapter.figures(fit.roll)},
+        "craft": thruster_chapter.thruster_chapter(fit.thruster_craft),
         "published": published_chapter.published_chapter(fit),
         "identifiability": identifiability,
         "baselines": comparison,
         "answer": summary.sentences(fit),
         "facts": summary.facts(fit),
-        "scores": runs.score_table(fit.predictions, length),
+        "scores": runs.score_table(fit.predictions, 0.0 if has_thrusters else length),
         "records": tables.records(fit),
         "without": _prefix_note(fit),
         "tracks": Markup(svg(track_overview(fit.records, length))),

@@ -71,7 +71,7 @@ def _prediction_sentence(p: Prediction, fit: Fit) -> str:
     if "psi_deg" in p.rms:
         parts.append(f"{significant(p.rms['psi_deg'], 2)}° in heading")
     if "position_m" in p.rms:
-        length = fit.ship.particulars.get("L", 0.0)
+        length = 0.0 if fit.model.equations.layout else fit.ship.particulars.get("L", 0.0)
         share = f" ({significant(p.rms['position_m'] / length, 2)} L)" if length > 0 else ""
         parts.append(f"{significant(p.rms['position_m'], 2)} m in position{share}")
     if "z" in p.rms:

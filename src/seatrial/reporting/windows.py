@@ -3,35 +3,57 @@
 from collections.abc import Sequence
 
 from seatrial.core.results import Prediction, WindowScore
+from seatrial.core.results.window_scores import ChannelScore
 from seatrial.core.text.numbers import DASH, fixed, significant
 from seatrial.core.text.words import counted, enumeration
 from seatrial.reporting.text_tables import TextTable
 
-_NOTE = (
-    "Root-mean-square errors open loop, each window from the state estimated in its first seconds. Fit: 100 % less the "
-    "error over the spread about the mean (NRMSE, as MATLAB's compare)."
+_NOTE = "Root-mean-square errors open loop, each window from the state estimated in its first seconds."
+_FIT_NOTE = (
+    "100 % less the error over the spread about the mean (NRMSE, as MATLAB's compare): 100 is perfect, 0 no "
+    "better than the mean. In brackets R², one less the squares of the errors over those about the mean."
 )
 
 
 def window_tables(
     prediction: Prediction, labels: dict[str, tuple[str, str]], factors: dict[str, float]
 ) -> list[TextTable]:
-    """Return a table for each length of windows; labels: score -> name and unit; factors: to that unit, 1 if absent."""
-    return [_table(w, labels, factors) for w in prediction.windows]
+    """Return errors and fit for each length of windows; labels: score -> name, unit; factors: to that, 1 if absent."""
+    tables = []
+    for w in prediction.windows:
+        header = ("this fit", *(b.name for b in w.baselines))
+        tables += [_errors(w, header, labels, factors), _fits(w, header, labels)]
+    return tables
 
 
-def _table(w: WindowScore, labels: dict[str, tuple[str, str]], factors: dict[str, float]) -> TextTable:
-    header = ("", "this fit", *(b.name for b in w.baselines), "fit %", "R²", "inside 95 % band")
+def _scores(w: WindowScore, channel: str) -> list[ChannelScore | None]:
+    """Scores of the fit and of each baseline; None where it does not predict the channel."""
+    return [w.scores[channel], *(b.scores.get(channel) for b in w.baselines)]
+
+
+def _errors(
+    w: WindowScore, header: tuple[str, ...], labels: dict[str, tuple[str, str]], factors: dict[str, float]
+) -> TextTable:
     rows = []
-    for name, s in w.scores.items():
-        errors = (s.rms, *(b.rms.get(name) for b in w.baselines))
-        texts = [DASH if e is None else significant(e * factors.get(name, 1.0), 3) for e in errors]
-        share = DASH if s.inside_band is None else f"{fixed(100.0 * s.inside_band, 0)} %"
-        rows.append(
-            (f"{labels[name][0]}, {labels[name][1]}", *texts, fixed(s.fit_percent, 1), fixed(s.r_squared, 3), share)
+    for name, own in w.scores.items():
+        texts = [DASH if s is None else significant(s.rms * factors.get(name, 1.0), 3) for s in _scores(w, name)]
+        share = DASH if own.inside_band is None else f"{fixed(100.0 * own.inside_band, 0)} %"
+        rows.append((f"{labels[name][0]}, {labels[name][1]}", *texts, share))
+    columns = ("", *header, "inside 95 % band")
+    title = f"{counted(w.count, 'window')} of {w.window}"
+    return TextTable(title, columns, (False, *(True for _ in columns[1:])), tuple(rows), _NOTE)
+
+
+def _fits(w: WindowScore, header: tuple[str, ...], labels: dict[str, tuple[str, str]]) -> TextTable:
+    rows = tuple(
+        (
+            labels[name][0],
+            *(DASH if s is None else f"{fixed(s.fit_percent, 1)} ({fixed(s.r_squared, 3)})" for s in _scores(w, name)),
         )
-    numeric = (False, *(True for _ in header[1:]))
-    return TextTable(f"{counted(w.count, 'window')} of {w.window}", header, numeric, tuple(rows), _NOTE)
+        for name in w.scores
+    )
+    numeric = (False, *(True for _ in header))
+    return TextTable(f"Fit in windows of {w.window}, % (R²)", ("", *header), numeric, rows, _FIT_NOTE)
 
 
 def baseline_sentence(predictions: Sequence[Prediction], labels: dict[str, tuple[str, str]]) -> str:

@@ -43,8 +43,8 @@ def test_windows_of_both_units_are_scored_with_baselines(fit: Fit) -> None:
     assert score.fit_percent > 80.0
     assert 1.0 - score.r_squared == pytest.approx((1.0 - score.fit_percent / 100.0) ** 2)
     (straight,) = [b for b in in_seconds.baselines if b.name == CONSTANT_COURSE]
-    assert score.rms < straight.rms["r"]
-    assert straight.rms["r"] == pytest.approx(np.sqrt(np.mean(fit.validation[0].measured["r"] ** 2)), rel=0.25)
+    assert score.rms < straight.scores["r"].rms
+    assert straight.scores["r"].rms == pytest.approx(np.sqrt(np.mean(fit.validation[0].measured["r"] ** 2)), rel=0.25)
 
 
 def test_a_baseline_that_errs_less_is_named(fit: Fit) -> None:

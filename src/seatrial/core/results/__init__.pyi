@@ -32,6 +32,7 @@ from seatrial.core.results.ship_motions import IntervalEstimate, PointMotion, Ro
 from seatrial.core.results.study import Bars, Check, CheckStatus, Claim, Curve, Figure, Matrix, Study, Table, Verdict
 from seatrial.core.results.published_method import ReferenceEstimate, Search, SearchRestart, SearchTrack
 from seatrial.core.results.summary import Summary
+from seatrial.core.results.thruster_craft import CompassCurve, CraftMeasure, FossenMatrix, ThrustCurve, ThrusterCraft
 from seatrial.core.results.window_scores import ChannelScore, WindowBaseline, WindowScore
 from seatrial.numerics.optimise import Solution, Status
 
@@ -48,8 +49,10 @@ __all__ = [
     "Collinearity",
     "ComparedFit",
     "Comparison",
+    "CompassCurve",
     "Confirmation",
     "Consequence",
+    "CraftMeasure",
     "Curve",
     "Design",
     "Difference",
@@ -59,6 +62,7 @@ __all__ = [
     "Extrapolation",
     "Figure",
     "Fit",
+    "FossenMatrix",
     "FrequencyResponse",
     "Identifiability",
     "IntervalBasis",
@@ -93,6 +97,8 @@ __all__ = [
     "Summary",
     "Symmetry",
     "Table",
+    "ThrustCurve",
+    "ThrusterCraft",
     "TimedOrder",
     "TrialLimits",
     "Verdict",

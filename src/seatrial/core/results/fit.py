@@ -23,6 +23,7 @@ from seatrial.core.results.prediction import Baseline, IntervalBasis, Prediction
 from seatrial.core.results.published_method import ReferenceEstimate, Search
 from seatrial.core.results.ship_motions import RollCharacteristics, Seakeeping
 from seatrial.core.results.summary import Summarised, Summary
+from seatrial.core.results.thruster_craft import ThrusterCraft
 from seatrial.core.values import InputError, Record, Ship, spelling_hint
 
 if TYPE_CHECKING:
@@ -70,6 +71,10 @@ class Fit(Summarised):
     ] = ()
     roll: Annotated[
         RollCharacteristics | None, Field(description="meaning of a roll model's coefficients; null: another model")
+    ] = None
+    thruster_craft: Annotated[
+        ThrusterCraft | None,
+        Field(description="a craft with thrusters in the terms of those who steer it; null: another model"),
     ] = None
     search: Annotated[Search | None, Field(description="what a published search did; null: the estimate is none")] = (
         None

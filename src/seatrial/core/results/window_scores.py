@@ -28,7 +28,9 @@ class WindowBaseline:
     """A prediction that needs no fit of this model, over the same windows from the same beginnings."""
 
     name: str
-    rms: Annotated[dict[str, Number], Field(description="keys as in `WindowScore.scores`; null where it diverges")]
+    scores: Annotated[
+        dict[str, ChannelScore], Field(description="keys as in `WindowScore.scores`, as far as it predicts them")
+    ]
 
 
 @dataclass(frozen=True)
@@ -48,7 +50,9 @@ class WindowScore:
         """Return the channel of each baseline that errs less than the fit -> name of the best one there."""
         better: dict[str, str] = {}
         for channel, score in self.scores.items():
-            rivals = [(b.rms[channel], b.name) for b in self.baselines if b.rms.get(channel, score.rms) < score.rms]
+            rivals = [
+                (b.scores[channel].rms, b.name) for b in self.baselines if b.scores.get(channel, score).rms < score.rms
+            ]
             if rivals:
                 better[channel] = min(rivals)[1]
         return better

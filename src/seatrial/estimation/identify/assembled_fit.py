@@ -18,6 +18,7 @@ from seatrial.estimation.identify.profile import innovation_profiles, profiles
 from seatrial.estimation.identify.roll_characteristics import one_speed_finding, roll_characteristics
 from seatrial.estimation.identify.seakeeping import seakeeping
 from seatrial.estimation.identify.short_records import default_profiles, short_record_findings
+from seatrial.estimation.identify.thruster_craft import thruster_craft
 from seatrial.estimation.information.frequency_response import frequency_responses
 from seatrial.estimation.predict.k_step import horizon_list, k_step_errors
 from seatrial.estimation.predict.predict_runs import RunPredictions, predict_runs
@@ -71,6 +72,9 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         interval_basis=predicted.interval_basis,
         seakeeping=seakeeping(estimation.model, task.train, runs.length),
         roll=roll,
+        thruster_craft=thruster_craft(
+            estimation.model, runs.records, predicted.interval_basis, trial.ship.particulars.get("L", 1.0)
+        ),
         k_step_errors=k_step_errors(selected.estimation, scored, horizon_list(task.options.horizons)),
         frequency_responses=frequency_responses(estimation.model, predicted.predictions, task.outputs),
     )  # fmt: skip

@@ -77,13 +77,17 @@ def draw_runs(
 ) -> Array:
     """Return `count` runs about the model's values along each of w inputs, (w, count, rows, observables).
 
+    Coefficients drawn beyond their bounds are moved onto them: a hull does not drive itself.
+
     Args:
         inputs: in the model's signs, (w, rows, nu), every `dt` seconds.
         start: initial states, (w, nx), the same for all draws; nuisances: a session's own unknowns, (w, k).
     """
     width, total = len(inputs), len(inputs) * count
-    point = np.array([model.parameters[n].value for n in template.free])
-    points = point + rng.standard_normal((total, len(point))) @ square_root(uncertainty.coefficients).T
+    free = [model.parameters[n] for n in template.free]
+    points = np.array([p.value for p in free])
+    points = points + rng.standard_normal((total, len(free))) @ square_root(uncertainty.coefficients).T
+    points = np.clip(points, [p.lower for p in free], [p.upper for p in free])
     offsets = rng.standard_normal((total, nuisances.shape[1])) @ square_root(uncertainty.offsets).T
     owns = np.repeat(nuisances, count, axis=0) + offsets
     along, state = (np.repeat(a, count, axis=0) for a in (inputs, start))

@@ -39,7 +39,7 @@ def measure_intervals(
     index = reached.index if reached else 1.0
     pairs = [
         (_measures_or_none(up, steer, length), _measures_or_none(down, steer, length))
-        for up, down in _perturbed_models(model, interval_basis)
+        for up, down in perturbed_models(model, interval_basis)
     ]
     lost = sum(m is None for pair in pairs for m in pair)
     if lost > len(pairs):
@@ -71,7 +71,8 @@ def _half_difference(pair: MeasuresPair, name: str, centre: float) -> float | No
     return sides[0] - centre if sides else None
 
 
-def _perturbed_models(model: Model, interval_basis: IntervalBasis) -> list[tuple[Model, Model]]:
+def perturbed_models(model: Model, interval_basis: IntervalBasis) -> list[tuple[Model, Model]]:
+    """Return pairs of models one standard deviation to either side of the fit, along every principal direction."""
     free = model.parameters.free_names
     centre: Array = np.array([p.value for p in model.parameters.free])
     columns = [c for c in square_root(interval_basis.covariance).T if np.any(c)]

@@ -23,6 +23,8 @@ MAX_WINDOWS = 40
 """Windows of a run that are scored, evenly spread over it where there are more; chosen."""
 DEFAULT_LENGTHS = (1.0, 5.0, 20.0)
 """Windows that are scored where none are required [ship lengths]: those that a run holds twice; chosen."""
+THRUSTER_LENGTHS = (5.0, 10.0, 30.0)
+"""The same of craft with thrusters, which turn on the spot [s]; chosen."""
 _INITIAL_SHARE = 0.2  # of a window, from which its initial state is estimated at most; chosen
 _DEGREES = float(np.degrees(1.0))
 # score -> channels and factor to its unit
@@ -81,7 +83,8 @@ def window_scores(
     """Return the scores of a validation run over windows of each length that it holds.
 
     Args:
-        lengths: none: `DEFAULT_LENGTHS` as far as the run holds two of each, else halves of the run.
+        lengths: none: `DEFAULT_LENGTHS`, of craft with thrusters `THRUSTER_LENGTHS`, as far as the run holds two of
+            each, else halves of the run.
         index: extrapolation index of the run, with which the model discrepancy in the bands grows.
     """
     try:
@@ -89,9 +92,13 @@ def window_scores(
     except InputError:  # no speed was recorded: windows in seconds only
         unit = None
     seconds_of = {"s": 1.0} | ({} if unit is None else {"L": unit})
-    wanted = [(str(w), w.value * seconds_of[w.unit]) for w in lengths if w.unit in seconds_of]
+    has_thrusters = bool(predictor.model.equations.layout)
+    usual = [WindowLength(n, "s") for n in THRUSTER_LENGTHS] if has_thrusters else [
+        WindowLength(n, "L") for n in DEFAULT_LENGTHS
+    ]  # fmt: skip
+    wanted = [(str(w), w.value * seconds_of[w.unit]) for w in lengths or usual if w.unit in seconds_of]
     if not lengths:
-        wanted = [(f"{n:g} L", n * unit) for n in DEFAULT_LENGTHS if unit and 2.0 * n * unit <= record.duration]
+        wanted = [(name, seconds) for name, seconds in wanted if 2.0 * seconds <= record.duration]
         wanted = wanted or [("half of the run", 0.5 * record.duration)]
     return tuple(
         _score(predictor, windows.evenly_spread(MAX_WINDOWS), name, seconds, index, rng)
@@ -120,10 +127,10 @@ def _score(
         if _is_compared(pieces, simulated, channels)
     }
     rivals = [
-        WindowBaseline(n, _baseline_rms(predict(windows, initial), pieces, scores))
+        WindowBaseline(n, _baseline_scores(predict(windows, initial), pieces, scores))
         for n, predict in p.baselines.items()
     ]
-    return WindowScore(name, seconds, len(windows), scores, tuple(r for r in rivals if r.rms))
+    return WindowScore(name, seconds, len(windows), scores, tuple(r for r in rivals if r.scores))
 
 
 def _is_compared(windows: list[Record], simulated: list[Record], channels: tuple[str, ...]) -> bool:
@@ -141,18 +148,19 @@ def _errors(windows: Sequence[Record], simulated: Sequence[Record], channel: str
 
 def _channel_score(
     windows: list[Record],
-    simulated: list[Record],
+    simulated: Sequence[Record],
     halves: list[dict[str, Array]],
     channels: tuple[str, ...],
     factor: float,
 ) -> ChannelScore:
+    """Score of some channels together; halves: half widths of the band in each window, none: no band."""
     squares, about_mean, inside = 0.0, 0.0, []
     for channel in channels:
         errors = _errors(windows, simulated, channel)
         measured = np.concatenate([w[channel][np.isfinite(w[channel])] for w in windows])
         squares += float(errors @ errors)
         about_mean += float(np.sum((measured - np.mean(measured)) ** 2))
-        if all(channel in half for half in halves):
+        if halves and all(channel in half for half in halves):
             half = np.concatenate([h[channel][np.isfinite(w[channel])] for h, w in zip(halves, windows, strict=True)])
             inside.append(np.abs(errors) <= half)
     count = sum(int(np.isfinite(w[channels[0]]).sum()) for w in windows)
@@ -165,11 +173,12 @@ def _channel_score(
     )
 
 
-def _baseline_rms(
+def _baseline_scores(
     simulated: Sequence[Record], windows: list[Record], scores: Mapping[str, ChannelScore]
-) -> dict[str, float]:
-    compared = {key: _SCORES[key][0] for key in scores if all(c in s for s in simulated for c in _SCORES[key][0])}
-    return {key: _SCORES[key][1] * pooled_rms(windows, simulated, channels) for key, channels in compared.items()}
+) -> dict[str, ChannelScore]:
+    """Scores of a baseline in those of the fit's that it predicts."""
+    compared = {key: _SCORES[key] for key in scores if all(c in s for s in simulated for c in _SCORES[key][0])}
+    return {key: _channel_score(windows, simulated, [], *channels) for key, channels in compared.items()}
 
 
 def pooled_rms(windows: Sequence[Record], simulated: Sequence[Record], channels: Sequence[str]) -> float:

@@ -25,7 +25,8 @@ def commands_of(record: Record) -> tuple[str, ...]:
 def thrust_measures(record: Record) -> dict[str, float]:
     """Return measures of the manoeuvre that a record of a craft with thrusters shows, by name.
 
-    Spin (commands held, more than a turn): ``steady_yaw_rate_deg_s``, ``time_360_s``. Straight run (commands held):
+    Spin (commands held, more than a turn): ``steady_yaw_rate_deg_s``, ``time_360_s``, ``time_constant_s`` to 63 % of
+    the rate. Straight run (commands held):
     ``steady_speed`` [m/s], ``time_constant_s`` to 63 % of it. Stop (the speed falls through zero behind a change of
     commands): ``approach_speed`` [m/s], ``stopping_distance_m``, ``stopping_time_s``. Zigzag (two changes and more):
     ``approach_speed``, ``overshoot_1_deg`` and so on, ``period_s``.
@@ -55,10 +56,12 @@ def _changes(record: Record) -> Index:
 def _spin(time: Array, psi: Array) -> dict[str, float]:
     last = time >= time[-1] - _LAST_SHARE * (time[-1] - time[0])
     turned = np.abs(psi - psi[0])
-    rate = np.polyfit(time[last], psi[last], 1)[0]
+    rate = abs(np.polyfit(time[last], psi[last], 1)[0])
+    speed = np.maximum.accumulate(np.gradient(turned, time))
     return {
-        "steady_yaw_rate_deg_s": float(np.degrees(abs(rate))),
+        "steady_yaw_rate_deg_s": float(np.degrees(rate)),
         "time_360_s": float(np.interp(_FULL_TURN, turned, time) - time[0]),
+        "time_constant_s": float(np.interp(_RISE * rate, speed, time) - time[0]),
     }
 
 

@@ -1,0 +1,202 @@
+"""The identified craft with thrusters in its users' terms: thrust curves, what it does at full command, matrices."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+
+import numpy as np
+
+from seatrial.core.equations import Model
+from seatrial.core.results import IntervalBasis
+from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
+from seatrial.core.results.thruster_craft import (
+    CompassCurve,
+    CraftMeasure,
+    FossenMatrix,
+    ThrustCurve,
+    ThrusterCraft,
+)
+from seatrial.core.values import Array, InputError, Record
+from seatrial.estimation.information.extrapolation import extrapolation
+from seatrial.estimation.predict.measure_intervals import measure_intervals, perturbed_models
+from seatrial.physics.manoeuvres import measures
+from seatrial.physics.manoeuvres.thrust_programme import thrust_programme
+from seatrial.physics.models.thruster_layout import AngleInput, Thruster, ThrusterLayout
+from seatrial.physics.simulate.thrust import thrust_manoeuvre
+
+_PROGRAMMES: Mapping[str, Mapping[str, str]] = {
+    "straight:100": {"top_speed": "steady_speed", "surge_time_constant_s": "time_constant_s"},
+    "spin:100": {
+        "yaw_rate_deg_s": "steady_yaw_rate_deg_s", "time_360_s": "time_360_s", "yaw_time_constant_s": "time_constant_s",
+    },
+    "stop:100": {"stopping_distance_m": "stopping_distance_m", "stopping_time_s": "stopping_time_s"},
+}  # fmt: skip
+"""Programmes that are simulated -> name of a measure here -> among those of the programme."""
+_SHARES, _BINS, _HEADINGS = 41, 20, 36
+"""Points of a thrust curve, bins of commands, points and bins of a compass curve (every 10 deg); chosen."""
+_SPEED_PERCENTILE = 95.0  # of the training runs' speeds ahead: that of the second thrust curve; chosen
+# coefficient -> matrix, row, column: the terms of docs/thrusters.md as D(nu) has them
+_DAMPING: Mapping[str, tuple[str, int, int]] = {
+    "X_u": ("D", 0, 0), "Y_v": ("D", 1, 1), "Y_r": ("D", 1, 2), "N_u": ("D", 2, 0), "N_v": ("D", 2, 1),
+    "N_r": ("D", 2, 2), "X_uu": ("D_u", 0, 0), "Y_uv": ("D_u", 1, 1), "N_uu": ("D_u", 2, 0), "N_ur": ("D_u", 2, 2),
+    "Y_vv": ("D_v", 1, 1), "N_rr": ("D_r", 2, 2),
+}  # fmt: skip
+_MEANINGS = {
+    "D": "linear damping", "D_u": "damping with |u|", "D_v": "damping with |v|", "D_r": "damping with |r|",
+}  # fmt: skip
+_NO_MATRIX = ("Y_ur", "N_uv", "D_c")  # terms with the sign of u, and the strips of cross-flow
+
+
+def thruster_craft(
+    model: Model, records: Sequence[Record], basis: IntervalBasis, length: float
+) -> ThrusterCraft | None:
+    """Return what follows from the coefficients of a craft with thrusters; None for any other model.
+
+    Args:
+        model: at the estimate; records: the training runs.
+        basis: covariance of the free coefficients, degrees of freedom, envelope of the training runs.
+        length: of the craft [m].
+    """
+    if not model.equations.layout:
+        return None
+    layout = ThrusterLayout.from_text(model.equations.layout)
+    matrices = (_inertia(model), *_damping(model), _configuration(model, layout))
+    return ThrusterCraft(
+        "N" if layout.has_bollard else "N/kg",
+        craft_measures(model, basis, length),
+        tuple(_curve(model, layout, leader, records, basis) for leader in layout.leaders),
+        matrices,
+        tuple(t.name for t in layout.thrusters),
+        tuple(n for n in _NO_MATRIX if n in model.parameters and model.parameters[n].value != 0.0),
+        _compass(model, records, basis),
+    )
+
+
+def craft_measures(model: Model, basis: IntervalBasis, length: float) -> dict[str, CraftMeasure]:
+    """Return what the craft does at full command: speed, turn and stop, with 95 % intervals; SI, turn rate in deg/s.
+
+    A programme through which it cannot be simulated has no measure.
+    """
+    found: dict[str, CraftMeasure] = {}
+    for text, names in _PROGRAMMES.items():
+        steer = partial(thrust_manoeuvre, programme=thrust_programme(text))
+        try:
+            run = steer(model)
+            values, intervals = measures(run, length), measure_intervals(model, basis, steer, length)
+        except InputError:
+            continue
+        reached = extrapolation(run, basis.training_envelope)
+        index = None if reached is None else reached.index
+        for name, source in names.items():
+            if source in values:
+                lower, upper = intervals.get(source) or (None, None)
+                found[name] = CraftMeasure(values[source], lower, upper, text, index)
+    return found
+
+
+def _curve(
+    model: Model, layout: ThrusterLayout, leader: Thruster, records: Sequence[Record], basis: IntervalBasis
+) -> ThrustCurve:
+    alike = [t for t in layout.thrusters if layout.leader(t) is leader]
+    share = np.linspace(-1.0, 1.0, _SHARES)
+    ahead = np.concatenate([r["u"][r["u"] > 0.0] for r in records if "u" in r] or [np.zeros(0)])
+    speed = float(np.percentile(ahead, _SPEED_PERCENTILE)) if len(ahead) else 0.0
+    still, half = _with_band(model, basis, lambda m: _thrust(m, leader, share, 0.0))
+    orders = [(r[t.command.channel] - t.command.zero) / t.command.span for r in records for t in alike]
+    counts, edges = np.histogram(np.clip(np.concatenate(orders), -1.0, 1.0), _BINS, (-1.0, 1.0))
+    return ThrustCurve(
+        tuple(t.name for t in alike), _floats(share), _floats(still), _floats(still - half), _floats(still + half),
+        speed, _floats(_thrust(model, leader, share, speed)), _floats(edges), _floats(counts / max(counts.sum(), 1)),
+    )  # fmt: skip
+
+
+def _thrust(model: Model, thruster: Thruster, share: Array, speed: float) -> Array:
+    """Thrust at shares of full command, the craft moving along the thruster at `speed` [m/s]."""
+    angle = 0.0 if isinstance(thruster.angle, AngleInput) else thruster.angle
+    states, inputs = np.zeros((len(share), len(model.states))), np.zeros((len(share), len(model.input_names)))
+    states[:, model.states.index("u")] = speed * math.cos(angle)
+    states[:, model.states.index("v")] = speed * math.sin(angle)
+    lagging = f"c_{thruster.name}"
+    if lagging in model.states:
+        states[:, model.states.index(lagging)] = share
+    inputs[:, model.input_names.index(thruster.command.channel)] = thruster.command.zero + thruster.command.span * share
+    if "voltage" in model.input_names:
+        inputs[:, model.input_names.index("voltage")] = model.parameters["V_0"].value
+    return model.forces(states, inputs)[f"T_{thruster.name}"].copy()
+
+
+def _with_band(model: Model, basis: IntervalBasis, curve: Callable[[Model], Array]) -> tuple[Array, Array]:
+    """A curve of the estimate and the half width of its 95 % band, to first order, (n,) each."""
+    steps = [0.5 * (curve(up) - curve(down)) for up, down in perturbed_models(model, basis)]
+    variance = np.sum(np.square(steps), axis=0) if steps else 0.0
+    centre = curve(model)
+    return centre, two_sided_quantile(STORED_LEVEL, basis.degrees_of_freedom) * np.sqrt(variance + 0.0 * centre)
+
+
+def _compass(model: Model, records: Sequence[Record], basis: IntervalBasis) -> CompassCurve | None:
+    if "compass_A" not in model.parameters:
+        return None
+    heading = np.linspace(0.0, 2.0 * np.pi, _HEADINGS + 1)
+    terms = {"compass_A": np.ones_like(heading), "compass_B": np.sin(heading), "compass_C": np.cos(heading)}
+
+    def deviation(craft: Model) -> Array:
+        return np.sum([craft.parameters[n].value * x for n, x in terms.items() if n in craft.parameters], axis=0)
+
+    centre, half = _with_band(model, basis, deviation)
+    shown = np.concatenate([r["psi"][np.isfinite(r["psi"])] for r in records if "psi" in r] or [np.zeros(0)])
+    counts, _ = np.histogram(np.mod(shown, 2.0 * np.pi), _HEADINGS, (0.0, 2.0 * np.pi))
+    return CompassCurve(
+        _floats(heading), _floats(centre), _floats(centre - half), _floats(centre + half),
+        _floats(counts / max(counts.sum(), 1)),
+    )  # fmt: skip
+
+
+def _value(model: Model, name: str) -> float:
+    return model.parameters[name].value if name in model.parameters else 0.0
+
+
+def _inertia(model: Model) -> FossenMatrix:
+    """Mass and added mass (Fossen 2021, eqs. (6.14) and (6.40), surge, sway and yaw)."""
+    M_u, M_v, M_r, M_c = (_value(model, f"M_{x}") for x in "uvrc")
+    units = tuple(tuple(_inertia_unit(i, j) for j in range(3)) for i in range(3))
+    values = ((M_u, 0.0, 0.0), (0.0, M_v, M_c), (0.0, M_c, M_r))
+    return FossenMatrix("M", "mass and added mass", values, units)
+
+
+def _inertia_unit(row: int, column: int) -> str:
+    return ("kg", "kg m", "kg m^2")[(row == 2) + (column == 2)]
+
+
+def _damping(model: Model) -> list[FossenMatrix]:
+    """D and its parts with |u|, |v| and |r|, as far as they are not zero; the forces are minus these times nu."""
+    parts = {name: np.zeros((3, 3)) for name in _MEANINGS}
+    for coefficient, (name, row, column) in _DAMPING.items():
+        parts[name][row, column] = 0.0 - _value(model, coefficient)  # not -0
+    return [
+        FossenMatrix(name, _MEANINGS[name], tuple(_floats(row) for row in part), _damping_units(name))
+        for name, part in parts.items()
+        if name == "D" or np.any(part)
+    ]
+
+
+def _damping_units(name: str) -> tuple[tuple[str, ...], ...]:
+    """Force or moment over (u, v, r), for D_u and D_v over m/s once more, for D_r over rad/s."""
+    suffix = {"D": ("kg/s", "kg m/s", "kg m^2/s"), "D_u": ("kg/m", "kg", "kg m"), "D_v": ("kg/m", "kg", "kg m"),
+              "D_r": ("kg", "kg m", "kg m^2")}[name]  # fmt: skip
+    return tuple(tuple(suffix[(i == 2) + (j == 2)] for j in range(3)) for i in range(3))
+
+
+def _configuration(model: Model, layout: ThrusterLayout) -> FossenMatrix:
+    """B: rows of (cos a, sin a, x sin a - y cos a), the side force of the wash with them (Fossen 2021, section 9.2)."""
+    angles = [0.0 if isinstance(t.angle, AngleInput) else t.angle for t in layout.thrusters]
+    X, Y = np.cos(angles), np.sin(angles)
+    N = np.array([t.x for t in layout.thrusters]) * Y - np.array([t.y for t in layout.thrusters]) * X
+    Y = Y + _value(model, "Y_T") * X + _value(model, "Y_NT") * N
+    units = tuple(tuple(unit for _ in layout.thrusters) for unit in ("1", "1", "m"))
+    azimuth = any(isinstance(t.angle, AngleInput) for t in layout.thrusters)
+    meaning = "forces over thrusts" + (", azimuth thrusters ahead" if azimuth else "")
+    return FossenMatrix("B", meaning, (_floats(X), _floats(Y), _floats(N)), units)
+
+
+def _floats(values: Array) -> tuple[float, ...]:
+    return tuple(float(v) for v in values)

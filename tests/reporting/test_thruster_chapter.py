@@ -1,0 +1,73 @@
+"""The chapter on a craft with thrusters: measures, curves and matrices as text; what ships have is left out."""
+
+from dataclasses import replace
+
+import pytest
+
+from seatrial.core.results import CompassCurve, CraftMeasure, Fit, FossenMatrix, ThrustCurve, ThrusterCraft
+from seatrial.physics.models import model_named
+from seatrial.reporting.page import html
+from seatrial.reporting.thruster_chapter import thruster_chapter
+
+UNITS = (("kg",) * 3,) * 3
+CRAFT = ThrusterCraft(
+    force_unit="N/kg",
+    measures={
+        "top_speed": CraftMeasure(2.5595, 2.5523, 2.5668, "straight:100", 1.4),
+        "stopping_time_s": CraftMeasure(1.26, None, None, "stop:100", 1.0),
+    },
+    curves=(
+        ThrustCurve(("port", "starboard"), (-1.0, 0.0, 1.0), (-1.1, 0.0, 1.6), (-1.2, 0.0, 1.5), (-1.0, 0.0, 1.7),
+                    1.5, (-0.9, 0.0, 1.3), (-1.0, 0.0, 1.0), (0.25, 0.75)),
+    ),
+    matrices=(
+        FossenMatrix("M", "mass and added mass", ((1.0, 0.0, 0.0), (0.0, 1.6, 0.0), (0.0, 0.0, 0.15)), UNITS),
+        FossenMatrix("D", "linear damping", ((0.1, 0.0, 0.0), (0.0, 0.5, 0.0), (0.0, 0.0, 0.1)), UNITS),
+        FossenMatrix("D_u", "damping with |u|", ((0.3, 0.0, 0.0), (0.0, -0.25, 0.0), (0.0, 0.0, 0.0)), UNITS),
+        FossenMatrix("B", "forces over thrusts", ((1.0, 1.0), (0.0, 0.0), (0.3, -0.3)), (("1",) * 2,) * 3),
+    ),
+    thrusters=("port", "starboard"),
+    left_out=("N_uv",),
+    compass=CompassCurve((0.0, 3.14, 6.28), (0.1, -0.1, 0.1), (0.05, -0.15, 0.05), (0.15, -0.05, 0.15), (0.5, 0.5)),
+)  # fmt: skip
+
+
+def test_measures_have_digits_by_their_interval_and_a_mark_beyond_the_training_runs() -> None:
+    chapter = thruster_chapter(CRAFT)
+    assert chapter is not None and chapter.measures is not None
+    assert chapter.measures.rows[0] == ("top speed, m/s *", "2.5595", "2.5523", "2.5668")
+    assert chapter.measures.rows[1] == ("stopping time, s", "1.26", "\u2013", "\u2013")
+    assert "* beyond the training runs" in chapter.measures.note
+
+
+def test_damping_is_one_matrix_with_all_its_parts() -> None:
+    chapter = thruster_chapter(CRAFT)
+    assert chapter is not None
+    _, damping, configuration = chapter.matrices
+    assert damping.rows[0] == ("surge", "0.1000 + 0.3000 |u|", "0", "0")
+    assert damping.rows[1][2] == "0.5000 − 0.2500 |u|"
+    assert configuration.rows[2] == ("yaw", "0.3000", "−0.3000")
+
+
+def test_ratios_to_the_mass_and_terms_without_a_matrix_are_named() -> None:
+    chapter = thruster_chapter(CRAFT)
+    assert chapter is not None and len(chapter.notes) == 2
+    assert "N_uv" in chapter.notes[1]
+    known = thruster_chapter(replace(CRAFT, force_unit="N", left_out=(), compass=None))
+    assert known is not None and not known.notes and known.compass is None
+
+
+@pytest.fixture(scope="module")
+def page(fit: Fit) -> str:
+    return html(replace(fit, model=model_named("thrusters"), thruster_craft=CRAFT))
+
+
+def test_the_page_of_such_a_craft_has_no_imo_table_and_no_ship_lengths(page: str) -> None:
+    assert "The craft: speed, turn, stop" in page
+    assert "IMO standards" not in page
+    assert 'position <span class="u">L' not in page and " L) (rms)" not in page
+
+
+def test_the_page_of_a_ship_has_no_such_chapter(fit: Fit) -> None:
+    text = html(fit)
+    assert "The craft: speed, turn, stop" not in text and "IMO standards" in text
