@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from seatrial.core.results import CompassCurve, CraftMeasure, Fit, FossenMatrix, ThrustCurve, ThrusterCraft
+from seatrial.core.results import CommandCurve, CompassCurve, CraftMeasure, Fit, FossenMatrix, ThrusterCraft
 from seatrial.physics.models import model_named
 from seatrial.reporting.page import html
 from seatrial.reporting.thruster_chapter import thruster_chapter
@@ -17,7 +17,7 @@ CRAFT = ThrusterCraft(
         "stopping_time_s": CraftMeasure(1.26, None, None, "stop:100", 1.0),
     },
     curves=(
-        ThrustCurve(("port", "starboard"), (-1.0, 0.0, 1.0), (-1.1, 0.0, 1.6), (-1.2, 0.0, 1.5), (-1.0, 0.0, 1.7),
+        CommandCurve(("port", "starboard"), (-1.0, 0.0, 1.0), (-1.1, 0.0, 1.6), (-1.2, 0.0, 1.5), (-1.0, 0.0, 1.7),
                     1.5, (-0.9, 0.0, 1.3), (-1.0, 0.0, 1.0), (0.25, 0.75)),
     ),
     matrices=(

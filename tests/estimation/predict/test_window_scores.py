@@ -10,7 +10,7 @@ from seatrial.core.values import InputError, Record, Ship
 from seatrial.data.trial import Role, Trial, TrialRun
 from seatrial.estimation.identify import identify
 from seatrial.estimation.predict.window_baselines import ARX, CONSTANT_COURSE, NARX, at_rest, constant_course
-from seatrial.estimation.predict.window_scores import WindowLength, window_lengths
+from seatrial.estimation.predict.window_scores import WindowLength, pooled_rms, window_lengths
 from seatrial.physics.models.nomoto import nomoto
 
 
@@ -68,3 +68,10 @@ def test_straight_on_is_exact_on_a_straight_course() -> None:
     for channel in values:
         np.testing.assert_allclose(predicted[channel], record[channel], atol=1e-9)
     assert not np.any(at_rest(record, 5.0)["psi"])
+
+
+def test_errors_of_several_channels_pool_as_their_norm() -> None:
+    time = np.arange(4.0)
+    still = Record.from_arrays("still", time, {"x0": np.zeros(4), "y0": np.zeros(4)})
+    away = Record.from_arrays("away", time, {"x0": np.full(4, 3.0), "y0": np.full(4, 4.0)})
+    assert pooled_rms([still], [away], ("x0", "y0")) == pytest.approx(5.0)

@@ -32,7 +32,7 @@ from seatrial.core.results.ship_motions import IntervalEstimate, PointMotion, Ro
 from seatrial.core.results.study import Bars, Check, CheckStatus, Claim, Curve, Figure, Matrix, Study, Table, Verdict
 from seatrial.core.results.published_method import ReferenceEstimate, Search, SearchRestart, SearchTrack
 from seatrial.core.results.summary import Summary
-from seatrial.core.results.thruster_craft import CompassCurve, CraftMeasure, FossenMatrix, ThrustCurve, ThrusterCraft
+from seatrial.core.results.thruster_craft import CommandCurve, CompassCurve, CraftMeasure, FossenMatrix, ThrusterCraft
 from seatrial.core.results.window_scores import ChannelScore, WindowBaseline, WindowScore
 from seatrial.numerics.optimise import Solution, Status
 
@@ -47,6 +47,7 @@ __all__ = [
     "Claim",
     "Coefficient",
     "Collinearity",
+    "CommandCurve",
     "ComparedFit",
     "Comparison",
     "CompassCurve",
@@ -97,7 +98,6 @@ __all__ = [
     "Summary",
     "Symmetry",
     "Table",
-    "ThrustCurve",
     "ThrusterCraft",
     "TimedOrder",
     "TrialLimits",

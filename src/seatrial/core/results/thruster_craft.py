@@ -9,7 +9,7 @@ from seatrial.core.results.fields import Number
 
 
 @dataclass(frozen=True)
-class ThrustCurve:
+class CommandCurve:
     """Thrust over command of the thrusters that share coefficients, with the commands of the training runs."""
 
     thrusters: tuple[str, ...]
@@ -75,7 +75,7 @@ class ThrusterCraft:
             "stopping_distance_m, stopping_time_s, at full command; those that the simulation shows"
         ),
     ]
-    curves: tuple[ThrustCurve, ...]
+    curves: tuple[CommandCurve, ...]
     matrices: Annotated[
         tuple[FossenMatrix, ...],
         Field(description="M, parts of D(nu) = D + |u| D_u + |v| D_v + |r| D_r, and B for the thrusters in order"),

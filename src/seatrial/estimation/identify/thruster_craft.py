@@ -10,10 +10,10 @@ from seatrial.core.equations import Model
 from seatrial.core.results import IntervalBasis
 from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
 from seatrial.core.results.thruster_craft import (
+    CommandCurve,
     CompassCurve,
     CraftMeasure,
     FossenMatrix,
-    ThrustCurve,
     ThrusterCraft,
 )
 from seatrial.core.values import Array, InputError, Record
@@ -96,7 +96,7 @@ def craft_measures(model: Model, basis: IntervalBasis, length: float) -> dict[st
 
 def _curve(
     model: Model, layout: ThrusterLayout, leader: Thruster, records: Sequence[Record], basis: IntervalBasis
-) -> ThrustCurve:
+) -> CommandCurve:
     alike = [t for t in layout.thrusters if layout.leader(t) is leader]
     share = np.linspace(-1.0, 1.0, _SHARES)
     ahead = np.concatenate([r["u"][r["u"] > 0.0] for r in records if "u" in r] or [np.zeros(0)])
@@ -104,7 +104,7 @@ def _curve(
     still, half = _with_band(model, basis, lambda m: _thrust(m, leader, share, 0.0))
     orders = [(r[t.command.channel] - t.command.zero) / t.command.span for r in records for t in alike]
     counts, edges = np.histogram(np.clip(np.concatenate(orders), -1.0, 1.0), _BINS, (-1.0, 1.0))
-    return ThrustCurve(
+    return CommandCurve(
         tuple(t.name for t in alike), _floats(share), _floats(still), _floats(still - half), _floats(still + half),
         speed, _floats(_thrust(model, leader, share, speed)), _floats(edges), _floats(counts / max(counts.sum(), 1)),
     )  # fmt: skip

@@ -8,7 +8,7 @@ from seatrial.core.figures.bands import band, visible_edges
 from seatrial.core.figures.chart import Axis, Chart, LegendEntry, Panel, tiles
 from seatrial.core.figures.marks import ACCENT, INK, Array, Line, Mark, Rectangle, Rule, Stroke
 from seatrial.core.figures.ticks import span
-from seatrial.core.results.thruster_craft import CompassCurve, ThrustCurve
+from seatrial.core.results.thruster_craft import CommandCurve, CompassCurve
 
 COLUMNS, HEIGHT = 2, 230.0  # panels in a row; px, chosen
 _STILL, _MOVING, _ZERO = Stroke(INK, 1.5), Stroke(ACCENT, 1.4, "5 3"), Stroke("#999999", 0.8)  # px, chosen
@@ -17,7 +17,7 @@ _TALLEST = 0.2
 """Height of the highest bar of time, as a share of the panel's; chosen."""
 
 
-def thrust_chart(curves: Sequence[ThrustCurve], unit: str) -> Chart:
+def thrust_chart(curves: Sequence[CommandCurve], unit: str) -> Chart:
     """Return a panel for each set of coefficients: thrust at rest with its band, and at the speed of the runs."""
     columns = min(COLUMNS, len(curves))
     boxes = tiles(len(curves), columns, HEIGHT, left=58.0, right=12.0, top=20.0, gap=52.0)  # px, chosen
