@@ -102,7 +102,7 @@ def save(result: "Result | Snapshot | FollowResult", folder: str | Path) -> Path
     Args:
         result: a fit, design, tuning, study or comparison, or what `follow` returns: the fit after `once`, else the
             last estimate.
-        folder: other files in it are left alone.
+        folder: a result that it holds is replaced; other files in it are left alone.
 
     Returns:
         Path of ``report.html``, or of ``online.json`` where following ended without a fit.
@@ -114,11 +114,11 @@ def save(result: "Result | Snapshot | FollowResult", folder: str | Path) -> Path
     from seatrial.core.results.online import Snapshot
     from seatrial.core.results.tuning import Tuning
     from seatrial.core.values.files import write_files_atomically
-    from seatrial.data.folder.result_folder import folder_files
+    from seatrial.data.folder.result_folder import REPORT, folder_files, replaced_files
     from seatrial.reporting.pages import report_page
 
     # asked this way round, no result but that of `follow` needs its module
     value = result if isinstance(result, Fit | Design | Tuning | Study | Comparison | Snapshot) else result.result
-    page = {} if isinstance(value, Snapshot) else {"report.html": report_page(value).encode()}
+    page = {} if isinstance(value, Snapshot) else {REPORT: report_page(value).encode()}
     files = folder_files(value) | page
-    return write_files_atomically(Path(folder), files) / list(files)[-1]
+    return write_files_atomically(Path(folder), files, replaced_files(value)) / list(files)[-1]

@@ -37,9 +37,9 @@ def _writable_json_path(path: Path | None) -> Path | None:
     """Return the path of the JSON file after checking, before any work, that it can be written."""
     if path is not None:
         from seatrial.core.values import InputError
-        from seatrial.core.values.files import writable_folder
+        from seatrial.core.values.files import is_folder, writable_folder
 
-        if path.is_dir():
+        if is_folder(path):
             raise InputError(f"--json {path} is a folder; name a file")
         writable_folder(path.parent)
     return path

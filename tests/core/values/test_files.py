@@ -9,7 +9,14 @@ from pathlib import Path
 import pytest
 
 from seatrial.core.values import InputError
-from seatrial.core.values.files import writable_folder, write_atomically, write_files_atomically
+from seatrial.core.values.files import (
+    is_file,
+    is_folder,
+    is_present,
+    writable_folder,
+    write_atomically,
+    write_files_atomically,
+)
 
 
 def test_the_test_of_writing_leaves_nothing_behind(tmp_path: Path) -> None:
@@ -65,10 +72,34 @@ def test_folders_of_the_user_in_a_result_folder_stay(tmp_path: Path) -> None:
     write_files_atomically(tmp_path / "fit", {"one": b"1", "two": b"2"})
     (tmp_path / "fit" / "notes").mkdir()
     (tmp_path / "fit" / "notes" / "today.txt").write_text("windy")
+    (tmp_path / "fit" / "notes" / "link").symlink_to("nowhere")
     write_files_atomically(tmp_path / "fit", {"one": b"3", "two": b"4"})
     assert (tmp_path / "fit" / "notes" / "today.txt").read_text() == "windy"
+    assert (tmp_path / "fit" / "notes" / "link").is_symlink()
     assert (tmp_path / "fit" / "one").read_bytes() == b"3"
     assert [place.name for place in tmp_path.iterdir()] == ["fit"]
+
+
+@pytest.mark.parametrize("is_working_folder", [False, True])
+def test_files_that_are_removed_go_with_the_change(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, is_working_folder: bool
+) -> None:
+    write_files_atomically(tmp_path / "fit", {"one": b"1", "old": b"2"})
+    (tmp_path / "fit" / "mine").write_text("kept")
+    monkeypatch.chdir(tmp_path / "fit" if is_working_folder else tmp_path)
+    write_files_atomically(tmp_path / "fit", {"one": b"3"}, {"one", "old", "never there"})
+    assert {file.name: file.read_text() for file in (tmp_path / "fit").iterdir()} == {"one": "3", "mine": "kept"}
+
+
+def test_a_folder_with_very_many_files_keeps_its_identity(tmp_path: Path) -> None:
+    folder = tmp_path / "home"
+    folder.mkdir()
+    for number in range(1001):
+        (folder / str(number)).touch()
+    identity = folder.stat().st_ino
+    write_files_atomically(folder, {"one": b"1"})
+    assert folder.stat().st_ino == identity
+    assert (folder / "one").read_bytes() == b"1"
 
 
 def test_a_failure_leaves_the_old_files_and_no_empty_folders(tmp_path: Path) -> None:
@@ -104,3 +135,15 @@ def test_a_killed_process_leaves_the_old_files_or_the_new_ones(tmp_path: Path) -
         assert sorted(place.name for place in folder.iterdir()) == ["a", "b", "c", "d"]
     write_files_atomically(folder, {"a": b"", "b": b""})
     assert [place.name for place in tmp_path.iterdir()] == ["fit"]
+
+
+@pytest.mark.parametrize("name", ["x" * 300, "a\0b"])
+def test_what_cannot_be_a_name_is_nothing(tmp_path: Path, name: str) -> None:
+    assert not (is_file(tmp_path / name) or is_folder(tmp_path / name) or is_present(tmp_path / name))
+    assert is_folder(tmp_path)
+    with pytest.raises(InputError, match="cannot be written"):
+        write_atomically(tmp_path / name, b"")
+    with pytest.raises(InputError, match="cannot be written"):
+        writable_folder(tmp_path / name)
+    with pytest.raises(InputError, match="cannot be written"):
+        write_files_atomically(tmp_path / name, {"one": b"1"})

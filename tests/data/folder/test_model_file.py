@@ -106,6 +106,22 @@ def test_a_damaged_file_is_refused() -> None:
         parse_model(text, "model.toml")
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("value = 9.8", "value = inf", r"L\.value = inf is no finite number"),
+        ("value = 9.8", "value = true", r"L\.value = True is no finite number"),
+        ("value = 9.8", f"value = {10**400}", "beyond 64 bits"),
+        ("\nL = 9.8", "\nL = nan", "L = nan is no finite number"),
+    ],
+)
+def test_a_number_that_is_not_finite_is_refused(old: str, new: str, says: str) -> None:
+    text = model_text(whole_file())
+    assert old in text
+    with pytest.raises(InputError, match=says):
+        parse_model(text.replace(old, new), "model.toml")
+
+
 def margin(count: int) -> IntervalBasis:
     return IntervalBasis(
         np.diag(np.linspace(0.1, 1.0, count)), math.inf, 2.5, {"overshoot_deg": 1.2}, {"delta zero": 0.005},

@@ -29,6 +29,7 @@ from seatrial.core.results import (
     Solution,
     Status,
 )
+from seatrial.core.results.tuning import Tuning
 from seatrial.core.values import Finding, InputError, Record, RecordKind, Severity, Ship
 from seatrial.data.folder.document import document, strict_json
 from seatrial.data.folder.result_folder import Result, folder_files, load_fit, load_result, save_result
@@ -248,3 +249,17 @@ def test_files_that_do_not_belong_together_are_refused(fit: Fit, tmp_path: Path)
 def test_a_folder_without_a_result_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="is no result folder"):
         load_fit(tmp_path)
+
+
+def test_a_result_replaces_one_of_another_kind(tmp_path: Path) -> None:
+    fit = RESULTS["fit"]()
+    folder = api.save(fit, tmp_path / "day").parent
+    (folder / "notes.txt").write_text("windy")
+    api.save(RESULTS["tuning"](), folder)
+    assert isinstance(load_result(folder), Tuning)
+    assert not {"result.json", "model.toml"} & {file.name for file in folder.iterdir()}
+    assert (folder / "notes.txt").read_text() == "windy"
+    api.save(fit, folder)
+    assert {file.name for file in folder.iterdir()} == {
+        "result.json", "model.toml", "arrays.npz", "report.html", "notes.txt",
+    }  # fmt: skip

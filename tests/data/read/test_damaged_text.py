@@ -99,3 +99,12 @@ def test_a_format_is_known_by_its_first_bytes(file: str, tmp_path: Path) -> None
         (tmp_path / name).write_bytes((tmp_path / file).read_bytes())
         assert format_of(tmp_path / name) == SAMPLES[file].format
     assert len(file_digest(tmp_path / file)) == 64
+
+
+def test_a_file_of_holes_is_refused_at_its_first_zero_byte(tmp_path: Path) -> None:
+    path = tmp_path / "holes.csv"
+    with path.open("wb") as file:
+        file.write(b"t,speed\n0,1\n")
+        file.truncate(5 * 2**30)
+    with pytest.raises(InputError, match=r"holes\.csv is not a text file"):
+        read_record(path, LAYOUT)

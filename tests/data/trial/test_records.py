@@ -72,7 +72,7 @@ def test_a_validation_run_that_fails_the_checks_is_not_predicted(trial_folder: P
 
 
 def test_noise_beyond_all_that_is_recorded_is_refused(trial_file: Path) -> None:
-    trial_file.write_text(trial_file.read_text() + '\n[noise]\nr = { sd = 1e308, unit = "deg/s" }\n')
+    trial_file.write_text(trial_file.read_text() + '\n[noise]\nr = { sd = 1e28, unit = "deg/s" }\n')
     with pytest.raises(InputError, match=r"\[noise\] r = .* is over 1000 times the largest value in the records"):
         load_records(load_trial(trial_file))
 

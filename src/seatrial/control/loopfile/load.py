@@ -1,7 +1,6 @@
 """A loop file into a `TuningTask`: plant, controller, what disturbs it, what is to be small and what must be kept."""
 
 import math
-import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -18,6 +17,7 @@ from seatrial.control.task import Demand, SimulationSettings, TuningTask, refuse
 from seatrial.core.equations import Model
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import InputError, spelling_hint
+from seatrial.core.values.tables import parse_toml, read_table_text, refuse_absurd_numbers
 from seatrial.data.trial.schema_errors import schema_error
 from seatrial.physics.loops import Objective, TransferLoop
 
@@ -29,11 +29,12 @@ _MOST_TIME_CONSTANTS = 1e4  # longest duration of a demand, in its time constant
 def parse_loop(path: Path) -> LoopFile:
     """Return the file's tables, checked key by key."""
     try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
+        table = parse_toml(read_table_text(path))
     except OSError as error:
         raise InputError(f"loop file '{path}' cannot be read ({error.strerror}); check the path") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except ValueError as error:
         raise InputError(f"loop file '{path}' is no valid TOML: {error}") from None
+    refuse_absurd_numbers(table, str(path))
     try:
         return LoopFile.model_validate(table)
     except ValidationError as error:

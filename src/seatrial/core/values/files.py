@@ -3,15 +3,32 @@
 import os
 import secrets
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Set
 from contextlib import contextmanager, suppress
+from itertools import islice
 from pathlib import Path
 
 from seatrial.core.values.errors import InputError
 from seatrial.numerics.platform import exchange_folders, flush_folder_to_disk, flush_to_disk, held_lock, replace_file
 
 _DRAFT = ".writing-"  # begins the names of files and folders that are being written
+_MOST_ADOPTED = 1000  # entries, folders within included, of a folder that is replaced as one: chosen
 _DRAFT_BYTES = 6  # of the random part of such a name: chosen, 2**48 names
+
+
+def is_file(path: Path) -> bool:
+    """Return whether there is a regular file; False also for what cannot be a name: too long, with a zero byte."""
+    return os.path.isfile(path)  # noqa: PTH113  Path.is_file raises on such names
+
+
+def is_folder(path: Path) -> bool:
+    """Return whether there is a folder; False as in `is_file`."""
+    return os.path.isdir(path)  # noqa: PTH112
+
+
+def is_present(path: Path) -> bool:
+    """Return whether there is anything of that name; False as in `is_file`."""
+    return os.path.exists(path)  # noqa: PTH110
 
 
 def write_atomically(path: Path, content: bytes) -> None:
@@ -20,9 +37,9 @@ def write_atomically(path: Path, content: bytes) -> None:
     Raises:
         InputError: the place cannot be written.
     """
-    target = path.resolve()
-    draft = target.with_name(_draft_name())
     with _sentence(f"'{path}'"):
+        target = path.resolve()
+        draft = target.with_name(_draft_name())
         target.parent.mkdir(parents=True, exist_ok=True)
         try:
             _write(draft, content)
@@ -31,18 +48,19 @@ def write_atomically(path: Path, content: bytes) -> None:
             draft.unlink(missing_ok=True)
 
 
-def write_files_atomically(folder: Path, contents: Mapping[str, bytes]) -> Path:
-    """Write files of a folder, all or none, and return the folder; other files in it stay.
+def write_files_atomically(folder: Path, contents: Mapping[str, bytes], removed: Collection[str] = frozenset()) -> Path:
+    """Write files of a folder, all or none, and return the folder; other files in it stay, but for those `removed`.
 
     The folder is built anew beside the old one and the two are exchanged in one step, so that a process killed at any
-    moment leaves the old files or the new ones. Only where that is impossible, because the folder holds folders of the
-    user, is the working directory, or lies on a file system without exchange or hard links, are files renamed into it
-    one by one.
+    moment leaves the old files or the new ones. Only where that is impossible, because the folder holds the working
+    directory or over a thousand entries, or lies on a file system without exchange or hard links, are files renamed
+    into it one by one.
 
     Raises:
         InputError: the folder cannot be written.
     """
-    target = folder.resolve()
+    with _sentence(f"folder '{folder}'"):
+        target = folder.resolve()
     with _sentence(f"folder '{folder}'"), _new_parents(target.parent):
         _remove_abandoned_drafts(target)
         draft = target.with_name(f".{target.name}{_draft_name()}")
@@ -51,7 +69,7 @@ def write_files_atomically(folder: Path, contents: Mapping[str, bytes]) -> Path:
             with held_lock(draft):
                 for name, content in contents.items():
                     _write(draft / name, content)
-                _put_in_place(draft, target, contents)
+                _put_in_place(draft, target, contents, {*removed} - {*contents})
         finally:
             shutil.rmtree(draft, ignore_errors=True)
     return folder
@@ -63,8 +81,8 @@ def writable_folder(folder: Path) -> Path:
     Raises:
         InputError: it cannot be made or written.
     """
-    absent = _absent(folder)
     with _sentence(f"folder '{folder}'"):
+        absent = _absent(folder)
         folder.mkdir(parents=True, exist_ok=True)
         draft = folder / _draft_name()
         _write(draft, b"")
@@ -85,29 +103,40 @@ def _write(path: Path, content: bytes) -> None:
         flush_to_disk(file.fileno())
 
 
-def _put_in_place(draft: Path, target: Path, contents: Mapping[str, bytes]) -> None:
+def _put_in_place(draft: Path, target: Path, contents: Mapping[str, bytes], removed: Set[str]) -> None:
     if not target.exists():
         flush_folder_to_disk(draft)
         replace_file(draft, target)
-    elif not (_adopt_others(draft, target, contents) and exchange_folders(draft, target)):
+    elif not (_adopt_others(draft, target, removed | contents.keys()) and exchange_folders(draft, target)):
         for name in contents:
             replace_file(draft / name, target / name)
+        for name in removed:
+            (target / name).unlink(missing_ok=True)
     flush_folder_to_disk(target.parent)
 
 
-def _adopt_others(draft: Path, target: Path, contents: Mapping[str, bytes]) -> bool:
-    """Link the user's other files of a folder into the draft of its successor; False where that cannot be done."""
-    if target == Path.cwd():
+def _adopt_others(draft: Path, target: Path, replaced: Set[str]) -> bool:
+    """Link the user's other files and folders into the draft of a folder's successor; False where that cannot be."""
+    if Path.cwd().is_relative_to(target) or _holds_many(target):
         return False
     shutil.copymode(target, draft)
     try:
-        for file in target.iterdir():
-            if file.name not in contents:
-                os.link(file, draft / file.name, follow_symlinks=False)
-    except OSError:  # a folder, another device, or a system without links
+        for entry in target.iterdir():
+            if entry.name in replaced:
+                continue
+            if entry.is_dir() and not entry.is_symlink():
+                shutil.copytree(entry, draft / entry.name, symlinks=True, copy_function=os.link)
+            else:
+                os.link(entry, draft / entry.name, follow_symlinks=False)
+    except OSError:  # another device, or a system without links
         return False
     flush_folder_to_disk(draft)
     return True
+
+
+def _holds_many(folder: Path) -> bool:
+    """Whether a folder holds so much that it is a working folder of the user, which keeps its identity."""
+    return len(list(islice(folder.rglob("*"), _MOST_ADOPTED + 1))) > _MOST_ADOPTED
 
 
 def _remove_abandoned_drafts(target: Path) -> None:
@@ -124,7 +153,7 @@ def _literal(name: str) -> str:
 
 
 def _absent(folder: Path) -> list[Path]:
-    return [place for place in (folder, *folder.parents) if not place.exists()]
+    return [place for place in (folder, *folder.parents) if not is_present(place)]
 
 
 @contextmanager
@@ -146,5 +175,6 @@ def _sentence(place: str) -> Iterator[None]:
     """Turn an error of the system into a sentence about the place."""
     try:
         yield
-    except OSError as error:
-        raise InputError(f"{place} cannot be written ({error.strerror}); choose another place") from None
+    except (OSError, RuntimeError, ValueError) as error:  # of links in a circle, of a name with a zero byte
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise InputError(f"{place} cannot be written ({reason}); choose another place") from None

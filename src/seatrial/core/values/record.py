@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
+from datetime import UTC, datetime
 from enum import StrEnum
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
 _EVEN_STEPS, _WHOLE_RATIO, _ROUNDING = 1e-3, 1e-3, 1e-12
 # samples of a record that is simulated or resampled, at most: 2.7 h at 10 kHz, 0.8 GB a channel; chosen
 MAX_SAMPLES = 10**8
+LATEST_TIME = datetime.max.replace(tzinfo=UTC).timestamp()
+"""s since 1970, at the end of the year 9999: the last time that has a date."""
 _SAME_TIME = 1e-9  # s, relative beyond 1 s; ours: time stamps that near are one
 
 
@@ -45,7 +48,7 @@ class Record:
     checking repairs; `dt` demands that they increase evenly.
 
     Raises:
-        InputError: no sample, lengths differ, or time runs backwards.
+        InputError: no sample, lengths differ, or time runs backwards or beyond the year 9999.
     """
 
     name: str
@@ -64,7 +67,7 @@ class Record:
                 raise InputError(
                     f"record '{self.name}': channel '{symbol}' has {len(channel.values)} samples, time {len(self.time)}"
                 )
-        _check_time_order(self.name, self.time)
+        _check_time(self.name, self.time)
 
     @classmethod
     def from_arrays(
@@ -277,7 +280,10 @@ class Record:
         return cls(str(dataset.attrs.get("name", "record")), dataset["time"].to_numpy().astype(float), channels)
 
 
-def _check_time_order(name: str, time: Array) -> None:
+def _check_time(name: str, time: Array) -> None:
+    latest = float(np.nanmax(np.abs(time))) if not np.isnan(time).all() else 0.0
+    if latest > LATEST_TIME:
+        raise InputError(f"record '{name}': {latest:.3g} s is no time; correct the unit of the time column")
     if np.all(time[1:] >= time[:-1]):  # the usual case at a tenth of the cost
         return
     stamped = np.flatnonzero(np.isfinite(time))

@@ -12,6 +12,7 @@ from seatrial.data.check.dropped_rows import dropped_rows_findings
 from seatrial.data.check.feedback import feedback_findings
 from seatrial.data.check.kinematic_consistency import kinematic_consistency_findings
 from seatrial.data.check.motion import recorded_motion
+from seatrial.data.check.possible_sizes import require_possible_sizes
 from seatrial.data.check.repair import repair
 from seatrial.data.check.rudder import rudder_findings
 from seatrial.data.check.run_phases import phase_findings
@@ -41,9 +42,11 @@ def examined_record(record: Record) -> ExaminedRecord:
     they may.
 
     Raises:
-        InputError: a channel holds no value, too few samples remain, or a positive direction is unknown.
+        InputError: a channel holds no value or one of no possible size, too few samples remain, or a positive direction
+            is unknown.
     """
     read, sentinel_findings = without_sentinels(record)
+    require_possible_sizes(read)
     even, time_findings = rebuild_time_base(read)
     complete, repair_findings = repair(even)
     findings = [

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from seatrial.core.values import InputError, Record
+from seatrial.core.values.files import is_folder
 from seatrial.data.draft.agreement import agreed_guesses
 from seatrial.data.draft.behaviour import checked_by_behaviour, run_record
 from seatrial.data.draft.column_guess import ColumnGuess
@@ -87,7 +88,7 @@ def _blocks(
 
 def _surveys(logs: Sequence[Path]) -> tuple[list[LogSurvey], dict[Path, str]]:
     """The logs, and the files of folders that are none, with the reason; a file that is named must be one."""
-    named = {log for log in logs if not log.is_dir()}
+    named = {log for log in logs if not is_folder(log)}
     surveys, reasons = list[LogSurvey](), dict[Path, str]()
     for path in _log_files(logs):
         try:
@@ -112,7 +113,7 @@ def _log_files(logs: Sequence[Path]) -> list[Path]:
     known = {suffix for one in FORMATS.values() for suffix in one.suffixes}
     files = []
     for log in logs:
-        if log.is_dir():
+        if is_folder(log):
             inside = sorted(path for path in log.rglob("*") if path.is_file())
             files += [path for path in inside if Path(path.name.removesuffix(".gz")).suffix.lower() in known]
         else:

@@ -28,9 +28,16 @@ def npz_bytes(arrays: Mapping[str, Array]) -> bytes:
 
 
 def npz_arrays(content: bytes) -> dict[str, Array]:
-    """Return the inverse of `npz_bytes`; pickles are refused."""
-    with np.load(io.BytesIO(content), allow_pickle=False) as file:
-        return {name: frozen(file[name]) for name in file.files}
+    """Return the inverse of `npz_bytes`; pickles are refused.
+
+    Raises:
+        ValueError: it is no such file.
+    """
+    try:
+        with np.load(io.BytesIO(content), allow_pickle=False) as file:
+            return {name: frozen(file[name]) for name in file.files}
+    except Exception as error:  # zipfile, zlib and NumPy raise a dozen unrelated types on damaged archives
+        raise ValueError(f"arrays.npz: {error}") from None
 
 
 def record_arrays(record: Record, prefix: str) -> dict[str, Array]:

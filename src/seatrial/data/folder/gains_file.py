@@ -2,7 +2,6 @@
 
 import math
 import re
-import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +9,7 @@ import tomli_w
 
 from seatrial.core.results.tuning import Controller, OperatingPoint, Tuning
 from seatrial.core.values import InputError
+from seatrial.core.values.tables import parse_toml, read_table_text
 from seatrial.data.folder.orders import channel_display_unit
 
 FORMAT = 1
@@ -41,10 +41,10 @@ def read_gains(path: str | Path) -> dict[str, float]:
         InputError: the file cannot be read, is no TOML, or has no table [gains] of finite numbers.
     """
     try:
-        table = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+        table = parse_toml(read_table_text(Path(path)))
     except OSError as error:
         raise InputError(f"'{path}' cannot be read ({error.strerror}); give a gains.toml of 'seatrial tune'") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except ValueError as error:
         raise InputError(f"'{path}' is no TOML ({error}); give a gains.toml of 'seatrial tune'") from None
     gains = table.get("gains")
     if not isinstance(gains, dict) or not gains:

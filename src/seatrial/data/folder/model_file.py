@@ -3,7 +3,6 @@
 The equations are known by name and hash: a built-in model is found by its name, any other is handed in.
 """
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,6 +15,7 @@ from seatrial.core.equations import Model
 from seatrial.core.results import IntervalBasis
 from seatrial.core.values import Array, InputError, Parameters, Ship, frozen
 from seatrial.core.values.files import write_atomically
+from seatrial.core.values.tables import parse_toml, read_table_text
 from seatrial.data.folder import model_tables
 from seatrial.data.folder.model_tables import (
     ModelProvenance,
@@ -110,9 +110,9 @@ def read_model_file(path: str | Path, own_model: Model | None = None) -> ModelFi
     """Return all that a model file holds; arguments and errors as in `read_model`."""
     path = Path(path)
     try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "it is not UTF-8 text"
+        text = read_table_text(path)
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) else error
         raise InputError(f"model file '{path}' cannot be read ({reason}); check the path") from None
     return parse_model(text, str(path), own_model)
 
@@ -120,8 +120,8 @@ def read_model_file(path: str | Path, own_model: Model | None = None) -> ModelFi
 def parse_model(text: str, where: str, own_model: Model | None = None) -> ModelFile:
     """Return the inverse of `model_text`; errors as in `read_model`, naming the file as `where`."""
     try:
-        table = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+        table = parse_toml(text)
+    except ValueError as error:
         raise InputError(f"model file '{where}' is no valid TOML: {error}") from None
     if table.get("format") != FORMAT or not isinstance(table.get("model"), dict):
         raise InputError(

@@ -22,8 +22,23 @@ EARLIER_KEYS = {"measure_deviation": "kinds", "training_envelope": "covered"}
 
 
 def number_table(numbers: Mapping[str, float]) -> dict[str, float]:
-    """Return the numbers as Python floats, which are written to the last bit."""
-    return {name: float(number) for name, number in numbers.items()}
+    """Return the numbers as Python floats, which are written to the last bit.
+
+    Raises:
+        ValueError: one is not finite.
+    """
+    return {name: finite_number(number, name) for name, number in numbers.items()}
+
+
+def finite_number(number: Any, name: str) -> float:
+    """Return a number of a table as float.
+
+    Raises:
+        ValueError: it is no number, or not finite.
+    """
+    if isinstance(number, bool) or not math.isfinite(value := float(number)):
+        raise ValueError(f"{name} = {number} is no finite number")
+    return value
 
 
 def matrix_rows(matrix: Array) -> list[list[float]]:
@@ -143,8 +158,8 @@ def ship(table: Mapping[str, Any] | None) -> Ship | None:
     """Return the inverse of `ship_table`; None without a table."""
     if table is None:
         return None
-    particulars = {name: float(value) for name, value in table.items() if name not in ("name", "source", "scale")}
-    return Ship(table["name"], particulars, table["source"], float(table["scale"]))
+    particulars = number_table({name: v for name, v in table.items() if name not in ("name", "source", "scale")})
+    return Ship(str(table["name"]), particulars, str(table["source"]), finite_number(table["scale"], "scale"))
 
 
 def parameter_table(p: Parameter) -> dict[str, Any]:
@@ -166,14 +181,26 @@ def parameter(name: str, table: Mapping[str, Any]) -> Parameter:
     prior = table.get("prior")
     return Parameter(
         name=name,
-        value=float(table["value"]),
+        value=_value(table["value"], f"{name}.value"),
         unit=str(table["unit"]),
         lower=float(table.get("lower", -math.inf)),
         upper=float(table.get("upper", math.inf)),
-        scale=float(table.get("scale", 0.0)),
-        prior=None if prior is None else Prior(float(prior["mean"]), float(prior["sd"]), str(prior["source"])),
+        scale=finite_number(table.get("scale", 0.0), f"{name}.scale"),
+        prior=None if prior is None else _prior(prior, f"{name}.prior"),
         free=bool(table["free"]),
         source=str(table.get("source", "")),
         meaning=str(table.get("meaning", "")),
         latex=str(table.get("latex", "")),
     )
+
+
+def _value(number: Any, where: str) -> float:
+    """A parameter's value; NaN where it has none yet."""
+    return math.nan if isinstance(number, float) and math.isnan(number) else finite_number(number, where)
+
+
+def _prior(table: Mapping[str, Any], where: str) -> Prior:
+    deviation = finite_number(table["sd"], f"{where}.sd")
+    if not deviation > 0.0:
+        raise ValueError(f"{where}.sd = {deviation:g} is not positive")
+    return Prior(finite_number(table["mean"], f"{where}.mean"), deviation, str(table["source"]))

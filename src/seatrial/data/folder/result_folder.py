@@ -4,7 +4,6 @@ The schema is documented in docs/result-folder.md.
 """
 
 import hashlib
-import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,7 +14,8 @@ from seatrial.core.results import Comparison, Design, Fit, Study
 from seatrial.core.results.online import Snapshot
 from seatrial.core.results.tuning import Tuning
 from seatrial.core.values import Array, InputError
-from seatrial.core.values.files import write_files_atomically
+from seatrial.core.values.files import is_file, write_files_atomically
+from seatrial.core.values.tables import parse_json, read_bounded, read_table_text
 from seatrial.data.folder.document import (
     FORMAT,
     document,
@@ -33,7 +33,9 @@ from seatrial.data.folder.orders import orders_csv
 from seatrial.data.read.record_csv import record_csv
 from seatrial.data.trial.approach import approach_condition
 
-MODEL, ARRAYS = "model.toml", "arrays.npz"
+# bytes of a data file of a folder, at most: half an hour at 10 kHz of eight channels, thrice; chosen
+_LARGEST_COMPANION = 2**32
+MODEL, ARRAYS, REPORT = "model.toml", "arrays.npz", "report.html"
 T = TypeVar("T")
 Result = Fit | Design | Tuning | Study | Comparison
 
@@ -49,6 +51,7 @@ class FolderKind(Generic[T]):
         model: result -> the model file of the folder.
         from_model: model file -> those fields of the result that it holds.
         products: result -> name and content of the files that other programs read.
+        product_names: names of these files.
         repeated: values of `--json` that stand elsewhere in the folder.
     """
 
@@ -58,6 +61,7 @@ class FolderKind(Generic[T]):
     model: Callable[[T], ModelFile] | None = None
     from_model: Callable[[ModelFile], dict[str, Any]] = lambda _: {}
     products: Callable[[T], Mapping[str, bytes]] = lambda _: {}
+    product_names: tuple[str, ...] = ()
     repeated: frozenset[str] = frozenset()
 
 
@@ -94,17 +98,24 @@ KINDS: tuple[FolderKind[Any], ...] = (
     FolderKind(
         Design, "design.json", "seatrial design TRIAL --out DIR",
         lambda design: ModelFile(design.model), lambda file: {"model": file.model}, _design_products,
-        frozenset({"equation_hash", "values", "evaluations", "status"}),
+        ("orders.csv", "plan.csv"), frozenset({"equation_hash", "values", "evaluations", "status"}),
     ),
     FolderKind(
         Tuning, "tuning.json", "seatrial tune LOOP --out DIR", products=_tuning_products,
-        repeated=frozenset({"evaluations", "status"}),
+        product_names=("gains.toml", "loop.mat", "schedule.csv"), repeated=frozenset({"evaluations", "status"}),
     ),
     FolderKind(Study, "study.json", "seatrial reproduce STUDY --out DIR"),
     FolderKind(
         Comparison, "comparison.json", "seatrial compare FIRST SECOND --out DIR", repeated=frozenset({"significant"})
     ),
 )  # fmt: skip
+
+
+def replaced_files(result: Result | Snapshot) -> frozenset[str]:
+    """Return the names of files of earlier results, of any kind, that a folder must not keep beside this one."""
+    if isinstance(result, Snapshot):
+        return frozenset()
+    return frozenset({ARRAYS, MODEL, REPORT}).union(*({kind.document, *kind.product_names} for kind in KINDS))
 
 
 def folder_files(result: Result | Snapshot) -> dict[str, bytes]:
@@ -122,12 +133,14 @@ def folder_files(result: Result | Snapshot) -> dict[str, bytes]:
 
 
 def save_result(result: Result | Snapshot, folder: str | Path) -> Path:
-    """Write the data files of a result, all or none; other files in the folder are left alone. Returns the folder.
+    """Write the data files of a result, all or none, and return the folder; the files of a result in it are replaced.
+
+    Other files in the folder are left alone.
 
     Raises:
         InputError: the folder cannot be written.
     """
-    return write_files_atomically(Path(folder), folder_files(result))
+    return write_files_atomically(Path(folder), folder_files(result), replaced_files(result))
 
 
 def load_result(folder: str | Path, own_model: Model | None = None) -> Result:
@@ -140,7 +153,7 @@ def load_result(folder: str | Path, own_model: Model | None = None) -> Result:
         InputError: no result folder, one of an earlier version, files that do not belong together, or other equations.
     """
     folder = Path(folder)
-    kind = next((kind for kind in KINDS if (folder / kind.document).is_file()), None)
+    kind = next((kind for kind in KINDS if is_file(folder / kind.document)), None)
     if kind is None:
         raise InputError(
             f"'{folder}' is no result folder (no {', '.join(kind.document for kind in KINDS)}); "
@@ -148,7 +161,7 @@ def load_result(folder: str | Path, own_model: Model | None = None) -> Result:
         )
     command = f"'{kind.command.replace('DIR', str(folder))}'"
     try:
-        table = json.loads((folder / kind.document).read_text(encoding="utf-8"))
+        table = parse_json(read_table_text(folder / kind.document))
         written_format = table.get("format", 1)  # studies of format 1 do not name it
         if written_format != FORMAT:
             raise InputError(f"'{folder}' is of format {written_format}, this version reads {FORMAT}; run {command}")
@@ -156,7 +169,7 @@ def load_result(folder: str | Path, own_model: Model | None = None) -> Result:
         return read_document(kind.result, table | fields, arrays)
     except OSError as error:
         raise InputError(f"'{error.filename}' cannot be read ({error.strerror}); run {command} again") from None
-    except (KeyError, TypeError, ValueError, IndexError) as error:
+    except (KeyError, TypeError, ValueError, IndexError, AttributeError) as error:
         if isinstance(error, InputError):
             raise
         raise InputError(f"'{folder / kind.document}' is damaged ({error}); run {command} again") from None
@@ -181,7 +194,8 @@ def _companions(
 ) -> tuple[dict[str, Array], dict[str, Any]]:
     """Return the arrays of a folder, and the fields of its result that stand in the model file."""
     needed = digests.keys() & {ARRAYS, MODEL}
-    contents = {name: (folder / name).read_bytes() for name in digests if name in needed or (folder / name).exists()}
+    present = [name for name in digests if name in needed or is_file(folder / name)]
+    contents = {name: read_bounded(folder / name, _LARGEST_COMPANION) for name in present}
     for name, content in contents.items():
         if hashlib.sha256(content).hexdigest() != digests[name]:
             raise InputError(f"'{folder / name}' has changed since the result was written; run {command} again")

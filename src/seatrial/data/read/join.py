@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.values import Array, InputError
+from seatrial.core.values.record import MAX_SAMPLES
 from seatrial.data.read.layout import ColumnSpec
 
 # steps of a topic over which nothing is interpolated unless a time is stated, ours
@@ -46,7 +47,7 @@ def common_time(series: Sequence[Series], rate: float | None) -> Array:
     A held series counts from its first sample on and has no end. rate: Hz; None: of the slowest measured series.
 
     Raises:
-        InputError: a series has fewer than two samples, or they do not overlap.
+        InputError: a series has fewer than two samples, they do not overlap, or there would be too many samples.
     """
     measured = [one for one in series if not one.column.is_held] or list(series)
     for one in series:
@@ -66,6 +67,11 @@ def common_time(series: Sequence[Series], rate: float | None) -> Array:
             f"channels '{first.column.symbol}' and '{last.column.symbol}' do not overlap in time: "
             f"{first.label} starts {first.time[0] - last.time[-1]:.6g} s after {last.label} ends; "
             "check their clocks, or set clock_offset"
+        )
+    if not (stop - start) / step < MAX_SAMPLES:
+        raise InputError(
+            f"{slowest.label}: {stop - start:.6g} s at {1.0 / step:.6g} Hz are over {MAX_SAMPLES:.0e} samples; set a "
+            "lower rate, and check the unit of the time"
         )
     return start + step * np.arange(int((stop - start) / step + _ROUNDING_STEPS) + 1)
 

@@ -13,6 +13,7 @@ EMPTY_CELLS = ("", "na", "n/a", "null", "none")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?|[+-]?(nan|inf|infinity)|true|false", re.IGNORECASE | re.ASCII)
 _GROUPED_NUMBER = re.compile(r"[+-]?\d{1,3}([,.' ]\d{3})+([.,]\d*)?")
 _MINUS_SIGN = "\u2212"
+_LARGEST_CELL = 1e40  # in any unit; ours: beyond every 32-bit float, with which logs mark readings that stand for none
 _LONGEST_CELL = 40  # characters of a cell that a message quotes; ours
 
 
@@ -95,10 +96,11 @@ class RawTable:
             values = np.asarray(cells, dtype=np.float64)
         else:
             values = np.array([self._to_number(cell, row, column) for row, cell in enumerate(cells)])
-        infinite = np.flatnonzero(np.isinf(values))
-        if infinite.size:
+        endless = np.flatnonzero(np.abs(values) > _LARGEST_CELL)
+        if endless.size:
             raise InputError(
-                f"{self.file}: row {self.first_row + infinite[0]}, {column.display_name}: the number is infinite"
+                f"{self.file}: row {self.first_row + endless[0]}, {column.display_name}: the number is infinite, or as "
+                "good as; leave the cell empty"
             )
         return values
 

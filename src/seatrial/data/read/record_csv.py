@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from seatrial.core.values import Array, Channel, InputError, Provenance, Record, RecordKind, frozen, quantity
-from seatrial.core.values.files import write_atomically
+from seatrial.core.values.files import is_file, write_atomically
+from seatrial.core.values.tables import parse_json
 from seatrial.data.read.formats.text import RECORD_MARK, decoded_text, read_text
 from seatrial.data.read.layout import ColumnSpec, Layout
 
@@ -38,7 +39,7 @@ def read_record_csv(path: Path) -> Record:
     Raises:
         InputError: the file is missing, is not such a table, or holds a cell that is not a number.
     """
-    if not path.is_file():
+    if not is_file(path):
         raise InputError(f"{path} does not exist; check the path")
     text = decoded_text(path, "utf-8")
     lines = text.splitlines()
@@ -56,7 +57,7 @@ def read_record_csv(path: Path) -> Record:
         source = Provenance(path.name, hashlib.sha256(path.read_bytes()).hexdigest())
         return Record(path.stem, time, plain, provenance=source)
     try:
-        metadata = json.loads(lines[0].removeprefix(RECORD_MARK))
+        metadata = parse_json(lines[0].removeprefix(RECORD_MARK))
         described = metadata["channels"]
         channels = {
             symbol: Channel(frozen(values), **{**described[symbol], "unit": unit})
@@ -64,7 +65,7 @@ def read_record_csv(path: Path) -> Record:
         }
         provenance = Provenance.from_metadata(metadata["provenance"])
         return Record(metadata["name"], time, channels, RecordKind(metadata["kind"]), provenance)
-    except (KeyError, TypeError, ValueError, RecursionError) as error:
+    except (KeyError, TypeError, ValueError) as error:
         if isinstance(error, InputError):
             raise
         raise InputError(f"{path.name}: its first line is damaged; delete it to read the numbers alone") from None

@@ -4,6 +4,7 @@ import hashlib
 from pathlib import Path
 
 from seatrial.core.values import InputError, Record
+from seatrial.core.values.files import is_file, is_folder, is_present
 from seatrial.data.read.assemble import assemble_record
 from seatrial.data.read.layout import Layout
 from seatrial.data.read.log import Log
@@ -38,11 +39,11 @@ def require_file(path: Path) -> None:
     """Raises:
     InputError: the path is missing, a folder, a device or a pipe, or an empty file.
     """
-    if path.is_dir():
+    if is_folder(path):
         raise InputError(f"{path} is a folder; name a file in it")
-    if not path.exists():
-        raise InputError(f"{path} does not exist; check the path and SEATRIAL_DATA")
-    if not path.is_file():
+    if not is_file(path):
+        if not is_present(path):
+            raise InputError(f"{path} does not exist; check the path and SEATRIAL_DATA")
         raise InputError(f"{path} is a device or a pipe; records are read from files, streams by 'seatrial follow'")
     if path.stat().st_size == 0:
         raise InputError(f"{path.name} is empty; leave it out or replace it")

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from seatrial._plugins import installed, load_plugin
 from seatrial.core.values import InputError, spelling_hint
+from seatrial.core.values.files import is_file
 from seatrial.data.read.log import Reader
 from seatrial.data.read.reading_process import read_in_process
 
@@ -113,7 +114,7 @@ def reader_of(name: str) -> Reader:
 
 
 def _first_bytes(path: Path) -> bytes:
-    if not path.is_file():
+    if not is_file(path):
         return b""
     try:
         with path.open("rb") as file:

@@ -1,6 +1,5 @@
 """A trial file corrected by what the checks are certain of; each change is kept only if it removes errors."""
 
-import tomllib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,6 +8,7 @@ import tomlkit
 from tomlkit.exceptions import TOMLKitError
 
 from seatrial.core.values import Finding, InputError, Severity, TrialEdit, si_unit
+from seatrial.core.values.tables import parse_toml, read_table_text
 from seatrial.data.trial.load import parse_tables
 from seatrial.data.trial.records import load_run
 from seatrial.data.trial.runs import runs_of
@@ -105,16 +105,17 @@ def _findings(text: str, path: Path, index: int) -> list[Finding]:
 
 def _read(path: Path) -> str:
     try:
-        return path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
+        return read_table_text(path)
+    except (OSError, ValueError) as error:
         raise InputError(f"trial file '{path}' cannot be read ({error}); check the path") from None
 
 
 def _tables(text: str, path: Path) -> TrialFile:
     try:
-        return parse_tables(tomllib.loads(text), path)
-    except tomllib.TOMLDecodeError as error:
+        table = parse_toml(text)
+    except ValueError as error:
         raise InputError(f"trial file '{path}' is no valid TOML: {error}") from None
+    return parse_tables(table, path)
 
 
 def _edited(text: str, path: Path, index: int, edits: tuple[TrialEdit, ...]) -> str:
@@ -148,7 +149,7 @@ def _apply(channels: dict, edit: TrialEdit, block: RecordsTable) -> None:
         _exchange(channels, symbol, edit.exchanged_with.split(".")[1])
         return
     (key,) = rest
-    value = tomllib.loads(f"value = {edit.value}")["value"]
+    value = parse_toml(f"value = {edit.value}")["value"]
     if edit.unit:
         value = round(value / si_unit(channels[symbol]["unit"])[0] + channels[symbol].get(key, 0.0), _DECIMALS)
     elif key == "scale":

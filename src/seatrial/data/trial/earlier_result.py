@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from seatrial.core.values import InputError
+from seatrial.core.values.files import is_file, is_folder
 from seatrial.data.trial.literature import LiteraturePrior
 
 
@@ -36,9 +37,9 @@ def earlier_results(
     Raises:
         InputError: a folder that holds no such result.
     """
-    folders = {name: home / expand(name) for name in names if "/" in name or (home / name).is_dir()}
+    folders = {name: home / expand(name) for name in names if "/" in name or is_folder(home / name)}
     for name, folder in folders.items():
-        if read is None or not (folder / "model.toml").is_file():
+        if read is None or not is_file(folder / "model.toml"):
             raise InputError(
                 f"model.priors_from: '{name}' is no result of identify (no {folder / 'model.toml'}); give the DIR of "
                 "'seatrial identify TRIAL --out DIR'"

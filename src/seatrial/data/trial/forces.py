@@ -6,6 +6,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, ForceContent, ForcePoints, InputError, quantity, si_unit, spelling_hint
+from seatrial.core.values.files import is_file
 from seatrial.core.values.froude import froude_factor
 from seatrial.core.values.notation import OPPOSITE
 from seatrial.data.read import ColumnSpec, Layout, RawTable, format_of, read_log
@@ -53,7 +54,7 @@ def read_force_points(
 
 def _read_columns(table: ForcesTable, data_folder: Path, where: str) -> RawTable:
     path = data_folder / expand_variables(table.file)
-    if not path.is_file():
+    if not is_file(path):
         raise InputError(f"{where}.file: there is no file '{path}'; check the name and [data] folder")
     wanted = {s: c for s, c in (*table.motion.items(), *table.measured.items()) if c.column is not None}
     columns = tuple(_column(symbol, column) for symbol, column in wanted.items())

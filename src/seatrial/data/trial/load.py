@@ -1,7 +1,6 @@
 """A trial file into a `Trial`."""
 
 import re
-import tomllib
 from collections.abc import Callable
 from pathlib import Path
 
@@ -10,6 +9,7 @@ from pydantic import ValidationError
 from seatrial.core.equations import Model
 from seatrial.core.values import NOTATION, InputError, Ship, channel_hint, spelling_hint
 from seatrial.core.values.errors import listed
+from seatrial.core.values.tables import parse_toml, read_table_text, refuse_absurd_numbers
 from seatrial.data.check.captive_forces import force_findings
 from seatrial.data.trial.declared_channels import declared_channels
 from seatrial.data.trial.design_request import refuse_unsuitable
@@ -36,11 +36,10 @@ def parse_trial(path: Path) -> TrialFile:
         InputError: no such file, no TOML, or as `parse_tables`.
     """
     try:
-        with path.open("rb") as file:
-            table = tomllib.load(file)
+        table = parse_toml(read_table_text(path))
     except OSError as error:
         raise InputError(f"trial file '{path}' cannot be read ({error.strerror}); check the path") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except ValueError as error:
         raise InputError(f"trial file '{path}' is no valid TOML: {error}") from None
     return parse_tables(table, path)
 
@@ -49,8 +48,9 @@ def parse_tables(table: dict, path: Path) -> TrialFile:
     """The tables of a trial file, checked key by key; path: for messages.
 
     Raises:
-        InputError: an unknown or missing key, a value of the wrong kind.
+        InputError: an unknown or missing key, a value of the wrong kind, a number of no possible size.
     """
+    refuse_absurd_numbers(table, str(path))
     try:
         file = TrialFile.model_validate(table)
     except ValidationError as error:

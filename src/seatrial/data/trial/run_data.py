@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from seatrial.core.values import InputError, Record, spelling_hint
+from seatrial.core.values.files import is_file
 from seatrial.data.read import Layout, LogEvent, read_log
 from seatrial.data.read.assemble import LogSource, assemble_record, record_of_sources
 from seatrial.data.read.record_file import file_digest
@@ -92,7 +93,7 @@ class RecordSources:
 
 
 def _run_record(files: tuple[SourceFile, ...], name: str, part: RunPart | None) -> Record:
-    states = tuple(file.path.stat() for file in files if file.path.is_file())
+    states = tuple(file.path.stat() for file in files if is_file(file.path))
     record, events = _assembled(files, tuple((state.st_mtime_ns, state.st_size) for state in states))
     if part is not None:
         first, last = float(record.time[0]), float(record.time[-1])

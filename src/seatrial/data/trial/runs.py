@@ -9,17 +9,18 @@ from dataclasses import replace
 from pathlib import Path
 
 from seatrial.core.values import InputError, RecordKind, si_unit, spelling_hint
+from seatrial.core.values.files import is_file, is_folder
 from seatrial.data.read import ColumnSpec, Layout, format_of
 from seatrial.data.read.layout import Geometry, TimeSpec
 from seatrial.data.read.quantities import log_quantity
 from seatrial.data.trial.declared_channels import NO_DECLARED, Declared, DeclaredQuantity
 from seatrial.data.trial.excitation import wave_encounter
-from seatrial.data.trial.run_data import RecordFile, RecordSources, RunPart, SourceFile, run_name
+from seatrial.data.trial.run_data import RecordFile, RecordSources, RunPart, SourceFile
 from seatrial.data.trial.schema import ChannelColumn, ColumnsTable, RecordsTable
+from seatrial.data.trial.session import session_of
 from seatrial.data.trial.trial import Role, TrialRun, Trimming
 from seatrial.physics.hydro.excitation import Excitation
 
-_DATE = re.compile(r"\d{4}-\d{2}-\d{2}|\d{1,2}-[A-Z][a-z]{2}-\d{4}|(?<!\d)(?:19|20)\d{6}(?!\d)")
 _RunData = RecordFile | RecordSources
 _VARIABLE = re.compile(r"\$\{(\w+)\}")
 
@@ -38,7 +39,7 @@ def expand_variables(text: str, quote: Callable[[str], str] = str) -> str:
         if not os.environ.get(name):
             raise InputError(f"the environment variable {name} in '{text}' is not set; set it to the data's folder")
         folder = Path(os.environ[name])
-        return quote(str(folder.resolve()) if folder.exists() else os.environ[name])
+        return quote(str(folder.resolve()) if is_folder(folder) else os.environ[name])
 
     return _VARIABLE.sub(value, text)
 
@@ -152,7 +153,7 @@ def _session_path(data: RecordFile | RecordSources) -> Path:
 
 def _matching_files(text: str, data_folder: Path, where: str) -> list[Path]:
     full = data_folder / expand_variables(text)
-    if full.is_file():
+    if is_file(full):
         return [full]
     if not any(c in text for c in "*?["):
         raise InputError(f"{where}.files: there is no file '{full}'; check the name and [data] folder")
@@ -160,8 +161,8 @@ def _matching_files(text: str, data_folder: Path, where: str) -> list[Path]:
     pattern = Path(expand_variables(text, quote=glob.escape))
     root = Path(pattern.anchor) if pattern.is_absolute() else data_folder
     try:
-        matching = [p for p in root.glob(str(pattern.relative_to(pattern.anchor))) if p.is_file()]
-    except ValueError as error:  # '**' within a name
+        matching = [p for p in root.glob(str(pattern.relative_to(pattern.anchor))) if is_file(p)]
+    except (ValueError, OSError) as error:  # '**' within a name, a name too long
         raise InputError(f"{where}.files: '{text}' is no pattern ({error}); correct it") from None
     if not matching:
         raise InputError(f"{where}.files: '{full}' matches no file; check the pattern and [data] folder")
@@ -183,24 +184,6 @@ def _roles(block: RecordsTable, names: Sequence[str], where: str) -> list[Role]:
             raise InputError(f"{where}: run '{name}' is named under both '{matching[0]}' and '{matching[1]}'; keep one")
         roles.append(matching[0] if matching else default)
     return roles
-
-
-def session_of(path: Path, rule: str) -> str:
-    """The group with which a run shares its offsets: its own name, the day in it, or what `rule` finds in it.
-
-    A regular expression gives its first group, or the whole match.
-
-    Raises:
-        InputError: the rule finds nothing in the name.
-    """
-    name = run_name(path)
-    if rule == "run":
-        return name
-    match = (_DATE if rule == "day" else re.compile(rule)).search(name)
-    if match is None:
-        what = "no date is found" if rule == "day" else f"'{rule}' matches nothing"
-        raise InputError(f"session: {what} in the file name '{path.name}'; give another rule, or 'run'")
-    return match.group(1) if match.re.groups else match.group(0)
 
 
 def layout_of(block: ColumnsTable, file_format: str, where: str, declared: Declared = NO_DECLARED) -> Layout:

@@ -1,6 +1,5 @@
 """The tables of a trial file: strict pydantic models; `seatrial.data.trial.schema_errors` words what they refuse."""
 
-import re
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
@@ -14,6 +13,7 @@ from seatrial.data.trial.compare_settings import CompareSettings
 from seatrial.data.trial.design_request import DesignRequest
 from seatrial.data.trial.feedback_table import Feedback
 from seatrial.data.trial.sea_table import SeaTable
+from seatrial.data.trial.session import valid_session
 from seatrial.data.trial.settings import EstimateSettings, ModelFamily
 from seatrial.data.trial.stream import StreamSettings
 from seatrial.data.trial.thruster_table import ThrusterTable
@@ -23,15 +23,6 @@ from seatrial.physics.sensors import Sensors
 
 def _as_tuple(value: object) -> object:
     return (value,) if isinstance(value, str) else value
-
-
-def _valid_pattern(session: object) -> object:
-    if isinstance(session, str) and session not in ("run", "day"):
-        try:
-            re.compile(session)
-        except re.error as error:
-            raise ValueError(f"'{session}' is no regular expression ({error}); give one, or 'run', or 'day'") from None
-    return session
 
 
 def _valid_clock(unit: object) -> object:
@@ -203,7 +194,7 @@ class RecordsTable(ColumnsTable):
     train: Strings = ()
     validate_: Strings = Field((), alias="validate")
     leave_out: Strings = ()
-    session: Annotated[str, BeforeValidator(_valid_pattern)] = "run"
+    session: Annotated[str, BeforeValidator(valid_session)] = "run"
     rate: Annotated[float, Field(gt=0)] | None = None
     from_s: float | None = None
     to_s: float | None = None

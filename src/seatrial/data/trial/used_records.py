@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping
 
 from seatrial.core.values import InputError
+from seatrial.core.values.files import is_file
 from seatrial.data.read.record_file import file_digest
 from seatrial.data.trial.earlier_result import EarlierResult
 from seatrial.data.trial.run_data import RecordFile
@@ -18,7 +19,7 @@ def refuse_used_records(runs: Iterable[TrialRun], results: Mapping[str, EarlierR
     for run in runs if results else ():
         if run.role is not Role.TRAIN or not isinstance(run.data, RecordFile) or run.data.part is not None:
             continue
-        digest = file_digest(run.data.path) if run.data.path.is_file() else ""
+        digest = file_digest(run.data.path) if is_file(run.data.path) else ""
         for name, result in results.items():
             if digest in result.digests:
                 raise InputError(

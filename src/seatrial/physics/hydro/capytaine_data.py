@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from seatrial.core.values import Array, InputError, spelling_hint
+from seatrial.core.values.files import is_file
 from seatrial.physics.hydro.dispersion import wavenumber
 from seatrial.physics.hydro.excitation import Complex, checked_waves
 from seatrial.physics.hydro.strip_theory import coefficients_at_speed, excitation_at_speed
@@ -93,7 +94,7 @@ def read_capytaine(path: str | Path) -> HullData:
         InputError: no such file, not NetCDF, xarray not installed, or as `hull_data`.
     """
     file = Path(path)
-    if not file.is_file():
+    if not is_file(file):
         raise InputError(f"there is no file {file} with hydrodynamic data")
     try:
         import xarray as xr

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from seatrial.core.values import Array, InputError, spelling_hint
+from seatrial.core.values.files import is_file
 from seatrial.physics.hydro.excitation import Complex
 from seatrial.physics.hydro.tabulated import WaveTable
 
@@ -59,7 +60,7 @@ def read_transfer(
             heading twice or not at all, and as `WaveTable`.
     """
     file = Path(path)
-    if not file.is_file():
+    if not is_file(file):
         raise InputError(f"there is no file {file} with transfer functions")
     columns = _netcdf_columns(file) if file.suffix == ".nc" else _csv_columns(file)
     names = _value_names(file.name, columns)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from seatrial._plugins import failure_text, installed, load_plugin
 from seatrial.core.values import InputError, spelling_hint
+from seatrial.core.values.files import is_file
 from seatrial.physics import models
 
 if TYPE_CHECKING:
@@ -88,7 +89,7 @@ def model_from_file(path: Path) -> "Model":
     Raises:
         InputError: the file is missing, fails, or defines no `model()` that returns a Model.
     """
-    if not path.is_file():
+    if not is_file(path):
         raise InputError(f"model file {path} does not exist; give the path of a Python file that defines model()")
     try:
         names = runpy.run_path(str(path))

@@ -36,13 +36,13 @@ def utf8_text(path: Path, encoding: str) -> bytes:
     Raises:
         InputError: empty, packed wrongly or without end, binary, or not in that encoding.
     """
-    data = _unpacked(path) if path.suffix == ".gz" else path.read_bytes()
+    data = _unpacked(path) if path.suffix == ".gz" else _plain_bytes(path, encoding)
     if not data[:_HEAD_BYTES].strip() and not data.strip():
         raise InputError(f"{path.name} is empty; leave it out or replace it")
     mark = next((mark for mark in _BYTE_ORDER_MARKS if data.startswith(mark)), b"")
     encoding = _BYTE_ORDER_MARKS.get(mark, encoding)
-    if b"\0" in data[:_HEAD_BYTES] and not encoding.lower().startswith(("utf-16", "utf_16", "utf-32", "utf_32")):
-        raise InputError(f"{path.name} is not a text file (it holds binary data); check the format")
+    if b"\0" in data[:_HEAD_BYTES] and not _may_hold_zeros(encoding):
+        raise _binary_error(path)
     try:
         if codecs.lookup(encoding).name in _ASCII_COMPATIBLE and data.isascii():
             return data
@@ -56,6 +56,31 @@ def utf8_text(path: Path, encoding: str) -> bytes:
         ) from None
     except (LookupError, ValueError):  # no such codec, or one that is none of text
         raise InputError(f"{path.name}: unknown encoding {encoding!r}; try 'utf-8' or 'cp1252'") from None
+
+
+def _plain_bytes(path: Path, encoding: str) -> bytes:
+    """The bytes of a file that is not packed; no more is read than up to the first zero byte, which text has none of.
+
+    Raises:
+        InputError: it holds a zero byte.
+    """
+    chunks = []
+    with path.open("rb") as file:
+        while chunk := file.read(_CHUNK_BYTES):
+            if not chunks and chunk[:2] in _BYTE_ORDER_MARKS:
+                encoding = _BYTE_ORDER_MARKS[chunk[:2]]
+            if b"\0" in chunk and not _may_hold_zeros(encoding):
+                raise _binary_error(path)
+            chunks.append(chunk)
+    return b"".join(chunks)
+
+
+def _may_hold_zeros(encoding: str) -> bool:
+    return encoding.lower().replace("_", "-").startswith(("utf-16", "utf-32"))
+
+
+def _binary_error(path: Path) -> InputError:
+    return InputError(f"{path.name} is not a text file (it holds binary data); check the format")
 
 
 def decoded_text(path: Path, encoding: str) -> str:
