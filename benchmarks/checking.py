@@ -62,10 +62,10 @@ def write_files(folder: Path, rows: int) -> tuple[Path, Path]:
     return paths
 
 
-def cpu_time(function: Callable[[], object]) -> float:
+def cpu_time(function: Callable[[], object], repeats: int = REPEATS) -> float:
     """Least processor time of several calls [s]."""
     spent = []
-    for _ in range(REPEATS):
+    for _ in range(repeats):
         began = time.process_time()
         function()
         spent.append(time.process_time() - began)

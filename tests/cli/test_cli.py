@@ -151,5 +151,5 @@ def test_a_voyage_in_waves_is_replayed_beside_its_record(
     model = tmp_path / "fit" / "model.toml"
     replayed = ("--trial", trial, "--inputs", "voyage_held_out", "--out", tmp_path / "run.csv")
     assert run_command("simulate", model, *replayed, "--json", tmp_path / "run.json") == 0
-    assert "against voyage_held_out: rms theta_deg" in capsys.readouterr().out
+    assert "against voyage_held_out: rms pitch" in capsys.readouterr().out
     assert json.loads((tmp_path / "run.json").read_text())["rms"]["z"] < 0.015

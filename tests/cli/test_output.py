@@ -7,7 +7,7 @@ from tests.reporting.complete_fit import baselines, complete_fit
 from tests.reporting.fabricated import fabricated_fit
 from tests.reporting.fabricated_study import fabricated_study
 
-from seatrial.cli.output import print_fit, print_study
+from seatrial.cli.output import print_fit, print_study, progress_reporter
 
 
 def printed(capsys: pytest.CaptureFixture[str]) -> str:
@@ -63,3 +63,13 @@ def test_a_study_ends_with_the_three_counts_of_its_checks(capsys: pytest.Capture
     assert any(line.strip().startswith("FAILS") and line.endswith("few runs") for line in lines)
     assert lines[1] == "Not all of them: the fit has two optima."
     assert any(". Setting: search box about the truth" in line for line in lines)
+
+
+def test_off_a_terminal_each_phase_is_reported_once(capsys: pytest.CaptureFixture[str]) -> None:
+    with progress_reporter() as report_progress:
+        for count in range(1, 40):
+            report_progress(f"12 segments, evaluation {count}: {1e3 / count:.6g}")
+        for name in ("cubic", "linear"):
+            report_progress(f"family: {name}")
+        report_progress("13 segments, evaluation 1: 5")
+    assert capsys.readouterr().err.splitlines() == ["12 segments, evaluation 1: 1000", "family: cubic"]

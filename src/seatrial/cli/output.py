@@ -1,5 +1,6 @@
 """What the commands print and write: findings, fits and studies as text, progress, JSON."""
 
+import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -30,6 +31,7 @@ NOT_DETERMINED = "not determined"
 # orders that are printed; chosen: the file has them all
 MAX_ORDERS_PRINTED = 8
 SEVERITY_MARK = {"error": "ERROR  ", "warning": "warning", "info": "note   "}
+_NUMBERS = re.compile(r"\d[\d.e+-]*")
 DIGITS = 5  # significant ones of estimates; chosen
 
 
@@ -387,11 +389,24 @@ def _print_orders(design: "Design") -> None:
         print(f"  ... and {len(design.orders) - MAX_ORDERS_PRINTED} more orders in orders.csv")
 
 
+def _phase_printer() -> Callable[[str], None]:
+    """Return a function that prints the first report of each phase: of those alike up to a colon, but for numbers."""
+    reported = set[str]()
+
+    def report(text: str) -> None:
+        phase = _NUMBERS.sub("", text.partition(":")[0])
+        if phase not in reported:
+            reported.add(phase)
+            print(text, file=sys.stderr, flush=True)
+
+    return report
+
+
 @contextmanager
 def progress_reporter() -> Iterator[Callable[[str], None]]:
-    """Give a function that reports progress: a spinner on a terminal, plain lines otherwise, on standard error."""
+    """Give a function that reports progress on standard error: a spinner on a terminal, else a line for each phase."""
     if not sys.stderr.isatty():
-        yield lambda text: print(text, file=sys.stderr, flush=True)
+        yield _phase_printer()
         return
     from rich.console import Console
 

@@ -163,7 +163,7 @@ def write_ulog(path: Path) -> None:
     def message(kind: bytes, body: bytes) -> bytes:
         return struct.pack("<H", len(body)) + kind + body
 
-    content = b"ULog\x01\x12\x35\x01" + struct.pack("<Q", 0)
+    content = bytearray(b"ULog\x01\x12\x35\x01" + struct.pack("<Q", 0))
     content += message(b"B", bytes(40))
     content += message(b"F", b"vehicle_local_position:uint64_t timestamp;float vx;float heading;")
     key = b"float CA_ROTOR0_PX"
@@ -178,7 +178,7 @@ def dataflash(messages: dict[str, tuple[str, str, list[tuple]]]) -> bytes:
     """An ArduPilot log: name -> (letters of the fields, their names, rows); ArduPilot, AP_Logger/LogStructure.h."""
     sizes = {"Q": 8, "f": 4, "L": 4, "B": 1, "N": 16, "H": 2, "c": 2, "d": 8}
     codes = {"Q": "Q", "f": "f", "L": "i", "B": "B", "N": "16s", "H": "H", "c": "h", "d": "d"}
-    head, body = b"\xa3\x95", b""
+    head, body = b"\xa3\x95", bytearray()
     kinds = {"FMT": (0x80, 89, "BBnNZ", "Type,Length,Name,Format,Columns")}
     for number, (name, (letters, names, _)) in enumerate(messages.items(), start=130):
         kinds[name] = (number, 3 + sum(sizes[letter] for letter in letters), letters, names)
@@ -190,7 +190,7 @@ def dataflash(messages: dict[str, tuple[str, str, list[tuple]]]) -> bytes:
     for _, name, row in sorted(rows, key=lambda one: one[0]):
         number, _, letters, _ = kinds[name]
         body += head + bytes([number]) + struct.pack("<" + "".join(codes[letter] for letter in letters), *row)
-    return body
+    return bytes(body)
 
 
 def write_ardupilot_bin(path: Path) -> None:
