@@ -2,6 +2,7 @@
 
 import pytest
 
+from seatrial.data.draft.naming import guess_by_name
 from seatrial.data.draft.stored_parameters import antenna_place, is_disabled, output_setting
 
 
@@ -34,3 +35,14 @@ def test_the_antenna_is_where_the_parameters_say() -> None:
     place = antenna_place({"GPS1_POS_X": 1.2, "GPS1_POS_Y": 0.0})
     assert place is not None and (place.x, place.y) == (1.2, 0.0)
     assert antenna_place({"GPS_POS1_X": 0.0, "GPS_POS1_Y": 0.0}) is None
+
+
+def test_auxiliary_outputs_of_px4_are_counted_on_or_are_the_first_where_main_drives_nothing() -> None:
+    auxiliary = {"PWM_AUX_FUNC1": 101.0, "PWM_AUX_MIN1": 1000.0, "PWM_AUX_MAX1": 2000.0, "CA_R_REV": 1.0}
+    alone = output_setting(auxiliary | {"PWM_MAIN_FUNC1": 0.0}, 1)
+    second = output_setting(auxiliary | {"PWM_MAIN_FUNC1": 201.0}, 9)
+    assert alone is not None and alone == second and alone.evidence.startswith("PWM_AUX_FUNC1")
+    assert (alone.zero, alone.span, alone.drives) == (1500.0, 500.0, "motor 1")
+    named = guess_by_name("actuator_outputs[1]", "output[0]", "", "ulog")
+    assert named is not None and named.symbol == "command_9"
+    assert guess_by_name("actuator_outputs[1]", "output[7]", "", "ulog") is None, "there are twelve commands"

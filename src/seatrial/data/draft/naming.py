@@ -5,9 +5,12 @@ from dataclasses import dataclass
 
 from seatrial.core.values import InputError, si_unit
 from seatrial.core.values.units import UNIT_WORDS
+from seatrial.data.draft.stored_parameters import PX4_MAIN_OUTPUTS
 from seatrial.data.read.quantities import log_quantity
 
 _SCALED_DEGREE, _CENTI = 1e-7, 1e-2  # MAVLink and PX4: degrees as integers of 1e-7, centidegrees and cm/s
+
+_AUXILIARY = "command_{} of AUX"  # the outputs of PX4's second bank, which are counted on from those of the first
 
 
 @dataclass(frozen=True)
@@ -60,6 +63,7 @@ _MESSAGES = [
         (r"vehicle_gps_position/lat", "lat", "deg", "", "", _SCALED_DEGREE),
         (r"vehicle_gps_position/lon", "lon", "deg", "", "", _SCALED_DEGREE),
         (r"actuator_outputs(\[0\])?/output\[(\d+)\]", "command_{}", "us"),
+        (r"actuator_outputs\[1\]/output\[(\d+)\]", _AUXILIARY, "us"),
     ),
     *_rules(
         "NMEA 0183",
@@ -188,6 +192,8 @@ def _guess(rule: NameRule, match: re.Match[str], unit: str, evidence: str) -> Na
     symbol = rule.symbol
     if "{}" in symbol:
         number = int(next(part for part in match.groups() if part and part.isdecimal())) + (rule.logger == "PX4")
+        if symbol == _AUXILIARY:
+            symbol, number = "command_{}", number + PX4_MAIN_OUTPUTS
         symbol = symbol.format(max(number, 1))
     try:
         expected = log_quantity(symbol).unit

@@ -11,6 +11,9 @@ _ARDUPILOT = {
 }  # fmt: skip
 # PX4, parameter reference, PWM_MAIN_FUNC1: the first motor and the first servo, of twelve and eight
 _PX4_MOTOR, _PX4_MOTORS, _PX4_SERVO, _PX4_SERVOS = 101, 12, 201, 8
+PX4_MAIN_OUTPUTS = 8
+"""Outputs of the first bank (MAIN, of the IO processor) of a PX4 board; those of the second (AUX) are counted on."""
+_PX4_BANKS = ("MAIN", "AUX")
 _RUDDER = "rudder"
 # GNSS antennas from the autopilot, forward and to starboard [m]: names since version 4.6 of ArduPilot, and before
 _ANTENNAS = (("GPS1_POS_X", "GPS1_POS_Y"), ("GPS_POS1_X", "GPS_POS1_Y"))
@@ -55,8 +58,21 @@ def output_setting(parameters: Mapping[str, float], number: int) -> OutputSettin
 
 def is_disabled(parameters: Mapping[str, float], number: int) -> bool:
     """Return whether an output is stated to drive nothing."""
-    names = (f"SERVO{number}_FUNCTION", f"PWM_MAIN_FUNC{number}")
+    bank, place = _px4_bank(parameters, number)
+    names = (f"SERVO{number}_FUNCTION", f"PWM_{bank}_FUNC{place}")
     return any(parameters.get(name) == 0.0 for name in names)
+
+
+def _px4_bank(parameters: Mapping[str, float], number: int) -> tuple[str, int]:
+    """The bank of an output, MAIN or AUX, and its number in it; the first outputs are AUX where only these do anything.
+
+    PX4 starts the IO processor before the flight controller's own outputs (ROMFS, init.d/rcS), so that its outputs are
+    the first topic; without one all are AUX or all are MAIN.
+    """
+    if number > PX4_MAIN_OUTPUTS:
+        return "AUX", number - PX4_MAIN_OUTPUTS
+    drives = {bank: any(v for k, v in parameters.items() if k.startswith(f"PWM_{bank}_FUNC")) for bank in _PX4_BANKS}
+    return ("AUX" if drives["AUX"] and not drives["MAIN"] else "MAIN"), number
 
 
 def antenna_place(parameters: Mapping[str, float]) -> AntennaPlace | None:
@@ -81,19 +97,20 @@ def _ardupilot_output(parameters: Mapping[str, float], number: int) -> OutputSet
 
 
 def _px4_output(parameters: Mapping[str, float], number: int) -> OutputSetting | None:
-    function = int(parameters.get(f"PWM_MAIN_FUNC{number}", 0.0))
+    bank, place = _px4_bank(parameters, number)
+    function = int(parameters.get(f"PWM_{bank}_FUNC{place}", 0.0))
     is_motor = _PX4_MOTOR <= function < _PX4_MOTOR + _PX4_MOTORS
     if not is_motor and not _PX4_SERVO <= function < _PX4_SERVO + _PX4_SERVOS:
         return None
     index = function - (_PX4_MOTOR if is_motor else _PX4_SERVO)
-    low, high = (parameters.get(f"PWM_MAIN_{key}{number}") for key in ("MIN", "MAX"))
+    low, high = (parameters.get(f"PWM_{bank}_{key}{place}") for key in ("MIN", "MAX"))
     is_two_way = not is_motor or bool(int(parameters.get("CA_R_REV", 0.0)) >> index & 1)
     zero, span = 0.0, 0.0
     if low is not None and high is not None and low < high:
         zero, span = (0.5 * (low + high), 0.5 * (high - low)) if is_two_way else (low, high - low)
-    is_reversed = bool(int(parameters.get("PWM_MAIN_REV", 0.0)) >> (number - 1) & 1)
+    is_reversed = bool(int(parameters.get(f"PWM_{bank}_REV", 0.0)) >> (place - 1) & 1)
     drives = f"motor {index + 1}" if is_motor else f"servo {index + 1}"
-    evidence = f"PWM_MAIN_FUNC{number}, _MIN{number}, _MAX{number} ({drives})" + _px4_place(parameters, index, is_motor)
+    evidence = f"PWM_{bank}_FUNC{place}, _MIN{place}, _MAX{place} ({drives})" + _px4_place(parameters, index, is_motor)
     return OutputSetting(drives, zero, span, is_reversed, evidence)
 
 
