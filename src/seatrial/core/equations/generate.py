@@ -4,14 +4,16 @@ The derivatives of one output are chained from it back to states, inputs and par
 accumulation): each binding's total is one line, so the text grows with the paper and never with its expansion.
 """
 
+import re
 from collections.abc import Sequence
 
 import sympy as sp
 
 from seatrial.core.equations.bindings import Binding, ModelEquations
 from seatrial.core.equations.differentiate import partials
-from seatrial.core.equations.printer import CodeLines, mangled
+from seatrial.core.equations.printer import Assignment, CodeBlock, Dialect, mangled
 
+_IDENTIFIER = re.compile(r"[A-Za-z_]\w*")
 _HEADER = '''"""Generated from the equations of model {name!r}; do not edit."""
 import math
 from seatrial.numerics.kernels.kernel import kernel
@@ -21,14 +23,21 @@ from seatrial.numerics.kernels.trigonometry import sincos
 '''
 
 
-def _signature(name: str, kind: str, arguments: str) -> list[str]:
-    return [f"@kernel({kind}, **LEAN)", f"def {name}(t_, x, u, p, {arguments}):"]
+def _numba_function(name: str, kind: str, arguments: str, assignments: Sequence[Assignment]) -> list[str]:
+    lines = [f"@kernel({kind}, **LEAN)", f"def {name}(t_, x, u, p, {arguments}):"]
+    return [*lines, *(f"    {a.target} = {a.text}" for a in assignments), "    return", ""]
 
 
-def _unpack(equations: ModelEquations, expressions: Sequence[Binding]) -> list[str]:
+def _unpack(block: CodeBlock, equations: ModelEquations, expressions: Sequence[Binding]) -> None:
+    """Append the assignments of the states, inputs and parameters that the expressions use."""
     used = {str(s) for b in expressions for s in b.expression.free_symbols}
     sources = (("x", equations.states), ("u", equations.input_names), ("p", equations.parameters))
-    return [f"    {mangled(n)} = {array}[{i}]" for array, names in sources for i, n in enumerate(names) if n in used]
+    block.assignments += [
+        Assignment(mangled(n), block.dialect.element(array, i, n))
+        for array, names in sources
+        for i, n in enumerate(names)
+        if n in used
+    ]
 
 
 def _required_bindings(equations: ModelEquations, wanted: Sequence[Binding]) -> list[Binding]:
@@ -42,26 +51,28 @@ def _required_bindings(equations: ModelEquations, wanted: Sequence[Binding]) -> 
     return kept[::-1]
 
 
-def _function_lines(equations: ModelEquations, name: str, wanted: Sequence[Binding]) -> list[str]:
+def function_assignments(equations: ModelEquations, wanted: Sequence[Binding], dialect: Dialect) -> list[Assignment]:
+    """Return the body of a function whose `out` holds the wanted bindings or rates, in order."""
     needed = _required_bindings(equations, wanted)
-    lines = CodeLines(_signature(name, "FUNCTION_SIGNATURE", "out") + _unpack(equations, [*needed, *wanted]))
+    block = CodeBlock(dialect)
+    _unpack(block, equations, [*needed, *wanted])
     for b in needed:
-        lines.assign(mangled(b.name), b.expression)
+        block.assign(mangled(b.name), b.expression)
     bound = {b.name for b in needed}
     for i, b in enumerate(wanted):
-        lines.assign(f"out[{i}]", sp.Symbol(b.name) if b.name in bound else b.expression)
-    return [*lines.text, "    return", ""]
+        block.assign(dialect.element("out", i, b.name), sp.Symbol(b.name) if b.name in bound else b.expression)
+    return block.assignments
 
 
-def _local_partials(lines: CodeLines, binding: Binding) -> dict[str, str]:
+def _local_partials(block: CodeBlock, binding: Binding) -> dict[str, str]:
     """Append the local partial derivatives of a binding; return the text of each, by symbol."""
     name, texts = binding.name, {}
     for symbol, value in partials(binding.expression).items():
         if value.is_number or value.is_Symbol:
-            texts[symbol] = lines.expression(value)
+            texts[symbol] = block.expression(value)
         else:
             texts[symbol] = f"q{len(name)}_{name}_{symbol}"
-            lines.assign(texts[symbol], value)
+            block.assign(texts[symbol], value)
     return texts
 
 
@@ -70,7 +81,7 @@ def _product(first: str, second: str) -> str:
 
 
 def _adjoint_row(
-    lines: CodeLines, row: int, seed: dict[str, str], needed: Sequence[Binding], local: dict[str, dict[str, str]]
+    block: CodeBlock, row: int, seed: dict[str, str], needed: Sequence[Binding], local: dict[str, dict[str, str]]
 ) -> dict[str, str]:
     """Append the derivatives of one output by each binding, last to first; return those by states, inputs, parameters.
 
@@ -84,32 +95,57 @@ def _adjoint_row(
         total = terms[0]
         if len(terms) > 1 or not total.isidentifier():
             total = f"a{len(binding.name)}_{binding.name}_{row}"
-            lines.text.append(f"    {total} = {' + '.join(terms)}")
+            block.assignments.append(Assignment(total, " + ".join(terms)))
         for symbol, text in local[binding.name].items():
             flow.setdefault(symbol, []).append(_product(total, text))
     return {symbol: " + ".join(terms) for symbol, terms in flow.items()}
 
 
-def _tangent_lines(
-    equations: ModelEquations, name: str, wanted: Sequence[Binding]
-) -> tuple[list[str], list[tuple[int, int]]]:
+def tangent_assignments(
+    equations: ModelEquations, wanted: Sequence[Binding], dialect: Dialect
+) -> tuple[list[Assignment], list[tuple[int, int]]]:
+    """Return the body of the function with its Jacobian `jac`, and the entries (row, column) that are not zero."""
     base = (*equations.states, *equations.input_names, *equations.parameters)
     needed = _required_bindings(equations, wanted)
-    lines = CodeLines(_signature(name, "TANGENT_SIGNATURE", "out, jac") + _unpack(equations, [*needed, *wanted]))
+    block = CodeBlock(dialect)
+    _unpack(block, equations, [*needed, *wanted])
     local = {}
     for b in needed:
-        lines.assign(mangled(b.name), b.expression)
-        local[b.name] = _local_partials(lines, b)
+        block.assign(mangled(b.name), b.expression)
+        local[b.name] = _local_partials(block, b)
     pattern = []
     for row, b in enumerate(wanted):
         output = Binding.from_expression(f"out{row}", sp.Symbol(b.name, real=True) if b.name in local else b.expression)
-        lines.assign(f"out[{row}]", output.expression)
-        slopes = _adjoint_row(lines, row, _local_partials(lines, output), needed, local)
+        block.assign(dialect.element("out", row, b.name), output.expression)
+        slopes = _adjoint_row(block, row, _local_partials(block, output), needed, local)
         for column, z in enumerate(base):
             if z in slopes:
                 pattern.append((row, column))
-                lines.text.append(f"    jac[{row}, {column}] = {slopes[z]}")
-    return [*lines.text, "    return", ""], pattern
+                block.assignments.append(Assignment(dialect.entry(row, column, len(base)), slopes[z]))
+    return block.assignments, pattern
+
+
+def live_assignments(assignments: Sequence[Assignment]) -> list[Assignment]:
+    """Return those that an element of an array rests on, in order: compilers of C warn of others."""
+    used: set[str] = set()
+    kept = []
+    for assignment in reversed(assignments):
+        if not assignment.target.isidentifier() or assignment.target in used:
+            kept.append(assignment)
+            used |= set(_IDENTIFIER.findall(assignment.text))
+    return kept[::-1]
+
+
+def _function_lines(equations: ModelEquations, name: str, wanted: Sequence[Binding]) -> list[str]:
+    assignments = function_assignments(equations, wanted, Dialect())
+    return _numba_function(name, "FUNCTION_SIGNATURE", "out", assignments)
+
+
+def _tangent_lines(
+    equations: ModelEquations, name: str, wanted: Sequence[Binding]
+) -> tuple[list[str], list[tuple[int, int]]]:
+    assignments, pattern = tangent_assignments(equations, wanted, Dialect())
+    return _numba_function(name, "TANGENT_SIGNATURE", "out, jac", assignments), pattern
 
 
 def source_text(equations: ModelEquations) -> str:

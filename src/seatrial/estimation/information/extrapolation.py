@@ -9,8 +9,8 @@ from seatrial.core.values import Array, Record
 
 _PERCENTILE = 99.5  # per cent of the samples within the envelope; chosen
 # rad/s, rad, rad, m/s, m/s, below which a range counts as none; chosen
-_NEGLIGIBLE = {"yaw_rate": 1e-4, "drift": 1e-3, "rudder": 1e-3, "fastest": 1e-3, "slowest": 1e-3}
-_REST_SHARE = 0.1
+NEGLIGIBLE = {"yaw_rate": 1e-4, "drift": 1e-3, "rudder": 1e-3, "fastest": 1e-3, "slowest": 1e-3}
+REST_SHARE = 0.1
 """Share of the fastest speed of the training runs below which a craft counts as at rest; chosen."""
 
 
@@ -50,12 +50,12 @@ def extrapolation(predicted: Record, training_envelope: Mapping[str, float]) -> 
     both = {
         n: (own[n], training_envelope[n])
         for n in own
-        if n in training_envelope and training_envelope[n] > _NEGLIGIBLE[n]
+        if n in training_envelope and training_envelope[n] > NEGLIGIBLE[n]
     }
     ratios = {n: both[n][0] / both[n][1] for n in ("yaw_rate", "drift", "rudder") if n in both}
     if {"fastest", "slowest"} <= set(both):
         ratios["fastest"] = both["fastest"][0] / both["fastest"][1]
-        rest = max(_REST_SHARE * both["fastest"][1], _NEGLIGIBLE["slowest"])
+        rest = max(REST_SHARE * both["fastest"][1], NEGLIGIBLE["slowest"])
         ratios["slowest"] = max(both["slowest"][1], rest) / max(both["slowest"][0], rest)
     return Extrapolation(max(ratios.values()), ratios) if ratios else None
 

@@ -9,11 +9,13 @@ from seatrial.numerics.kernels.types import F8, OPTIONS
 
 _TWO_OVER_PI = 2.0 / math.pi
 # pi/2 in three parts, the first two of 33 bits, so that k times them is exact (Cody & Waite 1980, chapter 8)
-_HALF_PI_1, _HALF_PI_2, _HALF_PI_3 = 1.57079632673412561417, 6.07710050630396597660e-11, 2.02226624879595063154e-21
+HALF_PI = (1.57079632673412561417, 6.07710050630396597660e-11, 2.02226624879595063154e-21)
+_HALF_PI_1, _HALF_PI_2, _HALF_PI_3 = HALF_PI
 
 # coefficients of the Taylor series of the sine to the 17th power and the cosine to the 18th: rounding at pi/4
-_S = tuple((-1.0) ** k / math.factorial(2 * k + 1) for k in range(1, 9))
-_C = tuple((-1.0) ** k / math.factorial(2 * k) for k in range(1, 10))
+SINE_SERIES = tuple((-1.0) ** k / math.factorial(2 * k + 1) for k in range(1, 9))
+COSINE_SERIES = tuple((-1.0) ** k / math.factorial(2 * k) for k in range(1, 10))
+_S, _C = SINE_SERIES, COSINE_SERIES
 
 
 @kernel(types.UniTuple(F8, 2)(F8), **OPTIONS)

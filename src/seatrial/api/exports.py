@@ -1,0 +1,76 @@
+"""Models written as files of other tools."""
+
+import os
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from seatrial.core.values import InputError
+
+if TYPE_CHECKING:
+    from seatrial.core.equations import Model
+    from seatrial.core.results import Fit
+    from seatrial.data.folder.model_file import ModelFile
+    from seatrial.exporting import Export, ExportSource, Target
+
+
+def export(model: "Fit | ModelFile | Model | str | Path", to: str, path: str | Path) -> "Export":
+    """Write a model as files of another tool, all of them or none, and return them with notes on what they cost.
+
+    Args:
+        model: a model, a fit, a model file or the path of one.
+        to: name of the target, as `export_targets` lists them.
+        path: new file, or new folder where the target writes several; its name, without suffix, becomes that of
+            functions and identifiers.
+
+    Raises:
+        InputError: unknown target, a model that it has no place for, a name that is no identifier, or a path that
+            exists or cannot be written.
+    """
+    from seatrial.core.values.files import write_atomically, write_files_atomically
+    from seatrial.exporting import target_named
+
+    target, path, source = target_named(to), Path(path), _source(model)
+    _require_new(path, target)
+    if reason := target.unsuitable(source):
+        raise InputError(f"model '{source.model.name}' has no place in target '{to}': {reason}")
+    result = target.export(source, path.stem)
+    if target.suffix:
+        (content,) = result.files.values()
+        write_atomically(path, content)
+    else:
+        write_files_atomically(path, result.files)
+    return result
+
+
+def export_targets(model: "Fit | ModelFile | Model | str | Path") -> dict[str, str]:
+    """Return each target's name with why it has no place for the model, empty where it has one."""
+    from seatrial.exporting import TARGETS
+
+    source = _source(model)
+    return {name: target.unsuitable(source) for name, target in TARGETS.items()}
+
+
+def _source(model: "Fit | ModelFile | Model | str | Path") -> "ExportSource":
+    from seatrial.api.files import load_model
+    from seatrial.api.simulation import as_model_file
+    from seatrial.exporting import ExportSource
+
+    is_path = isinstance(model, str | Path)
+    file = load_model(model) if is_path else as_model_file(model)
+    return ExportSource(file, str(model) if is_path else f"model '{file.model.name}'", _date())
+
+
+def _date() -> str:
+    """Today, or the day of SOURCE_DATE_EPOCH (reproducible-builds.org) where that is set."""
+    epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
+    moment = datetime.fromtimestamp(int(epoch), UTC) if epoch.isdigit() else datetime.now(UTC)
+    return moment.strftime("%Y-%m-%d")
+
+
+def _require_new(path: Path, target: "Target") -> None:
+    if path.suffix != target.suffix:
+        wanted = f"a name that ends in '{target.suffix}'" if target.suffix else "a folder, without a suffix"
+        raise InputError(f"target '{target.name}' writes {target.meaning}: give {wanted}, not '{path}'")
+    if path.exists() or path.is_symlink():
+        raise InputError(f"'{path}' exists; choose another place or remove it")

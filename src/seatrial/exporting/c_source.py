@@ -1,0 +1,84 @@
+"""C99: a header and a source without allocation, one struct of parameters, everything re-entrant."""
+
+import math
+
+from seatrial.core.equations.bindings import Binding
+from seatrial.core.equations.generate import function_assignments, live_assignments, tangent_assignments
+from seatrial.core.equations.printer import Assignment, CDialect
+from seatrial.exporting.identified_range import range_text, range_use
+from seatrial.exporting.source import (
+    ExportSource,
+    input_variables,
+    output_variables,
+    parameter_variables,
+    plain,
+    provenance_lines,
+    require_identifiers,
+    require_values,
+    state_variables,
+)
+from seatrial.exporting.target import Export
+from seatrial.exporting.templating import rendered
+from seatrial.numerics.kernels.trigonometry import COSINE_SERIES, HALF_PI, SINE_SERIES
+
+
+def export_c(source: ExportSource, name: str) -> Export:
+    """Return ``name.h`` and ``name.c``.
+
+    Raises:
+        InputError: a name is no C identifier, or a parameter has no value.
+    """
+    require_values(source)
+    require_identifiers(source, name)
+    values = _template_values(source, name)
+    return Export({f"{name}.h": rendered("model.h", **values), f"{name}.c": rendered("model.c", **values)})
+
+
+def _template_values(source: ExportSource, name: str) -> dict[str, object]:
+    model, equations = source.model, source.model.equations
+    use = range_use(source)
+    bodies = {
+        "rates": _lines(source, equations.rates),
+        "outputs_body": _lines(source, equations.output_bindings),
+        "rates_jacobian": _jacobian_lines(source, equations.rates),
+        "outputs_jacobian": _jacobian_lines(source, equations.output_bindings),
+        "range_body": [] if use is None else _lines(source, (use,)),
+    }
+    return {
+        **bodies,
+        "has_angles": any("sincos_of(" in line for lines in bodies.values() for line in lines),
+        "sine_series": ", ".join(map(repr, SINE_SERIES)),
+        "cosine_series": ", ".join(map(repr, COSINE_SERIES)),
+        "half_pi": [repr(part) for part in HALF_PI],
+        "two_over_pi": repr(2.0 / math.pi),
+        "name": name,
+        "NAME": name.upper(),
+        "head": [*provenance_lines(source), range_text(source)],
+        "states": state_variables(model),
+        "inputs": input_variables(model),
+        "outputs": output_variables(model),
+        "parameters": [(v, repr(p.value)) for v, p in zip(parameter_variables(model), model.parameters, strict=True)],
+        "is_affine": model.is_affine,
+        "is_held": [i.is_held for i in model.inputs],
+        "has_range": use is not None,
+        "bindings": [(b.name, b.unit, plain(b.source)) for b in equations.bindings],
+    }  # fmt: skip
+
+
+def _lines(source: ExportSource, wanted: tuple[Binding, ...]) -> list[str]:
+    return _statements(function_assignments(source.model.equations, wanted, CDialect()))
+
+
+def _jacobian_lines(source: ExportSource, wanted: tuple[Binding, ...]) -> list[str]:
+    return _statements(tangent_assignments(source.model.equations, wanted, CDialect())[0])
+
+
+def _statements(assignments: list[Assignment]) -> list[str]:
+    return [_statement(a) for a in live_assignments(assignments)]
+
+
+def _statement(assignment: Assignment) -> str:
+    target, text = assignment.target, assignment.text
+    if assignment.is_pair:
+        return f"double {target}[2]; sincos_of({text}, &{target}[0], &{target}[1]);"
+    return f"const double {target} = {text};" if target.isidentifier() else f"{target} = {text};"
