@@ -60,9 +60,10 @@ def _after_draft(draft: "DraftTrial", out: Path) -> str:
 
     log = next((one.path for one in draft.surveys if all(topic.time is None for topic in one.topics)), None)
     if log is not None:
-        return (
-            f"Next: {log.name} has no time column that is recognised; name it in {out}, seatrial check {log} lists all"
-        )
+        notes = [one.time_note for survey in draft.surveys for one in survey.topics if one.time is None]
+        why = "".join(f" ({note})" for note in notes[:1] if note)
+        first = f"Next: {log.name} has no time column that is recognised{why}; name it in {out}"
+        return f"{first}, seatrial check {log} lists all"
     if not any(g.is_used for part in draft.guesses for g in part):
         log = draft.surveys[0].path
         return f"Next: no column is recognised; seatrial check {log} lists them, name channels in {out}"
@@ -104,13 +105,16 @@ def print_survey(survey: "LogSurvey", *, show_all: bool) -> None:
 def _print_topic(topic: "TopicSummary", *, show_all: bool, symbols: dict[str, str]) -> None:
     from seatrial.core.text.numbers import exact
 
-    clock = "no time column" if topic.time is None else f"{exact(topic.rate, 4)} Hz, {exact(topic.duration, 5)} s"
+    clock = f"no time column{f' ({topic.time_note})' if topic.time_note else ''}"
+    if topic.time is not None:
+        clock = f"{exact(topic.rate, 4)} Hz, {exact(topic.duration, 5)} s"
     by = f" (time: {topic.time.source}, {topic.time_note})" if topic.time is not None and topic.time.source else ""
     print_lines([f"{topic.topic or 'columns'}: {topic.rows} rows, {clock}{by}"])
     columns = topic.columns if show_all else topic.columns[:COLUMNS_SHOWN]
     print_table([_column_cells(topic, column, symbols) for column in columns], flush_left=_TEXT_COLUMNS, indent="  ")
     if topic.text_columns:
         print_lines([f"  text: {', '.join(topic.text_columns)}"])
+    print_lines(f"  column {fault}" for fault in topic.faults)
     if len(columns) < len(topic.columns):
         print(f"  ... and {len(topic.columns) - len(columns)} more columns; --all shows them")
 

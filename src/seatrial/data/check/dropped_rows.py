@@ -10,6 +10,7 @@ from seatrial.data.check.run_clock import moment
 LARGEST_DROPPED_SHARE = 0.05
 # s of a stretch worth a part, and how many parts are proposed; chosen
 _SHORTEST_PART_S, _MOST_PARTS = 10.0, 4
+_MOST_OF_A_RUN = 0.5  # share of the rows that parts must keep to be proposed; chosen
 
 
 def dropped_rows_findings(record: Record, even: Record, complete: Record) -> tuple[Finding, ...]:
@@ -36,10 +37,10 @@ def dropped_rows_findings(record: Record, even: Record, complete: Record) -> tup
 
 
 def _advice(record: Record, even: Record) -> str:
-    """The complete stretches as parts where there are several; else the emptiest channel to leave out."""
+    """The complete stretches as parts where they are most of the run; else the emptiest channel to leave out."""
     start = float(record.time[np.isfinite(record.time)][0])
     stretches = [one for one in complete_segments(even) if one.duration >= _SHORTEST_PART_S]
-    if len(stretches) > 1:
+    if sum(map(len, stretches)) > _MOST_OF_A_RUN * len(even):
         longest = sorted(stretches, key=len)[::-1][:_MOST_PARTS]
         ends = [(f"{one.time[0] - start:.6g} s", f"{one.time[-1] - start:.6g} s") for one in longest]
         parts = ", ".join(

@@ -142,7 +142,7 @@ def _longest_complete_segment(record: Record) -> tuple[Record, tuple[Finding, ..
     if len(best) == len(record):
         return record, ()
     empty = {s: int(np.isnan(c.values).sum()) for s, c in record.channels.items() if np.isnan(c.values).any()}
-    text = f"record '{record.name}' has long holes; of {len(segments)} complete parts the longest is kept"
+    text = f"record '{record.name}' has long holes; of {counted(len(segments), 'complete part')} the longest is kept"
     ends, cells = f"{best.time[0]:.6g} to {best.time[-1]:.6g} s", ", ".join(f"{s} {n}" for s, n in empty.items())
     evidence = f"{moment(best.time[0], best.time[-1])}, {len(best)} of {len(record)} samples; empty cells: {cells}"
     advice = "split the file at the holes to use the other parts, or leave out the channel that is empty"

@@ -124,7 +124,8 @@ def _layout_lines(survey: LogSurvey) -> list[str]:
         lines.append(f"decimal = {_quoted(layout.decimal)}")
     topic = next((one for one in survey.topics if one.time is not None), None)
     if topic is None or topic.time is None:
-        return [*lines, "# OPEN: no column is recognised as the time; add time = { column = ..., unit = ... }"]
+        why = "".join(f" ({_comment(one.time_note)})" for one in survey.topics[:1] if one.time_note)
+        return [*lines, f"# OPEN: no column is recognised as the time{why}; add time = {{ column = ..., unit = ... }}"]
     offset = topic.time.clock_offset if isinstance(topic.time, TimeSpec) else 0.0
     if offset:
         lines.append(
@@ -155,6 +156,7 @@ def _channel_lines(survey: LogSurvey, guesses: Sequence[ColumnGuess]) -> list[st
             lines += [f"# OPEN {guess.symbol}: {why}; or {guess.other_reading}", f"# {line}"]
         else:
             lines.append(f"{line}    # {why}")
+    lines += [f"# left out: column {_comment(fault)}" for topic in survey.topics for fault in topic.faults]
     named = {str(guess.source) for guess in guesses if guess.is_used}
     unused = [
         f"{topic.topic}/{column.name}" if topic.topic else column.name

@@ -84,7 +84,8 @@ def _topic_name(survey: LogSurvey, topic: TopicSummary) -> str:
 def _first_guess(survey: LogSurvey, topic: TopicSummary, column: ColumnSummary, named: NameGuess) -> ColumnGuess | None:
     rule = named.rule
     name: str | int = column.name
-    source = f"{topic.topic}/{name}" if topic.topic else int(column.name) if column.name.isdecimal() else name
+    by_number = not topic.topic and (column.is_repeated or column.name.isdecimal())
+    source = column.number if by_number else f"{topic.topic}/{name}" if topic.topic else name
     guess = ColumnGuess(
         source,
         named.symbol,
@@ -100,6 +101,8 @@ def _first_guess(survey: LogSurvey, topic: TopicSummary, column: ColumnSummary, 
         other = 'frame = "earth" (x north, y east): the log does not say'
         return replace(guess, other_reading=other).with_evidence("axes as ROS recommends (REP 103)")
     guess = guess if named.unit else _with_unit_by_range(guess, column)
+    if column.is_repeated:
+        return replace(guess, other_reading=f"the number of another column that is called '{name}'")
     if rule.logger == "ROS" and rule.positive:
         return replace(guess, other_reading='positive = "starboard": the log does not say')
     return guess

@@ -15,6 +15,7 @@ _TIME_NAMES = (
     "time", "t", "timestamp", "utc", "time_utc", "utc_time", "timestamp_utc", "utc_timestamp", "datetime", "date_time",
     "original_timestamp", "time_s", "time_ms", "timeus", "seconds", "sec", "clock", "zeit", "header_stamp_secs",
 )  # fmt: skip
+_LONGEST_CELL = 20  # characters of a cell that a message quotes; ours
 _DAY_S = 86400.0  # s of a day
 _MILLISECOND_STEP, _MICROSECOND_STEP = (
     5.0,
@@ -24,7 +25,10 @@ _MILLISECOND_STEP, _MICROSECOND_STEP = (
 
 @dataclass(frozen=True)
 class ColumnSummary:
-    """One column: its range over the finite numbers, the share of samples without one, and the most common number."""
+    """One column: its range over the finite numbers, the share of samples without one, and the most common number.
+
+    number: its place in the table, from 1. is_repeated: whether another column has the same name.
+    """
 
     name: str
     unit: str
@@ -33,6 +37,8 @@ class ColumnSummary:
     missing: float
     is_constant: bool
     common: float
+    number: int = 0
+    is_repeated: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +51,8 @@ class TopicSummary:
         rows, rate: number of samples, median rate [Hz].
         start, duration: first stamp on the log's clock, time from it to the last [s]; NaN without stamps.
         columns, text_columns: those that hold numbers, and the names of those that hold text.
-        time_note: how the time column was recognised.
+        time_note: how the time column was recognised, or what is wrong with the one that is called so.
+        faults: of columns that begin with numbers and hold something else further down.
     """
 
     topic: str
@@ -57,6 +64,7 @@ class TopicSummary:
     columns: tuple[ColumnSummary, ...]
     time_note: str
     text_columns: tuple[str, ...] = ()
+    faults: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,12 +111,12 @@ def _topic_summary(table: RawTable, layout: Layout) -> TopicSummary:
         for index in range(len(table.names))
         if table.names[index] not in own and (summary := _column_summary(table, index)) is not None
     ]
-    texts = tuple(
-        name or f"{k + 1}" for k, name in enumerate(table.names) if name not in own and column_values(table, k) is None
-    )
+    textual = [k for k, name in enumerate(table.names) if name not in own and column_values(table, k) is None]
+    texts = tuple(table.names[k] or f"{k + 1}" for k in textual)
+    faults = tuple(fault for k in textual if (fault := _fault(table, k)))
     duration = float(known[-1] - known[0]) if known.size > 1 else float("nan")
     start = float(known[0]) if known.size else float("nan")
-    return TopicSummary(table.topic, time, len(table), 1.0 / step, start, duration, tuple(columns), note, texts)
+    return TopicSummary(table.topic, time, len(table), 1.0 / step, start, duration, tuple(columns), note, texts, faults)
 
 
 def _column_summary(table: RawTable, index: int) -> ColumnSummary | None:
@@ -124,7 +132,19 @@ def _column_summary(table: RawTable, index: int) -> ColumnSummary | None:
     missing = 1.0 - finite.size / values.size
     numbers, counts = np.unique(finite, return_counts=True)
     common = float(numbers[np.argmax(counts)])
-    return ColumnSummary(table.names[index] or f"{index + 1}", unit, low, high, missing, low == high, common)
+    name, is_repeated = table.names[index] or f"{index + 1}", table.names.count(table.names[index]) > 1
+    return ColumnSummary(
+        name, unit, low, high, missing, low == high, common, index + 1, is_repeated and bool(table.names[index])
+    )
+
+
+def _fault(table: RawTable, index: int) -> str:
+    """Where a column that begins with numbers holds none; empty for one of text."""
+    row = table.first_text_row(index)
+    if row is None or row == 0:
+        return ""
+    name, cell = table.names[index] or f"{index + 1}", str(table.cells[index][row])[:_LONGEST_CELL]
+    return f"'{name}': row {table.first_row + row} holds '{cell}', no number"
 
 
 def column_values(table: RawTable, index: int) -> Array | None:
@@ -149,9 +169,11 @@ def time_column(table: RawTable, layout: Layout) -> tuple[ColumnSpec | None, str
     if {"header_stamp_secs", "header_stamp_nsecs"} <= set(plain):
         spec = TimeSpec("time", "header_stamp_secs", "s", nanoseconds="header_stamp_nsecs")
         return spec, "stamp of the message's header, seconds and nanoseconds"
+    fault = ""
     for wanted in _TIME_NAMES:
         if wanted in plain:
             spec = _with_unit(table, plain[wanted])
+            fault = fault or _backwards(table, plain[wanted])
             if spec is not None:
                 return (
                     spec,
@@ -166,7 +188,18 @@ def time_column(table: RawTable, layout: Layout) -> tuple[ColumnSpec | None, str
         if values is not None and _is_clock(values):
             source = table.names[index] or index + 1
             return ColumnSpec("time", source, "s"), "the only column that increases evenly"
-    return None, ""
+    return None, fault
+
+
+def _backwards(table: RawTable, name: str) -> str:
+    """Where a clock of numbers runs backwards; empty where it does not."""
+    values = column_values(table, table.names.index(name))
+    known = np.flatnonzero(np.isfinite(values)) if values is not None else np.empty(0, dtype=np.intp)
+    back = np.flatnonzero(np.diff(values[known]) < 0.0) if values is not None else known
+    if values is None or not back.size:
+        return ""
+    row = int(known[back[0] + 1])
+    return f"'{name}' runs backwards from {values[known[back[0]]]:g} to {values[row]:g} in row {table.first_row + row}"
 
 
 def _plain_name(name: str) -> str:

@@ -104,6 +104,15 @@ class RawTable:
             )
         return values
 
+    def first_text_row(self, index: int) -> int | None:
+        """Return the first row, from 0, in which a column holds what is no number; None where there is none."""
+        for row, cell in enumerate(self.cells[index]):
+            try:
+                self._to_number(cell, row, ColumnSpec("column", index + 1, ""))
+            except InputError:
+                return row
+        return None
+
     def _to_number(self, cell: object, row: int, column: ColumnSpec) -> float:
         if cell is None or (isinstance(cell, str) and cell.strip().lower() in EMPTY_CELLS):
             return np.nan

@@ -1,0 +1,56 @@
+"""Text files as programs and people leave them: surveyed and drafted, or the cell that is wrong is named."""
+
+from pathlib import Path
+
+import pytest
+
+from seatrial.api import draft_trial, survey_log
+
+ROWS = [f"{0.5 * k:.1f},{30.0 + k:.1f},{(-1) ** k * 10.0:.1f}" for k in range(60)]
+HEADER = "time,heading,rudder"
+
+
+def write(path: Path, rows: list[str], header: str = HEADER) -> Path:
+    path.parent.mkdir(exist_ok=True)
+    path.write_text("\n".join([header, *rows]) + "\n", encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize("separator", [";", "\t", "  "])
+def test_decimal_commas_with_any_separator(separator: str, tmp_path: Path) -> None:
+    rows = [row.replace(",", separator).replace(".", ",") for row in ROWS]
+    survey = survey_log(write(tmp_path / "run.csv", rows, HEADER.replace(",", separator)))
+    assert survey.layout.decimal == ","
+    (topic,) = survey.topics
+    assert [(one.name, one.low, one.high) for one in topic.columns] == [("heading", 30, 89), ("rudder", -10, 10)]
+
+
+@pytest.mark.parametrize("encoding", ["utf-16-le", "utf-16-be"])
+def test_utf_16_that_lost_its_mark(encoding: str, tmp_path: Path) -> None:
+    path = tmp_path / "run.csv"
+    path.write_bytes("\n".join([HEADER, *ROWS]).encode(encoding))
+    assert survey_log(path).layout.encoding == encoding
+    assert f'encoding = "{encoding}"' in draft_trial(path).text
+
+
+def test_a_folder_with_brackets(tmp_path: Path) -> None:
+    path = write(tmp_path / "[2024] trials (a)" / "run[1].csv", ROWS)
+    assert [one.path for one in draft_trial(path.parent).surveys] == [path]
+
+
+def test_of_two_columns_with_one_name_neither_is_chosen_silently(tmp_path: Path) -> None:
+    draft = draft_trial(write(tmp_path / "run.csv", ROWS, "time,heading,heading"))
+    (guess,) = draft.open_questions
+    assert (guess.symbol, guess.source) == ("psi", 2) and "another column that is called 'heading'" in draft.text
+
+
+def test_a_cell_that_is_no_number_is_named(tmp_path: Path) -> None:
+    draft = draft_trial(write(tmp_path / "run.csv", [*ROWS[:40], "20.0,1_0,5.0", *ROWS[41:]]))
+    assert "# left out: column 'heading': row 42 holds '1_0', no number" in draft.text
+
+
+def test_a_clock_that_runs_backwards_is_named(tmp_path: Path) -> None:
+    path = write(tmp_path / "run.csv", [*ROWS, *ROWS[50:]])
+    assert "no column is recognised as the time ('time' runs backwards from 29.5 to 25 in row 62)" in (
+        draft_trial(path).text
+    )
