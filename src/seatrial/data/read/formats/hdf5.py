@@ -37,10 +37,10 @@ def read_hdf5(path: Path, layout: Layout) -> Log:  # noqa: ARG001
             numeric = [column for column in item.dtype.names if item.dtype[column].kind in "fiu"]
             groups[name, len(values)] |= {column: np.asarray(values[column], float) for column in numeric}
         elif item.dtype.kind in "fiu" and item.ndim == 1:
-            groups[group, len(item)][field] = np.asarray(item, dtype=float)
+            groups[group, len(item)][field] = np.asarray(item[()], dtype=float)
             units[group, field] = unit.decode() if isinstance(unit, bytes) else str(unit)
         elif item.dtype.kind in "fiu" and item.shape[1] <= _WIDEST:
-            matrix = np.asarray(item, dtype=float)
+            matrix = np.asarray(item[()], dtype=float)
             groups[group, len(item)] |= {f"{field}[{k}]": matrix[:, k] for k in range(matrix.shape[1])}
 
     try:

@@ -50,7 +50,7 @@ def _flatten(variables: Mapping, prefix: str = "") -> dict[str, np.ndarray]:
             fields = {field: array[field].item() for field in array.dtype.names}
             found |= _flatten(fields, f"{prefix}{name}.")
         elif array.dtype.kind in "fiub":
-            found[prefix + name] = array.astype(float)
+            found[prefix + name] = array.astype(float, copy=False)
     return found
 
 
@@ -60,7 +60,7 @@ def _read_version_7(path: Path) -> dict[str, np.ndarray]:
 
     def visit(name: str, item: Any) -> None:
         if isinstance(item, h5py.Dataset) and item.dtype.kind in "fiu" and not name.startswith("#"):
-            variables[name.replace("/", ".")] = np.squeeze(np.asarray(item, dtype=float).T)
+            variables[name.replace("/", ".")] = np.squeeze(np.asarray(item[()], dtype=float).T)
 
     try:
         with h5py.File(path, "r") as file:
