@@ -22,8 +22,9 @@ from seatrial.core.values import InputError, Prior, Record
 from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRecord, load_records, load_trial
 from seatrial.estimation.estimate.runs import training_runs
 from seatrial.estimation.identify import Runs, estimate_model
-from seatrial.estimation.predict.holdout_windows import HoldoutProtocol, session_nuisances, window_errors
+from seatrial.estimation.predict.holdout_windows import HoldoutProtocol, window_errors
 from seatrial.estimation.predict.open_loop import rms_errors, simulate_open_loop
+from seatrial.estimation.predict.session_offsets import session_offsets
 from seatrial.physics.models.abkowitz import STANDARD, abkowitz
 from seatrial.physics.models.nomoto import nomoto2
 from seatrial_studies.cross_validation import cross_validate, fit_folds
@@ -102,7 +103,7 @@ def kvlcc2() -> list[Row]:
             seconds, problem, own = (
                 time.perf_counter() - began,
                 found.estimate.problem,
-                session_nuisances(found, held.session),
+                session_offsets(found, held.session, held.record).expected,
             )
             protocol = HoldoutProtocol(window_s=WINDOW["kvlcc2_hsva"], initial_s=HELD_OUT_SECONDS)
             windows = window_errors(problem, found.model, [held.record], [own], ["zigzag"], protocol)

@@ -18,7 +18,8 @@ from seatrial.data.trial import checked_records, load_trial
 from seatrial.estimation.estimate import estimate_model
 from seatrial.estimation.estimate.fit import Estimation, with_segment_seconds
 from seatrial.estimation.estimate.runs import training_runs
-from seatrial.estimation.predict.open_loop import mean_nuisances, open_loop_runs
+from seatrial.estimation.predict.open_loop import open_loop_runs
+from seatrial.estimation.predict.session_offsets import new_session_offsets
 from seatrial.estimation.predict.window_baselines import window_baselines
 from seatrial.estimation.predict.window_scores import Predictor, pooled_rms
 from seatrial.estimation.predict.windows import Windows
@@ -60,8 +61,8 @@ def leave_one_run_out(window_s: float) -> list[Row]:
 
         def model(windows: Windows, seconds: float, fit: Estimation = estimation) -> list[Record]:
             found = fit.estimate
-            nuisances = mean_nuisances(found.problem, found.common_parameters)[None]
-            return [run.record for run in open_loop_runs(found.problem, fit.model, windows, nuisances, seconds)]
+            offsets = np.stack([new_session_offsets(found, record).expected for record in windows.records])
+            return [run.record for run in open_loop_runs(found.problem, fit.model, windows, offsets, seconds)]
 
         predictors = {"model": model} | window_baselines(
             estimation.estimate.problem, trial.model, kept.records, INITIAL_S

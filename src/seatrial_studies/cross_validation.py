@@ -13,7 +13,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import InputError, ProgressReporter
 from seatrial.data.trial import EstimateSettings
 from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, estimate_model, with_segment_seconds
-from seatrial.estimation.predict import HoldoutProtocol, WindowError, session_nuisances, window_errors
+from seatrial.estimation.predict import HoldoutProtocol, WindowError, session_offsets, window_errors
 from seatrial.estimation.problem import OutputError, compared_outputs, cut_segments
 from seatrial.numerics.workers import map_in_threads
 
@@ -139,15 +139,15 @@ def cross_validate(
     """Predict windows of each fold's held-out runs with its fit; runs and labels as in `fit_folds`.
 
     Nothing is taken from a held-out run but the first seconds of each window, for its initial state. Nuisances come
-    from training runs of the same session where there are any, else they are the training mean.
+    from training runs of the same session where there are any, else they are what the population expects.
 
     Raises:
         InputError: as `window_errors`.
     """
     protocol, made = protocol or HoldoutProtocol(), []
     for number, fold in enumerate(folds):
-        owns = [session_nuisances(fold.estimation, runs.sessions[i]) for i in fold.held_out]
         held, kinds = [runs.records[i] for i in fold.held_out], [labels[i] for i in fold.held_out]
+        owns = [session_offsets(fold.estimation, runs.sessions[i], runs.records[i]).expected for i in fold.held_out]
         made += window_errors(
             fold.estimation.estimate.problem, fold.estimation.model, held, owns, kinds, protocol, number
         )

@@ -16,7 +16,7 @@ from seatrial.estimation.estimate import (
     ship_length_seconds,
     training_runs,
 )
-from seatrial.estimation.predict import HoldoutProtocol, predict_run, session_nuisances, simulate_open_loop
+from seatrial.estimation.predict import HoldoutProtocol, predict_run, session_offsets, simulate_open_loop
 from seatrial_studies.alexandersson2022.published import Turn
 from seatrial_studies.cross_validation import cross_validate, fit_folds
 
@@ -65,7 +65,8 @@ def leave_one_out(
     made = []
     for fold in folds:
         (held,) = fold.held_out
-        own, problem = session_nuisances(fold.estimation, sessions[held]), fold.estimation.estimate.problem
+        own = session_offsets(fold.estimation, sessions[held], records[held]).expected
+        problem = fold.estimation.estimate.problem
         run = simulate_open_loop(problem, fold.estimation.model, records[held], own, seconds)
         whole = predict_run(fold.estimation.model, records[held], "validation", run, seconds, length)
         windows = [w for w in scored.windows if w.run == records[held].name]

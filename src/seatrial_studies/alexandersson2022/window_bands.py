@@ -58,7 +58,7 @@ def holdout_windows(
         item: TrialRecord, point: Array, training_runs: Sequence[TrialRecord]
     ) -> tuple[HoldoutError, ...]:
         index = extrapolation_index(item.record, [o.record for o in training_runs])
-        by = holdout_model(problem, point, item.session)
+        by = holdout_model(problem, point, item.session, item.record)
         pieces = split_windows(item.record, protocol)
         made = [track_holdout_error(problem, by, piece, protocol.initial_s, scatter, rng) for piece in pieces]
         return tuple(replace(m, index=index) for m in made if m is not None)

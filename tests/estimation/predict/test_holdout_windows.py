@@ -12,10 +12,10 @@ from seatrial.estimation.estimate import EstimatorOptions, Runs
 from seatrial.estimation.predict.holdout_windows import (
     HoldoutProtocol,
     WindowError,
-    session_nuisances,
     split_windows,
     window_errors,
 )
+from seatrial.estimation.predict.session_offsets import session_offsets
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.simulate.steer import manoeuvre
@@ -90,7 +90,7 @@ def test_only_the_first_seconds_of_a_window_are_used(folds: tuple[Fold, ...], re
     record = records[fold.held_out[0]].between(0.0, 40.0)
     psi = record.channel("psi")
     shifted = psi.with_values(psi.values + np.where(record.time > 5.0, np.radians(10.0), 0.0))
-    own = session_nuisances(fold.estimation, SESSIONS[fold.held_out[0]])
+    own = session_offsets(fold.estimation, SESSIONS[fold.held_out[0]], record).expected
     found = window_errors(
         fold.estimation.estimate.problem,
         fold.estimation.model,
@@ -100,13 +100,6 @@ def test_only_the_first_seconds_of_a_window_are_used(folds: tuple[Fold, ...], re
         PROTOCOL,
     )
     assert found[0].heading_deg == pytest.approx(10.0 * np.sqrt(np.mean(record.time > 5.0)), rel=1e-3)
-
-
-def test_a_session_not_trained_on_takes_the_training_mean(folds: tuple[Fold, ...]) -> None:
-    problem, shared = folds[0].estimation.estimate.problem, folds[0].estimation.estimate.common_parameters
-    trained = [session_nuisances(folds[0].estimation, s) for s in problem.data.sessions]
-    np.testing.assert_array_equal(np.concatenate(trained), shared[len(problem.free) :])
-    np.testing.assert_allclose(session_nuisances(folds[0].estimation, "sunday"), np.mean(trained, axis=0))
 
 
 def test_the_first_sample_as_it_is_and_models_as_they_are(truth: Model, records: list[Record]) -> None:

@@ -8,7 +8,7 @@ from seatrial.core.values import InputError, Record
 from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.time_scale import ship_length_seconds
 from seatrial.estimation.identify import estimate_model
-from seatrial.estimation.predict.open_loop import mean_nuisances, predict_run, simulate_open_loop
+from seatrial.estimation.predict.open_loop import predict_run, simulate_open_loop
 from seatrial.physics.simulate import replay
 
 
@@ -30,7 +30,7 @@ def test_a_model_of_yaw_rate_alone_is_predicted_without_measures(rng: np.random.
         found.estimate.problem,
         found.model,
         record,
-        mean_nuisances(found.estimate.problem, found.estimate.common_parameters),
+        np.empty(0),
         10.0,
     )
     made = predict_run(found.model, record, "validation", run, 10.0, 10.0)

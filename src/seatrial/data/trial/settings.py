@@ -37,6 +37,7 @@ class EstimateSettings:
         rate: Hz at which records are resampled; None keeps their own.
         robust: whether the loss is Huber's.
         offsets: channel -> prior standard deviation (SI, None: the estimator's own) of its zero, one for each session.
+        covariates: channel of `offsets` -> input on whose rms over a session its zero may depend, linearly.
         gains: channel -> prior standard deviation (None: the estimator's own) of its gain, one for each session.
         delays: input -> prior standard deviation [s] (None: the estimator's own) of its delay, one for each session.
         current: prior standard deviation of a uniform current in each run [m/s]; 0: none is estimated.
@@ -51,6 +52,7 @@ class EstimateSettings:
     rate: Positive | None = None
     robust: bool = False
     offsets: Deviations = Field(default_factory=dict)
+    covariates: Mapping[str, str] = Field(default_factory=dict)
     gains: Deviations = Field(default_factory=dict)
     delays: Deviations = Field(default_factory=dict)
     current: Annotated[float, Field(ge=0)] = 0.0
@@ -69,6 +71,13 @@ class EstimateSettings:
         """
         method_named(name)
         return replace(self, method=EstimateMethod(name))
+
+    @model_validator(mode="after")
+    def _covariates_of_offsets(self) -> Self:
+        for name in self.covariates:
+            if name not in self.offsets:
+                raise ValueError(f"covariates: '{name}' is not under offsets; add it there, or take it out here")
+        return self
 
     @model_validator(mode="after")
     def _one_segment_length(self) -> Self:

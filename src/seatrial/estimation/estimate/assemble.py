@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.values import NOTATION, Prior
+from seatrial.core.values import NOTATION, InputError, Prior
 from seatrial.data.trial import EstimateSettings
 from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.problem.output_error import Nuisance, OutputError
@@ -31,11 +31,17 @@ _NOISE_SHARE, _LEAST_NOISE = 0.1, 1e-9
 _SOURCE = "house default"
 
 
-def _nuisances(settings: EstimateSettings) -> Iterator[Nuisance]:
+def _nuisances(model: Model, settings: EstimateSettings) -> Iterator[Nuisance]:
     for name, deviation in settings.offsets.items():
         unit = NOTATION[name].unit if name in NOTATION else "1"
         spread = deviation or _ZERO_DEVIATIONS.get(unit, _OTHER_ZERO_DEVIATION)
-        yield Nuisance(InputCorrection(name, "zero"), Prior(0.0, spread, _SOURCE), unit)
+        covariate = settings.covariates.get(name, "")
+        if covariate and covariate not in model.input_names:
+            raise InputError(
+                f"[estimate.covariates]: '{covariate}' is no input of model '{model.name}'; name one of "
+                f"{', '.join(model.input_names)}"
+            )
+        yield Nuisance(InputCorrection(name, "zero"), Prior(0.0, spread, _SOURCE), unit, covariate=covariate)
     for name, deviation in settings.gains.items():
         yield Nuisance(InputCorrection(name, "gain"), Prior(1.0, deviation or _GAIN_DEVIATION, _SOURCE), "1")
     for name, deviation in settings.delays.items():
@@ -57,8 +63,8 @@ def output_error_problem(
     The noise of each channel is a tenth of its spread. Force points and carried information stand with the runs.
 
     Raises:
-        InputError: outputs that cannot be compared, time steps that differ, a record of fewer than three samples, or
-            force points that the model cannot be compared with.
+        InputError: a covariate that is no input, outputs that cannot be compared, time steps that differ, a record of
+            fewer than three samples, or force points that the model cannot be compared with.
     """
     outputs = compared_outputs(model, runs.records, settings.channels)
     data = cut_segments(model, runs.records, outputs, None if np.isinf(segment_s) else segment_s, runs.sessions)
@@ -67,7 +73,7 @@ def output_error_problem(
         model,
         data,
         np.maximum(_NOISE_SHARE * spread, _LEAST_NOISE),
-        tuple(_nuisances(settings)),
+        tuple(_nuisances(model, settings)),
         _current_priors(settings),
         workers=workers,
         extra_terms=(*(StaticForces(model, points) for points in runs.forces), *runs.carried),

@@ -44,5 +44,6 @@ def with_input_offsets(estimate: PointEstimate) -> PointEstimate:
     for a, b in pairwise(edges):
         parts += [estimate.common_parameters[a:b], np.zeros(len(added))]
     solution = replace(estimate.optimum.solution, point=np.concatenate(parts))
-    wider = replace(problem, nuisances=(*problem.nuisances, *added))
+    population = problem.population and problem.population.with_kinds([n.prior for n in added])
+    wider = replace(problem, nuisances=(*problem.nuisances, *added), population=population)
     return PointEstimate(wider, replace(estimate.optimum, solution=solution))

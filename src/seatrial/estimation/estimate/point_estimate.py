@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -9,7 +10,9 @@ import numpy as np
 from seatrial.core.values import Array, ProgressReporter
 from seatrial.estimation.estimate.settings import WHITE_INFLATION
 from seatrial.estimation.information.autocorrelation import autocorrelation, variance_inflation
+from seatrial.estimation.information.covariance import inverse
 from seatrial.estimation.problem.output_error import OutputError
+from seatrial.estimation.problem.population import SessionPopulation
 from seatrial.numerics.optimise import Optimum, levenberg_marquardt
 
 # promised decrease of the cost at which a search ends, ours
@@ -37,6 +40,34 @@ class PointEstimate:
     def common_parameters(self) -> Array:
         """Shared unknowns at the optimum."""
         return self.optimum.solution.point
+
+    @property
+    def session_offsets(self) -> Array:
+        """What each session has of its own, (sessions, k)."""
+        problem = self.problem
+        own = self.common_parameters[len(problem.free) :]
+        return own.reshape(len(problem.data.sessions), problem.unknowns_per_session)
+
+    @cached_property
+    def population(self) -> SessionPopulation:
+        """How the sessions' offsets are distributed, by the estimate's own normal equations."""
+        problem, count = self.problem, len(self.problem.free)
+        assumed = problem.population or problem.declared_population
+        if not problem.unknowns_per_session:
+            return assumed
+        hessian = self.optimum.normal.without_local()[1]
+        by_free = np.linalg.lstsq(hessian[:count, :count], hessian[:count, count:], rcond=None)[0]
+        precision = hessian[count:, count:] - hessian[count:, :count] @ by_free
+        is_stated = [True] * len(problem.session_parameters) + [n.is_stated for n in problem.nuisances]
+        if not all(is_stated):  # nothing is declared of their size, so it is the estimated one
+            squares = self.session_offsets.ravel() ** 2 + np.diag(inverse(precision))
+            sizes = np.sqrt(squares.reshape(-1, len(is_stated)).mean(axis=0))
+            declared = [
+                prior if stated else replace(prior, standard_deviation=float(size))
+                for prior, stated, size in zip(assumed.declared, is_stated, sizes, strict=True)
+            ]
+            assumed = replace(assumed, declared=tuple(declared))
+        return assumed.fitted(self.session_offsets, precision, problem.session_covariates)
 
     def residuals(self) -> Array:
         """Simulated minus measured, SI, shape (rows, ny); NaN where nothing was measured."""
@@ -76,7 +107,9 @@ def fit_output_error(
     evaluations: int = 60,  # of the residuals, at most; chosen
     report_progress: ProgressReporter | None = None,
 ) -> PointEstimate:
-    """Alternate short searches with estimates of the noise and its colour until both settle, then search to the end.
+    """Alternate short searches with estimates of the noise, its colour and the sessions' population until all settle.
+
+    Then search to the end.
 
     The evaluations of all of them are counted.
 
@@ -93,6 +126,7 @@ def fit_output_error(
         again = replace(
             problem,
             noise=noise,
+            population=estimate.population if problem.unknowns_per_session else None,
             inflation=_effective_inflation(residual_correlation(estimate.problem, estimate.residuals())[1]),
         )
         settled = _is_settled(estimate.problem, again)
@@ -117,12 +151,14 @@ def _effective_inflation(inflation: Array) -> Array | None:
 
 
 def _is_settled(before: OutputError, after: OutputError) -> bool:
-    """Noise within 2 % and effective numbers of samples within 10 %."""
+    """Noise within 2 %, effective numbers of samples and deviations between sessions within 10 %."""
     ratio = np.log(after.noise / before.noise)
     ones = np.ones(len(before.noise))
     colours = [ones if p.inflation is None else p.inflation for p in (before, after)]
-    # noise settled to 2 %, its colour to 10 %; chosen
-    return bool(np.max(np.abs(ratio)) < 0.02 and np.max(np.abs(np.log(colours[1] / colours[0]))) < 0.1)
+    deviations = [(p.population or p.declared_population).deviation for p in (before, after)]
+    slow = np.concatenate([np.log(colours[1] / colours[0]), np.log(deviations[1] / deviations[0])])
+    # noise settled to 2 %, its colour and what differs between sessions to 10 %; chosen
+    return bool(np.max(np.abs(ratio)) < 0.02 and np.max(np.abs(slow)) < 0.1)
 
 
 def _search(

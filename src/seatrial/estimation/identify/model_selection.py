@@ -218,7 +218,7 @@ def holdout_scores(estimate: PointEstimate, model: Model, records: Sequence[Reco
     judged = [r for r, record in enumerate(records) if split_windows(record, protocol)] or range(len(records))
     for r in judged:
         record, session = records[r], problem.data.sessions[problem.data.session[problem.data.run_segments(r)[0]]]
-        by = holdout_model(replace(problem, model=model), points[r], session)
+        by = holdout_model(replace(problem, model=model), points[r], session, record)
         errors = window_errors(problem, by.model, [record], [by.nuisances], ["run"], protocol)
         if not errors:
             raise InputError(f"run '{record.name}' has no window in which both position and heading are measured")

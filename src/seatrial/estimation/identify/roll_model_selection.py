@@ -17,7 +17,8 @@ from seatrial.estimation.estimate.fit import Estimation, estimate_model
 from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions, IntervalMethod
 from seatrial.estimation.identify.model_selection import SelectedModel
-from seatrial.estimation.predict.open_loop import mean_nuisances, rms_errors, simulate_open_loop
+from seatrial.estimation.predict.open_loop import rms_errors, simulate_open_loop
+from seatrial.estimation.predict.session_offsets import new_session_offsets
 from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.models.candidate_structures import OMITTED_PARAMETERS
 
@@ -116,11 +117,9 @@ def select_roll_model(
 
 def _roll_error(estimation: Estimation, record: Record, seconds: float) -> float:
     """Rms [deg] of roll over the whole run."""
-    problem = estimation.estimate.problem
-    made = simulate_open_loop(
-        problem, estimation.model, record, mean_nuisances(problem, estimation.estimate.common_parameters), seconds
-    )
-    return rms_errors(record, made.record)[_ERROR_KEY]
+    offsets = new_session_offsets(estimation.estimate, record).expected
+    run = simulate_open_loop(estimation.estimate.problem, estimation.model, record, offsets, seconds)
+    return rms_errors(record, run.record)[_ERROR_KEY]
 
 
 def _refuse_unpredicted(errors: Array, runs: Sequence[Record], notes: Sequence[str]) -> None:

@@ -1,7 +1,6 @@
 """Names of this package, imported when first used."""
 
 from seatrial.estimation.predict.holdout_windows import HoldoutProtocol as HoldoutProtocol, WindowError as WindowError
-from seatrial.estimation.predict.holdout_windows import session_nuisances as session_nuisances
 from seatrial.estimation.predict.holdout_windows import split_windows as split_windows, window_errors as window_errors
 from seatrial.estimation.predict.measure_intervals import measure_intervals as measure_intervals
 from seatrial.estimation.predict.open_loop import predict_run as predict_run, simulate_open_loop as simulate_open_loop
@@ -9,3 +8,4 @@ from seatrial.estimation.predict.predict_runs import predict_runs as predict_run
 from seatrial.estimation.predict.predict_runs import prediction_uncertainty as prediction_uncertainty
 from seatrial.estimation.predict.prediction_intervals import holdout_model as holdout_model
 from seatrial.estimation.predict.prediction_intervals import track_holdout_error as track_holdout_error
+from seatrial.estimation.predict.session_offsets import session_offsets as session_offsets

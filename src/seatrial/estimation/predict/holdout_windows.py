@@ -7,8 +7,6 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError, Record
-from seatrial.estimation.estimate.fit import Estimation
-from seatrial.estimation.predict.open_loop import mean_nuisances
 from seatrial.estimation.predict.windows import Windows, initial_states, simulate_windows
 from seatrial.estimation.problem.output_error import OutputError
 
@@ -93,11 +91,3 @@ def _require_track(records: Sequence[Record]) -> None:
                 raise InputError(
                     f"record '{record.name}' has no '{channel}'; windows are judged by position and heading"
                 )
-
-
-def session_nuisances(estimation: Estimation, session: str) -> Array:
-    """Nuisances of a session: its own estimate where it was in training, else the training mean; shape (kinds,)."""
-    problem, shared = estimation.estimate.problem, estimation.estimate.common_parameters
-    if session not in problem.data.sessions:
-        return mean_nuisances(problem, shared)
-    return shared[problem.columns_of(problem.data.sessions.index(session))[len(problem.free) :]]

@@ -15,7 +15,7 @@ from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.large_records import choice_runs
 from seatrial.estimation.estimate.process_noise import initial_problem, third_difference_noise
 from seatrial.estimation.estimate.runs import Runs
-from seatrial.estimation.predict.holdout_windows import session_nuisances
+from seatrial.estimation.predict.session_offsets import session_offsets
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.prediction_error import PredictionError, over_runs
 from seatrial.estimation.problem.segments import cut_segments
@@ -129,7 +129,8 @@ def _over(estimation: Estimation, base: _Filter, runs: Runs) -> _Filter:
     data = cut_segments(template.model, runs.records, template.data.outputs, None, runs.sessions)
     output_error: OutputError = replace(template, data=data, inflation=None)
     old, point = base.problem.runs, base.point
-    nuisances = [session_nuisances(estimation, s) for s in data.sessions]
+    first = dict(reversed(list(zip(runs.sessions, runs.records, strict=True))))
+    nuisances = [session_offsets(estimation, s, first[s]).expected for s in data.sessions]
     shared = np.concatenate([point[: len(old.free)], *nuisances, point[old.size :]])
     return _Filter(over_runs(base.problem, output_error), shared)
 

@@ -157,13 +157,3 @@ def predict_run(
         record.name, role, record, simulation.record, rms_errors(record, simulation.record), pairs, seconds,
         divergence=found,
     )  # fmt: skip
-
-
-def mean_nuisances(template: OutputError, shared: Array) -> Array:
-    """Return the mean of each nuisance over the training sessions: what an unseen session is given."""
-    return nuisance_table(template, shared).mean(axis=0)
-
-
-def nuisance_table(template: OutputError, shared: Array) -> Array:
-    """Return what each training session has of its own, shape (sessions, k)."""
-    return shared[len(template.free) :].reshape(len(template.data.sessions), template.unknowns_per_session)

@@ -15,11 +15,8 @@ from seatrial.estimation.information.discrepancy import NO_DISCREPANCY, Discrepa
 from seatrial.estimation.information.extrapolation import extrapolation, extrapolation_index, motion_envelope
 from seatrial.estimation.predict.divergence import divergence_finding, not_predicted_finding
 from seatrial.estimation.predict.draws import PredictionUncertainty
-from seatrial.estimation.predict.holdout_windows import session_nuisances
 from seatrial.estimation.predict.open_loop import (
     compare_measures,
-    mean_nuisances,
-    nuisance_table,
     predict_run,
     rms_errors,
     simulate_open_loop,
@@ -32,6 +29,7 @@ from seatrial.estimation.predict.prediction_intervals import (
     prediction_spread,
     with_intervals,
 )
+from seatrial.estimation.predict.session_offsets import new_session_offsets, session_offsets
 from seatrial.estimation.predict.window_baselines import window_baselines
 from seatrial.estimation.predict.window_scores import WindowLength, WindowPredictor, window_scores
 from seatrial.estimation.problem.output_error import OutputError
@@ -57,39 +55,18 @@ class IntervalCalibration:
 
 
 def prediction_uncertainty(estimation: Estimation) -> PredictionUncertainty:
-    """Covariance of the coefficients, and of offsets between sessions (their priors' where there is one session).
+    """Covariance of the coefficients, and of what a new session has of its own.
 
     Process noise counts where the coefficients come from prediction error: elsewhere model error is in its intensities.
     """
-    problem = estimation.estimate.problem
-    count, kinds = len(problem.free), problem.unknowns_per_session
-    offsets = np.atleast_2d(nuisance_table(problem, estimation.estimate.common_parameters))
-    if len(offsets) > 1:
-        between = np.atleast_2d(np.cov(offsets, rowvar=False))
-    else:
-        between = np.diag(_single_session_variance(estimation))
+    problem, count = estimation.estimate.problem, len(estimation.estimate.problem.free)
     intensity = estimation.noise_model.process if estimation.has_process_noise else {}
     return PredictionUncertainty(
         estimation.interval.covariance[:count, :count],
-        between if kinds else np.zeros((0, 0)),
+        estimation.estimate.population.new_session_covariance,
         np.array([intensity.get(s, 0.0) for s in problem.model.states]),
         estimation.interval.degrees_of_freedom,
     )
-
-
-def _single_session_variance(estimation: Estimation) -> Array:
-    """Variance between sessions of each offset where there is one session, (kinds,): what its prior says.
-
-    Of an offset that the trial does not state, its estimated size: nothing else is known of it.
-    """
-    problem = estimation.estimate.problem
-    count, states = len(problem.free), len(problem.session_parameters)
-    variance = 1.0 / problem.priors[1][count:]
-    second_moment = estimation.estimate.common_parameters**2 + estimation.interval.standard_error**2
-    for j, nuisance in enumerate(problem.nuisances):
-        if not nuisance.is_stated:
-            variance[states + j] = second_moment[count + states + j]
-    return variance
 
 
 def calibrate_intervals(
@@ -111,7 +88,7 @@ def calibrate_intervals(
     streams = np.random.SeedSequence(seed).spawn(len(train))
 
     def one(i: int) -> HoldoutError | None:
-        by = holdout_model(problem, left_out[i], train[i].session)
+        by = holdout_model(problem, left_out[i], train[i].session, train[i].record)
         miss = holdout_error(problem, by, train[i].record, seconds, length, scatter, np.random.default_rng(streams[i]))
         others = [*simulated[:i], *simulated[i + 1 :]]
         return None if miss is None else replace(miss, index=extrapolation_index(simulated[i], others))
@@ -139,7 +116,7 @@ def predict_runs(
     tied: Sequence[TiedModel] = (),
     windows: Sequence[WindowLength] = (),
 ) -> RunPredictions:
-    """Return every run open loop: training runs with their own session's offsets, the others with the training mean.
+    """Return every run open loop, with its session's offsets where the session was fitted, else as of a new session.
 
     Runs that were not fitted get intervals, for which `tied` models are asked as well; all are compared with the ground
     the training runs cover. seconds: of a run's beginning, from which its initial state is taken.
@@ -152,24 +129,23 @@ def predict_runs(
         InputError: a training run cannot be simulated.
     """
     report = report_progress or (lambda _: None)
-    problem, mean = (
-        estimation.estimate.problem,
-        mean_nuisances(estimation.estimate.problem, estimation.estimate.common_parameters),
-    )
-    items, runs, findings = [], [], []
+    problem = estimation.estimate.problem
+    items, runs, offsets, findings = [], [], [], []
     for item in records:
         report(f"predicting {item.record.name}")
         if item.role is Role.TRAIN:
-            own = session_nuisances(estimation, item.session)
-            run = simulate_open_loop(problem, estimation.model, item.record, own, seconds)
+            own = session_offsets(estimation, item.session, item.record)
+            run = simulate_open_loop(problem, estimation.model, item.record, own.expected, seconds)
         else:
             try:
-                run = simulate_while_bounded(problem, estimation.model, item.record, mean, seconds)
+                own = session_offsets(estimation, item.session, item.record)
+                run = simulate_while_bounded(problem, estimation.model, item.record, own.expected, seconds)
             except InputError as error:
                 findings.append(not_predicted_finding(item.record, error))
                 continue
         items.append(item)
         runs.append(run)
+        offsets.append(own)
     train = [item for item in items if item.role is Role.TRAIN]
     fitted = [run.record for run, item in zip(runs, items, strict=True) if item.role is Role.TRAIN]
     covered = motion_envelope(fitted)
@@ -178,28 +154,36 @@ def predict_runs(
     streams = np.random.SeedSequence((seed, 1)).spawn(len(items))
     held_out = [item for item in items if item.role is not Role.TRAIN]
     baselines = window_baselines(problem, estimation.model, [i.record for i in train], seconds) if held_out else {}
-    predictor = WindowPredictor(
-        problem, estimation.model, mean, calibration.uncertainty, calibration.discrepancy, baselines, length, seconds
-    )
     predictions = []
-    for item, run, stream in zip(items, runs, streams, strict=True):
+    for item, run, own, stream in zip(items, runs, offsets, streams, strict=True):
         role = "training" if item.role is Role.TRAIN else "validation"
         one = predict_run(estimation.model, item.record, role, run, seconds, length)
         moved = run.record if run.divergence is None else item.record  # what a runaway simulation reaches says nothing
         one = replace(one, extrapolation=extrapolation(moved, covered))
         if run.divergence is not None:
             findings.append(divergence_finding(estimation.model, one, run.divergence))
-        elif item.role is not Role.TRAIN:
+        uncertainty = replace(calibration.uncertainty, offsets=own.covariance)
+        if run.divergence is None and item.role is not Role.TRAIN:
             rng = np.random.default_rng(stream)
             spread = prediction_spread(
-                problem, estimation.model, item.record, run, mean, length, calibration.uncertainty, rng, DRAWS
+                problem, estimation.model, item.record, run, own.expected, length, uncertainty, rng, DRAWS
             )
-            alone = _process_noise_floor(estimation, item.record, run.initial_state, mean)
+            alone = _process_noise_floor(estimation, item.record, run.initial_state, own.expected)
             one = replace(one, tied_spread=tied_model_spread(tied, one, seconds, length), noise_floor=alone)
-            one = with_intervals(one, spread, calibration.discrepancy, calibration.uncertainty.degrees_of_freedom)
+            one = with_intervals(one, spread, calibration.discrepancy, uncertainty.degrees_of_freedom)
         if item.role is not Role.TRAIN:
             index = one.extrapolation.index if one.extrapolation else 1.0
             rng = np.random.default_rng(stream.spawn(1)[0])
+            predictor = WindowPredictor(
+                problem,
+                estimation.model,
+                own.expected,
+                uncertainty,
+                calibration.discrepancy,
+                baselines,
+                length,
+                seconds,
+            )
             one = replace(one, windows=window_scores(predictor, item.record, windows, index, rng))
         predictions.append(one)
     basis = _interval_basis(estimation, calibration, covered, tied)
@@ -219,7 +203,6 @@ def _interval_basis(
     estimation: Estimation, calibration: IntervalCalibration, covered: dict[str, float], tied: Sequence[TiedModel]
 ) -> IntervalBasis:
     problem, scatter = estimation.estimate.problem, calibration.uncertainty
-    names = [name for name, _ in problem.session_parameters] + [n.correction.name for n in problem.nuisances]
     base = estimation.model.parameters
     changed = [{p.name: p.value for p in t.model.parameters if p.value != base[p.name].value} for t in tied]
     return IntervalBasis(
@@ -227,7 +210,7 @@ def _interval_basis(
         scatter.degrees_of_freedom,
         calibration.discrepancy.factor,
         calibration.discrepancy.sd_by_kind,
-        dict(zip(names, np.sqrt(np.diag(scatter.offsets)).tolist(), strict=True)),
+        dict(zip(problem.session_unknowns, np.sqrt(np.diag(scatter.offsets)).tolist(), strict=True)),
         {s: float(q) for s, q in zip(estimation.model.states, scatter.process, strict=True) if q > 0},
         covered,
         tuple(changed),
@@ -244,8 +227,8 @@ def tied_model_spread(
     away: dict[str, list[float]] = {}
     for one in tied:
         problem = one.estimate.problem
-        own = mean_nuisances(problem, one.estimate.common_parameters)
         try:
+            own = new_session_offsets(one.estimate, prediction.measured).expected
             run = simulate_open_loop(problem, one.model, prediction.measured, own, seconds).record
         except InputError:
             continue

@@ -16,10 +16,10 @@ from seatrial.estimation.predict.open_loop import (
     OpenLoopRun,
     compare_measures,
     is_steered,
-    nuisance_table,
     observables_record,
     simulate_open_loop,
 )
+from seatrial.estimation.predict.session_offsets import offsets_without
 from seatrial.estimation.predict.windows import Windows
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.physics.manoeuvres import bounded_interval, measures
@@ -144,17 +144,16 @@ def _measure_spread(
 
 @dataclass(frozen=True, eq=False)
 class HoldoutModel:
-    """A model fitted without a session, and what a run of that session is given: the mean of the other sessions."""
+    """A model fitted without a session's run, and what the run is expected to have by the other sessions."""
 
     model: Model
     nuisances: Array
 
 
-def holdout_model(template: OutputError, point: Array, session: str) -> HoldoutModel:
-    """Return the model at the shared unknowns `point`, which were estimated without the session's run."""
-    others = [s != session for s in template.data.sessions]
-    own = nuisance_table(template, point)[others if any(others) else slice(None)].mean(axis=0)
-    return HoldoutModel(template.model.with_values(dict(zip(template.free, point, strict=False))), own)
+def holdout_model(template: OutputError, point: Array, session: str, record: Record) -> HoldoutModel:
+    """Return the model at the shared unknowns `point`, which were estimated without this record of the session."""
+    model = template.model.with_values(dict(zip(template.free, point, strict=False)))
+    return HoldoutModel(model, offsets_without(template, point, session, record))
 
 
 def holdout_error(

@@ -14,6 +14,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index, Prior
+from seatrial.estimation.problem.population import SessionPopulation
 from seatrial.estimation.problem.segments import Segments
 from seatrial.numerics.optimise import NormalEquations
 from seatrial.numerics.workers import map_in_threads
@@ -47,16 +48,19 @@ class DataTerm(Protocol):
 
 @dataclass(frozen=True)
 class Nuisance:
-    """An input correction estimated once a session, with its prior.
+    """An input correction estimated once a session, with what is assumed of it before any record.
 
     Attributes:
-        is_stated: whether the trial asks for it; its prior then says how much sessions differ.
+        prior: about its mean over sessions; its standard deviation is also the first guess of how sessions differ.
+        is_stated: whether the trial declares it; the prior of another one is only there to be exceeded.
+        covariate: the input on whose rms over a session the correction may depend linearly; empty: none.
     """
 
     correction: InputCorrection
     prior: Prior
     unit: str
     is_stated: bool = True
+    covariate: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +73,7 @@ class OutputError:
             that priors keep their weight against them (effective sample size; Sokal 1997). None: white.
         huber: residuals beyond this many standard deviations count linearly (Huber 1964); infinite: squares only.
         session_parameters: model parameters estimated once a session (a current), with their priors.
+        population: how nuisances and session parameters are distributed over sessions; None: as declared.
         pinned: shared unknowns held at these values, for predictions: only initial states move.
         extra_terms: data besides the records that say something about the model parameters (static force points).
     """
@@ -84,6 +89,7 @@ class OutputError:
     workers: int | None = None
     pinned: Array | None = None
     extra_terms: tuple[DataTerm, ...] = ()
+    population: SessionPopulation | None = None
 
     @cached_property
     def free(self) -> tuple[str, ...]:
@@ -145,13 +151,38 @@ class OutputError:
     @cached_property
     def priors(self) -> tuple[Array, Array]:
         """Mean and weight (1/variance, 0 without prior) of each shared unknown."""
-        mean, weight = np.zeros(self.size), np.zeros(self.size)
-        own = [p for _, p in self.session_parameters] + [n.prior for n in self.nuisances]
-        listed = [self.model.parameters[n].prior for n in self.free] + own * len(self.data.sessions)
-        for i, prior in enumerate(listed):
+        mean, weight, count = np.zeros(self.size), np.zeros(self.size), len(self.free)
+        for i, prior in enumerate(self.model.parameters[n].prior for n in self.free):
             if prior is not None and np.isfinite(prior.standard_deviation):
                 mean[i], weight[i] = prior.mean, prior.standard_deviation**-2
+        population = self.population or self.declared_population
+        mean[count:] = population.means(self.session_covariates).ravel()
+        weight[count:] = np.tile(population.deviation**-2.0, len(self.data.sessions))
         return mean, weight
+
+    @property
+    def session_unknowns(self) -> tuple[str, ...]:
+        """Names of what each session has of its own, in order."""
+        return (*(name for name, _ in self.session_parameters), *(n.correction.name for n in self.nuisances))
+
+    @property
+    def declared_population(self) -> SessionPopulation:
+        """What is assumed of sessions before any record."""
+        declared = [p for _, p in self.session_parameters] + [n.prior for n in self.nuisances]
+        return SessionPopulation.as_declared(declared, self.session_covariates)
+
+    @cached_property
+    def session_covariates(self) -> Array:
+        """Covariates of each session, (sessions, k)."""
+        of_row = np.repeat(self.data.session, np.diff(self.data.offsets))
+        inputs = [self.data.inputs[of_row == session] for session in range(len(self.data.sessions))]
+        return np.array([self.covariates_of(one) for one in inputs]).reshape(len(inputs), self.unknowns_per_session)
+
+    def covariates_of(self, inputs: Array) -> Array:
+        """Return the rms of the input on which each kind of offset may depend, (k,), 0: none; inputs: (rows, nu)."""
+        channels = ["" for _ in self.session_parameters] + [n.covariate for n in self.nuisances]
+        rms = np.sqrt(np.mean(inputs**2, axis=0)) if len(inputs) else np.zeros(inputs.shape[1])
+        return np.array([rms[self.model.input_names.index(c)] if c else 0.0 for c in channels])
 
     def start(self) -> Array:
         """Return model values and prior means: the shared unknowns where nothing is known yet."""
