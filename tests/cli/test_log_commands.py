@@ -74,3 +74,11 @@ def test_a_model_without_its_input_in_the_records_cannot_start_yet(tmp_path: Pat
     assert "Next: identify cannot start yet: record 'run' has no channel 'delta'" in output(
         "check", str(tmp_path / "trial.toml")
     )
+
+
+def test_the_next_command_quotes_a_path_with_spaces(tmp_path: Path) -> None:
+    folder = tmp_path / "[2024] trials"
+    folder.mkdir()
+    log = write(folder / "run 1.csv", {"time": TRUTH["t"], "heading": TRUTH["psi"]})
+    assert f"Next: seatrial init '{log}' --out trial.toml" in output("check", str(log))
+    assert f"seatrial check '{folder / 'trial.toml'}'" in output("init", str(log), "--out", str(folder / "trial.toml"))

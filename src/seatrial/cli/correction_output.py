@@ -4,7 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from seatrial.cli.output import SEVERITY_MARK, print_findings, print_lines
+from seatrial.cli.output import SEVERITY_MARK, in_shell, print_findings, print_lines
 
 if TYPE_CHECKING:
     from seatrial.core.values import Finding
@@ -33,9 +33,9 @@ def write_correction(correction: "Correction", trial: Path, per_code: int) -> No
     if fixed.exists():
         raise InputError(f"'{fixed}' exists and is not overwritten; move or remove it")
     write_atomically(fixed, correction.text.encode())
-    print_findings(correction.findings, per_code, f"seatrial check {fixed} --all shows them")
+    print_findings(correction.findings, per_code, f"seatrial check {in_shell(fixed)} --all shows them")
     print(f"corrected: {fixed}")
-    print(f"Next: seatrial check {fixed}")
+    print(f"Next: seatrial check {in_shell(fixed)}")
 
 
 def next_step(findings: "tuple[Finding, ...]", trial: Path) -> str:
@@ -45,9 +45,9 @@ def next_step(findings: "tuple[Finding, ...]", trial: Path) -> str:
     errors = [finding for finding in findings if finding.severity.value == "error"]
     missing = next((finding for finding in findings if finding.code == "model"), None)
     if any(error.edits for error in errors):
-        return f"Next: seatrial check {trial} --fix"
+        return f"Next: seatrial check {in_shell(trial)} --fix"
     if errors:
         return ascii_text(f"Next: {errors[0].advice}")
     if missing is not None:
         return ascii_text(f"Next: identify cannot start yet: {missing.advice}")
-    return f"Next: seatrial identify {trial} --out results"
+    return f"Next: seatrial identify {in_shell(trial)} --out results"

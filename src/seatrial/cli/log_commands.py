@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from seatrial.cli.application import app
-from seatrial.cli.output import print_lines, print_table
+from seatrial.cli.output import in_shell, print_lines, print_table
 
 if TYPE_CHECKING:
     from seatrial.data.draft import ColumnGuess, ColumnSummary, DraftTrial, LogSurvey, TopicSummary
@@ -63,14 +63,14 @@ def _after_draft(draft: "DraftTrial", out: Path) -> str:
         notes = [one.time_note for survey in draft.surveys for one in survey.topics if one.time is None]
         why = "".join(f" ({note})" for note in notes[:1] if note)
         first = f"Next: {log.name} has no time column that is recognised{why}; name it in {out}"
-        return f"{first}, seatrial check {log} lists all"
+        return f"{first}, seatrial check {in_shell(log)} lists all"
     if not any(g.is_used for part in draft.guesses for g in part):
         log = draft.surveys[0].path
-        return f"Next: no column is recognised; seatrial check {log} lists them, name channels in {out}"
+        return f"Next: no column is recognised; seatrial check {in_shell(log)} lists them, name channels in {out}"
     count = sum(map(len, draft.stretches))
     steps = ["decide what is OPEN in it"] if draft.open_questions else []
     steps += [f"uncomment the parts you want of {counted(count, 'manoeuvre')} in it"] if count else []
-    return f"Next: {', '.join([f'read {out}', *steps])}, then seatrial check {out}"
+    return f"Next: {', '.join([f'read {out}', *steps])}, then seatrial check {in_shell(out)}"
 
 
 def _print_guesses(guesses: "Sequence[ColumnGuess]") -> None:
@@ -99,7 +99,7 @@ def print_survey(survey: "LogSurvey", *, show_all: bool) -> None:
     print_lines(f"event at {event.time:.6g} s: {event.name}" for event in survey.log.events[:TOPICS_SHOWN])
     if survey.log.parameters:
         print_lines([f"{counted(len(survey.log.parameters), 'parameter')} stored"])
-    print(f"Next: seatrial init {survey.path} --out trial.toml")
+    print(f"Next: seatrial init {in_shell(survey.path)} --out trial.toml")
 
 
 def _print_topic(topic: "TopicSummary", *, show_all: bool, symbols: dict[str, str]) -> None:

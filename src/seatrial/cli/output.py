@@ -1,6 +1,7 @@
 """What the commands print and write: findings, fits and studies as text, progress, JSON."""
 
 import re
+import shlex
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -33,6 +34,11 @@ MAX_ORDERS_PRINTED = 8
 SEVERITY_MARK = {"error": "ERROR  ", "warning": "warning", "info": "note   "}
 _NUMBERS = re.compile(r"\d[\d.e+-]*")
 DIGITS = 5  # significant ones of estimates; chosen
+
+
+def in_shell(path: Path) -> str:
+    """Return a path as it is typed in a command: quoted where it has spaces or brackets."""
+    return shlex.quote(str(path))
 
 
 def print_lines(lines: Iterable[str], indent: str = "") -> None:

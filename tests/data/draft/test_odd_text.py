@@ -2,9 +2,11 @@
 
 from pathlib import Path
 
+import openpyxl
 import pytest
 
-from seatrial.api import draft_trial, survey_log
+from seatrial.api import check, draft_trial, survey_log
+from seatrial.core.values import Severity
 
 ROWS = [f"{0.5 * k:.1f},{30.0 + k:.1f},{(-1) ** k * 10.0:.1f}" for k in range(60)]
 HEADER = "time,heading,rudder"
@@ -54,3 +56,28 @@ def test_a_clock_that_runs_backwards_is_named(tmp_path: Path) -> None:
     assert "no column is recognised as the time ('time' runs backwards from 29.5 to 25 in row 62)" in (
         draft_trial(path).text
     )
+
+
+def test_a_table_exported_from_an_autopilot_keeps_the_names_of_its_messages(tmp_path: Path) -> None:
+    rows = [f"{0.1 * k:.1f},{k % 360},{0.01 * k:.2f},{1400 + k}" for k in range(60)]
+    draft = draft_trial(write(tmp_path / "boat.csv", rows, "timestamp,ATT.Yaw,/XKF1[0]/VN,RCOU.C1"))
+    (part,) = draft.guesses
+    assert [(g.symbol, g.unit, g.frame) for g in part if g.is_used] == [
+        ("psi", "deg", ""), ("u", "m/s", "earth"), ("command_1", "us", ""),
+    ]  # fmt: skip
+    assert "by ArduPilot ATT" in draft.text
+
+
+def test_a_name_with_a_stroke_is_found_in_its_sheet(tmp_path: Path) -> None:
+    book = openpyxl.Workbook()
+    for title, name in (("Navigation", "ROT [°/min]"), ("Engine", "Shaft speed [1/min]")):
+        sheet = book.create_sheet(title)
+        sheet.append(["Time", name])
+        for k in range(60):
+            sheet.append([0.5 * k, 30.0 + k % 7])
+    book.save(tmp_path / "two sheets.xlsx")
+    draft = draft_trial(tmp_path / "two sheets.xlsx", folder=tmp_path)
+    (record,) = draft.records
+    assert record is not None and {"r", "n"} == set(record.channels)
+    (tmp_path / "trial.toml").write_text(draft.text, encoding="utf-8")
+    assert not [one for one in check(tmp_path / "trial.toml") if one.severity is Severity.ERROR]

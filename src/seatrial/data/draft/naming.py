@@ -138,6 +138,8 @@ _WORDS = [
 _ORDERS = re.compile(r"set_?point|target|desired|reference|goal|limits?\b|cmd|command|(^|/)[re]_")
 # loggers whose messages are all known: other messages say nothing
 _KNOWN_LOGGERS = ("ulog", "ardupilot-bin", "ardupilot-tlog", "nmea0183", "nmea2000")
+# column of a table into which an autopilot's log was exported: ``ATT.Yaw``, ``XKF1[0].VN``
+_EXPORTED = re.compile(r"/?([A-Za-z]\w*(?:\[\d+\])?)[./](\w+(?:\[\d+\])?)")
 _BRACKETS = re.compile(r"[\[(]([^\])]*)[\])]")
 
 
@@ -164,10 +166,12 @@ def guess_by_name(topic: str, name: str, stated_unit: str, log_format: str = "te
     Messages of autopilots and buses are known one by one; in other logs a column of a topic that holds orders is left.
     stated_unit: the unit that the file states; it overrides what the name says.
     """
-    for rule in _MESSAGES if topic else ():
-        match = re.fullmatch(rule.pattern, f"{topic}/{name}".lower())
+    exported = _EXPORTED.fullmatch(name) if log_format == "text" else None
+    message, field = exported.groups() if exported else (topic, name)
+    for rule in _MESSAGES if message else ():
+        match = re.fullmatch(rule.pattern, f"{message}/{field}".lower())
         if match:
-            return _guess(rule, match, _known_unit(stated_unit) or rule.unit, f"{rule.logger} {topic}".strip())
+            return _guess(rule, match, _known_unit(stated_unit) or rule.unit, f"{rule.logger} {message}".strip())
     last = topic if log_format != "text" else topic.rpartition("/")[2]  # folders are called as anybody likes
     if log_format in _KNOWN_LOGGERS or _ORDERS.search(last.lower()):
         return None

@@ -62,6 +62,10 @@ class Log:
         """
         if len(self.tables) == 1 and (isinstance(column.source, int) or column.source in self.tables[0].names):
             return self.tables[0]
+        for table in self.tables:
+            name = str(column.source).removeprefix(f"{table.topic}/")
+            if name != column.source and name in table.names:  # a name may hold a stroke itself, as in "ROT [deg/min]"
+                return table
         topic = str(column.source).rpartition("/")[0]
         if topic not in self.topics:
             if self.topics == ("",):
