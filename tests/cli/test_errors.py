@@ -7,7 +7,6 @@ import pytest
 
 from seatrial import InputError, api
 from seatrial.cli import INPUT_EXIT_CODE, INTERNAL_EXIT_CODE, INTERRUPT_EXIT_CODE
-from seatrial.cli.errors import error_message
 
 
 @pytest.fixture
@@ -68,11 +67,3 @@ def test_bad_input_and_interruption_keep_their_exit_codes(
     assert run_command("check", "any.toml") == INTERRUPT_EXIT_CODE == 130
     assert "interrupted" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
-
-
-def test_a_message_that_quotes_a_long_text_is_cut_in_its_middle() -> None:
-    text = error_message(InputError(f"there is no file '{'x' * 4000}'; check the name"))
-    assert text.startswith("there is no file 'xxx")
-    assert " … " in text
-    assert text.endswith("xxx'; check the name")
-    assert len(text) < 700

@@ -14,27 +14,18 @@ from seatrial.core.values import InputError
 from seatrial.core.values.files import write_atomically
 
 LIBRARIES = ("seatrial", "numpy", "scipy", "numba", "pandas", "pydantic", "typer")
-MESSAGE_LENGTH = 600  # letters of a message: chosen, eight lines of a terminal; the package's own have 400 at most
 NAME_LENGTH = 12  # hexadecimal digits of a traceback's digest in its file's name: chosen, no two alike in practice
 
 
 def error_message(error: Exception) -> str:
     """Return one line: the sentence of an `InputError`; else what failed and the file to send to the developers."""
     if isinstance(error, InputError):
-        return _shortened(" ".join(str(error).split()))
+        return " ".join(str(error).split())
     if isinstance(error, MemoryError):
         reason = "the memory of this computer does not suffice"
     else:
         reason = f"an error of the program, not of your input ({type(error).__name__})"
     return f"{reason}; nothing was written by halves. Please send the file {_written_report(error)}"
-
-
-def _shortened(sentence: str) -> str:
-    """Return the sentence; of one that quotes a long text of the user's, its beginning and its end."""
-    if len(sentence) <= MESSAGE_LENGTH:
-        return sentence
-    part = MESSAGE_LENGTH // 2
-    return f"{sentence[:part]} … {sentence[-part:]}"
 
 
 def _written_report(error: Exception) -> Path:

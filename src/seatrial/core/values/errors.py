@@ -2,9 +2,20 @@
 
 from collections.abc import Sequence
 
+_GAP = " … "
+_LONGEST_MESSAGE = 600  # letters: chosen, eight lines of a terminal; those of the package itself have 400 at most
+
 
 class InputError(ValueError):
-    """States what is wrong, where, and what to do; the command line prints it and exits with code 2."""
+    """States what is wrong, where, and what to do; the command line prints it and exits with code 2.
+
+    A message that quotes a long text of a file is cut in its middle, and what would steer a terminal is escaped.
+    """
+
+    def __init__(self, message: object = "") -> None:
+        text = "".join(c if c.isprintable() or c == "\n" else repr(c)[1:-1] for c in str(message))
+        part = _LONGEST_MESSAGE // 2 - len(_GAP)
+        super().__init__(text if len(text) <= _LONGEST_MESSAGE else text[:part] + _GAP + text[-part:])
 
 
 class DivergedError(InputError):

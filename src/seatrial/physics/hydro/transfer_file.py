@@ -15,6 +15,9 @@ POLAR_COLUMNS = ("F3_amplitude", "F3_phase_deg", "M5_amplitude", "M5_phase_deg")
 _SPEED_TOLERANCE = 1e-6  # m/s by which the speeds of a file may differ: rounding
 
 
+_LARGEST_FORCE = 1e30  # N or N m per metre; ours: beyond every ship's, and its square is still a number
+
+
 @dataclass(frozen=True)
 class TabulatedExcitation:
     """Excitation read between the points of a table.
@@ -119,8 +122,9 @@ def _value_names(name: str, columns: dict[str, Array]) -> tuple[str, ...]:
 
 
 def _refuse_gaps(name: str, key: str, column: Array) -> None:
-    if not np.all(np.isfinite(column)):
-        row = int(np.flatnonzero(~np.isfinite(column))[0])
+    gaps = np.flatnonzero(~(np.abs(column) < _LARGEST_FORCE))
+    if gaps.size:
+        row = int(gaps[0])
         raise InputError(f"{name} has no number in column '{key}', row {row + 1} below the header")
 
 

@@ -1,0 +1,470 @@
+"""What is fuzzed: for each kind of input, well-formed samples and what the program does with one."""
+
+import contextlib
+import hashlib
+import io
+import json
+import math
+import re
+import socket
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+import seatrial as st
+from seatrial.core.results.online import Sample
+from seatrial.core.values import Record
+from seatrial.core.values.tables import parse_json
+from seatrial.data.folder.gains_file import read_gains
+from seatrial.data.folder.model_file import parse_model
+from seatrial.data.folder.result_folder import KINDS, load_result
+from seatrial.data.read.record_csv import read_record_csv
+from seatrial.onboard.columns import ColumnReader
+from seatrial.onboard.journal import Journal
+from seatrial.onboard.lines import LineBatch
+from seatrial.onboard.message_decoders import BusDecoder, MavlinkDecoder
+from seatrial.onboard.messages import MessageReader
+from seatrial.onboard.nmea import NmeaReader
+from seatrial.onboard.server import Server
+from seatrial.onboard.sources import LineReader, open_source
+from seatrial.physics.hydro.transfer_file import read_transfer
+from seatrial.physics.manoeuvres import programme
+from seatrial.reporting.pages import report_page
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+_SHORT = 1000  # bytes of a sample log: chosen, enough for every branch of a parser
+_TINY_ROWS = 60  # of a record that is identified whole: chosen, some tenths of a second each
+
+
+@dataclass(frozen=True)
+class Target:
+    """One kind of input.
+
+    Attributes:
+        samples: well-formed inputs.
+        run: what the program does with an input, in an empty folder; returns what must hold no hidden NaN or infinity.
+        cost: about how many times as long an input takes as a line of text; inputs are shared out by its inverse.
+    """
+
+    samples: Callable[[], list[bytes]]
+    run: Callable[[bytes, Path], object]
+    cost: float
+
+
+def _examples(*patterns: str) -> list[bytes]:
+    return [path.read_bytes() for pattern in patterns for path in sorted(EXAMPLES.glob(pattern))]
+
+
+def _logs() -> list[bytes]:
+    """The head of every example's record."""
+    return [path.read_bytes()[:_SHORT].rpartition(b"\n")[0] for path in sorted(EXAMPLES.glob("*/*.csv"))]
+
+
+def _tiny_trials() -> list[bytes]:
+    """Trial files of a roll decay and of a zigzag whose records stand in `_records_beside`."""
+    roll = (EXAMPLES / "fin_decay.toml").read_bytes().replace(b'"fin_decay"', b'"."').replace(b"decay_*", b"decay_1")
+    roll = re.sub(rb"validate = .*\n", b"", roll)
+    jet = (EXAMPLES / "waterjet.toml").read_bytes().replace(b'folder = "waterjet"', b'folder = "."')
+    jet = re.sub(rb"train = .*\nvalidate = .*\n", b"", jet.split(b"# The published")[0]).replace(
+        b"*.csv", b"zigzag.csv"
+    )
+    return [roll, jet]
+
+
+@cache
+def _records_beside() -> dict[str, bytes]:
+    def head(path: Path, every: int) -> bytes:
+        header, *rows = path.read_bytes().splitlines()
+        return b"\n".join([header, *rows[::every][:_TINY_ROWS]])
+
+    zigzag = next(path for path in sorted((EXAMPLES / "waterjet").glob("*.csv")) if "zigzag_25" in path.name)
+    return {"decay_1.csv": head(EXAMPLES / "fin_decay" / "decay_1.csv", 5), "zigzag.csv": head(zigzag, 10)}
+
+
+def _with_records(place: Path, contents: dict[str, bytes]) -> None:
+    for name, content in contents.items():
+        (place / name).write_bytes(content)
+
+
+def _log(data: bytes, place: Path) -> Record:
+    path = place / "log.csv"
+    path.write_bytes(data)
+    columns = (st.ColumnSpec("u", 2, "m/s"), st.ColumnSpec("psi", 3, "deg"))
+    return st.read_record(path, st.Layout("text", st.ColumnSpec("time", 1, "s"), columns, header_lines=1))
+
+
+def _record(data: bytes, place: Path) -> Record:
+    path = place / "record.csv"
+    path.write_bytes(data)
+    return read_record_csv(path)
+
+
+def _checked(data: bytes, place: Path) -> object:
+    return [str(finding) for finding in st.check(_tiny_trial(data, place))]
+
+
+def _tiny_trial(data: bytes, place: Path) -> Path:
+    """A trial of which the input is the record: the decay or, with eight columns and more, the zigzag."""
+    is_zigzag = data[:400].count(b",") > 5
+    roll, jet = _tiny_trials()
+    (place / "trial.toml").write_bytes(jet if is_zigzag else roll)
+    _with_records(place, {"zigzag.csv" if is_zigzag else "decay_1.csv": data})
+    return place / "trial.toml"
+
+
+def _trial(data: bytes, place: Path) -> object:
+    _with_records(place, {**_records_beside(), "trial.toml": data})
+    trial = st.load_trial(place / "trial.toml")
+    return dict(zip(trial.model.parameters.names, trial.ship.particulars.values(), strict=False))
+
+
+def _identified(data: bytes, place: Path) -> object:
+    """`identify` as a user has it, of a mutated trial file or of a mutated record."""
+    if b"[[records]]" in data or b"[model]" in data:
+        _with_records(place, {**_records_beside(), "trial.toml": data})
+        trial = place / "trial.toml"
+    else:
+        trial = _tiny_trial(data, place)
+    fit = st.identify(st.load_trial(trial))
+    st.save(fit, place / "result")
+    return _numbers_of_fit(fit)
+
+
+def _numbers_of_fit(fit: st.Fit) -> object:
+    return [c.estimate for c in fit.coefficients], fit.covariance
+
+
+def _drafted(data: bytes, place: Path) -> str:
+    path = place / "log.csv"
+    path.write_bytes(data)
+    return st.draft_trial(path, folder=place).text
+
+
+def _loop(data: bytes, place: Path) -> object:
+    path = place / "loop.toml"
+    path.write_bytes(data.replace(b'"examples/', f'"{EXAMPLES}/'.encode()))
+    return st.load_loop(path).loop.gains
+
+
+@cache
+def _model_text() -> bytes:
+    from seatrial.data.folder.model_file import ModelFile, model_text
+    from seatrial.physics.models import model_named
+
+    model = model_named("nomoto")
+    free = len(model.parameters.free)
+    values = dict.fromkeys(model.parameters.missing, 1.0)
+    ship = st.Ship("craft", {"L": 9.8}, "paper", 2.0)
+    return model_text(
+        ModelFile(model.with_values(values), 0.01 * np.eye(free), ship=ship, approach={"u": 3.0})
+    ).encode()
+
+
+def _model(data: bytes, place: Path) -> object:  # noqa: ARG001
+    file = parse_model(data.decode(errors="replace"), "model.toml")
+    record = st.simulate(file, "zigzag:20/20", duration=30.0)
+    return record, file.covariance
+
+
+def _manoeuvre(data: bytes, place: Path) -> object:  # noqa: ARG001
+    return str(programme(data.decode(errors="replace")))
+
+
+def _simulated(data: bytes, place: Path) -> object:
+    """`seatrial simulate` with options out of the input, a line each."""
+    (place / "model.toml").write_bytes(_model_text())
+    options = [
+        line for line in data.decode(errors="replace").splitlines() if not line.startswith(("--help", "--model"))
+    ]
+    return _command(["simulate", str(place / "model.toml"), "--out", str(place / "run.csv"), *options])
+
+
+def _command(arguments: list[str]) -> str:
+    """What a command prints, with the net for unexpected exceptions taken away."""
+    from seatrial.cli.commands import app
+
+    printed = io.StringIO()
+    try:
+        with contextlib.redirect_stdout(printed):
+            app(arguments, standalone_mode=False)
+    except Exception as error:
+        if getattr(error, "exit_code", None) not in (0, 2):  # those of the option parser have one
+            raise
+    return printed.getvalue()
+
+
+@cache
+def _folders() -> tuple[dict[str, bytes], ...]:
+    """Folders of results as they are written: of a fit, a design, a tuning and a study."""
+    from tests.reporting.complete_fit import complete_fit
+    from tests.reporting.fabricated import fabricated_fit
+    from tests.reporting.fabricated_design import fabricated_design
+    from tests.reporting.fabricated_study import fabricated_study
+    from tests.reporting.fabricated_tuning import fabricated_fin
+
+    from seatrial.data.folder.result_folder import folder_files
+
+    fit = complete_fit(fabricated_fit())
+    return tuple(folder_files(r) for r in (fit, fabricated_design(), fabricated_fin(), fabricated_study(fit)))
+
+
+def _documents() -> list[bytes]:
+    return [files[name] for files in _folders() for name in files if name.endswith(".json")]
+
+
+def _folder(data: bytes, place: Path) -> object:
+    """A folder whose document is the input, with digests that fit; read and rendered."""
+    names = [kind.document for kind in KINDS]
+    table = _lenient_json(data)
+    fields = table.keys() if isinstance(table, dict) else ()
+    files = max(_folders(), key=lambda one: len(_fields(one) & set(fields)))
+    _with_records(place, files)
+    (place / next(name for name in names if name in files)).write_bytes(data)
+    return _rendered(load_result(place), data)
+
+
+def _rendered(result: object, data: bytes) -> int:
+    """Length of the page of a result; of one in eight, since a page takes as long as reading a hundred folders."""
+    return len(report_page(result)) if len(data) % 8 == 0 else 0  # type: ignore[arg-type]
+
+
+def _fields(files: dict[str, bytes]) -> set[str]:
+    return set(next(json.loads(files[name]) for name in files if name.endswith(".json")))
+
+
+def _lenient_json(data: bytes) -> object:
+    try:
+        return parse_json(data.decode())
+    except ValueError:
+        return None
+
+
+def _model_of_folder(data: bytes, place: Path) -> object:
+    """A fit's folder whose model file is the input, with the digest that fits."""
+    files = dict(_folders()[0])
+    table = json.loads(files["result.json"])
+    table["files"]["model.toml"] = hashlib.sha256(data).hexdigest()
+    _with_records(place, {**files, "model.toml": data, "result.json": json.dumps(table).encode()})
+    return _rendered(load_result(place), data)
+
+
+def _arrays_of_folder(data: bytes, place: Path) -> object:
+    files = dict(_folders()[0])
+    table = json.loads(files["result.json"])
+    table["files"]["arrays.npz"] = hashlib.sha256(data).hexdigest()
+    _with_records(place, {**files, "arrays.npz": data, "result.json": json.dumps(table).encode()})
+    return _rendered(load_result(place), data)
+
+
+def _gains(data: bytes, place: Path) -> object:
+    path = place / "gains.toml"
+    path.write_bytes(data)
+    return read_gains(path)
+
+
+_STREAM = st.Layout(
+    "text", st.ColumnSpec("time", "stamp", "s"), tuple(st.ColumnSpec(s, s, "1") for s in ("psi", "r", "u", "x0"))
+)
+_NUMBERED = st.Layout(
+    "text", st.ColumnSpec("time", 1, "s"), (st.ColumnSpec("u", 2, "m/s"), st.ColumnSpec("psi", 3, "deg"))
+)
+_TOPICS = st.Layout(
+    "text", st.ColumnSpec("time", "stamp", "s"),
+    (st.ColumnSpec("psi", "vesselHeading:True/heading", "rad"), st.ColumnSpec("r", "ATTITUDE/yawspeed", "rad/s"),
+     st.ColumnSpec("x0", "GLOBAL_POSITION_INT/lat", "1"), st.ColumnSpec("y0", "GLOBAL_POSITION_INT/lon", "1")),
+)  # fmt: skip
+
+
+def _samples(reader: LineReader, lines: list[bytes]) -> object:
+    """Samples of a stream; only infinity counts, since a channel without a reading is NaN."""
+    samples = [*reader.samples(LineBatch(lines)), *reader.flush()]
+    str(reader.counts)
+    return _infinities(samples)
+
+
+def _infinities(samples: Iterable[Sample]) -> list[float]:
+    return [math.inf for sample in samples if np.isinf([sample.time, *sample.values]).any()]
+
+
+def _nmea(data: bytes, place: Path) -> object:  # noqa: ARG001
+    return _samples(NmeaReader(_STREAM, rate=10.0), data.split(b"\n"))
+
+
+def _columns(data: bytes, place: Path) -> object:  # noqa: ARG001
+    return _samples(ColumnReader(_NUMBERED), data.split(b"\n"))
+
+
+def _bus(data: bytes, place: Path) -> object:  # noqa: ARG001
+    return _samples(MessageReader(_TOPICS, BusDecoder(), rate=10.0), data.split(b"\n"))
+
+
+def _mavlink(data: bytes, place: Path) -> object:  # noqa: ARG001
+    return _samples(MessageReader(_TOPICS, MavlinkDecoder(), rate=10.0), [data])
+
+
+def _sentences() -> list[bytes]:
+    from tests.onboard.sentences import sentence
+
+    bodies = ("GPZDA,000001.00,01,02,2024,,", "HEHDT,40.1,T", "HEROT,3.2,A", "IIRSA,-3.1,A,,V", "VDVBW,3.1,0.0,A,,,V",
+              "GPRMC,000002.00,A,5230.1,N,01322.5,E,6.1,40.0,010224,,,A", "GPVTG,40.0,T,,M,6.1,N,11.3,K,A",
+              "GPGGA,000003.00,5230.1,N,01322.5,E,1,08,1.0,10.0,M,,M,,")  # fmt: skip
+    return [b"\n".join(sentence(body) for body in bodies[first:] + bodies) for first in range(len(bodies))]
+
+
+def _bus_lines() -> list[bytes]:
+    return [
+        b"2024-02-01-10:00:00.0,2,127250,35,255,8,00,10,27,ff,7f,ff,7f,fd",
+        b"(1706781600.000) can0 09F11223#00102700FF7FFD",
+        b"A000057.055 09FF7 1F201 00102700FF7FFD",
+    ]
+
+
+def _mavlink_packets() -> list[bytes]:
+    from pymavlink.dialects.v20 import ardupilotmega
+
+    link = ardupilotmega.MAVLink(io.BytesIO())
+    link.srcSystem, link.srcComponent = 1, 1
+    messages = (
+        ardupilotmega.MAVLink_attitude_message(1000, 0.1, 0.2, 0.3, 0.01, 0.02, 0.03),
+        ardupilotmega.MAVLink_global_position_int_message(1000, 525000000, 133000000, 0, 0, 10, 20, 0, 100),
+    )
+    return [message.pack(link) for message in messages]
+
+
+def _journal(data: bytes, place: Path) -> object:
+    """A journal read back, and written on."""
+    path = place / "journal"
+    path.write_bytes(data)
+    journal = Journal(path, "a", 2)
+    try:
+        return len(list(journal.entries()))
+    finally:
+        journal.close()
+
+
+def _journals() -> list[bytes]:
+    import tempfile
+
+    from seatrial.onboard.journal import RunEntry
+
+    with tempfile.TemporaryDirectory() as place:
+        journal = Journal(Path(place) / "journal", "a", 2)
+        for k in range(20):
+            journal.append(RunEntry("start") if k % 10 == 0 else Sample(0.1 * k, np.array([k, -k], float)))
+        journal.close()
+        return [(Path(place) / "journal").read_bytes()]
+
+
+@cache
+def _server() -> Server:
+    return Server(0, lambda since: {"since": since})
+
+
+def _request(data: bytes, place: Path) -> object:  # noqa: ARG001
+    """What the page answers to the bytes of one connection."""
+    server = _server()
+    ours, theirs = socket.socketpair()
+    with ours, theirs, contextlib.suppress(ConnectionResetError):  # of bytes that the server did not want to read
+        ours.sendall(data[:60_000])
+        ours.shutdown(socket.SHUT_WR)
+        server.RequestHandlerClass(theirs, ("127.0.0.1", 1), server)
+        theirs.close()
+        if re.match(rb"HTTP/1.. 5(?!01)", answer := ours.recv(1 << 20)):  # 501: an unknown method
+            raise RuntimeError(f"answer {answer[:60]!r}")
+    return None
+
+
+def _requests() -> list[bytes]:
+    host = f"Host: 127.0.0.1:{_server().server_port}\r\n\r\n"
+    paths = ("/", "/state.json", "/state.json?since=3", "/x")
+    return [f"{verb} {path} HTTP/1.1\r\n{host}".encode() for verb in ("GET", "POST", "HEAD") for path in paths]
+
+
+def _followed(data: bytes, place: Path) -> object:
+    """`follow --once` of a log that is the input, without the estimate over the whole record."""
+    trial = (EXAMPLES / "heave_pitch_follow.toml").read_text()
+    log = place / "voyage.csv"
+    log.write_bytes(data)
+    trial = re.sub(r'file = ".*"', f'file = "{log}"', trial)
+    (place / "trial.toml").write_text(re.sub(r'folder = ".*"', f'folder = "{EXAMPLES}/heave_pitch"', trial))
+    loaded = st.load_trial(place / "trial.toml")
+    stream = loaded.stream
+    assert stream is not None
+    source = open_source(replace(stream, file=log), once=True)
+    samples = source.poll(0.0)
+    source.close()
+    return _infinities(samples)
+
+
+def _transfer(data: bytes, place: Path) -> object:
+    path = place / "transfer.csv"
+    path.write_bytes(data)
+    return read_transfer(path)
+
+
+def _binary(data: bytes, place: Path) -> object:
+    """A log of a binary format, known by its first bytes, surveyed in the process that such readers have."""
+    from seatrial.data.read import format_of
+
+    path = place / "log.bin"
+    path.write_bytes(data)
+    return len(st.survey_log(path).topics) if format_of(path) else 0
+
+
+def _binary_logs() -> list[bytes]:
+    import tempfile
+
+    from tests.data.read.samples import SAMPLES
+
+    contents = []
+    with tempfile.TemporaryDirectory() as place:
+        for sample in SAMPLES.values():
+            path = Path(place) / sample.file
+            sample.write(path)
+            contents += [path.read_bytes()] if path.is_file() else []
+    return contents
+
+
+MANOEUVRES = [b"zigzag:20/10:port", b"consecutive-zigzags:5", b"turning-circle:35", b"pull-out:20", b"spiral:25:port",
+              b"prbs:10:3.5:7", b"zigzag:10/10"]  # fmt: skip
+OPTIONS = [
+    b"--manoeuvre\nzigzag:20/20\n--duration\n30\n--speed\n3", b"--manoeuvre\nturning-circle:35\n--rudder-rate\n5",
+    b"--manoeuvre\nprbs:10:1:3\n--set\nu=3\n--duration\n60\n--seed\n4", b"--manoeuvre\nspiral\n--duration\n100",
+]  # fmt: skip
+
+TRANSFER = b"""omega,heading_deg,F3_real,F3_imag,M5_real,M5_imag # N, N m
+0.4,180,1e6,2e5,-3e7,1e6
+0.8,180,5e5,1e5,-2e7,3e6
+0.4,150,9e5,2e5,-2e7,1e6
+0.8,150,4e5,1e5,-1e7,3e6
+"""
+
+TARGETS: dict[str, Target] = {
+    "manoeuvre": Target(lambda: MANOEUVRES, _manoeuvre, 1),
+    "nmea": Target(_sentences, _nmea, 1),
+    "columns": Target(_logs, _columns, 25),
+    "bus": Target(_bus_lines, _bus, 1),
+    "mavlink": Target(_mavlink_packets, _mavlink, 1),
+    "page": Target(_requests, _request, 2),
+    "journal": Target(_journals, _journal, 100),
+    "trial": Target(lambda: [*_tiny_trials(), *_examples("*.toml")], _trial, 100),
+    "loop": Target(lambda: _examples("*autopilot.toml", "fin_stabiliser.toml"), _loop, 10000),
+    "model": Target(lambda: [_model_text()], _model, 150),
+    "gains": Target(lambda: [_folders()[2]["gains.toml"]], _gains, 8),
+    "log": Target(_logs, _log, 90),
+    "record": Target(lambda: [_folders()[1]["plan.csv"][:_SHORT], *_logs()[:2]], _record, 50),
+    "transfer": Target(lambda: [TRANSFER], _transfer, 12),
+    "simulate": Target(lambda: OPTIONS, _simulated, 1000),
+    "folder": Target(_documents, _folder, 1000),
+    "folder model": Target(lambda: [_folders()[0]["model.toml"]], _model_of_folder, 1000),
+    "folder arrays": Target(lambda: [_folders()[0]["arrays.npz"]], _arrays_of_folder, 1000),
+    "check": Target(lambda: list(_records_beside().values()), _checked, 700),
+    "init": Target(_logs, _drafted, 400),
+    "follow": Target(_logs, _followed, 300),
+    "identify": Target(lambda: [*_tiny_trials(), *_records_beside().values()], _identified, 30000),
+    "binary": Target(_binary_logs, _binary, 20000),
+}
+"""Kinds of inputs by name."""
