@@ -197,8 +197,8 @@ def _command(arguments: list[str]) -> str:
 
 
 @cache
-def _folders() -> tuple[dict[str, bytes], ...]:
-    """Folders of results as they are written: of a fit, a design, a tuning and a study."""
+def result_folders() -> tuple[dict[str, bytes], ...]:
+    """Return name and content of every file of a fit's, a design's, a tuning's and a study's folder."""
     from tests.reporting.complete_fit import complete_fit
     from tests.reporting.fabricated import fabricated_fit
     from tests.reporting.fabricated_design import fabricated_design
@@ -212,7 +212,7 @@ def _folders() -> tuple[dict[str, bytes], ...]:
 
 
 def _documents() -> list[bytes]:
-    return [files[name] for files in _folders() for name in files if name.endswith(".json")]
+    return [files[name] for files in result_folders() for name in files if name.endswith(".json")]
 
 
 def _folder(data: bytes, place: Path) -> object:
@@ -220,7 +220,7 @@ def _folder(data: bytes, place: Path) -> object:
     names = [kind.document for kind in KINDS]
     table = _lenient_json(data)
     fields = table.keys() if isinstance(table, dict) else ()
-    files = max(_folders(), key=lambda one: len(_fields(one) & set(fields)))
+    files = max(result_folders(), key=lambda one: len(_fields(one) & set(fields)))
     _with_records(place, files)
     (place / next(name for name in names if name in files)).write_bytes(data)
     return _rendered(load_result(place), data)
@@ -244,7 +244,7 @@ def _lenient_json(data: bytes) -> object:
 
 def _model_of_folder(data: bytes, place: Path) -> object:
     """A fit's folder whose model file is the input, with the digest that fits."""
-    files = dict(_folders()[0])
+    files = dict(result_folders()[0])
     table = json.loads(files["result.json"])
     table["files"]["model.toml"] = hashlib.sha256(data).hexdigest()
     _with_records(place, {**files, "model.toml": data, "result.json": json.dumps(table).encode()})
@@ -252,7 +252,7 @@ def _model_of_folder(data: bytes, place: Path) -> object:
 
 
 def _arrays_of_folder(data: bytes, place: Path) -> object:
-    files = dict(_folders()[0])
+    files = dict(result_folders()[0])
     table = json.loads(files["result.json"])
     table["files"]["arrays.npz"] = hashlib.sha256(data).hexdigest()
     _with_records(place, {**files, "arrays.npz": data, "result.json": json.dumps(table).encode()})
@@ -453,14 +453,14 @@ TARGETS: dict[str, Target] = {
     "trial": Target(lambda: [*_tiny_trials(), *_examples("*.toml")], _trial, 100),
     "loop": Target(lambda: _examples("*autopilot.toml", "fin_stabiliser.toml"), _loop, 10000),
     "model": Target(lambda: [_model_text()], _model, 150),
-    "gains": Target(lambda: [_folders()[2]["gains.toml"]], _gains, 8),
+    "gains": Target(lambda: [result_folders()[2]["gains.toml"]], _gains, 8),
     "log": Target(_logs, _log, 90),
-    "record": Target(lambda: [_folders()[1]["plan.csv"][:_SHORT], *_logs()[:2]], _record, 50),
+    "record": Target(lambda: [result_folders()[1]["plan.csv"][:_SHORT], *_logs()[:2]], _record, 50),
     "transfer": Target(lambda: [TRANSFER], _transfer, 12),
     "simulate": Target(lambda: OPTIONS, _simulated, 1000),
     "folder": Target(_documents, _folder, 1000),
-    "folder model": Target(lambda: [_folders()[0]["model.toml"]], _model_of_folder, 1000),
-    "folder arrays": Target(lambda: [_folders()[0]["arrays.npz"]], _arrays_of_folder, 1000),
+    "folder model": Target(lambda: [result_folders()[0]["model.toml"]], _model_of_folder, 1000),
+    "folder arrays": Target(lambda: [result_folders()[0]["arrays.npz"]], _arrays_of_folder, 1000),
     "check": Target(lambda: list(_records_beside().values()), _checked, 700),
     "init": Target(_logs, _drafted, 400),
     "follow": Target(_logs, _followed, 300),

@@ -1,24 +1,34 @@
 """Kill commands at random moments and look at what they leave: the old result, the new one, or none.
 
-`python benchmarks/kills.py --command identify --kills 100 --seed 1`. A folder of results is whole when it loads (its
-document names the digest of every data file) and its page is the one that its document gives, to the byte. Between the
-kills the command runs with two seeds by turns, so that a mixture of two results would show. The last run is not killed:
-nothing that a killed one left may stop it.
+    python benchmarks/kills.py --command identify --kills 100 --seed 1
+
+A folder of results is whole when it loads (its document names the digest of every data file) and its page is the one
+that its document gives, to the byte. Between the kills the command runs with two seeds by turns, so that a mixture of
+two results would show. The last run is not killed: nothing that a killed one left may stop it.
+
+`--command save` kills what writes folders and does nothing else, so that every kill falls into the writing: results of
+four kinds by turns into one folder, which must be that of one of them, byte by byte.
 """
 
 import argparse
+import os
 import random
 import signal
 import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NoReturn
 
-from measure import Line, at_most
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from benchmarks.fuzz_targets import result_folders
+from benchmarks.measure import Line, at_most
 
 import seatrial as st
+from seatrial.core.values.files import write_files_atomically
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 COMMANDS = {
@@ -28,6 +38,8 @@ COMMANDS = {
     "reproduce": ["reproduce", "meng2014", "--quick"],
     "follow": ["follow", f"{EXAMPLES}/waterjet_follow.toml", "--once"],
 }
+SAVE = "save"
+_SAVING_S = 0.2  # s at most before a kill while saving: a round of folders takes about as long; chosen
 # a kill falls anywhere in the time that the command took undisturbed, and a little beyond: dimensionless, chosen
 LONGEST_WAIT = 1.1
 # every other kill falls into the last part of that time, where files are written: dimensionless, chosen
@@ -95,9 +107,44 @@ def kills(name: str, count: int, seed: int) -> tuple[Tally, bool]:
         return tally, finished
 
 
+def kills_while_saving(place: Path, count: int, seed: int) -> tuple[Tally, bool]:
+    """Kill a process `count` times that writes folders of results one after another; as `kills`."""
+    rng, tally, folder = random.Random(seed), Tally(), place / "result"
+    contents = result_folders()
+    for _ in range(count):
+        process = os.fork()
+        if process == 0:
+            _save_for_ever(folder, contents)
+        time.sleep(rng.random() * _SAVING_S)
+        os.kill(process, signal.SIGKILL)
+        os.waitpid(process, 0)
+        tally.killed += 1
+        if not folder.exists():
+            tally.none_yet += 1
+            continue
+        is_whole = {path.name: path.read_bytes() for path in folder.iterdir()} in contents
+        tally.whole, tally.broken = tally.whole + is_whole, tally.broken + (not is_whole)
+    _save(folder, contents[0])
+    return tally, [path.name for path in place.iterdir()] == [folder.name]
+
+
+def _save_for_ever(folder: Path, contents: Sequence[dict[str, bytes]]) -> NoReturn:
+    while True:
+        for files in contents:
+            _save(folder, files)
+
+
+def _save(folder: Path, files: dict[str, bytes]) -> None:
+    write_files_atomically(folder, files, {path.name for path in folder.iterdir()} if folder.exists() else ())
+
+
 def run(name: str = "identify", count: int = 20, seed: int = 1) -> list[Line]:
     """The tally as a table."""
-    tally, finished = kills(name, count, seed)
+    if name == SAVE:
+        with tempfile.TemporaryDirectory() as place:
+            tally, finished = kills_while_saving(Path(place), count, seed)
+    else:
+        tally, finished = kills(name, count, seed)
     return [
         Line(f"{name}: killed", tally.killed, ""),
         Line("finished before the kill", tally.finished_first, ""),
@@ -110,7 +157,7 @@ def run(name: str = "identify", count: int = 20, seed: int = 1) -> list[Line]:
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--command", choices=COMMANDS, default="identify")
+    parser.add_argument("--command", choices=[*COMMANDS, SAVE], default="identify")
     parser.add_argument("--kills", type=int, default=20)
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
