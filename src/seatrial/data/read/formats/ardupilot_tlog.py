@@ -1,6 +1,8 @@
 """MAVLink telemetry logs (.tlog), by pymavlink from the extra `logs`."""
 
-from collections import defaultdict
+from collections.abc import Callable
+from dataclasses import dataclass
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +30,7 @@ def read_ardupilot_tlog(path: Path, layout: Layout) -> Log:  # noqa: ARG001
         InputError: pymavlink is not installed, or not a readable telemetry log.
     """
     mavutil = require_library("pymavlink.mavutil", path.name, "a MAVLink log", "logs")
-    messages: dict[tuple[str, int, int], list[tuple[float, dict]]] = defaultdict(list)
+    messages: dict[tuple[str, int, int], _Samples] = {}
     parameters: dict[str, float] = {}
     events: list[LogEvent] = []
     try:
@@ -41,7 +43,10 @@ def read_ardupilot_tlog(path: Path, layout: Layout) -> Log:  # noqa: ARG001
                 _add_mode(events, message, mavutil.mode_mapping_rover)
             elif kind not in _NOT_SAMPLES and not kind.startswith("UNKNOWN"):
                 sender = (kind, message.get_srcSystem(), message.get_srcComponent())
-                messages[sender].append((message._timestamp, message))
+                if sender not in messages:
+                    messages[sender] = _Samples.like(message)
+                samples = messages[sender]
+                samples.rows.append(samples.numbers_of(message))
         tables = _tables(path.name, messages)
     except InputError:
         raise
@@ -56,13 +61,28 @@ def _add_mode(events: list[LogEvent], message: Any, names: dict[int, str]) -> No
         events.append(LogEvent(message._timestamp, name))
 
 
-def _tables(file: str, messages: dict[tuple[str, int, int], list[tuple[float, Any]]]) -> list[RawTable]:
+@dataclass(frozen=True, eq=False)
+class _Samples:
+    """Messages of one kind and sender: names of their numbers, what takes them out after the receiver's stamp, rows."""
+
+    names: tuple[str, ...]
+    numbers_of: Callable[[Any], tuple[float, ...]]
+    rows: list[tuple[float, ...]]
+
+    @classmethod
+    def like(cls, message: Any) -> "_Samples":
+        """Return the samples, still none, of messages like this one."""
+        names = tuple(name for name in message.get_fieldnames() if isinstance(getattr(message, name), int | float))
+        # the stamp twice: attrgetter gives no tuple for one name
+        return cls(names, attrgetter("_timestamp", "_timestamp", *names), [])
+
+
+def _tables(file: str, messages: dict[tuple[str, int, int], _Samples]) -> list[RawTable]:
     kinds = [kind for kind, _, _ in messages]
     tables = []
-    for (kind, system, component), rows in messages.items():
-        names = [name for name in rows[0][1].get_fieldnames() if isinstance(getattr(rows[0][1], name), int | float)]
-        received = np.array([stamp for stamp, _ in rows])
-        columns = {name: np.array([getattr(message, name) for _, message in rows], dtype=float) for name in names}
+    for (kind, system, component), samples in messages.items():
+        received, _, *fields = np.array(samples.rows, dtype=float).T
+        columns = dict(zip(samples.names, fields, strict=True))
         topic = kind if kinds.count(kind) == 1 else f"{kind}[{system}.{component}]"
         tables.append(topic_table(file, topic, {"time": _sender_time(received, columns), **columns}))
     return tables
