@@ -76,3 +76,10 @@ def test_a_lagging_channel_follows() -> None:
 def test_twice_the_same_is_refused(more) -> None:
     with pytest.raises(InputError, match="already"):
         more(more(nomoto()))
+
+
+def test_equations_written_twice_share_their_machine_code() -> None:
+    """A search writes the same augmented model hundreds of times; code loaded each time would never be freed."""
+    once, again = (with_gusts(nomoto(), {"r": memory}) for memory in (3.0, 5.0))
+    assert once.equations is not again.equations
+    assert once.compiled is again.compiled

@@ -70,9 +70,11 @@ class Input:
         return self.name in NOTATION and self.direction != quantity(self.name).positive
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class ModelEquations:
     """The equations of a model, whatever the values of its parameters; models that differ in values share them.
+
+    Equal equations share their machine code, however often they are written.
 
     Attributes:
         rates: one binding a state, in the order of the states.
@@ -92,6 +94,9 @@ class ModelEquations:
     meaning: str = ""
     layout: str = ""
     sensors: str = ""
+
+    def __hash__(self) -> int:
+        return hash(self.digest)
 
     @property
     def states(self) -> tuple[str, ...]:
