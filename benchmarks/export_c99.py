@@ -20,6 +20,7 @@ import seatrial as st
 from seatrial.core.values import NOTATION, Array
 from seatrial.numerics.kernels.integrate import replay
 from seatrial.numerics.kernels.linear import replay as replay_linear
+from seatrial.physics.models.abkowitz import TERMS
 from seatrial.physics.models.published import PARAMETER_SETS
 from seatrial.physics.models.registry import MODELS
 from seatrial.physics.simulate.linear import discrete_matrices
@@ -95,6 +96,8 @@ def complete_model(name: str, rng: np.random.Generator) -> st.Model:
         values = {n if n in model.parameters else f"{n}_0": value for n, value in given.values.items()}
         values = {n: value for n, value in {**values, **given.ship.particulars}.items() if n in model.parameters}
         model = model.with_values(values)
+    terms = TERMS if name == "abkowitz" else ()  # zero unless they are estimated
+    model = model.with_values({n: float(0.01 * rng.normal()) for n in terms})
     return model.with_values({n: float(rng.uniform(0.5, 1.5)) for n in model.parameters.missing})
 
 
@@ -228,11 +231,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--states", type=int, default=1_000_000)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--models", nargs="+", default=list(MODELS))
     arguments = parser.parse_args()
     print(
         f"{'model':20s} {'step':>9s} {'Jacobian':>9s} {'-O2':>6s} {'native':>6s}  sanitizers, {arguments.states} states"
     )
-    for name in MODELS:
+    for name in arguments.models:
         rng = np.random.default_rng(arguments.seed)
         model = complete_model(name, rng)
         with tempfile.TemporaryDirectory() as place:

@@ -1,5 +1,5 @@
 from seatrial.api.comparison import compare
-from seatrial.api.exports import export, export_targets
+from seatrial.api.exports import export, export_targets, replay_fmu
 from seatrial.api.files import (
     load,
     load_fit,
@@ -29,6 +29,6 @@ __all__ = [
     "check", "compare", "correct_trial", "demo", "design", "draft_trial", "export", "export_targets",
     "extrapolation", "follow", "identify", "list_models", "load", "load_fit", "load_loop", "load_model",
     "load_trial", "measure_intervals", "measures", "model_guide", "predict", "prepared_run", "read_record",
-    "replay", "report", "reproduce", "rms_differences", "save", "simulate", "steering", "survey_log", "tune",
-    "write_record",
+    "replay", "replay_fmu", "report", "reproduce", "rms_differences", "save", "simulate", "steering", "survey_log",
+    "tune", "write_record",
 ]  # fmt: skip

@@ -10,6 +10,7 @@ from seatrial.core.values import InputError
 if TYPE_CHECKING:
     from seatrial.core.equations import Model
     from seatrial.core.results import Fit
+    from seatrial.core.values import Record
     from seatrial.data.folder.model_file import ModelFile
     from seatrial.exporting import Export, ExportSource, Target
 
@@ -49,6 +50,17 @@ def export_targets(model: "Fit | ModelFile | Model | str | Path") -> dict[str, s
 
     source = _source(model)
     return {name: target.unsuitable(source) for name, target in TARGETS.items()}
+
+
+def replay_fmu(path: str | Path, record: "Record") -> "Record":
+    """Simulate an FMU with the inputs of a record, by FMPy: the check that it moves as its model does.
+
+    Raises:
+        InputError: FMPy is not installed, no FMU for co-simulation on this platform, or an input that the record lacks.
+    """
+    from seatrial.exporting.fmu_run import replay_fmu
+
+    return replay_fmu(Path(path), record)
 
 
 def _source(model: "Fit | ModelFile | Model | str | Path") -> "ExportSource":

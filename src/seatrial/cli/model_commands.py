@@ -55,7 +55,9 @@ def tune(
 
 @app.command()
 def simulate(
-    model_file: Annotated[Path, typer.Argument(metavar="MODEL.toml", help="Model file, as identify writes it.")],
+    model_file: Annotated[
+        Path, typer.Argument(metavar="MODEL.toml|FMU", help="Model file, as identify writes it, or an exported FMU.")
+    ],
     out: Annotated[Path, typer.Option("--out", metavar="FILE", help="Simulated record (CSV).")],
     manoeuvre: Annotated[
         str | None,
@@ -86,6 +88,8 @@ def simulate(
     Example: seatrial simulate results/kvlcc2/model.toml --manoeuvre turning-circle:35 --out turn.csv
 
     Measured inputs: --inputs table.csv, or --trial examples/kvlcc2_hsva.toml --inputs HSVA_CPMC_KVLCC2_Z_35_05
+
+    An exported FMU, as a check: seatrial simulate ship.fmu --inputs turn.csv --out back.csv
     """
     from seatrial import api
     from seatrial.core.values import InputError
@@ -94,8 +98,19 @@ def simulate(
 
     if (manoeuvre is None) == (inputs is None):
         raise InputError("give either --manoeuvre or --inputs")
-    file = api.load_model(model_file, own_model(model))
     writable_folder(out.parent)
+    if model_file.suffix == ".fmu":
+        if inputs is None:
+            raise InputError("an FMU is run with the inputs of a record: give --inputs, such as a simulated manoeuvre")
+        measured = read_record_csv(Path(inputs)) if trial is None else api.prepared_run(trial, inputs)
+        record = api.replay_fmu(model_file, measured)
+        write_record_csv(record, out)
+        rms = api.rms_differences(measured, record)
+        _print_rms(measured.name, rms)
+        write_json(json, lambda: {"record": str(out), "rms": rms, "seed": seed})
+        print(f"record: {out}")
+        return
+    file = api.load_model(model_file, own_model(model))
     measured, intervals = None, dict[str, tuple[float, float] | None]()
     if inputs is not None:
         measured = read_record_csv(Path(inputs)) if trial is None else api.prepared_run(trial, inputs)
@@ -163,6 +178,11 @@ def models(
     summaries = api.list_models()
     print_models(summaries)
     write_json(json, lambda: {"models": [asdict(summary) for summary in summaries]})
+
+
+def _print_rms(name: str, rms: dict[str, float]) -> None:
+    if rms:
+        print(f"against {name}: rms {', '.join(f'{channel} {value:.3g}' for channel, value in rms.items())}")
 
 
 def _name_and_value(text: str) -> tuple[str, float]:

@@ -5,7 +5,7 @@ import math
 from seatrial.core.equations.bindings import Binding
 from seatrial.core.equations.generate import function_assignments, live_assignments, tangent_assignments
 from seatrial.core.equations.printer import Assignment, CDialect
-from seatrial.exporting.identified_range import range_text, range_use
+from seatrial.exporting.identified_range import identified_range, range_text, range_use
 from seatrial.exporting.source import (
     ExportSource,
     input_variables,
@@ -18,7 +18,7 @@ from seatrial.exporting.source import (
     state_variables,
 )
 from seatrial.exporting.target import Export
-from seatrial.exporting.templating import rendered
+from seatrial.exporting.templating import rendered, stored_text
 from seatrial.numerics.kernels.trigonometry import COSINE_SERIES, HALF_PI, SINE_SERIES
 
 
@@ -36,14 +36,8 @@ def export_c(source: ExportSource, name: str) -> Export:
 
 def _template_values(source: ExportSource, name: str) -> dict[str, object]:
     model, equations = source.model, source.model.equations
-    use = range_use(source)
-    bodies = {
-        "rates": _lines(source, equations.rates),
-        "outputs_body": _lines(source, equations.output_bindings),
-        "rates_jacobian": _jacobian_lines(source, equations.rates),
-        "outputs_jacobian": _jacobian_lines(source, equations.output_bindings),
-        "range_body": [] if use is None else _lines(source, (use,)),
-    }
+    limits = identified_range(source)
+    bodies = stored_text(("c99", model.equation_hash, sorted(limits.items())), lambda: _bodies(source))
     return {
         **bodies,
         "has_angles": any("sincos_of(" in line for lines in bodies.values() for line in lines),
@@ -60,9 +54,21 @@ def _template_values(source: ExportSource, name: str) -> dict[str, object]:
         "parameters": [(v, repr(p.value)) for v, p in zip(parameter_variables(model), model.parameters, strict=True)],
         "is_affine": model.is_affine,
         "is_held": [i.is_held for i in model.inputs],
-        "has_range": use is not None,
+        "has_range": bool(limits),
         "bindings": [(b.name, b.unit, plain(b.source)) for b in equations.bindings],
     }  # fmt: skip
+
+
+def _bodies(source: ExportSource) -> dict[str, list[str]]:
+    """The lines of each generated function."""
+    equations, use = source.model.equations, range_use(source)
+    return {
+        "rates": _lines(source, equations.rates),
+        "outputs_body": _lines(source, equations.output_bindings),
+        "rates_jacobian": _jacobian_lines(source, equations.rates),
+        "outputs_jacobian": _jacobian_lines(source, equations.output_bindings),
+        "range_body": [] if use is None else _lines(source, (use,)),
+    }
 
 
 def _lines(source: ExportSource, wanted: tuple[Binding, ...]) -> list[str]:

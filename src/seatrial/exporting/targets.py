@@ -2,6 +2,8 @@
 
 from seatrial.core.values import InputError, spelling_hint
 from seatrial.exporting.c_source import export_c
+from seatrial.exporting.fmu import export_fmu
+from seatrial.exporting.scripts import export_casadi, export_matlab
 from seatrial.exporting.source import ExportSource
 from seatrial.exporting.target import Target
 
@@ -12,6 +14,9 @@ def _suits_every_model(source: ExportSource) -> str:  # noqa: ARG001
 
 _ALL = (
     Target("c99", "a folder with one .h and one .c: rates, outputs, Jacobians, step", "", _suits_every_model, export_c),
+    Target("fmu", "an FMU of FMI 2.0 for co-simulation, with C sources", ".fmu", _suits_every_model, export_fmu),
+    Target("casadi", "a Python module that builds CasADi functions", ".py", _suits_every_model, export_casadi),
+    Target("matlab", "a folder with a function as MSS calls it and a .mat", "", _suits_every_model, export_matlab),
 )
 TARGETS: dict[str, Target] = {target.name: target for target in _ALL}
 """Name -> target."""

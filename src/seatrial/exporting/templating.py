@@ -1,7 +1,11 @@
 """Templates of exported files; numbers are written so that they read back to the last bit."""
 
+from collections.abc import Callable, Sequence
 from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from seatrial.core.equations.stored import stored
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -24,3 +28,11 @@ def _environment() -> "Environment":
 def rendered(template: str, **values: Any) -> bytes:
     """Return a template of this package filled in, as UTF-8; XML is escaped."""
     return _environment().get_template(template).render(**values).encode()
+
+
+def stored_text(key: Sequence[object], write: Callable[[], dict[str, list[str]]]) -> dict[str, list[str]]:
+    """Return the lines of generated functions by name, from the compile cache where it holds them.
+
+    key: what decides the text, with the same `repr` in every process.
+    """
+    return stored("exported", key, write, (Path(__file__).parent,))
