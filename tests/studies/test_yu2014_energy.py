@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.physics.loops import Preamplifier
+from seatrial.physics.loops import Preamplifier, reversals_per_hour
 from seatrial_studies.yu2014.declarations import DECLARATIONS
 from seatrial_studies.yu2014.energy import (
     EFFICIENCY,
@@ -13,7 +13,6 @@ from seatrial_studies.yu2014.energy import (
     fin_drag_power,
     fin_energy,
     lift_slope,
-    reversals_per_hour,
     work,
 )
 from seatrial_studies.yu2014.joint_search import joint_optimum

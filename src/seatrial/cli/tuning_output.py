@@ -118,6 +118,7 @@ def _print_simulations(tuning: "Tuning") -> None:
 
 def _print_schedule(tuning: "Tuning") -> None:
     from seatrial.core.text.numbers import fixed
+    from seatrial.reporting.tuning_text import step_text
 
     if not tuning.schedule:
         return
@@ -130,6 +131,9 @@ def _print_schedule(tuning: "Tuning") -> None:
     note = f"; {infeasible} without feasible gains" if infeasible else ""
     text = f"schedule of {count} conditions: mean cost {fixed(mean, 3)}"
     print_lines([text + (f" ({compared})" if compared else "") + note])
+    trades = ", ".join(f"{step_text(trade.largest_step)} {fixed(trade.cost, 3)}" for trade in tuning.schedule_trades)
+    if trades:
+        print_lines([f"mean cost by the largest step of a gain between neighbours: {trades}"], "  ")
 
 
 def _print_manoeuvres(tuning: "Tuning") -> None:

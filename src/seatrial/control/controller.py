@@ -1,13 +1,20 @@
 """One set of gains in words a control engineer knows."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
-from seatrial.control.gain_evaluation import GainEvaluation, GainEvaluator, exceedance_share
+from seatrial.control.gain_evaluation import (
+    ACTUATOR_ACCELERATION,
+    ACTUATOR_RATE,
+    GainEvaluation,
+    GainEvaluator,
+    exceedance_share,
+)
 from seatrial.core.results.tuning import Component, Controller
 from seatrial.core.values import Array
-from seatrial.physics.loops import Block, TransferLoop, margins
+from seatrial.physics.loops import Block, TransferLoop, margins, reversals_per_hour
 from seatrial.physics.loops.margins import frequency_band
 
 # relative excess over a limit that rounding explains; far below any margin that matters, our choice
@@ -26,6 +33,7 @@ def describe_controller(evaluator: GainEvaluator, name: str, gains: Array) -> Co
     rms = np.sqrt(variances.mean(axis=0))
     left = float(rms[0]) / math.sqrt(evaluator.uncontrolled_variance) if evaluator.task.demand is None else math.nan
     omega = np.geomspace(*frequency_band(frailest), _POINTS)
+    open_loop, drive = frailest.open_loop(omega), evaluator.task.drive
     return Controller(
         name=name,
         gains=dict(zip(evaluator.loop.gains.names, gains.tolist(), strict=True)),
@@ -39,10 +47,34 @@ def describe_controller(evaluator: GainEvaluator, name: str, gains: Array) -> Co
         damping=frail.damping,
         saturation=exceedance_share(limits.limit, float(variances[:, 1].max())),
         rate_saturation=exceedance_share(limits.rate, float(variances[:, 2].max())),
-        violated=violated_restrictions(evaluator, evaluation),
+        violated=(*violated_restrictions(evaluator, evaluation), *_broken_delay(frail.delay, limits.delay)),
         omega=omega,
-        open_loop=frailest.open_loop(omega),
+        open_loop=open_loop,
+        lower_gain_margin=frail.lower_gain,
+        noise_gain=_noise_gain(frailest, omega) if frail.is_stable else math.nan,
+        reversals=_reversals(evaluator, gains),
+        energy=math.nan if drive is None else drive.energy(float(variances[:, 2].mean())),
     )
+
+
+def _noise_gain(loop: TransferLoop, omega: Array) -> float:
+    """Return the largest |K S|: what the actuator makes of a unit of noise in the output, at its worst frequency."""
+    controller = loop.gain_values @ loop.controller_terms(omega)
+    return float(np.max(np.abs(controller / (1.0 + loop.open_loop(omega)))))
+
+
+def _reversals(evaluator: GainEvaluator, gains: Array) -> float:
+    """Return how often the actuator turns back in an hour, mean over the seas; nan where it never moves."""
+    rows = (ACTUATOR_RATE.variances[0], ACTUATOR_ACCELERATION.variances[0])
+    rms = [np.sqrt(replace(one, variances=rows).evaluate(gains, with_Ms=False).variances[0])
+           for one in evaluator.performances]  # fmt: skip
+    counts = [reversals_per_hour(float(rate), float(acceleration)) for rate, acceleration in rms if rate > 0.0]
+    return float(np.mean(counts)) if counts else math.nan
+
+
+def _broken_delay(delay: float, least: float) -> tuple[str, ...]:
+    """Return the delay margin in words where it is too short."""
+    return (f"delay margin {delay:.3g} s where {least:.3g} s are required",) if delay < least else ()
 
 
 def violated_restrictions(evaluator: GainEvaluator, evaluation: GainEvaluation) -> tuple[str, ...]:

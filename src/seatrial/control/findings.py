@@ -1,14 +1,17 @@
 """What to warn of in a tuning."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from seatrial.control.choose import MAX_SATURATION_LOSS
+import numpy as np
+
+from seatrial.control.choose_by_simulation import MAX_SATURATION_LOSS
+from seatrial.control.gain_choice import ON_BOUND, gains_on_bound
 from seatrial.control.gain_evaluation import GainEvaluator
+from seatrial.control.schedule import Schedule
 from seatrial.control.task import Demand
 from seatrial.core.results.tuning import (
     Controller,
     ManoeuvreResponse,
-    OperatingPoint,
     PairedDifference,
     ParetoFront,
     PerformanceBound,
@@ -20,7 +23,6 @@ from seatrial.core.values import Finding, Severity
 _NO_RESTRICTIONS = (
     "the genetic search knows no restriction: run without --method, or take 'own front' (reference in tuning.json)"
 )
-_ON_BOUND = 1e-3  # share of a gain's range that counts as on the bound; chosen
 _LEAST_COVERAGE = 0.97  # share of the hypervolume of the checking grid; chosen
 
 
@@ -31,7 +33,7 @@ class Checks:
     simulations: tuple[SeawaySimulation, ...] = ()
     comparisons: tuple[PairedDifference, ...] = ()
     manoeuvres: tuple[ManoeuvreResponse, ...] = ()
-    schedule: tuple[OperatingPoint, ...] = ()
+    schedule: Schedule = field(default_factory=Schedule)
     bounds: tuple[PerformanceBound, ...] = ()
     is_interrupted: bool = False
 
@@ -55,9 +57,14 @@ def findings(
     if front.hypervolume < _LEAST_COVERAGE:
         found.append(_warning("coarse-front", f"the front covers {100.0 * front.hypervolume:.1f} % of what a grid of "
                               "all gains does", "give it another seed"))  # fmt: skip
-    if wanting := [point for point in checks.schedule if not point.is_feasible]:
-        found.append(_warning("schedule-infeasible", f"in {len(wanting)} of {len(checks.schedule)} conditions no gains "
+    points, between = checks.schedule.points, checks.schedule.check
+    if wanting := [point for point in points if not point.is_feasible]:
+        found.append(_warning("schedule-infeasible", f"in {len(wanting)} of {len(points)} conditions no gains "
                               "keep the restrictions; the nearest are given", "slow down or turn there"))  # fmt: skip
+    if between is not None and between.feasible < between.conditions:
+        found.append(_warning("schedule-between", f"with interpolated gains {between.conditions - between.feasible} of "
+                              f"{between.conditions} conditions on and between the schedule's break the restrictions",
+                              "add conditions to [schedule]"))  # fmt: skip
     found += [
         Finding(Severity.INFO, "rival-breaks-limits", f"controller '{rival.name}' does not keep: {broken}", "", "")
         for rival in baselines
@@ -76,17 +83,16 @@ def _advice(advice: str, method: TuningMethod) -> str:
 
 
 def _gain_findings(evaluator: GainEvaluator, chosen: Controller, method: TuningMethod) -> list[Finding]:
-    found = []
-    for gain in evaluator.loop.gains.free:
-        width, value = gain.upper - gain.lower, chosen.gains[gain.name]
-        if gain.lower == 0.0 and abs(value) <= _ON_BOUND * width:
+    loop = evaluator.loop
+    found = [
+        _warning("gain-on-bound", f"gain {g.name} ends on the {g.end} bound {g.bound:g} of the search: a better one "
+                 "may lie beyond", f"widen it: [controller.gains.{g.name}] {g.end} in the loop file")
+        for g in gains_on_bound(loop, np.array([chosen.gains[name] for name in loop.gains.names]))
+    ]  # fmt: skip
+    for gain in loop.gains.free:
+        if gain.lower == 0.0 and abs(chosen.gains[gain.name]) <= ON_BOUND * gain.upper:
             found.append(Finding(Severity.INFO, "gain-at-zero", f"gain {gain.name} ends at zero: its term is not "
                                  "needed", "", "leave the term out"))  # fmt: skip
-            continue
-        for end, bound in (("lower", gain.lower), ("upper", gain.upper)):
-            if abs(value - bound) <= _ON_BOUND * width:
-                found.append(_warning("gain-on-bound", f"gain {gain.name} ends on its {end} bound {bound:g}",
-                                      "widen the bound, or leave the term out where it is zero"))  # fmt: skip
     if chosen.violated:
         found.append(_warning("breaks-limits", f"the chosen gains do not keep: {'; '.join(chosen.violated)}",
                               _advice("try more", method)))  # fmt: skip

@@ -15,6 +15,7 @@ from seatrial.physics.loops.performance import distinct_variances
 OUTPUT = variance("output", "rad^2", LoopSignal.OUTPUT)
 ACTUATOR = variance("actuator", "rad^2", LoopSignal.ACTUATOR)
 ACTUATOR_RATE = variance("actuator rate", "rad^2/s^2", LoopSignal.ACTUATOR, 1)
+ACTUATOR_ACCELERATION = variance("actuator acceleration", "rad^2/s^4", LoopSignal.ACTUATOR, 2)
 _ROUNDING = 1e-9  # relative excess over a limit that rounding explains
 _UNSTABLE = 1e30  # variance in the place of infinity, whose ratio to a limit is no number where there is none
 

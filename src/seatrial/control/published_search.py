@@ -5,7 +5,7 @@ from enum import Enum
 
 import numpy as np
 
-from seatrial.control.choose import GainChoice
+from seatrial.control.gain_choice import GainChoice
 from seatrial.control.gain_evaluation import GainEvaluator
 from seatrial.control.genetic import SOURCE, GeneticRun, genetic_runs, searched_objectives
 from seatrial.control.genetic_settings import GeneticTuning

@@ -1,20 +1,23 @@
 """Gains for every speed, heading and height of sea, beside one set for all."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
 
 from seatrial.control.gain_evaluation import OUTPUT, GainEvaluator, exceedance_share
-from seatrial.control.gradient_refinement import all_gains, free_gain_bounds, refine_gains
+from seatrial.control.gradient_refinement import all_gains, free_gain_bounds
+from seatrial.control.least_output import least_output_gains, spread_gains
+from seatrial.control.smooth_schedule import GainGrid, interpolated_gains, midpoints, smooth_gains
 from seatrial.control.task import ScheduleGrid, Seaway, TuningTask
-from seatrial.core.results.tuning import OperatingPoint
+from seatrial.core.results.tuning import OperatingPoint, ScheduleCheck, ScheduleTrade
 from seatrial.core.values import Array
 
-# Sobol points, refined starts, rounds of random neighbours and neighbours a round; chosen
-_SAMPLES, _STARTS, _ROUNDS, _NEIGHBOURS = 4096, 3, 8, 1024
+# rounds of random neighbours and neighbours a round; chosen
+_ROUNDS, _NEIGHBOURS = 8, 1024
+_STEPS = (0.1, 0.2, 0.3, 0.5)  # largest steps whose cost is printed; chosen
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,47 +45,92 @@ def schedule_conditions(task: TuningTask, grid: ScheduleGrid) -> tuple[ScheduleC
     return tuple(made)
 
 
+@dataclass(frozen=True, eq=False)
+class Schedule:
+    """Gains of every condition, what smoothness costs, and the check between conditions."""
+
+    points: tuple[OperatingPoint, ...] = ()
+    trades: tuple[ScheduleTrade, ...] = ()
+    check: ScheduleCheck | None = None
+
+
 def schedule(
     task: TuningTask,
     grid: ScheduleGrid,
     baselines: Mapping[str, Array],
     seed: int,
     report_progress: Callable[[str], None],
-) -> tuple[OperatingPoint, ...]:
-    """Return the best gains of each condition, and what `baselines` (name -> gains) and one set for all cost there.
+) -> Schedule:
+    """Return smooth gains over the conditions, and what `baselines` (name -> gains) and others cost there.
 
-    "one for all" has the least mean cost of all sets that keep the restrictions in every condition.
+    "each its own" are the gains of least cost in each condition alone, "one for all" the set of least mean cost that
+    keeps the restrictions in every condition; without such a set there is nothing to smooth from, and the schedule is
+    "each its own". As far as the largest step allows, no condition costs more than with a baseline that keeps the
+    restrictions there.
     """
-    known = schedule_conditions(task, grid)
-    samples = _samples(known[0].evaluator, seed)
-    made, best, others = [], [], dict(baselines)
-    for i, condition in enumerate(known):
-        best.append(_best_gains(condition, samples))
-        report_progress(f"schedule: {i + 1} of {len(known)} conditions")
-    one = _common_gains(known, samples, np.random.default_rng(seed))
-    if one is not None:
-        others["one for all"] = one
-    for condition, gains in zip(known, best, strict=True):
-        judged = condition.evaluator.evaluate(gains[None])
+    conditions = schedule_conditions(task, grid)
+    samples = spread_gains(conditions[0].evaluator, seed)
+    alone = []
+    for i, condition in enumerate(conditions):
+        alone.append(least_output_gains(condition.evaluator, samples))
+        report_progress(f"schedule: {i + 1} of {len(conditions)} conditions")
+    best = np.array(alone)
+    compared = {name: np.tile(gains, (len(conditions), 1)) for name, gains in baselines.items()}
+    one = _common_gains(conditions, samples, np.random.default_rng(seed))
+    if one is None:
+        return Schedule(_operating_points(task, conditions, best, compared))
+    shape = (len(grid.heights), len(grid.speeds), len(grid.headings))
+    evaluators = [c.evaluator for c in conditions]
+    gain_grid = GainGrid(evaluators, shape, _ceilings(conditions, compared))
+    gains = start = np.tile(one, (len(conditions), 1))
+    trades = [ScheduleTrade(0.0, float(np.mean(gain_grid.costs(start))))]
+    for step in sorted({*_STEPS, grid.largest_step}):
+        start = smooth_gains(gain_grid, start, step)
+        trades.append(ScheduleTrade(step, float(np.mean(gain_grid.costs(start)))))
+        gains = start if step == grid.largest_step else gains
+        report_progress(f"schedule: steps of {100.0 * step:.0f} % at most")
+    trades.append(ScheduleTrade(math.inf, float(np.mean(gain_grid.costs(best)))))
+    compared |= {"each its own": best, "one for all": np.tile(one, (len(conditions), 1))}
+    points = _operating_points(task, conditions, gains, compared)
+    return Schedule(points, tuple(trades), _check_between(task, grid, shape, gains))
+
+
+def _ceilings(conditions: Sequence[ScheduleCondition], baselines: Mapping[str, Array]) -> Array:
+    """Return the least cost of baselines (name -> gains (n, g)) that keep the restrictions, (n,); else infinity."""
+    made = np.full(len(conditions), np.inf)
+    for gains in baselines.values():
+        for i, (condition, own) in enumerate(zip(conditions, gains, strict=True)):
+            if condition.evaluator.evaluate(own[None]).is_feasible[0]:
+                made[i] = min(made[i], float(condition.cost(own[None])[0]))
+    return made
+
+
+def _operating_points(
+    task: TuningTask, conditions: Sequence[ScheduleCondition], gains: Array, compared: Mapping[str, Array]
+) -> tuple[OperatingPoint, ...]:
+    """Return the points of gains (n, g), with what those compared (name -> (n, g)) cost there."""
+    made = []
+    for i, (condition, own) in enumerate(zip(conditions, gains, strict=True)):
+        judged = condition.evaluator.evaluate(own[None])
         made.append(OperatingPoint(
             condition.U, condition.beta, condition.height,
-            dict(zip(task.loop.gains.names, gains.tolist(), strict=True)),
-            float(condition.cost(gains[None])[0]), float(judged.Ms[0]),
+            dict(zip(task.loop.gains.names, own.tolist(), strict=True)),
+            float(condition.cost(own[None])[0]), float(judged.Ms[0]),
             exceedance_share(task.constraints.limit, float(judged.variances[0, 0, 1])),
-            {name: float(condition.cost(other[None])[0]) for name, other in others.items()},
+            {name: float(condition.cost(other[i][None])[0]) for name, other in compared.items()},
             bool(judged.is_feasible[0]),
         ))  # fmt: skip
     return tuple(made)
 
 
-def _samples(evaluator: GainEvaluator, seed: int) -> Array:
-    """Return gains spread over their box, (n, g): Sobol points, half of them towards small gains."""
-    from scipy.stats import qmc
-
-    _, (low, high) = free_gain_bounds(evaluator)
-    unit = qmc.Sobol(len(low), seed=seed).random(_SAMPLES)
-    unit[::2] **= 3.0
-    return all_gains(evaluator, low + unit * (high - low))
+def _check_between(task: TuningTask, grid: ScheduleGrid, shape: tuple[int, ...], gains: Array) -> ScheduleCheck:
+    """Return how interpolated gains keep the restrictions on the grid with its midpoints."""
+    fine = replace(grid, speeds=midpoints(grid.speeds), headings=midpoints(grid.headings),
+                   heights=midpoints(grid.heights))  # fmt: skip
+    between = interpolated_gains(shape, gains)
+    judged = [c.evaluator.evaluate(own[None]) for c, own in
+              zip(schedule_conditions(task, fine), between, strict=True)]  # fmt: skip
+    return ScheduleCheck(len(judged), sum(bool(j.is_feasible[0]) for j in judged), max(float(j.Ms[0]) for j in judged))
 
 
 def _common_gains(conditions: tuple[ScheduleCondition, ...], samples: Array, rng: np.random.Generator) -> Array | None:
@@ -101,18 +149,3 @@ def _common_gains(conditions: tuple[ScheduleCondition, ...], samples: Array, rng
         steps = size * (high - low) * rng.standard_normal((_NEIGHBOURS, len(places)))
         tried = all_gains(conditions[0].evaluator, np.clip(best[places] + steps, low, high))
     return best
-
-
-def _best_gains(condition: ScheduleCondition, samples: Array) -> Array:
-    """Return the best samples pressed against the restrictions; the least variance wins, (g,)."""
-    judge = condition.evaluator
-    judged = judge.evaluate(samples)
-    values = np.where(judged.is_feasible, judged.objectives[:, 0], np.inf)
-    places = free_gain_bounds(judge)[0]
-    if not np.isfinite(values).any():
-        return samples[int(np.argmin(judged.excess.max(axis=1)))]
-
-    tried = [samples[i] for i in np.argsort(values)[:_STARTS]]
-    tried += [all_gains(judge, refine_gains(judge, start[places])[None])[0] for start in tried]
-    judged = judge.evaluate(np.array(tried))
-    return tried[int(np.argmin(np.where(judged.is_feasible, judged.objectives[:, 0], np.inf)))]

@@ -11,7 +11,14 @@ from seatrial.control.genetic_settings import GeneticTuning
 from seatrial.core.equations import Model
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import Array, InputError, display_unit
-from seatrial.physics.loops import EncounterSpectrum, HullFactor, Objective, TransferLoop, wave_slope_spectrum
+from seatrial.physics.loops import (
+    ActuatorDrive,
+    EncounterSpectrum,
+    HullFactor,
+    Objective,
+    TransferLoop,
+    wave_slope_spectrum,
+)
 from seatrial.physics.loops.encounter_spectrum import disturbance_spectrum
 from seatrial.physics.sea.spectrum import Spectrum
 
@@ -83,11 +90,15 @@ class Effectiveness(Enum):
 
 @dataclass(frozen=True)
 class ScheduleGrid:
-    """Conditions of a schedule: U [m/s], beta [rad], significant height [m]; every combination is tuned."""
+    """Conditions of a schedule: U [m/s], beta [rad], significant height [m]; every combination is tuned.
+
+    largest_step: of a gain between neighbouring conditions, as a share of the larger one.
+    """
 
     speeds: tuple[float, ...]
     headings: tuple[float, ...]
     heights: tuple[float, ...]
+    largest_step: float = 0.3  # chosen
 
 
 @dataclass(frozen=True)
@@ -144,6 +155,7 @@ class TuningTask:
         trimmed_ship: behind the plant; None where only transfer functions are known (simulated from those).
         demand: for servo loops (autopilot, speed); None for stabilisers.
         genetic: settings of the published search, used where that method is chosen.
+        drive: of the actuator, for its energy; None where no inertia is known.
 
     Raises:
         InputError: nothing disturbs the loop, a plant with poles right of the axis, gains of other names.
@@ -165,6 +177,7 @@ class TuningTask:
     trimmed_ship: TrimmedShip | None = None
     demand: Demand | None = None
     genetic: GeneticTuning = field(default_factory=GeneticTuning)
+    drive: ActuatorDrive | None = None
 
     def __post_init__(self) -> None:
         if not self.disturbances or not self.objectives:

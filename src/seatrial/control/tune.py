@@ -7,11 +7,12 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.control.bounds import bounds, is_available
-from seatrial.control.choose import GainChoice, choose
+from seatrial.control.choose import choose
 from seatrial.control.controller import components, describe_controller
 from seatrial.control.demand import simulate_manoeuvres
 from seatrial.control.findings import Checks, findings
 from seatrial.control.front import Effort, grid_front, pareto_front, refuse_idle, refuse_infeasible, thin_front
+from seatrial.control.gain_choice import GainChoice
 from seatrial.control.gain_evaluation import GainEvaluator, gain_evaluator
 from seatrial.control.published_search import OWN_CHOICE, published_search
 from seatrial.control.schedule import schedule
@@ -63,6 +64,7 @@ def tune(
     choice = own if searched is None else searched.choice
     chosen = describe_controller(choice.evaluator, "chosen", choice.gains)
     reference = None if searched is None else describe_controller(own.evaluator, OWN_CHOICE, own.gains)
+    designs = tuple(describe_controller(one.evaluator, one.name, one.gains) for one in own.designs)
     rivals = {name: _given_gains(judges[0], name, gains) for name, gains in task.baselines.items()}
     baselines = tuple(describe_controller(one.evaluator, name, one.gains) for name, one in rivals.items())
     stable = {one.name: rivals[one.name] for one in baselines if np.isfinite(one.Ms)}
@@ -90,7 +92,9 @@ def tune(
         components=components(choice.evaluator.loop),
         seaway_simulations=checks.simulations,
         paired_differences=checks.comparisons,
-        schedule=checks.schedule,
+        schedule=checks.schedule.points,
+        schedule_trades=checks.schedule.trades,
+        schedule_check=checks.schedule.check,
         bounds=checks.bounds,
         manoeuvres=checks.manoeuvres,
         findings=findings(choice.evaluator, chosen, baselines, fronts[0][1], checks, method),
@@ -101,6 +105,7 @@ def tune(
         method=method,
         search=None if searched is None else searched.result,
         reference=reference,
+        designs=designs,
     )
 
 

@@ -8,6 +8,7 @@ from seatrial.core.figures.svg_text import svg
 from seatrial.core.results.front_chart import degree_unit, front_chart
 from seatrial.core.results.loop_charts import nyquist_chart, sensitivity_chart, styled_controllers
 from seatrial.core.results.tuning import Tuning
+from seatrial.core.text.numbers import fixed
 from seatrial.core.values.channel_text import channel_meaning
 from seatrial.reporting import gain_search, tuning_rows, tuning_text
 from seatrial.reporting.figures.controlled_runs import manoeuvre_chart, seaway_chart
@@ -63,6 +64,7 @@ def html(tuning: Tuning) -> str:
         "gain_names": [(name, tuning_rows.gain_symbol(name)) for name in tuning_rows.gain_names(tuning)],
         "objectives": [(name, degree_unit(unit)[1]) for name, unit in tuning.objectives.items()],
         "rms_heads": tuning_rows.rms_headings(tuning),
+        "work_heads": tuning_rows.work_headings(tuning),
         "has_reduction": tuning_text.has_reduction(tuning),
         "controllers": controllers,
         "front": Markup(front),
@@ -78,6 +80,8 @@ def html(tuning: Tuning) -> str:
         ],
         "maps": Markup(svg(schedule_chart(tuning.schedule))),
         "schedule": tuning_rows.schedule_table(tuning.schedule),
+        "trades": [(tuning_text.step_text(t.largest_step), fixed(t.cost, 3)) for t in tuning.schedule_trades],
+        "between": tuning_text.between_sentence(tuning),
         "is_folded": len(tuning.schedule) > MAX_UNFOLDED_CONDITIONS,
         "bounds": [tuning_rows.bound_row(b) for b in tuning.bounds],
         "diagram": Markup(svg(loop_diagram(tuning.components, tuning.output, tuning.actuator))),

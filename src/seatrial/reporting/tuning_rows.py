@@ -30,6 +30,7 @@ class ControllerRow:
     rms: tuple[str, ...]
     reduction: str
     margins: tuple[str, ...]
+    work: tuple[str, ...]
     saturation_shares: tuple[str, ...]
     violated: tuple[str, ...]
 
@@ -117,12 +118,31 @@ def _controller_row(c: Controller, gains: tuple[str, ...], tuning: Tuning) -> Co
         tuple(significant(float(v) * f) for v, f in zip(c.objectives, factors, strict=False)),
         tuple(significant(v, 3) for v in rms),
         fixed(100.0 * c.reduction, 1),
-        (_ratio_text(c.Ms, 2), _ratio_text(c.gain_margin, 1), _ratio_text(math.degrees(c.phase_margin), 0),
-         "∞" if math.isinf(c.delay_margin) else significant(c.delay_margin, 2), fixed(c.damping, 2)),
+        (_ratio_text(c.Ms, 2), _ratio_text(c.gain_margin, 1), fixed(c.lower_gain_margin, 2),
+         _ratio_text(math.degrees(c.phase_margin), 0),
+         "∞" if math.isinf(c.delay_margin) else significant(c.delay_margin, 2), fixed(c.damping, 2),
+         significant(c.noise_gain, 3)),
+        _work_texts(c, tuning),
         tuple(fixed(100.0 * share, 1) if known else DASH for share, known in
               zip((c.saturation, c.rate_saturation), has_limits, strict=True)),
         c.violated,
     )  # fmt: skip
+
+
+def work_headings(tuning: Tuning) -> list[tuple[str, str]]:
+    """Return names and units of what the actuator does: energy and power where its inertia is known."""
+    heads = [("reversals", "1/h")]
+    return [*heads, ("energy of a reversal", "J"), ("mean power of the drive", "W")] if _has_energy(tuning) else heads
+
+
+def _has_energy(tuning: Tuning) -> bool:
+    return any(math.isfinite(c.energy) for c in tuning.compared)
+
+
+def _work_texts(c: Controller, tuning: Tuning) -> tuple[str, ...]:
+    texts = (significant(c.reversals, 3),)
+    energy = (significant(c.energy, 3), significant(c.power, 3))
+    return (*texts, *energy) if _has_energy(tuning) else texts
 
 
 def _ratio_text(value: float, decimals: int) -> str:

@@ -15,10 +15,22 @@ _SIMULATION_LABELS = {"limited": "with angle and rate limits", "stalled": "with 
 
 def sentences(tuning: Tuning) -> list[str]:
     """Return the recommendation: motion, margins, saturation, simulation, comparison, demands, schedule."""
-    parts = [_motion(tuning), _margins(tuning), _saturation(tuning), _violations(tuning.chosen), _simulation(tuning)]
+    parts = [
+        *_on_bounds(tuning),
+        _motion(tuning),
+        _margins(tuning),
+        _saturation(tuning),
+        _violations(tuning.chosen),
+        _simulation(tuning),
+    ]
     parts += [comparison_sentence(pair) for pair in tuning.paired_differences]
     parts += [demand_sentence(m) for m in tuning.manoeuvres if m.controller == tuning.chosen.name]
     return [sentence for sentence in [*parts, _schedule(tuning)] if sentence]
+
+
+def _on_bounds(tuning: Tuning) -> list[str]:
+    """Return the warnings that a gain ends on a bound of the search: they come first."""
+    return [sentence(f"{f.text}; {f.advice}") for f in tuning.findings if f.code == "gain-on-bound"]
 
 
 def has_reduction(tuning: Tuning) -> bool:
@@ -154,6 +166,24 @@ def demand_sentence(m: ManoeuvreResponse) -> str:
 
 def _overshoot_text(share: float) -> str:
     return f"overshoots by {percent(share)}" if share > 0.0 else "does not overshoot"
+
+
+def step_text(largest_step: float) -> str:
+    """Return a largest step between neighbouring gains in words."""
+    if not math.isfinite(largest_step):
+        return "any"
+    return f"{fixed(100.0 * largest_step, 0)} %"
+
+
+def between_sentence(tuning: Tuning) -> str:
+    """Return how the schedule fares with its gains interpolated between its conditions."""
+    check = tuning.schedule_check
+    if check is None:
+        return ""
+    return (
+        f"With gains interpolated, {check.feasible} of {check.conditions} conditions on and midway between those of "
+        f"the schedule keep the constraints; the largest Ms is {fixed(check.Ms, 2)}."
+    )
 
 
 def _schedule(tuning: Tuning) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 
 from seatrial.core.values import Array
 from seatrial.physics.hydro import Complex
-from seatrial.physics.loops import Performance
+from seatrial.physics.loops import ActuatorDrive, Performance, reversals_per_hour
 from seatrial_studies.yu2014.published import (
     ASPECT,
     CHORD,
@@ -24,7 +24,6 @@ from seatrial_studies.yu2014.published import (
 from seatrial_studies.yu2014.published_loop import HULL_FACTOR, KNOT, performance
 from seatrial_studies.yu2014.table_1_fit import Table1Fit
 
-SECONDS_PER_HOUR = 3600.0  # s, by definition
 WATTS_PER_KILOWATT = 1000.0  # W, by definition
 EFFICIENCY = 0.8  # eta of the fin drive, not printed; assumed: saved shares do not depend on it
 SEA_WATER = 1025.0  # kg/m^3, density
@@ -75,7 +74,7 @@ class EnergyComparison:
 
 def work(rate: float) -> float:
     """Return W [J] of eq. (3) at an rms fin rate [deg/s]."""
-    return INERTIA * math.radians(rate) ** 2 / EFFICIENCY
+    return ActuatorDrive(INERTIA, EFFICIENCY).energy(math.radians(rate) ** 2)
 
 
 def lift_slope() -> float:
@@ -107,13 +106,6 @@ def roll_power(roll_rate_rms: float) -> float:
     inertia = mass * (GYRADIUS_SHARE * hull.B) ** 2
     restoring = inertia / PLANT_PERIOD_SQUARED  # N m/rad: T^2 is inertia over restoring
     return PLANT_DAMPING * restoring * math.radians(roll_rate_rms) ** 2
-
-
-def reversals_per_hour(rate_rms: float, acceleration_rms: float) -> float:
-    """Return how often a Gaussian fin angle turns back in an hour: two a zero up-crossing of its rate (Rice 1945, Bell
-    System Technical Journal 24, part III).
-    """
-    return 2.0 * SECONDS_PER_HOUR / (2.0 * math.pi) * acceleration_rms / rate_rms
 
 
 def fin_energy(loop_performance: Performance, gains: Array, speed: float, level: float = 1.0) -> FinEnergy:

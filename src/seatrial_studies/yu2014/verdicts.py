@@ -5,8 +5,9 @@ import numpy as np
 from seatrial.core.results import Check, Claim, Verdict
 from seatrial.numerics.optimise import GeneticSettings
 from seatrial.physics.loops import Preamplifier
+from seatrial.physics.loops.actuator_work import SECONDS_PER_HOUR
 from seatrial_studies.declarations import TIME_IS_NO_VERDICT
-from seatrial_studies.yu2014.energy import SECONDS_PER_HOUR, WATTS_PER_KILOWATT, EnergyComparison
+from seatrial_studies.yu2014.energy import WATTS_PER_KILOWATT, EnergyComparison
 from seatrial_studies.yu2014.evidence import FinGainEvidence
 from seatrial_studies.yu2014.improved_gains import MS_LIMIT, FiveGainComparison
 from seatrial_studies.yu2014.joint_search import JointOptimum

@@ -28,7 +28,7 @@ def test_a_fin_stabiliser_in_a_dozen_lines_is_the_published_loop(tmp_path: Path)
     assert np.allclose(task.loop.open_loop(w), published.open_loop(w), rtol=1e-12)
     assert task.loop.gains.names == ("KP", "KI", "KD") and len(task.loop.gains.free) == 3
     assert (task.constraints.limit, task.constraints.rate) == pytest.approx((math.radians(22), math.radians(25)))
-    assert math.isinf(task.constraints.stall) and task.constraints.Ms == 2.0
+    assert math.isinf(task.constraints.stall) and task.constraints.Ms == 1.6
     assert math.isclose(task.U, 9.26) and task.effectiveness is Effectiveness.SPEED_SQUARED
     assert [(o.variances[0].signal, o.variances[0].magnitude(np.array([2.0]))[0]) for o in task.objectives] == [
         (LoopSignal.OUTPUT, 1),

@@ -104,3 +104,12 @@ def test_margins_are_those_of_python_control_among_all_its_crossings(loop: Trans
     assert found.phase == pytest.approx(math.radians(np.abs(phases).min()), rel=1e-6)
     assert found.delay == pytest.approx(np.min(np.radians(phases % 360.0) / at_phase), rel=1e-6)
     assert found.Ms == pytest.approx(1.0 / distances.min(), rel=1e-6)
+
+
+@pytest.mark.parametrize("loop", stable_loops(), ids=range(len(stable_loops())))
+def test_the_loop_is_unstable_just_below_its_lower_gain_margin(loop: TransferLoop) -> None:
+    factor = margins(loop).lower_gain
+    assert 0.0 <= factor < 1.0
+    assert np.all(loop.with_gains(loop.gain_values * (1.01 * factor + 1e-6)).closed_loop_poles.real < 0.0)
+    if factor > 0.0:
+        assert np.any(loop.with_gains(loop.gain_values * 0.99 * factor).closed_loop_poles.real > 0.0)

@@ -69,6 +69,7 @@ def schedule_grid(table: ScheduleTable) -> ScheduleGrid:
         tuple(positive_value(a, "m/s", "schedule.speeds") for a in table.speeds.quantities()),
         tuple(heading_value(a, "schedule.headings") for a in table.headings.quantities()),
         tuple(positive_value(a, "m", "schedule.heights") for a in table.heights.quantities()),
+        table.largest_step,
     )
 
 

@@ -12,16 +12,17 @@ from seatrial.control.loopfile.loop import loop_from_tables
 from seatrial.control.loopfile.objectives import objective
 from seatrial.control.loopfile.plant import LoopPlant, hull_factor, plant_from_table
 from seatrial.control.loopfile.quantities import angle_value, positive_value, rate_value, si_value, symbol_unit
-from seatrial.control.loopfile.schema import DemandTable, LoopFile, ObjectiveTable, SimulationTable
+from seatrial.control.loopfile.schema import ActuatorTable, DemandTable, LoopFile, ObjectiveTable, SimulationTable
 from seatrial.control.task import Demand, SimulationSettings, TuningTask, refuse_unstable
 from seatrial.core.equations import Model
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import InputError, spelling_hint
 from seatrial.core.values.tables import parse_toml, read_table_text, refuse_absurd_numbers
 from seatrial.data.trial.schema_errors import schema_error
-from seatrial.physics.loops import Objective, TransferLoop
+from seatrial.physics.loops import ActuatorDrive, Objective, TransferLoop
 
 _TIME_CONSTANTS = 30.0  # duration of a demand where none is given, in its time constants; chosen
+_DELAY_OVER_DEAD_TIME = 2.0  # least delay margin over the declared dead time; chosen
 _MOST_STEPS = 1e7  # steps over all seeds; guards against a wrong unit
 _MOST_TIME_CONSTANTS = 1e4  # longest duration of a demand, in its time constants; guards against a wrong unit
 
@@ -88,6 +89,7 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant) -> TuningTask:
         trimmed_ship=plant.trimmed_ship,
         demand=demand,
         genetic=file.genetic,
+        drive=_drive(file.actuator),
     )
 
 
@@ -117,7 +119,20 @@ def _constraints(file: LoopFile, plant: LoopPlant) -> ControllerConstraints:
         limit=largest("limit"),
         rate=math.inf if table.rate is None else rate_value(table.rate, unit, "actuator.rate"),
         stall=largest("stall"),
+        delay=_DELAY_OVER_DEAD_TIME * _dead_time(table),
     )
+
+
+def _dead_time(table: ActuatorTable) -> float:
+    """Return the declared dead time [s]; zero without one."""
+    return 0.0 if table.dead_time is None else positive_value(table.dead_time, "s", "actuator.dead_time")
+
+
+def _drive(table: ActuatorTable) -> ActuatorDrive | None:
+    """Return what the drive moves; None where no inertia is declared."""
+    if table.inertia is None:
+        return None
+    return ActuatorDrive(positive_value(table.inertia, "kg m^2", "actuator.inertia"), table.efficiency)
 
 
 def _baselines(baselines: Mapping[str, Mapping[str, float]], loop: TransferLoop) -> dict[str, Mapping[str, float]]:

@@ -191,11 +191,17 @@ class ExtendedStructureTable(StrictTable):
 
 
 class ActuatorTable(StrictTable):
-    """`[actuator]`: largest excursion from the steady value, largest rate, angle of stall, and the servo's blocks."""
+    """`[actuator]`: largest excursion from the steady value, largest rate, angle of stall, and the servo's blocks.
+
+    `dead_time` in s; `inertia` about the stock in kg m^2 and `efficiency` of the drive, for its energy.
+    """
 
     limit: SiAmount | None = None
     rate: SiAmount | None = None
     stall: SiAmount | None = None
+    dead_time: SiAmount | None = None
+    inertia: SiAmount | None = None
+    efficiency: Annotated[float, Field(gt=0, le=1)] = 1.0
     servo: tuple[BlockTable, ...] = ()
 
 
@@ -258,7 +264,7 @@ class ObjectiveTable(StrictTable):
 class LimitsTable(StrictTable):
     """`[limits]`: largest Ms, and shares of amplitudes beyond the actuator's limit and rate."""
 
-    Ms: Annotated[float, Field(gt=1)] = 2.0
+    Ms: Annotated[float, Field(gt=1)] = 1.6  # tolerates 38 degrees of phase, a factor of 2.7 in gain; chosen
     saturation: Share = 0.2  # of amplitudes beyond the limit; chosen
     rate_saturation: Share = 0.2  # of rate amplitudes beyond the rate; chosen
 
@@ -269,6 +275,7 @@ class ScheduleTable(StrictTable):
     speeds: SiQuantities
     headings: SiQuantities
     heights: SiQuantities
+    largest_step: Share = 0.3  # as in `ScheduleGrid`
 
 
 class SimulationTable(StrictTable):

@@ -26,6 +26,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+SECONDS_AN_HOUR = 3600.0  # s, by definition
+
+
 @dataclass(frozen=True)
 class Component:
     """One block of the loop: num(s) / den(s), coefficients of s [rad/s], highest power first."""
@@ -51,6 +54,7 @@ class ControllerConstraints:
     limit: Annotated[Number, Field(description="of the actuator, SI; null: none (infinite)")] = float("inf")
     rate: Annotated[Number, Field(description="of the actuator, SI per second; null: none (infinite)")] = float("inf")
     stall: Annotated[Number, Field(description="of the actuator, SI; null: none (infinite)")] = float("inf")
+    delay: Annotated[Number, Field(description="least delay margin, s: twice the declared dead time")] = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,6 +85,24 @@ class Controller:
     open_loop: Annotated[
         ComplexArray, Field(description="L there, real and imaginary part; the sensitivity is 1 / (1 + L)")
     ]
+    lower_gain_margin: Annotated[
+        Number, Field(description="factor to which the loop gain may fall; 0: any; null: unstable")
+    ] = math.nan
+    noise_gain: Annotated[
+        Number, Field(description="largest |K S|: actuator amplitude for each unit of sensor noise; null: unstable")
+    ] = math.nan
+    reversals: Annotated[
+        Number, Field(description="times an hour that the actuator turns back, mean over the seas; null: unstable")
+    ] = math.nan
+    energy: Annotated[
+        Number, Field(description="J that the drive gives for each reversal; null: no inertia was declared")
+    ] = math.nan
+
+    @computed_field(description="W, mean power of the drive: energy times reversals; null: no inertia was declared")
+    @property
+    def power(self) -> Number:
+        """Return the mean power of the drive [W]."""
+        return self.energy * self.reversals / SECONDS_AN_HOUR
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,6 +134,23 @@ class OperatingPoint:
     saturation: Number
     baseline_costs: Annotated[dict[str, Number], Field(description="name of other gains -> their cost there")]
     is_feasible: bool
+
+
+@dataclass(frozen=True)
+class ScheduleTrade:
+    """What a largest step between neighbouring conditions costs."""
+
+    largest_step: Annotated[Number, Field(description="of a gain, as a share of the larger of two; null: any")]
+    cost: Annotated[float, Field(description="mean over the conditions")]
+
+
+@dataclass(frozen=True)
+class ScheduleCheck:
+    """The schedule with its gains interpolated, in the middle between its conditions too."""
+
+    conditions: int
+    feasible: Annotated[int, Field(description="how many of them keep the constraints")]
+    Ms: Annotated[Number, Field(description="the largest of them; null: unstable somewhere")]
 
 
 @dataclass(frozen=True)
@@ -208,7 +247,9 @@ class Tuning(Summarised):
     ]
     seaway_simulations: tuple[SeawaySimulation, ...]
     paired_differences: tuple[PairedDifference, ...]
-    schedule: tuple[OperatingPoint, ...]
+    schedule: Annotated[
+        tuple[OperatingPoint, ...], Field(description="smooth: neighbouring gains differ by the largest step at most")
+    ]
     bounds: tuple[PerformanceBound, ...]
     manoeuvres: tuple[ManoeuvreResponse, ...]
     findings: tuple[ReportedFinding, ...]
@@ -221,11 +262,16 @@ class Tuning(Summarised):
     reference: Annotated[
         Controller | None, Field(description="the package's own choice beside that of a published search; null: chosen")
     ] = None
+    schedule_trades: Annotated[tuple[ScheduleTrade, ...], Field(description="smoothness against cost")] = ()
+    schedule_check: Annotated[ScheduleCheck | None, Field(description="between conditions; null: no schedule")] = None
+    designs: Annotated[
+        tuple[Controller, ...], Field(description="a more robust and a harder working design beside the chosen one")
+    ] = ()
 
     @property
     def compared(self) -> tuple[Controller, ...]:
         """Return the chosen controller, the package's own where it is another, and the baselines."""
-        return (self.chosen, *(() if self.reference is None else (self.reference,)), *self.baselines)
+        return (self.chosen, *(() if self.reference is None else (self.reference,)), *self.designs, *self.baselines)
 
     @property
     def units(self) -> tuple[str, ...]:

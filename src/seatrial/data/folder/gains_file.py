@@ -80,12 +80,16 @@ def _margin_table(c: Controller) -> dict[str, float]:
     return _finite_numbers({
         "Ms": c.Ms,
         "gain_margin": c.gain_margin,
+        "lower_gain_margin": c.lower_gain_margin,
         "phase_margin_deg": math.degrees(c.phase_margin),
         "delay_margin_s": c.delay_margin,
         "damping_ratio": c.damping,
         "reduction": c.reduction,
         "saturation": c.saturation,
         "rate_saturation": c.rate_saturation,
+        "noise_gain": c.noise_gain,
+        "reversals_per_hour": c.reversals,
+        "energy_J": c.energy,
     })  # fmt: skip
 
 

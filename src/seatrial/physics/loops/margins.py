@@ -24,7 +24,7 @@ class StabilityMargins:
     Attributes:
         is_stable: all closed-loop poles lie left of the axis; Ms: the largest |S|, infinite if unstable;
         Ms_frequency: rad/s.
-        gain: the factor that the loop gain may grow by, infinite if any.
+        gain: the factor that the loop gain may grow by, infinite if any; lower_gain: that it may fall to, zero if any.
         phase: rad, positive: the least that L may turn, either way, where its size is one; infinite if it never is.
         delay: s of dead time that the loop tolerates: the least lag up to -1 over the frequency, infinite if any.
         damping: the least damping ratio of a closed-loop pole.
@@ -37,6 +37,7 @@ class StabilityMargins:
     phase: float
     delay: float
     damping: float
+    lower_gain: float = math.nan
 
 
 def frequency_band(loop: TransferLoop) -> tuple[float, float]:
@@ -85,7 +86,7 @@ def margins(loop: TransferLoop) -> StabilityMargins:
     factors = -1.0 / loop.open_loop(axis).real
     return StabilityMargins(
         True, peak, at, _minimum(factors[factors > 1.0]), _minimum(np.minimum(lag, 2.0 * math.pi - lag)),
-        _minimum(lag / turned), damping,
+        _minimum(lag / turned), damping, float(np.max(factors[(factors > 0.0) & (factors < 1.0)], initial=0.0)),
     )  # fmt: skip
 
 

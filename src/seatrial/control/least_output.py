@@ -1,0 +1,36 @@
+"""The gains that leave least of the output within the restrictions: spread points, the best pressed by gradients."""
+
+import numpy as np
+
+from seatrial.control.gain_evaluation import GainEvaluator
+from seatrial.control.gradient_refinement import all_gains, free_gain_bounds, refine_gains
+from seatrial.core.values import Array
+
+_SAMPLES, _STARTS = 4096, 3  # Sobol points, and those that are refined; chosen
+
+
+def spread_gains(evaluator: GainEvaluator, seed: int) -> Array:
+    """Return gains spread over their box, (n, g): Sobol points, half of them towards small gains."""
+    from scipy.stats import qmc
+
+    _, (low, high) = free_gain_bounds(evaluator)
+    unit = qmc.Sobol(len(low), seed=seed).random(_SAMPLES)
+    unit[::2] **= 3.0
+    return all_gains(evaluator, low + unit * (high - low))
+
+
+def least_output_gains(evaluator: GainEvaluator, samples: Array) -> Array:
+    """Return the best samples pressed against the restrictions; the least first objective wins, (g,).
+
+    Where no sample keeps them, the one that breaks them least.
+    """
+    judged = evaluator.evaluate(samples)
+    values = np.where(judged.is_feasible, judged.objectives[:, 0], np.inf)
+    places = free_gain_bounds(evaluator)[0]
+    if not np.isfinite(values).any():
+        return samples[int(np.argmin(judged.excess.max(axis=1)))]
+
+    tried = [samples[i] for i in np.argsort(values)[:_STARTS]]
+    tried += [all_gains(evaluator, refine_gains(evaluator, start[places])[None])[0] for start in tried]
+    judged = evaluator.evaluate(np.array(tried))
+    return tried[int(np.argmin(np.where(judged.is_feasible, judged.objectives[:, 0], np.inf)))]
