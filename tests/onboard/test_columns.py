@@ -161,6 +161,10 @@ def test_names_without_any_header_are_said() -> None:
         (Layout("text", NAMED.time, NAMED.columns, scale=45.7), "Froude-scaled by 45.7"),
         (Layout("text", NAMED.time, NAMED.columns, encoding="utf-16"), "utf-16"),
         (Layout("text", NAMED.time, NAMED.columns, encoding="klingon"), "unknown encoding"),
+        (Layout("text", NAMED.time, NAMED.columns, encoding="undefined"), "unknown encoding"),
+        (Layout("text", NAMED.time, NAMED.columns, encoding="punycode"), "unknown encoding"),
+        (Layout("text", NAMED.time, NAMED.columns, encoding="hex"), "unknown encoding"),
+        (Layout("text", NAMED.time, NAMED.columns, encoding="idna"), "unknown encoding"),
         (Layout("text", NAMED.time, (ColumnSpec("u", 2, "deg"),)), "does not fit"),
     ],
 )

@@ -240,6 +240,7 @@ def _escaped(line: bytes) -> str:
 def _refuse_encoding(encoding: str) -> None:
     try:
         name = codecs.lookup(encoding).name
+        bytes(range(256)).decode(encoding, errors="replace")  # as lines are: codecs that are none of text refuse
     except (LookupError, ValueError):
         raise InputError(f"unknown encoding {encoding!r}; try 'utf-8' or 'cp1252'") from None
     if name.startswith(("utf-16", "utf-32")):
