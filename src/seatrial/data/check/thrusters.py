@@ -130,7 +130,7 @@ def thruster_effects(layout: ThrusterLayout, records: Sequence[Record]) -> list[
 
 
 def _columns(layout: ThrusterLayout, record: Record, channel: str) -> tuple[Array, Array]:
-    """Features (n, k), one for each thruster first, and the acceleration (n,)."""
+    """Features (n, k), one for each thruster first, and acceleration (n,); no rows of a run shorter than a window."""
     u, r = record["u"], record["r"]
     levers = [_levers(t, record, channel) for t in layout.thrusters]
     features = [
@@ -138,7 +138,7 @@ def _columns(layout: ThrusterLayout, record: Record, channel: str) -> tuple[Arra
     ]
     own = record[channel]
     width = max(_LEAST_SAMPLES, 2 * round(0.5 * _SMOOTHING_S / record.dt) + 1)
-    acceleration = smoothed_locally(own, width, 2, 1, record.dt)
+    acceleration = smoothed_locally(own, width, 2, 1, record.dt) if len(own) >= width else np.full(len(own), np.nan)
     damping = [own, own * np.abs(own), *([r * np.abs(u)] if channel == "r" else []), np.ones(len(own))]
     table = np.stack([*features, *damping], axis=1)
     known = np.all(np.isfinite(table), axis=1) & np.isfinite(acceleration)
@@ -155,6 +155,8 @@ def _levers(thruster: Thruster, record: Record, channel: str) -> Array:
 def _regression(parts: Sequence[tuple[Array, Array]], dt: float, count: int) -> list[float]:
     """Estimate over standard error of the first `count` coefficients; 0 where a feature is hardly there."""
     table, target = np.concatenate([p[0] for p in parts]), np.concatenate([p[1] for p in parts])
+    if not len(table):
+        return [0.0] * count
     size = np.sqrt(np.mean(table**2, axis=0))
     present = size > _LEAST_LEVER * np.max(size[:count], initial=0.0)
     present[count:] = size[count:] > 0.0
