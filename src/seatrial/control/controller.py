@@ -12,9 +12,10 @@ from seatrial.control.gain_evaluation import (
     GainEvaluator,
     exceedance_share,
 )
-from seatrial.core.results.tuning import Component, Controller
+from seatrial.core.results.tuning import Component, Controller, DiscreteBlock, DiscreteController
 from seatrial.core.values import Array
 from seatrial.physics.loops import Block, TransferLoop, margins, reversals_per_hour
+from seatrial.physics.loops.discrete import default_sample_time, difference_equation
 from seatrial.physics.loops.margins import frequency_band
 
 # relative excess over a limit that rounding explains; far below any margin that matters, our choice
@@ -92,6 +93,25 @@ def violated_restrictions(evaluator: GainEvaluator, evaluation: GainEvaluation) 
             broken.append(f"{beyond:.0f} % of the actuator's {kind} amplitudes beyond its limit "
                           f"where {100.0 * share:.0f} % are allowed")  # fmt: skip
     return tuple(broken)
+
+
+def discrete_controller(loop: TransferLoop, sample_s: float | None) -> DiscreteController | None:
+    """Return terms and filters of a loop with its gains as difference equations; None where the loop is unstable.
+
+    sample_s: s; None: as the loop allows.
+    """
+    if not margins(loop).is_stable:
+        return None
+    T = default_sample_time(loop) if sample_s is None else sample_s
+
+    def block(role: str, one: Block, gain: str = "") -> DiscreteBlock:
+        made = difference_equation(one, T)
+        return DiscreteBlock(role, one.name, gain, made.b, made.a)
+
+    return DiscreteController(T, (
+        *(block("term", term.block, term.gain) for term in loop.terms),
+        *(block("filter", one) for one in loop.filters),
+    ))  # fmt: skip
 
 
 def components(loop: TransferLoop) -> tuple[Component, ...]:

@@ -155,6 +155,7 @@ class TuningTask:
         trimmed_ship: behind the plant; None where only transfer functions are known (simulated from those).
         demand: for servo loops (autopilot, speed); None for stabilisers.
         genetic: settings of the published search, used where that method is chosen.
+        sample_s: sample time of the controller on board [s]; None: as the loop allows.
         drive: of the actuator, for its energy; None where no inertia is known.
 
     Raises:
@@ -178,6 +179,7 @@ class TuningTask:
     demand: Demand | None = None
     genetic: GeneticTuning = field(default_factory=GeneticTuning)
     drive: ActuatorDrive | None = None
+    sample_s: float | None = None
 
     def __post_init__(self) -> None:
         if not self.disturbances or not self.objectives:

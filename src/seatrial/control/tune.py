@@ -8,7 +8,7 @@ import numpy as np
 
 from seatrial.control.bounds import bounds, is_available
 from seatrial.control.choose import choose
-from seatrial.control.controller import components, describe_controller
+from seatrial.control.controller import components, describe_controller, discrete_controller
 from seatrial.control.demand import simulate_manoeuvres
 from seatrial.control.findings import Checks, findings
 from seatrial.control.front import Effort, grid_front, pareto_front, refuse_idle, refuse_infeasible, thin_front
@@ -106,6 +106,8 @@ def tune(
         search=None if searched is None else searched.result,
         reference=reference,
         designs=designs,
+        gain_units={gain.name: gain.unit for gain in choice.evaluator.loop.gains},
+        discrete=discrete_controller(choice.evaluator.loop.with_gains(choice.gains), task.sample_s),
     )
 
 

@@ -6,7 +6,7 @@ from markupsafe import Markup
 from seatrial.core.figures.bars import bars_chart
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results.front_chart import degree_unit, front_chart
-from seatrial.core.results.loop_charts import nyquist_chart, sensitivity_chart, styled_controllers
+from seatrial.core.results.loop_charts import bode_chart, nyquist_chart, sensitivity_chart, styled_controllers
 from seatrial.core.results.tuning import Tuning
 from seatrial.core.text.numbers import fixed
 from seatrial.core.values.channel_text import channel_meaning
@@ -61,7 +61,10 @@ def html(tuning: Tuning) -> str:
         "findings": finding_groups(tuning.findings),
         "output": channel_meaning(tuning.output),
         "actuator": channel_meaning(tuning.actuator),
-        "gain_names": [(name, tuning_rows.gain_symbol(name)) for name in tuning_rows.gain_names(tuning)],
+        "gain_names": [
+            (name, tuning_rows.gain_symbol(name), tuning_rows.gain_unit(tuning, name))
+            for name in tuning_rows.gain_names(tuning)
+        ],
         "objectives": [(name, degree_unit(unit)[1]) for name, unit in tuning.objectives.items()],
         "rms_heads": tuning_rows.rms_headings(tuning),
         "work_heads": tuning_rows.work_headings(tuning),
@@ -70,6 +73,8 @@ def html(tuning: Tuning) -> str:
         "front": Markup(front),
         "search": _search_context(tuning),
         "sensitivities": Markup(svg(sensitivity_chart(tuning))),
+        "bode": Markup(svg(bode_chart(tuning))),
+        "discrete": tuning_rows.discrete_rows(tuning),
         "nyquist": Markup(svg(nyquist_chart(tuning))),
         "reductions": Markup(_reductions_figure(tuning)),
         "differences": Markup(svg(difference_chart(tuning.paired_differences))),

@@ -8,7 +8,7 @@ from markupsafe import Markup
 
 from seatrial.core.equations.latex import latex_symbol
 from seatrial.core.results.front_chart import degree_unit
-from seatrial.core.results.tuning import Component, Controller, OperatingPoint, PerformanceBound, Tuning
+from seatrial.core.results.tuning import Component, Controller, DiscreteBlock, OperatingPoint, PerformanceBound, Tuning
 from seatrial.core.text.numbers import DASH, exact, fixed, significant
 from seatrial.core.values.channel_text import channel_meaning
 from seatrial.data.folder.orders import channel_display_unit
@@ -39,6 +39,30 @@ def gain_symbol(name: str) -> Markup:
     """Return ``KP`` and ``K_P`` as K with its index."""
     spaced = f"K_{name[1:]}" if len(name) > 1 and name[0] == "K" and name[1:].isupper() else name
     return Markup(inline(latex_symbol(spaced)))
+
+
+def gain_unit(tuning: Tuning, name: str) -> str:
+    """Return the unit of a gain; nothing where it has none."""
+    unit = tuning.gain_units.get(name, "1")
+    return "" if unit == "1" else unit
+
+
+def discrete_rows(tuning: Tuning) -> list[tuple[str, str, Markup]]:
+    """Return role, name and difference equation of every block of the controller on board."""
+    if tuning.discrete is None:
+        return []
+    return [(b.role, b.name, Markup(inline(_difference_latex(b)))) for b in tuning.discrete.blocks]
+
+
+def _difference_latex(block: DiscreteBlock) -> str:
+    """``y_k = 0.2 x_k + 0.2 x_{k-1} + 0.6 y_{k-1}``."""
+    parts = [(c, "x", i) for i, c in enumerate(block.b)] + [(-c, "y", i) for i, c in enumerate(block.a) if i]
+    text = ""
+    for c, symbol, i in parts:
+        if c:
+            index = "k" if i == 0 else f"{{k-{i}}}"
+            text += (" - " if c < 0.0 else " + " if text else "") + f"{_latex_number(abs(c))} {symbol}_{index}"
+    return f"y_k = {text or '0'}"
 
 
 def gain_names(tuning: Tuning) -> list[str]:

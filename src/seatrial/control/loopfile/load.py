@@ -90,6 +90,9 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant) -> TuningTask:
         demand=demand,
         genetic=file.genetic,
         drive=_drive(file.actuator),
+        sample_s=None
+        if file.controller.sample_s is None
+        else positive_value(file.controller.sample_s, "s", "controller.sample_s"),
     )
 
 

@@ -145,6 +145,7 @@ class ControllerTable(StrictTable):
     K_q: Positive | None = None
     parts: tuple[Literal["KP", "KI", "KD"], ...] = ()
     derivative_filter: SiAmount | None = None
+    sample_s: SiAmount | None = None
     sensor: tuple[BlockTable, ...] = ()
     terms: tuple[TermTable, ...] = ()
     filters: tuple[BlockTable, ...] = ()

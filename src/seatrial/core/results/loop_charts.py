@@ -34,6 +34,8 @@ BASELINE_STROKES = (Stroke(INK, 1.1, "6 2.5"), *STROKES[2:])
 REAL, IMAGINARY, NYQUIST_HEIGHT = (-2.4, 1.4), (-1.9, 1.9), 380.0
 # top of the axis in Ms allowed: the highest, and the least
 CUT, LEAST_TOP = 2.5, 1.15
+# dB, below which a size is cut off; dB a factor of ten, by definition
+LEAST_SIZE_DB, DECIBELS = -80.0, 20.0
 
 
 def styled_controllers(tuning: Tuning) -> list[tuple[Controller, Stroke]]:
@@ -66,6 +68,33 @@ def sensitivity_chart(tuning: Tuning) -> Chart | None:
         lines = [Line(c.omega, size, stroke) for (c, stroke), size in zip(styled, sizes, strict=True)]
         panels.append(Panel(box, x, Axis((0.0, _axis_top(sizes, allowed))), (*reversed(lines), *extra), title))
     return Chart("sensitivities over frequency", tuple(panels), _legend(styled))
+
+
+def bode_chart(tuning: Tuning) -> Chart | None:
+    """Return size [dB] and phase [deg] of the open loop over frequency; None where no loop is known."""
+    styled = styled_controllers(tuning)
+    if not styled:
+        return None
+    frequencies = np.concatenate([c.omega for c, _ in styled])
+    x = Axis((float(frequencies.min()), float(frequencies.max())), "ω [rad/s]", is_logarithmic=True)
+    with np.errstate(divide="ignore"):
+        sizes = [np.maximum(DECIBELS * np.log10(np.abs(c.open_loop)), LEAST_SIZE_DB) for c, _ in styled]
+    phases = [np.degrees(np.unwrap(np.angle(c.open_loop))) for c, _ in styled]
+    phases = [phase - 360.0 * np.round(np.median(phase) / 360.0) for phase in phases]
+    panels = []
+    for box, title, curves, mark in zip(
+        tiles(2, 2, 220.0, left=58.0, right=12.0),  # px, chosen
+        ("size of the open loop |L| [dB]", "phase of the open loop [°]"),
+        (sizes, phases),
+        (0.0, -180.0),
+        strict=True,
+    ):
+        lines = [Line(c.omega, curve, stroke) for (c, stroke), curve in zip(styled, curves, strict=True)]
+        low, high = min(float(c.min()) for c in curves), max(float(c.max()) for c in curves)
+        pad = 0.05 * max(high - low, 1.0)  # above and below the curves, chosen
+        y = Axis((min(low, mark) - pad, max(high, mark) + pad))
+        panels.append(Panel(box, x, y, (*reversed(lines), Rule(mark, LIMIT)), title))
+    return Chart("Bode diagram of the open loop", tuple(panels), _legend(styled))
 
 
 def nyquist_chart(tuning: Tuning) -> Chart | None:

@@ -42,6 +42,25 @@ class Component:
 
 
 @dataclass(frozen=True)
+class DiscreteBlock:
+    """One block of the controller as y[k] = b_0 x[k] + b_1 x[k-1] + ... - a_1 y[k-1] - ...; terms stand in parallel."""
+
+    role: Annotated[str, Field(description="term or filter")]
+    name: str
+    gain: Annotated[str, Field(description="name of the gain that multiplies a term; empty for a filter")]
+    b: Annotated[tuple[float, ...], Field(description="of the input, newest first")]
+    a: Annotated[tuple[float, ...], Field(description="the first is 1")]
+
+
+@dataclass(frozen=True)
+class DiscreteController:
+    """The chosen controller by Tustin's rule, from what the sensor gives to the servo's order."""
+
+    sample_s: Annotated[float, Field(description="s")]
+    blocks: tuple[DiscreteBlock, ...]
+
+
+@dataclass(frozen=True)
 class ControllerConstraints:
     """What every controller must keep."""
 
@@ -262,6 +281,8 @@ class Tuning(Summarised):
     reference: Annotated[
         Controller | None, Field(description="the package's own choice beside that of a published search; null: chosen")
     ] = None
+    gain_units: Annotated[dict[str, str], Field(description="name of a gain -> its unit")] = field(default_factory=dict)
+    discrete: Annotated[DiscreteController | None, Field(description="difference equations; null: unstable")] = None
     schedule_trades: Annotated[tuple[ScheduleTrade, ...], Field(description="smoothness against cost")] = ()
     schedule_check: Annotated[ScheduleCheck | None, Field(description="between conditions; null: no schedule")] = None
     designs: Annotated[

@@ -2,6 +2,7 @@
 
 import math
 import re
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -25,10 +26,14 @@ def gains_toml(tuning: Tuning) -> str:
         "controller": {"name": tuning.name, "plant": tuning.plant, "output": tuning.output,
                        "actuator": tuning.actuator, "seas": list(tuning.seas)},
         "gains": _finite_numbers(tuning.chosen.gains),
+        "gain_units": dict(tuning.gain_units),
         "margins": _margin_table(tuning.chosen),
         "constraints": _constraint_table(tuning),
         "provenance": {"seed": tuning.seed, "versions": tuning.versions, "violated": list(tuning.chosen.violated)},
     }  # fmt: skip
+    if tuning.discrete is not None:
+        table["discrete"] = {"sample_s": tuning.discrete.sample_s, "rule": "Tustin",
+                             "blocks": [asdict(block) for block in tuning.discrete.blocks]}  # fmt: skip
     if tuning.schedule:
         table["schedule"] = [_schedule_entry(point) for point in tuning.schedule]
     return tomli_w.dumps(table)

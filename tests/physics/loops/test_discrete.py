@@ -1,0 +1,44 @@
+"""Difference equations: against SciPy's bilinear rule, and the frequency response they should have."""
+
+import numpy as np
+import pytest
+from scipy.signal import bilinear, freqz
+
+from seatrial.core.values import InputError
+from seatrial.physics.loops import Block
+from seatrial.physics.loops.discrete import default_sample_time, difference_equation
+from seatrial.physics.loops.fin import fin_loop
+
+BLOCKS = [
+    Block("lag", (1.0,), (24.607, 1.0)),
+    Block("derivative", (0.064, 0.0), (0.064 * 0.18, 0.244, 1.0)),
+    Block("gain", (3.0,), (1.0,)),
+    Block("integral", (1.0,), (1.0, 0.0)),
+    Block("notch", (1.0, 0.1, 1.0), (1.0, 1.0, 1.0)),
+]
+
+
+@pytest.mark.parametrize("block", BLOCKS, ids=lambda b: b.name)
+def test_it_is_scipys_bilinear_rule(block: Block) -> None:
+    made, (b, a) = difference_equation(block, 0.05), bilinear(block.num, block.den, fs=20.0)
+    np.testing.assert_allclose(made.b, b, rtol=1e-12, atol=1e-15)
+    np.testing.assert_allclose(made.a, a, rtol=1e-12, atol=1e-15)
+
+
+@pytest.mark.parametrize("block", BLOCKS, ids=lambda b: b.name)
+def test_at_low_frequencies_it_answers_as_the_block(block: Block) -> None:
+    T, omega = 0.01, np.geomspace(0.01, 2.0, 20)
+    made = difference_equation(block, T)
+    _, response = freqz(made.b, made.a, worN=omega * T)
+    np.testing.assert_allclose(response, block.frequency_response(omega), rtol=1e-3)
+
+
+def test_the_default_sample_time_costs_three_degrees_where_the_loop_is_frailest() -> None:
+    T = default_sample_time(fin_loop())
+    assert T in (0.01, 0.02, 0.05, 0.1)
+
+
+@pytest.mark.parametrize("T", [0.0, -0.1, float("nan")])
+def test_a_sample_time_that_is_none_is_refused(T: float) -> None:
+    with pytest.raises(InputError, match="not positive"):
+        difference_equation(BLOCKS[0], T)
