@@ -24,6 +24,14 @@ def test_an_extrapolation_in_words() -> None:
     assert "stays inside" in extrapolation_text(Extrapolation(0.8, {"fastest": 0.8}))
 
 
+def test_of_commands_the_one_farthest_out_is_named() -> None:
+    ratios = {"command port astern": 1.3, "command port astern, moving ahead": 1.6, "yaw_rate": 1.2}
+    assert extrapolation_text(Extrapolation(1.6, ratios)) == (
+        "1.6: the run commands port astern, moving ahead, further than any training run, with 1.2 times the yaw rate. "
+        "Read its intervals as lower limits."
+    )
+
+
 def test_a_slow_run_is_said_to_be_slow() -> None:
     assert extrapolation_text(Extrapolation(2.0, {"fastest": 0.5, "slowest": 2.0})) == (
         "2.0: the run slows to 1/2.0 of the lowest speed of any training run. Read its intervals as lower limits."

@@ -85,7 +85,9 @@ def extrapolation(model: "ModelFile", record: "Record") -> "Extrapolation | None
     """Return how far a simulated run leaves the training runs; None where the model file does not state them."""
     from seatrial.estimation.information.extrapolation import extrapolation
 
-    return None if model.interval_basis is None else extrapolation(record, model.interval_basis.training_envelope)
+    if model.interval_basis is None:
+        return None
+    return extrapolation(record, model.interval_basis.training_envelope, model.model.equations.layout)
 
 
 def rms_differences(measured: "Record", simulated: "Record") -> dict[str, float]:

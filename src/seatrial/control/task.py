@@ -78,7 +78,8 @@ class SlowDisturbance:
     def description(self) -> str:
         """In words."""
         factor, unit = display_unit(self.unit)
-        return f"disturbance like {self.rms * factor:.3g} {unit} {self.acting_like} below {self.bandwidth:.3g} rad/s"
+        amount = f"{self.rms * factor:.3g} {unit}".removesuffix(" 1")
+        return f"disturbance like {amount} {self.acting_like} below {self.bandwidth:.3g} rad/s"
 
 
 class Effectiveness(Enum):

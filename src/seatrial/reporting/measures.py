@@ -60,6 +60,7 @@ def is_inside(m: Measure) -> bool | None:
 
 # index up to which a run lies inside the training runs, and up to which at their edge
 INSIDE_INDEX, EDGE_INDEX = 1.05, 1.2
+_COMMAND = "command "  # what names of a thruster's ranges begin with (`estimation.information.extrapolation`)
 _EXTRAPOLATION_CLAUSES = {
     "yaw_rate": ("turns {} times as fast as", "{} times the yaw rate"),
     "drift": ("drifts at {} times the angle of", "{} times the drift angle"),
@@ -90,9 +91,18 @@ def extrapolation_text(e: Extrapolation) -> str:
     return f"{index}: {clause}. Read its intervals as lower limits."
 
 
+def _command_clause(name: str) -> tuple[str, str]:
+    """``command port ahead, moving astern``: a thruster, the direction of its thrust and that of the water."""
+    text = name.removeprefix(_COMMAND)
+    return f"commands {text}, further than", f"commands of {text} beyond theirs"
+
+
 def _extrapolation_clause(outside: Sequence[tuple[str, float]]) -> str:
-    """The first ratio as a clause, the others after it."""
-    clauses = [_EXTRAPOLATION_CLAUSES.get(name, (f"reaches in {name} {{}} times", f"{{}} times in {name}"))
+    """The first ratio as a clause, the others after it; of commands the one farthest out."""
+    commands = [name for name, _ in outside if name.startswith(_COMMAND)]
+    outside = [(name, ratio) for name, ratio in outside if name not in commands[1:]]
+    clauses = [_command_clause(name) if name in commands else
+               _EXTRAPOLATION_CLAUSES.get(name, (f"reaches in {name} {{}} times", f"{{}} times in {name}"))
                for name, _ in outside]  # fmt: skip
     ratios = [ratio_text(ratio) for _, ratio in outside]
     further = [clause[1].format(ratio) for clause, ratio in zip(clauses[1:], ratios[1:], strict=True)]

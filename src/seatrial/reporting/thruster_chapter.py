@@ -9,7 +9,7 @@ from seatrial.core.figures.svg_text import svg
 from seatrial.core.results.thruster_craft import CraftMeasure, FossenMatrix, ThrusterCraft
 from seatrial.core.text.numbers import DASH, estimate_text, significant
 from seatrial.core.text.words import enumeration
-from seatrial.reporting.figures.thruster_charts import compass_chart, thrust_chart
+from seatrial.reporting.figures.thruster_charts import compass_chart, quadrant_chart, thrust_chart
 from seatrial.reporting.measures import EDGE_INDEX
 from seatrial.reporting.text_tables import TextTable
 
@@ -37,6 +37,7 @@ class ThrusterChapter:
     measures: TextTable | None
     thrust: Markup
     thrust_caption: str
+    quadrants: Markup | None
     compass: Markup | None
     matrices: tuple[TextTable, ...]
     equation: str
@@ -55,6 +56,7 @@ def thruster_chapter(craft: ThrusterCraft | None) -> ThrusterChapter | None:
     return ThrusterChapter(
         _measures_table(craft.measures) if craft.measures else None,
         Markup(svg(thrust_chart(craft.curves, craft.force_unit))), caption,
+        Markup(svg(quadrant_chart(craft.quadrants))) if craft.quadrants else None,
         None if craft.compass is None else Markup(svg(compass_chart(craft.compass))),
         _matrix_tables(craft), "M dν/dt + C(M) ν + D(ν) ν = B T, ν = (u, v, r)", notes,
     )  # fmt: skip

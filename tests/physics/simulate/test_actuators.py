@@ -9,7 +9,7 @@ from seatrial.core.values import Prior, Record
 from seatrial.estimation.problem.output_error import Nuisance, OutputError
 from seatrial.estimation.problem.segments import cut_segments
 from seatrial.physics.models import model_named
-from seatrial.physics.simulate.actuators import actuator_motion, actuator_states
+from seatrial.physics.simulate.actuators import actuator_motion, actuator_states, settled_actuators
 from seatrial.physics.simulate.batch import InputCorrection
 from seatrial.physics.simulate.channels import inputs_of
 from seatrial.physics.simulate.replay import replay
@@ -79,3 +79,12 @@ def test_a_selection_of_segments_keeps_their_starts(record: Record) -> None:
     np.testing.assert_allclose(
         part.simulated_outputs(part.start(), part.measured_initial_states()), whole[rows], atol=1e-9
     )
+
+
+def test_actuators_settle_at_their_commands_and_nothing_else_moves() -> None:
+    model = model_named("thrusters")
+    state = settled_actuators(model, np.array([0.6, -0.3]))
+    settled = dict(zip(model.states, state, strict=True))
+    assert settled.pop("c_port") == pytest.approx(0.6, abs=1e-9)
+    assert settled.pop("c_starboard") == pytest.approx(-0.3, abs=1e-9)
+    assert not any(settled.values())

@@ -12,12 +12,17 @@ from seatrial.control.task import Effectiveness, TrimmedShip
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Ship, spelling_hint
 from seatrial.data.folder.model_file import ModelFile, read_model_file
+from seatrial.data.trial.amounts import Amount
 from seatrial.data.trial.runs import expand_variables
 from seatrial.physics.loops import Block, HullFactor
 from seatrial.physics.loops.fin import K_alpha_at
+from seatrial.physics.models.thrust_orders import AHEAD, YAW, with_orders
+from seatrial.physics.simulate.thrust import DEFAULT_AHEAD
 
 FINS = ("phi", "alpha_f", "alpha_w")
 STEERING = ("psi", "delta", "")
+ORDERS = {"psi": YAW, "u": AHEAD}
+"""Outputs of a craft with thrusters that are controlled -> the order by which they are."""
 _KNOTS = 3600.0 / 1852.0  # kn in 1 m/s: 1 kn is 1852 m an hour (exact)
 
 
@@ -110,6 +115,9 @@ def _fin_effect(table: FinTable, known_K_alpha: float, U: float) -> tuple[float,
 
 def _plant_of_model(table: PlantTable, path: Path, own_model: Model | None) -> LoopPlant:
     file = read_model_file(path, own_model)
+    if file.model.equations.layout:
+        file = replace(file, model=with_orders(file.model), approach={})
+        table = _by_orders(table)
     output, actuator, disturbance = _signal_names(table, file, path)
     words, law, speed = "", Effectiveness.CONSTANT, None if table.speed is None else _speed(table)
     if table.fin is not None:
@@ -133,6 +141,16 @@ def _plant_of_model(table: PlantTable, path: Path, own_model: Model | None) -> L
         _trim_speed(ship, file) if speed is None else speed, law,
         ", ".join(part for part in (plant_text(ship), about, words) if part), ship, file.ship,
     )  # fmt: skip
+
+
+def _by_orders(table: PlantTable) -> PlantTable:
+    """The table of a craft with thrusters, with what is steered by which order, and the order ahead about which."""
+    output = table.output or "psi"
+    actuator = table.actuator or ORDERS.get(output)
+    held = {AHEAD: Amount(value=DEFAULT_AHEAD)} if table.speed is None else {}
+    return table.model_copy(
+        update={"output": output, "actuator": actuator, "inputs": held | {YAW: Amount(value=0.0)} | dict(table.inputs)}
+    )
 
 
 def _signal_names(table: PlantTable, file: ModelFile, path: Path) -> tuple[str, str, str]:

@@ -7,11 +7,13 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError
 from seatrial.numerics.kernels.sensitivity import evaluate_tangent
+from seatrial.physics.models.thrust_orders import YAW
+from seatrial.physics.simulate.actuators import settled_actuators
 from seatrial.physics.simulate.approach import RUDDER, approach_speed, held_inputs
 from seatrial.physics.simulate.channels import ZERO_BY_DEFAULT
 
 _ITERATIONS = 30  # Newton steps at most; chosen
-_MOST_RUDDER = 0.6  # rad, 34 deg: largest mean rudder of a trim; chosen
+_MOST_RUDDER = 0.6  # rad, 34 deg: largest mean rudder of a trim; of a yaw command a share of the full one; chosen
 # relative, of a speed that inputs balance, and of the speed a model was identified at; chosen
 _SPEED_TOLERANCE, _NOMINAL_TOLERANCE = 1e-3, 1e-2
 _SEARCHED = np.geomspace(1e-3, 1e3, 121)  # propulsion over speed, m/s or rps: twenty a decade; chosen
@@ -25,7 +27,7 @@ def held_inputs_at_speed(
     """The model and its held inputs in its own signs, with the propulsion solved for where a speed is required."""
     names, own = model.input_names, dict(given_inputs or {})
     known = {k: v for k, v in approach.items() if k in names and k != RUDDER and k not in ZERO_BY_DEFAULT} | own
-    drives = [n for n in names if n != RUDDER and n not in ZERO_BY_DEFAULT and n != "u" and n != "omega_e"]
+    drives = [n for n in names if n not in (RUDDER, YAW) and n not in ZERO_BY_DEFAULT and n != "u" and n != "omega_e"]
     if speed is None:
         return model, held_inputs(model, known, RUDDER)
     if not speed > 0.0:
@@ -64,11 +66,12 @@ def _at_nominal_speed(model: Model, speed: float) -> Model:
 def _balancing_input(model: Model, held: Array, name: str, speed: float) -> float:
     """Return the input at which surge is in balance on a straight course at u = `speed`."""
     place, k = model.input_names.index(name), model.states.index("u")
-    state, inputs, rates = np.zeros(len(model.states)), held.copy(), np.empty(len(model.states))
-    state[k] = speed
+    inputs, rates = held.copy(), np.empty(len(model.states))
 
     def surge(value: float) -> float:
         inputs[place] = value
+        state = settled_actuators(model, inputs)
+        state[k] = speed
         model.compiled.rates(0.0, state, inputs, model.parameters.values, rates)
         return float(rates[k])
 
@@ -82,21 +85,28 @@ def _balancing_input(model: Model, held: Array, name: str, speed: float) -> floa
     return float(brentq(surge, tried[least - 1], tried[least], xtol=1e-12))  # of the propulsion: rounding
 
 
+def steering_input(model: Model) -> str:
+    """Return the input that keeps a straight course: the rudder, or a yaw command; empty where there is neither."""
+    return next((name for name in (RUDDER, YAW) if name in model.input_names), "")
+
+
 def find_trim(model: Model, held: Array) -> tuple[Array, Array]:
     """State (nx,) and inputs (nu,) of steady motion: a straight course if there is a heading, else rest.
 
-    The rudder carries what asymmetry asks for. held: (nu,) in the model's signs.
+    The rudder, or the yaw command of a craft with thrusters, carries what asymmetry requires. held: (nu,) in the
+    model's signs.
     """
     names, nx = model.states, len(model.states)
-    steers = "psi" in names and RUDDER in model.input_names
+    steering = steering_input(model)
+    steers = "psi" in names and bool(steering)
     still = (*_POSE, "r") if "psi" in names else ()
-    state, inputs = np.zeros(nx), held.copy()
+    state, inputs = settled_actuators(model, held), held.copy()
     if "u" in names:
         state[names.index("u")] = approach_speed(model, held)
     rows = [i for i, s in enumerate(names) if s not in _POSE]
     columns = [i for i, s in enumerate(names) if s not in still]
     if steers:
-        columns.append(nx + model.input_names.index(RUDDER))
+        columns.append(nx + model.input_names.index(steering))
     unknown, rates = np.concatenate([state, inputs]), np.empty(nx)
     for _ in range(_ITERATIONS):
         x, u = np.ascontiguousarray(unknown[:nx]), np.ascontiguousarray(unknown[nx:])
@@ -109,9 +119,10 @@ def find_trim(model: Model, held: Array) -> tuple[Array, Array]:
             break
     state, inputs = np.ascontiguousarray(unknown[:nx]), np.ascontiguousarray(unknown[nx:])
     model.compiled.rates(0.0, state, inputs, model.parameters.values, rates)
-    kept = not steers or abs(inputs[model.input_names.index(RUDDER)]) < _MOST_RUDDER
+    kept = not steers or abs(inputs[model.input_names.index(steering)]) < _MOST_RUDDER
     if not (np.all(np.isfinite(unknown)) and np.max(np.abs(rates[rows])) < _RATE_TOLERANCE and kept):
-        what = "straight course with less than 34 degrees of rudder" if steers else "steady motion"
+        most = "34 degrees of rudder" if steering == RUDDER else f"{_MOST_RUDDER:g} of the full yaw command"
+        what = f"straight course with less than {most}" if steers else "steady motion"
         raise InputError(f"model '{model.name}' has no {what} with these inputs; check them and the model's values")
     return state, inputs
 

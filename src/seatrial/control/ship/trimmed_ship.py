@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from seatrial.control.ship.trim import find_trim, held_inputs_at_speed, jacobian_at
+from seatrial.control.ship.trim import find_trim, held_inputs_at_speed, jacobian_at, steering_input
 from seatrial.control.task import TrimmedShip
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError, spelling_hint
@@ -72,8 +72,8 @@ def trim_ship(
 def with_parameters(ship: TrimmedShip, values: Mapping[str, float]) -> TrimmedShip:
     """Return the same ship with other parameters, trimmed anew with the propulsion held."""
     model, held = ship.model.with_values(values), ship.inputs.copy()
-    if RUDDER in model.input_names:
-        held[model.input_names.index(RUDDER)] = 0.0
+    if steering_input(model):
+        held[model.input_names.index(steering_input(model))] = 0.0
     state, inputs = find_trim(model, held)
     return replace(ship, model=model, state=state, inputs=inputs)
 
@@ -106,7 +106,8 @@ def plant_text(ship: TrimmedShip) -> str:
     where = "about its mean position"
     if "u" in model.states:
         where = f"straight run at {ship.state[model.states.index('u')]:.4g} m/s"
-    held = [f"{i.name} {v:.4g}" for i, v in zip(model.inputs, ship.inputs, strict=True) if v and i.name != RUDDER]
+    held = [f"{i.name} {v:.4g}" for i, v in zip(model.inputs, ship.inputs, strict=True)
+            if abs(v) > _NEGLIGIBLE and i.name != RUDDER]  # fmt: skip
     worst = float(plant.poles.real.max()) if plant.order else -1.0
     stable = "" if worst <= 0.0 else f"; unstable by itself: a disturbance grows by a factor e in {1.0 / worst:.3g} s"
     return f"model '{model.name}', {', '.join([where, *held])}{stable}"

@@ -32,7 +32,14 @@ from seatrial.core.results.ship_motions import IntervalEstimate, PointMotion, Ro
 from seatrial.core.results.study import Bars, Check, CheckStatus, Claim, Curve, Figure, Matrix, Study, Table, Verdict
 from seatrial.core.results.published_method import ReferenceEstimate, Search, SearchRestart, SearchTrack
 from seatrial.core.results.summary import Summary
-from seatrial.core.results.thruster_craft import CommandCurve, CompassCurve, CraftMeasure, FossenMatrix, ThrusterCraft
+from seatrial.core.results.thruster_craft import (
+    CommandCurve,
+    CompassCurve,
+    CraftMeasure,
+    FossenMatrix,
+    QuadrantMap,
+    ThrusterCraft,
+)
 from seatrial.core.results.window_scores import ChannelScore, WindowBaseline, WindowScore
 from seatrial.numerics.optimise import Solution, Status
 
@@ -82,6 +89,7 @@ __all__ = [
     "PointMotion",
     "Prediction",
     "Profile",
+    "QuadrantMap",
     "ReferenceEstimate",
     "Residuals",
     "RollCharacteristics",

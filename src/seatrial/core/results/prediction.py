@@ -34,7 +34,8 @@ class Extrapolation:
         dict[str, Number],
         Field(
             description="yaw_rate, drift, rudder, fastest speed of the run over those of the training runs, and their "
-            "slowest speed over the run's"
+            "slowest speed over the run's; command NAME ahead or astern, also by the direction of motion: 1 and the "
+            "distance beyond the training runs as a share of the whole range"
         ),
     ]
 

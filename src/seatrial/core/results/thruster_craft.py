@@ -39,6 +39,21 @@ class CompassCurve:
 
 
 @dataclass(frozen=True)
+class QuadrantMap:
+    """Where one thruster worked: command over speed of the water along it, training runs against runs held out."""
+
+    thruster: str
+    order_edges: Annotated[tuple[Number, ...], Field(description="edges of the cells, shares of full command")]
+    speed_edges: Annotated[tuple[Number, ...], Field(description="edges of the cells, m/s")]
+    training: Annotated[
+        tuple[tuple[Number, ...], ...], Field(description="share of the time in each cell; rows: command")
+    ]
+    held_out: Annotated[
+        tuple[tuple[Number, ...], ...], Field(description="the same of the runs held out; empty: none held out")
+    ]
+
+
+@dataclass(frozen=True)
 class CraftMeasure:
     """One thing the craft does, simulated with the estimate."""
 
@@ -81,6 +96,7 @@ class ThrusterCraft:
         Field(description="M, parts of D(nu) = D + |u| D_u + |v| D_v + |r| D_r, and B for the thrusters in order"),
     ]
     thrusters: Annotated[tuple[str, ...], Field(description="columns of B")]
+    quadrants: tuple[QuadrantMap, ...] = ()
     left_out: Annotated[
         tuple[str, ...], Field(description="coefficients that are not zero and stand in none of these matrices")
     ] = ()

@@ -3,14 +3,13 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
-
 from seatrial.core.equations import Model
 from seatrial.core.results import Actuator
 from seatrial.core.values import Array, InputError, Ship, spelling_hint
 from seatrial.data.folder.model_file import ModelFile
 from seatrial.data.trial import Trial
 from seatrial.data.trial.design_request import DesignRequest
+from seatrial.physics.simulate.actuators import settled_actuators
 from seatrial.physics.simulate.approach import approach_speed, held_inputs
 
 # orders of an actuator that a trial must have room for, ours
@@ -65,14 +64,18 @@ class DesignTask:
 
     @property
     def initial_state(self) -> Array:
-        """The state before the first order, shape (nx,): a straight course, or rest for a model without surge."""
-        state = np.zeros(len(self.model.states))
+        """The state before the first order, shape (nx,): a straight course; rest without surge, or with thrusters."""
+        state = settled_actuators(self.model, self.neutral_inputs)
         if "u" in self.model.states:
-            speed = (
-                approach_speed(self.model, self.neutral_inputs) if self.request.speed is None else self.request.speed
-            )
-            state[self.model.states.index("u")] = speed
+            state[self.model.states.index("u")] = self._initial_speed
         return state
+
+    @property
+    def _initial_speed(self) -> float:
+        """As required, else that at which surge balances; craft with thrusters start at rest."""
+        if self.request.speed is not None:
+            return self.request.speed
+        return 0.0 if self.model.equations.layout else approach_speed(self.model, self.neutral_inputs)
 
     @property
     def shortest_hold(self) -> float:

@@ -73,7 +73,8 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         seakeeping=seakeeping(estimation.model, task.train, runs.length),
         roll=roll,
         thruster_craft=thruster_craft(
-            estimation.model, runs.records, predicted.interval_basis, trial.ship.particulars.get("L", 1.0)
+            estimation.model, runs.records, predicted.interval_basis, trial.ship.particulars.get("L", 1.0),
+            [p.measured for p in predicted.predictions if p.role == "validation"],
         ),
         k_step_errors=k_step_errors(selected.estimation, scored, horizon_list(task.options.horizons)),
         frequency_responses=frequency_responses(estimation.model, predicted.predictions, task.outputs),

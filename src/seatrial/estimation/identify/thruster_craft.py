@@ -14,10 +14,12 @@ from seatrial.core.results.thruster_craft import (
     CompassCurve,
     CraftMeasure,
     FossenMatrix,
+    QuadrantMap,
     ThrusterCraft,
 )
 from seatrial.core.values import Array, InputError, Record
 from seatrial.estimation.information.extrapolation import extrapolation
+from seatrial.estimation.information.thruster_conditions import thruster_conditions
 from seatrial.estimation.predict.measure_intervals import measure_intervals, perturbed_models
 from seatrial.physics.manoeuvres import measures
 from seatrial.physics.manoeuvres.thrust_programme import thrust_programme
@@ -34,6 +36,7 @@ _PROGRAMMES: Mapping[str, Mapping[str, str]] = {
 """Programmes that are simulated -> name of a measure here -> among those of the programme."""
 _SHARES, _BINS, _HEADINGS = 41, 20, 36
 """Points of a thrust curve, bins of commands, points and bins of a compass curve (every 10 deg); chosen."""
+_CELLS, _FASTEST_PERCENTILE = 12, 99.5  # of a quadrant map, to each side; per cent of its samples; chosen
 _SPEED_PERCENTILE = 95.0  # of the training runs' speeds ahead: that of the second thrust curve; chosen
 # coefficient -> matrix, row, column: the terms of docs/thrusters.md as D(nu) has them
 _DAMPING: Mapping[str, tuple[str, int, int]] = {
@@ -48,14 +51,14 @@ _NO_MATRIX = ("Y_ur", "N_uv", "D_c")  # terms with the sign of u, and the strips
 
 
 def thruster_craft(
-    model: Model, records: Sequence[Record], basis: IntervalBasis, length: float
+    model: Model, records: Sequence[Record], basis: IntervalBasis, length: float, held_out: Sequence[Record] = ()
 ) -> ThrusterCraft | None:
     """Return what follows from the coefficients of a craft with thrusters; None for any other model.
 
     Args:
         model: at the estimate; records: the training runs.
         basis: covariance of the free coefficients, degrees of freedom, envelope of the training runs.
-        length: of the craft [m].
+        length: of the craft [m]; held_out: runs that were not fitted.
     """
     if not model.equations.layout:
         return None
@@ -67,6 +70,7 @@ def thruster_craft(
         tuple(_curve(model, layout, leader, records, basis) for leader in layout.leaders),
         matrices,
         tuple(t.name for t in layout.thrusters),
+        _quadrants(model.equations.layout, records, held_out),
         tuple(n for n in _NO_MATRIX if n in model.parameters and model.parameters[n].value != 0.0),
         _compass(model, records, basis),
     )
@@ -85,7 +89,7 @@ def craft_measures(model: Model, basis: IntervalBasis, length: float) -> dict[st
             values, intervals = measures(run, length), measure_intervals(model, basis, steer, length)
         except InputError:
             continue
-        reached = extrapolation(run, basis.training_envelope)
+        reached = extrapolation(run, basis.training_envelope, model.equations.layout)
         index = None if reached is None else reached.index
         for name, source in names.items():
             if source in values:
@@ -131,6 +135,23 @@ def _with_band(model: Model, basis: IntervalBasis, curve: Callable[[Model], Arra
     variance = np.sum(np.square(steps), axis=0) if steps else 0.0
     centre = curve(model)
     return centre, two_sided_quantile(STORED_LEVEL, basis.degrees_of_freedom) * np.sqrt(variance + 0.0 * centre)
+
+
+def _quadrants(layout: str, records: Sequence[Record], held_out: Sequence[Record]) -> tuple[QuadrantMap, ...]:
+    """Command over speed of each thruster, training runs and runs held out in the same cells."""
+    trained, other = thruster_conditions(layout, records), thruster_conditions(layout, held_out)
+    maps = []
+    for name, conditions in trained.items():
+        both = [conditions, *([other[name]] if name in other else [])]
+        reach = max(float(np.percentile(np.abs(c.speed), _FASTEST_PERCENTILE)) for c in both) or 1.0
+        edges = np.linspace(-1.0, 1.0, _CELLS + 1), np.linspace(-reach, reach, _CELLS + 1)
+        shares = [
+            np.histogram2d(np.clip(c.order, -1.0, 1.0), np.clip(c.speed, -reach, reach), edges)[0] / len(c.order)
+            for c in both
+        ]
+        rows = [tuple(_floats(row) for row in share) for share in shares]
+        maps.append(QuadrantMap(name, _floats(edges[0]), _floats(edges[1]), rows[0], rows[1] if len(rows) > 1 else ()))
+    return tuple(maps)
 
 
 def _compass(model: Model, records: Sequence[Record], basis: IntervalBasis) -> CompassCurve | None:

@@ -6,19 +6,26 @@ import numpy as np
 
 from seatrial.core.results import Extrapolation
 from seatrial.core.values import Array, Record
+from seatrial.estimation.information.thruster_conditions import thruster_conditions
 
 _PERCENTILE = 99.5  # per cent of the samples within the envelope; chosen
 # rad/s, rad, rad, m/s, m/s, below which a range counts as none; chosen
 NEGLIGIBLE = {"yaw_rate": 1e-4, "drift": 1e-3, "rudder": 1e-3, "fastest": 1e-3, "slowest": 1e-3}
 REST_SHARE = 0.1
 """Share of the fastest speed of the training runs below which a craft counts as at rest; chosen."""
+COMMAND = "command "
+"""What names of a thruster's ranges begin with; its name follows, then the direction of thrust and of motion."""
+COMMAND_GAIN = 1.0
+"""Growth of the index over the whole range of commands (benchmarks/thrusters_bands.py)."""
 
 
-def motion_envelope(records: Sequence[Record]) -> dict[str, float]:
-    """What the records cover, SI: largest yaw rate, drift and rudder angle, fastest and slowest speed.
+def motion_envelope(records: Sequence[Record], layout: str = "") -> dict[str, float]:
+    """What the records cover, SI: largest yaw rate, drift and rudder angle, fastest and slowest speed, commands.
 
     The largest is the 99.5th percentile of all samples, so that a single bad one does not count. What no record holds
-    is absent. Drift is atan2(-v, u).
+    is absent. Drift is atan2(-v, u). Of every thruster of a `layout` (its text): ``command NAME ahead`` and ``astern``,
+    largest share of full command, and ``command NAME ahead, moving astern`` and so on, largest share times speed along
+    it in that quadrant [m/s].
     """
     made: dict[str, float] = {}
     for name, samples in (
@@ -33,6 +40,10 @@ def motion_envelope(records: Sequence[Record]) -> dict[str, float]:
         flow = np.concatenate(speeds)
         made["fastest"] = float(np.nanpercentile(flow, _PERCENTILE))
         made["slowest"] = float(np.nanpercentile(flow, 100.0 - _PERCENTILE))
+    for name, conditions in thruster_conditions(layout, records).items():
+        ranges = {"ahead": conditions.order, "astern": -conditions.order} | conditions.quadrants()
+        for kind, samples in ranges.items():
+            made[f"{COMMAND}{name} {kind}"] = float(np.percentile(np.maximum(samples, 0.0), _PERCENTILE))
     return made
 
 
@@ -40,27 +51,29 @@ def _speed(record: Record) -> Array:
     return np.hypot(record["u"], record["v"]) if "v" in record else np.abs(record["u"])
 
 
-def extrapolation(predicted: Record, training_envelope: Mapping[str, float]) -> Extrapolation | None:
+def extrapolation(predicted: Record, training_envelope: Mapping[str, float], layout: str = "") -> Extrapolation | None:
     """Ratios of a run's `motion_envelope` to that of the training runs; None where nothing can be compared.
 
     That of the slowest speed is turned round, so that a run that goes half as fast as any training run has 2; the last
-    tenth of the speed down to rest adds nothing, or a run from rest would be infinitely far away.
+    tenth of the speed down to rest adds nothing, or a run from rest would be infinitely far away. Commands and the
+    quadrants of thrusters may not have been trained at all: theirs is 1 and `COMMAND_GAIN` times the distance beyond
+    the training runs, as a share of full command, of quadrants also of their fastest speed.
     """
-    own = motion_envelope([predicted])
-    both = {
-        n: (own[n], training_envelope[n])
-        for n in own
-        if n in training_envelope and training_envelope[n] > NEGLIGIBLE[n]
-    }
+    own = motion_envelope([predicted], layout)
+    both = {n: (own[n], training_envelope[n]) for n in own if training_envelope.get(n, 0.0) > NEGLIGIBLE.get(n, 0.0)}
     ratios = {n: both[n][0] / both[n][1] for n in ("yaw_rate", "drift", "rudder") if n in both}
     if {"fastest", "slowest"} <= set(both):
         ratios["fastest"] = both["fastest"][0] / both["fastest"][1]
         rest = max(REST_SHARE * both["fastest"][1], NEGLIGIBLE["slowest"])
         ratios["slowest"] = max(both["slowest"][1], rest) / max(both["slowest"][0], rest)
+        fastest = both["fastest"][1]
+        for name in (n for n in own if n.startswith(COMMAND) and n in training_envelope):
+            reach = fastest if ", moving " in name else 1.0
+            ratios[name] = 1.0 + COMMAND_GAIN * max(own[name] - training_envelope[name], 0.0) / reach
     return Extrapolation(max(ratios.values()), ratios) if ratios else None
 
 
-def extrapolation_index(predicted: Record, training: Sequence[Record]) -> float:
+def extrapolation_index(predicted: Record, training: Sequence[Record], layout: str = "") -> float:
     """Extrapolation index of a run against others; 1 where nothing can be compared."""
-    found = extrapolation(predicted, motion_envelope(training))
+    found = extrapolation(predicted, motion_envelope(training, layout), layout)
     return found.index if found else 1.0

@@ -35,7 +35,7 @@ def measure_intervals(
     """
     nominal = steer(model)
     centre = measures(nominal, length)
-    reached = extrapolation(nominal, interval_basis.training_envelope)
+    reached = extrapolation(nominal, interval_basis.training_envelope, model.equations.layout)
     index = reached.index if reached else 1.0
     pairs = [
         (_measures_or_none(up, steer, length), _measures_or_none(down, steer, length))

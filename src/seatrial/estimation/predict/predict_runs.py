@@ -27,15 +27,22 @@ from seatrial.estimation.predict.prediction_intervals import (
     holdout_error,
     holdout_model,
     prediction_spread,
+    track_holdout_error,
     with_intervals,
 )
 from seatrial.estimation.predict.session_offsets import new_session_offsets, session_offsets
 from seatrial.estimation.predict.window_baselines import window_baselines
 from seatrial.estimation.predict.window_scores import WindowLength, WindowPredictor, window_scores
+from seatrial.estimation.predict.windows import Windows
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.simulate.channels import inputs_of
 from seatrial.physics.simulate.filtering import FilterPoint, KalmanFilter
+
+_MOTION = frozenset({"u", "v", "r"})
+"""Channels that show how a craft with thrusters moved; where they are not recorded, the fit's own runs show it."""
+PIECE_S = 15.0
+"""Length of the pieces of runs of craft with thrusters by which bands are calibrated [s]; chosen: some manoeuvres."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,14 +79,16 @@ def prediction_uncertainty(estimation: Estimation) -> PredictionUncertainty:
 def calibrate_intervals(
     estimation: Estimation,
     train: Sequence[TrialRecord],
-    simulated: Sequence[Record],
+    moved: Sequence[Record],
     seconds: float,
     length: float,
     seed: int,
 ) -> IntervalCalibration:
     """Return what intervals of a fit's predictions rest on: every training run is predicted by the estimate without it.
 
-    simulated: the training runs as the fit has them; seconds: of a run's beginning, for its initial state.
+    moved: how the training runs moved, by which they extrapolate from one another; seconds: of a run's beginning, for
+    its initial state. Craft with thrusters often wait before they move, so that pieces of `PIECE_S` of their runs count
+    as well as whole runs.
     """
     scatter, left_out = prediction_uncertainty(estimation), estimation.uncertainty.leave_one_out
     if left_out is None:
@@ -87,14 +96,19 @@ def calibrate_intervals(
     problem = replace(estimation.estimate.problem, workers=1)
     streams = np.random.SeedSequence(seed).spawn(len(train))
 
-    def one(i: int) -> HoldoutError | None:
-        by = holdout_model(problem, left_out[i], train[i].session, train[i].record)
-        miss = holdout_error(problem, by, train[i].record, seconds, length, scatter, np.random.default_rng(streams[i]))
-        others = [*simulated[:i], *simulated[i + 1 :]]
-        return None if miss is None else replace(miss, index=extrapolation_index(simulated[i], others))
+    layout = problem.model.equations.layout
+
+    def one(i: int) -> list[HoldoutError]:
+        record, rng = train[i].record, np.random.default_rng(streams[i])
+        by = holdout_model(problem, left_out[i], train[i].session, record)
+        missed = [holdout_error(problem, by, record, seconds, length, scatter, rng)]
+        pieces = Windows.cut([record], PIECE_S).pieces[1:] if layout else []
+        missed += [track_holdout_error(problem, by, piece, seconds, scatter, rng) for piece in pieces]
+        index = extrapolation_index(moved[i], [*moved[:i], *moved[i + 1 :]], layout)
+        return [replace(miss, index=index) for miss in missed if miss is not None]
 
     misses = map_in_threads(one, range(len(train)), workers=estimation.estimate.problem.workers)
-    return IntervalCalibration(scatter, discrepancy([m for m in misses if m is not None]))
+    return IntervalCalibration(scatter, discrepancy([miss for missed in misses for miss in missed]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,9 +162,13 @@ def predict_runs(
         offsets.append(own)
     train = [item for item in items if item.role is Role.TRAIN]
     fitted = [run.record for run, item in zip(runs, items, strict=True) if item.role is Role.TRAIN]
-    covered = motion_envelope(fitted)
+    layout = estimation.model.equations.layout
+    moved = [
+        i.record if layout and set(i.record.channels) >= _MOTION else r for i, r in zip(train, fitted, strict=True)
+    ]
+    covered = motion_envelope(moved, layout)
     report("runs left out, predicted")
-    calibration = calibrate_intervals(estimation, train, fitted, seconds, length, seed)
+    calibration = calibrate_intervals(estimation, train, moved, seconds, length, seed)
     streams = np.random.SeedSequence((seed, 1)).spawn(len(items))
     held_out = [item for item in items if item.role is not Role.TRAIN]
     baselines = window_baselines(problem, estimation.model, [i.record for i in train], seconds) if held_out else {}
@@ -158,8 +176,8 @@ def predict_runs(
     for item, run, own, stream in zip(items, runs, offsets, streams, strict=True):
         role = "training" if item.role is Role.TRAIN else "validation"
         one = predict_run(estimation.model, item.record, role, run, seconds, length)
-        moved = run.record if run.divergence is None else item.record  # what a runaway simulation reaches says nothing
-        one = replace(one, extrapolation=extrapolation(moved, covered))
+        reached = run.record if run.divergence is None else item.record  # of a runaway simulation it says nothing
+        one = replace(one, extrapolation=extrapolation(reached, covered, layout))
         if run.divergence is not None:
             findings.append(divergence_finding(estimation.model, one, run.divergence))
         uncertainty = replace(calibration.uncertainty, offsets=own.covariance)

@@ -153,16 +153,24 @@ def _channel_score(
     channels: tuple[str, ...],
     factor: float,
 ) -> ChannelScore:
-    """Score of some channels together; halves: half widths of the band in each window, none: no band."""
+    """Score of some channels together; halves: half widths of the band in each window, none: no band.
+
+    The share inside the band is that of windows with one, where most have one.
+    """
     squares, about_mean, inside = 0.0, 0.0, []
     for channel in channels:
         errors = _errors(windows, simulated, channel)
         measured = np.concatenate([w[channel][np.isfinite(w[channel])] for w in windows])
         squares += float(errors @ errors)
         about_mean += float(np.sum((measured - np.mean(measured)) ** 2))
-        if halves and all(channel in half for half in halves):
-            half = np.concatenate([h[channel][np.isfinite(w[channel])] for h, w in zip(halves, windows, strict=True)])
-            inside.append(np.abs(errors) <= half)
+        with_band = [h for h in halves if channel in h]
+        if 2 * len(with_band) > len(windows):
+            half = [
+                h.get(channel, np.full(len(w), np.nan))[np.isfinite(w[channel])]
+                for h, w in zip(halves, windows, strict=True)
+            ]
+            judged = np.isfinite(np.concatenate(half))
+            inside.append((np.abs(errors) <= np.concatenate(half))[judged])
     count = sum(int(np.isfinite(w[channels[0]]).sum()) for w in windows)
     share = squares / about_mean if about_mean > 0.0 else np.inf
     return ChannelScore(

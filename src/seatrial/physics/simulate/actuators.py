@@ -10,6 +10,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import NOTATION, Array, Index
 from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch
 
+_SETTLING_STEP_S = 0.05  # of a simulation until actuators have settled; chosen: the least lag there is
 _SETTLING_S = 60.0
 """Time for which the first command of a run counts as given before it [s]: many times any lag; chosen."""
 
@@ -25,6 +26,20 @@ def actuator_states(model: Model) -> tuple[str, ...]:
         if closed == kept:
             return tuple(s for i, s in enumerate(model.states) if i in kept)
         kept = closed
+
+
+def settled_actuators(model: Model, inputs: Array) -> Array:
+    """Return the state (nx,) in which what follows the inputs alone has settled at constant `inputs` (nu,), else 0."""
+    from seatrial.physics.simulate.replay import trajectory
+
+    state = np.zeros(len(model.states))
+    names = actuator_states(model)
+    if names:
+        steps = round(_SETTLING_S / _SETTLING_STEP_S)
+        states, _ = trajectory(model, np.tile(inputs, (steps + 1, 1)), _SETTLING_STEP_S, state)
+        places = [model.states.index(name) for name in names]
+        state[places] = states[-1, places]
+    return state
 
 
 @dataclass(frozen=True, eq=False)

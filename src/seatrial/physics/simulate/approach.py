@@ -7,6 +7,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError, Record, spelling_hint
+from seatrial.physics.simulate.actuators import settled_actuators
 from seatrial.physics.simulate.channels import ZERO_BY_DEFAULT, inputs_of
 
 RUDDER = "delta"
@@ -37,7 +38,7 @@ def approach_speed(model: Model, held: Array) -> float:
     from scipy.optimize import brentq
 
     place, parameters = model.states.index("u"), model.parameters.values
-    state, rates = np.zeros(len(model.states)), np.empty(len(model.states))
+    state, rates = settled_actuators(model, held), np.empty(len(model.states))
 
     def surge(u: float) -> float:
         state[place] = u

@@ -1,6 +1,5 @@
 """Craft that are steered by thrusters taken through a programme: who works how much, and the run that follows."""
 
-import math
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -18,7 +17,8 @@ from seatrial.physics.manoeuvres.thrust_programme import (
     ThrustProgramme,
     thrust_programme,
 )
-from seatrial.physics.models.thruster_layout import AngleInput, Thruster, ThrusterLayout
+from seatrial.physics.models.thrust_orders import work_shares
+from seatrial.physics.models.thruster_layout import AngleInput, ThrusterLayout
 from seatrial.physics.simulate.approach import held_inputs
 from seatrial.physics.simulate.channels import record_of
 from seatrial.physics.simulate.divergence import require_bounded
@@ -30,8 +30,6 @@ DEFAULT_AHEAD = 0.5
 """Order ahead of a zigzag, share of full command; chosen."""
 STEP_S = 0.05
 """Step of the simulation [s]: a quarter of a small thruster's time constant; chosen."""
-_NO_MOMENT = 0.05
-"""Arm over the longest one, below which a thruster does not turn the craft; chosen."""
 
 
 def thrust_manoeuvre(
@@ -99,28 +97,12 @@ def _at_rest(layout: ThrusterLayout) -> dict[str, float]:
 
 
 def _allocation(model: Model, layout: ThrusterLayout) -> Array:
-    """Table of the thrusters (n, 5): input, reading at rest, from there to full ahead, signs on ahead and on yaw.
-
-    Each works fully for the order ahead to the side its thrust drives the craft, and for yaw to the side it turns it.
-    """
-    turning = np.array([_arm(thruster) for thruster in layout.thrusters])
-    driving = np.array([math.cos(_angle(thruster)) for thruster in layout.thrusters])
-    longest = float(np.max(np.abs(turning)))
-    yaw = np.where(np.abs(turning) > _NO_MOMENT * longest, np.sign(turning), 0.0)
-    ahead = np.where(np.abs(driving) > _NO_MOMENT, np.sign(driving), 0.0)
-    places = [model.input_names.index(t.command.channel) for t in layout.thrusters]
-    readings = [(t.command.zero, t.command.span) for t in layout.thrusters]
-    return np.column_stack([places, readings, ahead, yaw])
-
-
-def _angle(thruster: Thruster) -> float:
-    return 0.0 if isinstance(thruster.angle, AngleInput) else thruster.angle
-
-
-def _arm(thruster: Thruster) -> float:
-    """Yaw moment of unit thrust [m], positive to starboard (Fossen 2021, section 9.1)."""
-    angle = _angle(thruster)
-    return thruster.x * math.sin(angle) - thruster.y * math.cos(angle)
+    """Table of the thrusters (n, 5): input, reading at rest, from there to full ahead, shares of ahead and of yaw."""
+    rows = [
+        (model.input_names.index(t.command.channel), t.command.zero, t.command.span, share.ahead, share.yaw)
+        for t, share in zip(layout.thrusters, work_shares(layout), strict=True)
+    ]
+    return np.array(rows, dtype=np.float64)
 
 
 def _steered(

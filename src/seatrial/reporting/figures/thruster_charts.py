@@ -8,11 +8,12 @@ from seatrial.core.figures.bands import band, visible_edges
 from seatrial.core.figures.chart import Axis, Chart, LegendEntry, Panel, tiles
 from seatrial.core.figures.marks import ACCENT, INK, Array, Line, Mark, Rectangle, Rule, Stroke
 from seatrial.core.figures.ticks import span
-from seatrial.core.results.thruster_craft import CommandCurve, CompassCurve
+from seatrial.core.results.thruster_craft import CommandCurve, CompassCurve, QuadrantMap
 
 COLUMNS, HEIGHT = 2, 230.0  # panels in a row; px, chosen
 _STILL, _MOVING, _ZERO = Stroke(INK, 1.5), Stroke(ACCENT, 1.4, "5 3"), Stroke("#999999", 0.8)  # px, chosen
-_TIME = "#c9d2d9"
+_TIME, _TRAINED, _NEW = "#c9d2d9", "#a9bccb", "#d98c76"
+_HELD_OUT = Stroke(INK, 0.8)  # px, chosen
 _TALLEST = 0.2
 """Height of the highest bar of time, as a share of the panel's; chosen."""
 
@@ -38,6 +39,31 @@ def thrust_chart(curves: Sequence[CommandCurve], unit: str) -> Chart:
         LegendEntry("time with the command in the training runs", _TIME),
     )  # fmt: skip
     return Chart("thrust over command", tuple(panels), legend)
+
+
+def quadrant_chart(maps: Sequence[QuadrantMap]) -> Chart:
+    """Return a panel for each thruster: command over speed, cells of the training runs, those of runs held out."""
+    columns = min(COLUMNS, len(maps))
+    boxes = tiles(len(maps), columns, HEIGHT, left=58.0, right=12.0, top=20.0, gap=52.0)  # px, chosen
+    panels = []
+    for one, box in zip(maps, boxes, strict=True):
+        y, x = one.speed_edges, one.order_edges
+        cells = [(i, j) for i in range(len(x) - 1) for j in range(len(y) - 1)]
+        marks: list[Mark] = []
+        for i, j in cells:
+            trained = one.training[i][j] > 0.0
+            held = bool(one.held_out) and one.held_out[i][j] > 0.0
+            fill = _TRAINED if trained else _NEW
+            if trained or held:
+                edge = _HELD_OUT if held else None
+                marks.append(Rectangle(x[i], y[j], x[i + 1], y[j + 1], fill, gap=1.0, edge=edge))
+        lines = (Rule(0.0, _ZERO), Rule(0.0, _ZERO, is_vertical=True))
+        axes = Axis((-1.0, 1.0), "share of full command"), Axis((y[0], y[-1]), "speed along the thruster, m/s")
+        panels.append(Panel(box, *axes, (*marks, *lines), title=one.thruster))
+    legend = [LegendEntry("training runs", _TRAINED)]
+    if any(one.held_out for one in maps):
+        legend += [LegendEntry("held-out runs where no training run was", _NEW)]
+    return Chart("commands and speeds of the thrusters", tuple(panels), tuple(legend))
 
 
 def compass_chart(compass: CompassCurve) -> Chart:
