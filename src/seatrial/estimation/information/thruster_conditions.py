@@ -1,6 +1,6 @@
 """Where thrusters worked: their commands and the speed of the water along them, sample by sample."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +16,7 @@ class ThrusterConditions:
     order: Array
     speed: Array
 
-    def quadrants(self) -> Mapping[str, Array]:
+    def quadrants(self) -> dict[str, Array]:
         """Return the size of order times speed, m/s, in each quadrant by name, zero at samples in the others."""
         orders = {"ahead": np.maximum(self.order, 0.0), "astern": np.maximum(-self.order, 0.0)}
         speeds = {"ahead": np.maximum(self.speed, 0.0), "astern": np.maximum(-self.speed, 0.0)}

@@ -71,7 +71,7 @@ def _ordered(model: Model, layout: ThrusterLayout) -> ModelEquations:
     still = {sp.Symbol(name, real=True): sp.Integer(0) for name in angles}
 
     def rewritten(binding: Binding) -> Binding:
-        return binding.bound_to(orders.get(binding.name, binding.expression).subs(still))
+        return binding.bound_to(orders.get(binding.name, binding.expression).subs(list(still.items())))
 
     kept = tuple(i for i in old.inputs if i.name not in commands | angles)
     return replace(
