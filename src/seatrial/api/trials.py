@@ -147,7 +147,7 @@ def identify(
         seed: of everything drawn at random; the same seed gives the same bits.
         report_progress: called with one line of text at each step.
         intervals: ``auto``, ``jackknife`` (every run left out and refitted, and the spread of tied models),
-            ``bootstrap`` or ``profile``.
+            ``bootstrap``, ``profile`` or ``sampling`` (draws from the posterior, with emcee).
         choose: compare the family of models and take the one that predicts left-out runs best.
         compare: compare the fit with other estimators (regressions) on the same records.
         method: takes the place of the trial's ``[estimate] method``: ``auto``, ``output-error``, ...; or a published

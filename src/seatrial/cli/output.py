@@ -94,7 +94,13 @@ def print_fit(fit: "Fit") -> None:
     _print_baselines(fit)
     _print_identifiability(fit)
     _print_warnings(fit)
+    _print_sampling(fit)
     print_lines([f"intervals: {fit.method.intervals}", f"{fit.method.criterion}; {duration(fit.elapsed_s)}"])
+
+
+def _print_sampling(fit: "Fit") -> None:
+    if fit.posterior is not None:
+        print_lines(fit.posterior.sentences)
 
 
 def _print_warnings(fit: "Fit") -> None:

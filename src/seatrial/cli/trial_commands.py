@@ -67,7 +67,7 @@ def identify(
     trial: TrialPath,
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Result folder: model, result, report.")],
     intervals: Annotated[
-        str, typer.Option("--intervals", metavar="KIND", help="auto, jackknife, bootstrap or profile.")
+        str, typer.Option("--intervals", metavar="KIND", help="auto, jackknife, bootstrap, profile or sampling.")
     ] = "auto",
     choose: Annotated[bool, typer.Option("--choose", help="Take the model that predicts left-out runs best.")] = False,
     compare: Annotated[

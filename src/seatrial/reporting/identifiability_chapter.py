@@ -23,6 +23,7 @@ from seatrial.core.values import display_unit
 from seatrial.core.values.channel_text import channel_meaning, channel_unit, unit_text
 from seatrial.reporting.disturbance_table import DisturbanceRow, disturbance_rows
 from seatrial.reporting.figures.directions import direction_chart, profile_chart, sensitivity_chart
+from seatrial.reporting.posterior_part import PosteriorPart, posterior_part
 from seatrial.reporting.tables import assumption
 
 # relative standard deviation up to which a combination is well determined, and up to which poorly
@@ -124,6 +125,7 @@ class IdentifiabilityChapter:
     noise: NoiseText | None
     profiles: Markup
     unbounded: str
+    posterior: PosteriorPart | None
     models: tuple[CandidateModelRow, ...]
     has_notes: bool
     is_roll: bool
@@ -160,6 +162,7 @@ def identifiability_chapter(fit: Fit) -> IdentifiabilityChapter | None:
         noise=_noise_text(fit.noise_model, names) if fit.noise_model else None,
         profiles=Markup(svg(profile_chart(content.profiles, {c.name: c.unit for c in fit.coefficients}))),
         unbounded=_unbounded_sentence(content),
+        posterior=None if fit.posterior is None else posterior_part(fit.posterior),
         models=tuple(_model_row(m) for m in fit.candidate_models),
         has_notes=any(m.note for m in fit.candidate_models),
         is_roll=any(m.roll_deg is not None for m in fit.candidate_models),

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import seatrial as st
-from seatrial.core.values import frozen
-from seatrial.data.folder.earlier_result import independent_deviations, read_earlier_result
+from seatrial.core.results import IntervalBasis
+from seatrial.core.values import Prior, frozen
+from seatrial.data.folder.earlier_result import joint_prior, read_earlier_result
 from seatrial.data.folder.model_file import ModelFile, write_model
 from seatrial.data.folder.model_tables import ModelProvenance, RecordSource
 from seatrial.data.read.record_file import file_digest
@@ -27,21 +28,33 @@ def monday(tmp_path: Path) -> Path:
     return tmp_path / "monday"
 
 
-def test_independent_priors_claim_nothing_that_the_fit_does_not(monday: Path) -> None:
+def test_the_earlier_fit_keeps_its_correlations_and_claims_no_more(monday: Path) -> None:
     result = read_earlier_result(monday)
     assert result.model == "nomoto"
     assert (result.priors["K"].mean, result.priors["T"].mean) == (0.15, 8.0)
-    claimed = np.diag([result.priors[n].deviation for n in ("K", "T")]) ** 2
-    assert np.linalg.eigvalsh(claimed - COVARIANCE)[0] > -1e-12
-    np.testing.assert_allclose(np.diag(claimed), 1.8 * np.diag(COVARIANCE))
     assert "monday" in result.priors["K"].source
+    claimed = result.joint_prior.covariance
+    assert np.linalg.eigvalsh(claimed - COVARIANCE)[0] > 0.0
+    np.testing.assert_allclose(claimed, COVARIANCE + 0.01 * np.diag(np.diag(COVARIANCE)))
+    np.testing.assert_allclose([result.priors[n].deviation ** 2 for n in ("K", "T")], np.diag(claimed))
 
 
-def test_uncorrelated_errors_keep_their_size_and_unknown_ones_have_none() -> None:
-    np.testing.assert_allclose(independent_deviations(np.diag([4.0, 9.0])), [2.0, 3.0])
-    some = independent_deviations(np.array([[4.0, 0.0], [0.0, np.inf]]))
-    assert some[0] == 2.0
-    assert np.isnan(some[1])
+def test_few_runs_are_trusted_less_and_what_is_not_determined_is_no_prior() -> None:
+    model = st.models.nomoto()
+    few = IntervalBasis(COVARIANCE, degrees_of_freedom=4.0)
+    file = ModelFile(model, frozen(COVARIANCE), interval_basis=few)
+    np.testing.assert_allclose(np.diag(joint_prior(file).covariance), 1.25 * np.diag(COVARIANCE))
+    half = ModelFile(model, frozen(np.array([[1e-4, 0.0], [0.0, np.inf]])))
+    assert joint_prior(half).names == ("K",)
+
+
+def test_priors_of_the_trial_file_take_the_place_of_the_earlier_ones(monday: Path) -> None:
+    result = read_earlier_result(monday)
+    own = {n: Prior(p.mean, p.deviation, p.source) for n, p in result.priors.items()}
+    parameters = st.models.nomoto().parameters.with_priors(own)
+    assert result.joint_prior_of(parameters).names == ("K", "T")
+    assert result.joint_prior_of(parameters.with_priors({"T": Prior(8.0, 1.0, "trial file")})).names == ("K",)
+    assert result.joint_prior_of(parameters.fixed("K")).names == ("T",)
 
 
 def test_a_fit_without_uncertainty_is_refused(tmp_path: Path) -> None:

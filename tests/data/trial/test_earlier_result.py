@@ -40,7 +40,7 @@ def test_the_earlier_fit_gives_means_starts_and_deviations(monday: Writer, trial
     (p, other) = (st.load_trial(trial_file).model.parameters[n] for n in ("N_r", "Y_v"))
     assert p.prior is not None and other.prior is not None
     assert p.value == p.prior.mean == pytest.approx(1.2 * model.parameters["N_r"].value)
-    assert p.prior.standard_deviation == pytest.approx(0.1 * abs(p.value))
+    assert p.prior.standard_deviation == pytest.approx(0.1 * abs(p.value) * np.sqrt(1.01))
     assert "monday" in other.prior.source
 
 

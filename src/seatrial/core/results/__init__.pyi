@@ -18,6 +18,7 @@ from seatrial.core.results.identifiability import (
     Symmetry,
 )
 from seatrial.core.results.k_step import KStepErrors
+from seatrial.core.results.posterior import CredibleInterval, Posterior
 from seatrial.core.results.prediction import (
     Baseline,
     Divergence,
@@ -61,6 +62,7 @@ __all__ = [
     "Confirmation",
     "Consequence",
     "CraftMeasure",
+    "CredibleInterval",
     "Curve",
     "Design",
     "Difference",
@@ -87,6 +89,7 @@ __all__ = [
     "Offset",
     "OpenLoopScores",
     "PointMotion",
+    "Posterior",
     "Prediction",
     "Profile",
     "QuadrantMap",

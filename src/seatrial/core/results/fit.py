@@ -19,6 +19,7 @@ from seatrial.core.results.fields import ListedArray, NamedModel, ReportedFindin
 from seatrial.core.results.frequency_response import FrequencyResponse
 from seatrial.core.results.identifiability import Identifiability
 from seatrial.core.results.k_step import KStepErrors
+from seatrial.core.results.posterior import Posterior
 from seatrial.core.results.prediction import Baseline, IntervalBasis, Prediction
 from seatrial.core.results.published_method import ReferenceEstimate, Search
 from seatrial.core.results.ship_motions import RollCharacteristics, Seakeeping
@@ -84,6 +85,9 @@ class Fit(Summarised):
         Field(description="the package's own estimate, which a published method is compared with; null: this is it"),
     ] = None
 
+    posterior: Annotated[
+        Posterior | None, Field(description="draws from what records and priors leave open; null: not sampled")
+    ] = None
     k_step_errors: Annotated[
         tuple[KStepErrors, ...],
         Field(description="errors so many samples ahead; empty: not computed, or samples too far apart for a filter"),

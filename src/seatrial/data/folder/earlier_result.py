@@ -5,15 +5,16 @@ from pathlib import Path
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.values import Array, InputError
-from seatrial.core.values.arrays import correlation_matrix
-from seatrial.data.folder.model_file import read_model_file
-from seatrial.data.trial.earlier_result import EarlierResult
-from seatrial.data.trial.literature import LiteraturePrior
+from seatrial.core.values import InputError
+from seatrial.data.folder.model_file import ModelFile, read_model_file
+from seatrial.data.trial.earlier_result import EarlierResult, JointPrior
+
+_LEAST_SHRINKAGE = 0.01
+"""Share of the variances that is added to a covariance before it becomes a prior, at least; chosen."""
 
 
 def read_earlier_result(folder: Path, own_model: Model | None = None) -> EarlierResult:
-    """Return the free coefficients of a result's model file as independent priors, and the files behind it.
+    """Return the free coefficients of a result's model file as a joint prior, and the files behind it.
 
     Raises:
         InputError: no model file, or one that states no uncertainty.
@@ -23,23 +24,20 @@ def read_earlier_result(folder: Path, own_model: Model | None = None) -> Earlier
     if file.covariance.shape != (len(free), len(free)) or not len(free):
         raise InputError(f"'{folder / 'model.toml'}' states no uncertainty; priors need the covariance of a fit")
     source = f"fit in {folder.name}, {len(file.provenance.records)} records"
-    deviations = independent_deviations(file.covariance)
-    priors = {p.name: LiteraturePrior(p.value, source, float(sd)) for p, sd in zip(free, deviations, strict=True)
-              if np.isfinite(sd) and sd > 0.0}  # fmt: skip
     digests = frozenset(r.sha256 for r in file.provenance.records if r.sha256 and r.role == "training")
-    return EarlierResult(file.model.name, priors, digests)
+    return EarlierResult(file.model.name, source, joint_prior(file), digests)
 
 
-def independent_deviations(covariance: Array) -> Array:
-    """Return standard deviations of independent errors that claim nothing that the covariance (k, k) does not, (k,).
+def joint_prior(file: ModelFile) -> JointPrior:
+    """Return the determined free coefficients with their covariance, a little wider than it is stated.
 
-    Those of the covariance times the root of the largest eigenvalue of its correlations: diag(s^2) - C is then positive
-    semidefinite, so that no combination of coefficients is taken for better known than it was.
+    A covariance of few runs knows some combinations too well by chance. A share of the variances is added to them, one
+    over the degrees of freedom, so that no combination is taken for better known than it was (Ledoit & Wolf 2004,
+    J. Multivar. Anal. 88, 365, whose target is a diagonal, too).
     """
-    determined = np.isfinite(covariance).all(axis=0) & (np.diag(covariance) > 0.0)
-    deviations = np.full(len(covariance), np.nan)
-    if determined.any():
-        part = covariance[np.ix_(determined, determined)]
-        largest = float(np.linalg.eigvalsh(correlation_matrix(part))[-1])
-        deviations[determined] = np.sqrt(max(largest, 1.0) * np.diag(part))
-    return deviations
+    free, variances = file.model.parameters.free, np.diag(file.covariance)
+    rows = np.flatnonzero(np.isfinite(file.covariance).all(axis=0) & (variances > 0.0))
+    degrees = file.interval_basis.degrees_of_freedom if file.interval_basis else np.inf
+    share = max(_LEAST_SHRINKAGE, 1.0 / degrees)
+    covariance = file.covariance[np.ix_(rows, rows)] + share * np.diag(variances[rows])
+    return JointPrior(tuple(free[i].name for i in rows), np.array([free[i].value for i in rows]), covariance)

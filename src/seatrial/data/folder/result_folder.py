@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
+import numpy as np
+
 from seatrial.core.equations import Model
 from seatrial.core.results import Comparison, Design, Fit, Study
 from seatrial.core.results.online import Snapshot
@@ -81,6 +83,14 @@ def _fields_of_fit(file: ModelFile) -> dict[str, Any]:
     }  # fmt: skip
 
 
+def _fit_products(fit: Fit) -> dict[str, bytes]:
+    if fit.posterior is None:
+        return {}
+    names = np.array([c.name for c in fit.posterior.coefficients])
+    arrays = {"names": names, "points": fit.posterior.points, "log_density": fit.posterior.log_density}
+    return {"posterior.npz": npz_bytes(arrays)}
+
+
 def _design_products(design: Design) -> dict[str, bytes]:
     return {"orders.csv": orders_csv(design).encode(), "plan.csv": record_csv(design.plan).encode()}
 
@@ -93,7 +103,7 @@ def _tuning_products(tuning: Tuning) -> dict[str, bytes]:
 KINDS: tuple[FolderKind[Any], ...] = (
     FolderKind(
         Fit, "result.json", "seatrial identify TRIAL --out DIR", model_of_fit, _fields_of_fit,
-        repeated=frozenset({"validation", "intervals"}),
+        _fit_products, repeated=frozenset({"validation", "intervals"}),
     ),
     FolderKind(
         Design, "design.json", "seatrial design TRIAL --out DIR",

@@ -1,26 +1,65 @@
 """Priors from an earlier result of the same ship: what yesterday's records say is what is known before today's."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from seatrial.core.values import InputError
+import numpy as np
+
+from seatrial.core.values import Array, InputError, Parameters, Prior
 from seatrial.core.values.files import is_file, is_folder
 from seatrial.data.trial.literature import LiteraturePrior
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
+class JointPrior:
+    """What an earlier result says of several coefficients together.
+
+    Attributes:
+        names: of the coefficients; mean: (n,); covariance: (n, n); both SI.
+    """
+
+    names: tuple[str, ...]
+    mean: Array
+    covariance: Array
+
+    def restricted(self, names: Collection[str]) -> "JointPrior":
+        """Return what it says of some of them, whatever the others are."""
+        rows = [i for i, name in enumerate(self.names) if name in names]
+        return JointPrior(tuple(self.names[i] for i in rows), self.mean[rows], self.covariance[np.ix_(rows, rows)])
+
+
+@dataclass(frozen=True, eq=False)
 class EarlierResult:
     """What a result says of its coefficients before new records.
 
     Attributes:
-        model: name of its equations; priors: coefficient -> mean and standard deviation.
+        model: name of its equations; source: what it is, in a phrase; joint_prior: of its free coefficients.
         digests: SHA-256 of the files that it was estimated from.
     """
 
     model: str
-    priors: Mapping[str, LiteraturePrior]
+    source: str
+    joint_prior: JointPrior
     digests: frozenset[str]
+
+    @property
+    def priors(self) -> dict[str, LiteraturePrior]:
+        """Mean and standard deviation of each coefficient by itself."""
+        prior = self.joint_prior
+        deviations = np.sqrt(np.diag(prior.covariance))
+        return {
+            name: LiteraturePrior(float(mean), self.source, float(sd))
+            for name, mean, sd in zip(prior.names, prior.mean, deviations, strict=True)
+        }
+
+    def joint_prior_of(self, parameters: Parameters) -> JointPrior:
+        """Return what it says of those free parameters whose priors are its own."""
+        own = self.priors
+        return self.joint_prior.restricted({
+            p.name for p in parameters.free
+            if p.name in own and p.prior == Prior(own[p.name].mean, own[p.name].deviation, own[p.name].source)
+        })  # fmt: skip
 
 
 ResultReader = Callable[[Path], EarlierResult]

@@ -153,6 +153,7 @@ def load_trial(path: str | Path, own_model: Model | None = None, read_result: Re
         design_request=file.design,
         stream=stream,
         feedback=file.feedback,
+        joint_priors=tuple(p for r in results.values() if (p := r.joint_prior_of(model.parameters)).names),
         findings=(*ranges, *(finding for points in forces for finding in force_findings(points, unit))),
     )
 

@@ -10,6 +10,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Finding, ForcePoints, Record, RecordKind, Ship
 from seatrial.data.trial.compare_settings import CompareSettings
 from seatrial.data.trial.design_request import DesignRequest
+from seatrial.data.trial.earlier_result import JointPrior
 from seatrial.data.trial.feedback_table import Feedback
 from seatrial.data.trial.run_data import RecordFile, RecordSources
 from seatrial.data.trial.settings import EstimateSettings, ModelFamily
@@ -113,6 +114,7 @@ class Trial:
         feedback: the controller that was on in some runs; None: none is declared.
         design: the manoeuvre that is to be designed; None: none is.
         follow: the stream that is to be followed; None: none is.
+        joint_priors: what earlier results say of several coefficients together, besides the priors of each.
         findings: what is odd about the trial itself: priors beyond their range, force points of unexpected sign.
         path: the trial file; None for a trial made in Python.
     """
@@ -134,6 +136,7 @@ class Trial:
     stream: Stream | None = None
     findings: tuple[Finding, ...] = ()
     feedback: Feedback | None = None
+    joint_priors: tuple[JointPrior, ...] = ()
 
     def __repr__(self) -> str:
         roles = ", ".join(f"{len(self.runs_with_role(role))} {role}" for role in Role if self.runs_with_role(role))

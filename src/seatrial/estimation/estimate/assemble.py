@@ -7,6 +7,7 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.values import NOTATION, InputError, Prior
 from seatrial.data.trial import EstimateSettings
+from seatrial.estimation.estimate.joint_prior import joint_prior_term
 from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.problem.output_error import Nuisance, OutputError
 from seatrial.estimation.problem.segments import compared_outputs, cut_segments
@@ -77,4 +78,5 @@ def output_error_problem(
         _current_priors(settings),
         workers=workers,
         extra_terms=(*(StaticForces(model, points) for points in runs.forces), *runs.carried),
+        prior_terms=tuple(joint_prior_term(model.parameters, prior) for prior in runs.joint_priors),
     )

@@ -235,7 +235,8 @@ def _uncertainty(choice: CriterionChoice, options: EstimatorOptions, report_prog
     def counted(done: int, total: int) -> None:
         report_progress(f"{options.intervals}: fit {done} of {total}")
 
-    if choice.implied_noise is not None and options.intervals in (IntervalMethod.AUTO, IntervalMethod.PROFILE):
+    is_refitted = options.intervals in (IntervalMethod.JACKKNIFE, IntervalMethod.BOOTSTRAP)
+    if choice.implied_noise is not None and not is_refitted:
         interval = process_noise_interval(choice.estimate, choice.implied_noise)
         return Uncertainty(interval, information=inverse(interval.covariance))
     if choice.disturbances is not None and choice.process_noise is not None:

@@ -71,7 +71,7 @@ class ProcessNoise:
     @property
     def common_parameters(self) -> Array:
         """Coefficients and what the sessions have of their own, as in the output-error problem."""
-        return self.optimum.solution.point[self._common_indices]
+        return self.optimum.solution.point[self.common_indices]
 
     @property
     def process_intensities(self) -> dict[str, float]:
@@ -109,8 +109,8 @@ class ProcessNoise:
         return dict(zip(self.output_error.data.outputs, map(float, r), strict=True))
 
     @cached_property
-    def _common_indices(self) -> Index:
-        """Positions of `shared` among the unknowns."""
+    def common_indices(self) -> Index:
+        """Return positions among the unknowns of those that output error has too."""
         first, last = len(self.output_error.free), self.problem.runs.size
         return np.concatenate([np.arange(first), np.arange(len(self.problem.runs.free), last)])
 
@@ -138,7 +138,7 @@ class ProcessNoise:
         steps = jackknife_steps(self.optimum.normal.hessian[np.ix_(free, free)], gradients, hessians)
         moved = np.tile(point, (len(parts), 1))
         moved[:, free] += steps
-        return moved[:, self._common_indices]
+        return moved[:, self.common_indices]
 
     def as_point_estimate(self) -> PointEstimate:
         """The same point as an estimate over whole runs: noise levels, initial states, and the reduced information."""
@@ -162,7 +162,7 @@ class ProcessNoise:
         return np.flatnonzero(inside)
 
     def _eliminate_noise(self, normal: NormalEquations) -> tuple[Array, Array]:
-        kept, others = (self._common_indices, np.setdiff1d(self._free_indices, self._common_indices))
+        kept, others = (self.common_indices, np.setdiff1d(self._free_indices, self.common_indices))
         cross, inner = (normal.hessian[np.ix_(kept, others)], normal.hessian[np.ix_(others, others)])
         scale = 1.0 / np.sqrt(np.maximum(np.diag(inner), 1e-300))  # above zero, for a division
         # least squares: the memory of a gust without intensity has no influence

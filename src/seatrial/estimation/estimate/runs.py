@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 
 from seatrial.core.values import ForcePoints, Record
 from seatrial.data.trial import Feedback, Role, Trial, TrialRecord
+from seatrial.data.trial.earlier_result import JointPrior
 from seatrial.data.trial.feedback_table import refuse_unusable_feedback
 from seatrial.estimation.problem.output_error import DataTerm
 
@@ -21,6 +22,7 @@ class Runs:
         forces: tables of static force points that are fitted with the runs.
         feedback: the controller that was on in some of them; None: none is declared.
         carried: information from records that are no longer kept.
+        joint_priors: what earlier results say of several coefficients together.
     """
 
     records: tuple[Record, ...]
@@ -30,6 +32,7 @@ class Runs:
     forces: tuple[ForcePoints, ...] = ()
     feedback: Feedback | None = None
     carried: tuple[DataTerm, ...] = ()
+    joint_priors: tuple[JointPrior, ...] = ()
 
     @classmethod
     def one_session_each(cls, records: Sequence[Record], length: float) -> "Runs":
@@ -55,4 +58,7 @@ def training_runs(trial: Trial, records: Sequence[TrialRecord]) -> Runs:
     if trial.feedback is not None:
         refuse_unusable_feedback(trial.feedback, [r.record for r in train], f"{trial.path}: " if trial.path else "")
     sessions = tuple(r.session for r in train)
-    return Runs(tuple(r.record for r in train), sessions, trial.ship.length, trial.noise, trial.forces, trial.feedback)
+    return Runs(
+        tuple(r.record for r in train), sessions, trial.ship.length, trial.noise, trial.forces, trial.feedback,
+        joint_priors=trial.joint_priors,
+    )  # fmt: skip

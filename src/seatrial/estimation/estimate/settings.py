@@ -26,6 +26,7 @@ class IntervalMethod(StrEnum):
     JACKKNIFE = "jackknife"
     BOOTSTRAP = "bootstrap"
     PROFILE = "profile"
+    SAMPLING = "sampling"
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import replace
 
-from seatrial.core.results import Fit, Identifiability, Profile
+from seatrial.core.results import Fit, Identifiability, Posterior, Profile
 from seatrial.core.values import DivergedError, Finding, InputError
 from seatrial.core.values.versions import versions
 from seatrial.data.trial.approach import approach_condition
@@ -14,6 +14,7 @@ from seatrial.estimation.identify.closed_loop_findings import closed_loop_findin
 from seatrial.estimation.identify.identifiability import identifiability
 from seatrial.estimation.identify.identification import Identification
 from seatrial.estimation.identify.model_selection import SelectedModel, with_model_spread
+from seatrial.estimation.identify.posterior import sample_posterior, sampling_findings
 from seatrial.estimation.identify.profile import innovation_profiles, profiles
 from seatrial.estimation.identify.roll_characteristics import one_speed_finding, roll_characteristics
 from seatrial.estimation.identify.seakeeping import seakeeping
@@ -35,6 +36,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         InputError: a training run cannot be simulated with the estimated coefficients.
     """
     trial, runs = task.trial, task.runs
+    selected, posterior = _with_sampling(task, selected)
     predicted = _predictions(task, selected)
     estimation = with_model_spread(selected.estimation, selected.tied)
     assessment = _identifiability(task, estimation)
@@ -47,7 +49,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         or f"Which {trial.model.name} model explains these records, and how well does it predict?",
         ship=trial.ship,
         model=estimation.model,
-        coefficients=fit_result.coefficients(estimation, trial.truth, assessment.profiles),
+        coefficients=fit_result.coefficients(estimation, trial.truth, interval_ends(assessment.profiles, posterior)),
         covariance=estimation.interval.covariance[: len(free), : len(free)],
         solution=estimation.estimate.optimum.solution,
         method=fit_result.method(estimation, has_profiles=bool(assessment.profiles)),
@@ -59,6 +61,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
             *task.findings, *selected.findings, *findings, *fit_result.unidentified(task.estimation),
             *fit_result.bounds_hit(estimation), *fit_result.unconverged(estimation),
             *short_record_findings(estimation, assessment.profiles), *closed_loop_findings(estimation),
+            *(sampling_findings(posterior) if posterior else ()),
             *predicted.findings,
             *one_speed_finding(roll, runs.records),
         ),
@@ -76,9 +79,27 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
             estimation.model, runs.records, predicted.interval_basis, trial.ship.particulars.get("L", 1.0),
             [p.measured for p in predicted.predictions if p.role == "validation"],
         ),
+        posterior=posterior,
         k_step_errors=k_step_errors(selected.estimation, scored, horizon_list(task.options.horizons)),
         frequency_responses=frequency_responses(estimation.model, predicted.predictions, task.outputs),
     )  # fmt: skip
+
+
+def _with_sampling(task: Identification, selected: SelectedModel) -> tuple[SelectedModel, Posterior | None]:
+    """Return the estimate with the interval of draws from its posterior, and these, where sampling is required."""
+    if task.options.intervals is not IntervalMethod.SAMPLING:
+        return selected, None
+    sampled = sample_posterior(selected.estimation, task.options.seed, task.report_progress)
+    return replace(selected, estimation=sampled.estimation), sampled.posterior
+
+
+def interval_ends(
+    profiles: Sequence[Profile], posterior: Posterior | None
+) -> dict[str, tuple[float | None, float | None]]:
+    """Return the ends of intervals that no standard error gives: by draws, or by profile likelihoods."""
+    if posterior is not None:
+        return {c.name: (c.lower, c.upper) for c in posterior.coefficients}
+    return {p.parameter: (p.lower, p.upper) for p in profiles}
 
 
 def _predictions(task: Identification, selected: SelectedModel) -> RunPredictions:
@@ -103,6 +124,8 @@ def _identifiability(task: Identification, estimation: Estimation) -> Identifiab
 def _profiles(task: Identification, estimation: Estimation) -> tuple[Profile, ...]:
     """Return profile likelihoods where these are required, or where the records are too short for anything else."""
     estimate, errors, report_progress = estimation.estimate, estimation.interval.standard_error, task.report_progress
+    if task.options.intervals is IntervalMethod.SAMPLING:
+        return ()
     if task.options.intervals is not IntervalMethod.PROFILE:
         return default_profiles(estimation, report_progress)
     if estimation.has_process_noise and estimation.process_noise is not None:

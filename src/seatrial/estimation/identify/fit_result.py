@@ -5,18 +5,23 @@ from types import MappingProxyType
 
 import numpy as np
 
-from seatrial.core.results import Coefficient, Method, Noise, Offset, Profile, Residuals
+from seatrial.core.results import Coefficient, Method, Noise, Offset, Residuals
 from seatrial.core.values import NOTATION, Array, DivergedError, Finding, InputError, Parameter, Parameters, Severity
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import split_segments
 from seatrial.estimation.information.covariance import Interval
 
+Limits = Mapping[str, tuple[float | None, float | None]]
+
 
 def coefficients(
-    estimation: Estimation, truth: Mapping[str, float], profiles: Sequence[Profile] = ()
+    estimation: Estimation, truth: Mapping[str, float], limits: Limits = MappingProxyType({})
 ) -> tuple[Coefficient, ...]:
-    """Every parameter with its interval (a profile's where there is one), prior and, if known, true value."""
-    problem, limits = estimation.estimate.problem, {q.parameter: (q.lower, q.upper) for q in profiles}
+    """Return every parameter with its interval, prior and, if known, true value.
+
+    limits: ends of intervals that no standard error gives, of profiles or draws.
+    """
+    problem = estimation.estimate.problem
     return coefficient_table(
         problem.model.parameters,
         problem.free,
@@ -33,7 +38,7 @@ def coefficient_table(
     point: Array,
     interval: Interval,
     truth: Mapping[str, float],
-    limits: Mapping[str, tuple[float | None, float | None]] = MappingProxyType({}),
+    limits: Limits = MappingProxyType({}),
 ) -> tuple[Coefficient, ...]:
     """All parameters as coefficients; those named `free` stand first in `point` and `interval`, in that order."""
     place = {name: i for i, name in enumerate(free)}

@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 from seatrial.core.results import Fit
 from seatrial.core.values import InputError, ProgressReporter
-from seatrial.data.trial import FitCriterion, Trial, checked_records
+from seatrial.data.trial import EstimateMethod, FitCriterion, Trial, checked_records
 from seatrial.estimation.estimate import EstimatorOptions, IntervalMethod
 from seatrial.estimation.estimate.settings import WEAK_FORM_SHIP_LENGTHS
 from seatrial.estimation.identify.baselines import with_baselines, with_search_baselines
@@ -53,8 +53,9 @@ def identify(
     A published method that the trial names gives no intervals; the package's own estimate stands in the fit with it.
 
     Args:
-        seed: of the draws behind the intervals of predictions, and of a bootstrap.
-        intervals: where intervals of coefficients come from; a jackknife brings the spread of tied models with it.
+        seed: of the draws behind the intervals of predictions, of a bootstrap, and of sampling.
+        intervals: where intervals of coefficients come from; a jackknife brings the spread of tied models with it;
+            sampling brings the draws with it, and is refused where the waves were not recorded.
         choose: whether the best member of the family takes the place of the trial's model.
         compare: whether regressions on the same training runs, for a linear model searches as well, are compared with
             the fit.
@@ -76,6 +77,7 @@ def identify(
     own_progress = own_estimate_progress(report_progress) if method.is_published else report_progress
     task = Identification(trial, checked.records, checked.findings, options, choose, began, own_progress)
     situation = identification_situation(task)
+    _refuse_sampling(intervals, situation, method)
     if method.is_published:
         return _published(task, situation, report_progress)
     fit = STRATEGIES[situation](task)
@@ -86,6 +88,21 @@ def identify(
     fit = with_baselines(fit, task.runs.records, window, report_progress, trial.compare.svr)
     has_searches = trial.model.is_affine and situation is Situation.RECORDED_WAVES
     return with_search_baselines(fit, trial, seed, report_progress) if has_searches else fit
+
+
+def _refuse_sampling(intervals: IntervalMethod, situation: Situation, method: EstimateMethod) -> None:
+    """Raises:
+    InputError: draws are required of a fit that has no likelihood of its own runs.
+    """
+    if intervals is not IntervalMethod.SAMPLING:
+        return
+    if method.is_published:
+        raise InputError(
+            f"method '{method}' gives no intervals, so that there is nothing to sample; leave out --intervals sampling"
+        )
+    if situation in (Situation.WAVE_SPECTRUM, Situation.UNKNOWN_WAVES):
+        raise InputError("--intervals sampling needs what moves the ship in every sample, and here the waves were not "
+                         "recorded; leave the choice of intervals to the program")  # fmt: skip
 
 
 def _published(task: Identification, situation: Situation, report_progress: ProgressReporter | None) -> Fit:

@@ -76,6 +76,7 @@ class OutputError:
         population: how nuisances and session parameters are distributed over sessions; None: as declared.
         pinned: shared unknowns held at these values, for predictions: only initial states move.
         extra_terms: data besides the records that say something about the model parameters (static force points).
+        prior_terms: what is known of several model parameters together, besides the priors of each.
     """
 
     model: Model
@@ -90,6 +91,7 @@ class OutputError:
     pinned: Array | None = None
     extra_terms: tuple[DataTerm, ...] = ()
     population: SessionPopulation | None = None
+    prior_terms: tuple[DataTerm, ...] = ()
 
     @cached_property
     def free(self) -> tuple[str, ...]:
@@ -300,7 +302,7 @@ class OutputError:
     @property
     def _active_terms(self) -> tuple[DataTerm, ...]:
         """The other data; none where only initial states move, which they say nothing about."""
-        return () if self.pinned is not None else self.extra_terms
+        return () if self.pinned is not None else (*self.extra_terms, *self.prior_terms)
 
     def prior_precision(self, shared: Array) -> Array:
         """Return the information (size, size) of priors and other data, which stay when runs are left out."""
@@ -310,7 +312,8 @@ class OutputError:
         return precision
 
     def _extra_cost(self, shared: Array) -> float:
-        return sum(other.cost(self._parameter_values(shared)) for other in self._active_terms)
+        values = self._parameter_values(shared)
+        return sum(other.cost(values) for other in self._active_terms)
 
     def simulated_outputs(self, shared: Array, local: Array) -> Array:
         """Return simulated outputs of all segments, shape (rows, ny); NaN after a divergence."""
@@ -321,12 +324,23 @@ class OutputError:
 
     def cost(self, shared: Array, local: Array) -> float:
         """Return half the (robust) sum of squares and the prior's; infinite if any segment diverges."""
-        y = self.simulated_outputs(shared, local)
-        if not np.all(np.isfinite(y)):
+        return self.cost_of_outputs(self.simulated_outputs(shared, local), shared)
+
+    def cost_of_outputs(self, simulated: Array, shared: Array) -> float:
+        """Return the cost of simulated outputs, (rows, ny), and of the shared unknowns behind them."""
+        if not np.all(np.isfinite(simulated)):
             return np.inf
-        return (
-            self._loss(self._scaled_residuals(y, slice(None)))[0] + self._prior_cost(shared) + self._extra_cost(shared)
-        )
+        loss = self._loss(self._scaled_residuals(simulated, slice(None)))[0]
+        return loss + self.prior_cost(shared)
+
+    def prior_cost(self, shared: Array) -> float:
+        """Return what priors and other data add to the cost."""
+        return self._prior_cost(shared) + self._extra_cost(shared)
+
+    def weighted_residuals(self, simulated: Array) -> Array:
+        """Return the derivative of the cost by the simulated outputs, (rows, ny); 0 where nothing was measured."""
+        scaled = self._scaled_residuals(simulated, slice(None))
+        return self._loss(scaled)[1] * scaled / self.noise
 
     def segment_normals(self, shared: Array, local: Array) -> "SegmentNormals":
         """Return Gauss-Newton blocks of every segment, prior left out."""

@@ -34,11 +34,15 @@ class NormalEquations:
     local_hessian: Array
     cross: Array
 
+    def solve_local(self, right: Array) -> Array:
+        """Return the local blocks' solutions for right-hand sides, both (s, m, k)."""
+        return np.asarray(np.linalg.solve(_with_ridge(self.local_hessian), right), dtype=np.float64)
+
     def without_local(self) -> tuple[Array, Array]:
         """Return gradient and Hessian of the shared unknowns with the local ones eliminated at their optimum."""
         if self.local_gradient.size == 0:
             return self.gradient, self.hessian
-        solved = np.linalg.solve(_with_ridge(self.local_hessian), np.swapaxes(self.cross, 1, 2))
+        solved = self.solve_local(np.swapaxes(self.cross, 1, 2))
         hessian = self.hessian - np.einsum("sij,sjk->ik", self.cross, solved)
         gradient = self.gradient - np.einsum("sj,sjk->k", self.local_gradient, solved)
         return gradient, hessian

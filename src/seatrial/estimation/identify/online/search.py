@@ -104,4 +104,6 @@ def suits_whole_runs(trial: Trial) -> bool:
 def _runs(trial: Trial, phase: KeptPhase, records: Sequence[Record]) -> Runs:
     """The records, each a session, and beside them the trial's static forces or the carried information with them."""
     runs = replace(Runs.one_session_each(records, trial.ship.length), noise=trial.noise)
-    return replace(runs, carried=(phase.prior,)) if isinstance(phase, Carried) else replace(runs, forces=trial.forces)
+    if isinstance(phase, Carried):  # with it go the correlations of priors
+        return replace(runs, carried=(phase.prior,))
+    return replace(runs, forces=trial.forces, joint_priors=trial.joint_priors)
