@@ -33,6 +33,7 @@ LIKE_KERNEL = ("-march=native", "-fno-math-errno", "-fno-tree-vectorize")
 SPREAD = {"m": 10.0, "m/s": 2.0, "rad": 1.0, "rad/s": 0.2, "rps": 10.0, "N": 1e3, "N m": 1e3, "V": 15.0, "": 1.0}
 """SI unit -> half-width from which states and inputs are drawn."""
 ALWAYS_POSITIVE = ("u", "omega_e", "voltage", "v_j")
+DAMPING = ("X_u", "Y_v", "N_r")
 CHUNK = 20_000  # states in memory at once
 
 _DRIVER = """
@@ -96,8 +97,8 @@ def complete_model(name: str, rng: np.random.Generator) -> st.Model:
         values = {n if n in model.parameters else f"{n}_0": value for n, value in given.values.items()}
         values = {n: value for n, value in {**values, **given.ship.particulars}.items() if n in model.parameters}
         model = model.with_values(values)
-    terms = TERMS if name == "abkowitz" else ()  # zero unless they are estimated
-    model = model.with_values({n: float(0.01 * rng.normal()) for n in terms})
+    if name == "abkowitz":  # every term is zero unless it is estimated: small ones, and damping that keeps it stable
+        model = model.with_values({n: float(1e-5 * rng.normal()) for n in TERMS} | dict.fromkeys(DAMPING, -0.01))
     return model.with_values({n: float(rng.uniform(0.5, 1.5)) for n in model.parameters.missing})
 
 
