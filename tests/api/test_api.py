@@ -97,3 +97,13 @@ def test_a_fit_is_simulated_as_its_model_file_is() -> None:
     again = sea.simulate(file, "zigzag:20/20", inputs={"v_j": 1.866}, duration=20.0)
     assert (record["psi"] == again["psi"]).all() and record["psi"].any()
     assert sea.predict(fit, fit.records[0]).rms == sea.predict(file, fit.records[0]).rms
+
+
+def test_what_takes_a_trial_takes_its_file(repository: Path) -> None:
+    """The file is read, so that what it lacks is named in a sentence."""
+    path = repository / "examples" / "fin_decay.toml"
+    with pytest.raises(InputError, match=r"\[design\]"):
+        sea.design(path)
+    with pytest.raises(InputError, match=r"\[follow\]"):
+        sea.follow(str(path))
+    assert sea.identify(path).validation

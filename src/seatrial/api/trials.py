@@ -130,7 +130,7 @@ def survey_log(path: "str | Path") -> "LogSurvey":
 
 
 def identify(
-    trial: "Trial",
+    trial: "Trial | str | Path",
     seed: int = 0,
     report_progress: "ProgressReporter | None" = None,
     *,
@@ -164,6 +164,7 @@ def identify(
     from seatrial.core.values import InputError, spelling_hint
     from seatrial.physics.models.precompile import precompile
 
+    trial = _loaded(trial)
     with precompile(trial.model.name):
         from seatrial.estimation.identify import IntervalMethod, identify
 
@@ -182,7 +183,7 @@ def identify(
 
 
 def follow(
-    trial: "Trial",
+    trial: "Trial | str | Path",
     *,
     source: "SampleSource | None" = None,
     once: bool = False,
@@ -212,6 +213,7 @@ def follow(
     """
     from seatrial.physics.models.precompile import precompile
 
+    trial = _loaded(trial)
     with precompile(trial.model.name):
         from seatrial.onboard.follow import follow
     followed = trial if method is None else replace(trial, estimate=trial.estimate.with_method(method))
@@ -222,7 +224,7 @@ def follow(
 
 
 def design(
-    trial: "Trial",
+    trial: "Trial | str | Path",
     seed: int = 0,
     report_progress: "ProgressReporter | None" = None,
     prior_model: "ModelFile | None" = None,
@@ -240,12 +242,20 @@ def design(
     """
     from seatrial.physics.models.precompile import precompile
 
+    trial = _loaded(trial)
     with precompile(trial.model.name):
         from seatrial.estimation.design.design import design
         from seatrial.estimation.design.task import design_task
 
         task = design_task(trial, prior_model)
     return design(task, seed=seed, report_progress=report_progress or (lambda _: None))
+
+
+def _loaded(trial: "Trial | str | Path") -> "Trial":
+    """Return a trial, read where its file is named."""
+    from seatrial.data.trial import Trial, load_trial
+
+    return trial if isinstance(trial, Trial) else load_trial(trial)
 
 
 def prepared_run(trial: "Trial | str | Path", name: str) -> "Record":
@@ -255,10 +265,9 @@ def prepared_run(trial: "Trial | str | Path", name: str) -> "Record":
         InputError: the trial has no run of that name (the nearest is named), or it cannot be read.
     """
     from seatrial.core.values import InputError, spelling_hint
-    from seatrial.data.trial import Trial, load_trial
     from seatrial.data.trial.records import load_run
 
-    trial = trial if isinstance(trial, Trial) else load_trial(trial)
+    trial = _loaded(trial)
     runs = {run.name: run for run in trial.runs}
     if name not in runs:
         raise InputError(f"the trial has no run '{name}'{spelling_hint(name, list(runs))}")
