@@ -10,8 +10,10 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from seatrial.campaigns.plan import plan_schema
 from seatrial.control.loopfile.schema import loop_schema
 from seatrial.core.results import Comparison, Design, Fit, Study
+from seatrial.core.results.campaign import CampaignSummary
 from seatrial.core.results.online import Snapshot
 from seatrial.core.results.tuning import Tuning
 from seatrial.data.folder.document import document_schema
@@ -25,6 +27,7 @@ RESULTS = {
     "study": Study,
     "comparison": Comparison,
     "online": Snapshot,
+    "campaign_summary": CampaignSummary,
 }
 PAGE = DOCS / "result-folder.md"
 JsonSchema = Mapping[str, Any]
@@ -32,7 +35,7 @@ JsonSchema = Mapping[str, Any]
 
 def schema_texts() -> Iterator[tuple[Path, str]]:
     """Yield path and text of every schema."""
-    schemas = {"loop": loop_schema(), "trial": trial_schema()}
+    schemas = {"campaign": plan_schema(), "loop": loop_schema(), "trial": trial_schema()}
     schemas |= {name: document_schema(kind) for name, kind in RESULTS.items()}
     for name, schema in schemas.items():
         yield DOCS / f"{name}.schema.json", json.dumps(schema, indent=1, ensure_ascii=False) + "\n"

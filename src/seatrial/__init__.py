@@ -18,6 +18,7 @@ Functions (each also a command)
     export        write a model as files of another tool: C99, FMU, CasADi, MATLAB, Gazebo
     tune          tune a feedback loop on a model
     follow        identify while the record is being made
+    campaign      many identifications in a store: Monte Carlo, grids, runs left out, fleets
     reproduce     repeat a published study
     demo          identify a craft with known coefficients
     list_models   the built-in and the installed models

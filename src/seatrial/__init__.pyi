@@ -1,5 +1,6 @@
 from seatrial import control, testing
 from seatrial.api import (
+    campaign,
     check,
     compare,
     demo,
@@ -59,6 +60,7 @@ __all__ = [
     "Trial",
     "TrialRun",
     "Tuning",
+    "campaign",
     "check",
     "compare",
     "control",

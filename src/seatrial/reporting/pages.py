@@ -1,10 +1,11 @@
 """The page of each kind of result; only the modules that render that kind are imported."""
 
 from seatrial.core.results import Comparison, Design, Fit, Study
+from seatrial.core.results.campaign import CampaignSummary
 from seatrial.core.results.tuning import Tuning
 
 
-def report_page(result: Fit | Design | Tuning | Study | Comparison) -> str:
+def report_page(result: Fit | Design | Tuning | Study | Comparison | CampaignSummary) -> str:
     """Return the self-contained HTML page of a result; nothing is computed."""
     match result:
         case Fit():
@@ -27,3 +28,7 @@ def report_page(result: Fit | Design | Tuning | Study | Comparison) -> str:
             from seatrial.reporting import comparison
 
             return comparison.html(result)
+        case CampaignSummary():
+            from seatrial.reporting import campaign
+
+            return campaign.html(result)

@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-from seatrial.numerics.workers import map_in_processes, map_in_threads, worker_count
+from seatrial.numerics.workers import limited_workers, map_in_processes, map_in_threads, worker_count
 
 
 def slow_square(x: float) -> float:
@@ -73,3 +73,11 @@ def test_worker_count_refuses_none_at_all() -> None:
     assert worker_count() >= 1
     with pytest.raises(ValueError, match="at least one"):
         worker_count(0)
+
+
+def test_a_limit_holds_where_no_number_is_given_and_ends() -> None:
+    cores = worker_count()
+    with limited_workers(1), limited_workers(2):
+        assert worker_count() == 1
+        assert worker_count(3) == 3
+    assert worker_count() == cores

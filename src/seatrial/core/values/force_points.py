@@ -9,6 +9,7 @@ import numpy as np
 
 from seatrial.core.values.arrays import Array, frozen
 from seatrial.core.values.errors import InputError, spelling_hint
+from seatrial.core.values.pickled import PickledByConstructor
 
 FORCES = ("X", "Y", "N")
 
@@ -30,7 +31,7 @@ class ForceContent(StrEnum):
 
 
 @dataclass(frozen=True, eq=False)
-class ForcePoints:
+class ForcePoints(PickledByConstructor):
     """A table of forces, SI; axes x forward, y starboard, moments positive to starboard.
 
     Attributes:

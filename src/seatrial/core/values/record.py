@@ -15,6 +15,7 @@ from seatrial.core.values.channel import Channel, Provenance
 from seatrial.core.values.channel_names import channel_hint
 from seatrial.core.values.dataframe import ColumnDeclarations, channel_columns, column_numbers
 from seatrial.core.values.errors import InputError
+from seatrial.core.values.pickled import PickledByConstructor
 
 if TYPE_CHECKING:
     import pandas
@@ -41,7 +42,7 @@ class RecordKind(StrEnum):
 
 
 @dataclass(frozen=True, eq=False)
-class Record:
+class Record(PickledByConstructor):
     """One run: times in s, shape (n,), never running backwards; channels of the same length.
 
     `record["u"]` gives the values. The stamps of a record as it was read may be uneven, repeated or empty (NaN), which

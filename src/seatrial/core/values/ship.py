@@ -4,9 +4,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
+from seatrial.core.values.pickled import PickledByConstructor
+
 
 @dataclass(frozen=True)
-class Ship:
+class Ship(PickledByConstructor):
     """Particulars in SI units, keyed by symbol (``L``, ``B``, ``d``, ``m``, ``x_G``, ``D_P``, ``A_R``, …).
 
     Attributes:

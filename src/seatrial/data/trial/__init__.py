@@ -4,7 +4,7 @@ from seatrial.data.trial.approach import approach_condition
 from seatrial.data.trial.correction import corrected_trial
 from seatrial.data.trial.estimate_method import SEARCHES, EstimateMethod, FitCriterion
 from seatrial.data.trial.feedback_table import ControllerGains, Feedback
-from seatrial.data.trial.load import load_runs, load_trial
+from seatrial.data.trial.load import load_runs, load_trial, parse_tables, trial_of_tables
 from seatrial.data.trial.records import CheckedRecords, TrialRecord, checked_records, load_records, refuse_errors
 from seatrial.data.trial.search_settings import SearchFitness, SearchSettings
 from seatrial.data.trial.settings import EstimateSettings, ModelFamily
@@ -15,5 +15,5 @@ __all__ = [
     "ModelFamily",
     "RecordFile", "Role", "SearchFitness", "SearchSettings", "Trial", "TrialRecord", "TrialRun", "Trimming",
     "approach_condition", "checked_records", "corrected_trial", "load_records", "load_runs", "load_trial",
-    "refuse_errors",
+    "parse_tables", "refuse_errors", "trial_of_tables",
 ]  # fmt: skip

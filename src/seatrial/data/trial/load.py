@@ -35,13 +35,21 @@ def parse_trial(path: Path) -> TrialFile:
     Raises:
         InputError: no such file, no TOML, or as `parse_tables`.
     """
+    return parse_tables(read_tables(path), path)
+
+
+def read_tables(path: Path) -> dict:
+    """Return the file's tables as they stand there.
+
+    Raises:
+        InputError: no such file, or no TOML.
+    """
     try:
-        table = parse_toml(read_table_text(path))
+        return parse_toml(read_table_text(path))
     except OSError as error:
         raise InputError(f"trial file '{path}' cannot be read ({error.strerror}); check the path") from None
     except ValueError as error:
         raise InputError(f"trial file '{path}' is no valid TOML: {error}") from None
-    return parse_tables(table, path)
 
 
 def parse_tables(table: dict, path: Path) -> TrialFile:
@@ -88,7 +96,13 @@ def load_trial(path: str | Path, own_model: Model | None = None, read_result: Re
         InputError: one sentence naming file, key and what to do.
     """
     path = Path(path)
-    file = parse_trial(path)
+    return trial_of_tables(parse_trial(path), path, own_model, read_result)
+
+
+def trial_of_tables(
+    file: TrialFile, path: Path, own_model: Model | None = None, read_result: ResultReader | None = None
+) -> Trial:
+    """Return the trial of checked tables; `path`, from which files count, need not hold them. Else as `load_trial`."""
     if file.ship is None or file.model is None:
         missing = "[ship], with name and L, is" if file.ship is None else "[model], with the name of its equations, is"
         raise InputError(

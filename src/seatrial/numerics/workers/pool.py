@@ -3,8 +3,10 @@
 Results come in the order of the items whatever the number of workers, so the same seed gives the same bits.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, ThreadPoolExecutor, wait
+from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import TypeVar
 
 from seatrial.numerics.platform import usable_cores
@@ -16,14 +18,34 @@ CountReporter = Callable[[int, int], None]
 _POLL = 0.1  # s between looks at the keyboard
 
 
+@dataclass
+class _Limits:
+    """Largest number of workers that is taken where none is given, of each `limited_workers` that is active."""
+
+    counts: list[int]
+
+
+_LIMITS = _Limits([])
+
+
+@contextmanager
+def limited_workers(count: int) -> Iterator[None]:
+    """Let at most `count` workers be taken where no number is given, in all threads of this process."""
+    _LIMITS.counts.append(count)
+    try:
+        yield
+    finally:
+        _LIMITS.counts.remove(count)
+
+
 def worker_count(workers: int | None = None) -> int:
-    """Return `workers` where given, else the number of cores this process may use.
+    """Return `workers` where given, else the number of cores this process may use, or the limit if that is lower.
 
     Raises:
         ValueError: fewer than one worker.
     """
     if workers is None:
-        return usable_cores()
+        return min([usable_cores(), *_LIMITS.counts])
     if workers < 1:
         raise ValueError(f"{workers} workers cannot do anything; give at least one, or None for all cores")
     return workers

@@ -1,0 +1,148 @@
+"""Commands on campaigns: run a plan, status, gather, retry."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from typer.core import TyperGroup
+
+from seatrial.cli.application import Json, app, result_document
+from seatrial.cli.output import print_findings, print_lines, print_table, progress_reporter, write_json
+
+if TYPE_CHECKING:
+    from seatrial.core.results.campaign import CampaignStatus, CampaignSummary
+
+
+class PlanOrAction(TyperGroup):
+    """`campaign PLAN.toml` is short for `campaign run PLAN.toml`."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Put `run` before arguments that name no action."""
+        if args and args[0] not in (*self.commands, "--help"):
+            args = ["run", *args]
+        return super().parse_args(ctx, args)
+
+
+campaigns = typer.Typer(
+    cls=PlanOrAction,
+    no_args_is_help=True,
+    help="Many identifications in a store that survives kills: Monte Carlo, grids, runs left out, fleets.\n\n"
+    "Example: seatrial campaign examples/coverage.toml --out results/coverage --workers 8\n\n"
+    "Then: status STORE, gather STORE --to table.parquet, retry STORE. All take --json; a plan states its --seed.",
+)
+app.add_typer(campaigns, name="campaign")
+
+StorePath = Annotated[Path, typer.Argument(metavar="STORE", help="Folder of a campaign.")]
+Workers = Annotated[int | None, typer.Option("--workers", help="Processes of this machine; default: all cores.")]
+Threads = Annotated[bool, typer.Option("--threads", help="Threads in place of processes.")]
+Dask = Annotated[str, typer.Option("--dask", metavar="ADDRESS", help="Dask scheduler, tcp://host:8786, or 'local'.")]
+
+
+@campaigns.command("run")
+def run(
+    plan: Annotated[Path, typer.Argument(metavar="PLAN.toml", help="Plan of a campaign, see docs/campaigns.md.")],
+    out: Annotated[Path, typer.Option("--out", metavar="STORE", help="Store; an existing one is gone on with.")],
+    workers: Workers = None,
+    threads: Threads = False,
+    dask: Dask = "",
+    shard: Annotated[str, typer.Option("--shard", metavar="I/N", help="Only every N-th task, from the I-th.")] = "1/1",
+    json: Json = None,
+) -> None:
+    """Do the tasks of a plan that the store does not hold yet.
+
+    Example: seatrial campaign examples/coverage.toml --out results/coverage --workers 8
+
+    On a cluster: --dask tcp://host:8786, or a job array with --shard $SLURM_ARRAY_TASK_ID/16
+    """
+    from seatrial import api
+
+    with _resumable(out), progress_reporter() as report_progress:
+        status = api.campaign(
+            plan, out, workers=workers, threads=threads, dask=dask, shard=shard, report_progress=report_progress
+        )
+    _print_status(status)
+    if not status.remaining:
+        print(f"table and page: seatrial campaign gather {out} --to {out}.csv")
+    write_json(json, lambda: result_document(status))
+
+
+@campaigns.command("status")
+def status(store: StorePath, json: Json = None) -> None:
+    """Print how many tasks are done, failed and left.
+
+    Example: seatrial campaign status results/coverage
+    """
+    from seatrial import api
+
+    counts = api.campaign_status(store)
+    _print_status(counts)
+    write_json(json, lambda: result_document(counts))
+
+
+@campaigns.command("gather")
+def gather(
+    store: StorePath,
+    to: Annotated[Path, typer.Option("--to", metavar="FILE", help="Table, .csv or .parquet; the page stands beside.")],
+    json: Json = None,
+) -> None:
+    """Gather the results into one table, a row a coefficient and task, and a page.
+
+    Example: seatrial campaign gather results/coverage --to coverage.parquet
+    """
+    from seatrial import api
+
+    page = to.with_suffix(".html")
+    summary = api.gather_campaign(store, to, page)
+    _print_summary(summary)
+    write_json(json, lambda: result_document(summary))
+    print(f"table: {to}\nreport: {page}")
+
+
+@campaigns.command("retry")
+def retry(
+    store: StorePath, workers: Workers = None, threads: Threads = False, dask: Dask = "", json: Json = None
+) -> None:
+    """Do failed tasks again, and those that are left.
+
+    Example: seatrial campaign retry results/coverage
+    """
+    from seatrial import api
+
+    with _resumable(store), progress_reporter() as report_progress:
+        status = api.retry_campaign(store, workers=workers, threads=threads, dask=dask, report_progress=report_progress)
+    _print_status(status)
+    write_json(json, lambda: result_document(status))
+
+
+class _resumable:
+    """Says after Ctrl-C how to go on."""
+
+    def __init__(self, store: Path) -> None:
+        self._store = store
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, kind: type[BaseException] | None, error: object, trace: object) -> None:
+        if kind is KeyboardInterrupt:
+            print(f"what is finished is kept in {self._store}; the same command goes on with it")
+
+
+def _print_status(status: "CampaignStatus") -> None:
+    from seatrial.reporting.campaign import status_sentence
+
+    print_lines([status_sentence(status)])
+    if status.damaged_places:
+        print(f"journals are damaged in {status.damaged_places} places; the tasks there are done again")
+
+
+def _print_summary(summary: "CampaignSummary") -> None:
+    from seatrial.reporting.campaign import coefficient_table, outcome
+
+    print_lines(outcome(summary))
+    if summary.coefficients:
+        table = coefficient_table(summary.coefficients)
+        print_table([table.header, *table.rows], indent="  ")
+    print_lines(f"{one.count} failed: {one.example}" for one in summary.failures)
+    if summary.findings:
+        print_findings(summary.findings, 1)
