@@ -8,6 +8,7 @@ from collections.abc import Callable
 
 import against_optimisers
 import against_shipmmg
+import campaign
 import checking
 import design
 import follow
@@ -45,6 +46,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "tune": tune.run,
     "roll_decay": roll_decay.run,
     "follow": follow.run,
+    "campaign": campaign.run,
 }
 
 

@@ -63,7 +63,7 @@ def test_modules_hide_no_function() -> None:
     assert st.models.mmg is mmg
     assert st.models.roll().states == ("phi", "p")
     assert isinstance(st.control, ModuleType)
-    assert not any(isinstance(getattr(st, name), ModuleType) for name in ("design", "report", "simulate", "follow"))
+    assert not any(isinstance(one, ModuleType) for one in (st.design, st.report, st.simulate, st.follow))
 
 
 def test_importing_costs_little_and_loads_nothing_heavy() -> None:
