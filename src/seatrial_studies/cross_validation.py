@@ -4,13 +4,13 @@ Whole runs are held out, never pieces of them: neighbouring samples share wind a
 (Stone 1974, J. R. Stat. Soc. B 36, 111-147, for runs instead of observations).
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.values import InputError, ProgressReporter
+from seatrial.core.values import Array, InputError, ProgressReporter, Record
 from seatrial.data.trial import EstimateSettings
 from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, estimate_model, with_segment_seconds
 from seatrial.estimation.predict import HoldoutProtocol, WindowError, session_offsets, window_errors
@@ -115,19 +115,67 @@ def fit_folds(
     Raises:
         InputError: folds that cannot be filled, or what `identified` raises.
     """
-    settings = with_segment_seconds(settings or EstimateSettings(), model, runs)
     dealt = assign_folds(labels, folds)
+    held_out = [tuple(i for i, f in enumerate(dealt) if f == fold) for fold in range(folds)]
+    return fit_held_out(model, runs, held_out, settings, options, workers=workers, report_progress=report_progress)
+
+
+def fit_sessions(
+    model: Model,
+    runs: Runs,
+    settings: EstimateSettings | None = None,
+    options: EstimatorOptions | None = None,
+    *,
+    workers: int = 1,
+    report_progress: ProgressReporter | None = None,
+) -> tuple[Fold, ...]:
+    """Fit all sessions but one, each session held out in turn.
+
+    Raises:
+        InputError: there is but one session, or what `estimate_model` raises.
+    """
+    names = list(dict.fromkeys(runs.sessions))
+    if len(names) < 2:
+        raise InputError("all runs are of one session, so none can be held out; give [[records]] another 'session'")
+    held_out = [tuple(i for i, s in enumerate(runs.sessions) if s == name) for name in names]
+    return fit_held_out(model, runs, held_out, settings, options, workers=workers, report_progress=report_progress)
+
+
+def fit_held_out(
+    model: Model,
+    runs: Runs,
+    held_out: Sequence[tuple[int, ...]],
+    settings: EstimateSettings | None = None,
+    options: EstimatorOptions | None = None,
+    *,
+    workers: int = 1,
+    report_progress: ProgressReporter | None = None,
+) -> tuple[Fold, ...]:
+    """Fit all runs but those at the positions of each entry of `held_out`.
+
+    Raises:
+        InputError: what `estimate_model` raises.
+    """
+    settings = with_segment_seconds(settings or EstimateSettings(), model, runs)
 
     def one(fold: int) -> Fold:
-        train = [i for i, f in enumerate(dealt) if f != fold]
+        train = [i for i in range(len(runs)) if i not in held_out[fold]]
         if report_progress:
             report_progress(
-                f"fold {fold + 1} of {folds}: {len(train)} runs train, {len(dealt) - len(train)} are held out"
+                f"fold {fold + 1} of {len(held_out)}: {len(train)} runs train, {len(held_out[fold])} are held out"
             )
-        found = estimate_model(model, runs.selected(train), settings, options)
-        return Fold(tuple(i for i, f in enumerate(dealt) if f == fold), found)
+        return Fold(tuple(held_out[fold]), estimate_model(model, runs.selected(train), settings, options))
 
-    return tuple(map_in_threads(one, range(folds), workers=workers))
+    return tuple(map_in_threads(one, range(len(held_out)), workers=workers))
+
+
+OffsetRule = Callable[[Estimation, str, Record], Array]
+"""A fit, a session and its record -> what the run is given of its own, (k,)."""
+
+
+def population_offsets(estimation: Estimation, session: str, record: Record) -> Array:
+    """Return the session's estimate where it was fitted, else what the population of sessions expects, (k,)."""
+    return session_offsets(estimation, session, record).expected
 
 
 def cross_validate(
@@ -135,11 +183,12 @@ def cross_validate(
     runs: Runs,
     labels: Sequence[str],
     protocol: HoldoutProtocol | None = None,
+    offsets: OffsetRule = population_offsets,
 ) -> CrossValidation:
     """Predict windows of each fold's held-out runs with its fit; runs and labels as in `fit_folds`.
 
-    Nothing is taken from a held-out run but the first seconds of each window, for its initial state. Nuisances come
-    from training runs of the same session where there are any, else they are what the population expects.
+    Nothing is taken from a held-out run but the first seconds of each window, for its initial state, and what `offsets`
+    makes of its inputs.
 
     Raises:
         InputError: as `window_errors`.
@@ -147,7 +196,7 @@ def cross_validate(
     protocol, made = protocol or HoldoutProtocol(), []
     for number, fold in enumerate(folds):
         held, kinds = [runs.records[i] for i in fold.held_out], [labels[i] for i in fold.held_out]
-        owns = [session_offsets(fold.estimation, runs.sessions[i], runs.records[i]).expected for i in fold.held_out]
+        owns = [offsets(fold.estimation, runs.sessions[i], runs.records[i]) for i in fold.held_out]
         made += window_errors(
             fold.estimation.estimate.problem, fold.estimation.model, held, owns, kinds, protocol, number
         )

@@ -1,0 +1,136 @@
+"""What a session that was not fitted is given of its own, compared on whole sessions left out, each in turn.
+
+`SEATRIAL_DATA=folder python benchmarks/sessions.py kvlcc2_hsva` (runs left out) or `esso_osaka` (days left out; with
+`--runs`, runs). Five rules: the model is fitted without offsets; with them, and a new session has none; the plain mean
+of the training sessions, as before; the mean of their population; the same with a mean that follows the helm.
+"""
+
+import argparse
+import math
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from measure import machine
+
+from seatrial.core.values import Array, InputError, Record
+from seatrial.data.trial import EstimateMethod, load_records, load_trial
+from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs
+from seatrial.estimation.predict import HoldoutProtocol, simulate_open_loop
+from seatrial.estimation.predict.open_loop import rms_errors
+from seatrial_studies.cross_validation import Fold, OffsetRule, cross_validate, fit_sessions, population_offsets
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+WINDOW_S = {"kvlcc2_hsva": 30.0, "esso_osaka": 50.0}
+"""Windows in which runs are predicted [s]: those of the anchors in docs/estimation.md."""
+WHOLE_RUNS = ("kvlcc2_hsva",)
+"""Trials whose runs are predicted as a whole, too; no model follows a run of the pond through minutes of gusts."""
+INITIAL_S = 6.0
+"""First seconds of a run that give its initial state: one ship length of the 7 m model at 1.18 m/s."""
+
+
+def nothing(estimation: Estimation, _session: str, _record: Record) -> Array:
+    """Return the declared mean, which is zero for offsets."""
+    return np.array([p.mean for p in estimation.estimate.population.declared])
+
+
+def training_mean(estimation: Estimation, _session: str, _record: Record) -> Array:
+    """Return the plain mean over the training sessions."""
+    return estimation.estimate.session_offsets.mean(axis=0)
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """One way of giving a new session what it has of its own: a rule, and the fits it is applied to."""
+
+    name: str
+    rule: OffsetRule
+    folds: Sequence[Fold]
+
+
+def whole_run_errors(candidate: Candidate, runs: Runs) -> Array:
+    """Heading [deg] and position [m] rms over each run left out, (runs, 2); NaN where the simulation diverges."""
+    errors = np.full((len(runs), 2), math.nan)
+    for fold in candidate.folds:
+        for i in fold.held_out:
+            record, fit = runs.records[i], fold.estimation
+            own = candidate.rule(fit, runs.sessions[i], record)
+            try:
+                run = simulate_open_loop(fit.estimate.problem, fit.model, record, own, INITIAL_S)
+            except InputError:
+                continue
+            rms = rms_errors(record, run.record)
+            errors[i] = rms["psi_deg"], rms["position_m"]
+    return errors
+
+
+def population_text(folds: Sequence[Fold]) -> str:
+    """Mean, slope and deviation of each kind of offset, averages over the folds, angles in degrees."""
+    problem = folds[0].estimation.estimate.problem
+    populations = [f.estimation.estimate.population for f in folds]
+    table = np.array([(p.mean, p.slope, p.deviation) for p in populations]).mean(axis=0)
+    units = ["m/s"] * len(problem.session_parameters) + [n.unit for n in problem.nuisances]
+    parts = []
+    for name, unit, (mean, slope, deviation) in zip(problem.session_unknowns, units, table.T, strict=True):
+        factor, word = (math.degrees(1.0), "deg") if unit == "rad" else (1.0, unit)
+        follows = f" {slope * factor:+.3g} for each standard deviation of the helm" if slope else ""
+        parts.append(f"{name} {mean * factor:.3g}{follows}, between sessions {deviation * factor:.3g} {word}")
+    return "; ".join(parts)
+
+
+def main(arguments: list[str]) -> int:
+    """Print the table; 2 for bad input."""
+    parser = argparse.ArgumentParser(description="offsets of sessions that were not fitted, by five rules")
+    parser.add_argument("trial", choices=list(WINDOW_S))
+    parser.add_argument("--runs", action="store_true", help="every run is a session")
+    parser.add_argument("--method", type=EstimateMethod, help="instead of the trial's own")
+    given = parser.parse_args(arguments)
+    trial = load_trial(EXAMPLES / f"{given.trial}.toml")
+    items = load_records(trial)[0]
+    records = [i.record.resampled(trial.estimate.rate or 1.0 / i.record.dt) for i in items]
+    sessions = tuple(r.name if given.runs else i.session for r, i in zip(records, items, strict=True))
+    runs = Runs(tuple(records), sessions, trial.ship.length, trial.noise, trial.forces)
+    labels = [r.name.split("_")[0] for r in records]
+    settings = trial.estimate
+    if given.method:
+        settings = replace(settings, method=given.method, segment_s=None)
+    print(machine())
+    print(f"{given.trial}: {len(runs)} runs, {len(set(sessions))} sessions left out in turn", flush=True)
+    options = EstimatorOptions(workers=1)
+
+    def fits(**changes: object) -> tuple[Fold, ...]:
+        return fit_sessions(trial.model, runs, replace(settings, **changes), options)
+
+    def candidates() -> Iterator[Candidate]:
+        common = fits()
+        print(f"  population: {population_text(common)}")
+        yield Candidate("offsets, none for a new session", nothing, common)
+        yield Candidate("training mean", training_mean, common)
+        yield Candidate("population", population_offsets, common)
+        following = fits(covariates={"delta": "delta"})
+        print(f"  population that follows the helm: {population_text(following)}")
+        yield Candidate("population that follows the helm", population_offsets, following)
+        yield Candidate("no offsets", nothing, fits(offsets={}, current=0.0))
+
+    protocol = HoldoutProtocol(window_s=WINDOW_S[given.trial], initial_s=trial.estimate.initial_s or INITIAL_S)
+    try:
+        for candidate in candidates():
+            scored = cross_validate(candidate.folds, runs, labels, protocol, candidate.rule)
+            pooled = [scored.pooled(label) for label in scored.labels]
+            text = "".join(f"   {p.label} {p.heading_deg:5.2f} deg {p.position_m:6.3f} m" for p in pooled)
+            print(f"  {candidate.name:<34} windows of {protocol.window_s:g} s{text}", flush=True)
+            if given.trial in WHOLE_RUNS:
+                errors = whole_run_errors(candidate, runs)
+                diverged = int(np.isnan(errors[:, 0]).sum())
+                heading, position = np.nanmean(errors, axis=0)
+                print(f"  {'':<34} whole runs {heading:.2f} deg {position:.2f} m, {diverged} diverge", flush=True)
+    except InputError as error:
+        print(error, file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
