@@ -13,6 +13,7 @@ from seatrial.cli.run_errors import ERROR_DIGITS, error_text, errors_text, label
 if TYPE_CHECKING:
     from seatrial.core.results import (
         Baseline,
+        CandidateModel,
         Design,
         DisturbanceCandidate,
         Extrapolation,
@@ -243,10 +244,23 @@ def _print_model_selection(fit: "Fit") -> None:
     for m in fit.candidate_models:
         scores = (m.roll_deg,) if is_roll else (m.heading_deg, m.position_m)
         marks = ", ".join(
-            word for word, holds in (("used", m.is_chosen), ("tied", m.is_tied), (m.note, m.note)) if holds
+            word
+            for word, holds in (
+                ("used", m.is_chosen),
+                ("tied", m.is_tied),
+                (_gain_text(m), m.gain_percent),
+                (m.note, m.note),
+            )
+            if holds
         )
         rows.append([m.name, str(m.free_count), *(exact(x, ERROR_DIGITS) for x in scores), marks])
     print_table(rows, flush_left=(0, len(rows[0]) - 1))
+
+
+def _gain_text(m: "CandidateModel") -> str:
+    """By how much a model errs less, or more, than the one it extends."""
+    gain = m.gain_percent or 0.0
+    return f"{abs(gain):.1f} % {'better' if gain > 0.0 else 'worse'}"
 
 
 def _print_baselines(fit: "Fit") -> None:

@@ -9,14 +9,16 @@ from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Prior, Record
 from seatrial.data.trial import EstimateMethod, EstimateSettings, ModelFamily
 from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, estimate_model
+from seatrial.estimation.estimate.resampling import fits_without, one_step_jackknife
+from seatrial.estimation.identify.left_out_scores import groups_of, holdout_scores
 from seatrial.estimation.identify.model_selection import (
     FittedVariant,
     ModelVariant,
     _better_candidate_warning,
     apply_variant,
     fit_variants,
-    holdout_scores,
     rank_candidates,
+    select_model,
     selected_estimation,
     tied_models,
     variants,
@@ -85,6 +87,50 @@ def test_the_best_is_chosen_where_it_is_asked_for(found: Estimation) -> None:
     rows = rank_candidates(members, choose=True)
     assert [r.is_chosen for r in rows] == [False, True]
     assert tied_models(members, rows) == ()
+
+
+def test_the_simplest_within_one_standard_error_is_chosen(found: Estimation, model: Model) -> None:
+    """The richer member is a little better on average, by less than its scatter explains."""
+    rich = apply_variant(model, ModelVariant("rich", ("current_north",)))
+    better = replace(fitted(found, "rich", [0.5, 3.1, 1.9, 3.6]), model=rich)
+    own = fitted(found, "own", [1.0, 2.9, 2.2, 3.4])
+    assert [r.is_chosen for r in rank_candidates([own, better], choose=True)] == [True, False]
+    surely = replace(fitted(found, "rich", [0.5, 2.4, 1.7, 2.9]), model=rich)
+    assert [r.is_chosen for r in rank_candidates([own, surely], choose=True)] == [False, True]
+
+
+def test_what_no_craft_has_is_not_chosen(found: Estimation) -> None:
+    odd = replace(fitted(found, "odd", [0.1, 0.2, 0.3]), objections=("m_x -3 is negative",))
+    rows = rank_candidates([fitted(found, "own", [2.0, 3.0, 4.0]), odd], choose=True)
+    assert [r.is_chosen for r in rows] == [True, False]
+    assert rows[1].note == "m_x -3 is negative"
+
+
+def test_structures_that_gain_are_joined_and_the_gain_is_reported(
+    found: Estimation, model: Model, records: list[Record]
+) -> None:
+    """Nothing but noise is left to explain, so that the search ends after the first pair."""
+    declared = ModelFamily({"north": ("current_north",), "east": ("current_east",)})
+    runs = Runs.one_session_each(records, LENGTH)
+    selected = select_model(found, model, runs, 20.0, SETTINGS, OPTIONS, declared, choose=True)
+    names = [row.name for row in selected.candidates]
+    assert names[:3] == ["as in the trial", "north", "east"] and len(names) <= 4
+    assert selected.candidates[0].gain_percent is None and selected.candidates[0].is_chosen
+    assert all(row.gain_percent is not None and abs(row.gain_percent) < 20.0 for row in selected.candidates[1:])
+    assert [f.code for f in selected.findings] == ["several-looks"]
+    assert f"{len(names)} models were compared" in selected.findings[0].text
+
+
+def test_runs_are_left_out_by_session_and_by_kind(found: Estimation, records: list[Record]) -> None:
+    """Two runs of a session are predicted by the estimate without both; kinds are told by the steering."""
+    assert groups_of(["a", "b", "a"]) == [[0, 2], [1]]
+    by_pairs = one_step_jackknife(found.estimate, [[0, 1], [2], [3], [4], [5]])
+    by_runs = one_step_jackknife(found.estimate)
+    np.testing.assert_allclose(by_pairs[1:, :2], by_runs[2:, :2])
+    refit = fits_without(found.estimate, [[0, 1]])
+    np.testing.assert_allclose(by_pairs[0, :2], refit[0, :2], rtol=0.02)
+    scores = holdout_scores(found.estimate, found.model, records, 20.0)
+    assert scores.shape == (RUNS, 2)
 
 
 def test_structures_free_parameters_and_factors_widen_priors(model: Model) -> None:

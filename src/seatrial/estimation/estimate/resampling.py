@@ -3,7 +3,7 @@
 Noise levels and effective numbers of samples stay those of the joint fit, so that only the runs differ.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -20,15 +20,18 @@ ReportCount = Callable[[int, int], None]
 _NEGLIGIBLE = 1e-4
 
 
-def one_step_jackknife(estimate: PointEstimate) -> Array:
-    """Shared unknowns with each run left out by one Gauss-Newton step from stored normal equations, (runs, k)."""
+def one_step_jackknife(estimate: PointEstimate, groups: Sequence[Sequence[int]] | None = None) -> Array:
+    """Shared unknowns with each group of runs left out by one Gauss-Newton step from stored normal equations.
+
+    groups: positions of runs; None: each run by itself. Returns (groups, k).
+    """
     problem = estimate.problem
     blocks = problem.segment_normals(estimate.common_parameters, estimate.optimum.local)
     parts = [
         problem.assemble(
-            blocks, estimate.common_parameters, problem.data.run_segments(r), with_prior=False
+            blocks, estimate.common_parameters, _segments_of(estimate, group), with_prior=False
         ).without_local()
-        for r in range(len(problem.data.runs))
+        for group in groups or [[r] for r in range(len(problem.data.runs))]
     ]
     hessian = estimate.optimum.normal.without_local()[1]
     return estimate.common_parameters + jackknife_steps(
@@ -40,11 +43,25 @@ def full_jackknife(
     estimate: PointEstimate, workers: int | None = None, report_progress: ReportCount | None = None
 ) -> Array:
     """Shared unknowns with each run left out, fitted again in full, (runs, k)."""
+    return fits_without(estimate, [[r] for r in range(len(estimate.problem.data.runs))], workers, report_progress)
+
+
+def fits_without(
+    estimate: PointEstimate,
+    groups: Sequence[Sequence[int]],
+    workers: int | None = None,
+    report_progress: ReportCount | None = None,
+) -> Array:
+    """Shared unknowns with each group of runs (positions) left out, fitted again in full, (groups, k)."""
     runs = range(len(estimate.problem.data.runs))
-    chosen = [np.concatenate([estimate.problem.data.run_segments(r) for r in runs if r != out]) for out in runs]
+    chosen = [_segments_of(estimate, [r for r in runs if r not in out]) for out in groups]
     return np.array(
         map_in_threads(lambda one: _refit(estimate, one), chosen, workers=workers, report_progress=report_progress)
     )
+
+
+def _segments_of(estimate: PointEstimate, runs: Sequence[int]) -> Index:
+    return np.concatenate([estimate.problem.data.run_segments(r) for r in runs])
 
 
 def bootstrap_fits(

@@ -1,8 +1,11 @@
 """Choice of a model by cross-validation over whole runs, and the spread of the models that the runs cannot distinguish.
 
 Every member of a declared family (structure, width of priors, segment length) is fitted to all training runs; each run
-is then predicted by the member without it (one-step jackknife), in windows. Members that are not worse than the best
-one beyond the scatter over runs are tied with it (one-sided paired t-test, 95 %).
+is then predicted by the member without its session (one-step jackknife) and, where there are manoeuvres of several
+kinds, without its kind (fitted again), in windows. Members that are not worse than the best one beyond the scatter over
+runs are tied with it (one-sided paired t-test, 95 %). Where a model is to be chosen, structures that improve are joined
+step by step, and the simplest member within one standard error of the best is taken (Breiman et al. 1984,
+Classification and Regression Trees, section 3.4.3), if no physical limit speaks against it.
 """
 
 from collections.abc import Mapping, Sequence
@@ -13,18 +16,17 @@ from scipy.special import stdtrit
 
 from seatrial.core.equations import Model
 from seatrial.core.results import CandidateModel
-from seatrial.core.values import Array, Finding, InputError, Prior, ProgressReporter, Record, Severity
+from seatrial.core.values import Array, Finding, InputError, Prior, ProgressReporter, Severity
 from seatrial.data.trial import EstimateSettings, ModelFamily
 from seatrial.estimation.estimate.assemble import output_error_problem
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
 from seatrial.estimation.estimate.intervals import RUNS_FOR_JACKKNIFE
 from seatrial.estimation.estimate.point_estimate import PointEstimate, fit_output_error
-from seatrial.estimation.estimate.resampling import one_step_jackknife
 from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions
-from seatrial.estimation.predict.holdout_windows import HoldoutProtocol, split_windows, window_errors
+from seatrial.estimation.identify.left_out_scores import holdout_scores
+from seatrial.estimation.identify.physical_limits import objections
 from seatrial.estimation.predict.predict_runs import TiedModel
-from seatrial.estimation.predict.prediction_intervals import holdout_model
 from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.models.candidate_structures import FREED_PARAMETERS, PRIOR_FACTORS, SEGMENT_FACTORS
 
@@ -37,12 +39,16 @@ FREED_PRIOR_SHARE = 0.1
 
 @dataclass(frozen=True)
 class ModelVariant:
-    """What distinguishes a member: parameters freed beyond the model's, factors on priors and on segment length."""
+    """What distinguishes a member: parameters freed beyond the model's, factors on priors and on segment length.
+
+    parent: name of the member that it extends; empty: the trial's own model extends none.
+    """
 
     name: str
     freed: tuple[str, ...] = ()
     prior_factor: float = 1.0
     segment_factor: float = 1.0
+    parent: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +58,7 @@ class FittedVariant:
     Attributes:
         made: None where the fit failed, with the reason in `note`.
         scores: (runs, 2), mean rms over the windows of each run left out: heading [deg], position [m].
+        objections: why it must not be chosen, though it may predict well.
     """
 
     variant: ModelVariant
@@ -59,6 +66,7 @@ class FittedVariant:
     estimate: PointEstimate | None
     scores: Array
     note: str = ""
+    objections: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +97,9 @@ def select_model(
         InputError: a member is to be chosen and the family cannot be compared.
     """
     try:
-        fitted = fit_variants(estimation, model, runs, window_s, settings, options, family, report_progress)
+        fitted = fit_variants(
+            estimation, model, runs, window_s, settings, options, family, report_progress, choose=choose
+        )
     except InputError as error:
         if choose:
             raise
@@ -97,7 +107,24 @@ def select_model(
         return SelectedModel(estimation, (), (), (Finding(Severity.INFO, "no-family", what, str(error)),))
     rows = rank_candidates(fitted, choose=choose)
     used = selected_estimation(estimation, fitted, rows, runs, settings, options, report_progress)
-    return SelectedModel(used, rows, tied_models(fitted, rows), _better_candidate_warning(rows))
+    findings = _choice_findings(fitted, rows) if choose else _better_candidate_warning(rows)
+    return SelectedModel(used, rows, tied_models(fitted, rows), findings)
+
+
+def _choice_findings(fitted: Sequence[FittedVariant], rows: Sequence[CandidateModel]) -> tuple[Finding, ...]:
+    """Return that the chosen model's error is the least of several, and which members were not taken, and why."""
+    names = f"{len(rows)} models were compared on the same runs left out"
+    what = (
+        f"{names}: the error of the one that was chosen, '{next(r.name for r in rows if r.is_chosen)}', is optimistic"
+    )
+    advice = "judge it by a run that took no part in the choice: name one under 'validate'"
+    findings = [Finding(Severity.INFO, "several-looks", what, f"{len(rows)} looks", advice)]
+    refused = [f"'{f.variant.name}': {', '.join(f.objections)}" for f in fitted if f.objections]
+    if refused:
+        advice = "fix these parameters or narrow their priors under [model.priors], and choose again"
+        findings.append(Finding(Severity.INFO, "unphysical-models", "models whose values no craft has were not taken",
+                                "; ".join(refused), advice))  # fmt: skip
+    return tuple(findings)
 
 
 def _better_candidate_warning(candidates: Sequence[CandidateModel]) -> tuple[Finding, ...]:
@@ -120,11 +147,12 @@ def variants(model: Model, family: ModelFamily | None, is_segmented: bool) -> tu
     free, priors = set(model.parameters.free_names), any(p.prior for p in model.parameters.free)
     structures = FREED_PARAMETERS.get(model.name, {}) if family is None else family.structures
     factors = (PRIOR_FACTORS, SEGMENT_FACTORS) if family is None else (family.prior_factors, family.segment_factors)
-    members = [ModelVariant("as in the trial")]
+    first = "as in the trial"
+    members = [ModelVariant(first)]
     members += [ModelVariant(name, freed) for name, freed in structures.items() if not set(freed) <= free]
     members += [ModelVariant(f"priors x {f:g}", prior_factor=f) for f in factors[0] if priors and f != 1.0]
     members += [ModelVariant(f"segments x {f:g}", segment_factor=f) for f in factors[1] if is_segmented and f != 1.0]
-    return tuple(members)
+    return (members[0], *(replace(v, parent=first) for v in members[1:]))
 
 
 def apply_variant(model: Model, variant: ModelVariant) -> Model:
@@ -152,46 +180,87 @@ def fit_variants(
     options: EstimatorOptions,
     family: ModelFamily | None = None,
     report_progress: ProgressReporter | None = None,
+    *,
+    choose: bool = False,
 ) -> tuple[FittedVariant, ...]:
-    """Every member fitted and scored, the trial's own first.
+    """Every member fitted and scored, the trial's own first; where one is to be chosen, structures that gain joined.
 
     Raises:
         InputError: too few runs, but one member, or none that can be fitted.
     """
-    base = estimation.shooting
     if len(runs) < RUNS_FOR_JACKKNIFE:
         raise InputError(
             f"models are compared on whole runs left out, which needs at least {RUNS_FOR_JACKKNIFE} training runs; the "
             f"trial has {len(runs)}, add runs"
         )
-    seconds = _segment_seconds(base)
-    is_segmented = base.problem.data.count > len(base.problem.data.runs)
-    members = variants(model, family, is_segmented)
+    fitter = _Fitter(estimation.shooting, model, runs, window_s, settings, options, report_progress)
+    members = variants(model, family, fitter.is_segmented)
     if len(members) < 2:
         raise InputError(
             f"model '{model.name}' has no family to choose from; declare [family] with structures or prior_factors"
         )
-
-    def one(variant: ModelVariant) -> FittedVariant:
-        if report_progress:
-            report_progress(f"family: {variant.name}")
-        varied = apply_variant(model, variant)
-        segment_s = seconds * variant.segment_factor if is_segmented else np.inf
-        try:
-            problem = output_error_problem(varied, runs, segment_s, settings, workers=1)
-            old = base.problem
-            problem = replace(problem, noise=old.noise, inflation=old.inflation, huber=old.huber)
-            shared = _warm_start(base, problem.free, problem.start())
-            local = base.optimum.local if variant.segment_factor == 1.0 else problem.measured_initial_states()
-            estimate = fit_output_error(problem, shared, local, runs.noise, evaluations=options.evaluations)
-            return FittedVariant(variant, varied, estimate, holdout_scores(estimate, varied, runs.records, window_s))
-        except InputError as error:
-            return FittedVariant(variant, varied, None, np.empty((0, 2)), str(error))
-
-    fitted = tuple(map_in_threads(one, members, workers=options.workers))
+    fitted = fitter.fitted(members)
     if all(f.estimate is None for f in fitted):
         raise InputError(f"no member of the family can be fitted; the first fails because {fitted[0].note}")
-    return fitted
+    return _with_joined_structures(fitter, fitted) if choose else fitted
+
+
+@dataclass(frozen=True, eq=False)
+class _Fitter:
+    """What members are fitted to, from where, and how they are judged."""
+
+    base: PointEstimate
+    model: Model
+    runs: Runs
+    window_s: float
+    settings: EstimateSettings
+    options: EstimatorOptions
+    report_progress: ProgressReporter | None
+
+    @property
+    def is_segmented(self) -> bool:
+        return self.base.problem.data.count > len(self.base.problem.data.runs)
+
+    def fitted(self, members: Sequence[ModelVariant]) -> tuple[FittedVariant, ...]:
+        return tuple(map_in_threads(self._fitted, members, workers=self.options.workers))
+
+    def _fitted(self, variant: ModelVariant) -> FittedVariant:
+        if self.report_progress:
+            self.report_progress(f"family: {variant.name}")
+        varied, base, runs = apply_variant(self.model, variant), self.base, self.runs
+        segment_s = _segment_seconds(base) * variant.segment_factor if self.is_segmented else np.inf
+        try:
+            problem = output_error_problem(varied, runs, segment_s, self.settings, workers=1)
+            old = base.problem
+            problem = replace(
+                problem, noise=old.noise, inflation=old.inflation, huber=old.huber, population=old.population
+            )
+            shared = _warm_start(base, problem.free, problem.start())
+            local = base.optimum.local if variant.segment_factor == 1.0 else problem.measured_initial_states()
+            estimate = fit_output_error(problem, shared, local, runs.noise, evaluations=self.options.evaluations)
+            scores = holdout_scores(estimate, varied, runs.records, self.window_s)
+        except InputError as error:
+            return FittedVariant(variant, varied, None, np.empty((0, 2)), str(error))
+        values = dict(zip(estimate.problem.free, estimate.common_parameters, strict=False))
+        against = objections(varied.with_values(values), runs.records)
+        return FittedVariant(variant, varied, estimate, scores, objections=against)
+
+
+def _with_joined_structures(fitter: _Fitter, fitted: tuple[FittedVariant, ...]) -> tuple[FittedVariant, ...]:
+    """Return the members and those that join structures: the best one is extended by one more as long as it gains."""
+    single = [f.variant for f in fitted if f.variant.freed]
+    while True:
+        error = _errors(fitted)
+        structural = [i for i in error if fitted[i].variant.freed or i == 0]
+        best = fitted[min(structural, key=lambda i: float(error[i].mean()))].variant
+        more = [
+            ModelVariant(f"{best.name} + {v.name}", tuple(dict.fromkeys((*best.freed, *v.freed))), parent=best.name)
+            for v in single
+            if best.freed and not set(v.freed) <= set(best.freed)
+        ]
+        if not more or any(f.variant.parent == best.name for f in fitted):
+            return fitted
+        fitted = (*fitted, *fitter.fitted(more))
 
 
 def _segment_seconds(estimate: PointEstimate) -> float:
@@ -205,50 +274,50 @@ def _warm_start(base: PointEstimate, free: Sequence[str], start: Array) -> Array
     return np.concatenate([own, base.common_parameters[len(base.problem.free) :]])
 
 
-def holdout_scores(estimate: PointEstimate, model: Model, records: Sequence[Record], window_s: float) -> Array:
-    """Mean window error of each run by the estimate without it, (runs, 2): heading [deg], position [m].
-
-    Runs shorter than a window are left out, unless all are.
-
-    Raises:
-        InputError: a window diverges, or a run lacks position or heading in all of its windows.
-    """
-    problem, points = estimate.problem, one_step_jackknife(estimate)
-    protocol, scores = HoldoutProtocol(window_s=window_s), []
-    judged = [r for r, record in enumerate(records) if split_windows(record, protocol)] or range(len(records))
-    for r in judged:
-        record, session = records[r], problem.data.sessions[problem.data.session[problem.data.run_segments(r)[0]]]
-        by = holdout_model(replace(problem, model=model), points[r], session, record)
-        errors = window_errors(problem, by.model, [record], [by.nuisances], ["run"], protocol)
-        if not errors:
-            raise InputError(f"run '{record.name}' has no window in which both position and heading are measured")
-        scores.append((np.mean([e.heading_deg for e in errors]), np.mean([e.position_m for e in errors])))
-    return np.array(scores)
-
-
 def rank_candidates(fitted: Sequence[FittedVariant], *, choose: bool) -> tuple[CandidateModel, ...]:
-    """Mean errors and ties; used is the best member where it is to be chosen, else the trial's own, which is first."""
-    known = [i for i, f in enumerate(fitted) if f.estimate is not None]
-    unit = np.mean(np.concatenate([fitted[i].scores for i in known]), axis=0)
-    single = {i: np.mean(fitted[i].scores / unit, axis=1) for i in known}
+    """Return mean errors, gains and ties; used is the trial's own, which is first, or the one that is to be chosen."""
+    single = _errors(fitted)
     best = min(single, key=lambda i: float(single[i].mean()))
     tied = {i for i, score in single.items() if _is_tied(score - single[best])}
-    used = best if choose else 0
-    return tuple(_candidate(f, tied=i in tied, used=i == used) for i, f in enumerate(fitted))
+    used = _chosen(fitted, single) if choose else 0
+    mean = {fitted[i].variant.name: float(score.mean()) for i, score in single.items()}
+    return tuple(_candidate(f, mean, tied=i in tied, used=i == used) for i, f in enumerate(fitted))
+
+
+def _errors(fitted: Sequence[FittedVariant]) -> dict[int, Array]:
+    """Error of each run left out, (runs,), of the members that could be fitted: heading and position in their means."""
+    known = [i for i, f in enumerate(fitted) if f.estimate is not None]
+    unit = np.mean(np.concatenate([fitted[i].scores for i in known]), axis=0)
+    return {i: np.mean(fitted[i].scores / unit, axis=1) for i in known}
+
+
+def _chosen(fitted: Sequence[FittedVariant], errors: Mapping[int, Array]) -> int:
+    """Position of the member of fewest free coefficients within one standard error of the best that is a craft's."""
+    allowed = {i: error for i, error in errors.items() if not fitted[i].objections} or dict(errors)
+    best = min(allowed.values(), key=lambda error: float(error.mean()))
+    close = [i for i, error in allowed.items() if (error - best).mean() <= _standard_error(error - best)]
+    return min(close, key=lambda i: (len(fitted[i].model.parameters.free), float(allowed[i].mean())))
+
+
+def _standard_error(excess: Array) -> float:
+    return float(np.std(excess, ddof=1) / np.sqrt(len(excess))) if len(excess) > 1 else np.inf
 
 
 def _is_tied(excess: Array) -> bool:
     """Whether scores of runs are worse by no more than their scatter explains."""
-    error = np.std(excess, ddof=1) / np.sqrt(len(excess)) if len(excess) > 1 else np.inf
-    return bool(excess.mean() <= stdtrit(max(len(excess) - 1, 1), 0.95) * error)  # one-sided level; chosen
+    level = stdtrit(max(len(excess) - 1, 1), 0.95)  # one-sided level; chosen
+    return bool(excess.mean() <= level * _standard_error(excess))
 
 
-def _candidate(f: FittedVariant, *, tied: bool, used: bool) -> CandidateModel:
+def _candidate(f: FittedVariant, mean: Mapping[str, float], *, tied: bool, used: bool) -> CandidateModel:
     free = len(f.model.parameters.free)
     if f.estimate is None:
         return CandidateModel(f.variant.name, free, None, None, is_tied=False, is_chosen=used, note=f.note)
     heading, position = f.scores.mean(axis=0)
-    return CandidateModel(f.variant.name, free, float(heading), float(position), tied, used)
+    parent = mean.get(f.variant.parent)
+    gain = None if parent is None else 100.0 * (1.0 - mean[f.variant.name] / parent)
+    note = ", ".join(f.objections)
+    return CandidateModel(f.variant.name, free, float(heading), float(position), tied, used, note, gain)
 
 
 def selected_estimation(

@@ -33,5 +33,15 @@ OMITTED_PARAMETERS: Mapping[str, Mapping[str, tuple[str, ...]]] = MappingProxyTy
 )
 """Families that count the other way: which parameters a structure leaves out, at zero."""
 
+PHYSICAL_SIGNS: Mapping[str, Mapping[str, int]] = MappingProxyType(
+    {
+        "mmg": {"m_x_prime": 1, "m_y_prime": 1, "J_z_prime": 1, "R_0": 1, "Y_v": -1, "N_r": -1},
+        "abkowitz": {"X_udot": -1, "Y_vdot": -1, "N_rdot": -1, "Y_v": -1, "N_r": -1},
+        "waterjet": {"m_x": 1, "m_y": 1, "J_z": 1},
+    }
+)
+"""Sign of masses and of damping at small motions, which no choice of a model may turn: drift and yaw rate are opposed
+by the forces that they cause (Newman 1977, Marine Hydrodynamics, section 6)."""
+
 PRIOR_FACTORS = (0.5, 3.0)
 SEGMENT_FACTORS = (0.7, 1.5)  # of the segments' length, by which a choice of structure is repeated; chosen

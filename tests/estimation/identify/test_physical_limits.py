@@ -1,0 +1,42 @@
+"""Values that no craft has: signs of masses and damping, distance from priors, damping of roll over amplitudes."""
+
+import numpy as np
+
+from seatrial.core.values import Prior, Record
+from seatrial.estimation.identify.physical_limits import objections
+from seatrial.physics.models.published import kvlcc2
+from seatrial.physics.models.roll import roll
+
+DECAY = (Record.from_arrays("decay", 0.1 * np.arange(50.0), {"phi": 0.3 * np.cos(0.2 * np.arange(50.0))}),)
+
+
+def test_published_coefficients_meet_no_objection() -> None:
+    model = kvlcc2()
+    freed = model.with_parameters(model.parameters.freed("m_x_prime", "m_y_prime", "J_z_prime"))
+    assert objections(freed, ()) == ()
+
+
+def test_masses_and_damping_of_the_wrong_sign_are_named() -> None:
+    model = kvlcc2()
+    wrong = {"m_x_prime": -0.01, "Y_v": 0.2}
+    free = model.with_parameters(model.parameters.freed("m_x_prime")).with_values(wrong)
+    assert objections(free, ()) == ("m_x_prime -0.01 is negative", "Y_v 0.2 is positive")
+    assert objections(model.with_values({"m_x_prime": -0.01}), ()) == ()  # given, not estimated
+
+
+def test_values_far_off_their_prior_are_named() -> None:
+    model = kvlcc2()
+    priors = {"X_vv": Prior(model.parameters["X_vv"].value, 0.01)}
+    near = model.with_parameters(model.parameters.with_priors(priors))
+    assert objections(near, ()) == ()
+    far = near.with_values({"X_vv": priors["X_vv"].mean + 0.05})
+    assert objections(far, ()) == ("X_vv is 5.0 standard deviations off its prior",)
+
+
+def test_damping_of_roll_is_judged_over_the_measured_amplitudes() -> None:
+    base = {"c_1": 6.0, "b_1": 0.1}
+    assert objections(roll().with_values({**base, "b_2": 0.2}), DECAY) == ()
+    assert objections(roll().with_values({**base, "b_2": 0.0}), DECAY) == ()
+    assert objections(roll().with_values({**base, "b_2": -0.05}), DECAY) == ("its damping decreases with amplitude",)
+    negative = roll().with_values({**base, "b_2": -1.0})
+    assert objections(negative, DECAY) == ("its damping is negative at amplitudes that were measured",)
