@@ -78,16 +78,16 @@ class CandidateModel:
     is_tied: Annotated[bool, Field(description="not distinguishable from the best one by these runs")]
     is_chosen: bool = False
     note: Annotated[str, Field(description="why it failed; empty where it did not")] = ""
+    roll_deg: Annotated[
+        Number | None,
+        Field(description="rms over complete runs left out, degrees; null: no ship that rolls about rest"),
+    ] = None
     gain_percent: Annotated[
         Number | None,
         Field(
             description="by which the error on the runs left out (mean of heading and position, each in units of the "
             "family's mean) is less than that of the member it extends; null: the first, or failed"
         ),
-    ] = None
-    roll_deg: Annotated[
-        Number | None,
-        Field(description="rms over complete runs left out, degrees; null: no ship that rolls about rest"),
     ] = None
 
 

@@ -57,5 +57,8 @@ def _by_run(groups: Sequence[Sequence[int]], points: Array) -> Iterator[tuple[in
 
 
 def _kind(record: Record) -> str:
-    """Manoeuvre that a record shows; one word for all records that show no heading or no rudder."""
-    return str(recognise_manoeuvre(record)) if {"delta", "psi"} <= set(record.channels) else "other"
+    """Manoeuvre that a record shows; one word for all in which none can be recognised."""
+    try:
+        return str(recognise_manoeuvre(record))
+    except InputError:
+        return "other"

@@ -317,7 +317,7 @@ def _candidate(f: FittedVariant, mean: Mapping[str, float], *, tied: bool, used:
     parent = mean.get(f.variant.parent)
     gain = None if parent is None else 100.0 * (1.0 - mean[f.variant.name] / parent)
     note = ", ".join(f.objections)
-    return CandidateModel(f.variant.name, free, float(heading), float(position), tied, used, note, gain)
+    return CandidateModel(f.variant.name, free, float(heading), float(position), tied, used, note, gain_percent=gain)
 
 
 def selected_estimation(
