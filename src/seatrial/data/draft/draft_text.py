@@ -140,8 +140,9 @@ def _time_table(time: ColumnSpec) -> str:
     parts = [f"column = {_quoted(time.source)}"]
     if time.unit != "s":
         parts.append(f"unit = {_quoted(time.unit)}")
-    if isinstance(time, TimeSpec) and time.nanoseconds:
-        parts.append(f"nanoseconds = {_quoted(time.nanoseconds)}")
+    if isinstance(time, TimeSpec):
+        others = {"nanoseconds": time.nanoseconds, "date": time.date, "week": time.week}
+        parts += [f"{key} = {_quoted(source)}" for key, source in others.items() if source]
     return f"{{ {', '.join(parts)} }}"
 
 

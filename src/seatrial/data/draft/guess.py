@@ -9,7 +9,8 @@ import numpy as np
 from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.commands import command_guess
 from seatrial.data.draft.naming import NameGuess, guess_by_name
-from seatrial.data.draft.survey import ColumnSummary, LogSurvey, TopicSummary, column_values
+from seatrial.data.draft.survey import ColumnSummary, LogSurvey, TopicSummary
+from seatrial.data.draft.time_columns import column_values
 from seatrial.data.draft.unnamed import recognised_columns
 from seatrial.data.read.quantities import log_quantity
 

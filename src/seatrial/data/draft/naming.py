@@ -114,8 +114,8 @@ _WORDS = [
         (r"hdm|mag(netic)?_heading|heading_mag(netic)?", "psi_magnetic", ""),
         (r"(true_)?heading|hdg|hdt|psi|psi_hat|yaw|yaw_angle", "psi", ""),
         (r"yaw_?rate|yaw_?speed|rot|rate_of_turn|r|r_angvelo|gyro_?z|angular_velocity_z", "r", ""),
-        (r"x_ned|north(ing)?|x0|pos(ition)?_n(orth)?", "x0", ""),
-        (r"y_ned|east(ing)?|y0|pos(ition)?_e(ast)?", "y0", ""),
+        (r"x_ned|x_?north|north(ing)?|north_x|x0|pos(ition)?_n(orth)?", "x0", ""),
+        (r"y_ned|y_?east|east(ing)?|east_y|y0|pos(ition)?_e(ast)?", "y0", ""),
         (r"x_position(_mid)?|x", "x0", ""), (r"y_position(_mid)?|y", "y0", ""),
         (r"surge(_speed|_velocity)?|u_velo", "u", "", "body"), (r"sway(_speed|_velocity)?|vm?_velo", "v", "", "body"),
         (r"v(el)?_?n(orth)?|vel_north", "u", "", "earth"), (r"v(el)?_?e(ast)?|vel_east", "v", "", "earth"),
@@ -187,9 +187,10 @@ def guess_by_name(topic: str, name: str, stated_unit: str, log_format: str = "te
 
 
 def _with_unit_word(plain: str) -> list[tuple[str, str]]:
-    """The name as it is, and without a last word that is a unit."""
-    head, _, tail = plain.rpartition("_")
-    return [(plain, ""), *([(head, UNIT_WORDS[tail])] if head and tail in UNIT_WORDS else [])]
+    """The name as it is, and without its last word or two where they are a unit (``yaw_rate_deg_s``: deg/s)."""
+    words = plain.split("_")
+    ends = ((words[:-count], "/".join(words[-count:])) for count in (2, 1) if len(words) > count)
+    return [(plain, ""), *(("_".join(head), UNIT_WORDS[end]) for head, end in ends if end in UNIT_WORDS)]
 
 
 def _guess(rule: NameRule, match: re.Match[str], unit: str, evidence: str) -> NameGuess | None:

@@ -5,22 +5,13 @@ from pathlib import Path
 
 import numpy as np
 
-from seatrial.core.values import Array, InputError
 from seatrial.data.draft.text_layout import text_layout
+from seatrial.data.draft.time_columns import column_values, time_column
 from seatrial.data.read import ColumnSpec, Layout, Log, RawTable, format_of, read_log
 from seatrial.data.read.clock import stamps
+from seatrial.data.read.layout import TimeSpec
 
-# names of time columns in the order of preference; ours, from the logs of a dozen programs
-_TIME_NAMES = (
-    "time", "t", "timestamp", "utc", "time_utc", "utc_time", "timestamp_utc", "utc_timestamp", "datetime", "date_time",
-    "original_timestamp", "time_s", "time_ms", "timeus", "seconds", "sec", "clock", "zeit", "header_stamp_secs",
-)  # fmt: skip
 _LONGEST_CELL = 20  # characters of a cell that a message quotes; ours
-_DAY_S = 86400.0  # s of a day
-_MILLISECOND_STEP, _MICROSECOND_STEP = (
-    5.0,
-    5e3,
-)  # units: a median step beyond is in ms, in us (a log has 0.2 Hz or more)
 
 
 @dataclass(frozen=True)
@@ -105,7 +96,8 @@ def _topic_summary(table: RawTable, layout: Layout) -> TopicSummary:
     known = seconds[np.isfinite(seconds)]
     steps = np.diff(known)
     step = float(np.median(steps[steps > 0])) if np.any(steps > 0) else np.nan
-    own = {} if time is None else {time.source, "time" if not time.source else time.source}
+    own = set() if time is None else {time.source, "time" if not time.source else time.source}
+    own |= {time.nanoseconds, time.date, time.week} - {""} if isinstance(time, TimeSpec) else set()
     columns = [
         summary
         for index in range(len(table.names))
@@ -145,95 +137,3 @@ def _fault(table: RawTable, index: int) -> str:
         return ""
     name, cell = table.names[index] or f"{index + 1}", str(table.cells[index][row])[:_LONGEST_CELL]
     return f"'{name}': row {table.first_row + row} holds '{cell}', no number"
-
-
-def column_values(table: RawTable, index: int) -> Array | None:
-    """Return a column as numbers; None where it holds text."""
-    try:
-        return table.numbers(ColumnSpec("column", index + 1, ""))
-    except InputError:
-        return None
-
-
-def time_column(table: RawTable, layout: Layout) -> tuple[ColumnSpec | None, str]:
-    """Return the column of time stamps and how it was recognised: the format's own, by name, cells, or behaviour.
-
-    By its cells it is the only column of dates with times that increase; by behaviour the first column of numbers that
-    increases throughout in nearly equal steps.
-    """
-    from seatrial.data.read.layout import TimeSpec
-
-    if table.time_name:
-        return ColumnSpec("time", "", "s"), f"time of the {layout.format} log"
-    plain = {_plain_name(name): name for name in reversed(table.names) if name}
-    if {"header_stamp_secs", "header_stamp_nsecs"} <= set(plain):
-        spec = TimeSpec("time", "header_stamp_secs", "s", nanoseconds="header_stamp_nsecs")
-        return spec, "stamp of the message's header, seconds and nanoseconds"
-    fault = ""
-    for wanted in _TIME_NAMES:
-        if wanted in plain:
-            spec = _with_unit(table, plain[wanted])
-            fault = fault or _backwards(table, plain[wanted])
-            if spec is not None:
-                return (
-                    spec,
-                    f"named '{plain[wanted]}', {'dates and times' if spec.unit == 'utc' else 'unit by its step'}",
-                )
-    dated = [index for index in range(len(table.names)) if _has_increasing_dates(table, index)]
-    if len(dated) == 1:
-        source = table.names[dated[0]] or dated[0] + 1
-        return ColumnSpec("time", source, "utc"), "the only column of dates and times"
-    for index in range(len(table.names)):
-        values = column_values(table, index)
-        if values is not None and _is_clock(values):
-            source = table.names[index] or index + 1
-            return ColumnSpec("time", source, "s"), "the only column that increases evenly"
-    return None, fault
-
-
-def _backwards(table: RawTable, name: str) -> str:
-    """Where a clock of numbers runs backwards; empty where it does not."""
-    values = column_values(table, table.names.index(name))
-    known = np.flatnonzero(np.isfinite(values)) if values is not None else np.empty(0, dtype=np.intp)
-    back = np.flatnonzero(np.diff(values[known]) < 0.0) if values is not None else known
-    if values is None or not back.size:
-        return ""
-    row = int(known[back[0] + 1])
-    return f"'{name}' runs backwards from {values[known[back[0]]]:g} to {values[row]:g} in row {table.first_row + row}"
-
-
-def _plain_name(name: str) -> str:
-    """A column's name in small letters without what stands in brackets."""
-    return name.partition("[")[0].partition("(")[0].strip().lower().replace(" ", "_").replace("/", "_")
-
-
-def _with_unit(table: RawTable, name: str) -> ColumnSpec | None:
-    """The time column with the unit of its numbers: s, ms or us by the median step; text is read by itself."""
-    values = column_values(table, table.names.index(name))
-    if values is None:
-        return ColumnSpec("time", name, "utc")
-    steps = np.diff(values[np.isfinite(values)])
-    if not steps.size or np.any(steps < 0) or not np.any(steps > 0):
-        return None
-    step = float(np.median(steps[steps > 0]))
-    return ColumnSpec("time", name, "us" if step > _MICROSECOND_STEP else "ms" if step > _MILLISECOND_STEP else "s")
-
-
-def _has_increasing_dates(table: RawTable, index: int) -> bool:
-    """Whether a column of text holds dates with their time of day that do not go back; a day alone is no stamp."""
-    if column_values(table, index) is not None:
-        return False
-    try:
-        seconds = stamps(table, ColumnSpec("time", index + 1, "utc")).seconds
-    except InputError:
-        return False
-    dated = seconds[np.isfinite(seconds) & (seconds >= _DAY_S)]  # before: a time of day without a date
-    has_times = bool(np.any(dated % _DAY_S > 0.0))
-    return has_times and bool(np.all(np.diff(dated) >= 0.0)) and dated[0] < dated[-1]
-
-
-def _is_clock(values: Array) -> bool:
-    steps = np.diff(values)
-    if steps.size < 2 or not np.all(np.isfinite(steps)) or not np.all(steps > 0):
-        return False
-    return float(np.ptp(steps)) < 0.5 * float(np.median(steps))  # steps that differ by less than half of one: a clock
