@@ -14,6 +14,7 @@ FILE = """
 name = "craft"
 L = 1.2
 m = 17.0
+{ship}
 
 [model]
 name = "thrusters"
@@ -40,7 +41,7 @@ time = {{ column = 1 }}
 channels = {{ r = {{ column = 2, unit = "rad/s" }} }}
 """
 PARTS = {
-    "model": "", "place": "x = -0.4\ny = -0.3", "first": 'command = { channel = "command_1" }',
+    "ship": "", "model": "", "place": "x = -0.4\ny = -0.3", "first": 'command = { channel = "command_1" }',
     "second": 'command = { channel = "command_2" }', "sensors": "",
 }  # fmt: skip
 
@@ -79,6 +80,24 @@ def test_a_known_thrust_gives_masses_and_forces(tmp_path: Path) -> None:
     assert model.parameters["M_u"].free
 
 
+def test_wind_and_voltage_act_where_the_ship_has_areas_and_a_nominal_voltage(tmp_path: Path) -> None:
+    found = layout(tmp_path, ship="A_T = 0.2\nA_L = 0.5\nV_0 = 14.8")
+    assert (found.has_wind, found.has_voltage, found.mass) == (True, True, pytest.approx(1.05 * 17.0))
+    model = load_trial(tmp_path / "trial.toml").model
+    assert set(model.input_names) >= {"wind_speed", "wind_direction", "voltage"}
+    assert (model.parameters["A_L"].value, model.parameters["V_0"].value) == (0.5, 14.8)
+    assert not model.parameters["M_u"].free  # the mass is the scale of forces
+
+
+def test_a_rudder_stands_behind_its_screw(tmp_path: Path) -> None:
+    screw = 'command = { channel = "rpm_1", unit = "rpm" }\ncurve = "open-water"\ndiameter = 0.1\ndelay = 0.3'
+    rudder = "\nrudder = { x = -0.5, area = 0.01, span = 0.12 }"
+    first, _ = layout(tmp_path, first=f"{screw}{rudder}".replace("rpm_1", "rpm_2"), second=screw).thrusters
+    assert (first.rudder.channel, first.rudder.span, first.delay) == ("delta", 0.12, 0.3)  # type: ignore[union-attr]
+    with pytest.raises(InputError, match='a rudder needs the slipstream of its screw; add curve = "open-water"'):
+        layout(tmp_path, first=PARTS["first"] + rudder)
+
+
 @pytest.mark.parametrize(
     ("parts", "sentence"),
     [
@@ -90,6 +109,7 @@ def test_a_known_thrust_gives_masses_and_forces(tmp_path: Path) -> None:
         ({"first": PARTS["first"] + "\nangle = 90.0"}, 'angle = { value = 90, unit = "deg" }'),
         ({"first": PARTS["first"] + '\ncurve = "open-water"\ndiameter = 0.1'}, "give a command in rpm or rps"),
         ({"first": PARTS["first"] + '\nlagg = 0.1'}, "unknown key 'thruster.1..lagg'; did you mean 'lag'"),
+        ({"first": PARTS["first"] + "\ndelay = 0.01"}, "delay = 0.01 s; give 0 for none, or 0.1 s and more"),
         ({"model": 'damping = "some"'}, "should be 'diagonal', 'full' or 'cross-flow'"),
         ({"sensors": 'compass = "magnetic"'}, "sensors.compass"),
     ],

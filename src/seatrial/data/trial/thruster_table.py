@@ -1,6 +1,7 @@
 """`[[thruster]]`: a craft's thrusters as a trial file describes them, made the layout of the model `thrusters`."""
 
 import math
+from collections.abc import Sequence
 from typing import Annotated, Literal, Self
 
 from pydantic import BeforeValidator, Field, TypeAdapter, model_validator
@@ -12,6 +13,7 @@ from seatrial.physics.models.thruster_layout import (
     AngleInput,
     CommandInput,
     Damping,
+    Rudder,
     ThrustCurve,
     Thruster,
     ThrusterLayout,
@@ -25,6 +27,7 @@ _ZERO_AND_SPAN: dict[CommandUnit, tuple[float, float | None]] = {
 """Reading at rest and from there to full ahead where the file does not say: RC servo pulses 1100 to 1900 us; shares."""
 
 _RPM = 1.0 / 60.0  # rps, by definition
+_AREAS = frozenset({"A_T", "A_L"})
 _ADDED_SHARE = 1.05  # M_u over the mass, start: a slender hull adds some 5 % in surge; chosen
 
 
@@ -53,8 +56,17 @@ def _angle(value: object) -> object:
     return TypeAdapter(Angle).validate_python(value)
 
 
+class RudderTable(StrictTable):
+    """The rudder behind a screw: channel of its angle, place forward [m], movable area [m^2], span [m]."""
+
+    channel: str = "delta"
+    x: Annotated[float, InSi("m")]
+    area: Annotated[float, Field(gt=0)]
+    span: PositiveLength
+
+
 class ThrusterTable(StrictTable):
-    """One `[[thruster]]`: place [m], direction, command, curve, lag [s], dead band, thrust at full command [N].
+    """One `[[thruster]]`: place [m], direction, command, curve, lag and delay [s], thrust at full command [N].
 
     `same_as`: the thruster whose coefficients it shares. Lengths and angles take a unit as {value, unit}.
     """
@@ -70,9 +82,11 @@ class ThrusterTable(StrictTable):
     knots: tuple[float, ...] = ()
     diameter: PositiveLength | None = None
     lag: Annotated[float, Field(ge=0)] = DEFAULT_LAG
+    delay: Annotated[float, Field(ge=0)] = 0.0
     dead_band: Annotated[float, Field(ge=0, lt=1)] = 0.0
     bollard: Annotated[float, InSi("N", is_positive=True)] | None = None
     same_as: str = ""
+    rudder: RudderTable | None = None
 
     @model_validator(mode="after")
     def _angle_in_radians(self) -> Self:
@@ -85,18 +99,26 @@ class ThrusterTable(StrictTable):
 
 
 def thruster_layout(tables: tuple[ThrusterTable, ...], ship: Ship, damping: Damping) -> ThrusterLayout:
-    """Return the layout of a craft.
+    """Return the layout of a craft; wind acts where the ship has A_T or A_L, the batteries' voltage where it has V_0.
 
     Raises:
         InputError: no thruster; a channel, a curve or a sharing that cannot be; the mass missing where it is needed.
     """
     thrusters = tuple(_thruster(table) for table in tables)
-    needs_mass = [t.name for t in thrusters if t.bollard or t.curve is ThrustCurve.OPEN_WATER]
-    if needs_mass and "m" not in ship.particulars:
-        raise InputError(f"thruster '{needs_mass[0]}' has its thrust in newtons; give the craft's mass, ship.m [kg]")
-    mass = _ADDED_SHARE * ship.particulars["m"] if needs_mass else 1.0
-    channels = {c for t in thrusters for c in (t.command.channel, getattr(t.angle, "channel", ""))}
-    return ThrusterLayout(thrusters, damping, ship.length, mass, has_voltage="voltage" in channels)
+    has_wind = bool(_AREAS & set(ship.particulars))
+    reason = _needs_newtons(thrusters, has_wind=has_wind)
+    if reason and "m" not in ship.particulars:
+        raise InputError(f"{reason}; give the craft's mass, ship.m [kg]")
+    mass = _ADDED_SHARE * ship.particulars["m"] if reason else 1.0
+    return ThrusterLayout(thrusters, damping, ship.length, mass, has_wind, "V_0" in ship.particulars)
+
+
+def _needs_newtons(thrusters: Sequence[Thruster], *, has_wind: bool) -> str:
+    """Return what gives forces in newtons, so that masses are needed; empty: nothing does."""
+    named = [t.name for t in thrusters if t.bollard or t.curve is ThrustCurve.OPEN_WATER]
+    if named:
+        return f"thruster '{named[0]}' has its thrust in newtons"
+    return "the wind on ship.A_T and ship.A_L is a force in newtons" if has_wind else ""
 
 
 def _thruster(table: ThrusterTable) -> Thruster:
@@ -106,8 +128,15 @@ def _thruster(table: ThrusterTable) -> Thruster:
         angle = AngleInput(_channel(angle.channel, "rad", f"{where}: angle"), angle.lag, angle.rate)
     return Thruster(
         table.name, table.x, table.y, _command(table, where), angle, table.curve, table.knots, table.diameter or 0.0,
-        table.lag, table.dead_band, table.bollard or 0.0, table.same_as,
+        table.lag, table.dead_band, table.bollard or 0.0, table.same_as, table.delay, _rudder(table, where),
     )  # fmt: skip
+
+
+def _rudder(table: ThrusterTable, where: str) -> Rudder | None:
+    rudder = table.rudder
+    if rudder is None:
+        return None
+    return Rudder(_channel(rudder.channel, "rad", f"{where}: rudder"), rudder.x, rudder.area, rudder.span)
 
 
 def _command(table: ThrusterTable, where: str) -> CommandInput:

@@ -17,11 +17,8 @@ import sympy as sp
 
 from seatrial.core.equations import Model, Sheet
 from seatrial.physics.models.pose import pose_rates
-
-YASUKAWA = "Yasukawa & Yoshimura 2015, J Mar Sci Technol 20, 37-52"
-EXTENSION = "extension for records"
-KITAGAWA = "after Kitagawa et al. 2015, as used by Miyauchi et al. 2022, doi 10.1007/s00773-022-00889-3"
-WIND = "Fujiwara et al. 1998, J. Soc. Nav. Archit. Japan 183, 77-90, Fourier series in the apparent direction"
+from seatrial.physics.models.rudder import EXTENSION, KITAGAWA, YASUKAWA, RudderCoefficients, RudderFlow, normal_force
+from seatrial.physics.models.wind import SERIES, wind_force
 
 HULL_X = ("R_0", "X_vv", "X_vr", "X_rr", "X_vvvv")
 HULL_Y = ("Y_v", "Y_r", "Y_vvv", "Y_vvr", "Y_vrr", "Y_rrr")
@@ -145,36 +142,6 @@ def _propeller(sheet: Sheet, motion: _Motion, n: sp.Symbol) -> _Propeller:
     return _Propeller(u_P, n_D, D_P, thrust, X_P, Y_P, N_P)
 
 
-def _rudder_inflow(
-    sheet: Sheet, motion: _Motion, propeller: _Propeller, n: sp.Symbol, H_R: sp.Symbol
-) -> tuple[sp.Symbol, sp.Symbol]:
-    epsilon = sheet.parameter("epsilon", meaning="wake ratio, rudder over propeller", latex=r"\varepsilon")
-    kappa = sheet.parameter("kappa", meaning="slipstream acceleration at the rudder", latex=r"\kappa")
-    kappa_a = sheet.parameter("kappa_astern", 0.0, meaning="flow at the rudder over n D_P, propeller astern",
-                              source=KITAGAWA, latex=r"\kappa^-")  # fmt: skip
-    gamma_p = sheet.parameter("gamma_R_plus", meaning="flow straightening, beta_R > 0", latex=r"\gamma_R^+")
-    gamma_m = sheet.parameter("gamma_R_minus", meaning="flow straightening, beta_R < 0", latex=r"\gamma_R^-")
-    l_R = sheet.parameter("l_R_prime", meaning="effective position of the rudder over L", latex=r"\ell'_R")
-    eta = sheet.bind("eta", propeller.D_P / H_R, f"{YASUKAWA}, eta = D_P / H_R")
-    # momentum theory of the slipstream, Yasukawa and Yoshimura 2015
-    slipstream = propeller.u_P**2 + 8 / sp.pi * propeller.thrust / (motion.rho * propeller.D_P**2)
-    z = sheet.bind("z", slipstream, "square of the slipstream", "m^2/s^2")
-    z_root = sheet.bind("z_root", sp.sqrt(z**2 + motion.U_0**4), EXTENSION, "m^2/s^2")
-    u_inf = sheet.bind("u_inf", sp.sqrt((z + z_root) / 2), "slipstream far aft, positive part of z", "m/s")
-    backwash = sp.Piecewise((sp.Integer(0), n >= 0), (kappa_a * propeller.n_D, True))
-    inside = epsilon * (propeller.u_P + kappa * (u_inf - propeller.u_P)) + backwash
-    u_slip = sheet.bind("u_slip", inside, f"{YASUKAWA}, u_R inside the slipstream; astern {KITAGAWA}", "m/s")
-    u_free = sheet.bind("u_free", epsilon * propeller.u_P, f"{YASUKAWA}, u_R", "m/s")
-    both = eta * u_slip * sp.Abs(u_slip) + (1 - eta) * u_free * sp.Abs(u_free)
-    square = sheet.bind("u_R_2", both, f"{YASUKAWA}, u_R, squared", "m^2/s^2")
-    root = sheet.bind("u_R_abs", sp.sqrt(square**2 + motion.U_0**4), EXTENSION, "m^2/s^2")
-    u_R = sheet.bind("u_R", square / sp.sqrt(root), f"{YASUKAWA}, u_R", "m/s")
-    v_B = sheet.bind("v_B", motion.U * motion.beta - l_R * motion.r_L, f"{YASUKAWA}, U beta_R", "m/s")
-    side = sp.Piecewise((gamma_p, v_B > 0), (gamma_m, True))
-    gamma_R = sheet.bind("gamma_R", side, f"{YASUKAWA}, gamma_R by the side of beta_R")
-    return u_R, sheet.bind("v_R", gamma_R * v_B, f"{YASUKAWA}, v_R", "m/s")
-
-
 def _rudder(
     sheet: Sheet, motion: _Motion, propeller: _Propeller, n: sp.Symbol
 ) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
@@ -186,13 +153,22 @@ def _rudder(
     a_H = sheet.parameter("a_H", meaning="rudder force increase", latex="a_H")
     x_H = sheet.parameter("x_H_prime", meaning="position of the additional force over L", latex="x'_H")
     Y_dd, N_dd = (_coefficient(sheet, name, "even in the rudder angle, single screw") for name in ("Y_dd", "N_dd"))
-    u_R, v_R = _rudder_inflow(sheet, motion, propeller, n, H_R)
-    sine = sheet.bind("sin_delta", sp.sin(motion.delta_R), "of the rudder angle")
-    cosine = sheet.bind("cos_delta", sp.cos(motion.delta_R), "of the rudder angle")
-    U_R = sheet.bind("U_R", sp.sqrt(u_R**2 + v_R**2 + motion.U_0**2), f"{YASUKAWA}, U_R", "m/s")
-    normal = motion.rho / 2 * A_R * f_alpha * U_R * (u_R * sine - v_R * cosine)
-    source = f"{YASUKAWA}, normal force: U_R sin(alpha_R) = u_R sin(delta) - v_R cos(delta)"
-    F_N = sheet.bind("F_N", normal, source, "N")
+    rudder = RudderCoefficients(
+        A_R, H_R, f_alpha,
+        sheet.parameter("epsilon", meaning="wake ratio, rudder over propeller", latex=r"\varepsilon"),
+        sheet.parameter("kappa", meaning="slipstream acceleration at the rudder", latex=r"\kappa"),
+        sheet.parameter("kappa_astern", 0.0, meaning="flow at the rudder over n D_P, propeller astern",
+                        source=KITAGAWA, latex=r"\kappa^-"),
+        sheet.parameter("gamma_R_plus", meaning="flow straightening, beta_R > 0", latex=r"\gamma_R^+"),
+        sheet.parameter("gamma_R_minus", meaning="flow straightening, beta_R < 0", latex=r"\gamma_R^-"),
+        sheet.parameter("l_R_prime", meaning="effective position of the rudder over L", latex=r"\ell'_R"),
+    )  # fmt: skip
+    flow = RudderFlow(
+        motion.U, motion.beta, motion.r_L, motion.U_0, motion.rho, n, propeller.n_D, propeller.D_P, propeller.u_P,
+        propeller.thrust,
+    )  # fmt: skip
+    force = normal_force(sheet, flow, rudder, motion.delta_R)
+    F_N, sine, cosine = force.F_N, force.sine, force.cosine
     even = sheet.bind("even", motion.q * (motion.U * motion.delta_R) ** 2, EXTENSION, "N")
     F_C = sheet.bind("F_C", F_N * cosine, "athwartships part of the normal force", "N")
     X_R = sheet.bind("X_R", -(1 - t_R) * F_N * sine, f"{YASUKAWA}, rudder forces", "N")
@@ -200,37 +176,6 @@ def _rudder(
     yaw = motion.L * (-(x_R + a_H * x_H) * F_C + N_dd * even)
     N_R = sheet.bind("N_R", yaw, f"{YASUKAWA}, rudder forces; N_dd {EXTENSION}", "N m")
     return X_R, Y_R, N_R
-
-
-def _wind(
-    sheet: Sheet, motion: _Motion, psi: sp.Symbol, current: tuple[sp.Symbol, sp.Symbol]
-) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
-    """Return the wind force; the apparent wind is that of the ship over ground, current included."""
-    speed, direction = sheet.input("wind_speed"), sheet.input("wind_direction")
-    A_T = sheet.parameter("A_T", 0.0, "m^2", "transverse projected area above water, 0: no wind force")
-    A_L = sheet.parameter("A_L", 0.0, "m^2", "lateral projected area above water, 0: no wind force")
-    rho_air = sheet.parameter("rho_air", 1.22, "kg/m^3", "air density", "ISO 2533, 15 degC", latex=r"\rho_A")
-    c = {
-        name: sheet.parameter(name, 0.0, meaning="wind force coefficient", scale=0.1, latex=f"C_{{{name[2:]}}}")
-        for name in ("C_X0", "C_X1", "C_X3", "C_Y1", "C_Y3", "C_N1", "C_N2", "C_N3")
-    }
-    north, east = current
-    sine = sheet.bind("sin_psi", sp.sin(psi), "of the heading")
-    cosine = sheet.bind("cos_psi", sp.cos(psi), "of the heading")
-    air_north = sheet.bind("air_north", north + speed * sp.cos(direction), "water against air", "m/s")
-    air_east = sheet.bind("air_east", east + speed * sp.sin(direction), "water against air", "m/s")
-    u_A = sheet.bind("u_A", motion.u + air_north * cosine + air_east * sine, "apparent wind from ahead", "m/s")
-    v_A = sheet.bind("v_A", motion.v - air_north * sine + air_east * cosine, "apparent wind from starboard", "m/s")
-    V_A = sheet.bind("V_A", sp.sqrt(u_A**2 + v_A**2 + motion.U_0**2), "apparent wind speed", "m/s")
-    k = sheet.bind("cos_gamma", u_A / V_A, "of the apparent direction, off the bow")
-    s = sheet.bind("sin_gamma", v_A / V_A, "of the apparent direction, positive from starboard")
-    q_A = sheet.bind("q_A", rho_air / 2 * V_A**2, "dynamic pressure of the wind", "N/m^2")
-    C_X = sheet.bind("C_X", c["C_X0"] + c["C_X1"] * k + c["C_X3"] * (4 * k**3 - 3 * k), WIND)
-    C_Y = sheet.bind("C_Y", c["C_Y1"] * s + c["C_Y3"] * (3 * s - 4 * s**3), WIND)
-    C_N = sheet.bind("C_N", c["C_N1"] * s + c["C_N2"] * 2 * s * k + c["C_N3"] * (3 * s - 4 * s**3), WIND)
-    X_W = sheet.bind("X_W", q_A * A_T * C_X, WIND, "N")
-    Y_W = sheet.bind("Y_W", q_A * A_L * C_Y, WIND, "N")
-    return X_W, Y_W, sheet.bind("N_W", q_A * A_L * motion.L * C_N, WIND, "N m")
 
 
 def _accelerations(sheet: Sheet, motion: _Motion, X: sp.Symbol, Y: sp.Symbol, N: sp.Symbol) -> None:
@@ -274,9 +219,9 @@ def mmg() -> Model:
     X_H, Y_H, N_H = _hull(sheet, at)
     by = _propeller(sheet, at, n)
     X_R, Y_R, N_R = _rudder(sheet, at, by, n)
-    X_W, Y_W, N_W = _wind(sheet, at, psi, current)
-    X = sheet.bind("X_sum", X_H + by.X_P + X_R + X_W, f"{YASUKAWA}, X of the equations of motion", "N")
-    Y = sheet.bind("Y_sum", Y_H + by.Y_P + Y_R + Y_W, f"{YASUKAWA}, Y of the equations of motion", "N")
-    N = sheet.bind("N_sum", N_H + by.N_P + N_R + N_W, f"{YASUKAWA}, N_m of the equations of motion", "N m")
+    wind = wind_force(sheet, (u, v, psi), current, at.L, at.U_0, SERIES)
+    X = sheet.bind("X_sum", X_H + by.X_P + X_R + wind.X, f"{YASUKAWA}, X of the equations of motion", "N")
+    Y = sheet.bind("Y_sum", Y_H + by.Y_P + Y_R + wind.Y, f"{YASUKAWA}, Y of the equations of motion", "N")
+    N = sheet.bind("N_sum", N_H + by.N_P + N_R + wind.N, f"{YASUKAWA}, N_m of the equations of motion", "N m")
     _accelerations(sheet, at, X, Y, N)
     return sheet.model()

@@ -2,16 +2,27 @@
 
 import math
 from dataclasses import dataclass
+from functools import partial
 
 import sympy as sp
 
 from seatrial.core.equations import Sheet
-from seatrial.physics.models.thruster_layout import MIN_LAG, AngleInput, ThrustCurve, Thruster, ThrusterLayout
+from seatrial.physics.models.planar_force import PlanarForce
+from seatrial.physics.models.thruster_layout import (
+    MIN_DELAY,
+    MIN_LAG,
+    AngleInput,
+    ThrustCurve,
+    Thruster,
+    ThrusterLayout,
+)
+from seatrial.physics.models.thruster_rudders import CraftFlow, Screw, rudder_force
 
 FOSSEN_THRUST = "Fossen 2021, section 9.2, thrust configuration"
 FOSSEN_PROPELLER = "Fossen 2021, eq. (9.5), T = rho D^4 K_T(J) n |n|"
 CURVE = "four-quadrant curve fitted to field records (docs/thrusters.md)"
 LAG = "Fossen 2021, section 9.8, actuator of first order; time constants up and down"
+DELAY = "delay as two equal time constants in a row, which delay by their sum"
 
 _EXPONENT = {ThrustCurve.QUADRATIC: 2, ThrustCurve.LINEAR: 1}
 _LAG_FACTOR = 25.0  # largest over starting time constant, chosen: beyond, a lag is a constant
@@ -40,15 +51,6 @@ class Water:
     voltage: sp.Expr
 
 
-@dataclass(frozen=True)
-class ThrusterForce:
-    """Forces of one thruster ahead, to starboard and about the origin."""
-
-    X: sp.Symbol
-    Y: sp.Symbol
-    N: sp.Symbol
-
-
 class ThrusterSheet:
     """Writes the thrusters of a layout on a sheet; thrusters that share coefficients declare them once."""
 
@@ -56,8 +58,9 @@ class ThrusterSheet:
         self.sheet, self.layout = sheet, layout
         self._coefficients: dict[str, sp.Symbol] = {}
         self._inputs: dict[str, sp.Symbol] = {}
+        self._screws: dict[str, Screw] = {}
 
-    def force(self, thruster: Thruster, water: Water) -> ThrusterForce:
+    def force(self, thruster: Thruster, water: Water) -> PlanarForce:
         """Write command, direction, inflow, thrust and force of a thruster."""
         name, sheet = thruster.name, self.sheet
         share = self._share_of_full(thruster)
@@ -73,7 +76,18 @@ class ThrusterSheet:
         T = sheet.output(f"T_{name}", self._thrust(thruster, share, w) * water.voltage, CURVE, "N")
         X = sheet.bind(f"X_{name}", T * cosine, FOSSEN_THRUST, "N")
         Y = sheet.bind(f"Y_{name}", T * sine, FOSSEN_THRUST, "N")
-        return ThrusterForce(X, Y, sheet.bind(f"N_{name}", x * Y - y * X, FOSSEN_THRUST, "N m"))
+        return PlanarForce(X, Y, sheet.bind(f"N_{name}", x * Y - y * X, FOSSEN_THRUST, "N m"))
+
+    def rudder_forces(self, flow: CraftFlow) -> list[PlanarForce]:
+        """Write the forces of the rudders behind screws, whose thrusters are written already."""
+        return [
+            rudder_force(
+                self.sheet, thruster, thruster.rudder, self._input(thruster.rudder.channel),
+                self._screws[thruster.name], flow, partial(self._coefficient, thruster),
+            )
+            for thruster in self.layout.thrusters
+            if thruster.rudder is not None
+        ]  # fmt: skip
 
     def _coefficient(
         self, thruster: Thruster, symbol: str, value: float, unit: str, meaning: str, *,
@@ -97,6 +111,8 @@ class ThrusterSheet:
         zero = sheet.parameter(f"zero_{name}", command.zero, meaning="command at rest", source="layout", scale=0.02)
         span = sheet.parameter(f"span_{name}", command.span, meaning="full command from there", source="layout")
         order = sheet.bind(f"order_{name}", (self._input(command.channel) - zero) / span, "share of full command")
+        if thruster.delay:
+            order = self._delayed(thruster, order)
         if not thruster.lag:
             return order
         lag = self.layout.leader(thruster).lag
@@ -113,6 +129,16 @@ class ThrusterSheet:
         )
         sheet.rate(c, gap / (down + (tau - down) * up), LAG)
         return c
+
+    def _delayed(self, thruster: Thruster, order: sp.Symbol) -> sp.Symbol:
+        name, delay = thruster.name, self.layout.leader(thruster).delay
+        half = self._coefficient(
+            thruster, "delay", delay, "s", "delay of the command", lower=MIN_DELAY, upper=_LAG_FACTOR * delay
+        ) / 2  # fmt: skip
+        first, last = self.sheet.states(f"late_1_{name} late_2_{name}")
+        self.sheet.rate(first, (order - first) / half, DELAY)
+        self.sheet.rate(last, (first - last) / half, DELAY)
+        return last
 
     def _direction(self, thruster: Thruster) -> sp.Expr:
         name, sheet = thruster.name, self.sheet
@@ -224,4 +250,6 @@ class ThrusterSheet:
         nD = sheet.bind(f"nD_{name}", n * D, FOSSEN_PROPELLER, "m/s")
         V = sheet.bind(f"V_{name}", w * (1 - wake), FOSSEN_PROPELLER, "m/s")
         K = sp.Piecewise((nD * (k[0] * nD + k[1] * V) + k[2] * V * sp.Abs(V), nD > 0), (back * nD**2, True))
-        return (1 - deduction) * rho_t * D**2 * K
+        own = sheet.bind(f"own_{name}", rho_t * D**2 * K, FOSSEN_PROPELLER, "N")
+        self._screws[name] = Screw(n, nD, D, V, own, rho_t)
+        return (1 - deduction) * own

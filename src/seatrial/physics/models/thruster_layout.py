@@ -13,6 +13,8 @@ from seatrial.core.values import InputError, spelling_hint
 MIN_LAG = 0.05
 """Least time constant of a thruster [s] that equations with a state for it can hold at 10 Hz; chosen."""
 
+MIN_DELAY = 2.0 * MIN_LAG
+"""Least delay [s] that two time constants in a row can hold at 10 Hz; chosen."""
 
 DEFAULT_LAG = 0.2
 """Time constant of a small electric thruster [s] where a search starts; chosen."""
@@ -67,6 +69,22 @@ class CommandInput:
 
 
 @dataclass(frozen=True)
+class Rudder:
+    """The rudder behind a screw.
+
+    Attributes:
+        channel: of its angle [rad, positive turns to starboard], such as ``delta``.
+        x: place forward of the origin [m]; it stands as far to the side as the screw.
+        area: movable [m^2]; span: height [m].
+    """
+
+    channel: str
+    x: float
+    area: float
+    span: float
+
+
+@dataclass(frozen=True)
 class Thruster:
     """One thruster.
 
@@ -78,9 +96,11 @@ class Thruster:
         knots: commands (shares of full command, rising through 0) at which the curve of ``knots`` has a coefficient.
         diameter: of the propeller [m], for ``open-water``.
         lag: start value of the time constant of spinning up and down [s]; 0: thrust follows the command at once.
+        delay: start value of the time by which it follows its command late [s]; 0: none.
         dead_band: share of full command below which there is no thrust.
         bollard: thrust at full command ahead in water at rest [N], measured; 0: unknown.
         same_as: name of the thruster whose coefficients it shares; empty: it has its own.
+        rudder: behind it, where its curve is ``open-water``.
     """
 
     name: str
@@ -95,6 +115,8 @@ class Thruster:
     dead_band: float = 0.0
     bollard: float = 0.0
     same_as: str = ""
+    delay: float = 0.0
+    rudder: Rudder | None = None
 
     def __post_init__(self) -> None:
         where = f"thruster '{self.name}'"
@@ -106,6 +128,10 @@ class Thruster:
             raise InputError(f"{where}: dead_band is a share of full command, at least 0 and below 1")
         if self.lag and self.lag < MIN_LAG:
             raise InputError(f"{where}: lag = {self.lag:g} s; give 0 for none, or {MIN_LAG:g} s and more")
+        if self.delay and self.delay < MIN_DELAY:
+            raise InputError(f"{where}: delay = {self.delay:g} s; give 0 for none, or {MIN_DELAY:g} s and more")
+        if self.rudder is not None and self.curve is not ThrustCurve.OPEN_WATER:
+            raise InputError(f'{where}: a rudder needs the slipstream of its screw; add curve = "open-water"')
         if self.curve is ThrustCurve.OPEN_WATER and not self.diameter > 0.0:
             raise InputError(f"{where}: an open-water curve needs the propeller's diameter; add diameter = ... [m]")
         if self.curve is ThrustCurve.KNOTS:
@@ -117,6 +143,11 @@ def _require_knots(where: str, knots: tuple[float, ...]) -> None:
         raise InputError(
             f"{where}: give knots as rising shares of full command through 0, such as [-1, -0.5, 0, 0.5, 1]"
         )
+
+
+def _structure(thruster: Thruster) -> tuple[object, ...]:
+    """What thrusters that share coefficients have in common."""
+    return thruster.curve, thruster.knots, bool(thruster.lag), bool(thruster.delay)
 
 
 @dataclass(frozen=True)
@@ -159,13 +190,20 @@ class ThrusterLayout:
             raise InputError(f"{where}: '{leader}' shares the coefficients of '{first.same_as}'; name that one")
         if thruster.bollard and thruster.bollard != first.bollard:
             raise InputError(f"{where}: it has the thrust of '{leader}'; give bollard there")
-        if (first.curve, first.knots, bool(first.lag)) != (thruster.curve, thruster.knots, bool(thruster.lag)):
-            raise InputError(f"{where}: it and '{leader}' have different curves, knots or lags; give both the same")
+        if _structure(first) != _structure(thruster):
+            raise InputError(
+                f"{where}: it and '{leader}' have different curves, knots, lags or delays; give both the same"
+            )
 
     @property
     def has_bollard(self) -> bool:
         """Whether the thrust of some thruster is known in newtons, so that motions show masses and forces."""
         return any(thruster.bollard > 0.0 for thruster in self.thrusters)
+
+    @property
+    def has_rudders(self) -> bool:
+        """Whether a rudder stands behind some screw."""
+        return any(thruster.rudder is not None for thruster in self.thrusters)
 
     @cached_property
     def leaders(self) -> tuple[Thruster, ...]:

@@ -1,6 +1,6 @@
 """Craft with thrusters in three degrees of freedom: any number of them, fixed or azimuth (Fossen 2021, ch. 6 and 9).
 
-    M dnu/dt + C(M) nu + D(nu) nu = sum of B_i T_i + wind,   nu = (u, v, r) through the water
+    M dnu/dt + C(M) nu + D(nu) nu = sum of B_i T_i + rudders + wind,   nu = (u, v, r) through the water
 
 Origin where the layout puts it, x forward, y to starboard, psi clockwise; coefficients carry the signs of Fossen: drag
 is negative. Of mass and added mass, motions show sums only: M_u = m + m_x, M_v = m + m_y, M_r = I_z + J_z and
@@ -13,9 +13,12 @@ import math
 import sympy as sp
 
 from seatrial.core.equations import Model, Sheet
-from seatrial.physics.models.pose import pose_rates
-from seatrial.physics.models.thruster_forces import ThrusterForce, ThrusterSheet, Water
+from seatrial.physics.models.planar_force import PlanarForce
+from seatrial.physics.models.pose import Current, pose_rates
+from seatrial.physics.models.thruster_forces import ThrusterSheet, Water
 from seatrial.physics.models.thruster_layout import CATAMARAN, Damping, ThrusterLayout
+from seatrial.physics.models.thruster_rudders import craft_flow
+from seatrial.physics.models.wind import SYMMETRIC, wind_force
 
 FOSSEN = "Fossen 2021, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed."
 HULL = f"{FOSSEN}, section 6.5, damping"
@@ -39,6 +42,7 @@ _WEIGHTS = (0.1012285362903763, 0.2223810344533745, 0.3137066458778873, 0.362683
 """Gauss-Legendre rule of eight points, its negative half (Abramowitz & Stegun 1964, table 25.4)."""
 _GYRATION = 0.1  # I_z + J_z over M_u L^2, start: a radius of gyration of about 0.3 L, water included; chosen
 _BOUNDS = (0.05, 30.0)  # of masses and inertia over where they start: beyond, no craft; chosen
+_EMPTY = sp.Float(0.01)  # share of the nominal voltage below which a power of it is held; chosen
 _SCALE = 0.05  # size of a coefficient that counts, on each kg of M_u for a hull of 1 m; chosen
 
 
@@ -54,17 +58,33 @@ def thrusters(layout: ThrusterLayout = CATAMARAN) -> Model:
     voltage = _voltage_factor(sheet) if layout.has_voltage else sp.Integer(1)
     writer, water = ThrusterSheet(sheet, layout), Water(u, v, r, voltage)
     forces = [writer.force(thruster, water) for thruster in layout.thrusters]
-    pose_rates(sheet, u, v, r, psi, x0, y0)
+    current = pose_rates(sheet, u, v, r, psi, x0, y0)
     X_T, Y_T, N_T = (
         sheet.bind(f"{axis}_T_sum", sp.Add(*(getattr(f, axis) for f in forces)), "all thrusters", unit)
         for axis, unit in (("X", "N"), ("Y", "N"), ("N", "N m"))
     )
-    hull = _hull(sheet, layout, water, ThrusterForce(X_T, Y_T, N_T))
-    X = sheet.bind("X_sum", hull.X + X_T, MASSES, "N")
-    Y = sheet.bind("Y_sum", hull.Y + Y_T, MASSES, "N")
-    N = sheet.bind("N_sum", hull.N + N_T, MASSES, "N m")
-    _accelerations(sheet, layout, water, ThrusterForce(X, Y, N))
+    hull = _hull(sheet, layout, water, PlanarForce(X_T, Y_T, N_T))
+    others = _rudders_and_wind(writer, water, psi, current)
+    X = sheet.bind("X_sum", sp.Add(hull.X, X_T, *(f.X for f in others)), MASSES, "N")
+    Y = sheet.bind("Y_sum", sp.Add(hull.Y, Y_T, *(f.Y for f in others)), MASSES, "N")
+    N = sheet.bind("N_sum", sp.Add(hull.N, N_T, *(f.N for f in others)), MASSES, "N m")
+    _accelerations(sheet, layout, water, PlanarForce(X, Y, N))
     return sheet.model()
+
+
+def _rudders_and_wind(writer: ThrusterSheet, water: Water, psi: sp.Symbol, current: Current) -> list[PlanarForce]:
+    """Forces of the rudders behind screws, and of the wind where the layout has it."""
+    sheet, layout = writer.sheet, writer.layout
+    if not layout.has_wind and not layout.has_rudders:
+        return []
+    L = sheet.parameter("L", layout.length, "m", "length", "layout")
+    U_0 = sheet.parameter("U_0", 1e-3, "m/s", "speed below which denominators are rounded off", "chosen")
+    forces: list[PlanarForce] = []
+    if layout.has_rudders:
+        forces += writer.rudder_forces(craft_flow(sheet, water.u, water.v, water.r, L, U_0))
+    if layout.has_wind:
+        forces.append(wind_force(sheet, (water.u, water.v, psi), current, L, U_0, SYMMETRIC, free=True))
+    return forces
 
 
 def _voltage_factor(sheet: Sheet) -> sp.Symbol:
@@ -72,7 +92,8 @@ def _voltage_factor(sheet: Sheet) -> sp.Symbol:
     V = sheet.input("voltage")
     V_0 = sheet.parameter("V_0", 12.0, "V", "nominal voltage", "chosen", lower=0.1)
     k_V = sheet.parameter("k_V", 0.0, "1", "power of the voltage", "none assumed", free=True, scale=0.5)
-    return sheet.bind("V_factor", (V / V_0) ** k_V, "thrust changes with a power of the voltage")
+    share = sheet.bind("V_share", sp.Piecewise((V / V_0, V > _EMPTY * V_0), (_EMPTY, True)), "voltage over the nominal")
+    return sheet.bind("V_factor", share**k_V, "thrust changes with a power of the voltage")
 
 
 def _coefficient(sheet: Sheet, layout: ThrusterLayout, name: str, entry: tuple[float, str, int, bool]) -> sp.Symbol:
@@ -83,7 +104,7 @@ def _coefficient(sheet: Sheet, layout: ThrusterLayout, name: str, entry: tuple[f
     return sheet.parameter(name, value * size, unit, "hull damping", HULL, free=free, upper=upper, scale=_SCALE * size)
 
 
-def _hull(sheet: Sheet, layout: ThrusterLayout, water: Water, thrust: ThrusterForce) -> ThrusterForce:
+def _hull(sheet: Sheet, layout: ThrusterLayout, water: Water, thrust: PlanarForce) -> PlanarForce:
     """Damping; terms even in u act astern as ahead. Those that the layout's damping leaves out stay fixed at zero."""
     is_strips = layout.damping is Damping.CROSS_FLOW
     names = [n for n in (*_DIAGONAL, *_COUPLED) if not (is_strips and n in ("Y_vv", "N_rr"))]
@@ -106,7 +127,7 @@ def _hull(sheet: Sheet, layout: ThrusterLayout, water: Water, thrust: ThrusterFo
         + c["N_u"] * u + c["N_uu"] * fast * u,
         HULL, "N m",
     )  # fmt: skip
-    return ThrusterForce(X, Y, N)
+    return PlanarForce(X, Y, N)
 
 
 def _strips(sheet: Sheet, layout: ThrusterLayout, water: Water) -> tuple[sp.Symbol, sp.Symbol]:
@@ -129,7 +150,7 @@ def _strips(sheet: Sheet, layout: ThrusterLayout, water: Water) -> tuple[sp.Symb
     return sheet.bind("Y_flow", sp.Add(*Y), STRIPS, "N"), sheet.bind("N_flow", sp.Add(*N), STRIPS, "N m")
 
 
-def _accelerations(sheet: Sheet, layout: ThrusterLayout, water: Water, force: ThrusterForce) -> None:
+def _accelerations(sheet: Sheet, layout: ThrusterLayout, water: Water, force: PlanarForce) -> None:
     """Accelerations; X_m, Y_m, N_m are forces with the Coriolis terms moved to their side."""
     u, v, r, m, (low, high) = water.u, water.v, water.r, layout.mass, _BOUNDS
     inertia = _GYRATION * m * layout.length**2
