@@ -9,7 +9,7 @@ from seatrial.physics.models.planar_force import PlanarForce
 from seatrial.physics.models.pose import Current
 
 WIND = "Fujiwara et al. 1998, J. Soc. Nav. Archit. Japan 183, 77-90, Fourier series in the apparent direction"
-SERIES = dict.fromkeys(("C_X0", "C_X1", "C_X3", "C_Y1", "C_Y3", "C_N1", "C_N2", "C_N3"), 0.0)
+SERIES: dict[str, float] = dict.fromkeys(("C_X0", "C_X1", "C_X3", "C_Y1", "C_Y3", "C_N1", "C_N2", "C_N3"), 0.0)
 """Coefficients of the series; none acts until it has a value."""
 SYMMETRIC = {"C_X1": -0.7, "C_Y1": -0.8, "C_N2": 0.0}
 """Those of a craft symmetrical fore and aft, where a search starts: the middle of typical values (Fossen 2021, section
