@@ -12,7 +12,7 @@ from seatrial.physics.models.thruster_layout import Rudder, Thruster
 
 Coefficient = Callable[..., sp.Symbol]
 
-KVLCC2 = f"{YASUKAWA}, table 3, KVLCC2 model"
+# start value by Yasukawa & Yoshimura 2015, table 3 (gamma_R: between its two sides), meaning, and whether it is free
 _COEFFICIENTS = {
     "epsilon": (1.09, "wake ratio, rudder over propeller", False),
     "kappa": (0.5, "slipstream acceleration at the rudder", False),
@@ -22,7 +22,7 @@ _COEFFICIENTS = {
     "t_R": (0.387, "steering resistance deduction", False),
     "a_H": (0.312, "rudder force increase", False),
     "x_H_prime": (-0.464, "position of the additional force over L", False),
-}  # start values of Yasukawa & Yoshimura 2015, table 3 (gamma_R: between its two sides), and whether they are free
+}
 _SCALE = 0.05
 """Size of a dimensionless coefficient that counts; chosen."""
 
