@@ -1,14 +1,14 @@
-"""Two fixed thrusters, simulated truth: errors of every coefficient over the Cramer-Rao bound, and coverage.
+"""Simulated truth: errors of every coefficient over the Cramer-Rao bound, and coverage, for three craft with thrusters.
 
-    python benchmarks/thrusters_truth.py [--runs 400] [--write DIR]
+    python benchmarks/thrusters_truth.py [--craft two-fixed | azimuths | twin-screw] [--runs 400] [--write DIR]
 
-Three runs of steps of both thrusters (60 s at 10 Hz); each draw adds white noise to all six channels, estimates all
-free coefficients without a guess and without priors, and notes whether the 95 % intervals hold. --write keeps the
-records of the first draw as CSV files, those of examples/thrusters.
+Three runs of steps of all commands (60 s at 10 Hz); each draw adds white noise to all six channels, estimates all free
+coefficients without a guess and without priors, from several starts, and notes whether the 95 % intervals hold. --write
+keeps the records of the first draw as CSV files, those of examples/thrusters.
 """
 
 import argparse
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -19,34 +19,111 @@ from seatrial.core.values import Array, InputError, Record
 from seatrial.data.trial import EstimateSettings, FitCriterion
 from seatrial.estimation.estimate import EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.estimate.assemble import output_error_problem
-from seatrial.physics.models import model_named
+from seatrial.physics.models.thruster_layout import (
+    CATAMARAN,
+    AngleInput,
+    CommandInput,
+    Damping,
+    Rudder,
+    ThrustCurve,
+    Thruster,
+    ThrusterLayout,
+)
+from seatrial.physics.models.thrusters import thrusters
+from seatrial.physics.simulate.actuators import actuator_motion
 from seatrial.physics.simulate.replay import replay
 
 NOISE = {"u": 0.03, "v": 0.03, "r": 0.01, "psi": 0.01, "x0": 0.1, "y0": 0.1}
 """Standard deviations: m/s, m/s, rad/s, rad, m, m; of a small craft's receiver and compass."""
-TRUTH = {
-    "tau": 0.3, "tau_down": 0.15, "k_f": 1.6, "k_b": 1.1, "p_f": 1.6, "p_b": 1.4, "k_J": 0.15, "k_4": 0.05,
-    "X_u": -0.1, "X_uu": -0.3, "Y_v": -0.6, "Y_vv": -1.5, "N_r": -0.1, "N_rr": -0.2, "N_ur": -0.2, "Y_uv": -0.5,
-    "Y_NT": 0.1, "M_v": 1.6, "M_r": 0.15,
-}  # fmt: skip
 SETTINGS = EstimateSettings(method=FitCriterion.OUTPUT_ERROR)
 SECONDS, STEP_S, DT = 60, 3, 0.1
+"""Length of a run, of a step of the commands, and of a sample [s]."""
 
 
-def truth() -> Model:
-    """Return the model with the true coefficients."""
-    return model_named("thrusters").with_values(TRUTH)
+@dataclass(frozen=True)
+class Craft:
+    """A craft that is known: its thrusters, the true coefficients, and the range of each input's steps."""
+
+    layout: ThrusterLayout
+    values: dict[str, float]
+    ranges: dict[str, tuple[float, float]]
+
+    @property
+    def truth(self) -> Model:
+        """The model with the true coefficients."""
+        return thrusters(self.layout).with_values(self.values)
 
 
-def simulated_runs(model: Model, rng: np.random.Generator, count: int = 3) -> list[Record]:
-    """Return runs of steps of both thrusters, without noise."""
-    runs = []
+def _azimuths() -> ThrusterLayout:
+    places = ((1.8, -0.8), (1.8, 0.8), (-1.8, 0.8), (-1.8, -0.8))  # m, four corners of a small ferry
+    return ThrusterLayout(
+        tuple(
+            Thruster(
+                f"pod_{k}", x, y, CommandInput(f"command_{k}"), AngleInput(f"alpha_{k}", 0.4),
+                curve=ThrustCurve.QUADRATIC, same_as="" if k == 1 else "pod_1",
+            )
+            for k, (x, y) in enumerate(places, start=1)
+        ),
+        Damping.CROSS_FLOW, 5.0,
+    )  # fmt: skip
+
+
+def _twin_screw() -> ThrusterLayout:
+    rudder = Rudder("delta", -2.2, 0.03, 0.25)
+    return ThrusterLayout(
+        tuple(
+            Thruster(
+                name, -2.0, y, CommandInput(f"rpm_{k}"), curve=ThrustCurve.OPEN_WATER, diameter=0.2, lag=0.4,
+                same_as=leader, rudder=rudder,
+            )
+            for k, (name, y, leader) in enumerate((("port", -0.3, "starboard"), ("starboard", 0.3, "")), start=1)
+        ),
+        Damping.DIAGONAL, 4.4, 400.0,
+    )  # fmt: skip
+
+
+CRAFTS = {
+    "two-fixed": Craft(
+        CATAMARAN,
+        {
+            "tau": 0.3, "tau_down": 0.15, "k_f": 1.6, "k_b": 1.1, "p_f": 1.6, "p_b": 1.4, "k_J": 0.15, "k_4": 0.05,
+            "X_u": -0.1, "X_uu": -0.3, "Y_v": -0.6, "Y_vv": -1.5, "N_r": -0.1, "N_rr": -0.2, "N_ur": -0.2,
+            "Y_uv": -0.5, "Y_NT": 0.1, "M_v": 1.6, "M_r": 0.15,
+        },
+        {"command_1": (-1.0, 1.0), "command_2": (-1.0, 1.0)},
+    ),
+    "azimuths": Craft(
+        _azimuths(),
+        {
+            "tau": 0.35, "tau_down": 0.2, "tau_a": 0.5, "k_f": 0.25, "k_b": 0.2, "k_J": 0.05, "k_4": 0.1,
+            "X_u": -0.03, "X_uu": -0.08, "Y_v": -0.05, "N_r": -0.2, "D_c": 0.03, "M_v": 1.5, "M_r": 2.2,
+        },
+        {f"command_{k}": (-1.0, 1.0) for k in (1, 2, 3, 4)} | {f"alpha_{k}": (-3.0, 3.0) for k in (1, 2, 3, 4)},
+    ),
+    "twin-screw": Craft(
+        _twin_screw(),
+        {
+            "tau": 0.5, "tau_down": 0.3, "k_0": 0.45, "k_1": -0.35, "k_0_astern": -0.3, "f_alpha": 3.0, "gamma_R": 0.4,
+            "X_u": -20.0, "X_uu": -25.0, "Y_v": -120.0, "Y_vv": -250.0, "N_r": -150.0, "N_rr": -300.0, "M_v": 600.0,
+            "M_r": 700.0,
+        },
+        {"rpm_1": (-4.0, 10.0), "rpm_2": (-4.0, 10.0), "delta": (-0.5, 0.5)},
+    ),
+}  # fmt: skip
+"""Craft by name; values chosen: a catamaran of 1 m, a ferry of 5 m by mass, a model ship of 4.4 m and 400 kg."""
+
+
+def simulated_runs(craft: Craft, rng: np.random.Generator, count: int = 3) -> list[Record]:
+    """Return runs of steps of all inputs, without noise."""
+    model, runs = craft.truth, []
     for k in range(count):
-        commands = np.repeat(rng.uniform(-1.0, 1.0, size=(SECONDS // STEP_S, 2)), round(STEP_S / DT), axis=0)
-        inputs = {"command_1": commands[:, 0], "command_2": commands[:, 1]}
-        planned = Record.from_arrays(f"run_{k + 1}", DT * np.arange(len(commands)), inputs)
-        start = dict.fromkeys(model.states, 0.0) | {"c_port": commands[0, 0], "c_starboard": commands[0, 1]}
-        run = replay(model, planned, start)
+        steps = rng.uniform(0.0, 1.0, size=(SECONDS // STEP_S, len(craft.ranges)))
+        shares = np.repeat(steps, round(STEP_S / DT), axis=0)
+        inputs = {n: low + (high - low) * shares[:, j] for j, (n, (low, high)) in enumerate(craft.ranges.items())}
+        planned = Record.from_arrays(f"run_{k + 1}", DT * np.arange(len(shares)), inputs)
+        columns = np.stack([inputs[n] for n in model.input_names], axis=1)
+        settled = {n: float(motion[0]) for n, motion in actuator_motion(model, columns, DT).items()}
+        run = replay(model, planned, dict.fromkeys(model.states, 0.0) | settled)
         runs.append(replace(run, channels={n: run.channel(n) for n in (*NOISE, *inputs)}))
     return runs
 
@@ -59,9 +136,10 @@ def noisy(run: Record, rng: np.random.Generator) -> Record:
     return replace(run, channels=channels)
 
 
-def bound(model: Model, runs: list[Record]) -> Array:
+def bound(craft: Craft, runs: list[Record]) -> Array:
     """Return the Cramer-Rao bound of each free coefficient at the truth: standard deviations, (free,)."""
-    problem = output_error_problem(model, Runs.one_session_each(runs, 1.0), np.inf, SETTINGS)
+    sessions = Runs.one_session_each(runs, craft.layout.length)
+    problem = output_error_problem(craft.truth, sessions, np.inf, SETTINGS)
     problem = replace(problem, noise=np.array([NOISE[c] for c in problem.data.outputs]))
     information = problem.normal(problem.start(), problem.measured_initial_states()).without_local()[1]
     return np.sqrt(np.diag(np.linalg.inv(information)))
@@ -76,12 +154,15 @@ def write_table(record: Record, path: Path) -> None:
 def main() -> None:
     """Print errors over the bound and coverage."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--craft", choices=tuple(CRAFTS), default="two-fixed")
+    parser.add_argument("--starts", type=int, help="points from which to search")
     parser.add_argument("--runs", type=int, default=400)
     parser.add_argument("--write", type=Path)
     arguments = parser.parse_args()
-    model = truth()
-    clean = simulated_runs(model, np.random.default_rng(1))
-    spread = bound(model, clean)
+    craft = CRAFTS[arguments.craft]
+    model, settings = craft.truth, replace(SETTINGS, starts=arguments.starts)
+    clean = simulated_runs(craft, np.random.default_rng(1))
+    spread = bound(craft, clean)
     names = model.parameters.free_names
     true = np.array([model.parameters[n].value for n in names])
     errors, held, failures = [], [], 0
@@ -94,7 +175,7 @@ def main() -> None:
                 write_table(record, arguments.write / f"{record.name}.csv")
         try:
             estimation = estimate_model(
-                model_named("thrusters"), Runs.one_session_each(records, 1.0), SETTINGS,
+                thrusters(craft.layout), Runs.one_session_each(records, craft.layout.length), settings,
                 EstimatorOptions(),
             )  # fmt: skip
         except InputError as error:
@@ -105,7 +186,7 @@ def main() -> None:
         deviation = np.sqrt(np.diag(estimation.interval.covariance))[: len(names)]
         errors.append((found - true) / spread)
         held.append(np.abs(found - true) <= stdtrit(estimation.interval.degrees_of_freedom, 0.975) * deviation)
-        if (k + 1) % 20 == 0:
+        if (k + 1) % 10 == 0:
             ratio = np.sqrt(np.mean(np.square(errors), axis=0))
             print(f"{k + 1} draws: median RMSE/bound {np.median(ratio):.3f}, coverage {np.mean(held):.3f}", flush=True)
     ratio, coverage = np.sqrt(np.mean(np.square(errors), axis=0)), np.mean(held, axis=0)

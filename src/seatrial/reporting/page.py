@@ -28,6 +28,7 @@ from seatrial.reporting.citations import Citations
 from seatrial.reporting.correlations import correlation_text
 from seatrial.reporting.figures.record_charts import channel_overview, track_overview
 from seatrial.reporting.figures.residual_charts import residual_chart
+from seatrial.reporting.figures.search_charts import attempts_chart
 from seatrial.reporting.mathml import inline, pieces
 
 if TYPE_CHECKING:
@@ -124,6 +125,7 @@ def html(fit: Fit) -> str:
         "priors": tables.priors(fit.coefficients, fit.model, citations),
         "ship_source": citations.mark(fit.ship.source),
         "settings": tables.settings(fit.method),
+        "attempts": Markup(svg(attempts_chart(fit.search_attempts))),
         "citations": citations,
     }
     return environment().get_template("report.html").render(context)

@@ -11,6 +11,7 @@ from seatrial.core.values import Channel, InputError, Record
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import compared_outputs, cut_segments
 from seatrial.physics.models.nomoto import nomoto
+from seatrial.physics.sensors import Sensors, with_sensors
 
 
 def record(name: str, rows: int, dt: float = 0.5, port: bool = False) -> Record:
@@ -108,3 +109,15 @@ def test_a_segment_taken_twice_costs_twice(model: Model) -> None:
     single = replace(problem, data=data.selected(np.array([1]))).cost(shared, local[[1]])
     double = replace(problem, data=data.selected(np.array([1, 1]))).cost(shared, local[[1, 1]])
     assert double == pytest.approx(2.0 * single, rel=1e-12)
+
+
+def test_positions_that_a_receiver_holds_count_once() -> None:
+    time = 0.1 * np.arange(6)
+    x0 = np.array([0.0, 0.0, 0.2, 0.2, 0.2, 0.5])
+    y0 = np.array([1.0, 1.0, 1.0, 1.0, 1.1, 1.1])
+    run = Record.from_arrays("run", time, {"psi": np.zeros(6), "x0": x0, "y0": y0, "delta": 0.1 * time})
+    model = with_sensors(nomoto().with_values({"U": 1.0}), Sensors(position_hold=True))
+    data = cut_segments(model, [run], ("psi", "x0", "y0"), None)
+    np.testing.assert_array_equal(np.isnan(data.measured[:, 1]), [False, True, False, True, False, False])
+    np.testing.assert_array_equal(np.isnan(data.measured[:, 1]), np.isnan(data.measured[:, 2]))
+    assert not np.any(np.isnan(data.measured[:, 0]))

@@ -29,6 +29,7 @@ from seatrial.core.results.prediction import (
     Prediction,
     RowScore,
 )
+from seatrial.core.results.search_attempts import SearchAttempt
 from seatrial.core.results.ship_motions import IntervalEstimate, PointMotion, RollCharacteristics, Seakeeping
 from seatrial.core.results.study import Bars, Check, CheckStatus, Claim, Curve, Figure, Matrix, Study, Table, Verdict
 from seatrial.core.results.published_method import ReferenceEstimate, Search, SearchRestart, SearchTrack
@@ -99,6 +100,7 @@ __all__ = [
     "RowScore",
     "Seakeeping",
     "Search",
+    "SearchAttempt",
     "SearchRestart",
     "SearchTrack",
     "Sensitivity",

@@ -22,6 +22,7 @@ from seatrial.core.results.k_step import KStepErrors
 from seatrial.core.results.posterior import Posterior
 from seatrial.core.results.prediction import Baseline, IntervalBasis, Prediction
 from seatrial.core.results.published_method import ReferenceEstimate, Search
+from seatrial.core.results.search_attempts import SearchAttempt
 from seatrial.core.results.ship_motions import RollCharacteristics, Seakeeping
 from seatrial.core.results.summary import Summarised, Summary
 from seatrial.core.results.thruster_craft import ThrusterCraft
@@ -80,6 +81,10 @@ class Fit(Summarised):
     search: Annotated[Search | None, Field(description="what a published search did; null: the estimate is none")] = (
         None
     )
+    search_attempts: Annotated[
+        tuple[SearchAttempt, ...],
+        Field(description="short searches from several starting points, the best first; empty: one start"),
+    ] = ()
     reference: Annotated[
         ReferenceEstimate | None,
         Field(description="the package's own estimate, which a published method is compared with; null: this is it"),

@@ -41,6 +41,7 @@ class EstimateSettings:
         gains: channel -> prior standard deviation (None: the estimator's own) of its gain, one for each session.
         delays: input -> prior standard deviation [s] (None: the estimator's own) of its delay, one for each session.
         current: prior standard deviation of a uniform current in each run [m/s]; 0: none is estimated.
+        starts: points from which to search; None: 6 for craft with thrusters, else one.
         initial_s: s of a validation run from which its initial state is estimated; None: L/U.
     """
 
@@ -56,6 +57,7 @@ class EstimateSettings:
     gains: Deviations = Field(default_factory=dict)
     delays: Deviations = Field(default_factory=dict)
     current: Annotated[float, Field(ge=0)] = 0.0
+    starts: Annotated[int, Field(ge=1, le=100)] | None = None
     initial_s: Positive | None = None
 
     @property

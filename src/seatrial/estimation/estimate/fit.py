@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.results import NoiseModel
+from seatrial.core.results import NoiseModel, SearchAttempt
 from seatrial.core.values import Array, InputError, ProgressReporter, Record
 from seatrial.data.trial import EstimateSettings, FitCriterion
 from seatrial.estimation.estimate.assemble import output_error_problem
@@ -34,6 +34,7 @@ from seatrial.estimation.estimate.settings import (
     EstimatorOptions,
     IntervalMethod,
 )
+from seatrial.estimation.estimate.several_starts import SeveralStarts, number_of_starts, search_from_several
 from seatrial.estimation.estimate.start import SearchStart, find_start
 from seatrial.estimation.estimate.time_scale import characteristic_time, is_pure_roll
 from seatrial.estimation.information.covariance import Interval, inverse
@@ -58,6 +59,7 @@ class Estimation:
         start: where the search began, in words.
         criterion, reasons: what was used, and why.
         process_noise: the Kalman filter that suits the estimate; None: none was needed, or multiple shooting was used.
+        search_attempts: short searches from several starting points, the best first; empty: there was one.
     """
 
     estimate: PointEstimate
@@ -73,6 +75,7 @@ class Estimation:
     reasons: tuple[str, ...]
     elapsed_s: float
     process_noise: ProcessNoise | None = None
+    search_attempts: tuple[SearchAttempt, ...] = ()
 
     @property
     def interval(self) -> Interval:
@@ -183,24 +186,30 @@ def estimate_model(
     refuse_implausible(estimate, uncertainty.interval.standard_error)
     return Estimation(
         estimate, shooting, uncertainty, choice.residuals, choice.inflation,
-        choice.rho, choice.whiteness, _noise_model(choice, evidence), begun.origin, criterion, choice.reasons,
-        time.perf_counter() - began, choice.process_noise or choice.implied_noise,
+        choice.rho, choice.whiteness, _noise_model(choice, evidence), begun.start.origin, criterion, choice.reasons,
+        time.perf_counter() - began, choice.process_noise or choice.implied_noise, begun.attempts,
     )  # fmt: skip
 
 
 def _chosen(
     model: Model, runs: Runs, settings: EstimateSettings, options: EstimatorOptions, evidence: LoopEvidence,
     report_progress: ProgressReporter | None,
-) -> tuple[SearchStart, PointEstimate, CriterionChoice]:  # fmt: skip
+) -> tuple[SeveralStarts, PointEstimate, CriterionChoice]:  # fmt: skip
     """Where the search began, the estimate over segments, and the criterion's choice."""
     report = report_progress or (lambda _: None)
     report("weak-form start")
     unit = characteristic_time(model, runs.records, runs.length, settings.segment_s)
     seconds = segment_seconds(model, settings, unit)
     problem = output_error_problem(model, runs, seconds, settings, options.workers)
-    start = find_start(problem, runs.records, WEAK_FORM_SHIP_LENGTHS * unit)
+    begun = SeveralStarts(find_start(problem, runs.records, WEAK_FORM_SHIP_LENGTHS * unit), ())
+    if settings.robust:
+        begun = replace(begun, start=replace(begun.start, problem=replace(begun.start.problem, huber=HUBER_LIMIT)))
+    count = number_of_starts(model, settings.starts)
+    if count > 1:
+        begun = search_from_several(begun.start, runs.noise, count, options.seed, report_progress)
+    start = begun.start
     shooting = fit_output_error(
-        replace(start.problem, huber=HUBER_LIMIT) if settings.robust else start.problem,
+        start.problem,
         start.common_parameters,
         start.initial_states,
         runs.noise,
@@ -216,10 +225,10 @@ def _chosen(
     is_unforced = is_pure_roll(model) and not moving_inputs(model, runs.records)
     choice = choose_criterion(
         shooting, seconds, settings, runs.noise, whole_runs, report_progress, is_unforced=is_unforced,
-        begun=_begun(shooting, start),
+        begun=_begun(shooting, begun.start),
         has_feedback=evidence.is_closed,
     )  # fmt: skip
-    return start, shooting, choice
+    return begun, shooting, choice
 
 
 def segment_seconds(model: Model, settings: EstimateSettings, unit: float) -> float:

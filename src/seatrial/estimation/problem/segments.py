@@ -8,6 +8,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index, InputError, Record, channel_hint
+from seatrial.physics.sensors import Sensors
 from seatrial.physics.simulate.actuators import ActuatorHistory
 from seatrial.physics.simulate.channels import inputs_of
 
@@ -88,6 +89,17 @@ def compared_outputs(model: Model, records: Sequence[Record], requested: Sequenc
     return tuple(o for o in found if not requested or o in requested)
 
 
+def _measured(model: Model, record: Record, outputs: tuple[str, ...]) -> Array:
+    """Return the outputs of a record, (rows, ny): NaN where it holds none, and where a receiver held its last fix."""
+    measured = np.stack([record[o] if o in record else np.full(len(record), np.nan) for o in outputs], axis=1)
+    if not model.equations.sensors or not Sensors.from_text(model.equations.sensors).position_hold:
+        return measured
+    columns = [i for i, output in enumerate(outputs) if output in ("x0", "y0")]
+    is_held = np.all(np.diff(measured[:, columns], axis=0, prepend=np.nan) == 0.0, axis=1)
+    measured[np.ix_(is_held, columns)] = np.nan
+    return measured
+
+
 def _segment_bounds(rows: int, length: int) -> list[tuple[int, int]]:
     """Return overlapping-by-one pieces of about `length` steps, as even as possible."""
     steps = rows - 1
@@ -141,7 +153,7 @@ def segments_between(
         if len(record) < 3:
             raise InputError(f"record '{record.name}' has {len(record)} samples; at least three are needed")
         u = inputs_of(model, record)
-        y = np.stack([record[o] if o in record else np.full(len(record), np.nan) for o in outputs], axis=1)
+        y = _measured(model, record, outputs)
         of_runs.append(u)
         for first, last in of_record:
             inputs.append(u[first:last])

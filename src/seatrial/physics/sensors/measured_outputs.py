@@ -24,8 +24,8 @@ SOURCE = "sensor model"
 _CURRENT = ("current_north", "current_east")
 _DEVIATION, _RATE_BIAS, _LEVER = 0.2, 0.02, 0.5
 """Prior standard deviations: of compass coefficients [rad], a yaw rate's bias [rad/s], a lever arm [m]; chosen."""
-_MIN_LAG = 0.05
-"""Least lag of velocities [s] that two time constants can hold at 10 Hz; chosen."""
+_MIN_LAG = 0.1
+"""Least lag of velocities [s] that two time constants in a row can hold at 10 Hz; chosen."""
 
 
 def with_sensors(model: Model, sensors: Sensors) -> Model:

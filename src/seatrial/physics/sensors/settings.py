@@ -44,6 +44,7 @@ class Sensors:
         velocity_lag: start value of the time by which u and v are late [s]; 0: they are not.
         yaw_rate_bias: whether r_bias is added to the yaw rate.
         antenna: place of the receiver's antenna, to which position (and u, v over ground) refer; None: the origin.
+        position_hold: whether positions stay between the receiver's fixes: a repeated pair counts as not measured.
     """
 
     compass: Compass = Compass.TRUE
@@ -51,6 +52,7 @@ class Sensors:
     velocity_lag: Annotated[float, Field(ge=0.0)] = 0.0
     yaw_rate_bias: bool = False
     antenna: Antenna | None = None
+    position_hold: bool = False
 
     @property
     def changes_outputs(self) -> bool:

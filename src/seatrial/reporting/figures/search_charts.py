@@ -9,7 +9,7 @@ from seatrial.core.figures.chart import Axis, Chart, LegendEntry
 from seatrial.core.figures.curves import NamedCurve, curves_chart
 from seatrial.core.figures.marks import ACCENT, GREY, INK, SECOND, Line, Mark, Marker, Points, Rule, Shape, Stroke
 from seatrial.core.figures.rows import row_panel
-from seatrial.core.results import Coefficient, ReferenceEstimate, Search, SearchTrack
+from seatrial.core.results import Coefficient, ReferenceEstimate, Search, SearchAttempt, SearchTrack
 from seatrial.core.results.method_comparison import OWN_NAME
 from seatrial.core.text.numbers import power_of_ten
 from seatrial.core.values import NOTATION, Array, display_unit
@@ -34,6 +34,14 @@ def waterfall_chart(search: Search, reference: ReferenceEstimate) -> Chart | Non
     labels = [*(f"restart {k + 1}" for k in order), OWN_NAME]
     values = [*(search.restarts[k].record_rms for k in order), reference.record_rms]
     return bars_chart("restarts in order of their end", labels, {"": values}, "weighted rms over the whole record")
+
+
+def attempts_chart(attempts: Sequence[SearchAttempt]) -> Chart | None:
+    """Return the loss of each search above the lowest end, at its start and at its end, the best first."""
+    series = {"at its start": [a.start_loss for a in attempts], "at its end": [a.loss for a in attempts]}
+    labels = [a.origin.partition(":")[0].partition(",")[0] for a in attempts]
+    title = "searches from several starting points"
+    return bars_chart(title, labels, series, "loss above the lowest", is_logarithmic=True)
 
 
 def restart_chart(search: Search, reference: ReferenceEstimate) -> Chart | None:

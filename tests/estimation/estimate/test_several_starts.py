@@ -1,0 +1,64 @@
+"""Searches from several points: an optimum that the first start misses is found, and every attempt is reported."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from seatrial.core.values import Record
+from seatrial.data.trial import EstimateSettings, FitCriterion
+from seatrial.estimation.estimate import EstimatorOptions, Runs, estimate_model
+from seatrial.estimation.estimate.assemble import output_error_problem
+from seatrial.estimation.estimate.several_starts import number_of_starts, search_from_several
+from seatrial.estimation.estimate.start import find_start
+from seatrial.physics.models import model_named
+from seatrial.physics.simulate.replay import replay
+
+TRUTH = {"K": 0.2, "T": 5.0}
+
+
+@pytest.fixture(scope="module")
+def run() -> Record:
+    """A zigzag-like run of a first-order ship, with white noise."""
+    model = model_named("nomoto").with_values({**TRUTH, "U": 1.0})
+    time = np.arange(0.0, 80.0, 0.5)
+    planned = Record.from_arrays("run", time, {"delta": 0.3 * np.sign(np.sin(0.2 * time))})
+    made = replay(model, planned, dict.fromkeys(model.states, 0.0))
+    rng = np.random.default_rng(3)
+    spread = {"r": 0.002, "psi": 0.005}
+    noisy = {n: made.channel(n).with_values(made[n] + s * rng.standard_normal(len(time))) for n, s in spread.items()}
+    return replace(made, channels={"delta": made.channel("delta")} | noisy)
+
+
+def test_the_end_with_the_lowest_loss_is_used_and_all_are_reported(run: Record) -> None:
+    model = model_named("nomoto").with_values({"U": 0.0})
+    runs = Runs.one_session_each([run], 10.0)
+    settings = EstimateSettings(method=FitCriterion.OUTPUT_ERROR)
+    problem = output_error_problem(model, runs, np.inf, settings)
+    start = find_start(problem, runs.records, 10.0)
+    # a start from which the yaw rate answers the rudder the other way
+    astray = replace(start, common_parameters=np.array([-5.0, 1e-3])[: len(problem.free)], origin="astray")
+    several = search_from_several(astray, {}, 4, seed=1)
+    losses = [a.loss for a in several.attempts]
+    assert losses == sorted(losses)
+    assert losses[0] == 0.0
+    assert [a.is_used for a in several.attempts] == [True, False, False, False]
+    assert {a.origin for a in several.attempts} >= {"astray", "the model's own values", "drawn point 1"}
+    found = several.attempts[0].values
+    assert found["K"] == pytest.approx(TRUTH["K"], rel=0.02)
+    assert found["T"] == pytest.approx(TRUTH["T"], rel=0.05)
+
+
+def test_the_same_seed_searches_from_the_same_points(run: Record) -> None:
+    settings = EstimateSettings(method=FitCriterion.OUTPUT_ERROR, starts=3)
+    runs = Runs.one_session_each([run], 10.0)
+    first, second = (estimate_model(model_named("nomoto"), runs, settings, EstimatorOptions(seed=5)) for _ in range(2))
+    assert first.search_attempts == second.search_attempts
+    assert len(first.search_attempts) == 3
+    assert first.start_method.startswith("the best of 3 starts: ")
+
+
+def test_one_start_suffices_unless_thrusters_drive_the_craft_or_the_trial_says_otherwise() -> None:
+    assert number_of_starts(model_named("nomoto"), None) == 1
+    assert number_of_starts(model_named("nomoto"), 5) == 5
+    assert number_of_starts(model_named("thrusters"), None) == 6
