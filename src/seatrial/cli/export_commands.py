@@ -12,7 +12,9 @@ from seatrial.cli.output import print_lines, write_json
 @app.command()
 def export(
     model_file: Annotated[Path, typer.Argument(metavar="MODEL.toml", help="Model file, as identify writes it.")],
-    to: Annotated[str | None, typer.Option("--to", metavar="TARGET", help="c99; see --list.")] = None,
+    to: Annotated[
+        str | None, typer.Option("--to", metavar="TARGET", help="c99, fmu, casadi, matlab, vrx or gazebo; see --list.")
+    ] = None,
     out: Annotated[Path | None, typer.Option("--out", metavar="PATH", help="New file or folder.")] = None,
     show_list: Annotated[bool, typer.Option("--list", help="Show which targets suit the model, and why not.")] = False,
     model: OwnModelPath = None,

@@ -3,6 +3,7 @@
 from seatrial.core.values import InputError, spelling_hint
 from seatrial.exporting.c_source import export_c
 from seatrial.exporting.fmu import export_fmu
+from seatrial.exporting.gazebo import export_gazebo, export_vrx, unsuitable_craft
 from seatrial.exporting.scripts import export_casadi, export_matlab
 from seatrial.exporting.source import ExportSource
 from seatrial.exporting.target import Target
@@ -17,6 +18,8 @@ _ALL = (
     Target("fmu", "an FMU of FMI 2.0 for co-simulation, with C sources", ".fmu", _suits_every_model, export_fmu),
     Target("casadi", "a Python module that builds CasADi functions", ".py", _suits_every_model, export_casadi),
     Target("matlab", "a folder with a function as MSS calls it and a .mat", "", _suits_every_model, export_matlab),
+    Target("vrx", "the hydrodynamics plugin of VRX, refitted", ".xml", unsuitable_craft, export_vrx),
+    Target("gazebo", "the hydrodynamics plugin of gz-sim, refitted", ".xml", unsuitable_craft, export_gazebo),
 )
 TARGETS: dict[str, Target] = {target.name: target for target in _ALL}
 """Name -> target."""
