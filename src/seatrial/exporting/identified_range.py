@@ -2,16 +2,12 @@
 
 The largest of the ratios that `estimation.information.extrapolation` takes of a whole run, here of one instant: yaw
 rate, drift and rudder angle over the largest of the training runs, speed over their fastest, their slowest over speed.
+Commands of thrusters are left out.
 """
-
-from typing import TYPE_CHECKING
 
 from seatrial.core.equations import Binding
 from seatrial.estimation.information.extrapolation import NEGLIGIBLE, REST_SHARE
 from seatrial.exporting.source import ExportSource
-
-if TYPE_CHECKING:
-    pass
 
 RANGE_USE = "range_use"
 """Name of the output: at most 1 within the identified range."""
