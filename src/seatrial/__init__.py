@@ -15,6 +15,7 @@ Functions (each also a command)
     predict       predict a measured run and compare it with the measurement
     design        design the manoeuvre that identifies the coefficients best
     compare       compare two fits: what differs between days, loadings, facilities or methods
+    poster        wheelhouse poster and pilot card of a fit
     export        write a model as files of another tool: C99, FMU, CasADi, MATLAB, Gazebo
     tune          tune a feedback loop on a model
     follow        identify while the record is being made

@@ -10,6 +10,7 @@ from seatrial.api.files import (
     save,
     write_record,
 )
+from seatrial.api.poster import poster, write_poster
 from seatrial.api.prediction import extrapolation, measure_intervals, measures, predict, rms_differences
 from seatrial.api.simulation import replay, simulate, steering
 from seatrial.api.studies import demo, list_models, model_guide, reproduce
@@ -29,7 +30,7 @@ from seatrial.api.tuning import load_loop, tune
 __all__ = [
     "campaign", "campaign_status", "check", "compare", "correct_trial", "demo", "design", "draft_trial", "export",
     "export_targets", "extrapolation", "follow", "gather_campaign", "identify", "list_models", "load", "load_fit",
-    "load_loop", "load_model", "load_trial", "measure_intervals", "measures", "model_guide", "predict",
-    "prepared_run", "read_record", "replay", "replay_fmu", "report", "reproduce", "retry_campaign",
-    "rms_differences", "save", "simulate", "steering", "survey_log", "tune", "write_record",
+    "load_loop", "load_model", "load_trial", "measure_intervals", "measures", "model_guide", "poster", "predict",
+    "prepared_run", "read_record", "replay", "replay_fmu", "report", "reproduce", "retry_campaign", "rms_differences",
+    "save", "simulate", "steering", "survey_log", "tune", "write_poster", "write_record",
 ]  # fmt: skip

@@ -8,6 +8,7 @@ import typer
 from seatrial.cli.application import Json, OwnModelPath, Seed, app, own_model, result_document
 from seatrial.cli.comparison_output import print_comparison
 from seatrial.cli.output import print_fit, print_study, progress_reporter, write_json
+from seatrial.cli.poster_output import print_poster
 
 
 @app.command()
@@ -72,6 +73,31 @@ def compare(
     write_json(json, lambda: result_document(result))
     if page is not None:
         print(f"report: {page}")
+
+
+@app.command()
+def poster(
+    folder: Annotated[Path, typer.Argument(metavar="RESULT", help="Result folder of identify.")],
+    out: Annotated[Path, typer.Option("--out", metavar="FILE.html", help="Page that prints on a sheet of A4.")],
+    rudder: Annotated[float, typer.Option(help="Rudder angle of the turning circles, deg.")] = 35.0,  # most ships'
+    speed: Annotated[float | None, typer.Option(help="Approach speed, m/s; default: that of the trials.")] = None,
+    model: OwnModelPath = None,
+    json: Json = None,
+    seed: Seed = 0,  # noqa: ARG001
+) -> None:
+    """Write the wheelhouse poster and pilot card of a fit (IMO A.601(15)): each number with interval and basis.
+
+    Example: seatrial poster results/kvlcc2 --out poster.html
+    """
+    from seatrial import api
+
+    fit = api.load_fit(folder, own_model(model))
+    with progress_reporter() as report_progress:
+        result = api.poster(fit, rudder_deg=rudder, speed=speed, report_progress=report_progress)
+        page = api.write_poster(result, out)
+    print_poster(result)
+    write_json(json, lambda: result_document(result))
+    print(f"poster: {page}")
 
 
 @app.command()

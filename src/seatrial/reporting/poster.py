@@ -1,0 +1,145 @@
+"""Wheelhouse poster and pilot card on a sheet of A4 (IMO A.601(15), appendices 1 and 2); nothing is computed.
+
+Values of model tests are given at full scale by Froude's law: lengths times the scale, times and speeds times its root.
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+from markupsafe import Markup
+
+from seatrial.core.figures.chart import Chart, LegendEntry, Region
+from seatrial.core.figures.marks import ACCENT, SECOND, Stroke
+from seatrial.core.figures.svg_text import svg
+from seatrial.core.figures.tracks import track_panel
+from seatrial.core.results.poster import Basis, Poster, PosterManoeuvre, PosterQuantity
+from seatrial.core.text.numbers import DASH, fixed, significant
+from seatrial.core.values.record_chart import has_track, record_track
+from seatrial.reporting.measures import measure_label
+from seatrial.reporting.page import environment
+
+RESOLUTION = "IMO resolution A.601(15)"
+TO_BE_FILLED_IN = (
+    "call sign and year built", "displacement, deadweight, draughts of the day", "engine orders, rpm and speeds",
+    "stopping distances and times, crash stop", "man overboard manoeuvre", "squat and air draught",
+    "effect of thrusters", "anchor chain", "hard-over to hard-over time",
+)  # fmt: skip
+"""What the resolution asks for and no fit of steered runs knows."""
+_PARTICULARS = {"L": ("length between perpendiculars", "m"), "B": ("breadth", "m"), "d": ("draught", "m")}
+_KNOT = 1852.0 / 3600.0  # m/s of a nautical mile an hour
+_BOX = Region(56.0, 8.0, 400.0, 235.0)  # px, chosen
+_STROKES = (Stroke(SECOND, 1.8), Stroke(ACCENT, 1.8))  # port, starboard; px, chosen
+_CHART_WIDTH = 470.0  # px, chosen
+
+
+@dataclass(frozen=True)
+class PosterRow:
+    """A quantity in each of several manoeuvres: value with interval, and what it rests on."""
+
+    name: str
+    cells: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True)
+class PosterTable:
+    """Quantities in rows, manoeuvres in columns."""
+
+    header: tuple[str, ...]
+    rows: tuple[PosterRow, ...]
+    notes: tuple[str, ...]
+
+
+def html(poster: Poster) -> str:
+    """Return the page as text."""
+    circles = [m for m in poster.manoeuvres if m.manoeuvre.startswith("turning-circle")]
+    others = [m for m in poster.manoeuvres if m not in circles]
+    runs = [m.run for m in poster.manoeuvres if m.run]
+    context = {
+        "poster": poster,
+        "resolution": RESOLUTION,
+        "rudder": f"{poster.rudder_deg:g}",
+        "circles": poster_table(circles, poster),
+        "zigzags": poster_table(others, poster),
+        "chart": Markup(svg(turning_chart(circles, poster))),
+        "particulars": particulars(poster),
+        "missing": TO_BE_FILLED_IN,
+        "measured_runs": ", ".join(dict.fromkeys(runs)),
+        "is_extrapolated": any(q.basis is Basis.EXTRAPOLATED for m in poster.manoeuvres for q in m.quantities),
+    }
+    return environment().get_template("poster.html").render(context)
+
+
+def particulars(poster: Poster) -> list[tuple[str, str]]:
+    """Return name and value of what the fit knows of the ship, at full scale."""
+    known = [(name, f"{significant(poster.particulars[key] * poster.scale, 4)} {unit}")
+             for key, (name, unit) in _PARTICULARS.items() if key in poster.particulars]  # fmt: skip
+    if "C_b" in poster.particulars:
+        known.append(("block coefficient", fixed(poster.particulars["C_b"], 3)))
+    speed = poster.approach_speed * math.sqrt(poster.scale)
+    if speed > 0.0:
+        known.append(("approach speed", f"{fixed(speed / _KNOT, 1)} kn ({fixed(speed, 2)} m/s)"))
+    known.append(("rudder in turning circles", f"{poster.rudder_deg:g}°"))
+    if poster.scale != 1.0:
+        known.append(("scale of the trials", f"1:{significant(poster.scale, 4)}"))
+    return known
+
+
+def poster_table(manoeuvres: list[PosterManoeuvre], poster: Poster) -> PosterTable:
+    """Return the quantities of manoeuvres as text, each name once."""
+    names = list(dict.fromkeys(q.name for m in manoeuvres for q in m.quantities))
+    by_name = [{q.name: q for q in m.quantities} for m in manoeuvres]
+    rows = tuple(PosterRow(_label(name), tuple(_cell(one.get(name), poster) for one in by_name)) for name in names)
+    notes = tuple(f"{manoeuvre_title(m)}: {m.note}" for m in manoeuvres if m.note)
+    return PosterTable(tuple(manoeuvre_title(m) for m in manoeuvres), rows, notes)
+
+
+def manoeuvre_title(m: PosterManoeuvre) -> str:
+    """Return the manoeuvre in words: ``turning-circle:35:port`` -> Turning circle 35° to port."""
+    kind, *fields = m.manoeuvre.split(":")
+    if kind == "zigzag":
+        return f"Zigzag {fields[0]}"
+    return f"Turning circle {fields[0]}° to {fields[1] if fields[1:] else 'starboard'}"
+
+
+def _label(name: str) -> str:
+    label, unit = measure_label(name)
+    if name == "speed_loss":
+        return "speed lost in the turn, %"
+    return f"{label}, {'m' if unit == 'L' else unit}"
+
+
+def _cell(q: PosterQuantity | None, poster: Poster) -> tuple[str, str]:
+    """Value with interval at full scale, and the basis."""
+    if q is None:
+        return DASH, ""
+    if not q.is_determined:
+        return "not determined", q.basis.value
+    factor, decimals = _display(q.name, poster)
+    text = fixed(factor * q.value, decimals)
+    if q.lower is not None and q.upper is not None:
+        text += f" [{fixed(factor * q.lower, decimals)}, {fixed(factor * q.upper, decimals)}]"
+    return text, q.basis.value
+
+
+def _display(name: str, poster: Poster) -> tuple[float, int]:
+    """Factor to the unit of the poster at full scale, and decimals."""
+    length = poster.particulars.get("L", 1.0) * poster.scale
+    if name.endswith("_L"):
+        return length, 0 if length >= 20.0 else 1  # m, from which on a metre is fine enough; chosen
+    if name.endswith("_s") and not name.endswith("_deg_s"):
+        return math.sqrt(poster.scale), 0 if length >= 20.0 else 1  # m, as above
+    return (100.0, 0) if name == "speed_loss" else (1.0, 1)
+
+
+def turning_chart(circles: list[PosterManoeuvre], poster: Poster) -> Chart | None:
+    """Return the tracks of the turning circles at equal scales [m]; None where no track was simulated."""
+    tracks = []
+    for m, stroke in zip(circles, _STROKES, strict=False):
+        for one in (record_track(record, stroke) for record in m.simulated if has_track(record)):
+            tracks.append(replace(one, north=poster.scale * one.north, east=poster.scale * one.east))
+    if not tracks:
+        return None
+    length = poster.particulars.get("L", 0.0) * poster.scale
+    panel = track_panel(tracks, length, _BOX, title="")
+    legend = tuple(LegendEntry(manoeuvre_title(m), s) for m, s in zip(circles, _STROKES, strict=False) if m.simulated)
+    return Chart("turning circles", (panel,), legend, _CHART_WIDTH)

@@ -1,0 +1,120 @@
+"""The wheelhouse poster of a fit: what each number rests on, full scale, the page, and what is refused."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.reporting.fabricated import fabricated_fit
+from typer.testing import CliRunner
+
+import seatrial as st
+from seatrial import api
+from seatrial.cli import app
+from seatrial.core.results import IntervalBasis, Prediction
+from seatrial.core.results.poster import Basis, Poster
+from seatrial.core.values import RecordKind
+from seatrial.estimation.information.extrapolation import motion_envelope
+from seatrial.estimation.predict.open_loop import compare_measures
+from seatrial.reporting.poster import TO_BE_FILLED_IN, html, particulars
+
+
+def fit_of_runs(*manoeuvres: str) -> st.Fit:
+    """The fabricated fit with runs of its own model in these manoeuvres, as if measured, behind it."""
+    fit = fabricated_fit()
+    runs = [replace(st.simulate(fit, m), kind=RecordKind.MEASURED, name=m.split(":")[0]) for m in manoeuvres]
+    length = fit.ship.particulars["L"]
+    predictions = tuple(Prediction(r.name, "training", r, r, {}, compare_measures(r, r, length), 0.0) for r in runs)
+    basis = IntervalBasis(1e-2 * fit.covariance, np.inf, training_envelope=motion_envelope(runs))
+    return replace(fit, predictions=predictions, records=tuple(runs), interval_basis=basis)
+
+
+@pytest.fixture(scope="module")
+def fit() -> st.Fit:
+    return fit_of_runs("zigzag:20/20")
+
+
+@pytest.fixture(scope="module")
+def poster(fit: st.Fit) -> Poster:
+    return api.poster(fit)
+
+
+def test_each_number_says_what_it_rests_on(poster: Poster, fit: st.Fit) -> None:
+    bases = {m.manoeuvre: {q.basis for q in m.quantities} for m in poster.manoeuvres}
+    assert bases == {
+        "turning-circle:35:port": {Basis.EXTRAPOLATED},
+        "turning-circle:35": {Basis.EXTRAPOLATED},
+        "zigzag:10/10": {Basis.PREDICTED},
+        "zigzag:20/20": {Basis.MEASURED},
+    }
+    measured = {q.name: q.value for q in poster.manoeuvres[3].quantities}
+    shown = fit.predictions[0].measures
+    assert measured == {name: shown[name].measured for name in measured}
+    assert poster.manoeuvres[3].run == "zigzag"
+    for quantity in (q for m in poster.manoeuvres[:3] for q in m.quantities if q.is_determined):
+        assert quantity.lower is not None and quantity.upper is not None
+        assert quantity.lower < quantity.value < quantity.upper
+
+
+def test_a_run_of_another_speed_or_side_or_a_simulated_one_is_no_measurement(fit: st.Fit) -> None:
+    faster = 1.2 * poster_speed(fit)
+    assert not any(m.run for m in api.poster(fit, speed=faster).manoeuvres)
+    circle = fit_of_runs("turning-circle:35")
+    assert [m.run for m in api.poster(circle).manoeuvres] == ["", "turning-circle", "", ""]
+    assert [m.run for m in api.poster(circle, rudder_deg=30.0).manoeuvres] == ["", "", "", ""]
+    simulated = replace(
+        fit, predictions=tuple(
+            replace(p, measured=replace(p.measured, kind=RecordKind.SIMULATED)) for p in fit.predictions
+        ),
+    )  # fmt: skip
+    assert not any(m.run for m in api.poster(simulated).manoeuvres)
+
+
+def poster_speed(fit: st.Fit) -> float:
+    speed = fit.predictions[0].measures["approach_speed"].measured
+    assert speed is not None
+    return speed
+
+
+def test_model_tests_are_given_at_full_scale(poster: Poster) -> None:
+    full = replace(poster, scale=25.0)
+    texts = dict(particulars(full))
+    assert texts["length between perpendiculars"].startswith(f"{25.0 * poster.particulars['L']:.4g}")
+    assert f"({5.0 * poster.approach_speed:.2f} m/s)" in texts["approach speed"]
+    page, own = html(full), html(poster)
+    assert "scale effects are not in the intervals" in page
+    assert "scale effects" not in own
+    (advance,) = (q for q in poster.manoeuvres[1].quantities if q.name == "advance_L")
+    metres = 25.0 * poster.particulars["L"] * advance.value
+    assert f"{metres:,.0f}".replace(",", "\u202f") in page or f"{metres:.0f}" in page
+
+
+def test_the_page_says_what_no_fit_knows_and_escapes_names(poster: Poster) -> None:
+    page = html(replace(poster, ship="<b>Ship</b>"))
+    assert "&lt;b&gt;Ship" in page
+    assert "<b>Ship" not in page
+    for missing in TO_BE_FILLED_IN:
+        assert missing in page
+    assert "Performance may differ from this record" in page
+    assert "size: A4" in page
+
+
+def test_what_cannot_be_steered_has_no_poster(fit: st.Fit) -> None:
+    with pytest.raises(st.InputError, match="model 'roll' has no rudder"):
+        api.poster(replace(fit, model=st.models.roll()))
+    with pytest.raises(st.InputError, match="rudder angle of 0 deg"):
+        api.poster(fit, rudder_deg=0.0)
+
+
+def test_the_command_writes_the_page(fit: st.Fit, tmp_path: Path) -> None:
+    st.save(fit, tmp_path / "result")
+    out, table = tmp_path / "poster.html", tmp_path / "p.json"
+    done = CliRunner().invoke(
+        app, ["poster", str(tmp_path / "result"), "--out", str(out), "--rudder", "30", "--json", str(table)]
+    )
+    assert done.exit_code == 0, done.output
+    assert "turning-circle:30:port" in done.output
+    assert "measured" in done.output
+    assert out.read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
+    assert json.loads(table.read_text(encoding="utf-8"))["rudder_deg"] == 30.0
