@@ -80,3 +80,12 @@ def test_a_share_of_the_range_needs_no_parameters(tmp_path: Path) -> None:
     percent = ColumnSummary("left", "", -100.0, 100.0, 0.0, is_constant=False, common=0.0)
     guess = command_guess(ColumnGuess("left", "command_1", ""), percent, survey)
     assert guess is not None and "set zero and span" in guess.other_reading
+
+
+@pytest.mark.parametrize(("common", "other"), [(1500.0, "positive"), (1512.0, "zero = 1500"), (1100.0, "zero = 1000")])
+def test_a_rest_that_is_not_1500_is_open_with_both_readings(common: float, other: str, tmp_path: Path) -> None:
+    survey = survey_log(write(tmp_path / "run.csv", {"time": CRAFT["t"], "left": CRAFT["left"]}))
+    pulses = ColumnSummary("left", "", 1100.0, 1900.0, 0.0, is_constant=False, common=common)
+    guess = command_guess(ColumnGuess("left", "command_1", ""), pulses, survey)
+    assert guess is not None and guess.other_reading.startswith(other)
+    assert guess.zero == (common if abs(common - 1500.0) < 60.0 else 1500.0)

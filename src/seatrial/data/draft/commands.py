@@ -42,9 +42,13 @@ def command_guess(guess: ColumnGuess, column: ColumnSummary, survey: LogSurvey) 
 
 def _by_rest(guess: ColumnGuess, column: ColumnSummary) -> ColumnGuess:
     text = f"pulses of {column.low:g} to {column.high:g} us, {column.common:g} the most often"
-    is_at_rest = abs(column.common - _REST) < _REST_TOLERANCE
-    pulse = replace(guess, unit="us", zero=column.common if is_at_rest else _REST, span=_SPAN).with_evidence(text)
-    return replace(pulse, other_reading=_ONLY_SIGN if is_at_rest else "zero = 1000, span = 1000 (one direction)")
+    distance = abs(column.common - _REST)
+    zero = column.common if distance < _REST_TOLERANCE else _REST
+    pulse = replace(guess, unit="us", zero=zero, span=_SPAN).with_evidence(text)
+    if distance == 0.0:
+        return replace(pulse, other_reading=_ONLY_SIGN)
+    other = f"zero = {_REST:g}" if distance < _REST_TOLERANCE else "zero = 1000, span = 1000 (one direction)"
+    return replace(pulse, other_reading=other)
 
 
 def _as_rudder(guess: ColumnGuess, setting: OutputSetting) -> ColumnGuess:

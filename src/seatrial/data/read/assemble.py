@@ -13,6 +13,7 @@ from seatrial.data.read.derive import Measured, derived_channels
 from seatrial.data.read.join import Series, common_time, ordered_series, values_at
 from seatrial.data.read.layout import ColumnSpec, Layout
 from seatrial.data.read.log import Log
+from seatrial.data.read.no_reading import without_fixes_at_zero, without_sentinel
 from seatrial.data.read.raw_table import RawTable
 
 
@@ -40,8 +41,9 @@ def assemble_record(log: Log, layout: Layout, sha256: str) -> Record:
     read = stamps(table, _time_column(layout, table))
     _require_increasing_time(read.seconds, table, layout)
     measured = {column.symbol: _measured(column, table) for column in layout.columns}
+    measured, emptied = without_fixes_at_zero(measured, read.seconds)
     channels = derived_channels(measured, layout.geometry, log.file)
-    provenance = Provenance(log.file, sha256, _notes(f"read as {layout.format}", read.note))
+    provenance = Provenance(log.file, sha256, _notes(f"read as {layout.format}", read.note, emptied))
     return _record(record_name(log.file), read.seconds, channels, layout.scale, provenance)
 
 
@@ -54,7 +56,8 @@ def record_of_sources(name: str, sources: Sequence[LogSource]) -> Record:
     Raises:
         InputError: as `assemble_record`; a channel is given twice, or the sources do not overlap in time.
     """
-    series = [one for source in sources for one in _series(source)]
+    read = [_series(source) for source in sources]
+    series = [one for part in read for one in part.series]
     symbols = [one.column.symbol for one in series]
     for symbol in symbols:
         if symbols.count(symbol) > 1:
@@ -69,21 +72,40 @@ def record_of_sources(name: str, sources: Sequence[LogSource]) -> Record:
     topics = len({one.topic for one in series})
     step = f"{topics} topics of {len(files.split(', '))} files joined every {time[1] - time[0]:.6g} s"
     digest = sources[0].sha256 if len(sources) == 1 else " ".join(source.sha256 for source in sources)
-    return _record(name, time, channels, layout.scale, Provenance(files, digest, (step,)))
+    emptied = [text for part in read for text in part.emptied]
+    return _record(
+        name,
+        time,
+        channels,
+        layout.scale,
+        Provenance(files, digest, (*emptied, step)),
+    )
 
 
-def _series(source: LogSource) -> list[Series]:
-    """The columns of a source, each with the stamps of its topic."""
+@dataclass(frozen=True, eq=False)
+class _SourceSeries:
+    """The columns of a source, each with the stamps of its topic, and what was emptied in them."""
+
+    series: list[Series]
+    emptied: tuple[str, ...]
+
+
+def _series(source: LogSource) -> _SourceSeries:
+    """Readings that stand for none are emptied here: interpolated with their neighbours nothing would show them."""
     log, layout = source.log, source.layout
-    clocks: dict[int, Array] = {}
-    series = []
-    for column in layout.columns:
-        table = log.table_of(column)
-        if id(table) not in clocks:
-            clocks[id(table)] = stamps(table, _time_column(layout, table)).seconds
-        one = _measured(column, table)
-        series.append(ordered_series(column, clocks[id(table)], one.values, one.label, f"{log.file} {table.topic}"))
-    return series
+    series, emptied = [], []
+    tables = {id(table): table for table in (log.table_of(column) for column in layout.columns)}
+    for table in tables.values():
+        time = stamps(table, _time_column(layout, table)).seconds
+        columns = [column for column in layout.columns if log.table_of(column) is table]
+        measured, fixes = without_fixes_at_zero({c.symbol: _measured(c, table) for c in columns}, time)
+        emptied.append(fixes)
+        for one in measured.values():
+            cleaned, text = without_sentinel(one, time)
+            emptied.append(text)
+            series.append(ordered_series(one.column, time, cleaned.values, one.label, f"{log.file} {table.topic}"))
+    order = [column.symbol for column in layout.columns]
+    return _SourceSeries(sorted(series, key=lambda one: order.index(one.column.symbol)), _notes(*emptied))
 
 
 def _time_column(layout: Layout, table: RawTable) -> ColumnSpec:

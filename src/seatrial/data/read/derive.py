@@ -73,8 +73,6 @@ def _position(present: _Measurements, geometry: Geometry) -> _Measurements:
     import pymap3d
 
     lat, lon = pair
-    no_fix = (lat.values == 0.0) & (lon.values == 0.0)  # what receivers write without one
-    lat, lon = (replace(one, values=np.where(no_fix, np.nan, one.values)) for one in pair)
     known = np.flatnonzero(np.isfinite(lat.values) & np.isfinite(lon.values))
     if known.size == 0:
         raise InputError("there is no fix: 'lat' and 'lon' are never given together; leave them out")
