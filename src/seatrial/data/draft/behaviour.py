@@ -18,6 +18,7 @@ from seatrial.data.check.rudder import (
     t_ratio,
     yaw_acceleration_response,
 )
+from seatrial.data.check.sentinels import without_sentinels
 from seatrial.data.check.signal import smoothed, smoothed_derivative, window_length
 from seatrial.data.check.timestamps import rebuild_time_base
 from seatrial.data.check.velocity_conventions import ACCEPTABLE_MISFIT
@@ -75,7 +76,7 @@ def run_record(surveys: Sequence[LogSurvey], guesses: Sequence[Sequence[ColumnGu
             record = assemble_record(sources[0].log, sources[0].layout, "")
         else:
             record = record_of_sources("run", sources)
-        even, _ = rebuild_time_base(record)
+        even, _ = rebuild_time_base(without_sentinels(record)[0])
         return with_standard_signs(repair(even)[0])
     except (InputError, IndexError, StopIteration):
         return None
