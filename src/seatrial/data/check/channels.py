@@ -18,6 +18,9 @@ from seatrial.data.check.yaw_rate_consistency import FOLLOWS, heading_rate
 OUTPUT_CHANNELS = ("x0", "y0", "psi", "u", "v", "r", "phi", "p", "theta", "z", "u_dot", "v_dot")
 # a channel sticks where it repeats a value for so many samples and this share of the record, ours
 STUCK_SAMPLES, STUCK_FRACTION = 20, 0.02
+# coarse: a value usually stays for so many samples, and all steps are multiples of the smallest; it sticks beyond so
+# many usual stays; chosen
+COARSE_SAMPLES, COARSE_STAYS, STEP_ROUNDING = 5, 10, 1e-6
 # a lag is reported beyond so many standard errors and so many samples, ours
 LAG_STANDARD_ERRORS, LAG_SAMPLES = 4.0, 1.5
 
@@ -54,14 +57,35 @@ def _constant_finding(record: Record, symbol: str, value: float) -> Finding:
 
 
 def _stuck_findings(record: Record, symbol: str, values: Array) -> list[Finding]:
-    """The longest run of one repeated value, where it lasts over twenty samples and a fiftieth of the record."""
+    """The longest run of one repeated value, where it lasts over twenty samples and a fiftieth of the record; of a
+    channel in coarse steps its resolution, and a run only beyond ten usual ones.
+    """
     first, last = max(mask_intervals(np.diff(values) == 0), key=lambda ends: ends[1] - ends[0], default=(0, 0))
-    if last - first < max(STUCK_SAMPLES, STUCK_FRACTION * len(values)):
+    longest = max(STUCK_SAMPLES, STUCK_FRACTION * len(values))
+    if last - first < longest:
         return []
+    changes = np.flatnonzero(np.diff(values[np.isfinite(values)]))
+    stay = float(np.median(np.diff(changes))) if changes.size > 2 else 1.0  # samples; two stays at least
+    step = _step(values)
+    if step is not None and stay >= COARSE_SAMPLES and last - first < COARSE_STAYS * stay:
+        text = f"record '{record.name}': channel '{symbol}' comes in steps of {step:.4g} {record.channel(symbol).unit}"
+        evidence = f"a value stays for {stay:.0f} samples"
+        return [Finding(Severity.INFO, "resolution", text, evidence, "give more digits if the logger has them")]
     text = f"record '{record.name}': channel '{symbol}' is stuck for {last - first + 1} samples"
     end = record.time[min(last, len(values) - 1)]
     evidence = f"{values[first]:.6g} from {moment(record.time[first], end)}"
     return [Finding(Severity.WARNING, "stuck", text, evidence, "look whether the sensor stopped or the ship lay still")]
+
+
+def _step(values: Array) -> float | None:
+    """The smallest step of a channel, where all its steps are multiples of it."""
+    steps = np.abs(np.diff(values[np.isfinite(values)]))
+    steps = steps[steps > 0.0]
+    if steps.size == 0:
+        return None
+    smallest = float(steps.min())
+    counts = steps / smallest
+    return smallest if np.all(np.abs(counts - np.rint(counts)) < STEP_ROUNDING * counts) else None
 
 
 def lag_findings(record: Record, motion: RecordedMotion | None) -> tuple[Finding, ...]:
