@@ -35,6 +35,10 @@ PIECE_SAMPLES = 20_000
 _MOST_GROWTH = 10.0
 """Samples of a Newton step over those of the one before, at most; chosen: a step then leaves 0.1 standard errors."""
 
+_FAR, _MOST_REPEATS = 4.0, 2
+"""Decrement of the last step from which on it is taken again, and how often at most: from 2.8 standard errors a step
+leaves a tenth of one; chosen."""
+
 _LATER_EVALUATIONS = 6
 """Most evaluations of output error over all samples, from the optimum over some; chosen."""
 
@@ -87,7 +91,8 @@ def choice_over_all(choice: CriterionChoice, runs: Runs) -> CriterionChoice:
 def _noise_over_all(few: ProcessNoise, runs: Runs) -> ProcessNoise:
     """The optimum over all samples, by way of parts that grow by one factor, ten at most.
 
-    What a Newton step leaves grows with the square of its distance, and this with the root of that factor.
+    What a Newton step leaves grows with the square of its distance, and this with the root of that factor; where the
+    last one still came from far away, it is taken again.
     """
     part = len(few.problem.runs.data.inputs)
     factor = _sample_count(runs) / part
@@ -96,17 +101,23 @@ def _noise_over_all(few: ProcessNoise, runs: Runs) -> ProcessNoise:
     for step in range(1, steps):
         noise = _one_step(few, noise.optimum, _part(runs, round(part * growth**step)), growth)
     noise = _one_step(few, noise.optimum, runs, growth)
+    for _ in range(_MOST_REPEATS):
+        if noise.newton_decrement <= _FAR:
+            break
+        noise = _one_step(few, noise.optimum, runs, 1.0)
     normalised = noise.problem.innovations(noise.optimum.solution.point).normalised
     pieces = [normalised[a:b] for a, b in pairwise(noise.problem.runs.data.offsets)]
-    return replace(noise, test=replace(few.test, whiteness=whiteness_test(pieces)))
+    return replace(noise, newton_decrement=0.0, test=replace(few.test, whiteness=whiteness_test(pieces)))
 
 
 def _one_step(few: ProcessNoise, before: Optimum, runs: Runs, growth: float) -> ProcessNoise:
-    """One Newton step over these runs from an optimum of `growth` times fewer samples."""
+    """One Newton step over these runs from an optimum of `growth` times fewer samples; its decrement is kept."""
     output_error = _with_all_samples(few.output_error, runs, PIECE_SAMPLES * few.output_error.data.dt)
     problem = over_runs(few.problem, output_error)
-    optimum = newton_optimum(problem, before, growth)
-    return replace(few, problem=problem, optimum=optimum, newton_decrement=0.0, output_error=output_error)
+    step = newton_optimum(problem, before, growth)
+    return replace(
+        few, problem=problem, optimum=step.optimum, newton_decrement=step.decrement, output_error=output_error
+    )
 
 
 def _with_all_samples(problem: OutputError, runs: Runs, seconds: float | None) -> OutputError:

@@ -388,7 +388,15 @@ def _refine(problem: PredictionError, optimum: Optimum) -> tuple[PredictionError
     return exact, Optimum(solution, _NO_INITIAL_STATES, normal), slope
 
 
-def newton_optimum(problem: PredictionError, few: Optimum, share: float) -> Optimum:
+@dataclass(frozen=True, eq=False)
+class NewtonOptimum:
+    """Where one Newton step leads; decrement: half the squared distance from its begin, in the information's metric."""
+
+    optimum: Optimum
+    decrement: float
+
+
+def newton_optimum(problem: PredictionError, few: Optimum, share: float) -> NewtonOptimum:
     """The optimum of a problem by one Newton step from that of some of its samples, `share` of which it has more.
 
     The gradient is taken by differences to one side, a filter pass for each unknown.
@@ -399,7 +407,8 @@ def newton_optimum(problem: PredictionError, few: Optimum, share: float) -> Opti
     step, decrement = _newton_step(problem, point, normal)
     moved = np.clip(point + step, problem.lower, problem.upper)
     solution = Solution(moved, normal.cost - decrement, Status.CONVERGED, few.solution.evaluations + 1)
-    return Optimum(solution, _NO_INITIAL_STATES, replace(normal, cost=normal.cost - decrement))
+    optimum = Optimum(solution, _NO_INITIAL_STATES, replace(normal, cost=normal.cost - decrement))
+    return NewtonOptimum(optimum, decrement)
 
 
 def newton_step(problem: PredictionError, point: Array) -> Array:
