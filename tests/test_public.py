@@ -36,7 +36,7 @@ raise st.InputError("the end")
 MISTAKES = """
 import seatrial as st
 
-st.identify("examples/waterjet.toml")
+st.identify(20)
 st.simulate(st.models.mmg(), manoeuvre=20)
 st.estimate
 st.models.kvlcc
@@ -107,5 +107,5 @@ def test_a_users_script_type_checks(tmp_path: Path) -> None:
 
 def test_a_users_mistakes_are_seen(tmp_path: Path) -> None:
     errors = " ".join(type_errors(tmp_path, MISTAKES))
-    for word in ('"Trial"', '"str | Record"', '"estimate"', '"kvlcc"'):
+    for word in ('"Trial | str | Path"', '"str | Record"', '"estimate"', '"kvlcc"'):
         assert word in errors

@@ -41,7 +41,6 @@ EXCEPTIONS: dict[str, str] = {
     "numerics/kernels: linear_controller": _COMPILED,
     "numerics/kernels: load_kernels": "starts compiled code ahead of its use; whatever simulates runs it",
     "numerics/kernels: residuals_and_jacobian": _COMPILED,
-    "estimation/predict: track_holdout_error": "tests/studies/test_alexandersson2022.py, whose study uses it",
     "numerics: distrust": "tests/core/equations/test_cache.py damages entries of every kind",
     "numerics: open_regular": "tests/core/equations/test_cache.py damages entries of every kind",
 }
