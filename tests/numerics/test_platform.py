@@ -204,3 +204,9 @@ def test_a_process_with_little_memory_cannot_take_more() -> None:
     )
     ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert (ended.returncode == 1 and "MemoryError" in ended.stderr) or os.name == "nt"
+
+
+def test_the_names_of_this_system_suit_a_library_of_it() -> None:
+    assert (platform.system_name(), platform.library_suffix()) in {
+        ("linux", ".so"), ("darwin", ".dylib"), ("win", ".dll"),
+    }  # fmt: skip

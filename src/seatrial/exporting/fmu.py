@@ -7,7 +7,6 @@ import os
 import shutil
 import struct
 import subprocess
-import sys
 import tempfile
 import zipfile
 from dataclasses import dataclass
@@ -30,6 +29,7 @@ from seatrial.exporting.source import (
 from seatrial.exporting.target import Export
 from seatrial.exporting.templating import rendered
 from seatrial.numerics.kernels.integrate import DIVERGED
+from seatrial.numerics.platform import library_suffix, system_name
 
 MAX_STEP = "max_step"
 _STEP = 0.1  # s, internal step: that of `simulate`
@@ -72,7 +72,7 @@ def export_fmu(source: ExportSource, name: str) -> Export:
     files["modelDescription.xml"] = rendered("modelDescription.xml", **values)
     binary, note = compiled_binary(files, name)
     if binary:
-        files[f"binaries/{platform_folder()}/{name}{_library_suffix()}"] = binary
+        files[f"binaries/{platform_folder()}/{name}{library_suffix()}"] = binary
     return Export({f"{name}.fmu": _zipped(files)}, (note, range_text(source)))
 
 
@@ -129,12 +129,7 @@ def compiled_binary(files: dict[str, bytes], name: str) -> tuple[bytes, str]:
 
 def platform_folder() -> str:
     """Return the folder of this platform's binary in an FMU (FMI 2.0, section 2.3)."""
-    system = {"linux": "linux", "darwin": "darwin", "win32": "win"}.get(sys.platform, sys.platform)
-    return f"{system}{8 * struct.calcsize('P')}"
-
-
-def _library_suffix() -> str:
-    return {"darwin": ".dylib", "win32": ".dll"}.get(sys.platform, ".so")
+    return f"{system_name()}{8 * struct.calcsize('P')}"
 
 
 def _template_values(source: ExportSource, name: str, files: dict[str, bytes]) -> dict[str, object]:

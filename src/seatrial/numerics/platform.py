@@ -9,6 +9,7 @@ import os
 import select
 import signal
 import stat
+import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -26,6 +27,16 @@ _LOCKED_BYTE = 2**31 - 2
 
 # renameat2(2): paths relative to the working directory (AT_FDCWD); RENAME_EXCHANGE, which macOS calls RENAME_SWAP
 _AT_WORKING_DIRECTORY, _EXCHANGE = -100, 2
+
+
+def system_name() -> str:
+    """Return the system as FMI 2.0 names it (section 2.3): linux, darwin, win; elsewhere as Python does."""
+    return {"win32": "win"}.get(sys.platform, sys.platform)
+
+
+def library_suffix() -> str:
+    """Return how names of shared libraries end."""
+    return {"darwin": ".dylib", "win32": ".dll"}.get(sys.platform, ".so")
 
 
 def usable_cores() -> int:

@@ -4,8 +4,7 @@ import numpy as np
 
 from seatrial.core.results import Check, Claim, Verdict
 from seatrial.numerics.optimise import GeneticSettings
-from seatrial.physics.loops import Preamplifier
-from seatrial.physics.loops.actuator_work import SECONDS_PER_HOUR
+from seatrial.physics.loops import SECONDS_PER_HOUR, Preamplifier
 from seatrial_studies.declarations import TIME_IS_NO_VERDICT
 from seatrial_studies.yu2014.energy import WATTS_PER_KILOWATT, EnergyComparison
 from seatrial_studies.yu2014.evidence import FinGainEvidence

@@ -50,8 +50,8 @@ def test_rudder_zeros_come_back_and_strangers_get_the_mean(trial_of: WriteTrial)
 
 
 def test_runs_of_one_session_share_their_zero(trial_of: WriteTrial) -> None:
-    runs = {"day1_a": 0.03, "day1_b": 0.03, "day2_a": -0.02, "v_day1_c": 0.03}
-    fit = identify(load_trial(trial_of(runs, layout="session = '(day.)'", more=OFFSETS)))
+    runs = {"t_day1_a": 0.03, "t_day1_b": 0.03, "t_day2_a": -0.02, "v_day1_c": 0.03}
+    fit = identify(load_trial(trial_of(runs, layout="session = '*_{day}_*'", more=OFFSETS)))
     assert [o.group for o in fit.offsets] == ["day1", "day2"]
     np.testing.assert_allclose([o.estimate for o in fit.offsets], [0.03, -0.02], atol=0.002)
 

@@ -20,7 +20,9 @@ def test_commands_are_the_numbered_channels() -> None:
 
 def test_a_spin_has_its_rate_and_the_time_of_a_turn() -> None:
     found = thrust_measures(record(psi=np.angle(np.exp(0.5j * TIME))))
-    assert found == pytest.approx({"steady_yaw_rate_deg_s": np.degrees(0.5), "time_360_s": 4.0 * np.pi})
+    assert found == pytest.approx(
+        {"steady_yaw_rate_deg_s": np.degrees(0.5), "time_360_s": 4.0 * np.pi, "time_constant_s": 0.0}  # at once
+    )
 
 
 def test_a_straight_run_has_speed_and_time_constant() -> None:

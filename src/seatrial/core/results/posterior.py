@@ -15,8 +15,8 @@ class CredibleInterval:
 
     name: str
     unit: Annotated[str, Field(description="SI; 1 for a number, in the prime system of the model's source")]
-    mean: Number
-    standard_deviation: Number
+    mean: Annotated[Number, Field(description="of the draws")]
+    standard_deviation: Annotated[Number, Field(description="of the draws")]
     lower: Annotated[Number, Field(description="2.5 % quantile of the draws")]
     upper: Annotated[Number, Field(description="97.5 % quantile of the draws")]
     other_lower: Annotated[Number, Field(description="lower end by `other_intervals`")]

@@ -29,6 +29,10 @@ _UNITS = {
 _DAY_S = 86400.0  # s of a day
 # stamps since 1970 that lie between 1979 and 2096 [s], with steps between these [s]; chosen: what logs have
 _SINCE_1970, _STEPS_S = (3e8, 4e9), (1e-4, 60.0)
+# a clock of six digits, hhmmss: 24 h, where seconds and minutes end, two digits each; by definition
+_MIDNIGHT, _SIXTY, _TWO_DIGITS = 240000.0, 60.0, 100.0
+# stamps that show a clock, and share of the steps' range that is left when they are read so; chosen
+_FEWEST_STAMPS, _EVENED = 3, 0.5
 _EXCEL_DAYS, _LARGEST_EXCEL_STEP = (2e4, 8e4), 2e-4  # days, of the years 1954 to 2119; days, of 17 s
 # unit -> units of it beyond which a median step is in the next smaller unit (a log has 0.2 Hz or more)
 _STEP_LIMITS = {"ns": 5e6, "us": 5e3, "ms": 5.0}
@@ -149,14 +153,16 @@ def _with_unit(table: RawTable, source: str | int, stated: str) -> tuple[ColumnS
     return replace(spec, unit=unit), "unit by its step"
 
 
-def _is_hhmmss(table: RawTable, spec: ColumnSpec, known: Array) -> bool:
+def _is_hhmmss(table: RawTable, spec: ColumnSpec, numbers: Array) -> bool:
     """Whether numbers are hours, minutes and seconds in digits, none beyond 59, whose steps even out when read so."""
-    if known.size < 3 or np.min(known) < 0.0 or np.max(known) >= 240000.0:  # samples; 24 h
+    if numbers.size < _FEWEST_STAMPS or np.min(numbers) < 0.0 or np.max(numbers) >= _MIDNIGHT:
         return False
-    if np.max(known) - np.min(known) < 60.0 or np.any(known % 100.0 >= 60.0) or np.any(known // 100.0 % 100.0 >= 60.0):
-        return False  # s and min of an hhmmss clock never reach 60
+    digits = numbers % _TWO_DIGITS, numbers // _TWO_DIGITS % _TWO_DIGITS
+    if np.ptp(numbers) < _SIXTY or np.any(np.maximum(*digits) >= _SIXTY):
+        return False
     seconds = stamps(table, spec).seconds
-    return float(np.ptp(np.diff(seconds[np.isfinite(seconds)]))) < 0.5 * float(np.ptp(np.diff(known)))  # half: chosen
+    evened = float(np.ptp(np.diff(seconds[np.isfinite(seconds)])))
+    return evened < _EVENED * float(np.ptp(np.diff(numbers)))
 
 
 def column_values(table: RawTable, index: int) -> Array | None:

@@ -73,7 +73,7 @@ def search_from_several(
         )
         if weights is None:
             weights = _effective_samples(end)
-        begun = _at(end, point, start.initial_states)
+        begun = _estimate_at(end, point, start.initial_states)
         attempts.append(_Attempt(origin, loss(begun, known_noise, weights), loss(end, known_noise, weights), end))
     assert weights is not None
     attempts.sort(key=lambda a: a.loss)
@@ -86,7 +86,7 @@ def search_from_several(
     return SeveralStarts(again, tuple(_reported(a, best) for a in sorted(attempts, key=lambda a: a.loss)))
 
 
-def _at(estimate: PointEstimate, point: Array, local: Array) -> PointEstimate:
+def _estimate_at(estimate: PointEstimate, point: Array, local: Array) -> PointEstimate:
     """The same problem at another point."""
     optimum = estimate.optimum
     return replace(estimate, optimum=replace(optimum, local=local, solution=replace(optimum.solution, point=point)))
@@ -128,20 +128,20 @@ def _effective_samples(estimate: PointEstimate) -> Array:
 
 def _points(start: SearchStart, count: int, rng: np.random.Generator) -> Iterator[tuple[str, Array]]:
     """Origin and shared unknowns of each starting point."""
-    problem, own = start.problem, start.problem.start()
+    problem, values = start.problem, start.problem.start()
     yield start.origin, start.common_parameters
     if count > 1:
-        yield "the model's own values", own
+        yield "the model's own values", values
     for k in range(count - 2):
-        yield f"drawn point {k + 1}", _drawn(problem, own, start.initial_states, rng)
+        yield f"drawn point {k + 1}", _best_drawn_point(problem, values, start.initial_states, rng)
 
 
-def _drawn(problem: OutputError, own: Array, local: Array, rng: np.random.Generator) -> Array:
+def _best_drawn_point(problem: OutputError, values: Array, local: Array, rng: np.random.Generator) -> Array:
     """The point with the lowest cost of some that are drawn about the model's own values."""
     parameters = [problem.model.parameters[name] for name in problem.free]
     points = []
     for _ in range(_CANDIDATES):
-        point = own.copy()
+        point = values.copy()
         point[: len(parameters)] = [_drawn_value(p, rng) for p in parameters]
         points.append(np.clip(point, problem.lower, problem.upper))
     return min(points, key=lambda point: problem.cost(point, local))

@@ -1,7 +1,10 @@
 """Names of this package, imported when first used."""
 
 from seatrial.physics.loops.actuator_work import ActuatorDrive as ActuatorDrive
-from seatrial.physics.loops.actuator_work import reversals_per_hour as reversals_per_hour
+from seatrial.physics.loops.actuator_work import (
+    reversals_per_hour as reversals_per_hour,
+    SECONDS_PER_HOUR as SECONDS_PER_HOUR,
+)
 from seatrial.physics.loops.autopilot import heading_loop as heading_loop, pitch_loop as pitch_loop
 from seatrial.physics.loops.autopilot import speed_loop as speed_loop
 from seatrial.physics.loops.block import Block as Block, in_series as in_series
