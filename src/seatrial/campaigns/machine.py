@@ -27,9 +27,15 @@ def processor() -> str:
 @cache
 def linear_algebra() -> str:
     """Return the linear-algebra library of NumPy and SciPy with its version and the code it chose for the processor."""
-    libraries = [one for one in _loaded().info() if one.get("user_api") == "blas"]
+    loaded = [one for one in _loaded().info() if one.get("user_api") == "blas"]
+    # other packages bring libraries of their own, which depends on what else this process has imported
+    libraries = [one for one in loaded if _is_of_numpy_or_scipy(Path(one["filepath"]))] or loaded
     words = {f"{one['internal_api']} {one.get('version')} {one.get('architecture', '')}".strip() for one in libraries}
     return ", ".join(sorted(words)) or "unknown"
+
+
+def _is_of_numpy_or_scipy(library: Path) -> bool:
+    return any(part.startswith(("numpy", "scipy")) for part in library.parts)
 
 
 @contextmanager
