@@ -1,10 +1,17 @@
 """Every benchmark in one run: times of this machine, ratios, and whether the targets hold.
 
-`python benchmarks/run.py simulation generation` runs the named ones only.
+`python benchmarks/run.py simulation generation` runs the named ones only; `--record docs/numbers.json` keeps their
+lines in the file from which `docs/write_numbers.py` writes the page of numbers and the table of the README.
 """
 
+import argparse
+import json
+import subprocess
 import sys
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import asdict
+from pathlib import Path
 
 import against_optimisers
 import against_shipmmg
@@ -16,9 +23,11 @@ import fusion
 import generation
 import gusts
 import heave_pitch
+import kvlcc2_zigzags
 import long_record
 import loops
 import montecarlo
+import numpy as np
 import population
 import roll_decay
 import simulation
@@ -35,6 +44,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "against_optimisers": against_optimisers.run,
     "montecarlo": montecarlo.run,
     "gusts": gusts.run,
+    "kvlcc2_zigzags": kvlcc2_zigzags.run,
     "waterjet_regressions": waterjet_regressions.run,
     "fusion": fusion.run,
     "checking": checking.run,
@@ -50,18 +60,44 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
 }
 
 
-def main(names: list[str]) -> int:
+def main(arguments: list[str]) -> int:
     """Print the table; 2 for an unknown name."""
-    unknown = [n for n in names if n not in BENCHMARKS]
+    parser = argparse.ArgumentParser(description="times, ratios and accuracies against their targets")
+    parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(BENCHMARKS))
+    parser.add_argument("--record", type=Path, metavar="FILE.json", help="keep the lines in this file")
+    given = parser.parse_args(arguments)
+    unknown = [n for n in given.names if n not in BENCHMARKS]
     if unknown:
         print(f"unknown benchmark '{unknown[0]}'; known are {', '.join(BENCHMARKS)}")
         return 2
     print(machine())
-    for name in names or BENCHMARKS:
+    for name in given.names or BENCHMARKS:
         print(f"\n{name.replace('_', ' ')}")
-        for line in BENCHMARKS[name]():
+        lines = BENCHMARKS[name]()
+        for line in lines:
             print(f"  {line.quantity:<66} {line.value:>10.4g} {line.unit:<10} {line.verdict}", flush=True)
+        if given.record is not None:
+            record(given.record, name, lines)
     return 0
+
+
+def record(file: Path, name: str, lines: Sequence[Line]) -> None:
+    """Keep a benchmark's lines with machine, date and commit; the file's other benchmarks stay."""
+    kept = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
+    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False)
+    kept[name] = {
+        "machine": machine(),
+        "date": time.strftime("%Y-%m-%d"),
+        "commit": commit.stdout.strip(),
+        "lines": [asdict(line) for line in lines],
+    }
+    ordered = {n: kept[n] for n in BENCHMARKS if n in kept}
+    file.write_text(json.dumps(ordered, indent=1, ensure_ascii=False, default=_plain) + "\n", encoding="utf-8")
+
+
+def _plain(value: np.generic) -> object:
+    """Return a NumPy scalar as Python's own."""
+    return value.item()
 
 
 if __name__ == "__main__":
