@@ -54,7 +54,8 @@ HEADLINES = (
     Headline(
         "gusts",
         "Gusts with a memory of 5 s, open loop and with a controller on",
-        "the share of 95 % intervals that hold the truth is {} and {} (20 runs each), the error {} and {} of the Cramér-Rao bound",
+        "the share of 95 % intervals that hold the truth is {} and {} (20 runs each), "
+        "the error {} and {} of the Cramér-Rao bound",
         (
             "a 0.5, memory 5 s, open: coverage",
             "a 0.5, memory 5 s, closed: coverage",
