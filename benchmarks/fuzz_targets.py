@@ -4,15 +4,24 @@ import contextlib
 import hashlib
 import io
 import json
-import math
 import re
 import socket
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
 import numpy as np
+from fuzz_streams import (
+    bus_lines,
+    infinities,
+    mavlink_packets,
+    nmea_sentences,
+    read_bus,
+    read_columns,
+    read_mavlink,
+    read_nmea,
+)
 
 import seatrial as st
 from seatrial.core.results.online import Sample
@@ -22,14 +31,9 @@ from seatrial.data.folder.gains_file import read_gains
 from seatrial.data.folder.model_file import parse_model
 from seatrial.data.folder.result_folder import KINDS, load_result
 from seatrial.data.read.record_csv import read_record_csv
-from seatrial.onboard.columns import ColumnReader
 from seatrial.onboard.journal import Journal
-from seatrial.onboard.lines import LineBatch
-from seatrial.onboard.message_decoders import BusDecoder, MavlinkDecoder
-from seatrial.onboard.messages import MessageReader
-from seatrial.onboard.nmea import NmeaReader
 from seatrial.onboard.server import Server
-from seatrial.onboard.sources import LineReader, open_source
+from seatrial.onboard.sources import open_source
 from seatrial.physics.hydro.transfer_file import read_transfer
 from seatrial.physics.manoeuvres import programme
 from seatrial.reporting.pages import report_page
@@ -265,75 +269,6 @@ def _gains(data: bytes, place: Path) -> object:
     return read_gains(path)
 
 
-_STREAM = st.Layout(
-    "text", st.ColumnSpec("time", "stamp", "s"), tuple(st.ColumnSpec(s, s, "1") for s in ("psi", "r", "u", "x0"))
-)
-_NUMBERED = st.Layout(
-    "text", st.ColumnSpec("time", 1, "s"), (st.ColumnSpec("u", 2, "m/s"), st.ColumnSpec("psi", 3, "deg"))
-)
-_TOPICS = st.Layout(
-    "text", st.ColumnSpec("time", "stamp", "s"),
-    (st.ColumnSpec("psi", "vesselHeading:True/heading", "rad"), st.ColumnSpec("r", "ATTITUDE/yawspeed", "rad/s"),
-     st.ColumnSpec("x0", "GLOBAL_POSITION_INT/lat", "1"), st.ColumnSpec("y0", "GLOBAL_POSITION_INT/lon", "1")),
-)  # fmt: skip
-
-
-def _samples(reader: LineReader, lines: list[bytes]) -> object:
-    """Samples of a stream; only infinity counts, since a channel without a reading is NaN."""
-    samples = [*reader.samples(LineBatch(lines)), *reader.flush()]
-    str(reader.counts)
-    return _infinities(samples)
-
-
-def _infinities(samples: Iterable[Sample]) -> list[float]:
-    return [math.inf for sample in samples if np.isinf([sample.time, *sample.values]).any()]
-
-
-def _nmea(data: bytes, place: Path) -> object:  # noqa: ARG001
-    return _samples(NmeaReader(_STREAM, rate=10.0), data.split(b"\n"))
-
-
-def _columns(data: bytes, place: Path) -> object:  # noqa: ARG001
-    return _samples(ColumnReader(_NUMBERED), data.split(b"\n"))
-
-
-def _bus(data: bytes, place: Path) -> object:  # noqa: ARG001
-    return _samples(MessageReader(_TOPICS, BusDecoder(), rate=10.0), data.split(b"\n"))
-
-
-def _mavlink(data: bytes, place: Path) -> object:  # noqa: ARG001
-    return _samples(MessageReader(_TOPICS, MavlinkDecoder(), rate=10.0), [data])
-
-
-def _sentences() -> list[bytes]:
-    from tests.onboard.sentences import sentence
-
-    bodies = ("GPZDA,000001.00,01,02,2024,,", "HEHDT,40.1,T", "HEROT,3.2,A", "IIRSA,-3.1,A,,V", "VDVBW,3.1,0.0,A,,,V",
-              "GPRMC,000002.00,A,5230.1,N,01322.5,E,6.1,40.0,010224,,,A", "GPVTG,40.0,T,,M,6.1,N,11.3,K,A",
-              "GPGGA,000003.00,5230.1,N,01322.5,E,1,08,1.0,10.0,M,,M,,")  # fmt: skip
-    return [b"\n".join(sentence(body) for body in bodies[first:] + bodies) for first in range(len(bodies))]
-
-
-def _bus_lines() -> list[bytes]:
-    return [
-        b"2024-02-01-10:00:00.0,2,127250,35,255,8,00,10,27,ff,7f,ff,7f,fd",
-        b"(1706781600.000) can0 09F11223#00102700FF7FFD",
-        b"A000057.055 09FF7 1F201 00102700FF7FFD",
-    ]
-
-
-def _mavlink_packets() -> list[bytes]:
-    from pymavlink.dialects.v20 import ardupilotmega
-
-    link = ardupilotmega.MAVLink(io.BytesIO())
-    link.srcSystem, link.srcComponent = 1, 1
-    messages = (
-        ardupilotmega.MAVLink_attitude_message(1000, 0.1, 0.2, 0.3, 0.01, 0.02, 0.03),
-        ardupilotmega.MAVLink_global_position_int_message(1000, 525000000, 133000000, 0, 0, 10, 20, 0, 100),
-    )
-    return [message.pack(link) for message in messages]
-
-
 def _journal(data: bytes, place: Path) -> object:
     """A journal read back, and written on."""
     path = place / "journal"
@@ -396,7 +331,7 @@ def _followed(data: bytes, place: Path) -> object:
     source = open_source(replace(stream, file=log), once=True)
     samples = source.poll(0.0)
     source.close()
-    return _infinities(samples)
+    return infinities(samples)
 
 
 def _transfer(data: bytes, place: Path) -> object:
@@ -444,10 +379,10 @@ TRANSFER = b"""omega,heading_deg,F3_real,F3_imag,M5_real,M5_imag # N, N m
 
 TARGETS: dict[str, Target] = {
     "manoeuvre": Target(lambda: MANOEUVRES, _manoeuvre, 1),
-    "nmea": Target(_sentences, _nmea, 1),
-    "columns": Target(_logs, _columns, 25),
-    "bus": Target(_bus_lines, _bus, 1),
-    "mavlink": Target(_mavlink_packets, _mavlink, 1),
+    "nmea": Target(nmea_sentences, read_nmea, 1),
+    "columns": Target(_logs, read_columns, 25),
+    "bus": Target(bus_lines, read_bus, 1),
+    "mavlink": Target(mavlink_packets, read_mavlink, 1),
     "page": Target(_requests, _request, 2),
     "journal": Target(_journals, _journal, 100),
     "trial": Target(lambda: [*_tiny_trials(), *_examples("*.toml")], _trial, 100),

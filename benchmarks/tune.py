@@ -13,7 +13,7 @@ from seatrial import api
 from seatrial.control.front import Effort, grid_front, pareto_front
 from seatrial.control.gain_evaluation import gain_evaluator
 from seatrial.control.task import Seaway, TuningTask
-from seatrial.core.results.tuning import ControllerConstraints, Tuning
+from seatrial.core.results.tuning import ControllerConstraints, ScheduleTrade, Tuning
 from seatrial.numerics.optimise import hypervolume
 from seatrial.physics.loops import HullFactor, LoopSignal, Objective
 from seatrial.physics.loops.fin import PUBLISHED_GAINS, Preamplifier, fin_loop
@@ -30,6 +30,8 @@ VARIANCES = (
 )
 TARGET = squared_deviation("fin", LoopSignal.ACTUATOR, math.radians(math.sqrt(150.31)) ** 2, one_sided=False)
 OBJECTIVES = {"variances": VARIANCES, "the paper's": (VARIANCES[0], TARGET, VARIANCES[2])}
+SCHEDULE_LIMITS = {0.3: 0.55, math.inf: 0.47}
+"""Largest mean cost over that of the published gains, by the largest step of a gain between neighbours."""
 
 
 def run() -> list[Line]:
@@ -69,7 +71,7 @@ def _front(reading: Preamplifier, name: str, objectives: tuple[Objective, ...]) 
 
 def _fins() -> list[Line]:
     made = api.tune(api.load_loop(EXAMPLES / "fin_stabiliser.toml"))
-    own = float(np.mean([slot.cost for slot in made.schedule]))
+    robust, rival = made.designs[0], made.baselines[0]
     published = float(np.mean([slot.baseline_costs["as published"] for slot in made.schedule]))
     headings = sorted({slot.beta for slot in made.schedule})
     worst = max(
@@ -90,11 +92,32 @@ def _fins() -> list[Line]:
             )
             for p in made.paired_differences
         ),
-        at_most("fin example: mean cost of the schedule over the published gains'", own / published, "x", 0.6),
+        *(
+            Line(f"fin example: better than published, {p.stage}, mean", 100.0 * p.mean, "points")
+            for p in made.paired_differences
+        ),
+        *(
+            line
+            for c in (made.chosen, robust, rival)
+            for line in (
+                Line(f"fin example: Ms, {c.name}", c.Ms, ""),
+                Line(f"fin example: reduction by linear theory, {c.name}", 100.0 * c.reduction, "%"),
+            )
+        ),
+        *(_schedule_line(trade, published) for trade in made.schedule_trades),
         at_most("fin example: worst heading of the schedule over the published gains'", worst, "x", 1.0),
         at_least("fin example: conditions feasible", sum(s.is_feasible for s in made.schedule), "of 27", 27),
         Line("fin example: whole tuning", made.elapsed_s, "s"),
     ]
+
+
+def _schedule_line(trade: ScheduleTrade, published: float) -> Line:
+    """Mean cost of a schedule over that of the published gains, by the largest step between neighbours."""
+    step = f"steps of {100.0 * trade.largest_step:.0f} %" if math.isfinite(trade.largest_step) else "each its own"
+    what = f"fin example: mean cost of the schedule over the published gains', {step}"
+    limit = SCHEDULE_LIMITS.get(trade.largest_step)
+    ratio = trade.cost / published
+    return Line(what, ratio, "x") if limit is None else at_most(what, ratio, "x", limit)
 
 
 def _autopilots() -> list[Line]:

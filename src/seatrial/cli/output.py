@@ -14,11 +14,9 @@ if TYPE_CHECKING:
     from seatrial.core.results import (
         Baseline,
         CandidateModel,
-        Design,
         DisturbanceCandidate,
         Extrapolation,
         Fit,
-        ManoeuvrePrecision,
         Prediction,
         ReferenceEstimate,
         Study,
@@ -30,8 +28,6 @@ if TYPE_CHECKING:
 EXTRAPOLATION_LIMIT = 1.2
 EXTRAPOLATION_NOTE = ": beyond the training runs, read its intervals as lower limits"
 NOT_DETERMINED = "not determined"
-# orders that are printed; chosen: the file has them all
-MAX_ORDERS_PRINTED = 8
 SEVERITY_MARK = {"error": "ERROR  ", "warning": "warning", "info": "note   "}
 _NUMBERS = re.compile(r"\d[\d.e+-]*")
 DIGITS = 5  # significant ones of estimates; chosen
@@ -369,50 +365,6 @@ def print_study(study: "Study") -> None:
         rows.append([status, f"{check.name}: {exact(check.value, 4)} (limit {limit}){remark}"])
     print_table(rows, flush_left=(0, 1), indent="  ")
     print_lines([f"claims: {study.claim_counts or 'none'}", f"checks: {study.check_counts}"])
-
-
-def print_design(design: "Design") -> None:
-    """Print the manoeuvre's precision compared with the standard ones, findings, and its first orders."""
-    from seatrial.core.results.design import has_track, ranked_baselines
-    from seatrial.core.text.numbers import duration, exact
-
-    track = ["drift deg", "distance m"] if has_track(design) else []
-    rows = [["relative std. error, %", "worst", "mean", "ships drawn", *track, ""]]
-    rows += [_manoeuvre_cells(manoeuvre, design) for manoeuvre in (design.designed, *ranked_baselines(design))]
-    print_table(rows, flush_left=(0, len(rows[0]) - 1))
-    confirmation = design.confirmation
-    if confirmation is not None:
-        text = f"{confirmation.converged_runs} of {confirmation.runs} fits of simulated trials succeed"
-        if confirmation.converged_runs:
-            error, bound = (exact(100.0 * max(values), 3) for values in (confirmation.error, confirmation.bound))
-            text += f": worst error over them {error} %, {bound} % predicted"
-        print_lines([text])
-    print_lines(f"{SEVERITY_MARK[f.severity.value]} [{f.code}] {f.text}: {f.advice}" for f in design.findings)
-    _print_orders(design)
-    print_lines([f"{design.solution.evaluations} manoeuvres tried; {duration(design.elapsed_s)}"])
-
-
-def _manoeuvre_cells(manoeuvre: "ManoeuvrePrecision", design: "Design") -> list[str]:
-    import math
-
-    from seatrial.core.results.design import has_track, is_within_limits
-    from seatrial.core.text.numbers import exact
-    from seatrial.core.text.words import counted
-
-    errors = [exact(100.0 * x, 3) for x in (manoeuvre.worst, manoeuvre.mean, manoeuvre.worst_sampled_error)]
-    track = [exact(math.degrees(manoeuvre.drift), 3), exact(manoeuvre.distance, 4)] if has_track(design) else []
-    notes = [f"{counted(manoeuvre.diverged, 'ship')} diverged"] if manoeuvre.diverged else []
-    notes += [] if is_within_limits(manoeuvre, design.limits) else ["leaves the limits"]
-    return [manoeuvre.name, *errors, *track, ", ".join(notes)]
-
-
-def _print_orders(design: "Design") -> None:
-    from seatrial.data.folder.orders import order_cells, order_headings
-
-    orders = [order_cells(order, design.actuators) for order in design.orders[:MAX_ORDERS_PRINTED]]
-    print_table([order_headings(design.actuators), *orders], flush_left=(), indent="  ")
-    if len(design.orders) > MAX_ORDERS_PRINTED:
-        print(f"  ... and {len(design.orders) - MAX_ORDERS_PRINTED} more orders in orders.csv")
 
 
 def _phase_printer() -> Callable[[str], None]:

@@ -7,8 +7,9 @@ import typer
 
 from seatrial.cli.application import Json, OwnModelPath, Seed, TrialPath, app, own_model, result_document
 from seatrial.cli.correction_output import next_step, write_correction
+from seatrial.cli.design_output import print_design
 from seatrial.cli.follow_output import journal_path, live_display, print_outcome, stop_on_signal, stream_heading
-from seatrial.cli.output import print_design, print_findings, print_fit, progress_reporter, write_json
+from seatrial.cli.output import print_findings, print_fit, progress_reporter, write_json
 
 Method = Annotated[
     str | None,

@@ -1,4 +1,4 @@
-"""A recommendation as a value, and what is asked of gains on a front or on a bound."""
+"""A recommendation as a value, and which gains of a front are the best or lie on a bound."""
 
 from dataclasses import dataclass
 

@@ -122,7 +122,7 @@ def test_structures_that_gain_are_joined_and_the_gain_is_reported(
 
 
 def test_runs_are_left_out_by_session_and_by_kind(found: Estimation, records: list[Record]) -> None:
-    """Two runs of a session are predicted by the estimate without both; kinds are told by the steering."""
+    """Two runs of a session are predicted by the estimate without both; the steering decides of which kind a run is."""
     assert groups_of(["a", "b", "a"]) == [[0, 2], [1]]
     by_pairs = one_step_jackknife(found.estimate, [[0, 1], [2], [3], [4], [5]])
     by_runs = one_step_jackknife(found.estimate)
