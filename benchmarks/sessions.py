@@ -2,7 +2,9 @@
 
 `SEATRIAL_DATA=folder python benchmarks/sessions.py kvlcc2_hsva` (runs left out) or `esso_osaka` (days left out; with
 `--runs`, runs). Five rules: the model is fitted without offsets; with them, and a new session has none; the plain mean
-of the training sessions, as before; the mean of their population; the same with a mean that follows the helm.
+of the training sessions; the mean of their population; the same with a mean that follows the helm. Beside them stand
+the published coefficients, unfitted; and, with the population, the share of samples in the 95 % bands of windows, its
+interval binomial with a window as one draw (Clopper & Pearson 1934, Biometrika 26, 404).
 """
 
 import argparse
@@ -15,12 +17,22 @@ from pathlib import Path
 import numpy as np
 from measure import machine
 
+from seatrial.campaigns.summary import coverage_interval
 from seatrial.core.values import Array, InputError, Record
-from seatrial.data.trial import EstimateMethod, load_records, load_trial
+from seatrial.data.trial import EstimateMethod, Role, Trial, TrialRecord, load_records, load_trial
 from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs
 from seatrial.estimation.predict import HoldoutProtocol, simulate_open_loop
 from seatrial.estimation.predict.open_loop import rms_errors
-from seatrial_studies.cross_validation import Fold, OffsetRule, cross_validate, fit_sessions, population_offsets
+from seatrial_studies.alexandersson2022.window_bands import band_coverage, holdout_windows
+from seatrial_studies.cross_validation import (
+    CrossValidation,
+    Fold,
+    OffsetRule,
+    cross_validate,
+    cross_validate_unfitted,
+    fit_sessions,
+    population_offsets,
+)
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 WINDOW_S = {"kvlcc2_hsva": 30.0, "esso_osaka": 50.0}
@@ -66,6 +78,33 @@ def whole_run_errors(candidate: Candidate, runs: Runs) -> Array:
     return errors
 
 
+def unfitted(trial: Trial, runs: Runs, labels: Sequence[str], protocol: HoldoutProtocol, fold: Fold) -> CrossValidation:
+    """The same windows by the coefficients of the trial file; noise, which weighs initial states, is a fit's."""
+    problem = fold.estimation.estimate.problem
+    noise = dict(zip(problem.data.outputs, problem.noise.tolist(), strict=True))
+    return cross_validate_unfitted(
+        trial.model, replace(runs, noise=noise), labels, protocol, tuple(problem.data.outputs)
+    )
+
+
+def band_lines(folds: Sequence[Fold], runs: Runs, labels: Sequence[str], protocol: HoldoutProtocol) -> Iterator[str]:
+    """Share of samples inside the bands of windows of runs left out, and its interval, by label and channel."""
+    inside: dict[tuple[str, str], list[tuple[float, int]]] = {}
+    for fold in folds:
+        chosen = [TrialRecord(r, Role.TRAIN, s) for r, s in zip(runs.records, runs.sessions, strict=True)]
+        held = [chosen[i] for i in fold.held_out]
+        train = [item for i, item in enumerate(chosen) if i not in fold.held_out]
+        shares = band_coverage(holdout_windows(fold.estimation, train, held, protocol))[1]
+        for i, of_run in zip(fold.held_out, shares, strict=True):
+            for channel, share in of_run.shares.items():
+                inside.setdefault((labels[i], channel), []).append((share, of_run.windows))
+    for (label, channel), pairs in sorted(inside.items()):
+        windows = sum(n for _, n in pairs)
+        covered = sum(share * n for share, n in pairs)
+        low, high = coverage_interval(round(covered), windows)
+        yield f"{label} {channel} {covered / windows:.3f} [{low:.3f}, {high:.3f}] of {windows} windows"
+
+
 def population_text(folds: Sequence[Fold]) -> str:
     """Mean, slope and deviation of each kind of offset, averages over the folds, angles in degrees."""
     problem = folds[0].estimation.estimate.problem
@@ -101,7 +140,8 @@ def main(arguments: list[str]) -> int:
     options = EstimatorOptions(workers=1)
 
     def fits(**changes: object) -> tuple[Fold, ...]:
-        return fit_sessions(trial.model, runs, replace(settings, **changes), options)
+        return fit_sessions(trial.model, runs, replace(settings, **changes), options,
+                            report_progress=lambda text: print(text, file=sys.stderr, flush=True))  # fmt: skip
 
     def candidates() -> Iterator[Candidate]:
         common = fits()
@@ -115,12 +155,19 @@ def main(arguments: list[str]) -> int:
         yield Candidate("no offsets", nothing, fits(offsets={}, current=0.0))
 
     protocol = HoldoutProtocol(window_s=WINDOW_S[given.trial], initial_s=trial.estimate.initial_s or INITIAL_S)
+
+    def show(name: str, scored: CrossValidation) -> None:
+        pooled = [scored.pooled(label) for label in scored.labels]
+        text = "".join(f"   {p.label} {p.heading_deg:5.2f} deg {p.position_m:6.3f} m" for p in pooled)
+        print(f"  {name:<34} windows of {protocol.window_s:g} s{text}", flush=True)
+
     try:
         for candidate in candidates():
-            scored = cross_validate(candidate.folds, runs, labels, protocol, candidate.rule)
-            pooled = [scored.pooled(label) for label in scored.labels]
-            text = "".join(f"   {p.label} {p.heading_deg:5.2f} deg {p.position_m:6.3f} m" for p in pooled)
-            print(f"  {candidate.name:<34} windows of {protocol.window_s:g} s{text}", flush=True)
+            show(candidate.name, cross_validate(candidate.folds, runs, labels, protocol, candidate.rule))
+            if candidate.name == "population":
+                show("coefficients of the trial file", unfitted(trial, runs, labels, protocol, candidate.folds[0]))
+                for line in band_lines(candidate.folds, runs, labels, protocol):
+                    print(f"  {'':<34} inside the bands: {line}", flush=True)
             if given.trial in WHOLE_RUNS:
                 errors = whole_run_errors(candidate, runs)
                 diverged = int(np.isnan(errors[:, 0]).sum())
