@@ -3,7 +3,7 @@
 import numpy as np
 
 from seatrial.core.values import Prior, Record
-from seatrial.estimation.identify.physical_limits import objections
+from seatrial.estimation.identify.physical_limits import objections, unphysical_finding
 from seatrial.physics.models.published import kvlcc2
 from seatrial.physics.models.roll import roll
 
@@ -40,3 +40,13 @@ def test_damping_of_roll_is_judged_over_the_measured_amplitudes() -> None:
     assert objections(roll().with_values({**base, "b_2": -0.05}), DECAY) == ("its damping decreases with amplitude",)
     negative = roll().with_values({**base, "b_2": -1.0})
     assert objections(negative, DECAY) == ("its damping is negative at amplitudes that were measured",)
+
+
+def test_what_no_craft_has_is_a_warning_with_a_cure() -> None:
+    assert unphysical_finding(roll().with_values({"c_1": 6.0, "b_1": 0.1, "b_2": 0.2}), DECAY) == ()
+    (finding,) = unphysical_finding(roll().with_values({"c_1": 6.0, "b_1": 0.1, "b_2": -0.05}), DECAY)
+    assert finding.code == "unphysical-values"
+    assert "its damping decreases with amplitude" in finding.text
+    assert "[model.fixed]" in finding.advice
+    (finding,) = unphysical_finding(kvlcc2().with_values({"Y_v": 0.2}), ())
+    assert "Y_v 0.2 is positive" in finding.text

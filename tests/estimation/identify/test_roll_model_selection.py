@@ -29,43 +29,50 @@ def decay(name: str, start: float, seed: int) -> Record:
 LARGE, SMALL = decay("large", 0.3, 1), decay("small", 0.2, 2)
 
 
-def choice(train: list[Record], kept_out: list[Record], model: Model | None = None) -> SelectedModel:
+def choice(train: list[Record], model: Model | None = None) -> SelectedModel:
     """Of the house's family."""
     own, runs, options = model or roll(), Runs.one_session_each(train, 5.0), EstimatorOptions(workers=1)
     found = estimate_model(own, runs, options=options)
-    return select_roll_model(found, own, runs, kept_out, 5.0, EstimateSettings(), options, None)
+    return select_roll_model(found, own, runs, 5.0, EstimateSettings(), options, None)
 
 
-def test_the_structure_that_made_the_decays_is_chosen() -> None:
-    """Richer ones predict no better by a tenth, poorer ones worse; the run kept out judged, and it is said."""
-    made = choice([LARGE], [SMALL])
-    (used,) = [row for row in made.candidates if row.is_chosen]
+def test_a_single_decay_is_chosen_by_its_halves() -> None:
+    """Fitted to the larger swings, the true structure predicts the smaller to 1.2 of the noise, poorer ones do not."""
+    selected = choice([LARGE])
+    (used,) = [row for row in selected.candidates if row.is_chosen]
     assert used.name == "quadratic damping, cubic restoring"
-    assert used.roll_deg == pytest.approx(0.02, rel=0.3)
-    assert made.estimation.model.parameters.free_names == ("b_1", "b_2", "c_1", "c_3", "phi_0")
-    errors = {row.name: row.roll_deg or np.inf for row in made.candidates}
+    assert used.roll_deg is not None and used.roll_deg <= 1.2 * np.degrees(NOISE)
+    assert selected.estimation.model.parameters.free_names == ("b_1", "b_2", "c_1", "c_3", "phi_0")
+    errors = {row.name: row.roll_deg or np.inf for row in selected.candidates}
     assert errors["linear damping, linear restoring"] > 5.0 * errors[used.name]
-    assert [f.code for f in made.findings] == ["judged-by-validation"]
+    assert selected.findings == ()
 
 
 def test_two_training_runs_judge_one_another() -> None:
-    """Runs kept out stay untouched."""
-    poor = decay("kept out", 0.25, 3)
-    poor = poor.with_channel("phi", poor.channel("phi").with_values(0.5 * poor["phi"]))
-    made = choice([LARGE, SMALL], [poor])
-    assert made.findings == ()
-    (used,) = [row for row in made.candidates if row.is_chosen]
+    selected = choice([LARGE, SMALL])
+    assert selected.findings == ()
+    (used,) = [row for row in selected.candidates if row.is_chosen]
     assert used.name == "quadratic damping, cubic restoring"
 
 
+def test_damping_that_decreases_with_amplitude_is_listed_and_not_taken() -> None:
+    """A decay with b_2 < 0, as a sensor's lag or a slack mooring may show it: constant damping is taken."""
+    odd = {**TRUE, "b_1": 0.08, "b_2": -0.1, "c_3": 0.0}
+    states, _ = trajectory(roll().with_values(odd), np.zeros((ROWS, 2)), DT, np.array([0.3, 0.0]))
+    noise = NOISE * np.random.default_rng(4).standard_normal(ROWS)
+    selected = choice([Record.from_arrays("odd", DT * np.arange(0.0, ROWS), {"phi": states[:, 0] + noise})])
+    notes = {row.name: row.note for row in selected.candidates}
+    assert notes["quadratic damping, linear restoring"] == "its damping decreases with amplitude"
+    (used,) = [row for row in selected.candidates if row.is_chosen]
+    assert used.name.startswith("linear damping") and not used.note
+
+
 def test_what_cannot_be_judged_is_refused() -> None:
-    """No run to judge by; runs that no decay explains."""
-    with pytest.raises(InputError, match="chosen by runs it was not fitted to; add a run"):
-        choice([LARGE], [])
+    """A run that no decay explains."""
     rng = np.random.default_rng(5)
     waves = replace(SMALL, channels={"phi": SMALL.channel("phi").with_values(0.1 * rng.standard_normal(ROWS))})
     with pytest.raises(InputError, match="no model predicts the runs left out"):
-        choice([LARGE], [waves])
+        choice([LARGE, waves])
 
 
 def test_a_family_is_the_packages_or_the_trials_own() -> None:

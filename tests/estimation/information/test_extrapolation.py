@@ -4,7 +4,12 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Record
-from seatrial.estimation.information.extrapolation import extrapolation, extrapolation_index, motion_envelope
+from seatrial.estimation.information.extrapolation import (
+    extrapolation,
+    extrapolation_index,
+    motion_envelope,
+    with_recorded_speed,
+)
 
 TIME = 0.1 * np.arange(2000)
 
@@ -37,6 +42,18 @@ def test_speed_leaves_the_range_both_ways(speed: float, name: str, ratio: float)
     found = extrapolation(run("c", 0.02, 0.1, 0.2, speed), motion_envelope(train))
     assert found is not None
     assert found.ratios[name] == pytest.approx(ratio)
+
+
+def test_a_model_without_surge_is_judged_at_the_recorded_speed() -> None:
+    """A steering model simulates r alone; at half the speed of any training run the index is 2, not 1."""
+    measured = [run("fast", 0.02, 0.0, 0.2, 5.0), run("slow", 0.02, 0.0, 0.2, 2.5)]
+    fast, slow = (with_recorded_speed(m.without("u", "v"), m) for m in measured)
+    found = extrapolation(slow, motion_envelope([fast]))
+    assert found is not None
+    assert found.ratios["slowest"] == found.index == pytest.approx(2.0)
+    assert with_recorded_speed(measured[0], measured[1]) is measured[0]
+    speedless = slow.without("u")
+    assert with_recorded_speed(speedless, speedless) is speedless
 
 
 def test_a_run_from_rest_is_a_tenth_of_the_speed_away_and_no_farther() -> None:

@@ -15,6 +15,7 @@ from seatrial.estimation.identify.identifiability import identifiability
 from seatrial.estimation.identify.identification import Identification
 from seatrial.estimation.identify.model_selection import SelectedModel, with_model_spread
 from seatrial.estimation.identify.other_optima import other_optima
+from seatrial.estimation.identify.physical_limits import unphysical_finding
 from seatrial.estimation.identify.posterior import sample_posterior, sampling_findings
 from seatrial.estimation.identify.profile import innovation_profiles, profiles
 from seatrial.estimation.identify.roll_characteristics import one_speed_finding, roll_characteristics
@@ -60,7 +61,8 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         predictions=predicted.predictions,
         findings=(
             *task.findings, *selected.findings, *findings, *fit_result.unidentified(task.estimation),
-            *fit_result.bounds_hit(estimation), *fit_result.unconverged(estimation), *other_optima(estimation),
+            *unphysical_finding(estimation.model, runs.records), *fit_result.bounds_hit(estimation),
+            *fit_result.unconverged(estimation), *other_optima(estimation),
             *short_record_findings(estimation, assessment.profiles), *closed_loop_findings(estimation),
             *(sampling_findings(posterior) if posterior else ()),
             *predicted.findings,

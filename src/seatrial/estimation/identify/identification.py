@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from seatrial.core.results import Symmetry
-from seatrial.core.values import Finding, ProgressReporter, Record
+from seatrial.core.values import Finding, ProgressReporter
 from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRecord
 from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.estimate.fit import with_segment_seconds
@@ -45,11 +45,6 @@ class Identification:
     def runs(self) -> Runs:
         """The training runs as data of an estimate."""
         return training_runs(self.trial, self.records)
-
-    @property
-    def validation_records(self) -> tuple[Record, ...]:
-        """The records of the validation runs."""
-        return tuple(r.record for r in self.records if r.role is Role.VALIDATE)
 
     @cached_property
     def settings(self) -> EstimateSettings:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.values import Record
+from seatrial.core.values import Finding, Record, Severity
 from seatrial.estimation.estimate.time_scale import is_pure_roll
 from seatrial.estimation.identify.roll_characteristics import DAMPING_NAMES, RESTORING_NAMES
 from seatrial.physics.hydro.free_roll import equivalent_damping
@@ -36,6 +36,18 @@ def objections(model: Model, records: Sequence[Record]) -> tuple[str, ...]:
             if away > MOST_PRIOR_DEVIATIONS:
                 far.append(f"{p.name} is {away:.1f} standard deviations off its prior")
     return (*turned, *far, *(_roll_objections(model, records) if is_pure_roll(model) else ()))
+
+
+def unphysical_finding(model: Model, records: Sequence[Record]) -> tuple[Finding, ...]:
+    """Return a warning where an estimated model has values that no craft has; `records`: as in `objections`."""
+    against = objections(model, records)
+    if not against:
+        return ()
+    advice = "record a decay from a larger angle, or fix b_2 and b_3 at 0 under [model.fixed]; --choose tries that"
+    if not is_pure_roll(model):
+        advice = "fix these under [model.fixed], or look for what the model lacks; --choose takes no such model"
+    what = f"the estimate has values that no craft has, or that its priors exclude: {', '.join(against)}"
+    return (Finding(Severity.WARNING, "unphysical-values", what, "", advice),)
 
 
 def _roll_objections(model: Model, records: Sequence[Record]) -> tuple[str, ...]:

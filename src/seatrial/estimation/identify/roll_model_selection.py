@@ -1,11 +1,12 @@
 """Choice of a roll model by runs it was not fitted to: each is predicted open loop from its first seconds on.
 
-Every structure is fitted to the training runs but one and predicts that one; with a single training run the runs kept
-out judge, which are then no independent check of the chosen model any more, and a finding says so.
+Every structure is fitted to the training runs but one and predicts that one. A single decay is cut in halves: that of
+the larger swings is fitted and predicts the other; the smaller ones say nothing of damping at amplitudes they lack. A
+structure whose damping is negative, or decreases with amplitude, is listed and not taken.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from seatrial.estimation.estimate.fit import Estimation, estimate_model
 from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions, IntervalMethod
 from seatrial.estimation.identify.model_selection import SelectedModel
+from seatrial.estimation.identify.physical_limits import objections
 from seatrial.estimation.predict.open_loop import rms_errors, simulate_open_loop
 from seatrial.estimation.predict.session_offsets import new_session_offsets
 from seatrial.numerics.workers import map_in_threads
@@ -24,6 +26,9 @@ from seatrial.physics.models.candidate_structures import OMITTED_PARAMETERS
 
 TIE_TOLERANCE = 0.1
 """A structure of fewer coefficients is taken where its error is larger than the least one by no more than this part."""
+
+NOISE_FACTOR = 1.2
+"""Error of a decay's other half, over what the fit leaves of the first, up to which the model explains it; chosen."""
 
 # rms error over rms roll beyond which no structure predicts anything, ours
 _MAX_RESIDUAL_SHARE = 0.5
@@ -61,7 +66,6 @@ def select_roll_model(
     estimation: Estimation,
     model: Model,
     train: Runs,
-    validation_runs: Sequence[Record],
     seconds: float,
     settings: EstimateSettings,
     options: EstimatorOptions,
@@ -70,49 +74,95 @@ def select_roll_model(
 ) -> SelectedModel:
     """The structure that predicts runs best of those it was not fitted to, or a simpler one that does as well (10 %).
 
-    found: the trial's own model fitted to all training runs; seconds: of each run, that give its initial state.
+    estimation: the trial's own model fitted to all training runs; seconds: of each run, that give its initial state.
 
     Raises:
-        InputError: no run is left to judge by, there is but one structure, or none predicts anything.
+        InputError: there is but one structure, or none predicts anything.
     """
-    if len(train) < 2 and not validation_runs:
-        raise InputError("a model is chosen by runs it was not fitted to; add a run, or name one under 'validate'")
     members = roll_structures(model, family)
     quiet = replace(options, workers=1, intervals=IntervalMethod.AUTO)
-    folds = [[j for j in range(len(train)) if j != i] for i in range(len(train))] if len(train) > 1 else [[0]]
+    splits = _runs_left_out(train) if len(train) > 1 else (_halves(train),)
 
-    def error(one: Model, fold: int) -> float:
-        kept = folds[fold]
-        is_known = one is model and len(kept) == len(train)
-        fitted = estimation if is_known else estimate_model(one, train.selected(kept), settings, quiet)
-        judged = [train.records[fold]] if len(train) > 1 else validation_runs
-        return float(np.mean([_roll_error(fitted, record, seconds) for record in judged]))
-
-    def scored(item: tuple[str, Model]) -> tuple[float, str]:
+    def scored(item: tuple[str, Model]) -> _Scored:
         if report_progress:
             report_progress(f"family: {item[0]}")
         try:
-            return float(np.mean([error(item[1], fold) for fold in range(len(folds))])), ""
+            complete = estimation if item[1] is model else estimate_model(item[1], train, settings, quiet)
+            parts = [estimate_model(item[1], split.fitted, settings, quiet) for split in splits]
+            errors = [_roll_error(part, split.judged, seconds) for part, split in zip(parts, splits, strict=True)]
         except InputError as failed:
-            return np.inf, str(failed)
+            return _Scored(np.inf, np.nan, str(failed))
+        noise = np.degrees([np.sqrt(np.nanmean(part.residuals**2)) for part in parts])
+        return _Scored(
+            float(np.mean(errors)), float(np.mean(noise)), ", ".join(objections(complete.model, train.records))
+        )
 
     scores = map_in_threads(scored, list(members.items()), workers=options.workers)
-    errors = np.array([score for score, _ in scores])
-    judged = train.records if len(train) > 1 else validation_runs
-    _refuse_unpredicted(errors, judged, [note for _, note in scores])
+    errors = np.array([s.error for s in scores])
+    _refuse_unpredicted(errors, [split.judged for split in splits], scores[0].note)
     free = [len(m.parameters.free) for m in members.values()]
-    tied = errors <= (1.0 + TIE_TOLERANCE) * errors.min()
+    allowed = np.array([np.isfinite(s.error) and not s.note for s in scores])
+    if not np.any(allowed):
+        allowed = np.isfinite(errors)
+    tied = allowed & (errors <= (1.0 + TIE_TOLERANCE) * errors[allowed].min())
     best = min(np.flatnonzero(tied), key=lambda i: (free[i], errors[i]))
     rows = tuple(
-        CandidateModel(name, free[i], None, None, bool(tied[i]), bool(i == best), note, _finite_or_none(errors[i]))
-        for i, (name, (_, note)) in enumerate(zip(members, scores, strict=True))
+        CandidateModel(name, free[i], None, None, bool(tied[i]), bool(i == best), s.note, _finite_or_none(s.error))
+        for i, (name, s) in enumerate(zip(members, scores, strict=True))
     )
     used = (
         estimation
         if best == 0
         else estimate_model(list(members.values())[best], train, settings, options, report_progress)
     )
-    return SelectedModel(used, rows, (), () if len(train) > 1 else (_chosen_by_validation_finding(validation_runs),))
+    return SelectedModel(used, rows, (), _halves_finding(train, rows[best].name, scores[best]))
+
+
+@dataclass(frozen=True)
+class _Scored:
+    """Rms error [deg] of what is predicted, and of what it was fitted to; why it failed or must not be taken."""
+
+    error: float
+    noise: float
+    note: str
+
+
+@dataclass(frozen=True, eq=False)
+class _Split:
+    """Runs that are fitted, and the one that is predicted then."""
+
+    fitted: Runs
+    judged: Record
+
+
+def _runs_left_out(train: Runs) -> tuple[_Split, ...]:
+    """Each run in turn, predicted by the others."""
+    indices = range(len(train))
+    return tuple(_Split(train.selected([j for j in indices if j != i]), train.records[i]) for i in indices)
+
+
+def _halves(train: Runs) -> _Split:
+    """Of the only run, the half of the larger swings is fitted and predicts the other."""
+    (record,) = train.records
+    middle = len(record.time) // 2
+    halves = [record.rows(slice(0, middle)).renamed(f"{record.name}, first half"),
+              record.rows(slice(middle, None)).renamed(f"{record.name}, second half")]  # fmt: skip
+    smaller, larger = sorted(halves, key=lambda half: float(np.nanstd(half["phi"])))
+    return _Split(replace(train, records=(larger,)), smaller)
+
+
+def _halves_finding(train: Runs, name: str, scored: _Scored) -> tuple[Finding, ...]:
+    """Return that the model of a single decay does not explain its other half."""
+    if len(train) > 1 or scored.error <= NOISE_FACTOR * scored.noise:
+        return ()
+    what = (
+        f"fitted to the half of the larger swings, '{name}' misses the other half by {scored.error:.2g} deg, "
+        f"{scored.error / scored.noise:.2g} times what it leaves of the first"
+    )
+    advice = (
+        "take its damping as a mean over the amplitudes recorded; record a second decay, so that each judges the other"
+    )
+    return (Finding(Severity.INFO, "half-missed", what, f"'{train.records[0].name}'", advice),)
 
 
 def _roll_error(estimation: Estimation, record: Record, seconds: float) -> float:
@@ -122,22 +172,15 @@ def _roll_error(estimation: Estimation, record: Record, seconds: float) -> float
     return rms_errors(record, run.record)[_ERROR_KEY]
 
 
-def _refuse_unpredicted(errors: Array, runs: Sequence[Record], notes: Sequence[str]) -> None:
+def _refuse_unpredicted(errors: Array, runs: Sequence[Record], note: str) -> None:
     if not np.any(np.isfinite(errors)):
-        raise InputError(f"no member of the family can be fitted; the first fails because {notes[0]}")
+        raise InputError(f"no member of the family can be fitted; the first fails because {note}")
     moved = float(np.mean([np.degrees(np.nanstd(r["phi"])) for r in runs]))
     if errors.min() > _MAX_RESIDUAL_SHARE * moved:
         raise InputError(
             f"no model predicts the runs left out (rms {errors.min():.2g} deg of {moved:.2g} deg); record the wave "
             "slope alpha_w, or choose by decays in calm water"
         )
-
-
-def _chosen_by_validation_finding(validation_runs: Sequence[Record]) -> Finding:
-    names = ", ".join(r.name for r in validation_runs)
-    what = f"the model was chosen by its prediction of {names}, which is no independent check of it any more"
-    advice = "keep a further run out, or train on two runs: then each judges what was fitted to the others"
-    return Finding(Severity.INFO, "judged-by-validation", what, "one training run only", advice)
 
 
 def _finite_or_none(value: float) -> float | None:

@@ -25,8 +25,8 @@ def selected_model(task: Identification) -> SelectedModel:
     model, family = task.trial.model, task.trial.family
     if task.choose and is_pure_roll(model):
         return select_roll_model(
-            estimation, model, task.runs, task.validation_records, task.initial_seconds, task.settings, task.options,
-            family, task.report_progress,
+            estimation, model, task.runs, task.initial_seconds, task.settings, task.options, family,
+            task.report_progress,
         )  # fmt: skip
     if task.choose or task.options.intervals is IntervalMethod.JACKKNIFE:
         window = HOLDOUT_WINDOW_SHIP_LENGTHS * task.characteristic_time

@@ -51,6 +51,13 @@ def _speed(record: Record) -> Array:
     return np.hypot(record["u"], record["v"]) if "v" in record else np.abs(record["u"])
 
 
+def with_recorded_speed(simulated: Record, measured: Record) -> Record:
+    """Return the simulated run with the measured surge speed where the model has none of its own (steering, roll)."""
+    if "u" in simulated or "u" not in measured:
+        return simulated
+    return simulated.with_channel("u", measured.channel("u"))
+
+
 def extrapolation(predicted: Record, training_envelope: Mapping[str, float], layout: str = "") -> Extrapolation | None:
     """Ratios of a run's `motion_envelope` to that of the training runs; None where nothing can be compared.
 

@@ -12,7 +12,12 @@ from seatrial.data.trial import Role, TrialRecord
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.information.discrepancy import NO_DISCREPANCY, Discrepancy, HoldoutError, discrepancy
-from seatrial.estimation.information.extrapolation import extrapolation, extrapolation_index, motion_envelope
+from seatrial.estimation.information.extrapolation import (
+    extrapolation,
+    extrapolation_index,
+    motion_envelope,
+    with_recorded_speed,
+)
 from seatrial.estimation.predict.divergence import divergence_finding, not_predicted_finding
 from seatrial.estimation.predict.draws import PredictionUncertainty
 from seatrial.estimation.predict.open_loop import (
@@ -164,7 +169,8 @@ def predict_runs(
     fitted = [run.record for run, item in zip(runs, items, strict=True) if item.role is Role.TRAIN]
     layout = estimation.model.equations.layout
     moved = [
-        i.record if layout and set(i.record.channels) >= _MOTION else r for i, r in zip(train, fitted, strict=True)
+        i.record if layout and set(i.record.channels) >= _MOTION else with_recorded_speed(r, i.record)
+        for i, r in zip(train, fitted, strict=True)
     ]
     covered = motion_envelope(moved, layout)
     report("runs left out, predicted")
@@ -176,7 +182,8 @@ def predict_runs(
     for item, run, own, stream in zip(items, runs, offsets, streams, strict=True):
         role = "training" if item.role is Role.TRAIN else "validation"
         one = predict_run(estimation.model, item.record, role, run, seconds, length)
-        reached = run.record if run.divergence is None else item.record  # of a runaway simulation it says nothing
+        # a runaway simulation says nothing of what the run reached
+        reached = item.record if run.divergence is not None else with_recorded_speed(run.record, item.record)
         one = replace(one, extrapolation=extrapolation(reached, covered, layout))
         if run.divergence is not None:
             findings.append(divergence_finding(estimation.model, one, run.divergence))
