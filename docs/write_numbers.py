@@ -65,8 +65,8 @@ HEADLINES = (
     ),
     Headline(
         "waterjet_regressions",
-        "The same records by regression",
-        "the best of this package's own for each coefficient {} times as far off in the median",
+        "Simulated waterjet craft by regression instead of output error",
+        "the best regression for each coefficient is {} times as far off in the median",
         ("best of each coefficient / output error, median: regressions",),
     ),
     Headline(
