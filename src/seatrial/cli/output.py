@@ -84,6 +84,7 @@ def print_fit(fit: "Fit") -> None:
         _print_method_comparison(fit, fit.reference)
     for p in fit.validation:
         _print_prediction(p)
+    print_lines(population.sentence for population in fit.offset_populations)
     _print_k_step_errors(fit)
     _print_frequency_responses(fit)
     _print_thruster_craft(fit)

@@ -1,7 +1,7 @@
 """Results: fits, designs, tunings, studies and estimates on a stream, described field by field."""
 
 from seatrial.core.results.coefficients import (
-    CandidateModel, Coefficient, DisturbanceCandidate, Method, Noise, NoiseModel, Offset, Residuals,
+    CandidateModel, Coefficient, DisturbanceCandidate, Method, Noise, NoiseModel, Offset, OffsetPopulation, Residuals,
 )  # fmt: skip
 from seatrial.core.results.comparison import ComparedFit, Comparison, Difference, JointTest, ManoeuvreDifferences
 from seatrial.core.results.design import Actuator, Confirmation, Design, ManoeuvrePrecision, TimedOrder, TrialLimits
@@ -88,6 +88,7 @@ __all__ = [
     "Noise",
     "NoiseModel",
     "Offset",
+    "OffsetPopulation",
     "OpenLoopScores",
     "PointMotion",
     "Posterior",

@@ -1,5 +1,6 @@
 """What a fit says of each parameter and of the noise, how it was estimated, and which models it was compared with."""
 
+import math
 from dataclasses import dataclass, field
 from typing import Annotated
 
@@ -7,7 +8,8 @@ from pydantic import Field, PlainSerializer, WithJsonSchema
 
 from seatrial.core.results.closed_loop import FeedbackEvidence
 from seatrial.core.results.fields import ABSENT, Number, StoredArray
-from seatrial.core.values import InputError
+from seatrial.core.text.numbers import significant
+from seatrial.core.values import InputError, display_unit
 
 
 def _absent_unless_given(value: float | None) -> object:
@@ -49,6 +51,44 @@ class Offset:
     unit: Annotated[str, Field(description="SI")]
     estimate: Number
     standard_error: Number | None
+
+
+@dataclass(frozen=True)
+class OffsetPopulation:
+    """What an offset is over sessions: a new session is predicted with the mean, and its band holds the rest."""
+
+    name: Annotated[str, Field(description="channel and kind, such as delta zero")]
+    unit: Annotated[str, Field(description="SI")]
+    mean: Annotated[Number, Field(description="expected of a session whose covariate is the average one")]
+    standard_error: Annotated[Number, Field(description="of the mean")]
+    deviation: Annotated[Number, Field(description="standard deviation between sessions")]
+    covariate: Annotated[str, Field(description="input on whose rms over a session the mean depends; empty: none")] = ""
+    slope: Annotated[
+        Number | None,
+        Field(description="change of the mean for a covariate one standard deviation above the average; null: none"),
+    ] = None
+    slope_standard_error: Annotated[Number | None, Field(description="null as `slope`")] = None
+
+    @property
+    def sentence(self) -> str:
+        """Return mean, deviation and covariate as a sentence, angles in degrees."""
+        factor, unit = display_unit(self.unit)
+
+        def text(value: float) -> str:
+            return significant(factor * value, 2)
+
+        sentence = (
+            f"{self.name} of a new session: {text(self.mean)} {unit} expected (standard error "
+            f"{text(self.standard_error)}), {text(self.deviation)} {unit} standard deviation between sessions"
+        )
+        if self.slope is None or self.slope_standard_error is None:
+            return f"{sentence}."
+        size = abs(self.slope) / self.slope_standard_error
+        word = "" if size > two_sided_quantile(STORED_LEVEL, math.inf) else ", which is no more than chance explains"
+        return (
+            f"{sentence}; it changes by {text(self.slope)} {unit} (standard error {text(self.slope_standard_error)}) "
+            f"for one standard deviation of the rms of {self.covariate}{word}."
+        )
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from seatrial.core.results.coefficients import (
     Noise,
     NoiseModel,
     Offset,
+    OffsetPopulation,
     Residuals,
     at_level,
 )
@@ -100,6 +101,10 @@ class Fit(Summarised):
     frequency_responses: Annotated[
         tuple[FrequencyResponse, ...],
         Field(description="of outputs to inputs, records and model; empty: no input moves, or runs too short"),
+    ] = ()
+
+    offset_populations: Annotated[
+        tuple[OffsetPopulation, ...], Field(description="each kind of offset over sessions; empty: no offsets")
     ] = ()
 
     @computed_field(description="the predictions of runs that were not fitted")

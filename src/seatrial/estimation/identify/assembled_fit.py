@@ -56,6 +56,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         solution=estimation.estimate.optimum.solution,
         method=fit_result.method(estimation, has_profiles=bool(assessment.profiles)),
         offsets=fit_result.offsets(estimation),
+        offset_populations=fit_result.offset_populations(estimation),
         channel_noise=fit_result.noise(estimation),
         residuals=fit_result.residuals(estimation),
         predictions=predicted.predictions,

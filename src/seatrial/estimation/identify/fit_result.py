@@ -5,7 +5,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from seatrial.core.results import Coefficient, Method, Noise, Offset, Residuals
+from seatrial.core.results import Coefficient, Method, Noise, Offset, OffsetPopulation, Residuals
 from seatrial.core.values import NOTATION, Array, DivergedError, Finding, InputError, Parameter, Parameters, Severity
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import split_segments
@@ -76,6 +76,23 @@ def offsets(estimation: Estimation) -> tuple[Offset, ...]:
             i = len(problem.free) + k * problem.unknowns_per_session + j
             table.append(Offset(name, session, unit, float(estimation.estimate.common_parameters[i]), float(error[i])))
     return tuple(table)
+
+
+def offset_populations(estimation: Estimation) -> tuple[OffsetPopulation, ...]:
+    """What each kind of offset is over sessions, and how it follows its covariate."""
+    problem, population = estimation.estimate.problem, estimation.estimate.population
+    count = len(problem.session_unknowns)
+    errors = np.sqrt(np.maximum(np.diag(population.trend_covariance), 0.0)).reshape(2, count)
+    units = [problem.model.parameters[name].unit for name, _ in problem.session_parameters]
+    units += [n.unit for n in problem.nuisances]
+    covariates = ["" for _ in problem.session_parameters] + [n.covariate for n in problem.nuisances]
+    return tuple(
+        OffsetPopulation(
+            name, unit, float(population.mean[i]), float(errors[0, i]), float(population.deviation[i]), covariate,
+            float(population.slope[i]) if covariate else None, float(errors[1, i]) if covariate else None,
+        )
+        for i, (name, unit, covariate) in enumerate(zip(problem.session_unknowns, units, covariates, strict=True))
+    )  # fmt: skip
 
 
 def noise(estimation: Estimation) -> tuple[Noise, ...]:

@@ -145,7 +145,8 @@ def variants(model: Model, family: ModelFamily | None, is_segmented: bool) -> tu
     family: what the trial declares; without it the default family of this model.
     """
     free, priors = set(model.parameters.free_names), any(p.prior for p in model.parameters.free)
-    structures = FREED_PARAMETERS.get(model.name, {}) if family is None else family.structures
+    built_in = {n: names for n, names in FREED_PARAMETERS.get(model.name, {}).items() if _has(model, names)}
+    structures = built_in if family is None else family.structures
     factors = (PRIOR_FACTORS, SEGMENT_FACTORS) if family is None else (family.prior_factors, family.segment_factors)
     first = "as in the trial"
     members = [ModelVariant(first)]
@@ -153,6 +154,11 @@ def variants(model: Model, family: ModelFamily | None, is_segmented: bool) -> tu
     members += [ModelVariant(f"priors x {f:g}", prior_factor=f) for f in factors[0] if priors and f != 1.0]
     members += [ModelVariant(f"segments x {f:g}", segment_factor=f) for f in factors[1] if is_segmented and f != 1.0]
     return (members[0], *(replace(v, parent=first) for v in members[1:]))
+
+
+def _has(model: Model, names: Sequence[str]) -> bool:
+    """Return whether the model has all of these; that of a craft with thrusters depends on their layout."""
+    return set(names) <= set(model.parameters.names)
 
 
 def apply_variant(model: Model, variant: ModelVariant) -> Model:
@@ -164,7 +170,7 @@ def apply_variant(model: Model, variant: ModelVariant) -> Model:
         if q.prior is not None
     }
     new = {
-        n: Prior(p[n].value, FREED_PRIOR_SHARE * p[n].characteristic_scale, "house default")
+        n: Prior(p[n].value, FREED_PRIOR_SHARE * p[n].characteristic_scale, "a tenth of its characteristic size")
         for n in variant.freed
         if n not in p.free_names
     }

@@ -13,6 +13,7 @@ FREED_PARAMETERS: Mapping[str, Mapping[str, tuple[str, ...]]] = MappingProxyType
             "asymmetric hull": ("Y_0", "N_0"),
             "rudder and its inflow": ("a_H", "gamma_R_plus", "gamma_R_minus", "l_R_prime"),
             "added masses": ("m_x_prime", "m_y_prime", "J_z_prime"),
+            "even terms": ("Y_dd", "N_dd"),
         },
         "abkowitz": {
             "cubic rudder": ("Y_ddd", "N_ddd"),
@@ -20,6 +21,11 @@ FREED_PARAMETERS: Mapping[str, Mapping[str, tuple[str, ...]]] = MappingProxyType
             "change with speed": ("Y_vu", "Y_ru", "N_vu", "N_ru"),
         },
         "waterjet": {"inertia": ("m_x", "m_y", "J_z")},
+        "thrusters": {
+            "side force of thrust": ("Y_T",),
+            "moment of speed": ("N_u", "N_uu"),
+            "sway and yaw coupled": ("N_v", "Y_r", "N_uv", "Y_ur"),
+        },
     }
 )
 OMITTED_PARAMETERS: Mapping[str, Mapping[str, tuple[str, ...]]] = MappingProxyType(
