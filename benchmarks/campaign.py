@@ -30,6 +30,9 @@ EXAMPLE = Path(__file__).parents[1] / "examples" / "coverage.toml"
 ROOT = Path(__file__).parents[1]
 
 
+_MOMENT_S = 0.02  # s between looks at a store, and the longest wait before a kill: chosen, four tasks
+
+
 def nothing(keys: Mapping[str, Any]) -> Sequence[Row]:
     """One row at no cost."""
     return [{"name": "seed", "estimate": float(keys["seed"])}]
@@ -127,17 +130,21 @@ def _campaign_process(folder: Path, count: int, dask: str) -> None:
 
 
 def kills(count: int = 2000, kill_count: int = 20, seed: int = 1) -> list[Line]:
-    """Kill workers, and every fifth time the whole campaign, at random moments until it has ended."""
+    """Kill workers, and every fifth time the whole campaign, each after a random number of further tasks.
+
+    Kills are paced by tasks, not by the clock, so that on a busy machine too they fall within the campaign.
+    """
     rng = random.Random(seed)
     with tempfile.TemporaryDirectory() as place:
         folder, undisturbed = Path(place) / "store", Path(place) / "undisturbed"
         run_campaign(work(count), undisturbed, CampaignOptions(workers=1))
         killed = starts = 0
-        while _remaining(folder):
+        while _remaining(folder, count):
             starts += 1
             process = _started(folder, count, "")
             while process.poll() is None and killed < kill_count:
-                time.sleep(rng.uniform(0.1, 1.0) * _pace(count, kill_count))
+                _wait_for_tasks(process, folder, count, rng.randrange(max(count // kill_count, 1) + 1))
+                time.sleep(rng.uniform(0.0, _MOMENT_S))
                 if process.poll() is None and _kill_something(process, whole=killed % 5 == 4, rng=rng):
                     killed += 1
             process.wait()
@@ -159,14 +166,12 @@ def scheduler_kills(count: int = 2000, kill_count: int = 2, seed: int = 1) -> li
                 time.sleep(0.1)
             workers = [_dask("worker", "--scheduler-file", str(file), "--nthreads", "1", "--no-nanny") for _ in "ab"]
             process = _started(folder, count, _address(file))
-            before, wanted = _remaining(folder), rng.randrange(1, max(count // (2 * kill_count), 2))
-            while process.poll() is None and before - _remaining(folder) < wanted:
-                time.sleep(0.05)
+            _wait_for_tasks(process, folder, count, rng.randrange(1, max(count // (2 * kill_count), 2)))
             for one in (scheduler, *workers):
                 one.kill()
                 one.wait()
             process.wait()
-        left = _remaining(folder)
+        left = _remaining(folder, count)
         run_campaign(work(count), folder, CampaignOptions(workers=1))
         names = [Line("kills of the scheduler", kill_count, ""), Line("tasks left after them", left, "")]
         return [*names, *_compared(folder, undisturbed, count)]
@@ -182,13 +187,15 @@ def _compared(folder: Path, undisturbed: Path, count: int) -> list[Line]:
     ]  # fmt: skip
 
 
-def _pace(count: int, kill_count: int) -> float:
-    """Mean time [s] between two kills, so that all fall within the campaign: two workers at 5 ms a task."""
-    return max(count * 0.005 / 2 / max(kill_count, 1), 0.3)
+def _wait_for_tasks(process: subprocess.Popen[bytes], folder: Path, count: int, wanted: int) -> None:
+    """Wait until so many further tasks are done, or the process has ended."""
+    before = _remaining(folder, count)
+    while process.poll() is None and before - _remaining(folder, count) < wanted:
+        time.sleep(_MOMENT_S)
 
 
-def _remaining(folder: Path) -> int:
-    return open_store(folder).status().remaining if (folder / "campaign.json").exists() else 1
+def _remaining(folder: Path, count: int) -> int:
+    return open_store(folder).status().remaining if (folder / "campaign.json").exists() else count
 
 
 def _started(folder: Path, count: int, dask: str) -> subprocess.Popen[bytes]:

@@ -44,7 +44,7 @@ Values
     Finding, InputError          what a check reports; bad input, in one sentence
 
 Subpackages
-    models, manoeuvres, sea, control, optimisers, estimators, testing
+    models, manoeuvres, sea, control, optimisers, estimators, problems, testing
 
 Names are imported when they are used first; ``__init__.pyi`` lists where each comes from.
 """

@@ -1,4 +1,4 @@
-from seatrial import control, testing
+from seatrial import control, problems, testing
 from seatrial.api import (
     campaign,
     check,
@@ -84,6 +84,7 @@ __all__ = [
     "optimisers",
     "poster",
     "predict",
+    "problems",
     "read_record",
     "report",
     "reproduce",

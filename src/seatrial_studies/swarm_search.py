@@ -72,9 +72,13 @@ def simulate_search_data(
     has_fin: bool = False,
     noise: tuple[float, float] = (0.0, 0.0),
     printed_sign: bool = False,
+    ship: Model | None = None,
 ) -> SearchData:
-    """Return a realisation of 30 equally spaced lines (Qi et al. 2025, eq. (14)) met by the ship, from rest."""
-    model = held_force_ship(heading, printed_sign=printed_sign)
+    """Return a realisation of 30 equally spaced lines (Qi et al. 2025, eq. (14)) met by the ship, from rest.
+
+    ship: the truth; without it the papers' ship at that heading.
+    """
+    model = ship or held_force_ship(heading, printed_sign=printed_sign)
     lines = realise(ittc(height), SPEED, math.radians(heading), rng)
     when = np.arange(samples) * STEP
     turning = np.exp(1j * np.outer(when, lines.omega_e))

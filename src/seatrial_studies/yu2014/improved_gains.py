@@ -136,10 +136,8 @@ def least_ratio_in_row(preamplifier: Preamplifier, row: Table1Row, generator: np
     return float(worst(_minimise(BOX, worst, generator)[None])[0])
 
 
-def optimise_three_gains(
-    preamplifier: Preamplifier, ms_limit: float, generator: np.random.Generator
-) -> ThreeGainOptimum:
-    """The three gains in the paper's box whose worst objective, over the paper's, is smallest under Ms <= cap."""
+def three_gain_cost(preamplifier: Preamplifier, ms_limit: float) -> Callable[[Array], Array]:
+    """Return points (n, 3) -> the worst objective over the paper's, infinite where Ms exceeds the limit, (n,)."""
     of = performance(preamplifier)
     paper = objective_values(of.evaluate(PUBLISHED_VALUES).variances, FinObjective.PRINTED)[0]
 
@@ -148,7 +146,16 @@ def optimise_three_gains(
         shares = (objective_values(found.variances, FinObjective.PRINTED) / paper).max(axis=1)
         return np.where(found.Ms <= ms_limit, shares, np.inf)
 
-    gains = _minimise(BOX, worst, generator)
+    return worst
+
+
+def optimise_three_gains(
+    preamplifier: Preamplifier, ms_limit: float, generator: np.random.Generator
+) -> ThreeGainOptimum:
+    """The three gains in the paper's box whose worst objective, over the paper's, is smallest under Ms <= cap."""
+    of = performance(preamplifier)
+    paper = objective_values(of.evaluate(PUBLISHED_VALUES).variances, FinObjective.PRINTED)[0]
+    gains = _minimise(BOX, three_gain_cost(preamplifier, ms_limit), generator)
     found = of.evaluate(gains)
     return ThreeGainOptimum(
         preamplifier,
@@ -168,11 +175,11 @@ def _five_gain_performance(preamplifier: Preamplifier, sea: SeaCondition) -> Per
     )
 
 
-def minimise_roll(preamplifier: Preamplifier, rate: float, generator: np.random.Generator, free: Array) -> Array:
-    """Gains (5,) with the least roll variance, Ms <= 2 and at most `rate` times the paper's fin-rate variance.
+def five_gain_cost(preamplifier: Preamplifier, rate: float) -> Callable[[Array], Array]:
+    """Return points (n, 5) -> roll variance over the paper's, (n,); 10 and more where a limit is exceeded.
 
-    Both count in the long- and the short-crested sea of 3.3 m, the worse one each. `free`: which gains may differ from
-    zero, (5,).
+    The limits: Ms <= 2 and at most `rate` times the paper's fin-rate variance. Both count in the long- and the
+    short-crested sea of 3.3 m, the worse one each.
     """
     both = [
         (
@@ -185,15 +192,25 @@ def minimise_roll(preamplifier: Preamplifier, rate: float, generator: np.random.
     def cost(points: Array) -> Array:
         roll, over = np.zeros(len(points)), np.zeros(len(points))
         for k, (of, paper) in enumerate(both):
-            found = of.evaluate(points * free, with_Ms=k == 0)
+            found = of.evaluate(points, with_Ms=k == 0)
             roll = np.maximum(roll, found.variances[:, 0] / paper[0])
             over = np.maximum(over, found.variances[:, 2] / paper[2] - rate)
             over = np.maximum(over, found.Ms - MS_LIMIT)
         return np.where(over > 0.0, _INFEASIBLE_COST + over, roll)
 
-    gains = both[0][0].loop.gains
-    box = Box(*(np.array([getattr(g, side) for g in gains]) for side in ("lower", "upper")))
-    return _minimise(box, cost, generator) * free
+    return cost
+
+
+def five_gain_box(preamplifier: Preamplifier) -> Box:
+    """Return the bounds of the five gains."""
+    gains = _five_gain_performance(preamplifier, DESIGN_SEA).loop.gains
+    return Box(*(np.array([getattr(g, side) for g in gains]) for side in ("lower", "upper")))
+
+
+def minimise_roll(preamplifier: Preamplifier, rate: float, generator: np.random.Generator, free: Array) -> Array:
+    """Gains (5,) of least `five_gain_cost`; `free`: which gains may differ from zero, (5,)."""
+    cost = five_gain_cost(preamplifier, rate)
+    return _minimise(five_gain_box(preamplifier), lambda points: cost(points * free), generator) * free
 
 
 def compare_with_published(preamplifier: Preamplifier, gains: Array, sea: SeaCondition) -> FiveGainComparison:

@@ -1,0 +1,14 @@
+"""Names of this package, imported when first used."""
+
+from seatrial.problems.ask_tell import AskTell as AskTell, MethodError as MethodError
+from seatrial.problems.attempt import Answer as Answer, attempt as attempt, repeats_itself as repeats_itself
+from seatrial.problems.estimate import Estimate as Estimate
+from seatrial.problems.method import EnteredMethod as EnteredMethod, built_in_methods as built_in_methods
+from seatrial.problems.method import method_named as method_named
+from seatrial.problems.posed import BudgetSpent as BudgetSpent, PosedProblem as PosedProblem
+from seatrial.problems.problem import BenchmarkProblem as BenchmarkProblem, Placement as Placement
+from seatrial.problems.problem import ProblemDraw as ProblemDraw
+from seatrial.problems.registry import list_problems as list_problems, problem_named as problem_named
+from seatrial.problems.registry import problems_matching as problems_matching
+from seatrial.problems.yardstick import HeldOutRuns as HeldOutRuns, KnownOptimum as KnownOptimum
+from seatrial.problems.yardstick import KnownTruth as KnownTruth, Yardstick as Yardstick

@@ -1,0 +1,36 @@
+"""Problems by name, family and pattern."""
+
+from pathlib import Path
+
+import pytest
+from tests.installed_package import install
+
+from seatrial.core.values import InputError
+from seatrial.problems import list_problems, problem_named, problems_matching
+
+CODE = """
+from seatrial.problems import BenchmarkProblem
+
+def problems():
+    return tuple(BenchmarkProblem(f"toy-{k}", 1, "", "", "", 10, None) for k in (2, 3))
+"""
+
+
+@pytest.fixture(autouse=True)
+def toys(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """A family of two problems."""
+    install(monkeypatch, tmp_path, "seatrial.problems", "toy", CODE, "problems")
+
+
+def test_problems_are_found_by_name_family_and_pattern() -> None:
+    assert problem_named("toy-3").label == "toy-3@1"
+    assert {"toy-2", "toy-3"} <= {p.name for p in list_problems()}
+    assert [p.name for p in problems_matching(("toy",))] == ["toy-2", "toy-3"]
+    assert [p.name for p in problems_matching(("toy-3", "toy-*"))] == ["toy-3", "toy-2"]
+
+
+def test_what_there_is_not_is_refused_with_the_nearest() -> None:
+    with pytest.raises(InputError, match="no problem 'toy-4'; did you mean 'toy-"):
+        problem_named("toy-4")
+    with pytest.raises(InputError, match=r"no problem matches 'x\*'"):
+        problems_matching(("x*",))

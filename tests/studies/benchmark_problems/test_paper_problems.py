@@ -1,0 +1,67 @@
+"""The papers' problems: truth inside the box and off its middle, bound reached by the own estimator."""
+
+import numpy as np
+import pytest
+
+from seatrial.problems import BenchmarkProblem, KnownTruth, Placement, attempt, built_in_methods
+from seatrial_studies.benchmark_problems import meng2014, qi2025, yu2014
+
+PROBLEMS = {p.name: p for family in (qi2025, meng2014, yu2014) for p in family.problems()}
+WITH_TRUTH = [p for p in PROBLEMS.values() if not p.name.startswith("yu2014")]
+
+
+def test_names_versions_sources_and_budgets_are_stated() -> None:
+    assert len(PROBLEMS) == 15
+    for problem in PROBLEMS.values():
+        assert problem.title and problem.source and problem.noise and problem.budget > 1000 and problem.version == 1
+
+
+@pytest.mark.parametrize("problem", WITH_TRUTH, ids=lambda p: p.name)
+def test_the_truth_lies_in_the_box_off_its_middle_and_moves_with_the_seed(problem: BenchmarkProblem) -> None:
+    places = []
+    for seed in range(4):
+        draw = problem.draw(seed)
+        truth = draw.yardstick.truth
+        assert truth is not None and np.all((truth > draw.box.lower) & (truth < draw.box.upper))
+        places.append((truth - draw.box.lower) / draw.box.width)
+    assert np.std(places) > 0.1
+    assert problem.draw(0).yardstick.truth.tobytes() == problem.draw(0).yardstick.truth.tobytes()  # type: ignore[union-attr]
+
+
+@pytest.mark.parametrize("heading", [90, 135, 180])
+def test_as_published_the_truth_is_the_papers_in_the_middle_of_its_box(heading: int) -> None:
+    draw = PROBLEMS[f"qi2025-{heading}-paper"].draw(0, Placement.PUBLISHED)
+    assert isinstance(draw.yardstick, KnownTruth)
+    np.testing.assert_allclose(0.5 * (draw.box.lower + draw.box.upper), draw.yardstick.truth)
+    assert float(np.max(np.abs(draw.box.width / draw.yardstick.truth))) == pytest.approx(0.2)
+
+
+@pytest.mark.parametrize(
+    "name", ["qi2025-90-whole", "qi2025-135-whole", "qi2025-180-whole", "meng2014-8", "meng2014-12"]
+)
+def test_the_own_estimator_is_at_the_bound(name: str) -> None:
+    problem, own = PROBLEMS[name], built_in_methods()["output-error"]
+    seeds = range(40)
+    errors = [problem.draw(seed).yardstick.error(attempt(own, problem, seed).values) for seed in seeds]
+    assert 0.8 < np.sqrt(np.mean(np.square(errors))) < 1.2
+
+
+def test_identify_takes_the_trial_of_a_problem() -> None:
+    problem = PROBLEMS["qi2025-135-whole"]
+    answer = attempt(built_in_methods()["identify"], problem, 1)
+    assert problem.draw(1).yardstick.error(answer.values) < 2.0 and answer.covariance is not None
+
+
+def test_without_noise_the_whole_of_the_record_gives_the_truth() -> None:
+    problem = PROBLEMS["qi2025-135-paper"]
+    answer = attempt(built_in_methods()["output-error"], problem, 0)
+    assert problem.draw(0).yardstick.error(answer.values) < 1e-6
+
+
+def test_gains_are_scaled_by_the_seed_and_the_least_objective_stays() -> None:
+    problem = PROBLEMS["yu2014-3-washout"]
+    answer = attempt(built_in_methods()["de"], problem, 0)
+    assert problem.draw(0).yardstick.error(answer.values) < 1.0
+    assert problem.draw(1).yardstick.error(answer.values) > problem.draw(0).yardstick.error(answer.values)
+    wild = np.array([1.0, 1.0, 1e6])
+    assert problem.draw(0).yardstick.error(wild) == np.inf
