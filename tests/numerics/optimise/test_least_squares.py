@@ -286,3 +286,10 @@ def test_a_curved_valley_is_followed_without_overreaching_at_every_step() -> Non
     assert found.status is Status.CONVERGED
     assert found.point[0] == pytest.approx((1.0 - 0.3 * 0.6) / 1.09, abs=1e-6)
     assert found.evaluations < 200
+
+
+@pytest.mark.parametrize("damping", [1e-4, 0.1, 1.0])
+def test_the_first_step_is_damped_as_required(damping: float) -> None:
+    line = Curve(lambda b: b - 1.0, lambda b: np.eye(len(b)))
+    found = levenberg_marquardt(line, np.zeros(1), NONE, evaluations=2, damping=damping)
+    assert found.solution.point == pytest.approx(1.0 / (1.0 + damping))

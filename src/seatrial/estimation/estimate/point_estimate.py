@@ -80,15 +80,20 @@ def residual_spread(problem: OutputError, residuals: Array) -> Array:
     With a robust loss the spread is that of the bulk (median absolute deviation), otherwise the rms. It never falls
     below `rounding_level`.
     """
-    count = np.isfinite(residuals).sum(axis=0)
-    unknowns = problem.size + problem.data.count * len(problem.starts)
-    freedom = max(1.0 - unknowns / max(count.sum(), 1), 0.1)  # a tenth of the samples at least stays free; chosen
+    freedom = degrees_of_freedom_share(problem)
     if np.isfinite(problem.huber):
         # normal standard deviation over median absolute deviation
         spread = 1.4826 * np.nanmedian(np.abs(residuals), axis=0)
     else:
         spread = np.sqrt(np.nanmean(residuals**2, axis=0))
     return np.maximum(spread / np.sqrt(freedom), rounding_level(problem))
+
+
+def degrees_of_freedom_share(problem: OutputError) -> float:
+    """Return the share of the measured samples that the unknowns leave free."""
+    samples = int(np.isfinite(problem.data.measured).sum())
+    unknowns = problem.size + problem.data.count * len(problem.starts)
+    return max(1.0 - unknowns / max(samples, 1), 0.1)  # a tenth at least; chosen
 
 
 def rounding_level(problem: OutputError) -> Array:
@@ -127,7 +132,7 @@ def fit_output_error(
             problem,
             noise=noise,
             population=estimate.population if problem.unknowns_per_session else None,
-            inflation=_effective_inflation(residual_correlation(estimate.problem, estimate.residuals())[1]),
+            inflation=effective_inflation(residual_correlation(estimate.problem, estimate.residuals())[1]),
         )
         settled = _is_settled(estimate.problem, again)
         estimate = _search(
@@ -144,8 +149,8 @@ def fit_output_error(
     return replace(estimate, optimum=replace(estimate.optimum, solution=solution), is_settled=settled)
 
 
-def _effective_inflation(inflation: Array) -> Array | None:
-    """Inflation of the channels that are not white; None where all are."""
+def effective_inflation(inflation: Array) -> Array | None:
+    """Return the inflation of the channels that are not white, (ny,); None where all are."""
     coloured = inflation > WHITE_INFLATION
     return np.where(coloured, inflation, 1.0) if np.any(coloured) else None
 

@@ -12,6 +12,7 @@ from seatrial.estimation.predict.open_loop import open_loop_runs
 from seatrial.estimation.predict.window_scores import Predictor
 from seatrial.estimation.predict.windows import Windows, like_window
 from seatrial.estimation.problem.output_error import OutputError
+from seatrial.physics.sensors.measured_outputs import SENSOR_SOURCE
 
 CONSTANT_COURSE, AT_REST = "constant course and speed", "no motion"
 UNFITTED, ARX, NARX = "prior coefficients, unfitted", "ARX", "NARX"
@@ -28,14 +29,24 @@ def window_baselines(
     is_steered = "psi" in model.states
     kept: Callable[[Record, float], Record] = constant_course if is_steered else at_rest
     baselines: dict[str, Predictor] = {CONSTANT_COURSE if is_steered else AT_REST: partial(_each, kept)}
-    priors = {p.name: p.prior.mean for p in model.parameters.free if p.prior is not None}
-    if priors:
-        baselines[UNFITTED] = partial(_unfitted, template, model.with_values(priors))
+    expected = prior_means(model)
+    if expected:
+        baselines[UNFITTED] = partial(_unfitted, template, model.with_values(expected))
     for name, features in ((ARX, linear_features), (NARX, quadratic_features)):
         regression = fit_auto_regression(model, train, features, seconds)
         if regression is not None:
             baselines[name] = regression.predict
     return baselines
+
+
+def prior_means(model: Model) -> dict[str, float]:
+    """Return the means of all priors where every free coefficient of the craft itself has one; else nothing.
+
+    Start values are no knowledge of a craft, and priors of its instruments alone say nothing of how it moves.
+    """
+    priors = {p.name: p.prior.mean for p in model.parameters.free if p.prior is not None}
+    of_craft = {p.name for p in model.parameters.free if p.source != SENSOR_SOURCE}
+    return priors if of_craft and of_craft <= priors.keys() else {}
 
 
 def _each(predict: Callable[[Record, float], Record], windows: Windows, seconds: float) -> list[Record]:

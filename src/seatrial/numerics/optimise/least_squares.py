@@ -172,6 +172,7 @@ def levenberg_marquardt(
     negligible: float = 0.0,
     sufficient: float = 0.0,
     evaluations: int = 100,
+    damping: float = 1e-4,  # small: most starts are near; chosen
     report_progress: Callable[[int, float], None] | None = None,
 ) -> Optimum:
     """Minimise from a start; stops when the model promises less than `tolerance` of the cost, or rounding is reached.
@@ -181,11 +182,14 @@ def levenberg_marquardt(
     out, a promised decrease of `sufficient` or less counts as converged: kinks of a model (|r| r, sides of a rudder)
     keep the search from getting nearer.
 
+    damping: of the first step, over the Hessian's diagonal; larger where the start is far from the optimum.
+
     Deterministic. The result's status says how it ended; bounds of the shared unknowns are never left.
     """
     shared = _clip_to_bounds(shared, problem)
     normal = problem.normal(shared, local)
-    count, damping, growth = 1, 1e-4, 2.0  # Nielsen 1999, with a small first damping; chosen
+    count, growth = 1, 2.0  # Nielsen 1999
+    least = 1e-4 * damping  # after a rejected step; chosen
     history = [normal.cost]
     if not np.isfinite(normal.cost):
         return Optimum(Solution(shared, normal.cost, Status.FAILED, count), local, normal)
@@ -221,8 +225,7 @@ def levenberg_marquardt(
             damping *= 0.01 if bold else max(1.0 / 3.0, 1.0 - (2.0 * gain - 1.0) ** 3)
             damping, growth, rejected = max(damping, 1e-14), 2.0, 0  # rounding of double precision; chosen
         else:
-            # damping after a rejected step, at least; chosen
-            damping, growth, rejected = max(damping, 1e-8) * growth, growth * 2.0, rejected + 1
+            damping, growth, rejected = max(damping, least) * growth, growth * 2.0, rejected + 1
             # promised decrease that is rounding; rejected steps in a row; chosen
             if predicted <= 1e-14 * normal.cost or rejected > 25:
                 rounding = max(_ROUNDING * normal.cost, _EXHAUSTED * history[0])

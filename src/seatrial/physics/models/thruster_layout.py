@@ -3,7 +3,7 @@
 import json
 from dataclasses import asdict, dataclass
 from enum import StrEnum
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import pairwise
 
 from pydantic import TypeAdapter
@@ -225,7 +225,12 @@ class ThrusterLayout:
     @classmethod
     def from_text(cls, text: str) -> "ThrusterLayout":
         """Return the layout that `text` wrote; raises ValueError where it is none."""
-        return TypeAdapter(cls).validate_json(text)
+        return _read_layout(text)
+
+
+@lru_cache(maxsize=16)  # texts of crafts in use at once; chosen
+def _read_layout(text: str) -> ThrusterLayout:
+    return TypeAdapter(ThrusterLayout).validate_json(text)
 
 
 CATAMARAN = ThrusterLayout(

@@ -20,7 +20,8 @@ from seatrial.physics.sensors.settings import Compass, Sensors, VelocityReferenc
 if TYPE_CHECKING:
     import sympy as sp
 
-SOURCE = "sensor model"
+SENSOR_SOURCE = "sensor model"
+"""Source of the coefficients of instruments, by which they differ from the craft's own."""
 _CURRENT = ("current_north", "current_east")
 _DEVIATION, _RATE_BIAS, _LEVER = 0.2, 0.02, 0.5
 """Prior standard deviations: of compass coefficients [rad], a yaw rate's bias [rad/s], a lever arm [m]; chosen."""
@@ -64,8 +65,8 @@ def _parameters(sensors: Sensors) -> tuple[Parameter, ...]:
     """The coefficients of the instruments."""
 
     def one(name: str, value: float, unit: str, meaning: str, spread: float, lower: float = float("-inf")) -> Parameter:
-        prior = Prior(value, spread, SOURCE)
-        return Parameter(name, value, unit, lower, float("inf"), spread, prior, True, SOURCE, meaning, "")
+        prior = Prior(value, spread, SENSOR_SOURCE)
+        return Parameter(name, value, unit, lower, float("inf"), spread, prior, True, SENSOR_SOURCE, meaning, "")
 
     items = []
     if sensors.compass is not Compass.TRUE:
@@ -123,7 +124,7 @@ class _Writer:
         )  # fmt: skip
 
     def _bind(self, name: str, expression: "sp.Expr", unit: str = "1") -> "sp.Symbol":
-        self.bindings.append(Binding.from_expression(name, expression, SOURCE, unit))
+        self.bindings.append(Binding.from_expression(name, expression, SENSOR_SOURCE, unit))
         return _symbol(name)
 
     def _output(self, channel: str, expression: "sp.Expr", unit: str) -> None:
@@ -183,7 +184,7 @@ class _Writer:
         half = _symbol("lag_velocity") / 2
         source = self._bind(f"{channel}_prompt", value, "m/s")
         for name in (f"{channel}_late_1", late_name(channel)):
-            self.rates.append(Binding.from_expression(name, (source - _symbol(name)) / half, SOURCE))
+            self.rates.append(Binding.from_expression(name, (source - _symbol(name)) / half, SENSOR_SOURCE))
             source = _symbol(name)
         return source
 
