@@ -26,15 +26,14 @@ def browser(browser_path: str) -> "Iterator[Browser]":
         opened.close()
 
 
-def opened(browser: "Browser", path: Path) -> "tuple[Page, list[str]]":
+def opened(browser: "Browser", path: Path, width: int = 1100) -> "tuple[Page, list[str]]":
     """The page in a window, and what its console and network had to say."""
-    page = browser.new_page(viewport={"width": 1100, "height": 900})
+    page = browser.new_page(viewport={"width": width, "height": 900}, reduced_motion="reduce")
     said: list[str] = []
     page.on("console", lambda message: said.append(f"{message.type}: {message.text}"))
     page.on("pageerror", lambda error: said.append(str(error)))
     page.on("request", lambda request: said.append(request.url) if request.url.startswith("http") else None)
     page.goto(path.as_uri())
-    page.add_style_tag(content="html { scroll-behavior: auto !important; }")
     return page, said
 
 
@@ -76,9 +75,11 @@ def test_formulas_are_drawn_and_nothing_is_wider_than_the_window(browser: "Brows
 def test_printing_unfolds_everything(browser: "Browser", page: Path) -> None:
     window, _ = opened(browser, page)
     assert window.locator("details:not([open])").count() > 0
-    window.evaluate("dispatchEvent(new Event('beforeprint'))")
+    window.evaluate("void dispatchEvent(new Event('beforeprint'))")
     assert window.locator("details:not([open])").count() == 0
     assert window.locator("#identifiability ~ h3:visible").count() >= 8
+    series = window.locator(".series")
+    assert window.locator(".series canvas").count() >= series.count() > 0
     assert len(window.pdf(format="A4", prefer_css_page_size=True)) > 50_000
 
 

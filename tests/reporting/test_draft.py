@@ -8,7 +8,7 @@ from tests.data.draft.test_draft import BASE, TRUTH, write
 
 from seatrial.api import draft_trial
 from seatrial.reporting.draft import html
-from seatrial.reporting.figures.log_parts import log_chart
+from seatrial.reporting.figures.log_parts import log_view
 
 
 def test_the_page_shows_columns_runs_and_parts(tmp_path: Path) -> None:
@@ -25,8 +25,10 @@ def test_parts_are_coloured_on_the_track_and_behind_each_channel(tmp_path: Path)
     draft = draft_trial(write(tmp_path / "run.csv", BASE), folder=tmp_path)
     (record,), (parts,) = draft.records, draft.stretches
     assert record is not None
-    with_parts, plain = log_chart(record, parts), log_chart(record, ())
-    assert len(with_parts.legend) == len(parts) and not plain.legend
-    for marked, bare in zip(with_parts.panels[1:], plain.panels[1:], strict=True):
-        assert len(marked.marks) == len(bare.marks) + 2 * len(parts)
-    assert with_parts.panels[1].x.ends[0] == 0.0
+    with_parts, plain = log_view(record, parts), log_view(record, ())
+    assert len(with_parts.run.legend) == len(with_parts.spans) == len(parts) and not plain.run.legend
+    assert len(with_parts.run.tracks) == 1 + len(parts)
+    assert [(s.start, s.stop, s.words) for s in with_parts.spans] == [
+        (one.start, one.stop, str(k)) for k, one in enumerate(parts, start=1)
+    ]
+    assert with_parts.run.channels[0].curves[0].time[0] == 0.0

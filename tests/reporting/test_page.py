@@ -13,7 +13,7 @@ from seatrial.core.results import Fit
 from seatrial.core.values import Ship
 from seatrial.reporting.page import html
 
-LARGEST = 3_000_000
+LARGEST = 1_000_000
 HOSTILE = "<script>alert(1)</script>"
 
 
@@ -58,6 +58,7 @@ def test_every_section_has_what_the_fit_holds(page: Path, fit: Fit) -> None:
         assert name in text
     assert fit.question in text and fit.method.criterion in text and "<math" in text
     assert text.count("<svg") >= 4 + len(fit.predictions)
+    assert text.count('class="series"') == 2 + len(fit.predictions)
 
 
 def test_the_same_fit_gives_the_same_bytes(page: Path) -> None:
@@ -69,7 +70,7 @@ def test_text_from_files_is_escaped_everywhere() -> None:
     fit = replace(fit, question=HOSTILE, ship=replace(fit.ship, name=HOSTILE, source=HOSTILE))
     text = html(fit)
     assert HOSTILE not in text and "><script>d" not in text
-    assert parsed(text).scripts == 1
+    assert text.count("<script>") == 3
 
 
 def test_a_fit_with_next_to_nothing_renders(fit: Fit) -> None:
@@ -78,7 +79,7 @@ def test_a_fit_with_next_to_nothing_renders(fit: Fit) -> None:
         covariance=np.zeros((0, 0)), records=tuple(r.without("x0", "y0", "psi") for r in fit.records),
     )  # fmt: skip
     text = html(bare)
-    assert "No run was held out" in text
+    assert "no run was held out" in text and "uPlot" not in text
 
 
 def test_gaps_and_absent_channels_render(fit: Fit) -> None:

@@ -62,5 +62,5 @@ def test_the_page_of_a_search_says_what_it_did_and_has_no_empty_columns(fit: Fit
 def test_a_simulated_record_is_not_called_measured(fit: Fit) -> None:
     predictions = tuple(replace(p, measured=replace(p.measured, kind=RecordKind.SIMULATED)) for p in fit.predictions)
     text = report_page(replace(fit, predictions=predictions))
-    assert "Reference, itself simulated: broad grey line." in text and "Inputs as measured" not in text
-    assert "Inputs as measured" in report_page(fit)
+    assert "Broad grey line: the reference, itself simulated." in text and "inputs as measured" not in text
+    assert "inputs as measured" in report_page(fit)

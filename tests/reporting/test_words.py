@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.core.results import Fit
+from seatrial.numerics.optimise import Status
 from seatrial.reporting import summary
 from seatrial.reporting.citations import Citations
 from seatrial.reporting.correlations import correlation_text
@@ -39,15 +40,19 @@ def test_strong_correlations_are_named() -> None:
     assert correlation_text(("a",), np.eye(1)) == ""
 
 
-def test_the_answer_counts_known_values_and_names_disagreeing_priors(fit: Fit) -> None:
+def test_the_coefficients_count_known_values_and_name_disagreeing_priors(fit: Fit) -> None:
     known = [c for c in fit.coefficients if not c.fixed and c.truth is not None]
-    assert f"of {len(known)} 95 % intervals contain" in " ".join(summary.sentences(fit))
+    assert f"of {len(known)} 95 % intervals contain" in " ".join(summary.coefficient_sentences(fit))
     with_prior = next(c for c in fit.coefficients if c.prior_mean is not None)
     far = replace(with_prior, prior_mean=with_prior.estimate + 9.0 * (with_prior.prior_standard_deviation or 1.0))
     changed = replace(fit, coefficients=tuple(far if c is with_prior else c for c in fit.coefficients))
-    assert f"({far.name})" in next(s for s in summary.sentences(changed) if "prior standard deviations" in s)
+    sentences = summary.coefficient_sentences(changed)
+    assert f"({far.name})" in next(s for s in sentences if "prior standard deviations" in s)
 
 
-def test_without_a_held_out_run_the_answer_says_so(fit: Fit) -> None:
-    training = tuple(p for p in fit.predictions if p.role == "training")
-    assert summary.sentences(replace(fit, predictions=training))[0].startswith("No run was held out")
+def test_residuals_and_search_are_stated_where_they_stand(fit: Fit) -> None:
+    coloured = [n.channel for n in fit.channel_noise if not n.is_white]
+    assert coloured and all(name in summary.residual_sentence(fit) for name in coloured)
+    assert summary.convergence_sentence(fit) == "" and summary.roll_sentence(fit) == ""
+    stopped = replace(fit, solution=replace(fit.solution, status=Status.EXHAUSTED))
+    assert summary.convergence_sentence(stopped).startswith("The search did not converge")

@@ -21,7 +21,7 @@ from seatrial.core.results.campaign import (
 )
 from seatrial.core.text.numbers import DASH, duration, exact, fixed, significant
 from seatrial.core.text.words import counted
-from seatrial.reporting.page import environment
+from seatrial.reporting.document import page_text
 from seatrial.reporting.tables import finding_groups
 from seatrial.reporting.text_tables import TextTable
 
@@ -73,7 +73,7 @@ def html(summary: CampaignSummary) -> str:
             "The sentence is that of the first one; others may differ in their numbers.",
         ),
     }  # fmt: skip
-    return environment().get_template("campaign.html").render(context)
+    return page_text("campaign.html", context)
 
 
 def outcome(summary: CampaignSummary) -> list[str]:

@@ -14,8 +14,8 @@ from seatrial.core.figures.ticks import span
 from seatrial.core.results import Comparison, Difference, ManoeuvreDifferences
 from seatrial.core.text.numbers import DASH, exact, p_value, significant
 from seatrial.core.text.words import counted, enumeration
+from seatrial.reporting.document import page_text
 from seatrial.reporting.measures import measure_label
-from seatrial.reporting.page import environment
 from seatrial.reporting.tables import finding_groups
 from seatrial.reporting.text_tables import TextTable
 
@@ -53,7 +53,7 @@ def html(comparison: Comparison) -> str:
         "table": coefficient_table(comparison.coefficients),
         "chart": Markup(svg(difference_forest(comparison.coefficients))),
     }
-    return environment().get_template("comparison.html").render(context)
+    return page_text("comparison.html", context)
 
 
 def outcome(comparison: Comparison) -> list[str]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from seatrial.core.equations.latex import latex_symbol
+from seatrial.core.figures.run import RunView
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Actuator, Design, ManoeuvrePrecision
 from seatrial.core.results.design import (
@@ -17,17 +18,18 @@ from seatrial.core.results.design import (
     sampled_criterion_errors,
 )
 from seatrial.core.text.numbers import DASH, exact, fixed, significant
-from seatrial.core.values import NOTATION
-from seatrial.core.values.channel_text import channel_meaning
+from seatrial.core.values import NOTATION, Record
+from seatrial.core.values.channel_text import channel_meaning, reading_order
+from seatrial.core.values.record_chart import channel_panels, is_constant
 from seatrial.data.folder.orders import channel_display_unit, order_cells
 from seatrial.reporting import design_text
 from seatrial.reporting.design_text import LARGEST_SHOWN_ERROR
+from seatrial.reporting.document import page_text
 from seatrial.reporting.figures.designed_manoeuvre import order_chart, track_chart
-from seatrial.reporting.figures.record_charts import channel_overview
 from seatrial.reporting.figures.relative_errors import FILLED, OPEN, TICK, ErrorSeries, error_chart
 from seatrial.reporting.mathml import inline
-from seatrial.reporting.page import environment
 from seatrial.reporting.tables import finding_groups
+from seatrial.reporting.time_figures import run_figure
 
 TITLES = {
     "answer": "Summary",
@@ -93,7 +95,7 @@ def html(design: Design) -> str:
         "meanings": order_meanings(design.actuators),
         "order_columns": order_columns(design),
         "over_time": Markup(svg(order_chart(design))),
-        "channels": [Markup(svg(chart)) for chart in channel_overview([design.designed.executed])],
+        "channels": _all_channels(design.designed.executed),
         "has_track": has_track(design),
         "baselines": [w.name for w in baselines[:MAX_BASELINES]],
         "coefficients": _coefficient_rows(design, baselines[:MAX_BASELINES]),
@@ -103,7 +105,13 @@ def html(design: Design) -> str:
         "ships": Markup(_drawn_ships_figure(design, baselines)),
         "findings": finding_groups(design.findings),
     }
-    return environment().get_template("design.html").render(context)
+    return page_text("design.html", context)
+
+
+def _all_channels(executed: Record) -> Markup:
+    """Every channel that moves, over time."""
+    names = [name for name in reading_order(list(executed.channels)) if not is_constant(executed, name)]
+    return run_figure(RunView("all channels", channel_panels(executed, names))) if names else Markup()
 
 
 def percent_text(share: float) -> str:

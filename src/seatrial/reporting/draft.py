@@ -4,12 +4,12 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from seatrial.core.figures.svg_text import svg
 from seatrial.core.text.words import counted
 from seatrial.core.values import Record
 from seatrial.data.draft import ColumnGuess, DraftTrial, LogRun, LogStretch
-from seatrial.reporting.figures.log_parts import log_chart
-from seatrial.reporting.page import environment
+from seatrial.reporting.document import page_text
+from seatrial.reporting.figures.log_parts import log_view
+from seatrial.reporting.time_figures import run_figure
 
 TITLES = {"columns": "Columns", "runs": "Runs and their manoeuvres"}
 _OPEN_RUNS = 3  # runs whose drawing is unfolded; chosen: what one scrolls through
@@ -53,7 +53,7 @@ def html(draft: DraftTrial, title: str) -> str:
         "runs": sections,
         "unfolded": _OPEN_RUNS,
     }
-    return environment().get_template("draft.html").render(context)
+    return page_text("draft.html", context)
 
 
 def _column_row(guess: ColumnGuess) -> ColumnRow:
@@ -64,5 +64,6 @@ def _column_row(guess: ColumnGuess) -> ColumnRow:
 
 def _run_section(number: int, run: LogRun, record: Record, parts: tuple[LogStretch, ...]) -> DrawnRun:
     name = run.name or run.sources[0].path.name
-    figure = Markup(svg(log_chart(record, parts)))
+    view = log_view(record, parts)
+    figure = run_figure(view.run, view.spans)
     return DrawnRun(f"run-{number}", name, counted(len(parts), "manoeuvre"), parts, figure)

@@ -195,7 +195,7 @@ class _Reader:
             ended = self.tokens[self.position]
             self.position += 1
             if ended != "&":
-                rows.append("<mtr>" + "".join(f'<mtd style="text-align:left">{c}</mtd>' for c in cells) + "</mtr>")
+                rows.append("<mtr>" + "".join(f"<mtd>{c}</mtd>" for c in cells) + "</mtr>")
                 cells = []
             if ended == r"\end":
                 self.word()

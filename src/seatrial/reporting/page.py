@@ -1,7 +1,6 @@
 """The page of a fit: one self-contained HTML file with style and figures; nothing is fetched or fitted."""
 
-from functools import cache
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
 from markupsafe import Markup
 
@@ -9,13 +8,13 @@ from seatrial.core.figures.heat_map import heat_map
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Fit
 from seatrial.core.results.fit_charts import coefficients_chart
-from seatrial.core.text.numbers import duration, significant
 from seatrial.core.text.words import common_prefix
 from seatrial.core.values.arrays import correlation_matrix
 from seatrial.reporting import (
     ahead,
     baselines,
     identifiability_chapter,
+    key_facts,
     published_chapter,
     roll_chapter,
     runs,
@@ -26,30 +25,27 @@ from seatrial.reporting import (
 )
 from seatrial.reporting.citations import Citations
 from seatrial.reporting.correlations import correlation_text
-from seatrial.reporting.figures.record_charts import channel_overview, track_overview
-from seatrial.reporting.figures.residual_charts import residual_chart
+from seatrial.reporting.document import page_text
+from seatrial.reporting.figures.record_charts import track_overview
+from seatrial.reporting.figures.residual_charts import residual_series, whiteness_chart
 from seatrial.reporting.figures.search_charts import attempts_chart
-from seatrial.reporting.mathml import inline, pieces
-
-if TYPE_CHECKING:
-    from jinja2 import Environment
+from seatrial.reporting.windows import baseline_sentence
 
 TITLES = {
-    "answer": "Summary",
     "published": "The published method and the package’s own estimate",
-    "identifiability": "Identifiability: what the records determine",
-    "records": "Records",
-    "findings": "Findings",
-    "coefficients": "Coefficients",
-    "rolling": "Roll: period, damping, metacentric height",
-    "thrusters": "The craft: speed, turn, stop, thrust, matrices",
     "prediction": "Prediction of held-out runs",
+    "coefficients": "Coefficients",
+    "identifiability": "Identifiability: what the records determine",
+    "thrusters": "The craft: speed, turn, stop, thrust, matrices",
+    "rolling": "Roll: period, damping, metacentric height",
+    "waves": "Motions in waves",
+    "findings": "Findings",
+    "records": "Records",
     "training": "Fit of the training runs",
     "ahead": "Prediction some samples ahead",
     "frequency": "Frequency response: records and model",
     "baselines": "Other estimators on the same records",
     "residuals": "Residuals",
-    "waves": "Motions in waves",
     "offsets": "Offsets",
     "standards": "IMO standards",
     "model": "Equations of the model",
@@ -59,54 +55,54 @@ TITLES = {
 
 
 def html(fit: Fit) -> str:
-    """Return the page as text."""
+    """Return the page as text; sections without content are left out."""
     citations = Citations()
     length = fit.ship.length if "L" in fit.ship.particulars else 0.0
-    identifiability, seakeeping, comparison = (
-        identifiability_chapter.identifiability_chapter(fit),
-        fit.seakeeping,
-        baselines.baseline_chapter(fit),
-    )
     has_thrusters = bool(fit.model.equations.layout)
     is_steered = "psi" in fit.model.states or "delta" in fit.model.input_names
-    has_content = {
-        "published": fit.reference is not None,
-        "identifiability": bool(identifiability),
-        "rolling": fit.roll is not None,
-        "thrusters": fit.thruster_craft is not None,
-        "waves": seakeeping is not None,
-        "standards": is_steered and not has_thrusters,  # they are for ships of 100 m and more
-        "training": bool(fit.predictions),
-        "ahead": bool(fit.k_step_errors),
-        "frequency": bool(fit.frequency_responses),
-        "residuals": bool(fit.residuals),
-        "baselines": comparison is not None,
-    }
+    shown = runs.drawn_predictions(fit.predictions)
+    drawn_names = {p.record for p in shown}
+    sections: dict[str, object] = {
+        "published": published_chapter.published_chapter(fit),
+        "identifiability": identifiability_chapter.identifiability_chapter(fit),
+        "craft": thruster_chapter.thruster_chapter(fit.thruster_craft),
+        "rolling": fit.roll
+        and {"tables": roll_chapter.tables(fit.roll, fit.ship.scale), "figures": roll_chapter.figures(fit.roll)},
+        "waves": (sea := fit.seakeeping)
+        and {"tables": seakeeping_chapter.tables(sea), "figures": seakeeping_chapter.figures(sea)},
+        "findings": tables.finding_groups(fit.findings),
+        "ahead": ahead.k_step_chapter(fit),
+        "frequency": ahead.frequency_chapter(fit),
+        "baselines": baselines.baseline_chapter(fit),
+        "noise": tables.noise(fit.channel_noise),
+        "offsets": tables.offsets(fit.offsets),
+        # they are for ships of 100 m and more
+        "standards": runs.standards(fit.predictions, length, fit.ship.scale) if is_steered and not has_thrusters
+        else {"rows": [], "notes": []},
+        "fixed": tables.fixed_parameters(fit.coefficients, citations),
+        "priors": tables.priors(fit.coefficients, fit.model, citations),
+        "coefficients": tables.coefficients(fit.coefficients),
+    }  # fmt: skip
     context: dict[str, object] = {
         "fit": fit,
-        "titles": {key: title for key, title in TITLES.items() if has_content.get(key, True)},
+        "titles": _titles(fit, sections),
         "is_steered": is_steered,
-        "waves": None
-        if seakeeping is None
-        else {"tables": seakeeping_chapter.tables(seakeeping), "figures": seakeeping_chapter.figures(seakeeping)},
-        "rolling": None
-        if fit.roll is None
-        else {"tables": roll_chapter.tables(fit.roll, fit.ship.scale), "figures": roll_chapter.figures(fit.roll)},
-        "craft": thruster_chapter.thruster_chapter(fit.thruster_craft),
-        "published": published_chapter.published_chapter(fit),
-        "identifiability": identifiability,
-        "baselines": comparison,
-        "answer": summary.sentences(fit),
+        "screen": key_facts.first_screen(fit, 0.0 if has_thrusters else length),
         "facts": summary.facts(fit),
+        "coefficient_sentences": summary.coefficient_sentences(fit),
+        "roll_sentence": summary.roll_sentence(fit),
+        "residual_sentence": summary.residual_sentence(fit),
+        "convergence_sentence": summary.convergence_sentence(fit),
+        "better_baselines": baseline_sentence(fit.validation, runs.ERROR_LABELS),
+        "reading_note": runs.reading_note(fit.predictions),
         "scores": runs.score_table(fit.predictions, 0.0 if has_thrusters else length),
         "records": tables.records(fit),
         "without": _prefix_note(fit),
-        "tracks": Markup(svg(track_overview(fit.records, length))),
-        "channels": [Markup(svg(chart)) for chart in channel_overview(fit.records)],
-        "findings": tables.finding_groups(fit.findings),
+        "tracks": Markup(svg(track_overview([r for r in fit.records if r.name in drawn_names] or fit.records, length))),
+        "runs": runs.run_sections(shown, length, fit.model.input_names),
+        "hidden_runs": runs.hidden_runs_sentence(fit.predictions),
         "equations": tables.equations(fit.model, citations),
         "sign_conventions": tables.sign_conventions(fit.model),
-        "coefficients": tables.coefficients(fit.coefficients),
         "has_intervals": any(c.lower is not None for c in fit.coefficients if not c.fixed),
         "has_truth": any(c.truth is not None for c in fit.coefficients if not c.fixed),
         "has_meaning": any(c.meaning for c in fit.coefficients if not c.fixed),
@@ -114,21 +110,31 @@ def html(fit: Fit) -> str:
         "forest": Markup(svg(coefficients_chart(fit.coefficients))),
         "correlation": Markup(_correlation_figure(fit)),
         "correlated": correlation_text(fit.model.parameters.free_names, fit.covariance),
-        "runs": runs.run_sections(fit.predictions, length, fit.model.input_names),
-        "ahead": ahead.k_step_chapter(fit),
-        "frequency": ahead.frequency_chapter(fit),
-        "noise": tables.noise(fit.channel_noise),
-        "whiteness": Markup(svg(residual_chart(fit.residuals))),
-        "offsets": tables.offsets(fit.offsets),
-        "standards": runs.standards(fit.predictions, length, fit.ship.scale),
-        "fixed": tables.fixed_parameters(fit.coefficients, citations),
-        "priors": tables.priors(fit.coefficients, fit.model, citations),
+        "residual_series": residual_series(fit.residuals),
+        "whiteness": Markup(svg(whiteness_chart(fit.residuals))),
         "ship_source": citations.mark(fit.ship.source),
         "settings": tables.settings(fit.method),
         "attempts": Markup(svg(attempts_chart(fit.search_attempts))),
         "citations": citations,
     }
-    return environment().get_template("report.html").render(context)
+    return page_text("report.html", sections | context)
+
+
+def _titles(fit: Fit, sections: Mapping[str, object]) -> dict[str, str]:
+    """The sections that have content, in order."""
+    standards, offsets = sections["standards"], sections["offsets"]
+    has_content = {
+        **{key: bool(sections[key]) for key in ("published", "identifiability", "rolling", "waves", "findings", "ahead",
+                                                "frequency", "baselines", "coefficients")},
+        "thrusters": bool(sections["craft"]),
+        "prediction": bool(fit.validation),
+        "training": any(p.role == "training" for p in fit.predictions),
+        "residuals": bool(fit.residuals or fit.channel_noise),
+        "offsets": isinstance(offsets, dict) and bool(offsets["rows"]),
+        "standards": isinstance(standards, dict) and bool(standards["rows"]),
+        "fixed": bool(sections["fixed"] or sections["priors"]),
+    }  # fmt: skip
+    return {key: title for key, title in TITLES.items() if has_content.get(key, True)}
 
 
 def _prefix_note(fit: Fit) -> str:
@@ -143,25 +149,3 @@ def _correlation_figure(fit: Fit) -> str:
         return ""
     below = correlation_matrix(fit.covariance)[1:, :-1]
     return svg(heat_map("correlations of the free coefficients", names[1:], names[:-1], below, is_lower=True))
-
-
-@cache
-def environment() -> "Environment":
-    """Return the templates with everything escaped by default, and the filters they use."""
-    from jinja2 import Environment, PackageLoader, StrictUndefined
-
-    from seatrial.reporting.compiled_templates import CompiledTemplates
-
-    templates = Environment(
-        loader=PackageLoader("seatrial.reporting"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        bytecode_cache=CompiledTemplates(),
-    )
-    templates.filters["duration"] = duration
-    templates.filters["significant"] = significant
-    templates.filters["math"] = lambda latex: Markup(inline(latex))
-    templates.filters["breakable"] = lambda latex: Markup("".join(pieces(latex)))
-    return templates

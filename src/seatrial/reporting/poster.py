@@ -15,8 +15,8 @@ from seatrial.core.figures.tracks import track_panel
 from seatrial.core.results.poster import Basis, Poster, PosterManoeuvre, PosterQuantity
 from seatrial.core.text.numbers import DASH, fixed, significant
 from seatrial.core.values.record_chart import has_track, record_track
+from seatrial.reporting.document import environment
 from seatrial.reporting.measures import measure_label
-from seatrial.reporting.page import environment
 
 RESOLUTION = "IMO resolution A.601(15)"
 TO_BE_FILLED_IN = (

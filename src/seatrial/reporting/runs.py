@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Divergence, Extrapolation, Measure, Prediction
-from seatrial.core.results.fit_charts import has_band, prediction_chart
+from seatrial.core.results.fit_charts import has_band, prediction_view
 from seatrial.core.text.numbers import DASH, column_texts, duration, fixed, interval, ratio_text, significant
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import InputError, Record
@@ -21,6 +20,7 @@ from seatrial.reporting.measures import (
     measure_label,
 )
 from seatrial.reporting.text_tables import TextTable
+from seatrial.reporting.time_figures import run_figure
 from seatrial.reporting.windows import window_tables
 
 ERROR_LABELS = {"psi_deg": ("heading", "deg"), "position_m": ("position", "m"), "u": ("u", "m/s"), "v": ("v", "m/s"),
@@ -28,6 +28,8 @@ ERROR_LABELS = {"psi_deg": ("heading", "deg"), "position_m": ("position", "m"), 
            "phi_deg": ("roll", "deg")}  # fmt: skip
 # degrees of a radian
 _DEGREES = math.degrees(1.0)
+# runs up to which all are drawn; beyond, how many of the worst ones of each role
+MAX_DRAWN, WORST_HELD_OUT, WORST_TRAINING = 15, 24, 12
 # overshoots in the table; later ones are folded
 MAX_OVERSHOOTS = 6
 
@@ -98,7 +100,6 @@ class RunSection:
     is_held_out: bool
     summary: str
     figure: Markup
-    caption: str
     reference_word: str
     model_word: str
     measures: MeasureTable
@@ -165,8 +166,8 @@ def _run_section(p: Prediction, length: float, inputs: Sequence[str], key: str) 
     rows = {name: _measure_row(name, m, p.tied_spread.get(name)) for name, m in p.measures.items()}
     late = {name for name in rows if name.startswith("overshoot_") and int(name.split("_")[1]) > MAX_OVERSHOOTS}
     return RunSection(
-        p.record, key, p.role == "validation", _summary(p), Markup(svg(prediction_chart(p, length, inputs))),
-        _caption(p), p.reference_word, p.model_word,
+        p.record, key, p.role == "validation", _summary(p), run_figure(prediction_view(p, length, inputs)),
+        p.reference_word, p.model_word,
         _measure_table([row for name, row in rows.items() if name not in late]),
         _measure_table([row for name, row in rows.items() if name in late]),
         bool(rows) and all(m.simulated is None for m in p.measures.values()),
@@ -174,18 +175,50 @@ def _run_section(p: Prediction, length: float, inputs: Sequence[str], key: str) 
     )  # fmt: skip
 
 
-def _caption(p: Prediction) -> str:
-    """What the figure of a run shows; a record that is simulated itself is not called measured."""
-    lines = (
-        "Reference, itself simulated: broad grey line. Model, open loop: thin dashed line. Inputs as in the reference."
-        if p.is_reference_simulated
-        else "Measured: broad grey line. Simulated open loop: thin dashed line. Inputs as measured."
-    )
+def reading_note(predictions: Sequence[Prediction]) -> str:
+    """Return how the figures of runs are to be read, once for all of them; empty without runs."""
+    if not predictions:
+        return ""
+    p = predictions[0]
+    reference = "the reference, itself simulated" if p.is_reference_simulated else "measured"
+    inputs = "as in the reference" if p.is_reference_simulated else "as measured"
     band = (
-        f" Pale: 95 % band of the {p.model_word}{'’s' if p.is_reference_simulated else ''} run, along the track to its "
-        "sides; it is cut off where it leaves the picture."
+        f" Pale: 95 % band of the {p.model_word} run, along the track to its sides; it is cut off where it leaves the "
+        "picture."
+        if any(has_band(p) for p in predictions)
+        else ""
     )
-    return f"{lines} Ships at equal times, to scale.{band if has_band(p) else ''}"
+    return (
+        f"Broad grey line: {reference}. Thin dashed line: {p.model_word}, open loop, inputs {inputs}.{band} Ships at "
+        "equal times, to scale. Over a plot the cursor shows the values of all channels and the place on the track; "
+        "drag to zoom, double-click to see all."
+    )
+
+
+def drawn_predictions(predictions: Sequence[Prediction]) -> list[Prediction]:
+    """Return the runs that are drawn, in order: all of a few; of many the worst, those held out and of training."""
+    if len(predictions) <= MAX_DRAWN:
+        return list(predictions)
+    kept: list[Prediction] = []
+    for role, count in (("validation", WORST_HELD_OUT), ("training", WORST_TRAINING)):
+        kept += sorted((p for p in predictions if p.role == role), key=badness, reverse=True)[:count]
+    return [p for p in predictions if any(p is one for one in kept)]
+
+
+def badness(p: Prediction) -> float:
+    """Return the main error of a run; infinite where the simulation diverges."""
+    if p.divergence is not None:
+        return math.inf
+    return next((p.rms[name] for name in ERROR_LABELS if name in p.rms and math.isfinite(p.rms[name])), 0.0)
+
+
+def hidden_runs_sentence(predictions: Sequence[Prediction]) -> str:
+    """Return which runs are drawn where some are not; empty where all are."""
+    if len(drawn_predictions(predictions)) == len(predictions):
+        return ""
+    held = sum(p.role == "validation" for p in predictions)
+    of_held = "the held-out runs" if held <= WORST_HELD_OUT else f"the {WORST_HELD_OUT} worst held-out runs"
+    return f"Of {len(predictions)} runs, {of_held} and the {WORST_TRAINING} worst training runs are drawn."
 
 
 def _summary(p: Prediction) -> str:

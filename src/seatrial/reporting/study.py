@@ -9,8 +9,8 @@ from seatrial.core.results import Check, CheckStatus, Study
 from seatrial.core.text.numbers import exact
 from seatrial.core.text.words import counted
 from seatrial.reporting import runs, tables
+from seatrial.reporting.document import page_text
 from seatrial.reporting.figures.study_figures import study_chart
-from seatrial.reporting.page import environment
 from seatrial.reporting.text_tables import text_table
 
 # channels a run is given rather than predicted
@@ -56,7 +56,7 @@ def html(study: Study) -> str:
         "has_remarks": any(c.remark for c in study.checks),
         "scores": runs.score_table(study.predictions, 0.0),
     }
-    return environment().get_template("study.html").render(context)
+    return page_text("study.html", context)
 
 
 def outcome(study: Study) -> list[str]:

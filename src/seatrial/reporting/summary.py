@@ -1,145 +1,37 @@
-"""The summary in sentences: what was fitted, how well held-out runs are predicted, what limits the result."""
+"""Sentences at the head of a fit's sections: what the ship is, what limits coefficients, residuals and search."""
 
-import math
-
-from seatrial.core.results import Coefficient, Fit, Prediction, ReferenceEstimate, Search, Symmetry
+from seatrial.core.results import Coefficient, Fit, ReferenceEstimate, Search
 from seatrial.core.results.method_comparison import inside_own_intervals
-from seatrial.core.text.numbers import duration, estimate_text, exact, fixed, interval, percent, significant
-from seatrial.core.text.words import counted, enumeration, sentence
-from seatrial.core.values import Severity
-from seatrial.reporting.identifiability_chapter import determined_sentence
-from seatrial.reporting.measures import (
-    extrapolation_text,
-    extrapolation_zone,
-    is_inside,
-    measure_decimals,
-    measure_label,
-)
-from seatrial.reporting.runs import ERROR_LABELS
-from seatrial.reporting.windows import baseline_sentence
+from seatrial.core.text.numbers import duration, estimate_text, exact, percent
+from seatrial.core.text.words import counted, enumeration
 
 # distance of an estimate from its prior's mean, in the prior's standard deviations, from which on they disagree
 PRIOR_DISAGREEMENT = 3.0
-# letters of the text of a symmetry; of a longer one only the parameters are named
-MAX_SYMMETRY_TEXT = 200
-_ANGLES = (("theta", "pitch"), ("phi", "roll"))
 
 
-def facts(fit: Fit) -> list[tuple[str, str]]:
-    """Return ship, model and records as pairs of name and text."""
-    ship, trained, held = fit.ship, _with_role(fit, "training"), fit.validation
+def facts(fit: Fit) -> list[str]:
+    """Return ship, model and records in a few words each."""
+    ship = fit.ship
+    trained = [p for p in fit.predictions if p.role == "training"]
     ratio = f"1:{exact(ship.scale)}"
-    scale = f", model scale {ratio}" if ship.scale != 1.0 and ratio not in ship.name else ""
-    length = f", L = {exact(ship.length)} m" if "L" in ship.particulars else ""
+    scale = [f"model scale {ratio}"] if ship.scale != 1.0 and ratio not in ship.name else []
+    length = [f"L = {exact(ship.length)} m"] if "L" in ship.particulars else []
     free = sum(not c.fixed for c in fit.coefficients)
     seconds = sum(p.measured.duration for p in trained)
     return [
-        ("Ship", f"{ship.name}{length}{scale}"),
-        ("Model", f"{fit.model.name}, {counted(free, 'free coefficient')} of {len(fit.coefficients)}"),
-        ("Fitted to", f"{counted(len(trained), 'run')}, {duration(seconds)} of records"),
-        ("Held out", enumeration([p.record for p in held]) if held else "no run"),
-        ("Method", fit.method.criterion),
-    ]
-
-
-def sentences(fit: Fit) -> list[str]:
-    """Return the summary, most important first."""
-    parts = [
-        baseline_sentence(fit.validation, ERROR_LABELS),
-        *_held_out(fit), _coverage(fit), *_extrapolation(fit), _roll_properties(fit), _identifiability(fit),
-        _significance(fit), _truth_coverage(fit), _prior_disagreement(fit), _criterion(fit), _residuals(fit),
-        _convergence(fit), _warnings(fit),
+        *length, *scale, f"model {fit.model.name} with {counted(free, 'free coefficient')}",
+        f"fitted to {counted(len(trained), 'run')}, {duration(seconds)}", fit.method.criterion,
     ]  # fmt: skip
-    return [sentence for sentence in parts if sentence]
 
 
-def _with_role(fit: Fit, role: str) -> list[Prediction]:
-    return [p for p in fit.predictions if p.role == role]
+def coefficient_sentences(fit: Fit) -> list[str]:
+    """Return which coefficients differ from zero, contain a known value, or disagree with their prior."""
+    parts = [_significance(fit), _truth_coverage(fit), _prior_disagreement(fit)]
+    return [text for text in parts if text]
 
 
-def _held_out(fit: Fit) -> list[str]:
-    held = fit.validation
-    if not held:
-        return ["No run was held out: the figures show how the model fits, not how it predicts."]
-    return [_prediction_sentence(p, fit) for p in held[:4]] + (
-        [f"{counted(len(held) - 4, 'further held-out run')} in the table."] if len(held) > 4 else []
-    )
-
-
-def _prediction_sentence(p: Prediction, fit: Fit) -> str:
-    parts = []
-    if "psi_deg" in p.rms:
-        parts.append(f"{significant(p.rms['psi_deg'], 2)}° in heading")
-    if "position_m" in p.rms:
-        length = 0.0 if fit.model.equations.layout else fit.ship.particulars.get("L", 0.0)
-        share = f" ({significant(p.rms['position_m'] / length, 2)} L)" if length > 0 else ""
-        parts.append(f"{significant(p.rms['position_m'], 2)} m in position{share}")
-    if "z" in p.rms:
-        parts.append(f"{significant(p.rms['z'], 2)} m in heave")
-    parts += [f"{significant(p.rms[f'{name}_deg'], 2)}° in {text}" for name, text in _ANGLES if f"{name}_deg" in p.rms]
-    if not parts and "r" in p.rms:
-        parts.append(f"{significant(p.rms['r'] * math.degrees(1.0), 2)} deg/s in yaw rate")
-    text = f"{p.record}, not fitted, is predicted open loop over {duration(p.measured.duration)}"
-    if p.divergence is not None:
-        text = f"{p.record}, not fitted, diverges after {duration(p.divergence.seconds)}; until then it is predicted"
-    errors = f" with errors of {enumeration(parts)} (rms)" if parts else ""
-    return f"{text}{errors}{_noise_floor(p) if parts else ''}.{_first_measures(p)}"
-
-
-def _noise_floor(p: Prediction) -> str:
-    units = {"psi_deg": "°", "position_m": " m"}
-    floors = [f"{significant(p.noise_floor[name], 2)}{unit}" for name, unit in units.items() if name in p.noise_floor]
-    return f"; process noise alone would leave {enumeration(floors)}" if floors else ""
-
-
-def _first_measures(p: Prediction) -> str:
-    measures = {"overshoot_1_deg": ("first overshoot", "°"), "advance_L": ("advance", " L"),
-             "tactical_diameter_L": ("tactical diameter", " L")}  # fmt: skip
-    texts = []
-    for name, (label, unit) in measures.items():
-        m = p.measures.get(name)
-        if m is not None and m.measured is not None and m.simulated is not None:
-            digits = measure_decimals(measure_label(name)[1], m)
-            bounds = interval(m.lower, m.upper, digits)
-            simulated = f"{fixed(m.simulated, digits)}{unit}{' ' + bounds if bounds else ''}"
-            simulated = simulated if m.is_determined else "not determined"
-            texts.append(f"{label} {simulated}, {p.reference_word} {fixed(m.measured, digits)}{unit}")
-    return f" Simulated {'; '.join(texts)}." if texts else ""
-
-
-def _coverage(fit: Fit) -> str:
-    """How many measured values lie inside their predicted intervals; those without a width are no prediction."""
-    judged = [is_inside(m) for p in fit.validation for m in p.measures.values() if m.lower != m.upper]
-    verdicts = [inside for inside in judged if inside is not None]
-    if not verdicts:
-        return ""
-    word = fit.validation[0].reference_word
-    return f"{sum(verdicts)} of {len(verdicts)} {word} manoeuvring values lie inside their predicted 95 % intervals."
-
-
-def _extrapolation(fit: Fit) -> list[str]:
-    """One sentence for each held-out run that goes well beyond the training runs, the first four."""
-    far = [p for p in fit.validation if p.extrapolation and extrapolation_zone(p.extrapolation.index) == "beyond"]
-    return [
-        f"{p.record} is extrapolation, index {extrapolation_text(p.extrapolation)}" for p in far[:4] if p.extrapolation
-    ]
-
-
-def _identifiability(fit: Fit) -> str:
-    """How much the records determine, and what no manoeuvre identifies."""
-    identifiability = fit.identifiability
-    if identifiability is None:
-        return ""
-    sentences = [determined_sentence(fit)]
-    if identifiability.structural:
-        more = len(identifiability.structural) - 1
-        further = f" ({counted(more, 'further change')} of this kind in the next section)" if more else ""
-        sentences.append(f"{_symmetry(identifiability.structural[0], fit)}{further}.")
-    return " ".join(s for s in sentences if s)
-
-
-def _roll_properties(fit: Fit) -> str:
-    """Period, damping and metacentric height."""
+def roll_sentence(fit: Fit) -> str:
+    """Return period, damping and metacentric height; empty for another model."""
     roll = fit.roll
     if roll is None:
         return ""
@@ -156,26 +48,6 @@ def _roll_properties(fit: Fit) -> str:
     return (
         f"{text}; GM would be {gm.value} m ({gm.lower} to {gm.upper} m) with {roll.gyradius_source.partition(',')[0]}."
     )
-
-
-def _symmetry(s: Symmetry, fit: Fit) -> str:
-    """A change that no manoeuvre identifies: its text, or where that is long its parameters, and which are held."""
-    if len(s.text) <= MAX_SYMMETRY_TEXT:
-        return f"Not identifiable from any manoeuvre: {s.text.rstrip('.')}"
-    fixed_names = [c.name for c in fit.coefficients if c.fixed and c.name in s.parameters]
-    held = f"; {enumeration(fixed_names)} {'is' if len(fixed_names) == 1 else 'are'} held at the stated values"
-    change = f"changing {enumeration(s.parameters)} together leaves every motion unchanged"
-    return f"Not identifiable from any manoeuvre: {change}{held if fixed_names else ''}"
-
-
-def _criterion(fit: Fit) -> str:
-    noise_model = fit.noise_model
-    if noise_model is None:
-        return ""
-    active = [state for state, q in noise_model.process.items() if q > 0]
-    noise = f"process noise in {enumeration(active)}" if active else "no process noise"
-    text = f" {sentence(noise_model.text, [c.name for c in fit.coefficients])}" if noise_model.text else ""
-    return f"The criterion is {noise_model.method}, with {noise}.{text}"
 
 
 def _free_coefficients(fit: Fit) -> list[Coefficient]:
@@ -230,7 +102,8 @@ def _prior_disagreement(fit: Fit) -> str:
     )
 
 
-def _residuals(fit: Fit) -> str:
+def residual_sentence(fit: Fit) -> str:
+    """Return in which channels the residuals are not white; empty where that is not known."""
     if not fit.channel_noise:
         return ""
     coloured = [n.channel for n in fit.channel_noise if not n.is_white]
@@ -243,7 +116,8 @@ def _residuals(fit: Fit) -> str:
     )
 
 
-def _convergence(fit: Fit) -> str:
+def convergence_sentence(fit: Fit) -> str:
+    """Return that a search did not converge, or how a search by a population ended; empty for one that did."""
     if fit.search is not None:
         return _search_end(fit.search)
     return "" if fit.solution.status.is_success else f"The search did not converge: {fit.solution.status.value}."
@@ -260,12 +134,3 @@ def _search_end(search: Search) -> str:
         return f"{text} More restarts would show how far its values scatter."
     widest = max(shares, key=lambda name: shares[name])
     return f"{text} Its values scatter over the restarts by up to {percent(shares[widest])} % ({widest})."
-
-
-def _warnings(fit: Fit) -> str:
-    codes = list(dict.fromkeys(f.code for f in fit.findings if f.severity is not Severity.INFO))
-    if fit.reference is not None and not codes:
-        return ""  # the checks judge records and the package's own estimate, not a published method
-    return (
-        f"The checks warn of: {enumeration(codes)} (see Findings)." if codes else "The checks found nothing to warn of."
-    )

@@ -11,11 +11,11 @@ from seatrial.core.results.tuning import Tuning
 from seatrial.core.text.numbers import fixed
 from seatrial.core.values.channel_text import channel_meaning
 from seatrial.reporting import gain_search, tuning_rows, tuning_text
+from seatrial.reporting.document import page_text
 from seatrial.reporting.figures.controlled_runs import manoeuvre_chart, seaway_chart
 from seatrial.reporting.figures.loop_diagram import loop_diagram, signal_order
 from seatrial.reporting.figures.paired_differences import difference_chart
 from seatrial.reporting.figures.schedule_maps import schedule_chart
-from seatrial.reporting.page import environment
 from seatrial.reporting.tables import finding_groups
 
 TITLES = {
@@ -92,7 +92,7 @@ def html(tuning: Tuning) -> str:
         "diagram": Markup(svg(loop_diagram(tuning.components, tuning.output, tuning.actuator))),
         "components": [tuning_rows.component_row(c, tuning.chosen.gains) for c in signal_order(tuning.components)],
     }
-    return environment().get_template("tuning.html").render(context)
+    return page_text("tuning.html", context)
 
 
 def _search_context(tuning: Tuning) -> dict[str, object]:

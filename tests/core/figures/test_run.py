@@ -5,7 +5,7 @@ import numpy as np
 from seatrial.core.figures.bands import BAND
 from seatrial.core.figures.chart import Region
 from seatrial.core.figures.marks import Area, Stroke
-from seatrial.core.figures.run import ChannelPanel, TimeCurve, channel_panel, run_chart
+from seatrial.core.figures.run import ChannelPanel, RunView, TimeCurve, channel_panel, run_chart, track_chart
 from seatrial.core.figures.tracks import Track
 
 TIME = np.linspace(0.0, 100.0, 300)
@@ -15,7 +15,7 @@ CHANNEL = ChannelPanel("u [m/s]", (TimeCurve(TIME, np.sin(TIME), STROKE),))
 
 def test_a_strip_lies_above_the_channels_and_a_square_track_beside_them() -> None:
     strip, square = (
-        run_chart("r", [CHANNEL] * 4, [Track(TIME, width * TIME, None, STROKE)], 5.0) for width in (0.1, 1.0)
+        run_chart(RunView("r", (CHANNEL,) * 4, (Track(TIME, width * TIME, None, STROKE),), 5.0)) for width in (0.1, 1.0)
     )
     assert strip.panels[1].box.top > strip.panels[0].box.bottom
     assert square.panels[1].box.left > square.panels[0].box.right
@@ -23,7 +23,7 @@ def test_a_strip_lies_above_the_channels_and_a_square_track_beside_them() -> Non
 
 
 def test_only_the_last_of_each_column_names_the_time() -> None:
-    chart = run_chart("r", [CHANNEL] * 5, [], 0.0)
+    chart = run_chart(RunView("r", (CHANNEL,) * 5))
     assert [panel.x.name for panel in chart.panels] == ["", "", "t [s]", "t [s]", "t [s]"]
 
 
@@ -32,3 +32,13 @@ def test_a_band_is_drawn_below_its_curve_and_widens_the_axis() -> None:
     wide = channel_panel(ChannelPanel("u", CHANNEL.curves, np.full(300, -2.0), np.full(300, 2.0)), plain.box)
     assert isinstance(wide.marks[0], Area) and wide.marks[0].fill == BAND
     assert wide.y.ends[1] > 2.0 > plain.y.ends[1]
+
+
+def test_a_track_by_itself_is_no_wider_than_a_page() -> None:
+    widths = {}
+    for name, east in (("strip", 0.1), ("square", 1.0)):
+        chart = track_chart(RunView("r", (), (Track(TIME, east * TIME, None, STROKE),), 5.0))
+        assert chart is not None and len(chart.panels) == 1
+        widths[name] = chart.width
+    assert widths["square"] < widths["strip"] <= 864.0
+    assert track_chart(RunView("r", (CHANNEL,))) is None

@@ -10,7 +10,13 @@ from tests.reporting.fabricated import fabricated_fit
 
 from seatrial.core.figures.marks import Area, Points
 from seatrial.core.results import Fit
-from seatrial.core.results.fit_charts import coefficients_chart, has_band, prediction_chart
+from seatrial.core.results.fit_charts import (
+    coefficients_chart,
+    has_band,
+    headline_view,
+    prediction_chart,
+    prediction_view,
+)
 from seatrial.core.values import InputError, RecordKind
 
 matplotlib.use("Agg")
@@ -77,3 +83,14 @@ def test_a_run_that_is_unknown_is_refused_with_its_neighbour(fit: Fit) -> None:
         fit.plot("zigzag_10_1")
     with pytest.raises(InputError, match="no free coefficient"):
         replace(fit, coefficients=()).plot()
+
+
+def test_the_headline_of_a_run_is_its_heading_or_what_it_has(fit: Fit) -> None:
+    p = fit.predictions[0]
+    view = headline_view(p, 5.0, fit.model.input_names)
+    assert [c.label for c in view.channels] == ["ψ [deg]"] and view.tracks
+    names = [curve.name for curve in view.channels[0].curves]
+    assert names == ["measured", "simulated"]
+    alone = replace(p, measured=p.measured.without("psi"), half_width={})
+    assert [c.label for c in headline_view(alone, 5.0, ()).channels] == ["u [m/s]"]
+    assert len(prediction_view(alone, 5.0, ()).channels) > 1

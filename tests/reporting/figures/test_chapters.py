@@ -15,8 +15,8 @@ from seatrial.core.results import Bars, Curve, Figure, Fit, Matrix, TrialLimits
 from seatrial.reporting.figures.designed_manoeuvre import drift_angle, order_chart, track_chart
 from seatrial.reporting.figures.directions import profile_chart
 from seatrial.reporting.figures.paired_differences import difference_chart
-from seatrial.reporting.figures.record_charts import channel_overview, track_overview
-from seatrial.reporting.figures.residual_charts import residual_chart
+from seatrial.reporting.figures.record_charts import track_overview
+from seatrial.reporting.figures.residual_charts import residual_series, whiteness_chart
 from seatrial.reporting.figures.roll_damping import roll_damping_chart
 from seatrial.reporting.figures.study_figures import study_chart
 
@@ -26,32 +26,19 @@ def fit() -> Fit:
     return complete_fit(fabricated_fit())
 
 
-def test_records_have_a_row_each_and_constant_channels_no_column(fit: Fit) -> None:
-    (chart,) = channel_overview(fit.records)
-    assert len(chart.panels) == len(fit.records) * 5
-    missing = [fit.records[0].without("u"), *fit.records[1:]]
-    texts = [m.words for panel in channel_overview(missing)[0].panels for m in panel.marks if isinstance(m, Text)]
-    assert texts.count("not recorded") == 1
-    assert len(channel_overview(fit.records * 10)) == 3
-    assert channel_overview([fit.records[0].without(*fit.records[0].channels)]) == []
-
-
 def test_tracks_are_those_with_positions(fit: Fit) -> None:
     chart = track_overview([fit.records[0].without("x0"), *fit.records[1:]], 5.0)
     assert chart is not None and len(chart.panels) == len(fit.records) - 1
     assert track_overview([fit.records[0].without("x0")], 5.0) is None
 
 
-def test_residuals_have_three_panels_a_channel(fit: Fit) -> None:
-    chart = residual_chart(fit.residuals)
-    assert chart is not None and len(chart.panels) == 3 * len(fit.residuals)
-    assert [panel.title for panel in chart.panels[:3]] == [
-        "residual",
-        "autocorrelation, 95 % band",
-        "against the normal",
-    ]
+def test_residuals_have_a_series_and_two_panels_a_channel(fit: Fit) -> None:
+    chart = whiteness_chart(fit.residuals)
+    assert chart is not None and len(chart.panels) == 2 * len(fit.residuals)
+    assert [panel.title for panel in chart.panels[:2]] == ["u: autocorrelation", "against the normal"]
+    assert residual_series(fit.residuals).count('"label"') == len(fit.residuals)
     long = replace(fit.residuals[0], autocorrelation=np.linspace(1.0, 0.0, 200))
-    assert residual_chart([long]) is not None and residual_chart([]) is None
+    assert whiteness_chart([long]) is not None and whiteness_chart([]) is None and residual_series([]) == ""
 
 
 def test_every_recorded_swing_is_a_point_in_both_panels() -> None:

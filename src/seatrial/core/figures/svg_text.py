@@ -47,7 +47,7 @@ def svg(chart: Chart | None) -> str:
     legend = "".join(_legend_entry(position) for position in chart.legend_positions())
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {chart.width:.0f} {chart.height():.0f}" '
-        f'style="max-width:{chart.width:.0f}px" role="img" '
+        f'width="{chart.width:.0f}" role="img" '
         f'aria-label="{html.escape(chart.title)}" font-family="{FONT}">{legend}{content}</svg>'
     )
 

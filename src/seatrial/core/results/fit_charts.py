@@ -22,7 +22,7 @@ from seatrial.core.figures.marks import (
     Text,
 )
 from seatrial.core.figures.rows import row_panel
-from seatrial.core.figures.run import ChannelPanel, TimeCurve, channel_panel, run_chart
+from seatrial.core.figures.run import ChannelPanel, RunView, TimeCurve, channel_panel, run_chart
 from seatrial.core.results.fit import Coefficient, Prediction
 from seatrial.core.values import Record, display_unit
 from seatrial.core.values.channel_text import channel_label, reading_order
@@ -32,6 +32,9 @@ from seatrial.core.values.record_chart import PLAIN, has_track, is_constant, rec
 NARROWEST, WIDEST = 1.0, 120.0
 MEASURED, SIMULATED = Stroke(GREY, 3.0), Stroke(ACCENT, 1.4, "5 2.5")  # px, chosen
 MAX_PANELS = 9  # px, chosen
+_ERROR = "error "
+# letters of the channels that say most of a run, the first that it has
+_HEADLINE = ("ψ", "θ", "φ", "z", "u")
 # points of a curve over the whole width of a page
 FINE_POINTS = 1600
 _PRIOR, _INTERVAL, _ZERO = Stroke("#d3dae0", 9.0), Stroke(ACCENT, 2.2), Stroke("#999999", 0.9)  # px, chosen
@@ -90,18 +93,34 @@ def prediction_chart(prediction: Prediction, length: float, inputs: Sequence[str
         length: of the ship [m], for hulls along the track.
         inputs: channels that are given to the model, shown as measured only.
     """
+    view = prediction_view(prediction, length, inputs)
+    if len(view.channels) == 2 and view.channels[-1].label.startswith(_ERROR):
+        return _single_channel(view)
+    return run_chart(view)
+
+
+def prediction_view(prediction: Prediction, length: float, inputs: Sequence[str]) -> RunView:
+    """Return what a figure of one run shows; arguments as of `prediction_chart`. A channel alone has its error too."""
     measured, simulated = prediction.measured, prediction.simulated
     names = [s for s in reading_order(list(measured.channels)) if s in inputs or s in simulated]
     names = [s for s in names if not is_constant(measured, s)][:MAX_PANELS]
     reference, model = prediction.reference_word, prediction.model_word
-    title = f"{prediction.record}: {reference} and {model}"
     origin = " (simulated)" if prediction.is_reference_simulated else ""
     legend = [LegendEntry(f"{reference}{origin}", MEASURED), LegendEntry(f"{model}, open loop", SIMULATED)]
-    if len(names) == 1 and names[0] not in inputs and not has_track(measured):
-        return _single_channel(prediction, names[0], title, legend)
     legend += [LegendEntry("95 % band", BAND)] if has_band(prediction) else []
     channels = [_channel(prediction, name, is_input=name in inputs) for name in names]
-    return run_chart(title, channels, _tracks(prediction), length, legend)
+    if len(names) == 1 and names[0] not in inputs and not has_track(measured):
+        channels.append(_error_panel(channels[0], measured.channel(names[0]).unit))
+    title = f"{prediction.record}: {reference} and {model}"
+    return RunView(title, tuple(channels), tuple(_tracks(prediction)), length, tuple(legend))
+
+
+def headline_view(prediction: Prediction, length: float, inputs: Sequence[str]) -> RunView:
+    """Return the track and the channel that says most of a run: heading, else pitch, roll, heave, the first one."""
+    view = prediction_view(prediction, length, inputs)
+    by_label = {channel.label.partition(" ")[0]: channel for channel in view.channels}
+    first = next((by_label[letter] for letter in _HEADLINE if letter in by_label), None)
+    return replace(view, channels=view.channels[:1] if first is None else (first,))
 
 
 def has_band(prediction: Prediction) -> bool:
@@ -123,8 +142,12 @@ def _channel(prediction: Prediction, name: str, *, is_input: bool) -> ChannelPan
     unit = measured.channel(name).unit
     if is_input or name not in simulated:
         label = channel_label(name, unit) + (", input" if is_input else "")
-        return ChannelPanel(label, (time_curve(measured, name, PLAIN if is_input else MEASURED),))
-    curves = (time_curve(measured, name, MEASURED), _simulated_curve(measured, simulated, name))
+        stroke, words = (PLAIN, "input") if is_input else (MEASURED, prediction.reference_word)
+        return ChannelPanel(label, (time_curve(measured, name, stroke, words),))
+    curves = (
+        time_curve(measured, name, MEASURED, prediction.reference_word),
+        replace(_simulated_curve(measured, simulated, name), name=prediction.model_word),
+    )
     half = prediction.half_width.get(name)
     if half is None:
         return ChannelPanel(channel_label(name, unit), curves)
@@ -142,23 +165,19 @@ def _simulated_curve(measured: Record, simulated: Record, name: str) -> TimeCurv
     return replace(curve, values=curve.values - 360.0 * np.round(first / 360.0))
 
 
-def _single_channel(prediction: Prediction, name: str, title: str, legend: Sequence[LegendEntry]) -> Chart:
+def _error_panel(channel: ChannelPanel, unit: str) -> ChannelPanel:
+    """The difference of the two curves of a channel."""
+    reference, model = channel.curves
+    error = TimeCurve(reference.time, model.values - reference.values, PLAIN, "error")
+    return ChannelPanel(f"{_ERROR}{channel_label('', unit)}", (error,))
+
+
+def _single_channel(view: RunView) -> Chart:
     """The only channel over the whole width, with its error below."""
-    measured, unit = prediction.measured, prediction.measured.channel(name).unit
-    curves = (time_curve(measured, name, MEASURED), _simulated_curve(measured, prediction.simulated, name))
-    error = TimeCurve(measured.time, curves[1].values - curves[0].values, PLAIN)
     above, below = tiles(2, 1, 190.0, left=56.0, top=6.0)  # px, chosen
     # ticks, chosen
     panels = (
-        channel_panel(
-            ChannelPanel(channel_label(name, unit), curves), above, is_last=False, x_ticks=8, points=FINE_POINTS
-        ),
-        channel_panel(
-            ChannelPanel(f"error {channel_label('', unit)}", (error,)),
-            replace(below, height=70.0),  # px, chosen
-            x_ticks=8,  # ticks, chosen
-            y_ticks=3,
-            points=FINE_POINTS,
-        ),
+        channel_panel(view.channels[0], above, is_last=False, x_ticks=8, points=FINE_POINTS),
+        channel_panel(view.channels[1], replace(below, height=70.0), x_ticks=8, y_ticks=3, points=FINE_POINTS),
     )
-    return Chart(title, panels, tuple(legend))
+    return Chart(view.title, panels, view.legend)

@@ -1,10 +1,12 @@
 """A record as a chart: its track and its channels over time."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from seatrial.core.figures.chart import Chart
 from seatrial.core.figures.marks import INK, Stroke
-from seatrial.core.figures.run import ChannelPanel, TimeCurve, run_chart
+from seatrial.core.figures.run import ChannelPanel, RunView, TimeCurve, run_chart
 from seatrial.core.figures.tracks import Track
 from seatrial.core.values.channel_text import POSITIONS, channel_label, display_values, reading_order
 from seatrial.core.values.record import Record
@@ -19,14 +21,21 @@ def record_chart(record: Record, length: float = 0.0) -> Chart:
         length: of the ship [m], for hulls along the track.
     """
     names = reading_order(list(record.channels))
-    channels = [ChannelPanel(channel_label(name, record.channel(name).unit), (time_curve(record, name, PLAIN),))
-                for name in names]  # fmt: skip
-    return run_chart(record.name, channels, [record_track(record, PLAIN)] if has_track(record) else [], length)
+    tracks = (record_track(record, PLAIN),) if has_track(record) else ()
+    return run_chart(RunView(record.name, channel_panels(record, names), tracks, length))
 
 
-def time_curve(record: Record, name: str, stroke: Stroke) -> TimeCurve:
-    """Return one channel over time in the unit people read."""
-    return TimeCurve(record.time, display_values(name, record[name], record.channel(name).unit), stroke)
+def channel_panels(record: Record, names: Sequence[str]) -> tuple[ChannelPanel, ...]:
+    """Return a panel for each of the named channels of a record."""
+    return tuple(
+        ChannelPanel(channel_label(name, record.channel(name).unit), (time_curve(record, name, PLAIN),))
+        for name in names
+    )
+
+
+def time_curve(record: Record, name: str, stroke: Stroke, words: str = "") -> TimeCurve:
+    """Return one channel over time in the unit people read; `words`: what readers call the curve."""
+    return TimeCurve(record.time, display_values(name, record[name], record.channel(name).unit), stroke, words)
 
 
 def record_track(record: Record, stroke: Stroke, hull_fill: str = "none") -> Track:

@@ -1,47 +1,48 @@
 """A run of a log with its manoeuvres: track and channels, the parts in colour."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from seatrial.core.figures.chart import Chart, LegendEntry, Panel
-from seatrial.core.figures.marks import GREY, INK, Mark, Rectangle, Stroke, Text
-from seatrial.core.figures.run import ChannelPanel, run_chart
+from seatrial.core.figures.chart import LegendEntry
+from seatrial.core.figures.marks import GREY, Stroke
+from seatrial.core.figures.run import RunView
+from seatrial.core.figures.time_plot import TimeSpan
 from seatrial.core.figures.tracks import Track
 from seatrial.core.values import InputError, Record
-from seatrial.core.values.channel_text import channel_label, reading_order
-from seatrial.core.values.record_chart import has_track, is_constant, record_track, time_curve
+from seatrial.core.values.channel_text import reading_order
+from seatrial.core.values.record_chart import channel_panels, has_track, is_constant, record_track
 from seatrial.data.check import canonical_record
 from seatrial.data.draft import LogStretch
 
 # colours of neighbours, distinguished by people who see no red or no green (Okabe & Ito 2008), and paler for areas
 _COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8a6d00")
 _PALE = ("#d5e8f3", "#f8dfcf", "#d2efe5", "#f6e4ee", "#efe7c8")
-_NUMBER = 9.0  # px, of the number of a part; chosen
 _THIN, _THICK = Stroke(GREY, 0.8), 2.2  # px, chosen
 _CHANNELS_SHOWN = 12  # the first in the order of reading; chosen: two screens of a telephone
 
 
-def log_chart(record: Record, parts: Sequence[LogStretch]) -> Chart:
+@dataclass(frozen=True, eq=False)
+class LogView:
+    """A run of a log, and its manoeuvres as stretches of time."""
+
+    run: RunView
+    spans: tuple[TimeSpan, ...]
+
+
+def log_view(record: Record, parts: Sequence[LogStretch]) -> LogView:
     """Return the track and the channels of a run; each part has a colour on the track and behind the channels.
 
     parts: start and stop are s after the first sample.
     """
     record = _from_zero(record)
     shown = [name for name in reading_order(list(record.channels)) if not is_constant(record, name)]
-    panels = [_channel_panel(record, name) for name in shown[:_CHANNELS_SHOWN]]
-    tracks = [record_track(record, _THIN), *_part_tracks(record, parts)] if has_track(record) else []
-    legend = [LegendEntry(f"{k} {one.name}", Stroke(_colour(k), _THICK)) for k, one in enumerate(parts, start=1)]
-    chart = run_chart(record.name, panels, tracks, 0.0, legend)
-    first = 1 if tracks else 0
-    marked = [_with_parts(panel, parts) for panel in chart.panels[first:]]
-    return replace(chart, panels=(*chart.panels[:first], *marked))
-
-
-def _channel_panel(record: Record, name: str) -> ChannelPanel:
-    label = channel_label(name, record.channel(name).unit)
-    return ChannelPanel(label, (time_curve(record, name, Stroke(INK, 0.9)),))  # px, chosen
+    tracks = (record_track(record, _THIN), *_part_tracks(record, parts)) if has_track(record) else ()
+    legend = tuple(LegendEntry(f"{k} {one.name}", Stroke(_colour(k), _THICK)) for k, one in enumerate(parts, start=1))
+    view = RunView(record.name, channel_panels(record, shown[:_CHANNELS_SHOWN]), tracks, 0.0, legend)
+    spans = (TimeSpan(one.start, one.stop, _PALE[k % len(_PALE)], str(k + 1)) for k, one in enumerate(parts))
+    return LogView(view, tuple(spans))
 
 
 def _from_zero(record: Record) -> Record:
@@ -65,13 +66,3 @@ def _part_tracks(record: Record, parts: Sequence[LogStretch]) -> list[Track]:
         if np.count_nonzero(np.isfinite(north + east)) > 1:
             tracks.append(Track(north, east, None, Stroke(_colour(number), _THICK)))
     return tracks
-
-
-def _with_parts(panel: Panel, parts: Sequence[LogStretch]) -> Panel:
-    """The panel with a pale area behind each part, and its number."""
-    low, high = panel.y.ends
-    behind: list[Mark] = []
-    for number, part in enumerate(parts, start=1):
-        behind.append(Rectangle(part.start, low, part.stop, high, _PALE[(number - 1) % len(_PALE)]))
-        behind.append(Text(part.start, high, f"{number}", size=_NUMBER, colour=_colour(number), dx=2.0, dy=_NUMBER))
-    return replace(panel, marks=(*behind, *panel.marks))

@@ -4,48 +4,57 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from markupsafe import Markup
 
-from seatrial.core.figures.chart import Axis, Chart, Panel, Region
+from seatrial.core.figures.chart import Axis, Chart, Panel, Region, tiles
 from seatrial.core.figures.marks import ACCENT, INK, SECOND, Array, Line, Mark, Rectangle, Rule, Stroke
-from seatrial.core.figures.ticks import decimated, span
+from seatrial.core.figures.run import ChannelPanel, RunView, TimeCurve
+from seatrial.core.figures.ticks import decimated
 from seatrial.core.results import Residuals
 from seatrial.core.values import display_unit
-from seatrial.core.values.channel_text import channel_label, channel_unit
+from seatrial.core.values.channel_text import channel_label, channel_letter, channel_unit
+from seatrial.reporting.time_figures import run_figure
 
 # bars of the histogram, its reach in standard deviations, and the density of the normal at zero
 BINS, WIDEST, NORMAL_PEAK = 41, 4.5, 0.42
-HEIGHT, GAP = 76.0, 26.0  # px, chosen
+HEIGHT = 76.0  # px, chosen
 # lags up to which the autocorrelation is drawn as stems
 MAX_STEMS = 60
 # quantile of the standard normal distribution for 95 %, two-sided
 NORMAL_95 = 1.96
 
 
-def residual_chart(residuals: Sequence[Residuals]) -> Chart | None:
-    """Return three panels for each channel; None where there are no residuals."""
-    usable = [r for r in residuals if np.isfinite(r.values).sum() > 2]
-    panels: list[Panel] = []
-    for k, r in enumerate(usable):
-        top = 26.0 + k * (HEIGHT + GAP)  # px, chosen
-        row = [
-            _series(r, Region(66.0, top, 320.0, HEIGHT)),  # px, chosen
-            _autocorrelation(r, Region(446.0, top, 210.0, HEIGHT)),  # px, chosen
-            _histogram(r.values[np.isfinite(r.values)], Region(700.0, top, 150.0, HEIGHT)),  # px, chosen
-        ]
-        titles = ("residual", "autocorrelation, 95 % band", "against the normal") if k == 0 else ("", "", "")
-        is_last = k == len(usable) - 1
-        panels += [replace(p, title=title, x=p.x if is_last else replace(p.x, name=""))
-                   for p, title in zip(row, titles, strict=True)]  # fmt: skip
-    return Chart("residuals, their autocorrelation and histogram", tuple(panels)) if panels else None
+def residual_series(residuals: Sequence[Residuals]) -> Markup:
+    """Return the residuals of every channel over the samples; empty where there are none."""
+    usable = _usable(residuals)
+    panels = tuple(_series(r) for r in usable)
+    return run_figure(RunView("residuals", panels), x_label="sample") if panels else Markup()
 
 
-def _series(r: Residuals, box: Region) -> Panel:
+def whiteness_chart(residuals: Sequence[Residuals]) -> Chart | None:
+    """Return autocorrelation and histogram of the residuals of each channel; None where there are none."""
+    usable = _usable(residuals)
+    boxes = tiles(2 * len(usable), 4, HEIGHT, left=46.0, right=14.0, gap=52.0, top=22.0)  # px, chosen
+    panels = [
+        panel
+        for k, r in enumerate(usable)
+        for panel in (
+            replace(_autocorrelation(r, boxes[2 * k]), title=f"{channel_letter(r.channel)}: autocorrelation"),
+            replace(_histogram(r.values[np.isfinite(r.values)], boxes[2 * k + 1]), title="against the normal"),
+        )
+    ]
+    return Chart("autocorrelation and histogram of the residuals", tuple(panels)) if panels else None
+
+
+def _usable(residuals: Sequence[Residuals]) -> list[Residuals]:
+    return [r for r in residuals if np.isfinite(r.values).sum() > 2]
+
+
+def _series(r: Residuals) -> ChannelPanel:
     unit = channel_unit(r.channel)
-    values = r.values * display_unit(unit)[0]
-    samples = np.arange(len(values), dtype=float)
-    x = Axis((0.0, float(max(1, len(values) - 1))), "sample", tick_count=4)
-    y = Axis(span([values]), channel_label(r.channel, unit), tick_count=3)
-    return Panel(box, x, y, (Line(*decimated(samples, values, 500), Stroke(INK, 0.6)),))  # px, chosen
+    samples = np.arange(len(r.values), dtype=float)
+    curve = TimeCurve(samples, r.values * display_unit(unit)[0], Stroke(INK, 0.6), "residual")  # px, chosen
+    return ChannelPanel(channel_label(r.channel, unit), (curve,))
 
 
 def _autocorrelation(r: Residuals, box: Region) -> Panel:

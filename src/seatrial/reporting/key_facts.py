@@ -1,0 +1,113 @@
+"""The five rows at the top of a fit's page: score, baseline, coverage, identifiability, warnings."""
+
+from seatrial.core.results import Fit, Prediction, WindowScore
+from seatrial.core.results.fit_charts import headline_view
+from seatrial.core.results.window_scores import ChannelScore
+from seatrial.core.text.numbers import fixed
+from seatrial.core.text.words import counted, enumeration
+from seatrial.core.values import Severity
+from seatrial.reporting.first_screen import FirstScreen, KeyFact
+from seatrial.reporting.identifiability_chapter import determined_sentence
+from seatrial.reporting.measures import is_inside
+from seatrial.reporting.runs import ERROR_LABELS, badness
+from seatrial.reporting.time_figures import run_figure
+from seatrial.reporting.verdict import error_text, verdict, worst_errors
+
+# share of values inside their 95 % intervals that counts as kept; chosen between 0.95 and the scatter of few values
+LEAST_COVERAGE = 0.9
+
+
+def first_screen(fit: Fit, length: float) -> FirstScreen:
+    """Return the verdict, the five rows, and the worst held-out run as track and heading; length: of the ship [m]."""
+    held = fit.validation or fit.predictions
+    if not held:
+        return FirstScreen(verdict(fit), key_facts(fit))
+    p = max(held, key=badness)
+    view = headline_view(p, length, fit.model.input_names)
+    which = "The held-out run" if len(fit.validation) == 1 else (
+        "The worst held-out run" if fit.validation else "The worst training run")  # fmt: skip
+    caption = f"{which}, {p.record}: {p.reference_word} and {p.model_word}."
+    return FirstScreen(verdict(fit), key_facts(fit), run_figure(view), caption)
+
+
+def key_facts(fit: Fit) -> tuple[KeyFact, ...]:
+    """Return the rows; what the fit does not contain is said to be so."""
+    return _score(fit), _baseline(fit), _coverage(fit), _identifiability(fit), _warnings(fit)
+
+
+def _score(fit: Fit) -> KeyFact:
+    held = fit.validation
+    if not held:
+        return KeyFact("Error, held out", "no run was held out: name one under validate in the trial file", "", False)
+    name = "Error, held out (rms)"
+    if any(p.divergence for p in held):
+        return KeyFact(name, f"{counted(sum(bool(p.divergence) for p in held), 'run')} diverge", "prediction", False)
+    floors = [error_text(key, max(p.noise_floor[key] for p in held if key in p.noise_floor))
+              for key in ("psi_deg", "position_m") if any(key in p.noise_floor for p in held)]  # fmt: skip
+    floor = f"; disturbances alone would leave {enumeration(floors)}" if floors else ""
+    return KeyFact(name, f"{worst_errors(held)}{floor}", "prediction")
+
+
+def _longest_windows(p: Prediction) -> WindowScore | None:
+    return max(p.windows, key=lambda w: w.seconds, default=None)
+
+
+def _baseline(fit: Fit) -> KeyFact:
+    """The quantity and run in which the best prediction without the fit comes closest to it, or is better."""
+    compared = [(_ratio(key, w, score), p, w, key) for p in fit.validation if (w := _longest_windows(p))
+                for key, score in w.scores.items() if key in ("psi_deg", "position_m", "z", "theta_deg", "phi_deg")
+                and any(key in b.scores for b in w.baselines)]  # fmt: skip
+    if not compared:
+        return KeyFact("Baseline", "none compared")
+    ratio, p, w, key = min(compared, key=lambda row: row[0])
+    best = min((b for b in w.baselines if key in b.scores), key=lambda b: b.scores[key].rms)
+    run = f" of {p.record}" if len(fit.validation) > 1 else ""
+    text = (
+        f"{ERROR_LABELS[key][0]} over {w.window}{run}: {error_text(key, w.scores[key].rms)} by this fit, "
+        f"{error_text(key, best.scores[key].rms)} by {best.name}"
+    )
+    verdict = "better without this fit" if ratio < 1.0 else "this fit is best in every quantity compared"
+    return KeyFact("Closest baseline", f"{text}; {verdict}", "prediction", ratio >= 1.0)
+
+
+def _ratio(key: str, w: WindowScore, score: ChannelScore) -> float:
+    return min(b.scores[key].rms for b in w.baselines if key in b.scores) / max(score.rms, 1e-300)  # not zero
+
+
+def _coverage(fit: Fit) -> KeyFact:
+    """How many manoeuvring values lie inside their intervals, and samples inside their bands."""
+    judged = [is_inside(m) for p in fit.validation for m in p.measures.values() if m.lower != m.upper]
+    inside = [verdict for verdict in judged if verdict is not None]
+    texts, shares = [], []
+    if inside:
+        texts.append(f"{sum(inside)} of {len(inside)} {fit.validation[0].reference_word} manoeuvring values")
+        shares.append(sum(inside) / len(inside))
+    windows = [w for p in fit.validation if (w := _longest_windows(p))]
+    for key in dict.fromkeys(key for w in windows for key in w.scores):
+        bands = [(share, w.count) for w in windows if key in w.scores
+                 and (share := w.scores[key].inside_band) is not None]  # fmt: skip
+        if bands:
+            share = sum(share * count for share, count in bands) / sum(count for _, count in bands)
+            texts.append(f"{fixed(100.0 * share, 0)} % of the samples of {ERROR_LABELS[key][0]}")
+            shares.append(share)
+    if not texts:
+        return KeyFact("Inside 95 % intervals", "not known")
+    return KeyFact("Inside 95 % intervals", enumeration(texts), "prediction", min(shares) >= LEAST_COVERAGE)
+
+
+def _identifiability(fit: Fit) -> KeyFact:
+    text = determined_sentence(fit)
+    if not text:
+        return KeyFact("Identifiability", "not examined", "identifiability" if fit.noise_model else "")
+    free = sum(not c.fixed for c in fit.coefficients)
+    is_complete = fit.identifiability is not None and round(fit.identifiability.effective_parameters) >= free
+    return KeyFact("Identifiability", text.removesuffix("."), "identifiability", is_complete)
+
+
+def _warnings(fit: Fit) -> KeyFact:
+    codes = list(dict.fromkeys(f.code for f in fit.findings if f.severity is not Severity.INFO))
+    has_converged = fit.search is not None or fit.solution.status.is_success
+    texts = ([] if has_converged else ["the search did not converge"]) + codes
+    if not texts:
+        return KeyFact("Warnings", "none", "findings" if fit.findings else "", is_good=True)
+    return KeyFact("Warnings", enumeration(texts), "findings" if codes else "method", is_good=False)
