@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.special import stdtrit
 
 from seatrial.core.equations import Model
@@ -38,6 +39,10 @@ NOISE = {"u": 0.03, "v": 0.03, "r": 0.01, "psi": 0.01, "x0": 0.1, "y0": 0.1}
 SETTINGS = EstimateSettings(method=FitCriterion.OUTPUT_ERROR)
 SECONDS, STEP_S, DT = 60, 3, 0.1
 """Length of a run, of a step of the commands, and of a sample [s]."""
+FAR = 8.0
+"""Bounds by which no coefficient errs in the right optimum: no draw of a normal law goes that far."""
+LINE = 10
+"""Draws after which a line is printed; after five times as many the table."""
 
 
 @dataclass(frozen=True)
@@ -151,6 +156,41 @@ def write_table(record: Record, path: Path) -> None:
     np.savetxt(path, columns, "%.5g", ",", header=",".join(("time", *record.channels)), comments="")
 
 
+@dataclass(frozen=True, eq=False)
+class Draws:
+    """What estimates of noisy runs missed.
+
+    Attributes:
+        names, true, spread: of the free coefficients, their true values and Cramer-Rao bounds, (free,).
+        errors: over the bound, (draws, free); is_held: whether the 95 % interval holds the truth, (draws, free).
+    """
+
+    names: tuple[str, ...]
+    true: Array
+    spread: Array
+    errors: list[Array]
+    is_held: list[NDArray[np.bool_]]
+
+    @property
+    def ratio(self) -> Array:
+        """RMSE of each coefficient over its bound."""
+        return np.sqrt(np.mean(np.square(self.errors), axis=0))
+
+    def line(self) -> str:
+        """Return draws, median ratio, coverage of all coefficients together, and draws that ended elsewhere."""
+        outside = int(np.sum(np.max(np.abs(self.errors), axis=1) > FAR))
+        return (
+            f"{len(self.errors)} draws: median RMSE/bound {np.median(self.ratio):.3f}, "
+            f"pooled coverage {np.mean(self.is_held):.3f}, {outside} in another optimum"
+        )
+
+    def table(self) -> str:
+        """Return a row a coefficient: true value, bound, RMSE over it and the z-score of that, coverage."""
+        score = (self.ratio - 1.0) * np.sqrt(2.0 * len(self.errors))  # standard error of an RMSE: 1/sqrt(2 n) of it
+        rows = zip(self.names, self.true, self.spread, self.ratio, score, np.mean(self.is_held, axis=0), strict=True)
+        return "\n".join("{:12}{:10.4g}{:10.2g}{:8.3f}{:7.1f}{:8.3f}".format(*row) for row in rows)
+
+
 def main() -> None:
     """Print errors over the bound and coverage."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -162,10 +202,9 @@ def main() -> None:
     craft = CRAFTS[arguments.craft]
     model, settings = craft.truth, replace(SETTINGS, starts=arguments.starts)
     clean = simulated_runs(craft, np.random.default_rng(1))
-    spread = bound(craft, clean)
     names = model.parameters.free_names
     true = np.array([model.parameters[n].value for n in names])
-    errors, held, failures = [], [], 0
+    draws, failures = Draws(names, true, bound(craft, clean), [], []), 0
     for k in range(arguments.runs):
         rng = np.random.default_rng([1, k])
         records = [noisy(run, rng) for run in clean]
@@ -184,17 +223,14 @@ def main() -> None:
             continue
         found = estimation.estimate.common_parameters[: len(names)]
         deviation = np.sqrt(np.diag(estimation.interval.covariance))[: len(names)]
-        errors.append((found - true) / spread)
-        held.append(np.abs(found - true) <= stdtrit(estimation.interval.degrees_of_freedom, 0.975) * deviation)
-        if (k + 1) % 10 == 0:
-            ratio = np.sqrt(np.mean(np.square(errors), axis=0))
-            print(f"{k + 1} draws: median RMSE/bound {np.median(ratio):.3f}, coverage {np.mean(held):.3f}", flush=True)
-    ratio, coverage = np.sqrt(np.mean(np.square(errors), axis=0)), np.mean(held, axis=0)
-    for row in zip(names, true, spread, ratio, coverage, strict=True):
-        print("{:10}{:10.4g}{:10.2g}{:8.3f}{:8.3f}".format(*row))
-    outside = int(np.sum(np.max(np.abs(errors), axis=1) > 8.0))  # bounds: no draw of a normal law goes that far
-    print(f"median RMSE/bound {np.median(ratio):.3f}, pooled coverage {np.mean(coverage):.3f}; "
-          f"{outside} draws in another optimum, {failures} without an estimate")  # fmt: skip
+        draws.errors.append((found - true) / draws.spread)
+        draws.is_held.append(np.abs(found - true) <= stdtrit(estimation.interval.degrees_of_freedom, 0.975) * deviation)
+        if (k + 1) % LINE == 0:
+            print(draws.line(), flush=True)
+        if (k + 1) % (5 * LINE) == 0:
+            print(draws.table(), flush=True)
+    print(f"{'':12}{'true':>10}{'bound':>10}{'ratio':>8}{'z':>7}{'inside':>8}\n{draws.table()}")
+    print(f"{draws.line()}, {failures} without an estimate")
 
 
 if __name__ == "__main__":

@@ -14,10 +14,10 @@ MAX_ORDERS_PRINTED = 8
 
 def print_design(design: "Design") -> None:
     """Print the manoeuvre's precision compared with the standard ones, findings, and its first orders."""
-    from seatrial.core.results.design import has_track, ranked_baselines
+    from seatrial.core.results.design import has_drift, has_track, ranked_baselines
     from seatrial.core.text.numbers import duration, exact
 
-    track = ["drift deg", "distance m"] if has_track(design) else []
+    track = ["drift deg"] * has_drift(design) + ["distance m"] if has_track(design) else []
     rows = [["relative std. error, %", "worst", "mean", "ships drawn", *track, ""]]
     rows += [_manoeuvre_cells(manoeuvre, design) for manoeuvre in (design.designed, *ranked_baselines(design))]
     print_table(rows, flush_left=(0, len(rows[0]) - 1))
@@ -36,12 +36,13 @@ def print_design(design: "Design") -> None:
 def _manoeuvre_cells(manoeuvre: "ManoeuvrePrecision", design: "Design") -> list[str]:
     import math
 
-    from seatrial.core.results.design import has_track, is_within_limits
+    from seatrial.core.results.design import has_drift, has_track, is_within_limits
     from seatrial.core.text.numbers import exact
     from seatrial.core.text.words import counted
 
     errors = [exact(100.0 * x, 3) for x in (manoeuvre.worst, manoeuvre.mean, manoeuvre.worst_sampled_error)]
-    track = [exact(math.degrees(manoeuvre.drift), 3), exact(manoeuvre.distance, 4)] if has_track(design) else []
+    drift = [exact(math.degrees(manoeuvre.drift), 3)] if has_drift(design) else []
+    track = [*drift, exact(manoeuvre.distance, 4)] if has_track(design) else []
     notes = [f"{counted(manoeuvre.diverged, 'ship')} diverged"] if manoeuvre.diverged else []
     notes += [] if is_within_limits(manoeuvre, design.limits) else ["leaves the limits"]
     return [manoeuvre.name, *errors, *track, ", ".join(notes)]

@@ -12,6 +12,7 @@ from seatrial.core.results import Actuator, Design, ManoeuvrePrecision
 from seatrial.core.results.design import (
     best_baseline,
     criterion_error,
+    has_drift,
     has_track,
     is_within_limits,
     ranked_baselines,
@@ -97,6 +98,7 @@ def html(design: Design) -> str:
         "over_time": Markup(svg(order_chart(design))),
         "channels": _all_channels(design.designed.executed),
         "has_track": has_track(design),
+        "has_drift": has_track(design) and has_drift(design),
         "baselines": [w.name for w in baselines[:MAX_BASELINES]],
         "coefficients": _coefficient_rows(design, baselines[:MAX_BASELINES]),
         "speed": _speed_option(design),

@@ -37,7 +37,12 @@ class ManoeuvrePrecision:
         BY_COEFFICIENT,
         Field(description="the same for each ship drawn from the prior, shape (draws, k); null where it diverges"),
     ]
-    drift: Annotated[Number, Field(description="rad, largest drift angle of the ship as assumed")]
+    drift: Annotated[
+        Number,
+        Field(
+            description="rad, largest drift angle of the ship as assumed; null: it turns on the spot and goes astern"
+        ),
+    ]
     distance: Annotated[Number, Field(description="m, largest distance of the ship as assumed from the start")]
     sampled_drift: Annotated[ListedArray, Field(description="rad, the same for each drawn ship, shape (draws,)")]
     sampled_distance: Annotated[ListedArray, Field(description="m, the same for each drawn ship, shape (draws,)")]
@@ -183,7 +188,7 @@ class Design(Summarised):
                 m.name,
                 f"{100.0 * m.worst:.3g}",
                 f"{100.0 * m.mean:.3g}",
-                f"{math.degrees(m.drift):.3g}",
+                *([f"{math.degrees(m.drift):.3g}"] if has_drift(self) else []),
                 f"{m.distance:.4g}",
             )
             for m in (self.designed, *self.baselines)
@@ -192,7 +197,8 @@ class Design(Summarised):
             "coefficients": str(len(self.coefficients)), "duration": f"{self.duration:g} s",
             "orders": str(len(self.orders)), "criterion": self.criterion, "search": self.status,
         }  # fmt: skip
-        header = ("manoeuvre", "worst error [%]", "mean error [%]", "drift [deg]", "distance [m]")
+        drift = ["drift [deg]"] if has_drift(self) else []
+        header = ("manoeuvre", "worst error [%]", "mean error [%]", *drift, "distance [m]")
         return Summary(f"Manoeuvre designed for {self.ship}, model {self.model.name}", header, rows, facts)
 
 
@@ -228,10 +234,9 @@ def best_baseline(design: Design) -> ManoeuvrePrecision | None:
 
 
 def is_within_limits(manoeuvre: ManoeuvrePrecision, limits: TrialLimits) -> bool:
-    """Return whether drift angle and distance stay within the limits for the ships that these bind."""
-    assumed_ship = manoeuvre.drift <= limits.drift * (1.0 + ROUNDING) and manoeuvre.distance <= limits.sea_room * (
-        1.0 + ROUNDING
-    )
+    """Return whether drift angle, where there is one, and distance keep within the limits for the ships these bind."""
+    drifts = manoeuvre.drift > limits.drift * (1.0 + ROUNDING)
+    assumed_ship = not drifts and manoeuvre.distance <= limits.sea_room * (1.0 + ROUNDING)
     return assumed_ship and not (limits.for_every_ship and count_outside_limits(manoeuvre, limits))
 
 
@@ -241,6 +246,11 @@ def count_outside_limits(manoeuvre: ManoeuvrePrecision, limits: TrialLimits) -> 
     return int(np.sum(beyond | (manoeuvre.sampled_distance > limits.sea_room * (1.0 + ROUNDING))))
 
 
+def has_drift(design: Design) -> bool:
+    """Return whether a drift angle means something: not of a craft that turns on the spot and goes astern."""
+    return math.isfinite(design.designed.drift)
+
+
 def has_track(design: Design) -> bool:
-    """Return whether the ship changes its place, so that drift angle and distance mean something."""
+    """Return whether the ship changes its place, so that the distance from its start means something."""
     return {"x0", "y0"} <= set(design.designed.executed.channels) and design.designed.distance > 0.0

@@ -84,7 +84,7 @@ def _limit_violations(task: DesignTask, designed: ManoeuvrePrecision) -> list[Fi
     if straying := count_outside_limits(designed, task.request.limits):
         severity = Severity.WARNING if straying > _MANY_LEAVING * count else Severity.INFO
         findings.append(Finding(severity, "straying", f"{straying} of {count} ships drawn from the prior leave the "
-                             f"limits under these orders, with up to {math.degrees(farthest):.0f} deg of drift and "
+                             f"limits under these orders, with up to {_drift_text(farthest)}"
                              f"{max(designed.sampled_distance.tolist()):.0f} m from the start", "",
                              "watch both and abort there; design.every_ship = true binds them, too"))  # fmt: skip
     elif farthest > _FAR_DRIFT:
@@ -92,6 +92,10 @@ def _limit_violations(task: DesignTask, designed: ManoeuvrePrecision) -> list[Fi
                               "for some ship of the prior", "few models hold so far; give a smaller design.drift, or "
                               "abort there"))  # fmt: skip
     return findings
+
+
+def _drift_text(farthest: float) -> str:
+    return f"{math.degrees(farthest):.0f} deg of drift and " if math.isfinite(farthest) else ""
 
 
 def _confirmation_findings(designed: ManoeuvrePrecision, confirmation: Confirmation | None) -> list[Finding]:

@@ -24,7 +24,8 @@ _REGULARISATION = 1e-13
 class ManoeuvreInformation:
     """Relative standard errors (ships, k), NaN rows where a simulation diverges; largest drift [rad] and distance [m].
 
-    drift, distance: shape (ships,); zero for models without sway or position.
+    drift, distance: shape (ships,); zero for models without sway or position, the drift of craft with thrusters NaN:
+    they turn on the spot and go astern.
     """
 
     relative_errors: Array
@@ -56,12 +57,13 @@ class ManoeuvreEvaluator:
 
     @cached_property
     def _magnitudes(self) -> Array:
-        """|coefficient| of each ship, its characteristic scale where it is nearly zero, (ships, k)."""
+        """|coefficient| of each ship, the size that counts where it is smaller, (ships, k)."""
         parameters = self.task.model.parameters
         places = [parameters.index(n) for n in parameters.free_names]
         values = np.abs(self.ships.parameters[:, places])
         scale = np.array([p.characteristic_scale for p in parameters.free])
-        return np.where(values > 1e-3 * scale, values, scale)  # smaller values count by their scale; chosen
+        values = np.where(values > 1e-3 * scale, values, scale)  # smaller values count by their scale; chosen
+        return np.maximum(values, [p.scale for p in parameters.free])
 
     @cached_property
     def _batch_without_inputs(self) -> SegmentBatch:
@@ -99,6 +101,8 @@ class ManoeuvreEvaluator:
         at = {name: y[:, :, self.outputs.index(name)] for name in _TRACK_CHANNELS if name in self.outputs}
         none = np.zeros(len(y))
         drift = np.abs(np.arctan2(at["v"], at["u"])).max(axis=1) if {"u", "v"} <= set(at) else none
+        if self.task.model.equations.layout:
+            drift = np.full(len(y), np.nan)
         room = np.hypot(at["x0"], at["y0"]).max(axis=1) if {"x0", "y0"} <= set(at) else none
         return drift, room
 
@@ -107,7 +111,7 @@ def limit_excess(task: DesignTask, information: ManoeuvreInformation, margin: fl
     """Return how far drift and distance of each ship leave the limits less a margin, in parts of these, (ships,)."""
     allowed = 1.0 - margin
     over = [
-        information.drift / (allowed * task.request.limits.drift) - 1.0,
+        np.nan_to_num(information.drift) / (allowed * task.request.limits.drift) - 1.0,
         information.distance / (allowed * task.request.limits.sea_room) - 1.0,
     ]
     return np.maximum(over, 0.0).sum(axis=0)

@@ -41,11 +41,13 @@ class StandardManoeuvre:
 
 
 def standard_manoeuvres(evaluator: ManoeuvreEvaluator) -> list[StandardManoeuvre]:
-    """Return random binary sequences and, by the model, zigzags and turning circles or steps and a sweep."""
+    """Return random binary sequences and, by the model, zigzags and turning circles, steps, or steps and a sweep."""
     task = evaluator.task
     sequences = [
         _largest_within_limits(evaluator, share, seed) for share in SWITCHING_SHARES for seed in SEQUENCE_SEEDS
     ]
+    if task.model.equations.layout:
+        return [*sequences, StandardManoeuvre("steps one by one", _single_step_inputs)]
     if not _is_steered(task):
         return [*sequences, StandardManoeuvre("sine sweep", _sweep_inputs), StandardManoeuvre("steps", _step_inputs)]
     steered = [StandardManoeuvre(text, partial(_steered_inputs, text)) for text in _programmes(task)]
@@ -151,11 +153,26 @@ def _step_inputs(evaluator: ManoeuvreEvaluator) -> Array:
     return _drive_all(evaluator, np.where((8.0 * time / evaluator.task.request.duration).astype(int) % 2, 1.0, -1.0))
 
 
+def _single_step_inputs(evaluator: ManoeuvreEvaluator) -> Array:
+    """Return each actuator to its upper, then each to its lower end for a part of the trial, the rest in the middle."""
+    count = len(evaluator.task.request.actuators)
+    rows = sample_count(evaluator.task, evaluator.dt)
+    step = (2 * count * np.arange(rows)) // rows
+    return _drive(
+        evaluator, np.where(step[:, None] % count == np.arange(count), np.where(step < count, 1.0, -1.0)[:, None], 0.0)
+    )
+
+
 def _drive_all(evaluator: ManoeuvreEvaluator, course: Array) -> Array:
-    """Return every actuator along a course between -1 and 1, at its own rate."""
+    """Return every actuator along a course (rows,) between -1 and 1, at its own rate."""
+    return _drive(evaluator, np.tile(course[:, None], (1, len(evaluator.task.request.actuators))))
+
+
+def _drive(evaluator: ManoeuvreEvaluator, courses: Array) -> Array:
+    """Return each actuator along its course between -1 and 1, (rows, actuators), at its own rate."""
     task, dt = evaluator.task, evaluator.dt
-    inputs = np.tile(task.neutral_inputs, (len(course), 1))
-    for a in task.request.actuators:
+    inputs = np.tile(task.neutral_inputs, (len(courses), 1))
+    for a, course in zip(task.request.actuators, courses.T, strict=True):
         j = task.model.input_names.index(a.name)
         free = replace(a, hold=dt)
         wanted = actuator_response(

@@ -1,5 +1,6 @@
 """What a search for a manoeuvre is given: model, sensors, time, what may be moved and how far; tested first."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -42,6 +43,11 @@ class DesignTask:
                 raise InputError(
                     f"[noise] {name} is nothing that model '{self.model.name}' shows{spelling_hint(name, known)}"
                 )
+        if self.model.equations.layout and math.isfinite(self.request.limits.drift):
+            raise InputError(
+                "[design] drift means nothing for a craft that turns on the spot and goes astern; remove it, and limit "
+                "sea_room"
+            )
         for actuator in self.request.actuators:
             _demand_movable(actuator, self.model, self.request.duration)
         if not self.model.parameters.free:

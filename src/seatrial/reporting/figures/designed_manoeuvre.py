@@ -9,6 +9,7 @@ from seatrial.core.figures.marks import ACCENT, GREY, INK, SECOND, Anchor, Array
 from seatrial.core.figures.ticks import decimated, span
 from seatrial.core.figures.tracks import Track, is_slender, strip_height, track_panel
 from seatrial.core.results import Actuator, Design
+from seatrial.core.results.design import has_drift
 from seatrial.core.values import Record, display_unit
 from seatrial.core.values.channel_text import channel_label, channel_unit, display_values
 from seatrial.core.values.record_chart import has_track, record_track
@@ -23,8 +24,8 @@ SQUARE_SHARE, MIN_STRIP = 0.62, 70.0
 
 
 def order_chart(design: Design) -> Chart:
-    """Return a panel for each input that is moved and one for the drift angle, over one time axis."""
-    drift = drift_angle(design.designed.executed)
+    """Return a panel for each input that is moved and one for the drift angle, if there is one, over one time axis."""
+    drift = drift_angle(design.designed.executed) if has_drift(design) else None
     count = len(design.actuators) + (drift is not None)
     boxes = tiles(count, 1, HEIGHT, left=LEFT, right=RIGHT, gap=30.0, top=6.0)  # px, chosen
     panels = []
