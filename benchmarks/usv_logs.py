@@ -1,4 +1,4 @@
-"""Write the two logs of docs/usv-tutorial.md: a simulated craft with two thrusters, as its autopilot would log it.
+"""Write the two logs of docs/tutorials/usv.md: a simulated craft with two thrusters, as its autopilot would log it.
 
     python benchmarks/usv_logs.py FOLDER
 

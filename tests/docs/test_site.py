@@ -22,6 +22,8 @@ def site(repository: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
         "-W",
         "--keep-going",
         "-q",
+        "-D",
+        "plot_gallery=0",  # `make docs` runs the recipes
         "-d",
         str(folder / "cache"),
         "docs",

@@ -1,0 +1,68 @@
+"""
+Captive tests with free runs
+============================
+
+Forces measured on a model held in steady motion, or computed by CFD, are fitted together with records, each with its
+own noise. Here a table of drift and yaw tests determines what a zigzag leaves open.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+import seatrial as st
+
+# %%
+# A table of hull forces at two speeds, nondimensional, made from the example's known coefficients with 2 % noise.
+
+examples = Path("../../examples")
+text = (examples / "waterjet.toml").read_text().replace('folder = "waterjet"', 'folder = "../../examples/waterjet"')
+craft = st.load_trial(examples / "waterjet.toml").model.with_values(st.load_trial(examples / "waterjet.toml").truth)
+
+rng = np.random.default_rng(3)
+speed = 0.8
+beta, yaw = (grid.ravel() for grid in np.meshgrid(np.radians([-15, -10, -5, 0, 5, 10, 15]), [-0.02, 0.0, 0.02]))
+states = np.column_stack([speed * np.cos(beta), -speed * np.sin(beta), yaw, *np.zeros((3, beta.size))])
+forces = craft.forces(states, np.tile([0.0, 1.866], (beta.size, 1)))
+table = pd.DataFrame({"beta": np.degrees(beta), "r": yaw})
+for name in ("X", "Y", "N"):
+    clean = forces[f"{name}_sum"]
+    table[name] = clean + 0.02 * np.ptp(clean) * rng.standard_normal(beta.size)
+table.to_csv("captive.csv", index=False)
+table.head()
+
+# %%
+# ``[[forces]]`` says what was measured at which motion, and how well.
+
+points = """
+[[forces]]
+file = "CAPTIVE"
+includes = "hydrodynamic"
+sd_percent = 2
+[forces.motion]
+U = { value = 0.8, unit = "m/s" }
+beta = { column = "beta", unit = "deg", positive = "bow to starboard" }
+r = { column = "r", unit = "rad/s" }
+delta = { value = 0, unit = "deg" }
+v_j = { value = 1.866, unit = "m/s" }
+[forces.measured]
+X = { column = "X", unit = "N" }
+Y = { column = "Y", unit = "N" }
+N = { column = "N", unit = "N m" }
+""".replace("CAPTIVE", str(Path("captive.csv").resolve()))
+Path("fusion.toml").write_text(text + points)
+
+alone = st.identify(examples / "waterjet.toml")
+together = st.identify("fusion.toml")
+pd.DataFrame(
+    {
+        "truth": pd.Series(alone.reference),
+        "records alone": alone.to_dataframe()["standard_error"],
+        "with captive tests": together.to_dataframe()["standard_error"],
+    }
+).dropna()
+
+# %%
+for name in ("captive.csv", "fusion.toml"):
+    Path(name).unlink()

@@ -1,0 +1,95 @@
+"""Write docs/command-line.md from the commands themselves.
+
+`python docs/write_reference.py --check` writes nothing and says whether the page differs.
+"""
+
+import re
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import typer
+
+from seatrial.cli import app
+
+PAGE = Path(__file__).parent / "command-line.md"
+HEAD = """# Command line
+
+Each command is also a function of the same name in Python ([Names in Python](api.md)). Exit codes: 0 done, 2 bad
+input (one sentence on standard error says what, where and what to do), 70 an error of the program, 130 interrupted.
+Files are written whole or not at all.
+"""
+COMMAND = re.compile(r"seatrial [a-z].+|--[a-z-]+(?: [^\s,]+)?")
+"""An example in a help text: a command to the end of its line, or an option with its value."""
+
+
+def page() -> str:
+    """Return the page: a section for each command."""
+    root = typer.main.get_command(app)
+    return HEAD + "".join(_sections(root.commands, "seatrial"))  # type: ignore[attr-defined]  # typer's own group
+
+
+def _sections(commands: dict[str, Any], prefix: str) -> Iterator[str]:
+    for name, command in commands.items():
+        if command.hidden:
+            continue
+        yield _section(command, f"{prefix} {name}")
+        yield from _sections(getattr(command, "commands", {}), f"{prefix} {name}")
+
+
+def _section(command: Any, path: str) -> str:
+    options = [p for p in command.params if not (p.opts[0].startswith("-") and p.name == "help")]
+    places = " ".join(_placed(p) for p in options if not p.opts[0].startswith("-"))
+    rest = (
+        " SUBCOMMAND" if getattr(command, "commands", {}) else " [OPTIONS]" if len(options) > places.count(" ") else ""
+    )
+    usage = f"    {path}{rest} {places}".rstrip()
+    rows = "".join(f"| `{_name(p)}` | {_meaning(p)} | {_default(p)} |\n" for p in options)
+    table = f"\n| option | what | default |\n|---|---|---|\n{rows}" if rows else ""
+    return f"\n## {path}\n\n{_prose(command.help or '')}\n\n{usage}\n{table}"
+
+
+def _prose(text: str) -> str:
+    """Return a help text with its examples set as code."""
+    return COMMAND.sub(lambda example: f"`{example[0]}`", text.strip())
+
+
+def _placed(parameter: Any) -> str:
+    name = (parameter.metavar or parameter.name.upper()).removesuffix("...")
+    several = "..." if parameter.nargs == -1 else ""
+    return name + several if parameter.required else f"[{name}{several}]"
+
+
+def _name(parameter: Any) -> str:
+    if not parameter.opts[0].startswith("-"):
+        return _placed(parameter).replace("|", "\\|")
+    value = "" if getattr(parameter, "is_flag", False) else f" {parameter.metavar or 'VALUE'}"
+    return parameter.opts[-1] + value.replace("|", "\\|")
+
+
+def _meaning(parameter: Any) -> str:
+    return re.sub(r"\s+", " ", parameter.help or "").replace("|", "\\|")
+
+
+def _default(parameter: Any) -> str:
+    if parameter.required:
+        return "required"
+    value = parameter.default
+    return "" if value is None or value is False or value in ("", ()) or callable(value) else f"`{value}`"
+
+
+def main(*, check: bool) -> int:
+    """Write the page, or say that it differs; return 1 where it did."""
+    text = page()
+    if PAGE.is_file() and PAGE.read_text(encoding="utf-8") == text:
+        return 0
+    if check:
+        print(f"{PAGE.name} is not what the commands say; run python docs/write_reference.py")
+    else:
+        PAGE.write_text(text, encoding="utf-8")
+    return int(check)
+
+
+if __name__ == "__main__":
+    sys.exit(main(check=sys.argv[1:] == ["--check"]))
