@@ -1,6 +1,7 @@
 """Models written as files of other tools."""
 
 import os
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -8,6 +9,8 @@ from typing import TYPE_CHECKING
 from seatrial.core.values import InputError
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from seatrial.core.equations import Model
     from seatrial.core.results import Fit
     from seatrial.core.values import Record
@@ -15,7 +18,9 @@ if TYPE_CHECKING:
     from seatrial.exporting import Export, ExportSource, Target
 
 
-def export(model: "Fit | ModelFile | Model | str | Path", to: str, path: str | Path) -> "Export":
+def export(
+    model: "Fit | ModelFile | Model | str | Path", to: str, path: str | Path, gains: "Mapping[str, float] | None" = None
+) -> "Export":
     """Write a model as files of another tool, all of them or none, and return them with notes on what they cost.
 
     Args:
@@ -23,15 +28,19 @@ def export(model: "Fit | ModelFile | Model | str | Path", to: str, path: str | P
         to: name of the target, as `export_targets` lists them.
         path: new file, or new folder where the target writes several; its name, without suffix, becomes that of
             functions and identifiers.
+        gains: of a tuned autopilot, name -> value as `tune` gives them, for targets that have a place for them; None:
+            such a target chooses its own.
 
     Raises:
-        InputError: unknown target, a model that it has no place for, a name that is no identifier, or a path that
-            exists or cannot be written.
+        InputError: unknown target, a model or gains that it has no place for, a name that is no identifier, or a path
+            that exists or cannot be written.
     """
     from seatrial.core.values.files import write_atomically, write_files_atomically
     from seatrial.exporting import target_named
 
-    target, path, source = target_named(to), Path(path), _source(model)
+    target, path, source = target_named(to), Path(path), replace(_source(model), gains=gains)
+    if gains is not None and not target.takes_gains:
+        raise InputError(f"target '{to}' holds a model and no controller; leave the gains out")
     _require_new(path, target)
     if reason := target.unsuitable(source):
         raise InputError(f"model '{source.model.name}' has no place in target '{to}': {reason}")

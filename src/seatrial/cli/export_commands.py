@@ -13,9 +13,13 @@ from seatrial.cli.output import print_lines, write_json
 def export(
     model_file: Annotated[Path, typer.Argument(metavar="MODEL.toml", help="Model file, as identify writes it.")],
     to: Annotated[
-        str | None, typer.Option("--to", metavar="TARGET", help="c99, fmu, casadi, matlab, vrx or gazebo; see --list.")
+        str | None,
+        typer.Option("--to", metavar="TARGET", help="c99, fmu, casadi, matlab, vrx, gazebo or ardupilot; see --list."),
     ] = None,
     out: Annotated[Path | None, typer.Option("--out", metavar="PATH", help="New file or folder.")] = None,
+    gains: Annotated[
+        Path | None, typer.Option("--gains", metavar="GAINS.toml", help="gains.toml of tune, for ardupilot.")
+    ] = None,
     show_list: Annotated[bool, typer.Option("--list", help="Show which targets suit the model, and why not.")] = False,
     model: OwnModelPath = None,
     json: Json = None,
@@ -29,6 +33,7 @@ def export(
     """
     from seatrial import api
     from seatrial.core.values import InputError
+    from seatrial.data.folder.gains_file import read_gains
     from seatrial.exporting import TARGETS
 
     file = model_file if model is None else api.load_model(model_file, own_model(model))
@@ -41,7 +46,7 @@ def export(
         return
     if to is None or out is None:
         raise InputError("give --to TARGET and --out PATH, or --list to see what suits the model")
-    result = api.export(file, to, out)
+    result = api.export(file, to, out, None if gains is None else read_gains(gains))
     print_lines(result.notes)
     write_json(json, lambda: {"target": to, "path": str(out), "files": list(result.files), "notes": list(result.notes)})
     print(f"exported: {out}")

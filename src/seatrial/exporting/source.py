@@ -1,6 +1,7 @@
 """What is exported: a model file, where it comes from, and how its quantities are described to another tool."""
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from seatrial.core.equations import Model
@@ -58,11 +59,13 @@ class ExportSource:
     Attributes:
         origin: path of the model file, or what the model is called.
         date: of the export, year-month-day.
+        gains: of a tuned autopilot, name -> value; None: the target that needs gains chooses them.
     """
 
     file: ModelFile
     origin: str
     date: str
+    gains: Mapping[str, float] | None = None
 
     @property
     def model(self) -> Model:

@@ -28,6 +28,7 @@ class Target:
         suffix: of the file; empty where a folder is written.
         unsuitable: returns why the target has no place for a model; empty where it has one.
         export: returns the files; its second argument is the name that the path gives.
+        takes_gains: whether gains of a tuned autopilot have a place in it.
     """
 
     name: str
@@ -35,3 +36,4 @@ class Target:
     suffix: str
     unsuitable: Callable[[ExportSource], str]
     export: Callable[[ExportSource, str], Export] = field(repr=False)
+    takes_gains: bool = False

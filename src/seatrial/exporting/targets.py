@@ -1,6 +1,7 @@
 """The tools that models are exported to, by name."""
 
 from seatrial.core.values import InputError, spelling_hint
+from seatrial.exporting.ardupilot.parameters import export_ardupilot, unsuitable_boat
 from seatrial.exporting.c_source import export_c
 from seatrial.exporting.fmu import export_fmu
 from seatrial.exporting.gazebo import export_gazebo, export_vrx, unsuitable_craft
@@ -20,6 +21,14 @@ _ALL = (
     Target("matlab", "a folder with a function as MSS calls it and a .mat", "", _suits_every_model, export_matlab),
     Target("vrx", "the hydrodynamics plugin of VRX, refitted", ".xml", unsuitable_craft, export_vrx),
     Target("gazebo", "the hydrodynamics plugin of gz-sim, refitted", ".xml", unsuitable_craft, export_gazebo),
+    Target(
+        "ardupilot",
+        "gains of ArduPilot's heading and speed control",
+        ".param",
+        unsuitable_boat,
+        export_ardupilot,
+        takes_gains=True,
+    ),
 )
 TARGETS: dict[str, Target] = {target.name: target for target in _ALL}
 """Name -> target."""

@@ -15,7 +15,7 @@ from seatrial.physics.loops.loop import Term, TransferLoop
 
 FOSSEN = "pole placement, Fossen 2021, section 15.3"
 DAMPING_RATIO = 0.8  # of the closed loop, Fossen 2021, section 15.3
-_SLOWEST, _START, _FASTEST = 0.75, 1.5, 6.0  # bandwidths over the plant's mean pole: least, first and largest; chosen
+SLOWEST, _START, FASTEST = 0.75, 1.5, 6.0  # bandwidths over the plant's mean pole: least, first and largest; chosen
 _LARGEST_KD = 10.0  # over that which halves the motion at the resonance; chosen
 _FILTER_RATIO = 0.1  # derivative filter's time constant times the largest bandwidth; chosen
 _INTEGRAL_RATIO = 0.1  # KI over omega KP, Fossen 2021, section 15.3
@@ -25,6 +25,15 @@ MEANINGS = {"KP": "proportional gain", "KI": "gain of the integral", "KD": "gain
 UNITS = {"KP": "1", "KI": "1/s", "KD": "s"}
 Gains = dict[str, float]
 GainRange = tuple[float, float, float]
+
+
+def speed_gains_at(plant: Block, omega: float) -> Gains:
+    """Return KP, KI on the speed error that place the poles at omega [rad/s]; negative where the plant is reversed.
+
+    plant: from the actuator to the speed.
+    """
+    inverse, slope = _equivalent_lag(plant, omega, integrators=0)
+    return {"KP": 2.0 * DAMPING_RATIO * omega * slope - inverse, "KI": omega**2 * slope}
 
 
 def heading_loop(
@@ -58,8 +67,8 @@ def heading_loop(
         KP = omega**2 * slope
         return {"KP": KP, "KI": _INTEGRAL_RATIO * omega * KP, "KD": 2.0 * DAMPING_RATIO * omega * slope - inverse}
 
-    gains, sign = _gain_ranges([placed(c * scale) for c in (_SLOWEST, _START, _FASTEST)], "KP")
-    tau = _FILTER_RATIO / (_FASTEST * scale) if derivative_filter is None else derivative_filter
+    gains, sign = _gain_ranges([placed(c * scale) for c in (SLOWEST, _START, FASTEST)], "KP")
+    tau = _FILTER_RATIO / (FASTEST * scale) if derivative_filter is None else derivative_filter
     names = ("psi", actuator, disturbance_input)
     return _pid_loop(name, plant, disturbance, servo, sign, gains, parts, tau, integral_lag, names)
 
@@ -79,12 +88,7 @@ def speed_loop(
         InputError: the plant has no pole off the origin.
     """
     scale = mean_pole(plant)
-
-    def placed(omega: float) -> Gains:
-        inverse, slope = _equivalent_lag(plant, omega, integrators=0)
-        return {"KP": 2.0 * DAMPING_RATIO * omega * slope - inverse, "KI": omega**2 * slope}
-
-    gains, sign = _gain_ranges([placed(c * scale) for c in (_SLOWEST, _START, _FASTEST)], "KI")
+    gains, sign = _gain_ranges([speed_gains_at(plant, c * scale) for c in (SLOWEST, _START, FASTEST)], "KI")
     parts, names = ("KP", "KI"), ("u", actuator, disturbance_input)
     return _pid_loop(name, plant, disturbance, servo, sign, gains, parts, math.inf, math.inf, names)
 
