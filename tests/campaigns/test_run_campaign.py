@@ -51,7 +51,7 @@ def test_what_is_done_is_not_done_again(undisturbed: bytes, tmp_path: Path) -> N
     reports: list[str] = []
     run_campaign(work(), tmp_path / "store", ONE, reports.append)
     assert len(reports) == 15
-    assert reports[-1].startswith("30 of 30 tasks done")
+    assert reports[-1].startswith("campaign: 30 of 30 tasks done")
     run_campaign(work(), tmp_path / "store", ONE, reports.append)
     assert len(reports) == 15
     assert table_bytes(tmp_path / "store") == undisturbed
@@ -72,7 +72,7 @@ def test_two_campaigns_in_one_store_count_each_task_once(undisturbed: bytes, tmp
 
 def test_an_interrupt_leaves_a_store_that_goes_on(undisturbed: bytes, tmp_path: Path) -> None:
     def interrupt(text: str) -> None:
-        if text.startswith("9 of"):
+        if text.startswith("campaign: 9 of"):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):

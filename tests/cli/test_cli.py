@@ -93,7 +93,7 @@ def test_a_model_file_is_steered(
 ) -> None:
     arguments = ("--manoeuvre", "zigzag:20/20", "--out", tmp_path / "z.csv", "--json", tmp_path / "z.json")
     assert run_command("simulate", model_file, *arguments) == 0
-    assert "overshoot_1_deg" in capsys.readouterr().out
+    assert "1st overshoot, deg" in capsys.readouterr().out
     assert json.loads((tmp_path / "z.json").read_text())["measures"]["overshoot_1_deg"] > 0.0
 
 

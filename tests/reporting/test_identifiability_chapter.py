@@ -114,7 +114,10 @@ def test_the_number_of_determined_coefficients_is_said_of_the_free_ones(full: Fi
     known = full.identifiability
     assert known is not None
     whole = replace(full, identifiability=replace(known, effective_parameters=10.9))
-    assert determined_sentence(whole) == "The records determine all 11 free coefficients."
+    said = determined_sentence(whole)
+    assert said.startswith("The records determine all 11 free coefficients, given the stated L, which no manoeuvre")
+    free = replace(whole, identifiability=replace(known, effective_parameters=10.9, structural=()))
+    assert determined_sentence(free) == "The records determine all 11 free coefficients."
     without = tuple(replace(c, prior_mean=None) for c in full.coefficients)
     assert determined_sentence(replace(full, coefficients=without)).endswith("the rest is not determined.")
 

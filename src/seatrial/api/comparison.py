@@ -43,8 +43,8 @@ def compare(
     rows, test = coefficient_differences(first, second)
     steered = [m for m in manoeuvres if _is_steered(first) and _is_steered(second)]
     compared = []
-    for manoeuvre in steered:
-        report(manoeuvre)
+    for number, manoeuvre in enumerate(steered, 1):
+        report(f"manoeuvres: {number} of {len(steered)}, {manoeuvre}")
         compared.append(_manoeuvre(first, second, manoeuvre, speed))
     if not rows and not any(m.measures for m in compared):
         raise InputError(

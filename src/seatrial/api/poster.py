@@ -67,9 +67,9 @@ def poster(
     if not 0.0 < rudder_deg <= 90.0:
         raise InputError(f"a rudder angle of {rudder_deg:g} deg turns no ship; give one such as 35")
     report = report_progress or (lambda _: None)
-    manoeuvres = []
-    for order in _orders(rudder_deg):
-        report(order.manoeuvre)
+    manoeuvres, orders = [], _orders(rudder_deg)
+    for number, order in enumerate(orders, 1):
+        report(f"manoeuvres: {number} of {len(orders)}, {order.manoeuvre}")
         manoeuvres.append(_manoeuvre(fit, order, speed))
     if not any(m.quantities for m in manoeuvres):
         raise InputError(f"no manoeuvre of the poster can be steered with this fit: {manoeuvres[0].note}")

@@ -39,7 +39,7 @@ def reproduce(
     if study not in (names := installed(STUDY_GROUP)):
         raise InputError(f"unknown study '{study}'{spelling_hint(study, list(names))}")
     if report_progress:
-        report_progress(f"study {study}: loading and compiling")
+        report_progress(f"study {study}, loading and compiling")
     reproduction: Reproduction = load_plugin(STUDY_GROUP, study, InputError)
     return replace(reproduction(quick=quick, seed=seed, report_progress=report_progress), quick=quick)
 
@@ -57,9 +57,9 @@ def demo(folder: str | Path, seed: int = 0, report_progress: "ProgressReporter |
 
     report_progress = report_progress or (lambda _: None)
     folder = writable_folder(Path(folder))
-    report_progress("simulating the trials")
+    report_progress("simulation of the trials")
     fit = identify(load_trial(write_demo(folder / "trials", seed)), seed=seed, report_progress=report_progress)
-    report_progress("writing result and report")
+    report_progress("result and report")
     save(fit, folder)
     return fit
 

@@ -177,4 +177,4 @@ class _Progress:
         remaining = self._total - self._finished
         failed = f", {self._failed} failed" if self._failed else ""
         rest = f", about {duration(pace * remaining)} left" if remaining else ""
-        self._report(f"{self._finished} of {self._total} tasks done{failed}{rest}")
+        self._report(f"campaign: {self._finished} of {self._total} tasks done{failed}{rest}")

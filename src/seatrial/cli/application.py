@@ -1,14 +1,53 @@
 """The application, the options that several commands share, and what they do with them."""
 
+import functools
+import inspect
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from seatrial.cli.screen import Detail, printing
+
 if TYPE_CHECKING:
     from seatrial.core.equations import Model
 
-app = typer.Typer(
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors and names of written files only.")]
+Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="Print everything, with each step of the work.")]
+
+
+class Application(typer.Typer):
+    """Commands that all have --quiet and --verbose."""
+
+    def command(self, name: str | None = None) -> Callable[[Callable[..., None]], Callable[..., None]]:  # type: ignore[override]
+        """Return what registers a function as the command of that name, its own by default."""
+        register = super().command(name)
+        return lambda function: register(_with_detail(function))
+
+
+def _with_detail(function: Callable[..., None]) -> Callable[..., None]:
+    """The function with two options more, which set how much it prints."""
+
+    @functools.wraps(function)
+    def run(*, quiet: bool, verbose: bool, **arguments: object) -> None:
+        from seatrial.core.values import InputError
+
+        if quiet and verbose:
+            raise InputError("--quiet and --verbose exclude one another; give one of them")
+        with printing(Detail.QUIET if quiet else Detail.VERBOSE if verbose else Detail.NORMAL):
+            function(**arguments)
+
+    signature, options = inspect.signature(function), {"quiet": Quiet, "verbose": Verbose}
+    added = [
+        inspect.Parameter(n, inspect.Parameter.KEYWORD_ONLY, default=False, annotation=a) for n, a in options.items()
+    ]
+    run.__signature__ = signature.replace(parameters=[*signature.parameters.values(), *added])  # type: ignore[attr-defined]
+    run.__annotations__ = {**function.__annotations__, **options}
+    return run
+
+
+app = Application(
     name="seatrial",
     help="Sea-trial records into ship motion models you can defend.",
     no_args_is_help=True,
@@ -69,3 +108,16 @@ def result_document(result: object) -> dict[str, Any]:
     from seatrial.data.folder.document import document
 
     return document(result)
+
+
+def write_json(path: Path | None, table: Callable[[], Mapping[str, Any]]) -> None:
+    """Write `table()` as JSON where a file is wanted.
+
+    Raises:
+        InputError: the place cannot be written.
+    """
+    if path is not None:
+        from seatrial.core.values.files import write_atomically
+        from seatrial.data.folder.document import strict_json
+
+        write_atomically(path, strict_json(table()).encode())

@@ -1,13 +1,17 @@
 """Commands on campaigns: run a plan, status, gather, retry."""
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from typer.core import TyperGroup
 
-from seatrial.cli.application import Json, app, result_document
-from seatrial.cli.output import print_findings, print_lines, print_table, progress_reporter, write_json
+from seatrial.cli.application import Application, Json, app, result_document, write_json
+from seatrial.cli.finding_output import print_findings
+from seatrial.cli.next_steps import after_campaign
+from seatrial.cli.progress import progress_reporter
+from seatrial.cli.screen import print_file, print_lines, print_next, print_table
 
 if TYPE_CHECKING:
     from seatrial.core.results.campaign import CampaignStatus, CampaignSummary
@@ -23,7 +27,7 @@ class PlanOrAction(TyperGroup):
         return super().parse_args(ctx, args)
 
 
-campaigns = typer.Typer(
+campaigns = Application(
     cls=PlanOrAction,
     no_args_is_help=True,
     help="Many identifications in a store that survives kills: Monte Carlo, grids, runs left out, fleets.\n\n"
@@ -61,8 +65,7 @@ def run(
             plan, out, workers=workers, threads=threads, dask=dask, shard=shard, report_progress=report_progress
         )
     _print_status(status)
-    if not status.remaining:
-        print(f"table and page: seatrial campaign gather {out} --to {out}.csv")
+    print_next(after_campaign(status, out))
     write_json(json, lambda: result_document(status))
 
 
@@ -76,6 +79,7 @@ def status(store: StorePath, json: Json = None) -> None:
 
     counts = api.campaign_status(store)
     _print_status(counts)
+    print_next(after_campaign(counts, store))
     write_json(json, lambda: result_document(counts))
 
 
@@ -95,7 +99,8 @@ def gather(
     summary = api.gather_campaign(store, to, page)
     _print_summary(summary)
     write_json(json, lambda: result_document(summary))
-    print(f"table: {to}\nreport: {page}")
+    print_file("table", to)
+    print_file("report", page)
 
 
 @campaigns.command("retry")
@@ -111,6 +116,7 @@ def retry(
     with _resumable(store), progress_reporter() as report_progress:
         status = api.retry_campaign(store, workers=workers, threads=threads, dask=dask, report_progress=report_progress)
     _print_status(status)
+    print_next(after_campaign(status, store))
     write_json(json, lambda: result_document(status))
 
 
@@ -125,7 +131,7 @@ class _resumable:
 
     def __exit__(self, kind: type[BaseException] | None, error: object, trace: object) -> None:
         if kind is KeyboardInterrupt:
-            print(f"what is finished is kept in {self._store}; the same command goes on with it")
+            print(f"what is finished is kept in {self._store}; the same command goes on with it", file=sys.stderr)
 
 
 def _print_status(status: "CampaignStatus") -> None:
@@ -133,7 +139,7 @@ def _print_status(status: "CampaignStatus") -> None:
 
     print_lines([status_sentence(status)])
     if status.damaged_places:
-        print(f"journals are damaged in {status.damaged_places} places; the tasks there are done again")
+        print_lines([f"journals are damaged in {status.damaged_places} places; the tasks there are done again"])
 
 
 def _print_summary(summary: "CampaignSummary") -> None:

@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from seatrial.cli.output import print_findings, print_lines, print_table
+from seatrial.cli.finding_output import print_findings
+from seatrial.cli.screen import print_lines, print_table
 
 if TYPE_CHECKING:
     from seatrial.core.results import Comparison, Difference

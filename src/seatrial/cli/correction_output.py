@@ -1,13 +1,14 @@
-"""What follows from a check: the corrected trial file, and the next step."""
+"""What `check --fix` prints and writes: the corrected trial file."""
 
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from seatrial.cli.output import SEVERITY_MARK, in_shell, print_findings, print_lines
+from seatrial.cli.finding_output import print_finding, print_findings
+from seatrial.cli.next_steps import after_check
+from seatrial.cli.screen import in_shell, print_file, print_lines, print_next
 
 if TYPE_CHECKING:
-    from seatrial.core.values import Finding
     from seatrial.data.trial.correction import Correction
 
 
@@ -26,28 +27,13 @@ def write_correction(correction: "Correction", trial: Path, per_code: int) -> No
     if not correction.applied:
         is_left = any(finding.severity.value == "error" for finding in correction.findings)
         why = "no error has an edit that removes it" if is_left else "the checks find no error"
-        print(f"{SEVERITY_MARK['info']} nothing to correct: {why}; no file is written")
+        print_finding("info", f"nothing to correct: {why}; no file is written")
         print_findings(correction.findings, per_code)
-        print(next_step(tuple(replace(one, edits=()) for one in correction.findings), trial))
+        print_next(after_check(tuple(replace(one, edits=()) for one in correction.findings), trial))
         return
     if fixed.exists():
         raise InputError(f"'{fixed}' exists and is not overwritten; move or remove it")
     write_atomically(fixed, correction.text.encode())
     print_findings(correction.findings, per_code, f"seatrial check {in_shell(fixed)} --all shows them")
-    print(f"corrected: {fixed}")
-    print(f"Next: seatrial check {in_shell(fixed)}")
-
-
-def next_step(findings: "tuple[Finding, ...]", trial: Path) -> str:
-    """Return what to do after a check: correct, the advice of the first error, what a model lacks, or to identify."""
-    from seatrial.core.text.plain import ascii_text
-
-    errors = [finding for finding in findings if finding.severity.value == "error"]
-    missing = next((finding for finding in findings if finding.code == "model"), None)
-    if any(error.edits for error in errors):
-        return f"Next: seatrial check {in_shell(trial)} --fix"
-    if errors:
-        return ascii_text(f"Next: {errors[0].advice}")
-    if missing is not None:
-        return ascii_text(f"Next: identify cannot start yet: {missing.advice}")
-    return f"Next: seatrial identify {in_shell(trial)} --out results"
+    print_file("corrected", fixed)
+    print_next(f"seatrial check {in_shell(fixed)}")

@@ -2,7 +2,8 @@
 
 from typing import TYPE_CHECKING
 
-from seatrial.cli.output import SEVERITY_MARK, print_lines, print_table
+from seatrial.cli.finding_output import print_warnings
+from seatrial.cli.screen import print_lines, print_table
 
 if TYPE_CHECKING:
     from seatrial.core.results import Design
@@ -28,7 +29,7 @@ def print_design(design: "Design") -> None:
             error, bound = (exact(100.0 * max(values), 3) for values in (confirmation.error, confirmation.bound))
             text += f": worst error over them {error} %, {bound} % predicted"
         print_lines([text])
-    print_lines(f"{SEVERITY_MARK[f.severity.value]} [{f.code}] {f.text}: {f.advice}" for f in design.findings)
+    print_warnings(design.findings)
     _print_orders(design)
     print_lines([f"{design.solution.evaluations} manoeuvres tried; {duration(design.elapsed_s)}"])
 
@@ -54,4 +55,4 @@ def _print_orders(design: "Design") -> None:
     orders = [order_cells(order, design.actuators) for order in design.orders[:MAX_ORDERS_PRINTED]]
     print_table([order_headings(design.actuators), *orders], flush_left=(), indent="  ")
     if len(design.orders) > MAX_ORDERS_PRINTED:
-        print(f"  ... and {len(design.orders) - MAX_ORDERS_PRINTED} more orders in orders.csv")
+        print_lines([f"... and {len(design.orders) - MAX_ORDERS_PRINTED} more orders in orders.csv"], "  ")

@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from seatrial.cli.application import Json, OwnModelPath, Seed, app, own_model
-from seatrial.cli.output import print_lines, write_json
+from seatrial.cli.application import Json, OwnModelPath, Seed, app, own_model, write_json
+from seatrial.cli.screen import print_file, print_lines
 
 
 @app.command()
@@ -49,4 +49,4 @@ def export(
     result = api.export(file, to, out, None if gains is None else read_gains(gains))
     print_lines(result.notes)
     write_json(json, lambda: {"target": to, "path": str(out), "files": list(result.files), "notes": list(result.notes)})
-    print(f"exported: {out}")
+    print_file("exported", out)

@@ -8,7 +8,8 @@ from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING
 
-from seatrial.cli.output import SEVERITY_MARK
+from seatrial.cli.finding_output import print_findings
+from seatrial.cli.screen import print_lines
 from seatrial.numerics.platform import stop_signals
 
 if TYPE_CHECKING:
@@ -76,13 +77,13 @@ def print_outcome(outcome: "FollowResult") -> None:
     from seatrial.onboard.snapshot_text import faults_text
 
     counts = outcome.counts
-    print(f"{counts.accepted} samples accepted; {faults_text(counts) or 'no faults'}")
+    print_lines([f"{counts.accepted} samples accepted; {faults_text(counts) or 'no faults'}"])
     if counts.last_problem:
-        print(f"latest fault: {printable(counts.last_problem)}")
+        print_lines([f"latest fault: {printable(counts.last_problem)}"])
     if outcome.snapshot is not None and outcome.snapshot.phase.value == "waiting" and outcome.snapshot.advice:
-        print(f"no estimate yet: {printable(outcome.snapshot.advice)}")
-    for finding in () if outcome.snapshot is None else outcome.snapshot.findings:
-        print(f"{SEVERITY_MARK[finding.severity.value]} [{finding.code}] {finding.text}")
+        print_lines([f"no estimate yet: {printable(outcome.snapshot.advice)}"])
+    if outcome.snapshot is not None and outcome.snapshot.findings:
+        print_findings(outcome.snapshot.findings, 1)
     for note in outcome.messages:
         print(f"seatrial: {note}", file=sys.stderr)
 

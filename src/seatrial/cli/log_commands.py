@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from seatrial.cli.application import app
-from seatrial.cli.output import in_shell, print_lines, print_table
+from seatrial.cli.screen import in_shell, print_file, print_lines, print_next, print_table
 
 if TYPE_CHECKING:
     from seatrial.data.draft import ColumnGuess, ColumnSummary, DraftTrial, LogSurvey, TopicSummary
@@ -49,9 +49,9 @@ def init(
     questions = draft.open_questions
     if questions:
         print_lines([f"{counted(len(questions), 'column')} to decide, marked OPEN in the file"])
-    print(f"trial file: {out}")
-    print(f"drawing: {page}")
-    print_lines([_after_draft(draft, out)])
+    print_file("trial file", out)
+    print_file("drawing", page)
+    print_next(_after_draft(draft, out))
 
 
 def _after_draft(draft: "DraftTrial", out: Path) -> str:
@@ -62,15 +62,15 @@ def _after_draft(draft: "DraftTrial", out: Path) -> str:
     if log is not None:
         notes = [one.time_note for survey in draft.surveys for one in survey.topics if one.time is None]
         why = "".join(f" ({note})" for note in notes[:1] if note)
-        first = f"Next: {log.name} has no time column that is recognised{why}; name it in {out}"
+        first = f"{log.name} has no time column that is recognised{why}; name it in {out}"
         return f"{first}, seatrial check {in_shell(log)} lists all"
     if not any(g.is_used for part in draft.guesses for g in part):
         log = draft.surveys[0].path
-        return f"Next: no column is recognised; seatrial check {in_shell(log)} lists them, name channels in {out}"
+        return f"no column is recognised; seatrial check {in_shell(log)} lists them, name channels in {out}"
     count = sum(map(len, draft.stretches))
     steps = ["decide what is OPEN in it"] if draft.open_questions else []
     steps += [f"uncomment the parts you want of {counted(count, 'manoeuvre')} in it"] if count else []
-    return f"Next: {', '.join([f'read {out}', *steps])}, then seatrial check {in_shell(out)}"
+    return f"{', '.join([f'read {out}', *steps])}, then seatrial check {in_shell(out)}"
 
 
 def _print_guesses(guesses: "Sequence[ColumnGuess]") -> None:
@@ -99,7 +99,7 @@ def print_survey(survey: "LogSurvey", *, show_all: bool) -> None:
     print_lines(f"event at {event.time:.6g} s: {event.name}" for event in survey.log.events[:TOPICS_SHOWN])
     if survey.log.parameters:
         print_lines([f"{counted(len(survey.log.parameters), 'parameter')} stored"])
-    print(f"Next: seatrial init {in_shell(survey.path)} --out trial.toml")
+    print_next(f"seatrial init {in_shell(survey.path)} --out trial.toml")
 
 
 def _print_topic(topic: "TopicSummary", *, show_all: bool, symbols: dict[str, str]) -> None:
@@ -116,7 +116,7 @@ def _print_topic(topic: "TopicSummary", *, show_all: bool, symbols: dict[str, st
         print_lines([f"  text: {', '.join(topic.text_columns)}"])
     print_lines(f"  column {fault}" for fault in topic.faults)
     if len(columns) < len(topic.columns):
-        print(f"  ... and {len(topic.columns) - len(columns)} more columns; --all shows them")
+        print_lines([f"... and {len(topic.columns) - len(columns)} more columns; --all shows them"], "  ")
 
 
 def _column_cells(topic: "TopicSummary", column: "ColumnSummary", symbols: dict[str, str]) -> Sequence[str]:

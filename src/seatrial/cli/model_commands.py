@@ -7,9 +7,11 @@ from typing import Annotated
 
 import typer
 
-from seatrial.cli.application import Json, OwnModelPath, Seed, app, own_model, result_document
-from seatrial.cli.output import print_measures, progress_reporter, write_json
+from seatrial.cli.application import Json, OwnModelPath, Seed, app, own_model, result_document, write_json
+from seatrial.cli.fit_output import print_measures
+from seatrial.cli.progress import progress_reporter
 from seatrial.cli.run_errors import errors_text
+from seatrial.cli.screen import print_file, print_lines
 from seatrial.cli.tuning_output import print_tuning
 
 
@@ -49,8 +51,8 @@ def tune(
     print_tuning(result)
     write_json(json, lambda: result_document(result))
     if out is not None:
-        print(f"gains: {out / 'gains.toml'}")
-        print(f"report: {out / 'report.html'}")
+        print_file("gains", out / "gains.toml")
+        print_file("report", out / "report.html")
 
 
 @app.command()
@@ -108,7 +110,7 @@ def simulate(
         rms = api.rms_differences(measured, record)
         _print_rms(measured.name, rms)
         write_json(json, lambda: {"record": str(out), "rms": rms, "seed": seed})
-        print(f"record: {out}")
+        print_file("record", out)
         return
     file = api.load_model(model_file, own_model(model))
     measured, intervals = None, dict[str, tuple[float, float] | None]()
@@ -138,7 +140,7 @@ def simulate(
     print_measures(measures, intervals, leaving)
     rms = {} if measured is None else api.rms_differences(measured, record)
     if measured is not None and rms:
-        print(f"against {measured.name}: rms {errors_text(rms)}")
+        print_lines([f"against {measured.name}: rms {errors_text(rms)}"])
     write_json(
         json,
         lambda: {
@@ -150,7 +152,7 @@ def simulate(
             "seed": seed,
         },
     )
-    print(f"record: {out}")
+    print_file("record", out)
 
 
 @app.command()
@@ -182,7 +184,7 @@ def models(
 
 def _print_rms(name: str, rms: dict[str, float]) -> None:
     if rms:
-        print(f"against {name}: rms {', '.join(f'{channel} {value:.3g}' for channel, value in rms.items())}")
+        print_lines([f"against {name}: rms {', '.join(f'{channel} {value:.3g}' for channel, value in rms.items())}"])
 
 
 def _name_and_value(text: str) -> tuple[str, float]:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from seatrial.cli.output import print_lines
+from seatrial.cli.screen import print_heading, print_lines, print_verbatim
 
 if TYPE_CHECKING:
     from seatrial.data.trial.model_guide import FilledValue, ModelGuide
@@ -35,11 +35,11 @@ def print_model_guide(guide: "ModelGuide") -> None:
     by_source: dict[str, list[FilledValue]] = {}
     for value in guide.filled:
         by_source.setdefault(value.source, []).append(value)
-    print("filled, where you do not state it:")
+    print_lines(["filled, where you do not state it:"])
     for source, values in by_source.items():
         print_lines([f"  {', '.join(_with_deviation(value) for value in values)}: {source}"])
-    print("\nA trial file begins so ('seatrial init LOG... --out trial.toml' writes the records):\n")
-    print_lines(guide.trial.splitlines())
+    print_heading("A trial file begins so ('seatrial init LOG... --out trial.toml' writes the records)")
+    print_verbatim(["", *guide.trial.splitlines()])
 
 
 def _with_deviation(value: "FilledValue") -> str:

@@ -2,7 +2,8 @@
 
 from typing import TYPE_CHECKING
 
-from seatrial.cli.output import NOT_DETERMINED, print_lines, print_table
+from seatrial.cli.fit_output import NOT_DETERMINED
+from seatrial.cli.screen import print_lines, print_table
 
 if TYPE_CHECKING:
     from seatrial.core.results.poster import Poster

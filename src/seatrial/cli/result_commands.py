@@ -5,10 +5,14 @@ from typing import Annotated
 
 import typer
 
-from seatrial.cli.application import Json, OwnModelPath, Seed, app, own_model, result_document
+from seatrial.cli.application import Json, OwnModelPath, Seed, app, own_model, result_document, write_json
 from seatrial.cli.comparison_output import print_comparison
-from seatrial.cli.output import print_fit, print_study, progress_reporter, write_json
+from seatrial.cli.fit_output import print_fit
+from seatrial.cli.next_steps import after_fit
 from seatrial.cli.poster_output import print_poster
+from seatrial.cli.progress import progress_reporter
+from seatrial.cli.screen import print_file, print_next
+from seatrial.cli.study_output import print_study
 
 
 @app.command()
@@ -27,7 +31,7 @@ def report(
     result = api.load(folder, own_model(model))
     page = api.report(result, folder / "report.html")
     write_json(json, lambda: result_document(result))
-    print(f"report: {page}")
+    print_file("report", page)
 
 
 @app.command()
@@ -72,7 +76,7 @@ def compare(
     print_comparison(result)
     write_json(json, lambda: result_document(result))
     if page is not None:
-        print(f"report: {page}")
+        print_file("report", page)
 
 
 @app.command()
@@ -97,7 +101,7 @@ def poster(
         page = api.write_poster(result, out)
     print_poster(result)
     write_json(json, lambda: result_document(result))
-    print(f"poster: {page}")
+    print_file("poster", page)
 
 
 @app.command()
@@ -123,7 +127,7 @@ def reproduce(
     print_study(result)
     write_json(json, lambda: result_document(result))
     if page is not None:
-        print(f"report: {page}")
+        print_file("report", page)
 
 
 @app.command()
@@ -144,4 +148,5 @@ def demo(
         fit = api.demo(out, seed=seed, report_progress=report_progress)
     print_fit(fit)
     write_json(json, lambda: result_document(fit))
-    print(f"report: {out / 'report.html'}")
+    print_file("report", out / "report.html")
+    print_next(after_fit(fit, out))

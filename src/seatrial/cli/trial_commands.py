@@ -5,11 +5,15 @@ from typing import Annotated
 
 import typer
 
-from seatrial.cli.application import Json, OwnModelPath, Seed, TrialPath, app, own_model, result_document
-from seatrial.cli.correction_output import next_step, write_correction
+from seatrial.cli.application import Json, OwnModelPath, Seed, TrialPath, app, own_model, result_document, write_json
+from seatrial.cli.correction_output import write_correction
 from seatrial.cli.design_output import print_design
+from seatrial.cli.finding_output import print_findings
+from seatrial.cli.fit_output import print_fit
 from seatrial.cli.follow_output import journal_path, live_display, print_outcome, stop_on_signal, stream_heading
-from seatrial.cli.output import print_findings, print_fit, progress_reporter, write_json
+from seatrial.cli.next_steps import after_check, after_fit
+from seatrial.cli.progress import progress_reporter
+from seatrial.cli.screen import print_file, print_next
 
 Method = Annotated[
     str | None,
@@ -59,7 +63,7 @@ def check(
         return
     findings = api.check(trial if model is None else api.load_trial(trial, own_model(model)))
     print_findings(findings, len(findings) if show_all else FINDINGS_PER_CODE)
-    print(next_step(findings, trial))
+    print_next(after_check(findings, trial))
     write_json(json, lambda: findings_document(findings))
 
 
@@ -113,7 +117,8 @@ def identify(
         page = api.save(fit, out)
     print_fit(fit)
     write_json(json, lambda: result_document(fit))
-    print(f"report: {page}")
+    print_file("report", page)
+    print_next(after_fit(fit, out, trial))
 
 
 @app.command()
@@ -178,7 +183,7 @@ def follow(
         print_fit(outcome.fit)
     write_json(json, lambda: result_document(outcome.result))
     if out is not None:
-        print(f"result: {api.save(outcome, out)}")
+        print_file("result", api.save(outcome, out))
 
 
 @app.command()
@@ -211,5 +216,6 @@ def design(
         page = api.save(result, out)
     print_design(result)
     write_json(json, lambda: result_document(result))
-    print(f"orders: {out / 'orders.csv'}")
-    print(f"report: {page}")
+    print_file("orders", out / "orders.csv")
+    print_file("report", page)
+    print_next("carry out orders.csv, then seatrial init LOG --out trial.toml with the log of it")

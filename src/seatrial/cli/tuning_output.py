@@ -3,7 +3,8 @@
 import math
 from typing import TYPE_CHECKING
 
-from seatrial.cli.output import SEVERITY_MARK, print_lines, print_table
+from seatrial.cli.finding_output import print_warnings
+from seatrial.cli.screen import print_lines, print_table
 
 if TYPE_CHECKING:
     from seatrial.core.results.tuning import Controller, Tuning
@@ -24,9 +25,7 @@ def print_tuning(tuning: "Tuning") -> None:
     print_lines(f"bound {b.name}: output variance {exact(b.ratio, 3)} of the chosen gains', {b.conditions}"
                 for b in tuning.bounds)  # fmt: skip
     _print_manoeuvres(tuning)
-    for finding in tuning.findings:
-        advice = f": {finding.advice}" if finding.advice else ""
-        print_lines([f"{SEVERITY_MARK[finding.severity.value]} [{finding.code}] {finding.text}{advice}"])
+    print_warnings(tuning.findings)
     print_lines([_effort_text(tuning)])
 
 

@@ -67,7 +67,7 @@ def _choose_by_demand(
     short = []
     for gains in some:
         short.append(shortfall(task, judge.loop, gains))
-        report_progress(f"choice: {len(short)} of {len(some)} candidates carried through the demand")
+        report_progress(f"choice of gains: {len(short)} of {len(some)} candidates tried on the demand")
     keeping = some[np.array([far == 0.0 for far, _ in short])]
     if not len(keeping):
         least = min(range(len(some)), key=lambda i: short[i][0])

@@ -83,12 +83,12 @@ def choose_by_simulation(
         for around in ("along the front", "about the best"):
             made = [simulated(judge, front, gains) for gains in near]
             tried += made
-            report_progress(f"choice: {front.name}, {len(made)} candidates {around} simulated")
+            report_progress(f"choice of gains: {front.name}, {len(made)} candidates {around} simulated")
             near = _neighbouring_gains(some, _best_candidate(made).gains)
         best = _best_candidate(tried)
         safer = [_gains_with_margin(judge, tried, best, Ms, seed) for Ms in _SAFER_MS if Ms < task.constraints.Ms]
         tried += [simulated(judge, front, gains) for gains in safer]
-        report_progress(f"choice: {front.name}, {len(safer)} with more margin simulated")
+        report_progress(f"choice of gains: {front.name}, {len(safer)} with more margin simulated")
     best = _best_candidate(tried)
     reasons = (
         f"Of {len(tried)} controllers along the fronts none surely reduces the motion more when simulated within the "

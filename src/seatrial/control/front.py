@@ -35,13 +35,13 @@ def pareto_front(
     """Return the feasible non-dominated gains found; empty where nothing is feasible (see `refuse_infeasible`)."""
     rng = np.random.default_rng(seed)
     explored = _explore(evaluator, seed, effort)
-    report_progress(f"{name}: explored")
+    report_progress(f"front of {name}: explored")
     count = len(explored)
     kept, values = _feasible_non_dominated(evaluator, explored)
     if len(kept):
         edge = np.array([refine_gains(evaluator, kept[i], values[i]) for i in spread_points(values, effort.refined)])
         kept, values = _feasible_non_dominated(evaluator, np.concatenate([kept, edge]))
-        report_progress(f"{name}: polished")
+        report_progress(f"front of {name}: refined")
         low, high = free_gain_bounds(evaluator)[1]
         for size in np.geomspace(*_SPREADS, effort.fill_rounds):
             base = kept[rng.integers(len(kept), size=effort.neighbours)]

@@ -128,7 +128,7 @@ def _checked_front(
     if count is None or not len(made.gains):
         return made
     known = grid_front(evaluator, (count,) * len(evaluator.loop.gains.free))
-    report_progress(f"{name}: checked against a grid")
+    report_progress(f"front of {name}: checked against a grid")
     if not len(known):
         return made
     live = np.ptp(known, axis=0) > 0.0
@@ -149,7 +149,7 @@ def _run_checks(
     made, loop = Checks(), choice.evaluator.loop
     try:
         if task.demand is not None:
-            report_progress(f"the demand, with {PARAMETER_DRAWS} ships that the fit allows")
+            report_progress(f"demand on {PARAMETER_DRAWS} ships that the fit allows")
             made.manoeuvres = simulate_manoeuvres(task, loop, "chosen", choice.gains, seed, draws=PARAMETER_DRAWS)
         if task.simulation is not None and task.demand is None:
             made.simulations, made.comparisons = _simulate_controllers(task, choice, compared, seed, report_progress)
@@ -172,11 +172,11 @@ def _simulate_controllers(
     seed: int,
     report_progress: Callable[[str], None],
 ) -> tuple[tuple[SeawaySimulation, ...], tuple[PairedDifference, ...]]:
-    report_progress("chosen gains simulated")
+    report_progress("simulation in waves: chosen gains")
     first = simulate_in_seaway(task, choice.evaluator.loop, "chosen", choice.gains, seed)
     others = []
     for name, one in compared.items():
-        report_progress(f"{name} simulated")
+        report_progress(f"simulation in waves: {name}")
         others.append(simulate_in_seaway(task, one.evaluator.loop, name, one.gains, seed))
     pairs = [compare_pairwise(first, other, what) for other in others for what in ("limited", "stalled")]
     return (first, *others), tuple(pairs)

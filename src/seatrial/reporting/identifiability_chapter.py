@@ -177,7 +177,10 @@ def determined_sentence(fit: Fit) -> str:
         return ""
     number = round(identifiability.effective_parameters)
     if number >= len(free):
-        return f"The records determine all {len(free)} free coefficients."
+        tied = {name for symmetry in identifiability.structural for name in symmetry.parameters}
+        held = [c.name for c in fit.coefficients if c.fixed and c.name in tied]
+        given = f", given the stated {enumeration(held)}, which no manoeuvre identifies apart from them" if held else ""
+        return f"The records determine all {len(free)} free coefficients{given}."
     rest = "comes from the priors" if any(c.prior_mean is not None for c in free) else "is not determined"
     return f"The records determine about {number} of {len(free)} free coefficients; the rest {rest}."
 

@@ -3,7 +3,7 @@
 import pytest
 
 from seatrial.core.text.numbers import exact
-from seatrial.core.text.plain import aligned, ascii_text
+from seatrial.core.text.plain import aligned, ascii_text, wrapped
 
 
 @pytest.mark.parametrize("value", [-3.2e-7, 12345.6, 4.5e12, -0.25, 0.0])
@@ -20,3 +20,23 @@ def test_columns_line_up() -> None:
     lines = aligned([["name", "value", ""], ["a", "1.5", "note"], ["longer", "-12.25", ""]], flush_left=(0, 2))
     assert lines == ["name     value", "a          1.5  note", "longer  -12.25"]
     assert aligned([]) == []
+
+
+ROWS = [["quantity", "first", "second", "note"], ["a", "1.5", "-2.25", "words that go on and on and on"]]
+
+
+def test_a_column_of_words_goes_on_over_further_lines() -> None:
+    lines = aligned(ROWS, flush_left=(0, 3), width=44)
+    assert max(map(len, lines)) <= 44
+    assert lines[1].startswith("a           1.5   -2.25  words that")
+    assert lines[2].startswith(" " * 26) and lines[2].strip()
+
+
+def test_numbers_that_do_not_fit_stand_in_a_second_table() -> None:
+    lines = aligned([["x", "123456789", "987654321"], ["y", "1", "2"]], width=15)
+    assert lines == ["x  123456789", "y          1", "x  987654321", "y          2"]
+
+
+def test_later_lines_of_a_sentence_stand_further_in() -> None:
+    assert wrapped("one two three four five", None, "  ") == ["  one two three four five"]
+    assert wrapped("one two three four five", 16, "  ") == ["  one two three", "    four five"]

@@ -1,6 +1,7 @@
 """Text for terminals and log files: no typographic signs, columns that line up."""
 
 import re
+import textwrap
 from collections.abc import Sequence
 
 from seatrial.core.text.numbers import MINUS, SUPERSCRIPTS, THIN_SPACE
@@ -9,6 +10,8 @@ _RAISED = {raised: sign for sign, raised in SUPERSCRIPTS.items()}
 _PLAIN = str.maketrans({MINUS: "-", THIN_SPACE: "", "–": "-", "×": "x", "…": "...", "·": "?", "°": " deg", "∞": "inf"})
 _POWER = re.compile(f"{THIN_SPACE}×{THIN_SPACE}10([{''.join(_RAISED)}]+)")
 _INDEX = re.compile(f"[{''.join(_RAISED)}]+")
+# spaces between columns; letters below which a column of words is not read with ease; both chosen
+GAP, MIN_WORDS = 2, 16
 
 
 def ascii_text(text: str) -> str:
@@ -21,15 +24,69 @@ def ascii_text(text: str) -> str:
     return _INDEX.sub(lambda match: f"^{digits(match[0])}", plain).translate(_PLAIN)
 
 
-def aligned(rows: Sequence[Sequence[str]], flush_left: Sequence[int] = (0,)) -> list[str]:
+def aligned(rows: Sequence[Sequence[str]], flush_left: Sequence[int] = (0,), width: int | None = None) -> list[str]:
     """Return rows of equal length as lines whose columns line up.
 
     Args:
         flush_left: columns that are flush left, the others are flush right.
+        width: letters of a line; where the columns need more, the widest column of words goes on over further lines;
+            if there is none, the columns stand in several tables below one another. None: lines as long as they are.
     """
-    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))] if rows else []
-    return [
-        "  ".join(f"{cell:<{width}}" if k in flush_left else f"{cell:>{width}}"
-                  for k, (cell, width) in enumerate(zip(row, widths, strict=True))).rstrip()
-        for row in rows
-    ]  # fmt: skip
+    if not rows:
+        return []
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+    excess = 0 if width is None else sum(widths) + GAP * (len(widths) - 1) - width
+    if width is None or excess <= 0:
+        return [_line(row, widths, flush_left) for row in rows]
+    widest = max(flush_left, key=lambda k: widths[k], default=0)
+    if widest in flush_left and widths[widest] - excess >= MIN_WORDS:
+        widths[widest] -= excess
+        return _with_wrapped_words(rows, widths, flush_left, widest)
+    return _split_tables(rows, widths, flush_left, width)
+
+
+def wrapped(text: str, width: int | None, indent: str = "") -> list[str]:
+    """Return a sentence as lines of at most `width` letters (None: one line), later ones further in."""
+    if width is None:
+        return [indent + text]
+    own = indent + text[: len(text) - len(text.lstrip())]
+    lines = textwrap.wrap(
+        text.strip(), max(width, MIN_WORDS), initial_indent=own, subsequent_indent=f"{own}{' ' * GAP}",
+        break_long_words=False, break_on_hyphens=False,
+    )  # fmt: skip
+    return lines or [""]
+
+
+def _line(row: Sequence[str], widths: Sequence[int], flush_left: Sequence[int]) -> str:
+    cells = zip(row, widths, strict=True)
+    return (
+        (" " * GAP)
+        .join(f"{cell:<{width}}" if k in flush_left else f"{cell:>{width}}" for k, (cell, width) in enumerate(cells))
+        .rstrip()
+    )
+
+
+def _with_wrapped_words(
+    rows: Sequence[Sequence[str]], widths: Sequence[int], flush_left: Sequence[int], column: int
+) -> list[str]:
+    """One column within its width, over several lines where it must; the numbers stand in the first of them."""
+    lines = []
+    for row in rows:
+        for k, part in enumerate(wrapped(row[column], widths[column])):
+            cells = [part if i == column else cell if k == 0 else "" for i, cell in enumerate(row)]
+            lines.append(_line(cells, widths, flush_left))
+    return lines
+
+
+def _split_tables(rows: Sequence[Sequence[str]], widths: list[int], flush_left: Sequence[int], width: int) -> list[str]:
+    """The first column with as many others as fit, then with the next ones, until all have been shown."""
+    lines, column = [], 1
+    while column < len(widths):
+        chosen, used = [0], widths[0]
+        while column < len(widths) and (len(chosen) == 1 or used + GAP + widths[column] <= width):
+            used += GAP + widths[column]
+            chosen.append(column)
+            column += 1
+        left = [i for i, k in enumerate(chosen) if k in flush_left]
+        lines += [_line([row[k] for k in chosen], [widths[k] for k in chosen], left) for row in rows]
+    return lines or [row[0] for row in rows]

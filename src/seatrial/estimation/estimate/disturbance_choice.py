@@ -156,7 +156,7 @@ def without_disturbance(white: ProcessNoise, evaluations: int, report: ProgressR
     problem = replace(white.problem, process=(), steps=None)
     point, size = white.optimum.solution.point, white.problem.runs.size
     begin = np.concatenate([point[:size], point[size + len(white.problem.process) :]])
-    report("no disturbance")
+    report("disturbances compared: none")
     optimum = levenberg_marquardt(problem, begin, _NO_INITIAL_STATES, negligible=_NEGLIGIBLE, evaluations=evaluations)
     verdict = likelihood_ratio_test(problem, optimum.solution.point, optimum.normal.cost, optimum.normal.cost, None)
     return ProcessNoise(problem, optimum, 0.0, verdict, white.output_error, "none")
@@ -183,7 +183,7 @@ def _fitted(
 ) -> Iterator[FittedDisturbance]:
     without = white.optimum.normal.cost + 0.5 * white.test.likelihood_ratio
     for one in models:
-        report(f"disturbance: {one.name}")
+        report(f"disturbances compared: {one.name}")
         if not np.isfinite(one.problem.cost(one.point, _NO_INITIAL_STATES)):
             continue
         exact, optimum, decrement = search_prediction_error(one.problem, one.point, evaluations, report)

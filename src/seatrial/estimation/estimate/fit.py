@@ -178,7 +178,7 @@ def estimate_model(
     evidence = loop_evidence(runs.records, runs.feedback, some.records if some else None)
     begun, shooting, choice = _chosen(model, some or runs, settings, options, evidence, report_progress)
     if some is not None:
-        report("all samples")
+        report("start values: all samples")
         choice = choice_over_all(choice, runs)
     criterion = f"{choice.criterion}, Huber loss" if settings.robust else choice.criterion
     uncertainty = _uncertainty(choice, options, report)
@@ -197,7 +197,7 @@ def _chosen(
 ) -> tuple[SeveralStarts, PointEstimate, CriterionChoice]:  # fmt: skip
     """Where the search began, the estimate over segments, and the criterion's choice."""
     report = report_progress or (lambda _: None)
-    report("weak-form start")
+    report("start values: weak form")
     unit = characteristic_time(model, runs.records, runs.length, settings.segment_s)
     seconds = segment_seconds(model, settings, unit)
     problem = output_error_problem(model, runs, seconds, settings, options.workers)

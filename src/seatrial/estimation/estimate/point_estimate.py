@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from seatrial.core.text.words import counted
 from seatrial.core.values import Array, ProgressReporter
 from seatrial.estimation.estimate.settings import WHITE_INFLATION
 from seatrial.estimation.information.autocorrelation import autocorrelation, variance_inflation
@@ -175,7 +176,8 @@ def _search(
 ) -> PointEstimate:
     def report(count: int, cost: float) -> None:
         if report_progress:
-            report_progress(f"{problem.data.count} segments, evaluation {count}: {cost:.6g}")
+            segments = counted(problem.data.count, "segment")
+            report_progress(f"output error, {segments}: evaluation {count}, cost {cost:.6g}")
 
     optimum = levenberg_marquardt(
         problem,

@@ -256,7 +256,7 @@ def search_prediction_error(
     """The problem with steps for exact gradients, its optimum, and the Newton decrement left there."""
 
     def counted(count: int, cost: float) -> None:
-        report_progress(f"prediction error, evaluation {count}: {cost:.6g}")
+        report_progress(f"prediction error: evaluation {count}, cost {cost:.6g}")
 
     optimum = levenberg_marquardt(
         problem, point, _NO_INITIAL_STATES, negligible=_NEGLIGIBLE, evaluations=evaluations, report_progress=counted

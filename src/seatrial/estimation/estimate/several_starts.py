@@ -100,7 +100,7 @@ def search_from_several(
     likelihood = ConcentratedLikelihood(start.problem, known_noise)
     for origin, point in _points(likelihood, start, count, np.random.default_rng(seed)):
         if report_progress:
-            report_progress(f"start {len(attempts) + 1} of {count}: {origin}")
+            report_progress(f"starting points: {len(attempts) + 1} of {count}, {origin}")
         attempts.append(_Attempt(origin, point, point, local).continued(likelihood, _FIRST_EVALUATIONS))
     for following in _ROUNDS:  # the best one shows how correlated residuals are, so that samples count as they should
         best = min(attempts, key=lambda a: a.loss)

@@ -102,7 +102,7 @@ def compare_estimators(
     report = report_progress or (lambda _: None)
     baselines = _fit_as_baselines(fit)
     for estimator in estimators:
-        report(f"comparing: {estimator.name}")
+        report(f"other estimators: {estimator.name}")
         baselines.append(_baseline(fit, train, estimator))
     return tuple(baselines)
 

@@ -232,7 +232,7 @@ class _Fitter:
 
     def _fitted(self, variant: ModelVariant) -> FittedVariant:
         if self.report_progress:
-            self.report_progress(f"family: {variant.name}")
+            self.report_progress(f"models compared: {variant.name}")
         varied, base, runs = apply_variant(self.model, variant), self.base, self.runs
         segment_s = _segment_seconds(base) * variant.segment_factor if self.is_segmented else np.inf
         try:

@@ -85,7 +85,7 @@ def select_roll_model(
 
     def scored(item: tuple[str, Model]) -> _Scored:
         if report_progress:
-            report_progress(f"family: {item[0]}")
+            report_progress(f"models compared: {item[0]}")
         try:
             complete = estimation if item[1] is model else estimate_model(item[1], train, settings, quiet)
             parts = [estimate_model(item[1], split.fitted, settings, quiet) for split in splits]

@@ -150,8 +150,8 @@ def predict_runs(
     report = report_progress or (lambda _: None)
     problem = estimation.estimate.problem
     items, runs, offsets, findings = [], [], [], []
-    for item in records:
-        report(f"predicting {item.record.name}")
+    for number, item in enumerate(records, 1):
+        report(f"prediction: {number} of {len(records)}, {item.record.name}")
         if item.role is Role.TRAIN:
             own = session_offsets(estimation, item.session, item.record)
             run = simulate_open_loop(problem, estimation.model, item.record, own.expected, seconds)
@@ -173,7 +173,7 @@ def predict_runs(
         for i, r in zip(train, fitted, strict=True)
     ]
     covered = motion_envelope(moved, layout)
-    report("runs left out, predicted")
+    report("intervals of predictions: runs left out")
     calibration = calibrate_intervals(estimation, train, moved, seconds, length, seed)
     streams = np.random.SeedSequence((seed, 1)).spawn(len(items))
     held_out = [item for item in items if item.role is not Role.TRAIN]

@@ -15,6 +15,7 @@ from functools import cache
 import sympy as sp
 
 from seatrial.core.equations import Model, Sheet
+from seatrial.physics.models.derivative_meaning import derivative_meaning
 from seatrial.physics.models.pose import pose_rates
 
 ABKOWITZ = "Abkowitz 1964, Hydro- and Aerodynamics Laboratory report Hy-5"
@@ -42,8 +43,9 @@ def _series(sheet: Sheet, force: str, terms: Sequence[str], variables: dict[str,
     total = sp.Integer(0)
     for term in terms:
         sub = term.replace("d", r"\delta")
+        meaning = derivative_meaning(f"{force}_{term}")
         # 0.01: characteristic size of a dimensionless coefficient; chosen
-        coefficient = sheet.parameter(f"{force}_{term}", 0.0, latex=f"{force}'_{{{sub}}}", scale=0.01)
+        coefficient = sheet.parameter(f"{force}_{term}", 0.0, meaning=meaning, latex=f"{force}'_{{{sub}}}", scale=0.01)
         total += coefficient * sp.Mul(*(variables[letter] for letter in term.replace("0", "")))
     return total
 

@@ -16,6 +16,7 @@ from functools import cache
 import sympy as sp
 
 from seatrial.core.equations import Model, Sheet
+from seatrial.physics.models.derivative_meaning import derivative_meaning
 from seatrial.physics.models.pose import pose_rates
 from seatrial.physics.models.rudder import EXTENSION, KITAGAWA, YASUKAWA, RudderCoefficients, RudderFlow, normal_force
 from seatrial.physics.models.wind import SERIES, wind_force
@@ -44,10 +45,10 @@ class _Motion:
     delta_R: sp.Symbol
 
 
-def _coefficient(sheet: Sheet, name: str, meaning: str = "hull force coefficient", *, free: bool = False) -> sp.Symbol:
+def _coefficient(sheet: Sheet, name: str, meaning: str = "", *, free: bool = False) -> sp.Symbol:
     latex = f"{name[0]}'_{{{name[2:].replace('_', ' ')}}}"
     # 0.02: characteristic size of a dimensionless coefficient; chosen
-    return sheet.parameter(name, 0.0, "1", meaning, free=free, scale=0.02, latex=latex)
+    return sheet.parameter(name, 0.0, "1", meaning or derivative_meaning(name), free=free, scale=0.02, latex=latex)
 
 
 def _motion(sheet: Sheet, u: sp.Symbol, v: sp.Symbol, r: sp.Symbol, delta: sp.Symbol) -> _Motion:

@@ -9,6 +9,7 @@ from functools import cache
 import sympy as sp
 
 from seatrial.core.equations import Model, Sheet
+from seatrial.physics.models.derivative_meaning import derivative_meaning
 from seatrial.physics.models.pose import pose_rates
 
 SONG = "Song et al. 2025, doi 10.19693/j.issn.1673-3185.03832"
@@ -23,6 +24,7 @@ TABLE_2 = {
     "N_v": -0.17080, "N_r": -0.05240, "N_rr": -0.04350,
 }  # fmt: skip
 WATERJET_COEFFICIENTS = tuple(TABLE_2)
+MODULUS_TERMS = {"Y_vv": "v|v|", "Y_vr": "|v| r", "Y_rr": "r|r|", "N_rr": "r|r|"}  # of eq. (2), as corrected
 
 
 CANDIDATE_TERMS = ("N_vrr", "N_vvr")  # of eq. (2); Lasso takes them out, eq. (13), and table 2 has no values of them
@@ -67,9 +69,11 @@ def _craft(name: str, candidate_terms: tuple[str, ...]) -> Model:
 
     def coefficient(name: str) -> sp.Symbol:
         source = f"{SONG}, table 2 (CFD)" if name in TABLE_2 else f"{SONG}, eq. (2); not in table 2"
+        meaning = derivative_meaning(name, MODULUS_TERMS.get(name, ""))
         return sheet.parameter(
-            name, TABLE_2.get(name, 0.0), source=source, free=True, latex=f"{name[0]}'_{{{name[2:]}}}"
-        )
+            name, TABLE_2.get(name, 0.0), meaning=meaning, source=source, free=True,
+            latex=f"{name[0]}'_{{{name[2:]}}}",
+        )  # fmt: skip
 
     # 1e-12 m^2/s^2 keeps the root smooth at rest
     U = sheet.bind("U", sp.sqrt(u**2 + v**2 + sp.Float(1e-12)), "speed through water", "m/s")

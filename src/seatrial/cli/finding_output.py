@@ -1,0 +1,75 @@
+"""Findings on the terminal, by severity."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import typer
+
+from seatrial.cli.screen import is_quiet, is_verbose, line_width, print_heading, print_lines, print_verbatim
+
+if TYPE_CHECKING:
+    from seatrial.core.values import Finding
+
+SEVERITY_MARK = {"error": "ERROR  ", "warning": "warning", "info": "note   "}
+_NOUNS = {"error": "error", "warning": "warning", "info": "note"}
+_COLOURS = {"error": typer.colors.RED, "warning": typer.colors.YELLOW}
+_INDENT = " " * 8  # below the text of a finding
+
+
+def print_findings(findings: "Sequence[Finding]", per_code: int, rest: str = "--all shows them") -> None:
+    """Print findings by kind, errors first; of each kind the first few (all with --verbose), and where the rest is."""
+    if is_quiet():
+        _print_errors(findings)
+        return
+    order = list(SEVERITY_MARK)
+    kinds: dict[tuple[str, str], list[Finding]] = {}
+    for finding in findings:
+        kinds.setdefault((finding.severity.value, finding.code), []).append(finding)
+    for (severity, _), alike in sorted(kinds.items(), key=lambda item: order.index(item[0][0])):
+        shown = alike if is_verbose() else alike[:per_code]
+        for finding in shown:
+            print_finding(severity, f"[{finding.code}] {finding.text}")
+        if len(alike) > len(shown):
+            print_verbatim([f"{_INDENT}... and {len(alike) - len(shown)} more of this kind; {rest}"])
+        if alike[0].consequence:
+            print_lines([f"consequence: {alike[0].consequence}"], _INDENT)
+        if alike[0].advice:
+            print_lines([f"advice: {alike[0].advice}"], _INDENT)
+    print_lines([count_sentence(findings)])
+
+
+def print_warnings(findings: "Sequence[Finding]", rest: str = "the report lists them") -> None:
+    """Print errors and warnings of a result, the latest first, under a heading; with --verbose notes, too."""
+    chosen = [f for f in findings if is_verbose() or f.severity.value != "info"]
+    if chosen:
+        print_heading("Findings")
+        print_findings(chosen[::-1], 1, rest)
+
+
+def print_finding(severity: str, text: str) -> None:
+    """Print a finding, its severity in colour on a terminal and its lines below one another."""
+    from seatrial.core.text.plain import ascii_text, wrapped
+
+    width = line_width()
+    if is_quiet():
+        return
+    first, *further = wrapped(ascii_text(text), None if width is None else width - len(_INDENT))
+    typer.echo(f"{typer.style(SEVERITY_MARK[severity], fg=_COLOURS.get(severity))} {first}")
+    print_verbatim(f"{_INDENT}{line.strip()}" for line in further)
+
+
+def count_sentence(findings: "Sequence[Finding]") -> str:
+    """Return how many findings of each severity there are: ``2 errors, 1 warning, no notes``."""
+    from seatrial.core.text.words import counted
+
+    counts = {severity: sum(f.severity.value == severity for f in findings) for severity in SEVERITY_MARK}
+    return ", ".join(counted(counts[severity], noun) for severity, noun in _NOUNS.items())
+
+
+def _print_errors(findings: "Sequence[Finding]") -> None:
+    """What --quiet leaves: the errors, one a line."""
+    from seatrial.core.text.plain import ascii_text
+
+    for finding in findings:
+        if finding.severity.value == "error":
+            print(ascii_text(f"{SEVERITY_MARK['error'].strip()} [{finding.code}] {finding.text}"))

@@ -1,0 +1,229 @@
+"""What `identify` prints of a fit: verdict and key figures, coefficients, held-out runs, findings."""
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
+
+from seatrial.cli.finding_output import print_warnings
+from seatrial.cli.fit_details import (
+    print_baselines,
+    print_disturbances,
+    print_frequency_responses,
+    print_k_step_errors,
+    print_method_comparison,
+    print_model_selection,
+    print_windows,
+)
+from seatrial.cli.run_errors import ERROR_DIGITS, error_text, label_and_unit
+from seatrial.cli.screen import is_quiet, is_verbose, print_heading, print_lines, print_table
+
+if TYPE_CHECKING:
+    from seatrial.core.results import Coefficient, Extrapolation, Fit, Measure, Prediction
+
+# index of extrapolation beyond which intervals are lower limits; chosen, as in the report
+EXTRAPOLATION_LIMIT = 1.2
+EXTRAPOLATION_NOTE = ": beyond the training runs, read its intervals as lower limits"
+NOT_DETERMINED = "not determined"
+# measures and held-out runs that stand in the tables without --verbose; chosen, one screen
+MAX_MEASURES, MAX_RUNS = 8, 4
+GOOD_MARKS = {True: "+", False: "!", None: ""}  # before a key figure that is good, or that limits the result
+
+
+def print_fit(fit: "Fit") -> None:
+    """Print the verdict with its key figures, free coefficients, runs held out, and what was compared; then findings.
+
+    With --verbose also windows, errors samples ahead, responses, disturbances, symmetries, and how it was estimated.
+    """
+    if is_quiet():
+        return
+    _print_summary(fit)
+    if fit.reference is None:
+        _print_coefficients(fit)
+    else:
+        print_method_comparison(fit, fit.reference)
+    _print_held_out(fit)
+    print_lines(population.sentence for population in fit.offset_populations)
+    _print_thruster_craft(fit)
+    print_model_selection(fit)
+    print_baselines(fit)
+    if fit.posterior is not None:
+        print_lines(fit.posterior.sentences)
+    if is_verbose():
+        _print_details(fit)
+    print_warnings(fit.findings)
+
+
+def _print_summary(fit: "Fit") -> None:
+    from seatrial.core.text.numbers import duration
+    from seatrial.reporting.key_facts import key_facts
+    from seatrial.reporting.verdict import verdict
+
+    free = sum(not c.fixed for c in fit.coefficients)
+    runs = sum(p.role == "training" for p in fit.predictions)
+    print_heading(
+        f"{fit.ship.name}: model {fit.model.name}, {free} coefficients from {runs} run{'s' * (runs != 1)}, "
+        f"{duration(fit.elapsed_s)}"
+    )
+    print_lines([verdict(fit)])
+    rows = [(GOOD_MARKS[fact.is_good], fact.name, fact.text) for fact in key_facts(fit)]
+    print_table(rows, flush_left=(0, 1, 2), indent="  ")
+
+
+def _print_coefficients(fit: "Fit") -> None:
+    """Estimates with as many digits as their intervals carry; columns in which nothing stands are left out."""
+    free = [c for c in fit.coefficients if not c.fixed]
+    header = ("", "estimate", "std. error", "95 % from", "to", "unit", "known", "", "meaning")
+    rows = [_coefficient_cells(c) for c in free]
+    used = [k for k in range(len(header)) if any(row[k] for row in rows) and (k != 2 or is_verbose())]
+    words = [i for i, k in enumerate(used) if header[k] in ("unit", "", "meaning")]
+    print_heading("Coefficients, 95 % intervals")
+    print_table([[row[k] for k in used] for row in (header, *rows)], flush_left=words)
+
+
+def _coefficient_cells(c: "Coefficient") -> tuple[str, ...]:
+    from seatrial.core.text.numbers import estimate_text, exact
+
+    text = estimate_text(c.estimate, c.standard_error, c.lower, c.upper)
+    numbers = [f"{part}{text.power}" for part in (text.value, text.error, text.lower, text.upper)]
+    known = "" if c.truth is None else exact(c.truth)
+    return c.name, *numbers, c.unit if c.unit != "1" else "", known, _coefficient_mark(c), c.meaning
+
+
+def _coefficient_mark(c: "Coefficient") -> str:
+    """Where a known value lies, else whether the interval leaves the sign open."""
+    if c.lower is None or c.upper is None:
+        return "no interval"
+    if c.truth is not None:
+        return "inside" if c.lower <= c.truth <= c.upper else "OUTSIDE"
+    return "sign open" if c.lower < 0.0 < c.upper else ""
+
+
+def _print_held_out(fit: "Fit") -> None:
+    chosen = fit.validation if is_verbose() else fit.validation[:MAX_RUNS]
+    for p in chosen:
+        _print_prediction(p)
+    if len(fit.validation) > len(chosen):
+        print_lines(
+            [f"... and {len(fit.validation) - len(chosen)} more held-out runs; --verbose and the report show them"]
+        )
+
+
+def _print_prediction(p: "Prediction") -> None:
+    """Errors of a run that was not fitted, with what process noise alone would leave; its measures with their marks."""
+    from seatrial.core.text.numbers import duration, exact
+
+    until = "" if p.divergence is None else f"; it diverges, its first {exact(p.divergence.seconds, 4)} s count"
+    print_heading(f"Held out: {p.record}, {duration(p.measured.duration)}{until}")
+    if not p.rms:
+        print_lines(["nothing can be compared: no channel of the run is an output of the model"])
+        return
+    table = [_error_header(p), *(_error_cells(p, key) for key in p.rms)]
+    used = [k for k in range(len(table[0])) if any(row[k] for row in table[1:])]
+    print_table([[row[k] for k in used] for row in table], flush_left=(0, len(used) - 1), indent="  ")
+    if is_verbose():
+        print_windows(p)
+    if p.extrapolation is not None:
+        _print_extrapolation(p.extrapolation)
+    _print_measures(p)
+
+
+def _error_header(p: "Prediction") -> list[str]:
+    windows = [f"{w.count} x {w.window}" for w in p.windows]
+    rival = f"best without fit, {p.windows[-1].window}" if p.windows else ""
+    return ["rms error", "whole run", "noise alone", "tied models", *windows, rival]
+
+
+def _error_cells(p: "Prediction", key: str) -> list[str]:
+    """Error over the whole run, what process noise leaves of it, over windows, and the best one that needs no fit."""
+    tables = (p.rms, p.noise_floor, p.tied_spread, *({k: s.rms for k, s in w.scores.items()} for w in p.windows))
+    errors = [error_text(key, table[key]) if key in table else "" for table in tables]
+    rivals = [b for b in p.windows[-1].baselines if key in b.scores] if p.windows else []
+    best = min(rivals, key=lambda b: b.scores[key].rms, default=None)
+    rival = "" if best is None else f"{error_text(key, best.scores[key].rms)} {best.name}"
+    is_beaten = bool(p.windows) and key in p.windows[-1].better_baselines
+    return [", ".join(label_and_unit(key)), *errors, f"{rival} (BETTER)" if is_beaten else rival]
+
+
+def _print_measures(p: "Prediction") -> None:
+    from seatrial.core.text.numbers import exact
+
+    chosen = list(p.measures.items()) if is_verbose() else list(p.measures.items())[:MAX_MEASURES]
+    rows = [["", p.reference_word, "predicted", "95 % from", "to", ""]]
+    words = (0, len(rows[0]) - 1)
+    for name, m in chosen:
+        if m.simulated is not None or not m.is_determined:
+            simulated = exact(m.simulated, 4) if m.is_determined else NOT_DETERMINED
+            ends = ("" if x is None or not m.is_determined else exact(x, 4) for x in (m.lower, m.upper))
+            measured = "" if m.measured is None else exact(m.measured, 4)
+            rows.append([_label(name), measured, simulated, *ends, _measure_mark(m)])
+    if len(rows) > 1:
+        print_table(rows, flush_left=words, indent="  ")
+    if len(p.measures) > len(chosen):
+        print_lines([f"... and {len(p.measures) - len(chosen)} more; --verbose and the report show them"], "  ")
+
+
+def _measure_mark(m: "Measure") -> str:
+    from seatrial.reporting.measures import is_inside
+
+    return {True: "inside", False: "OUTSIDE", None: ""}[is_inside(m) if m.is_determined else None]
+
+
+def _label(name: str) -> str:
+    return ", ".join(part for part in label_and_unit(name) if part)
+
+
+def _print_thruster_craft(fit: "Fit") -> None:
+    """What a craft with thrusters does at full command."""
+    from seatrial.core.text.numbers import exact
+
+    if fit.thruster_craft is None or not fit.thruster_craft.measures:
+        return
+    print_heading("At full command")
+    rows = [["", "", "95 % from", "to"]]
+    for name, m in fit.thruster_craft.measures.items():
+        ends = ("" if x is None else exact(x, ERROR_DIGITS) for x in (m.lower, m.upper))
+        rows.append([_label(name), exact(m.value, ERROR_DIGITS), *ends])
+    print_table(rows, indent="  ")
+
+
+def _print_extrapolation(e: "Extrapolation") -> None:
+    from seatrial.core.text.numbers import fixed
+
+    note = EXTRAPOLATION_NOTE if e.index > EXTRAPOLATION_LIMIT else ""
+    print_lines([f"extrapolation index {fixed(e.index, 2)}{note}"], "  ")
+
+
+def _print_details(fit: "Fit") -> None:
+    """What the estimate rests on: errors samples ahead, responses, symmetries, disturbances, method."""
+    print_k_step_errors(fit)
+    print_frequency_responses(fit)
+    noise_model = fit.noise_model
+    if fit.identifiability is not None and fit.identifiability.structural:
+        print_heading("What no manoeuvre can separate")
+        print_lines((symmetry.text for symmetry in fit.identifiability.structural), "  ")
+    print_heading("Method")
+    if noise_model is not None:
+        print_lines([f"{noise_model.method}: {noise_model.text}"] if noise_model.text else [])
+        print_lines(noise_model.closed_loop.sentences if noise_model.closed_loop is not None else [])
+        print_disturbances(noise_model.candidates)
+    print_lines([f"criterion: {fit.method.criterion}", f"intervals: {fit.method.intervals}"])
+
+
+def print_measures(
+    measures: Mapping[str, float],
+    intervals: Mapping[str, tuple[float, float] | None],
+    extrapolation: "Extrapolation | None",
+) -> None:
+    """Print measures of a simulated manoeuvre with their 95 % intervals, and how far it leaves the training runs."""
+    rows = [_simulated_measure(name, value, name in intervals, intervals.get(name)) for name, value in measures.items()]
+    if rows:
+        head = ["", "", "95 % from", "to"] if intervals else ["", ""]
+        print_table([head, *(row[: len(head)] for row in rows)], indent="  ")
+    if extrapolation is not None:
+        _print_extrapolation(extrapolation)
+
+
+def _simulated_measure(name: str, value: float, is_judged: bool, pair: Iterable[float] | None) -> list[str]:
+    from seatrial.core.text.numbers import exact
+
+    ends = [exact(end, 4) for end in pair] if pair is not None else [NOT_DETERMINED if is_judged else "", ""]
+    return [_label(name), exact(value, 4), *ends]

@@ -1,0 +1,52 @@
+"""The last line of a command: what to type next."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from seatrial.cli.screen import in_shell
+
+if TYPE_CHECKING:
+    from seatrial.core.results import Fit
+    from seatrial.core.results.campaign import CampaignStatus
+    from seatrial.core.values import Finding
+
+
+def after_check(findings: "tuple[Finding, ...]", trial: Path) -> str:
+    """Return what follows a check: to correct, the advice of the first error, what a model lacks, or to identify."""
+    errors = [finding for finding in findings if finding.severity.value == "error"]
+    missing = next((finding for finding in findings if finding.code == "model"), None)
+    if any(error.edits for error in errors):
+        return f"seatrial check {in_shell(trial)} --fix"
+    if errors:
+        return errors[0].advice
+    if missing is not None:
+        return f"identify cannot start yet: {missing.advice}"
+    return f"seatrial identify {in_shell(trial)} --out results"
+
+
+def after_fit(fit: "Fit", folder: Path, trial: Path | None = None) -> str:
+    """Return what follows a fit: to hold a run out where none was, else to simulate what nobody measured.
+
+    trial: the file whose runs are replayed where the model steers no manoeuvre; None: there is none.
+    """
+    runs = sum(p.role == "training" for p in fit.predictions)
+    if trial is not None and not fit.validation and runs > 1:
+        return f'name a run to hold out in {in_shell(trial)}, validate = "...", and identify again'
+    model = in_shell(folder / "model.toml")
+    if fit.model.equations.layout:
+        return f"seatrial simulate {model} --manoeuvre spin:50 --out spin.csv"
+    if "delta" in fit.model.input_names and "psi" in fit.model.states:
+        return f"seatrial simulate {model} --manoeuvre turning-circle:35 --out circle.csv"
+    run = (fit.validation or fit.predictions)[0].record
+    if trial is None:
+        return f"seatrial report {in_shell(folder)}"
+    return f"seatrial simulate {model} --trial {in_shell(trial)} --inputs {in_shell(run)} --out replay.csv"
+
+
+def after_campaign(status: "CampaignStatus", store: Path) -> str:
+    """Return what follows work on a campaign: to go on, to try failed tasks again, or to gather."""
+    if status.remaining:
+        return f"the same 'seatrial campaign run' goes on; {status.remaining} tasks are left"
+    if status.failed:
+        return f"seatrial campaign retry {in_shell(store)}"
+    return f"seatrial campaign gather {in_shell(store)} --to {in_shell(store)}.csv"

@@ -1,0 +1,104 @@
+"""The screen: every line of a command goes through here, as --quiet, --verbose and the terminal's width have it."""
+
+import os
+import shlex
+import shutil
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
+from enum import IntEnum
+from pathlib import Path
+
+import typer
+
+# letters of a line at most and at least, however wide the terminal is; chosen: longer lines are hard to follow
+MAX_WIDTH, MIN_WIDTH = 120, 40
+
+
+class Detail(IntEnum):
+    """How much a command prints: names of files and errors only, what matters, everything."""
+
+    QUIET = 0
+    NORMAL = 1
+    VERBOSE = 2
+
+
+_DETAIL: ContextVar[Detail] = ContextVar("detail", default=Detail.NORMAL)
+
+
+def is_quiet() -> bool:
+    """Return whether only names of files and errors are printed."""
+    return _DETAIL.get() is Detail.QUIET
+
+
+def is_verbose() -> bool:
+    """Return whether everything is printed."""
+    return _DETAIL.get() is Detail.VERBOSE
+
+
+@contextmanager
+def printing(detail: Detail) -> Iterator[None]:
+    """Print so much within the block."""
+    token = _DETAIL.set(detail)
+    try:
+        yield
+    finally:
+        _DETAIL.reset(token)
+
+
+def line_width() -> int | None:
+    """Return the letters of a line: those of the terminal, or of COLUMNS; None in a pipe, whose lines are not cut."""
+    if not os.environ.get("COLUMNS", "").isdecimal() and not sys.stdout.isatty():
+        return None
+    return min(MAX_WIDTH, max(MIN_WIDTH, shutil.get_terminal_size().columns))
+
+
+def in_shell(path: Path | str) -> str:
+    """Return a path as it is typed in a command: quoted where it has spaces or brackets."""
+    return shlex.quote(str(path))
+
+
+def print_lines(lines: Iterable[str], indent: str = "") -> None:
+    """Print lines without typographic signs, so that any terminal shows them and numbers can be copied."""
+    from seatrial.core.text.plain import ascii_text, wrapped
+
+    width = line_width()
+    print_verbatim(part for line in lines for part in wrapped(ascii_text(line), width, indent))
+
+
+def print_verbatim(lines: Iterable[str]) -> None:
+    """Print lines as they are, such as those of a file or a command to be copied."""
+    if not is_quiet():
+        for line in lines:
+            print(line)
+
+
+def print_heading(text: str) -> None:
+    """Print an empty line and a heading, bold on a terminal."""
+    from seatrial.core.text.plain import ascii_text
+
+    if not is_quiet():
+        typer.echo(f"\n{typer.style(ascii_text(text), bold=True)}")
+
+
+def print_table(rows: Sequence[Sequence[str]], flush_left: Sequence[int] = (0,), indent: str = "") -> None:
+    """Print rows whose columns line up; those of `flush_left` are flush left."""
+    from seatrial.core.text.plain import aligned, ascii_text
+
+    width = line_width()
+    room = None if width is None else width - len(indent)
+    lines = aligned([[ascii_text(cell) for cell in row] for row in rows], flush_left, room)
+    print_verbatim(indent + line for line in lines)
+
+
+def print_file(meaning: str, path: Path | str) -> None:
+    """Print the name of a file that was written, however little is printed otherwise."""
+    print(f"{meaning}: {path}")
+
+
+def print_next(command: str) -> None:
+    """Print the command to type next, in one line so that it can be copied."""
+    from seatrial.core.text.plain import ascii_text
+
+    print_verbatim([f"Next: {ascii_text(command)}"])

@@ -1,0 +1,106 @@
+"""What identify prints of a fit: verdict, estimates and held-out runs with marks, and nothing that was not examined."""
+
+from dataclasses import replace
+
+import pytest
+from tests.reporting.complete_fit import baselines, complete_fit
+from tests.reporting.fabricated import fabricated_fit
+from tests.reporting.fabricated_study import fabricated_study
+
+from seatrial.cli.fit_output import print_fit
+from seatrial.cli.screen import Detail, printing
+from seatrial.cli.study_output import print_study
+
+
+def printed(capsys: pytest.CaptureFixture[str]) -> str:
+    return capsys.readouterr().out
+
+
+def test_estimates_carry_unit_meaning_and_where_the_known_value_lies(capsys: pytest.CaptureFixture[str]) -> None:
+    fit = fabricated_fit()
+    first = replace(fit.coefficients[0], unit="kg", meaning="mass of something", fixed=False, lower=1.0, upper=2.0)
+    inside, outside, none = replace(first, truth=1.5), replace(first, truth=2.5), replace(first, lower=None)
+    open_sign = replace(first, truth=None, lower=-1.0)
+    print_fit(replace(fit, coefficients=(inside, outside, none, open_sign)))
+    rows = [line for line in printed(capsys).splitlines() if line.endswith("mass of something")]
+    assert [next(m for m in ("inside", "OUTSIDE", "no interval", "sign open") if m in row) for row in rows] == [
+        "inside", "OUTSIDE", "no interval", "sign open",
+    ]  # fmt: skip
+    assert all(" kg " in row for row in rows)
+
+
+def test_a_held_out_run_shows_errors_noise_and_measures_with_their_marks(capsys: pytest.CaptureFixture[str]) -> None:
+    print_fit(complete_fit(fabricated_fit()))
+    lines = printed(capsys).splitlines()
+    (overshoot,) = [line.split() for line in lines if line.startswith("  1st overshoot, deg")]
+    assert overshoot[3:] == ["8.31", "8.42", "8.083", "8.715", "inside"]
+    (heading,) = [line.split() for line in lines if line.startswith("  heading, deg")]
+    assert "1.4" in heading, "what process noise alone leaves"
+    assert any("extrapolation index 1.90: beyond" in line for line in lines)
+
+
+def test_measures_that_are_not_determined_have_no_mark(capsys: pytest.CaptureFixture[str]) -> None:
+    fit = complete_fit(fabricated_fit())
+    (held,) = fit.validation
+    loose = replace(held, measures={"advance_L": replace(held.measures["overshoot_1_deg"], is_determined=False)})
+    print_fit(replace(fit, predictions=(*(p for p in fit.predictions if p is not held), loose)))
+    (row,) = [line.split() for line in printed(capsys).splitlines() if line.startswith("  advance, L")]
+    assert row[2:] == ["8.31", "not", "determined"]
+
+
+def test_with_verbose_it_prints_what_the_estimate_rests_on(capsys: pytest.CaptureFixture[str]) -> None:
+    fit = complete_fit(fabricated_fit())
+    print_fit(fit)
+    short = printed(capsys)
+    with printing(Detail.VERBOSE):
+        print_fit(fit)
+    text = printed(capsys)
+    assert fit.identifiability is not None and fit.identifiability.structural[0].text in text
+    assert fit.noise_model is not None and fit.noise_model.text in text
+    ahead = "samples ahead 1 (0.2 s) to 10 (2 s), held-out runs, rms: r 0.012 to 0.115 deg/s, psi 0.012 to 0.115 deg"
+    response = "frequency response, model inside the records' 95 % region: v/delta"
+    assert ahead in text and response in text
+    assert ahead not in short and response not in short and fit.noise_model.text not in short
+
+
+def test_with_quiet_nothing_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
+    with printing(Detail.QUIET):
+        print_fit(complete_fit(fabricated_fit()))
+        print_study(fabricated_study(fabricated_fit()))
+    assert printed(capsys) == ""
+
+
+def test_what_was_not_examined_is_not_printed(capsys: pytest.CaptureFixture[str]) -> None:
+    fit = fabricated_fit()
+    print_fit(replace(fit, predictions=tuple(replace(p, measures={}) for p in fit.predictions)))
+    text = printed(capsys)
+    assert "Held out: zigzag_25_25" in text
+    assert not any(word in text for word in ("determine", "not identifiable", "noise alone", "extrapolation", "tied"))
+
+
+def test_other_estimators_stand_in_one_table(capsys: pytest.CaptureFixture[str]) -> None:
+    plain = fabricated_fit()
+    print_fit(plain)
+    assert "Other estimators" not in printed(capsys)
+    print_fit(replace(plain, baselines=baselines(plain)))
+    lines = printed(capsys).splitlines()
+    (head,) = [k for k, line in enumerate(lines) if line == "Other estimators"]
+    head += 1
+    assert lines[head].startswith("errors, %")
+    assert lines[head + 2].split()[:5] == ["weak", "form", "5", "5", "0.8"]
+    assert lines[head + 4].endswith("diverges in 1 of 4 runs, zigzag_25_25 first")
+    assert lines[head + 5].endswith("failed: run a is too short")
+    assert "[lasso-dropped] ridge: Lasso drops" in lines[head + 6]
+    assert "prove nothing about coefficients" in lines[head + 7]
+
+
+def test_a_study_ends_with_the_three_counts_of_its_checks(capsys: pytest.CaptureFixture[str]) -> None:
+    print_study(fabricated_study(fabricated_fit()))
+    lines = printed(capsys).splitlines()
+    assert lines[-2:] == [
+        "claims: 1 confirmed, 1 holds in its own setting, 1 refuted, 1 unknowable",
+        "checks: 1 holding, 1 failing, 1 withdrawn",
+    ]
+    assert any(line.strip().startswith("FAILS") and line.endswith("few runs") for line in lines)
+    assert lines[1] == "Not all of them: the fit has two optima."
+    assert any(". Setting: search box about the truth" in line for line in lines)

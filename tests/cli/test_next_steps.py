@@ -1,0 +1,35 @@
+"""The last line of a command names what to type next."""
+
+from dataclasses import replace
+from pathlib import Path
+
+from tests.reporting.fabricated import fabricated_fit
+
+from seatrial.cli.next_steps import after_campaign, after_check, after_fit
+from seatrial.core.results.campaign import CampaignStatus
+from seatrial.core.values import Finding, Severity, TrialEdit
+
+TRIAL, OUT = Path("my trial.toml"), Path("results")
+
+
+def test_after_a_check_errors_come_first() -> None:
+    error = Finding(Severity.ERROR, "unit", "wrong unit", advice="state the unit")
+    model = Finding(Severity.INFO, "model", "no model", advice="name one in [model]")
+    assert after_check((), TRIAL) == "seatrial identify 'my trial.toml' --out results"
+    assert after_check((model,), TRIAL) == "identify cannot start yet: name one in [model]"
+    assert after_check((model, error), TRIAL) == "state the unit"
+    corrected = replace(error, edits=(TrialEdit("channels.u.unit", '"kn"'),))
+    assert after_check((model, corrected), TRIAL) == "seatrial check 'my trial.toml' --fix"
+
+
+def test_after_a_fit_a_run_is_held_out_or_a_manoeuvre_simulated() -> None:
+    fit = fabricated_fit()
+    assert after_fit(fit, OUT) == "seatrial simulate results/model.toml --manoeuvre turning-circle:35 --out circle.csv"
+    trained = replace(fit, predictions=tuple(replace(p, role="training") for p in fit.predictions))
+    assert after_fit(trained, OUT, TRIAL).startswith("name a run to hold out in 'my trial.toml'")
+
+
+def test_after_a_campaign_it_goes_on_is_tried_again_or_gathered() -> None:
+    assert "goes on" in after_campaign(CampaignStatus(10, 4, 1, None), OUT)
+    assert after_campaign(CampaignStatus(10, 9, 1, None), OUT) == "seatrial campaign retry results"
+    assert after_campaign(CampaignStatus(10, 10, 0, None), OUT).startswith("seatrial campaign gather results --to")
