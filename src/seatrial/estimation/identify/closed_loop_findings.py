@@ -19,10 +19,16 @@ def closed_loop_findings(estimation: Estimation) -> list[Finding]:
         return []
     findings = list(_contradictions(loop))
     if not estimation.has_process_noise and has_noise(estimation.estimate):
+        was_compared = bool(estimation.noise_model.candidates)
+        advice = (
+            "runs left out decided for it; use the coefficients for predictions under the same controller"
+            if was_compared
+            else 'write method = "auto" under [estimate], without robust and segment_s, so that prediction error is '
+            "compared with it"
+        )
         findings.append(Finding(Severity.WARNING, "closed-loop", f"'{loop.input}' follows '{loop.output}', and the "
                                 f"criterion is {estimation.criterion}: disturbances that are answered count as the "
-                                "craft's own response", "", 'write method = "auto" under [estimate], without robust '
-                                "and segment_s, so that prediction error is used"))  # fmt: skip
+                                "craft's own response", "", advice))  # fmt: skip
     return findings
 
 

@@ -11,6 +11,7 @@ from seatrial.estimation.estimate.fit import with_segment_seconds
 from seatrial.estimation.estimate.runs import training_runs
 from seatrial.estimation.estimate.settings import INITIAL_STATE_SHIP_LENGTHS
 from seatrial.estimation.estimate.time_scale import characteristic_time
+from seatrial.estimation.identify.criterion_by_left_out import preferred_estimation
 from seatrial.estimation.information.symmetries import refuse_unidentifiable, structural_symmetries
 from seatrial.estimation.problem.segments import compared_outputs
 from seatrial.estimation.problem.static_forces import StaticForces
@@ -74,13 +75,18 @@ class Identification:
 
     @cached_property
     def estimation(self) -> Estimation:
-        """The estimate of the trial's own model from the training runs.
+        """The estimate of the trial's own model from the training runs, by the criterion that they call for.
 
         Raises:
             InputError: the outputs do not determine the free coefficients, or what `estimate_model` raises.
         """
         refuse_unidentifiable(self.trial.model, self.outputs, self._force_names)
-        return estimate_model(self.trial.model, self.runs, self.settings, self.options, self.report_progress)
+        estimation = estimate_model(self.trial.model, self.runs, self.settings, self.options, self.report_progress)
+        if "psi" not in self.trial.model.states:  # in waves and rolling, recorded forces or initial states decide
+            return estimation
+        return preferred_estimation(
+            estimation, self.runs, self.settings, self.options, self.initial_seconds, self.report_progress
+        )
 
     @property
     def _force_names(self) -> tuple[str, ...]:

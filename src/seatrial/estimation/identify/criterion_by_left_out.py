@@ -1,0 +1,110 @@
+"""Where no disturbance explains the residuals, runs left out decide between the criterion and output error.
+
+Prediction error is efficient where a disturbance makes its innovations white. Where none does, model error is taken for
+a disturbance that each sample or segment corrects, and what the coefficients predict without corrections is judged by
+nothing. So the training runs are predicted as a whole, each by the estimate without it (Stone 1974, J. R. Stat. Soc. B
+36, 111), and output error over whole runs is used where it predicts them better.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from scipy.special import stdtrit
+
+from seatrial.core.text.numbers import significant
+from seatrial.core.values import InputError, ProgressReporter
+from seatrial.data.trial import EstimateMethod, EstimateSettings, FitCriterion
+from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, estimate_model
+from seatrial.estimation.estimate.criterion_choice import WHOLE_RUNS
+from seatrial.estimation.predict.open_loop import rms_errors, simulate_open_loop
+from seatrial.estimation.predict.prediction_intervals import holdout_model
+
+_LEVEL = 0.95
+"""One-sided level at which output error must predict better, 1; chosen."""
+
+_WORDS = {"psi_deg": "heading {} deg", "position_m": "position {} m"}
+
+
+def preferred_estimation(
+    estimation: Estimation,
+    runs: Runs,
+    settings: EstimateSettings,
+    options: EstimatorOptions,
+    seconds: float,
+    report_progress: ProgressReporter | None = None,
+) -> Estimation:
+    """Return the estimate, or that by output error over whole runs where it predicts runs left out better.
+
+    Args:
+        estimation: by the decision table; one whose residuals are white, or over whole runs, is returned as it is.
+        seconds: of a run's beginning, for its initial state.
+
+    Raises:
+        InputError: what `estimate_model` raises.
+    """
+    is_free = settings.criterion is FitCriterion.AUTO and settings.segment_s is None and not settings.robust
+    if not is_free or estimation.whiteness.is_white or estimation.criterion == WHOLE_RUNS:
+        return estimation
+    errors = left_out_errors(estimation, runs, seconds)
+    if len(errors) < len(runs):
+        return estimation
+    model = estimation.estimate.problem.model
+    try:
+        other = estimate_model(
+            model, runs, replace(settings, method=EstimateMethod.OUTPUT_ERROR), options, report_progress
+        )
+    except InputError:  # whole runs diverge from every start: there is nothing to compare
+        return estimation
+    rivals = left_out_errors(other, runs, seconds)
+    if len(rivals) < len(runs):
+        return estimation
+    reason = (
+        "no disturbance makes the residuals white, so each run was predicted as a whole by the others: "
+        f"{mean_text(rivals)} by {WHOLE_RUNS}, {mean_text(errors)} by {estimation.criterion}"
+    )
+    if not is_better(rivals, errors):
+        reason = f"{reason}, which is no better beyond the scatter over runs"
+        noise_model = replace(estimation.noise_model, text=f"{estimation.noise_model.text}; {reason}")
+        return replace(estimation, reasons=(*estimation.reasons, reason), noise_model=noise_model)
+    noise_model = replace(
+        other.noise_model,
+        text=f"{estimation.noise_model.text}; {reason}",
+        candidates=tuple(replace(c, is_chosen=False) for c in estimation.noise_model.candidates),
+    )
+    return replace(other, reasons=(reason, *other.reasons), noise_model=noise_model)
+
+
+def left_out_errors(estimation: Estimation, runs: Runs, seconds: float) -> list[dict[str, float]]:
+    """Return the rms errors of each run simulated as a whole by the estimate without it, as far as none diverges.
+
+    The estimates are those of the jackknife; empty where runs were too few for one.
+    """
+    problem, points = estimation.estimate.problem, estimation.uncertainty.leave_one_out
+    errors = []
+    for i, record in enumerate(runs.records if points is not None else ()):
+        without = holdout_model(problem, points[i], runs.sessions[i], record)
+        try:
+            run = simulate_open_loop(problem, without.model, record, without.nuisances, seconds)
+        except InputError:
+            break
+        errors.append(rms_errors(record, run.record))
+    return errors
+
+
+def is_better(errors: Sequence[dict[str, float]], rivals: Sequence[dict[str, float]]) -> bool:
+    """Return whether errors are less than those of a rival beyond their scatter over runs, by a paired t-test.
+
+    Compared are logarithms of ratios, averaged over what each run compares, so that no unit and no run prevails.
+    """
+    gains = np.array([np.mean([np.log(b[k] / a[k]) for k in a if k in b]) for a, b in zip(errors, rivals, strict=True)])
+    error = float(np.std(gains, ddof=1) / np.sqrt(len(gains)))
+    return bool(gains.mean() > stdtrit(len(gains) - 1, _LEVEL) * error)
+
+
+def mean_text(errors: Sequence[dict[str, float]]) -> str:
+    """Return the mean errors over runs of heading and position, or of what a model has in their place."""
+    common = [k for k in errors[0] if all(k in e for e in errors)]
+    shown = [k for k in _WORDS if k in common] or common
+    means = {k: float(np.mean([e[k] for e in errors])) for k in shown}
+    return ", ".join(_WORDS.get(k, f"{k} {{}}").format(significant(mean)) for k, mean in means.items())
