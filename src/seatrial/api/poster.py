@@ -115,6 +115,7 @@ def _manoeuvre(fit: "Fit", order: _Order, speed: float | None) -> "PosterManoeuv
     from seatrial.api.prediction import extrapolation, measure_intervals, measures
     from seatrial.api.simulation import as_model_file, steering
     from seatrial.core.results.poster import Basis, PosterManoeuvre, PosterQuantity
+    from seatrial.physics.manoeuvres import bounded_interval
     from seatrial.reporting.measures import EDGE_INDEX
 
     file = as_model_file(fit)
@@ -127,11 +128,13 @@ def _manoeuvre(fit: "Fit", order: _Order, speed: float | None) -> "PosterManoeuv
     left = extrapolation(file, simulated)
     basis = Basis.EXTRAPOLATED if left is not None and left.index > EDGE_INDEX else Basis.PREDICTED
     run = _measured_run(fit, order, values.get("approach_speed"))
+    readings = {} if run is None else _readings(fit, run)
 
     def quantity(name: str) -> PosterQuantity:
         measured = None if run is None or name not in run.measures else run.measures[name].measured
         if measured is not None:
-            return PosterQuantity(name, measured, None, None, Basis.MEASURED)
+            ends = bounded_interval(name, measured, readings[name]) if name in readings else None
+            return PosterQuantity(name, measured, *(ends or (None, None)), Basis.MEASURED)
         lower, upper = intervals.get(name) or (None, None)
         is_open = name in intervals and intervals[name] is None
         return PosterQuantity(name, values[name], lower, upper, basis, is_determined=not is_open)
@@ -139,6 +142,18 @@ def _manoeuvre(fit: "Fit", order: _Order, speed: float | None) -> "PosterManoeuv
     present = [n for n in order.names if n in values]
     quantities = tuple(quantity(n) for n in present)
     return PosterManoeuvre(order.manoeuvre, quantities, (simulated,), "" if run is None else run.record)
+
+
+def _readings(fit: "Fit", run: "Prediction") -> dict[str, float]:
+    """Half width of the 95 % interval with which each measure of a run was read."""
+    import numpy as np
+
+    from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
+    from seatrial.estimation.predict.reading_error import reading_errors
+
+    level = two_sided_quantile(STORED_LEVEL, np.inf)
+    errors = reading_errors(run.measured, fit.ship.particulars["L"], np.random.default_rng(fit.seed))
+    return {name: level * error for name, error in errors.items()}
 
 
 def _measured_run(fit: "Fit", order: _Order, speed: float | None) -> "Prediction | None":

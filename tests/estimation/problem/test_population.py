@@ -23,8 +23,8 @@ def optimum(measured: Array, noise: Array, population: SessionPopulation, covari
     return np.linalg.solve(precision, right)[:, None], precision
 
 
-def settled(measured: Array, noise: Array, covariates: Array = NO_COVARIATE) -> SessionPopulation:
-    population = SessionPopulation.as_declared(DECLARED, covariates)
+def settled(measured: Array, noise: Array, covariates: Array = NO_COVARIATE, centred: int = 0) -> SessionPopulation:
+    population = SessionPopulation.as_declared(DECLARED, covariates, centred)
     for _ in range(30):
         population = population.fitted(*optimum(measured, noise, population, covariates), covariates)
     return population
@@ -55,6 +55,23 @@ def test_the_deviation_between_sessions_is_the_likeliest(noise: Array, rng: np.r
     assert population.mean[0] == pytest.approx(weights @ measured / precision, rel=1e-3)
     variance = population.deviation[0] ** 2 + 1.0 / precision
     assert population.new_session_covariance[0, 0] == pytest.approx(variance, rel=1e-3)
+
+
+def test_a_declared_mean_stays_and_the_deviation_is_about_it(noise: Array, rng: np.random.Generator) -> None:
+    """Offsets of 0.7 on average: the deviation about zero is the likeliest one, and no error of a mean is added."""
+    measured = rng.multivariate_normal(np.full(SESSIONS, 0.7), noise + 0.25 * np.eye(SESSIONS))
+
+    def cost(deviation: float) -> float:
+        likelihood = multivariate_normal.logpdf(measured, np.zeros(SESSIONS), noise + deviation**2 * np.eye(SESSIONS))
+        return float(-likelihood - np.log(deviation) + deviation / DECLARED[0].standard_deviation)
+
+    likeliest = minimize_scalar(cost, bounds=(0.01, 3.0), method="bounded", options={"xatol": 1e-8}).x
+    population = settled(measured, noise, centred=1)
+    assert population.mean[0] == 0.0
+    assert population.deviation[0] == pytest.approx(likeliest, rel=2e-3)
+    assert population.deviation[0] > settled(measured, noise).deviation[0]
+    assert population.new_session_covariance[0, 0] == population.deviation[0] ** 2
+    assert population.of_new_session(measured[:, None], NO_COVARIATE, np.zeros(1))[0] == 0.0
 
 
 def test_intervals_of_new_sessions_hold_the_new_offset(rng: np.random.Generator) -> None:

@@ -60,7 +60,7 @@ class OffsetPopulation:
     name: Annotated[str, Field(description="channel and kind, such as delta zero")]
     unit: Annotated[str, Field(description="SI")]
     mean: Annotated[Number, Field(description="expected of a session whose covariate is the average one")]
-    standard_error: Annotated[Number, Field(description="of the mean")]
+    standard_error: Annotated[Number, Field(description="of the mean; 0: it is declared, as of a current")]
     deviation: Annotated[Number, Field(description="standard deviation between sessions")]
     covariate: Annotated[str, Field(description="input on whose rms over a session the mean depends; empty: none")] = ""
     slope: Annotated[
@@ -77,9 +77,10 @@ class OffsetPopulation:
         def text(value: float) -> str:
             return significant(factor * value, 2)
 
+        error = f" (standard error {text(self.standard_error)})" if self.standard_error > 0.0 else ", as declared"
         sentence = (
-            f"{self.name} of a new session: {text(self.mean)} {unit} expected (standard error "
-            f"{text(self.standard_error)}), {text(self.deviation)} {unit} standard deviation between sessions"
+            f"{self.name} of a new session: {text(self.mean)} {unit} expected{error}; "
+            f"{text(self.deviation)} {unit} standard deviation between sessions"
         )
         if self.slope is None or self.slope_standard_error is None:
             return f"{sentence}."

@@ -23,7 +23,9 @@ class PosterQuantity:
 
     name: Annotated[str, Field(description="as in `predictions[].measures`; names end in _L, _deg or _s")]
     value: Annotated[Number, Field(description="at the scale of the trials")]
-    lower: Annotated[Number | None, Field(description="95 % interval; null: measured, or not determined")]
+    lower: Annotated[
+        Number | None, Field(description="95 % interval, of a measured value that of its reading; null: not determined")
+    ]
     upper: Annotated[Number | None, Field(description="as `lower`")]
     basis: Annotated[
         Basis,

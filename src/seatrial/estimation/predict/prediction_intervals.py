@@ -19,6 +19,7 @@ from seatrial.estimation.predict.open_loop import (
     observables_record,
     simulate_open_loop,
 )
+from seatrial.estimation.predict.reading_error import MEASURE_CHANNELS
 from seatrial.estimation.predict.session_offsets import offsets_without
 from seatrial.estimation.predict.windows import Windows
 from seatrial.estimation.problem.output_error import OutputError
@@ -27,7 +28,6 @@ from seatrial.physics.manoeuvres.recognition import ObservedManoeuvre
 from seatrial.physics.simulate.channels import inputs_of
 
 _TRACK_CHANNELS = ("psi", "x0", "y0")
-_MEASURE_CHANNELS = ("psi", "x0", "y0", "u", "v", "r")
 # ships drawn for the interval of a prediction, and for that of a run left out, ours
 DRAWS, HOLDOUT_DRAWS = 100, 32
 _ROWS_AT_ONCE = 200_000  # of drawn windows, simulated together; chosen: some 20 MB
@@ -127,7 +127,7 @@ def _measure_spread(
     model: Model, record: Record, simulation: OpenLoopRun, runs: Array, length: float, rng: np.random.Generator
 ) -> dict[str, float]:
     place = {c: model.observables.index(model.observable_of(c)) for c in model.channels}
-    noise = {c: sample_noise(record[c]) for c in _MEASURE_CHANNELS if c in record and c in place}
+    noise = {c: sample_noise(record[c]) for c in MEASURE_CHANNELS if c in record and c in place}
     reference = ObservedManoeuvre.from_record(record)
     centre = measures(simulation.record, length, reference=reference)
     values_by_measure: dict[str, list[float]] = {name: [] for name in centre}

@@ -171,7 +171,7 @@ class OutputError:
     def declared_population(self) -> SessionPopulation:
         """What is assumed of sessions before any record."""
         declared = [p for _, p in self.session_parameters] + [n.prior for n in self.nuisances]
-        return SessionPopulation.as_declared(declared, self.session_covariates)
+        return SessionPopulation.as_declared(declared, self.session_covariates, len(self.session_parameters))
 
     @cached_property
     def session_covariates(self) -> Array:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from seatrial.core.values import Array, Prior
 
@@ -29,6 +30,7 @@ class SessionPopulation:
         deviation: (k,), SI, between sessions.
         trend_covariance: of mean and slope, (2k, 2k).
         covariate_mean, covariate_deviation: (k,), over the sessions that were fitted; 0 where none is declared.
+        is_centred: (k,), whether the mean is the declared one: a current of another day has no direction of its own.
     """
 
     declared: tuple[Prior, ...]
@@ -38,24 +40,27 @@ class SessionPopulation:
     trend_covariance: Array
     covariate_mean: Array
     covariate_deviation: Array
+    is_centred: NDArray[np.bool_]
 
     @classmethod
-    def as_declared(cls, declared: Sequence[Prior], covariates: Array) -> "SessionPopulation":
+    def as_declared(cls, declared: Sequence[Prior], covariates: Array, centred: int = 0) -> "SessionPopulation":
         """Return the population before anything is fitted: declared means and deviations, no slope.
 
         covariates: of each session and kind, (sessions, k); zero where a kind has none.
+        centred: number of kinds, the first, whose mean stays the declared one.
         """
         mean, deviation = (np.array([getattr(p, n) for p in declared]) for n in ("mean", "standard_deviation"))
         k = len(declared)
         spread = np.std(covariates, axis=0)
         return cls(
-            tuple(declared), mean, np.zeros(k), deviation, np.zeros((2 * k, 2 * k)), covariates.mean(axis=0), spread
-        )
+            tuple(declared), mean, np.zeros(k), deviation, np.zeros((2 * k, 2 * k)), covariates.mean(axis=0), spread,
+            np.arange(k) < centred,
+        )  # fmt: skip
 
     def with_kinds(self, declared: Sequence[Prior]) -> "SessionPopulation":
         """Return the population with further kinds behind its own, as declared, without covariates."""
         more = self.as_declared(declared, np.zeros((1, len(declared))))
-        arrays = ("mean", "slope", "deviation", "covariate_mean", "covariate_deviation")
+        arrays = ("mean", "slope", "deviation", "covariate_mean", "covariate_deviation", "is_centred")
         joined = {name: np.concatenate([getattr(self, name), getattr(more, name)]) for name in arrays}
         size = 2 * len(joined["mean"])  # the trend is estimated again with all kinds
         return replace(self, declared=(*self.declared, *declared), trend_covariance=np.zeros((size, size)), **joined)
@@ -72,10 +77,12 @@ class SessionPopulation:
     def of_new_session(self, offsets: Array, covariates: Array, new: Array) -> Array:
         """Return what a new session is expected to have by these sessions alone, (k,): their mean, moved by the slope.
 
+        A mean that is the declared one stays so.
+
         offsets, covariates: of the sessions, (sessions, k); new: covariates of the new one, (k,).
         """
         moved = self.standardised(new) - self.standardised(covariates)
-        return np.mean(offsets + self.slope * moved, axis=0)
+        return np.where(self.is_centred, self.means(new), np.mean(offsets + self.slope * moved, axis=0))
 
     @property
     def new_session_covariance(self) -> Array:
@@ -112,22 +119,28 @@ class SessionPopulation:
         prior_mean, prior_deviation = (
             np.array([getattr(p, n) for p in self.declared]) for n in ("mean", "standard_deviation")
         )
-        trend = np.hstack([np.tile(np.eye(k), (sessions, 1)), np.vstack([np.diag(z) for z in covariates])])
+        is_free = np.where(self.is_centred, 0.0, 1.0)
+        trend = np.hstack([np.tile(np.diag(is_free), (sessions, 1)), np.vstack([np.diag(z) for z in covariates])])
+        centre = np.tile(np.where(self.is_centred, prior_mean, 0.0), sessions)
         about = np.hstack([np.eye(sessions * k), -trend])
-        precision = about.T @ (np.tile(self.deviation**-2.0, sessions)[:, None] * about)
+        weight = np.tile(self.deviation**-2.0, sessions)
+        precision = about.T @ (weight[:, None] * about)
         precision[: sessions * k, : sessions * k] += records
         precision[sessions * k :, sessions * k :] += np.diag(np.tile(prior_deviation**-2.0, 2))
         covariance = np.linalg.inv(precision)
-        point = covariance @ np.concatenate([pull, prior_mean / prior_deviation**2, np.zeros(k)])
-        squares = (about @ point) ** 2 + np.einsum("ij,jk,ik->i", about, covariance, about)
+        right = np.concatenate([pull, prior_mean / prior_deviation**2, np.zeros(k)]) + about.T @ (weight * centre)
+        point = covariance @ right
+        squares = (about @ point - centre) ** 2 + np.einsum("ij,jk,ik->i", about, covariance, about)
         deviation = np.array([
             _likeliest_deviation(float(s), sessions - 1 - int(v), float(d))
             for s, v, d in zip(squares.reshape(sessions, k).sum(axis=0), varies, prior_deviation, strict=True)
         ])  # fmt: skip
         mean, slope = point[sessions * k :].reshape(2, k)
+        is_estimated = np.concatenate([is_free, np.ones(k)])
         return replace(
-            self, mean=mean, slope=np.where(varies, slope, 0.0), deviation=deviation,
-            trend_covariance=covariance[sessions * k :, sessions * k :],
+            self, mean=np.where(self.is_centred, prior_mean, mean), slope=np.where(varies, slope, 0.0),
+            deviation=deviation,
+            trend_covariance=covariance[sessions * k :, sessions * k :] * np.outer(is_estimated, is_estimated),
         )  # fmt: skip
 
 
