@@ -86,6 +86,15 @@ def test_better_is_judged_by_pairs() -> None:
     )
 
 
+def test_fewer_runs_that_diverge_are_better() -> None:
+    lasting, one_lost = [{"psi_deg": 9.0}] * 4, [{}, *[{"psi_deg": 1.0}] * 3]
+    assert is_better(lasting, one_lost)
+    assert not is_better(one_lost, lasting)
+    assert not is_better(one_lost, one_lost)
+    assert mean_text(one_lost) == "heading 1.00 deg and 1 diverged"
+    assert mean_text([{}, {}]) == "all diverge"
+
+
 def test_errors_are_named_with_their_units() -> None:
     assert mean_text([{"psi_deg": 1.0, "u": 3.0}, {"psi_deg": 2.0, "u": 3.0}]) == "heading 1.50 deg"
     assert mean_text([{"phi": 0.25}]) == "phi 0.250"

@@ -14,13 +14,13 @@ from seatrial.physics.simulate.batch import InputCorrection
 OFFSET_DEVIATION = float(np.radians(10.0))
 """Prior standard deviation of an angle's zero [rad] while disturbances are estimated: 10 deg, chosen."""
 
-_WAVE_SLOPE = "alpha_w"
-"""The input that is an angle and nobody steers by."""
+_NOT_STEERED = ("alpha_w", "wind_direction")
+"""Inputs that are angles and nobody steers by: the slope of waves, and where the wind comes from."""
 
 
 def steering_angles(model: Model) -> tuple[str, ...]:
     """Return the inputs that are angles of rudders, nozzles, fins or thrusters."""
-    return tuple(n for n in model.input_names if n in NOTATION and NOTATION[n].unit == "rad" and n != _WAVE_SLOPE)
+    return tuple(n for n in model.input_names if n in NOTATION and NOTATION[n].unit == "rad" and n not in _NOT_STEERED)
 
 
 def with_input_offsets(estimate: PointEstimate) -> PointEstimate:

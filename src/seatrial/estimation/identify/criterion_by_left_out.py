@@ -17,6 +17,7 @@ from seatrial.core.values import InputError, ProgressReporter
 from seatrial.data.trial import EstimateMethod, EstimateSettings, FitCriterion
 from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.estimate.criterion_choice import WHOLE_RUNS
+from seatrial.estimation.estimate.intervals import RUNS_FOR_JACKKNIFE
 from seatrial.estimation.predict.open_loop import rms_errors, simulate_open_loop
 from seatrial.estimation.predict.prediction_intervals import holdout_model
 
@@ -47,7 +48,7 @@ def preferred_estimation(
     if not is_free or estimation.whiteness.is_white or estimation.criterion == WHOLE_RUNS:
         return estimation
     errors = left_out_errors(estimation, runs, seconds)
-    if len(errors) < len(runs):
+    if not errors:
         return estimation
     model = estimation.estimate.problem.model
     try:
@@ -57,8 +58,6 @@ def preferred_estimation(
     except InputError:  # whole runs diverge from every start: there is nothing to compare
         return estimation
     rivals = left_out_errors(other, runs, seconds)
-    if len(rivals) < len(runs):
-        return estimation
     reason = (
         "no disturbance makes the residuals white, so each run was predicted as a whole by the others: "
         f"{mean_text(rivals)} by {WHOLE_RUNS}, {mean_text(errors)} by {estimation.criterion}"
@@ -76,35 +75,48 @@ def preferred_estimation(
 
 
 def left_out_errors(estimation: Estimation, runs: Runs, seconds: float) -> list[dict[str, float]]:
-    """Return the rms errors of each run simulated as a whole by the estimate without it, as far as none diverges.
+    """Return the rms errors of each run simulated as a whole by the estimate without it; none of one that diverges.
 
-    The estimates are those of the jackknife; empty where runs were too few for one.
+    The estimates are those of the jackknife; an empty list where runs were too few for one.
     """
     problem, points = estimation.estimate.problem, estimation.uncertainty.leave_one_out
+    if points is None:
+        return []
     errors = []
-    for i, record in enumerate(runs.records if points is not None else ()):
-        without = holdout_model(problem, points[i], runs.sessions[i], record)
+    for point, session, record in zip(points, runs.sessions, runs.records, strict=True):
+        without = holdout_model(problem, point, session, record)
         try:
             run = simulate_open_loop(problem, without.model, record, without.nuisances, seconds)
+            errors.append(rms_errors(record, run.record))
         except InputError:
-            break
-        errors.append(rms_errors(record, run.record))
+            errors.append({})
     return errors
 
 
 def is_better(errors: Sequence[dict[str, float]], rivals: Sequence[dict[str, float]]) -> bool:
     """Return whether errors are less than those of a rival beyond their scatter over runs, by a paired t-test.
 
-    Compared are logarithms of ratios, averaged over what each run compares, so that no unit and no run prevails.
+    Compared are logarithms of ratios, averaged over what each run compares, so that no unit and no run prevails. Where
+    simulations diverge, fewer of them are better.
     """
-    gains = np.array([np.mean([np.log(b[k] / a[k]) for k in a if k in b]) for a, b in zip(errors, rivals, strict=True)])
+    diverged, by_rival = (sum(not e for e in each) for each in (errors, rivals))
+    if diverged != by_rival:
+        return diverged < by_rival
+    pairs = [(a, b) for a, b in zip(errors, rivals, strict=True) if a and b]
+    if len(pairs) < RUNS_FOR_JACKKNIFE:
+        return False
+    gains = np.array([np.mean([np.log(b[k] / a[k]) for k in a if k in b]) for a, b in pairs])
     error = float(np.std(gains, ddof=1) / np.sqrt(len(gains)))
     return bool(gains.mean() > stdtrit(len(gains) - 1, _LEVEL) * error)
 
 
 def mean_text(errors: Sequence[dict[str, float]]) -> str:
     """Return the mean errors over runs of heading and position, or of what a model has in their place."""
-    common = [k for k in errors[0] if all(k in e for e in errors)]
+    lasting = [e for e in errors if e]
+    if not lasting:
+        return "all diverge"
+    common = [k for k in lasting[0] if all(k in e for e in lasting)]
     shown = [k for k in _WORDS if k in common] or common
-    means = {k: float(np.mean([e[k] for e in errors])) for k in shown}
-    return ", ".join(_WORDS.get(k, f"{k} {{}}").format(significant(mean)) for k, mean in means.items())
+    means = {k: float(np.mean([e[k] for e in lasting])) for k in shown}
+    texts = [_WORDS.get(k, f"{k} {{}}").format(significant(mean)) for k, mean in means.items()]
+    return " and ".join([*texts, *([f"{len(errors) - len(lasting)} diverged"] if len(lasting) < len(errors) else [])])
