@@ -13,6 +13,7 @@ from typing import Any
 from seatrial.campaigns.plan import plan_schema
 from seatrial.control.loopfile.schema import loop_schema
 from seatrial.core.results import Comparison, Design, Fit, Study
+from seatrial.core.results.benchmark import Benchmark
 from seatrial.core.results.campaign import CampaignSummary
 from seatrial.core.results.online import Snapshot
 from seatrial.core.results.tuning import Tuning
@@ -28,6 +29,7 @@ RESULTS = {
     "comparison": Comparison,
     "online": Snapshot,
     "campaign_summary": CampaignSummary,
+    "benchmark": Benchmark,
 }
 PAGE = DOCS / "result-folder.md"
 JsonSchema = Mapping[str, Any]

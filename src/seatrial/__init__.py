@@ -20,6 +20,7 @@ Functions (each also a command)
     tune          tune a feedback loop on a model
     follow        identify while the record is being made
     campaign      many identifications in a store: Monte Carlo, grids, runs left out, fleets
+    benchmark     methods of estimation and optimisation against problems whose answer is known
     reproduce     repeat a published study
     demo          identify a craft with known coefficients
     list_models   the built-in and the installed models

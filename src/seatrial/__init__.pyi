@@ -1,5 +1,6 @@
 from seatrial import control, problems, testing
 from seatrial.api import (
+    benchmark,
     campaign,
     check,
     compare,
@@ -61,6 +62,7 @@ __all__ = [
     "Trial",
     "TrialRun",
     "Tuning",
+    "benchmark",
     "campaign",
     "check",
     "compare",

@@ -6,10 +6,9 @@ import pytest
 from seatrial.problems import HeldOutRuns, KnownOptimum, KnownTruth
 
 
-def test_errors_over_the_bound_and_coverage() -> None:
+def test_errors_over_the_bound() -> None:
     stick = KnownTruth(np.array([1.0, -2.0]), np.array([0.1, 0.2]))
     assert stick.error(np.array([1.1, -2.4])) == pytest.approx(np.sqrt((1.0 + 4.0) / 2.0))
-    assert stick.covered(np.array([1.1, -2.4]), np.diag([0.1**2, 0.2**2])) == 1
     assert stick.success_limit == 2.0
 
 

@@ -1,3 +1,4 @@
+from seatrial.api.benchmarks import benchmark
 from seatrial.api.campaigns import campaign, campaign_status, gather_campaign, retry_campaign
 from seatrial.api.comparison import compare
 from seatrial.api.exports import export, export_targets, replay_fmu
@@ -28,9 +29,9 @@ from seatrial.api.trials import (
 from seatrial.api.tuning import load_loop, tune
 
 __all__ = [
-    "campaign", "campaign_status", "check", "compare", "correct_trial", "demo", "design", "draft_trial", "export",
-    "export_targets", "extrapolation", "follow", "gather_campaign", "identify", "list_models", "load", "load_fit",
-    "load_loop", "load_model", "load_trial", "measure_intervals", "measures", "model_guide", "poster", "predict",
-    "prepared_run", "read_record", "replay", "replay_fmu", "report", "reproduce", "retry_campaign", "rms_differences",
-    "save", "simulate", "steering", "survey_log", "tune", "write_poster", "write_record",
+    "benchmark", "campaign", "campaign_status", "check", "compare", "correct_trial", "demo", "design", "draft_trial",
+    "export", "export_targets", "extrapolation", "follow", "gather_campaign", "identify", "list_models", "load",
+    "load_fit", "load_loop", "load_model", "load_trial", "measure_intervals", "measures", "model_guide", "poster",
+    "predict", "prepared_run", "read_record", "replay", "replay_fmu", "report", "reproduce", "retry_campaign",
+    "rms_differences", "save", "simulate", "steering", "survey_log", "tune", "write_poster", "write_record",
 ]  # fmt: skip

@@ -65,7 +65,7 @@ def campaign_summary(store: Store, table: CampaignTable) -> CampaignSummary:
         tuple(_scores(numbers)),
         tuple(failure_reasons(table)),
         tuple(_maps(table, numbers)),
-        tuple(_findings(store, status, processors, algebra)),
+        tuple(store_findings(store, status, processors, algebra)),
         processors,
         algebra,
         dict(store.table["versions"]),
@@ -205,9 +205,10 @@ def _median(values: Array) -> float | None:
     return float(np.median(finite)) if len(finite) else None
 
 
-def _findings(
+def store_findings(
     store: Store, status: CampaignStatus, processors: Sequence[str], algebra: Sequence[str]
 ) -> Iterator[Finding]:
+    """Yield what is odd about a store: tasks left or failed, mixed arithmetic, damage, results that differ."""
     if status.remaining:
         yield Finding(Severity.WARNING, "incomplete", f"{status.remaining} of {status.total} tasks are not done yet",
                       "", "run the campaign's command again; it goes on where it stopped")  # fmt: skip

@@ -2,6 +2,7 @@
 
 from seatrial.problems.ask_tell import AskTell as AskTell, MethodError as MethodError
 from seatrial.problems.attempt import Answer as Answer, attempt as attempt, repeats_itself as repeats_itself
+from seatrial.problems.attempt import suits as suits
 from seatrial.problems.estimate import Estimate as Estimate
 from seatrial.problems.method import EnteredMethod as EnteredMethod, built_in_methods as built_in_methods
 from seatrial.problems.method import method_named as method_named

@@ -60,6 +60,11 @@ def attempt(
     return Answer(estimate.values, estimate.covariance, meter.count, meter.is_spent, tuple(meter.trace))
 
 
+def suits(method: EnteredMethod, problem: BenchmarkProblem, draw: ProblemDraw) -> bool:
+    """Return whether a method can be entered against a problem."""
+    return method.suits(posed(problem, draw, EvaluationMeter(problem.budget)))
+
+
 def repeats_itself(
     method: EnteredMethod, problem: BenchmarkProblem, seed: int, placement: Placement, first: Answer
 ) -> bool:  # fmt: skip

@@ -8,9 +8,6 @@ import numpy as np
 
 from seatrial.core.values import Array
 
-_LEVEL_95 = 1.959964
-"""Half width of a 95 % interval of the normal distribution, in standard deviations (Abramowitz & Stegun 1964)."""
-
 _ONE_PERCENT = 0.01
 """Share of the truth that is an error of 1 where there is no noise; chosen."""
 
@@ -74,11 +71,6 @@ class KnownTruth:
     def error(self, values: Array) -> float:
         """Return the root mean square over the unknowns of the errors in units of the scale."""
         return float(np.sqrt(np.mean(((values - self.truth) / self.scale) ** 2)))
-
-    def covered(self, values: Array, covariance: Array) -> int:
-        """Return how many 95 % intervals of a stated covariance (d, d) hold the truth."""
-        half = _LEVEL_95 * np.sqrt(np.diag(covariance))
-        return int(np.sum(np.abs(values - self.truth) <= half))
 
 
 @dataclass(frozen=True, eq=False)

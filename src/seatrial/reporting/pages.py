@@ -1,11 +1,12 @@
 """The page of each kind of result; only the modules that render that kind are imported."""
 
 from seatrial.core.results import Comparison, Design, Fit, Study
+from seatrial.core.results.benchmark import Benchmark
 from seatrial.core.results.campaign import CampaignSummary
 from seatrial.core.results.tuning import Tuning
 
 
-def report_page(result: Fit | Design | Tuning | Study | Comparison | CampaignSummary) -> str:
+def report_page(result: Fit | Design | Tuning | Study | Comparison | CampaignSummary | Benchmark) -> str:
     """Return the self-contained HTML page of a result; nothing is computed."""
     match result:
         case Fit():
@@ -32,3 +33,7 @@ def report_page(result: Fit | Design | Tuning | Study | Comparison | CampaignSum
             from seatrial.reporting import campaign
 
             return campaign.html(result)
+        case Benchmark():
+            from seatrial.reporting import benchmark
+
+            return benchmark.html(result)
