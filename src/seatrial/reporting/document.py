@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from jinja2 import Environment
 
 _COLOUR = re.compile(r'(?:fill|stroke)="(#[0-9a-f]{6}(?:[0-9a-f]{2})?)"')
-_PLOT_COLOUR = re.compile(r'\["?(?:[-0-9.e]+,[-0-9.e]+,")?(#[0-9a-f]{6})')
+_ANY_COLOUR = re.compile(r'"(#[0-9a-f]{6})(?:[0-9a-f]{2})?"')
 _STYLE, _SCRIPT = re.compile(r"<style>(.*?)</style>", re.DOTALL), re.compile(r"<script>(.*?)</script>", re.DOTALL)
 # places of a template that are filled once its text is known
 _POLICY, _NIGHT_RULES = "POLICY-OF-THIS-PAGE", "/* NIGHT-RULES */"
@@ -33,8 +33,8 @@ def page_text(template: str, context: Mapping[str, object]) -> str:
     text = environment().get_template(template).render(context)
     has_series = 'class="series"' in text
     text = text.replace(_PLOT_SCRIPTS, environment().get_template("plots.html").render() if has_series else "", 1)
-    curves = dict.fromkeys(_PLOT_COLOUR.findall(text))
-    text = text.replace(_NIGHT_COLOURS, json.dumps({c: night_colour(c) for c in curves}), 1)
+    colours = sorted(set(_ANY_COLOUR.findall(text))) if has_series else []
+    text = text.replace(_NIGHT_COLOURS, json.dumps({c: night_colour(c) for c in colours}), 1)
     text = text.replace(_NIGHT_RULES, night_rules(_COLOUR.findall(text)), 1)
     return text.replace(_POLICY, _policy(text), 1)
 

@@ -1,12 +1,12 @@
 "use strict";
 // Time series of the page, drawn by uPlot: every figure holds its data as JSON (seatrial/core/figures/time_plot.py).
 {
-  const LARGEST = 65534, GAP = 65535, HEIGHT = 150, TALL = 260, PRINT_WIDTH = 300;
+  const LARGEST = 65534, GAP = 65535, HEIGHT = 150, TALL = 260, PRINT_WIDTH = 300, FULL_PRINT_WIDTH = 640;
+  const INK = "#1d2226", SOFT = "#5d676f", GRID = "#ececec", BAND = "#1b4f7230";
   const dark = matchMedia("(prefers-color-scheme: dark)");
   const NIGHT = JSON.parse(document.getElementById("night-colours").textContent);
-  const isPrinted = () => matchMedia("print").matches;
-  const colour = name => (dark.matches && !isPrinted() && NIGHT[name.slice(0, 7)] || name.slice(0, 7)) + name.slice(7);
-  const style = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  let isPrinting = false;
+  const colour = name => (dark.matches && !isPrinting && NIGHT[name.slice(0, 7)] || name.slice(0, 7)) + name.slice(7);
 
   function unpacked({ range: [low, high], codes }) {
     const bytes = Uint8Array.from(atob(codes), letter => letter.charCodeAt(0));
@@ -44,7 +44,7 @@
         const left = u.valToPos(start, "x", true), right = u.valToPos(stop, "x", true);
         ctx.fillStyle = colour(fill);
         ctx.fillRect(left, bbox.top, right - left, bbox.height);
-        ctx.fillStyle = style("--ink");
+        ctx.fillStyle = colour(INK);
         ctx.fillText(words, left + 3, bbox.top + 11 * devicePixelRatio);
       }
       ctx.restore();
@@ -77,9 +77,9 @@
     options() {
       const { data, figure } = this, { document: { spans }, time } = figure, full = [time[0], time.at(-1)];
       const edges = data.band ? [0, 1].map(() => ({ stroke: "transparent", points: { show: false } })) : [];
-      const grid = { stroke: () => style("--grid"), width: 1 }, ticks = { show: false };
+      const grid = { stroke: () => colour(GRID), width: 1 }, ticks = { show: false };
       const values = (u, ticks) => ticks.map(value => String(+value.toPrecision(6)).replace("-", "−"));
-      const axis = { stroke: () => style("--soft"), font: "10px Arial, sans-serif", grid, ticks, values };
+      const axis = { stroke: () => colour(SOFT), font: "10px Arial, sans-serif", grid, ticks, values };
       return {
         width: this.width(), height: this.figure.height, legend: { show: false }, pxAlign: 0,
         padding: [6, 8, 0, 0],
@@ -88,12 +88,12 @@
         axes: [{ ...axis, size: 18, gap: 3, label: figure.document.x, labelSize: 14, labelGap: 0, labelFont: "10px Arial, sans-serif", space: 55 },
           { ...axis, size: 46, gap: 4, space: 24 }],
         series: [{}, ...edges, ...data.curves.map(curve => line(curve.stroke)), ...data.levels.map(level => line(level.stroke))],
-        bands: data.band ? [{ series: [2, 1], fill: () => style("--band") }] : [],
+        bands: data.band ? [{ series: [2, 1], fill: () => colour(BAND) }] : [],
         hooks: { drawClear: spans.length ? [drawSpans(spans)] : [], setCursor: [u => figure.moved(u.cursor.idx)] },
       };
     }
     isWhole(u, [first, last]) { return u.scales.x.min <= first && u.scales.x.max >= last; }
-    width() { return this.figure.isPrinting ? PRINT_WIDTH : Math.max(200, this.node.clientWidth); }
+    width() { return isPrinting ? this.figure.printWidth : Math.max(200, this.node.clientWidth); }
     fit() { this.plot.setSize({ width: this.width(), height: this.figure.height }); }
     read(k) {
       const values = this.data.curves.map((curve, j) => `${curve.name} ${text(this.curves[j][k], this.data.ends)}`);
@@ -112,9 +112,10 @@
       this.time = Array.from({ length: count }, (_, k) => start + (stop - start) * k / Math.max(1, count - 1));
       this.panels = [];
       this.height = node.closest(".first") && node.parentElement.classList.contains("square") ? TALL : HEIGHT;
+      this.printWidth = this.height === HEIGHT && node.closest(".first") ? FULL_PRINT_WIDTH : PRINT_WIDTH;
     }
     draw() {
-      if (this.panels.length) return;
+      if (this.panels.length) return false;
       this.panels = this.document.panels.map((_, k) => new Panel(this, k));
       this.status = Object.assign(document.createElement("p"), { className: "hidden" });
       this.status.setAttribute("aria-live", "polite");
@@ -130,6 +131,7 @@
         return mark;
       });
       new ResizeObserver(() => this.fit()).observe(this.node);
+      return true;
     }
     fit() { for (const panel of this.panels) panel.fit(); }
     redraw() { for (const panel of this.panels) panel.plot.redraw(); }
@@ -172,15 +174,11 @@
     for (const entry of entries) if (entry.isIntersecting) figures.find(figure => figure.node === entry.target).draw();
   }, { rootMargin: "600px" });
   for (const figure of figures) near.observe(figure.node);
-  function print(isPrinting) {
-    for (const figure of figures) {
-      figure.isPrinting = isPrinting;
-      figure.draw();
-      figure.fit();
-      figure.redraw();
-    }
+  // a plot that is new has no scales to be drawn again with until its first drawing
+  function resize() {
+    for (const figure of figures) if (!figure.draw()) { figure.fit(); figure.redraw(); }
   }
-  addEventListener("beforeprint", () => print(true));
-  addEventListener("afterprint", () => print(false));
+  addEventListener("beforeprint", () => { isPrinting = true; resize(); });
+  addEventListener("afterprint", () => { isPrinting = false; resize(); });
   dark.addEventListener("change", () => { for (const figure of figures) figure.redraw(); });
 }
