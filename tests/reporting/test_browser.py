@@ -5,10 +5,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
-from tests.reporting.fabricated_tuning import fabricated_fin
+from tests.reporting.fabricated_comparison import fabricated_comparison
+from tests.reporting.fabricated_design import fabricated_design
+from tests.reporting.fabricated_tuning import fabricated_autopilot, fabricated_fin
 
-from seatrial.core.results import Study
-from seatrial.reporting.tuning import html
+from seatrial.core.results import Fit, Study
+from seatrial.reporting.comparison import html as comparison_html
+from seatrial.reporting.design import html as design_html
+from seatrial.reporting.page import html as fit_html
+from seatrial.reporting.study import html as study_html
+from seatrial.reporting.tuning import html as tuning_html
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -83,20 +89,84 @@ def test_printing_unfolds_everything(browser: "Browser", page: Path) -> None:
     assert len(window.pdf(format="A4", prefer_css_page_size=True)) > 50_000
 
 
-def test_a_study_opens(browser: "Browser", study: Study, study_page: Path) -> None:
-    window, said = opened(browser, study_page)
-    assert window.locator("h2").count() == window.locator("nav.contents a").count()
-    assert window.locator(".verdict").count() == len(study.claims)
-    assert said == []
+def pages_of_every_kind(fit: Fit, study: Study) -> "dict[str, str]":
+    return {
+        "fit": fit_html(fit), "study": study_html(study), "fin": tuning_html(fabricated_fin()),
+        "autopilot": tuning_html(fabricated_autopilot()), "design": design_html(fabricated_design()),
+        "comparison": comparison_html(fabricated_comparison()),
+    }  # fmt: skip
 
 
-def test_a_tuning_opens_and_fits_the_window(browser: "Browser", tmp_path: Path) -> None:
-    path = tmp_path / "report.html"
-    path.write_text(html(fabricated_fin()), encoding="utf-8")
-    window, said = opened(browser, path)
+KINDS = ("fit", "study", "fin", "autopilot", "design", "comparison")
+
+
+@pytest.fixture(scope="module")
+def every_page(fit: Fit, study: Study, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    folder = tmp_path_factory.mktemp("pages")
+    for name, text in pages_of_every_kind(fit, study).items():
+        (folder / f"{name}.html").write_text(text, encoding="utf-8")
+    return {name: folder / f"{name}.html" for name in KINDS}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_page_answers_first_and_fits_desk_and_telephone(
+    browser: "Browser", every_page: dict[str, Path], kind: str
+) -> None:
+    window, said = opened(browser, every_page[kind], 390)
+    assert window.evaluate("document.documentElement.scrollWidth") <= 390
+    window.set_viewport_size({"width": 1400, "height": 900})
+    assert window.evaluate("document.documentElement.scrollWidth") <= 1400
+    box = window.locator(".first > .verdict-line").bounding_box()
+    assert box is not None and box["y"] + box["height"] < 400
+    assert window.locator(".first .key-facts tr").count() >= 1
     assert window.locator("h2").count() == window.locator("nav.contents a").count()
+    window.locator("#unfold").dispatch_event("click")
+    for k in range(window.locator(".series").count()):
+        series = window.locator(".series").nth(k)
+        series.scroll_into_view_if_needed()
+        window.wait_for_function("k => document.querySelectorAll('.series')[k].classList.contains('is-drawn')", arg=k)
+        assert series.locator("canvas").count() == int(series.get_attribute("data-panels") or 0)
     assert window.locator("figure > svg:visible").count() == window.locator("figure > svg").count()
-    for width in (1100, 420):
-        window.set_viewport_size({"width": width, "height": 800})
-        assert window.evaluate("document.documentElement.scrollWidth") <= width
     assert said == []
+
+
+def test_the_cursor_is_linked_over_channels_and_track(browser: "Browser", page: Path) -> None:
+    window, said = opened(browser, page)
+    section = window.locator("section:has(#prediction) .run").first
+    series = section.locator(".series")
+    series.scroll_into_view_if_needed()
+    panels = series.locator(".panel")
+    panels.first.locator(".u-over").hover()
+    texts = [panels.nth(k).locator(".readout").inner_text() for k in range(panels.count())]
+    assert len(texts) == 5 and all("measured" in text or "input" in text for text in texts)
+    assert section.locator(".track .place").first.get_attribute("r") == "4"
+    assert said == []
+
+
+def test_keys_move_the_cursor_speak_the_values_and_zoom(browser: "Browser", page: Path) -> None:
+    window, said = opened(browser, page)
+    panel = window.locator(".first .panel").first
+    assert (panel.get_attribute("aria-label") or "").startswith("ψ [deg] over 4 min 00 s")
+    panel.focus()
+    for key in ("Home", "ArrowRight", "PageDown"):
+        window.keyboard.press(key)
+    spoken = window.locator(".first [aria-live]")
+    assert spoken.inner_text().startswith("t ") and "ψ [deg] measured" in spoken.inner_text()
+    plain = panel.locator("canvas").screenshot()
+    window.keyboard.press("+")
+    window.wait_for_timeout(60)
+    zoomed = panel.locator("canvas").screenshot()
+    window.keyboard.press("0")
+    window.wait_for_timeout(60)
+    assert zoomed != plain and panel.locator("canvas").screenshot() != zoomed
+    assert said == []
+
+
+def test_a_dark_screen_has_a_dark_ground_and_light_letters(browser: "Browser", page: Path) -> None:
+    window = browser.new_page(color_scheme="dark")
+    window.goto(page.as_uri())
+    ground, ink, tick = window.evaluate(
+        """() => [document.body, document.querySelector('h1'), document.querySelector('.track text')].map((node, k) =>
+        getComputedStyle(node)[['backgroundColor', 'color', 'fill'][k]].match(/\\d+/g).slice(0, 3).map(Number))"""
+    )
+    assert max(ground) < 50 and min(ink) > 180 and min(tick) > 150

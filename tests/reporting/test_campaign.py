@@ -40,7 +40,8 @@ def test_the_page_has_a_section_for_all_there_is(summary: CampaignSummary) -> No
     assert "Do &lt;zigzags&gt; suffice?" in page
     assert "speed &lt;3&gt; m/s" in page
     for title in (
-        "Coverage of the intervals",
+        "coverage of the intervals",
+        "92.5 % of 200 cases",
         "Distributions of the errors",
         "Over the keys",
         "Failures",

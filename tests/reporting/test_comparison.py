@@ -8,7 +8,6 @@ from seatrial.core.figures.marks import Line
 from seatrial.reporting.comparison import (
     coefficient_table,
     difference_forest,
-    manoeuvre_name,
     manoeuvre_table,
     outcome,
 )
@@ -20,7 +19,7 @@ def test_the_summary_names_what_differs() -> None:
     assert outcome(comparison) == [
         "Taken together, the 2 coefficients differ (χ² 18.2 with 2 degrees of freedom, p < 0.001).",
         "Significant one by one: K 0.15 → 0.19.",
-        "Turning circle 35 port: tactical diameter 3.1 → 2.8.",
+        "Turning circle with 35° to port: tactical diameter 3.1 → 2.8.",
     ]
     alike = replace(comparison, coefficients=(), joint_test=None, manoeuvres=())
     assert outcome(alike) == ["No single quantity differs significantly."]
@@ -37,7 +36,7 @@ def test_tables_have_the_digits_that_intervals_allow() -> None:
     turn, failed = (manoeuvre_table(m) for m in comparison.manoeuvres)
     assert turn.rows[1] == ("steady drift angle, deg", "12.00", "12.50", "0.50", "", "", "")
     assert (failed.rows, failed.note) == ((), "it diverges")
-    assert manoeuvre_name(comparison.manoeuvres[0]) == "Turning circle 35 port"
+    assert turn.title == "Turning circle with 35° to port"
 
 
 def test_the_page_has_every_section_and_the_figure_a_line_for_each_coefficient() -> None:
@@ -50,4 +49,4 @@ def test_the_page_has_every_section_and_the_figure_a_line_for_each_coefficient()
     assert sum(isinstance(mark, Line) for mark in chart.panels[0].marks) == 2
     assert difference_forest(()) is None
     bare = report_page(replace(comparison, coefficients=(), changes=(), findings=(), manoeuvres=()))
-    assert "What else changed" not in bare
+    assert 'href="#changes"' not in bare

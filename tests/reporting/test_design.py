@@ -11,7 +11,9 @@ from tests.reporting.test_page import HOSTILE, parsed
 
 from seatrial.core.results import Actuator, Design, TimedOrder, TrialLimits
 from seatrial.reporting.design import html, minutes_seconds, order_columns, percent_text
-from seatrial.reporting.design_text import actuator_text, sentences
+from seatrial.reporting.design_text import actuator_text, key_facts, order_warnings, verdict
+from seatrial.reporting.first_screen import KeyFact
+from seatrial.reporting.measures import manoeuvre_name
 
 LARGEST = 300_000
 
@@ -39,7 +41,7 @@ def test_it_has_what_the_design_holds(page: str, design: Design) -> None:
         design.question,
         design.ship,
         *design.coefficients,
-        *(w.name for w in design.baselines),
+        *(manoeuvre_name(w.name) for w in design.baselines),
         "design-drift",
     ):
         assert word in page
@@ -51,29 +53,44 @@ def test_the_same_design_gives_the_same_bytes(page: str) -> None:
     assert html(fabricated_design()) == page
 
 
-def test_the_answer_compares_with_the_best_that_keeps_the_limits(design: Design) -> None:
-    first, drawn, confirmed, limits = sentences(design)
+def rows(design: Design) -> dict[str, KeyFact]:
+    return {fact.name: fact for fact in key_facts(design)}
+
+
+def test_the_verdict_compares_with_the_best_that_keeps_the_limits(design: Design) -> None:
     ratio = design.baselines[1].worst / design.designed.worst
-    assert "prbs:35:10" in first and f"{ratio:.1f} times as much" in first
+    assert f"{ratio:.1f} times as much" in verdict(design)
+    facts = rows(design)
+    drawn = facts["Ships that differ"].text
     assert drawn.endswith("smaller than with any standard manoeuvre within the limits on 5 of 5.")
-    assert confirmed == "39 of 40 simulated trials could be fitted; their errors are 0.91 to 1.11 of those predicted."
-    assert limits.startswith("The ship as assumed reaches at most a drift angle of 18.0° (20.0° allowed) and ")
+    assert facts["Simulated trials"].text == (
+        "39 of 40 simulated trials could be fitted; their errors are 0.91 to 1.11 of those predicted."
+    )
+    assert facts["Limits"].text.startswith(
+        "The ship as assumed reaches at most a drift angle of 18.0° (20.0° allowed) and "
+    )
 
 
 def test_a_design_that_is_no_better_says_so(design: Design) -> None:
     worse = replace(design, designed=replace(design.designed, relative_error=design.baselines[0].relative_error * 2.0))
-    assert "no better than the" in sentences(worse)[0]
+    assert "no better than the" in verdict(worse)
 
 
-def test_a_design_that_leaves_the_limits_says_so(design: Design) -> None:
-    assert "leaves the limits: it reaches" in sentences(replace(design, limits=TrialLimits(math.radians(10.0))))[-1]
+def test_a_design_that_leaves_the_limits_says_so_where_the_orders_stand(design: Design) -> None:
+    straying = replace(design, limits=TrialLimits(math.radians(10.0)))
+    fact = rows(straying)["Limits"]
+    assert "leaves the limits: it reaches" in fact.text and fact.is_good is False
+    assert any("leaves the limits: it reaches" in text for text in order_warnings(straying))
+    card = html(straying).partition('<div class="card">')[2].partition("<section>")[0]
+    assert "leaves the limits: it reaches" in card and "<table>" in card
+    assert order_warnings(replace(design, findings=())) == []
 
 
 def test_a_ship_that_is_lost_is_said(design: Design) -> None:
     drawn = design.designed.sampled_relative_error.copy()
     drawn[1] = np.nan
-    changed = sentences(replace(design, designed=replace(design.designed, sampled_relative_error=drawn)))[1]
-    assert changed.endswith("on 4 of 5; 1 ship cannot be simulated.")
+    changed = replace(design, designed=replace(design.designed, sampled_relative_error=drawn))
+    assert rows(changed)["Ships that differ"].text.endswith("on 4 of 5; 1 ship cannot be simulated.")
 
 
 def test_a_design_with_next_to_nothing_renders(design: Design) -> None:

@@ -75,4 +75,4 @@ def test_without_a_search_there_is_no_chapter() -> None:
     plain = fabricated_fin()
     assert search_table(plain) is None and search_sentences(plain) == ()
     assert "The published search" not in html(plain)
-    assert "Recommendation" in html(plain)
+    assert "Recommended gains" in html(plain)

@@ -1,7 +1,9 @@
 """Measures have names, units and as many decimals as their interval shows."""
 
+import pytest
+
 from seatrial.core.results import Measure
-from seatrial.reporting.measures import is_inside, measure_decimals, measure_label
+from seatrial.reporting.measures import is_inside, manoeuvre_name, measure_decimals, measure_label
 
 
 def test_names_and_units() -> None:
@@ -21,3 +23,17 @@ def test_a_value_outside_is_seen_to_be_outside() -> None:
 def test_a_value_is_inside_outside_or_neither() -> None:
     assert is_inside(Measure(3.0, 3.1, 2.9, 3.2)) is True and is_inside(Measure(9.0, 3.1, 2.9, 3.2)) is False
     assert is_inside(Measure(3.0, 3.1)) is None
+
+
+@pytest.mark.parametrize(("text", "name"), [
+    ("zigzag:20/10", "zigzag 20°/10°"),
+    ("zigzag:20/10:port", "zigzag 20°/10°, first to port"),
+    ("turning-circle:35", "turning circle with 35°"),
+    ("turning-circle:35:starboard", "turning circle with 35° to starboard"),
+    ("consecutive-zigzags:2", "consecutive zigzags, 2 executes each"),
+    ("prbs:85%:13.3 s:0", "random steps (PRBS), 85 % of the range, 13.3 s at least, seed 0"),
+    ("designed", "designed"),
+    ("pull-out:20:port", "pull out 20 port"),
+])  # fmt: skip
+def test_manoeuvres_have_the_names_people_use(text: str, name: str) -> None:
+    assert manoeuvre_name(text) == name

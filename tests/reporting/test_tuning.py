@@ -12,16 +12,17 @@ from tests.reporting.test_page import HOSTILE, parsed
 
 from seatrial.core.results.tuning import PairedDifference, Tuning
 from seatrial.core.values import Finding, Severity
+from seatrial.reporting.first_screen import KeyFact
 from seatrial.reporting.tuning import TITLES, html
 from seatrial.reporting.tuning_rows import gain_texts, schedule_table, transfer_latex
-from seatrial.reporting.tuning_text import comparison_sentence, demand_sentence, sentences
+from seatrial.reporting.tuning_text import comparison_sentence, demand_sentence, key_facts, verdict
 
 LARGEST = 600_000
 MADE = {"fin": fabricated_fin, "autopilot": fabricated_autopilot, "bare": fabricated_bare}
 SECTIONS = {
     "fin": set(TITLES) - {"manoeuvres", "search"},
-    "autopilot": {"answer", "controllers", "front", "margins", "manoeuvres", "loop", "method"},
-    "bare": {"answer", "controllers", "method"},
+    "autopilot": {"controllers", "margins", "manoeuvres", "loop", "method"},
+    "bare": {"controllers", "method"},
 }
 
 
@@ -60,20 +61,25 @@ def test_the_same_tuning_gives_the_same_bytes(page: str) -> None:
     assert html(fabricated_fin()) == page
 
 
+def rows(tuning: Tuning) -> dict[str, KeyFact]:
+    return {fact.name: fact for fact in key_facts(tuning)}
+
+
 def test_the_recommendation_is_stated_in_degrees_and_per_cent(fin: Tuning) -> None:
-    motion, margins, saturation, simulated, better, doubtful, schedule = sentences(fin)
-    assert motion == (
+    facts = rows(fin)
+    assert verdict(fin) == (
         "By linear theory these gains reduce the roll angle by 74.0 %, to 2.1° rms, with 8.0° and 9.1°/s rms of the "
         "angle of the roll fins."
     )
-    assert margins.startswith(
+    assert facts["Margins"].text.startswith(
         "Gain margin 9 dB, phase margin 86° and delay margin 0.48 s. Sensitivity peak Ms 1.67 (2 allowed)"
     )
-    assert saturation.endswith("2.3 % of its rates exceed 25°/s (20 % allowed).")
-    assert "they cost 1.4 points; with stall beyond 18°" in simulated
-    assert better.endswith("it is better than ‘given’ by 7.1 points (95 % interval 6.2 to 8.0, 20 seas).")
-    assert "does not differ significantly from ‘given’" in doubtful
-    assert schedule.endswith("the constraints are kept in 17 of 18.")
+    assert facts["Actuator"].text.endswith("2.3 % of its rates exceed 25°/s (20 % allowed).")
+    assert "they cost 1.4 points; with stall beyond 18°" in facts["Simulated"].text
+    assert "it is better than ‘given’ by 7.1 points (95 % interval 6.2 to 8.0, 20 seas)." in facts["Compared"].text
+    assert "does not differ significantly from ‘given’" in facts["Compared"].text
+    assert facts["Schedule"].text.endswith("the constraints are kept in 17 of 18.")
+    assert facts["Schedule"].is_good is False
 
 
 def test_what_is_worse_is_called_worse() -> None:
@@ -83,12 +89,15 @@ def test_what_is_worse_is_called_worse() -> None:
 
 
 def test_an_unstable_loop_is_not_recommended() -> None:
-    assert sentences(fabricated_bare()) == ["The loop is unstable with these gains: do not use them."]
+    assert verdict(fabricated_bare()) == "The loop is unstable with these gains: do not use them."
+    assert "Margins" not in rows(fabricated_bare())
 
 
 def test_restrictions_that_are_broken_are_stated(fin: Tuning) -> None:
     broken = replace(fin, chosen=replace(fin.chosen, violated=("Ms 2.3, 2 allowed",)))
-    assert "It violates the constraints: Ms 2.3, 2 allowed." in sentences(broken)
+    assert rows(broken)["Constraints"] == KeyFact(
+        "Constraints", "It violates the constraints: Ms 2.3, 2 allowed.", "controllers", is_good=False
+    )
     text = html(fin)
     assert text.count(">violated<") == 1 and text.count("infeasible") == sum(not s.is_feasible for s in fin.schedule)
 
@@ -109,9 +118,7 @@ def test_demands_are_stated_with_the_ships_drawn() -> None:
 def test_a_loop_that_follows_is_judged_by_what_is_left() -> None:
     autopilot = fabricated_autopilot()
     changed = replace(autopilot, chosen=replace(autopilot.chosen, reduction=0.9999))
-    assert sentences(changed)[0].startswith(
-        "By linear theory 0.60° rms of the heading remains, with 1.4° and 0.29°/s rms"
-    )
+    assert verdict(changed).startswith("By linear theory 0.60° rms of the heading remains, with 1.4° and 0.29°/s rms")
     assert "reduction" not in html(changed)
 
 
@@ -124,7 +131,7 @@ def test_findings_stand_by_severity(fin: Tuning) -> None:
 def test_a_schedule_that_is_unstable_elsewhere_says_so(fin: Tuning) -> None:
     lost = replace(fin.schedule[0], baseline_costs={"given": math.inf, "chosen everywhere": 0.3})
     changed = replace(fin, schedule=(lost, *fin.schedule[1:]))
-    assert "‘given’ is unstable in 1" in sentences(changed)[-1]
+    assert "‘given’ is unstable in 1" in rows(changed)["Schedule"].text
     assert "unstable" in schedule_table(changed.schedule).rows[0]
 
 

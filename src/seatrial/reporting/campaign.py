@@ -20,15 +20,17 @@ from seatrial.core.results.campaign import (
     RepeatedCoefficient,
 )
 from seatrial.core.text.numbers import DASH, duration, exact, fixed, significant
-from seatrial.core.text.words import counted
+from seatrial.core.text.words import counted, enumeration
+from seatrial.core.values import Severity
 from seatrial.reporting.document import page_text
+from seatrial.reporting.first_screen import FirstScreen, KeyFact
 from seatrial.reporting.tables import finding_groups
 from seatrial.reporting.text_tables import TextTable
 
 TITLES = {
-    "outcome": "Summary", "coefficients": "Coefficients", "coverage": "Coverage of the intervals",
-    "distributions": "Distributions of the errors", "scores": "Scores of held-out runs", "maps": "Over the keys",
-    "failures": "Failures", "findings": "Findings", "provenance": "Provenance",
+    "coefficients": "Coefficients", "distributions": "Distributions of the errors",
+    "scores": "Scores of held-out runs", "maps": "Over the keys", "failures": "Failures", "findings": "Findings",
+    "provenance": "Provenance",
 }  # fmt: skip
 _LEVEL = 0.95
 """Probability of the intervals whose coverage is shown, 1."""
@@ -42,10 +44,8 @@ _LOWEST_SHARE = 0.5  # lowest share at which the axis of coverage begins, chosen
 def html(summary: CampaignSummary) -> str:
     """Return the page as text; sections without content are left out."""
     coefficients, scores = summary.coefficients, summary.scores
-    judged = [c for c in coefficients if c.intervals]
     content: dict[str, object] = {
         "coefficients": coefficients,
-        "coverage": judged,
         "distributions": [c for c in coefficients if c.count > 1],
         "scores": scores,
         "maps": [(Markup(svg(_map_chart(one))), one) for one in summary.maps],
@@ -57,9 +57,8 @@ def html(summary: CampaignSummary) -> str:
         "titles": {key: title for key, title in TITLES.items() if content.get(key, True)},
         "campaign": summary,
         "heading_text": summary.question or f"Campaign: {summary.kind}" if summary.kind else "Campaign",
-        "outcome": outcome(summary),
+        "screen": first_screen(summary),
         "table": coefficient_table(coefficients),
-        "coverage_chart": Markup(svg(coverage_chart(judged))),
         "histograms": Markup(svg(error_histograms(coefficients))),
         "score_table": TextTable(
             "Over all tasks", ("score", "unit", "runs", "median", "mean", "worst"),
@@ -74,6 +73,21 @@ def html(summary: CampaignSummary) -> str:
         ),
     }  # fmt: skip
     return page_text("campaign.html", context)
+
+
+def first_screen(summary: CampaignSummary) -> FirstScreen:
+    """Return what the campaign found and how far it is, with the coverage of its intervals as a picture."""
+    *others, verdict = outcome(summary)
+    warned = [f.code for f in summary.findings if f.severity is not Severity.INFO]
+    facts = [KeyFact(name, text.removesuffix("."), "coefficients" if summary.coefficients else "")
+             for name, text in zip(("Tasks", "Errors"), others, strict=False)]  # fmt: skip
+    failed = counted(sum(f.count for f in summary.failures), "task")
+    facts.append(KeyFact("Failures", failed if summary.failures else "none", "failures" if summary.failures else "",
+                         not summary.failures))  # fmt: skip
+    facts.append(KeyFact("Warnings", enumeration(warned) or "none", "findings" if summary.findings else "", not warned))
+    chart = coverage_chart([c for c in summary.coefficients if c.intervals])
+    caption = "Share of the 95 % intervals that hold the truth; bars: what so many intervals can say of that share."
+    return FirstScreen(verdict, tuple(facts), Markup(svg(chart)), caption if chart else "")
 
 
 def outcome(summary: CampaignSummary) -> list[str]:

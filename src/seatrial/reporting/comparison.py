@@ -13,14 +13,16 @@ from seatrial.core.figures.svg_text import svg
 from seatrial.core.figures.ticks import span
 from seatrial.core.results import Comparison, Difference, ManoeuvreDifferences
 from seatrial.core.text.numbers import DASH, exact, p_value, significant
-from seatrial.core.text.words import counted, enumeration
+from seatrial.core.text.words import counted, enumeration, sentence
+from seatrial.core.values import Severity
 from seatrial.reporting.document import page_text
-from seatrial.reporting.measures import measure_label
+from seatrial.reporting.first_screen import FirstScreen, KeyFact
+from seatrial.reporting.measures import manoeuvre_name, measure_label
 from seatrial.reporting.tables import finding_groups
 from seatrial.reporting.text_tables import TextTable
 
 TITLES = {
-    "outcome": "What differs", "changes": "What else changed", "coefficients": "Coefficients",
+    "fits": "The two fits", "changes": "What else changed", "coefficients": "Coefficients",
     "manoeuvres": "Manoeuvres", "findings": "Findings", "versions": "Versions",
 }  # fmt: skip
 _AGREES, _DIFFERS, _ZERO = Stroke(ACCENT, 2.0), Stroke(SECOND, 2.0), Stroke("#8a9299", 1.2)  # px, chosen
@@ -48,12 +50,31 @@ def html(comparison: Comparison) -> str:
         **content,
         "titles": {key: title for key, title in TITLES.items() if content.get(key, True)},
         "comparison": comparison,
-        "outcome": outcome(comparison),
+        "screen": first_screen(comparison),
         "note": _NOTE,
         "table": coefficient_table(comparison.coefficients),
-        "chart": Markup(svg(difference_forest(comparison.coefficients))),
     }
     return page_text("comparison.html", context)
+
+
+def first_screen(comparison: Comparison) -> FirstScreen:
+    """Return whether the fits differ, in what, and the differences as a picture."""
+    first, *rest = outcome(comparison)
+    significant_ones = [d for d in comparison.coefficients if d.is_significant]
+    measures = [d for m in comparison.manoeuvres for d in m.measures]
+    differing = sum(bool(d.is_significant) for d in measures)
+    warned = [f.code for f in comparison.findings if f.severity is not Severity.INFO]
+    facts = (
+        KeyFact("What differs", " ".join(rest) or "nothing else", "coefficients"),
+        KeyFact("Coefficients", f"{len(significant_ones)} of {len(comparison.coefficients)} differ", "coefficients"),
+        KeyFact("Manoeuvres", f"{differing} of {counted(len(measures), 'value')} differ",
+                "manoeuvres" if comparison.manoeuvres else ""),
+        KeyFact("What else changed", counted(len(comparison.changes), "fact") if comparison.changes else "nothing",
+                "changes" if comparison.changes else "", None if comparison.changes else True),
+        KeyFact("Warnings", enumeration(warned) or "none", "findings" if comparison.findings else "", not warned),
+    )  # fmt: skip
+    caption = "Second minus first, with the errors of both; intervals that reach the edge go on beyond it."
+    return FirstScreen(first, facts, Markup(svg(difference_forest(comparison.coefficients))), caption)
 
 
 def outcome(comparison: Comparison) -> list[str]:
@@ -72,7 +93,7 @@ def outcome(comparison: Comparison) -> list[str]:
     for m in comparison.manoeuvres:
         names = [f"{measure_label(d.name)[0]} {_clause(d, name='')}".strip() for d in m.measures if d.is_significant]
         if names:
-            sentences.append(f"{manoeuvre_name(m)}: {enumeration(names)}.")
+            sentences.append(f"{_title(m)}: {enumeration(names)}.")
     if not sentences or (not apart and not any(d.is_significant for m in comparison.manoeuvres for d in m.measures)):
         sentences.append("No single quantity differs significantly.")
     return sentences
@@ -92,12 +113,11 @@ def coefficient_table(rows: Sequence[Difference]) -> TextTable:
 def manoeuvre_table(m: ManoeuvreDifferences) -> TextTable:
     """Return the differences of a manoeuvre's measures as text."""
     rows = tuple(_row(d, measure_label(d.name)) for d in m.measures)
-    return TextTable(manoeuvre_name(m), _HEADER, _NUMERIC, rows, m.note)
+    return TextTable(_title(m), _HEADER, _NUMERIC, rows, m.note)
 
 
-def manoeuvre_name(m: ManoeuvreDifferences) -> str:
-    """Return the manoeuvre in words: ``turning-circle:35:port`` -> Turning circle 35 port."""
-    return m.manoeuvre.replace("-", " ").replace(":", " ").capitalize()
+def _title(m: ManoeuvreDifferences) -> str:
+    return sentence(manoeuvre_name(m.manoeuvre)).removesuffix(".")
 
 
 def _row(d: Difference, label: tuple[str, str] | None = None) -> tuple[str, ...]:

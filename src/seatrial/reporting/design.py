@@ -26,17 +26,18 @@ from seatrial.data.folder.orders import channel_display_unit, order_cells
 from seatrial.reporting import design_text
 from seatrial.reporting.design_text import LARGEST_SHOWN_ERROR
 from seatrial.reporting.document import page_text
-from seatrial.reporting.figures.designed_manoeuvre import order_chart, track_chart
+from seatrial.reporting.figures.designed_manoeuvre import order_view, track_chart
 from seatrial.reporting.figures.relative_errors import FILLED, OPEN, TICK, ErrorSeries, error_chart
+from seatrial.reporting.first_screen import FirstScreen
 from seatrial.reporting.mathml import inline
+from seatrial.reporting.measures import manoeuvre_name
 from seatrial.reporting.tables import finding_groups
 from seatrial.reporting.time_figures import run_figure
 
 TITLES = {
-    "answer": "Summary",
-    "orders": "Orders",
+    "orders": "Orders: the helmsman’s card",
+    "manoeuvres": "Compared with standard manoeuvres",
     "coefficients": "Precision of each coefficient",
-    "track": "Track",
     "ships": "Ships that differ from the assumed one",
     "confirmation": "Simulated trials",
     "findings": "Findings",
@@ -78,9 +79,7 @@ class DesignCoefficientRow:
 def html(design: Design) -> str:
     """Return the page as text; sections without content are left out."""
     baselines = ranked_baselines(design)
-    track = svg(track_chart(design)) if has_track(design) else ""
     has_content = {
-        "track": bool(track),
         "ships": bool(len(design.designed.sampled_relative_error)),
         "confirmation": design.confirmation is not None,
         "findings": bool(design.findings),
@@ -88,26 +87,38 @@ def html(design: Design) -> str:
     context: dict[str, object] = {
         "design": design,
         "titles": {key: title for key, title in TITLES.items() if has_content.get(key, True)},
-        "answer": design_text.sentences(design),
+        "screen": _first_screen(design),
+        "order_warnings": design_text.order_warnings(design),
         "facts": design_text.facts(design),
         "settings": design_text.settings(design),
         "manoeuvres": [_manoeuvre_row(w, design) for w in (design.designed, *baselines)],
         "heads": order_headings(design.actuators),
         "meanings": order_meanings(design.actuators),
         "order_columns": order_columns(design),
-        "over_time": Markup(svg(order_chart(design))),
         "channels": _all_channels(design.designed.executed),
         "has_track": has_track(design),
         "has_drift": has_track(design) and has_drift(design),
-        "baselines": [w.name for w in baselines[:MAX_BASELINES]],
+        "baselines": [manoeuvre_name(w.name) for w in baselines[:MAX_BASELINES]],
         "coefficients": _coefficient_rows(design, baselines[:MAX_BASELINES]),
         "speed": _speed_option(design),
         "errors": Markup(_errors_figure(design)),
-        "track": Markup(track),
         "ships": Markup(_drawn_ships_figure(design, baselines)),
         "findings": finding_groups(design.findings),
     }
     return page_text("design.html", context)
+
+
+def _first_screen(design: Design) -> FirstScreen:
+    """How precise the manoeuvre is; its track within the sea room and its orders over time."""
+    figure = run_figure(order_view(design), is_wide=True, track=track_chart(design) if has_track(design) else None)
+    room = " Dashed on the track: sea room about the start." if math.isfinite(design.limits.sea_room) else ""
+    drift = (
+        " Drift is positive when the bow points to starboard of the course."
+        if has_track(design) and has_drift(design)
+        else ""
+    )
+    caption = f"The ship as assumed; ships at equal times, to scale.{room}{drift}"
+    return FirstScreen(design_text.verdict(design), design_text.key_facts(design), figure, caption)
 
 
 def _all_channels(executed: Record) -> Markup:
@@ -168,7 +179,7 @@ def _speed_option(design: Design) -> str:
 
 def _manoeuvre_row(manoeuvre: ManoeuvrePrecision, design: Design) -> ManoeuvreRow:
     return ManoeuvreRow(
-        manoeuvre.name,
+        manoeuvre_name(manoeuvre.name),
         percent_text(manoeuvre.worst),
         percent_text(manoeuvre.mean),
         percent_text(manoeuvre.worst_sampled_error),
@@ -199,7 +210,9 @@ def _coefficient_rows(design: Design, baselines: tuple[ManoeuvrePrecision, ...])
 def _errors_figure(design: Design) -> str:
     """Dots for each coefficient: the design and the best standard manoeuvre."""
     best = best_baseline(design)
-    series = [ErrorSeries(best.name, [[100.0 * float(x)] for x in best.relative_error], OPEN)] if best else []
+    series = []
+    if best:
+        series.append(ErrorSeries(manoeuvre_name(best.name), [[100.0 * float(x)] for x in best.relative_error], OPEN))
     series.append(ErrorSeries("designed", [[100.0 * float(x)] for x in design.designed.relative_error], FILLED))
     return svg(error_chart(design.coefficients, series, "relative standard error, per cent of the coefficient"))
 
@@ -214,4 +227,4 @@ def _drawn_ships_figure(design: Design, baselines: tuple[ManoeuvrePrecision, ...
         ErrorSeries("the ship as assumed", assumed, TICK),
     ]
     axis_name = f"{'worst' if criterion == 'worst' else 'mean'} relative standard error, per cent"
-    return svg(error_chart([w.name for w in manoeuvres], series, axis_name))
+    return svg(error_chart([manoeuvre_name(w.name) for w in manoeuvres], series, axis_name))

@@ -14,20 +14,43 @@ from seatrial.core.results.design import (
     sampled_criterion_errors,
 )
 from seatrial.core.text.numbers import duration, exact, fixed, significant
-from seatrial.core.text.words import counted, enumeration
-from seatrial.core.values import NOTATION, display_unit
+from seatrial.core.text.words import counted, enumeration, sentence
+from seatrial.core.values import NOTATION, Severity, display_unit
 from seatrial.core.values.channel_text import unit_text
 from seatrial.data.folder.orders import channel_display_unit
+from seatrial.reporting.first_screen import KeyFact
+from seatrial.reporting.measures import manoeuvre_name
 
 # relative standard error from which on only its order is shown
 LARGEST_SHOWN_ERROR = 100.0
 _CRITERION_NAMES = {"worst": "worst relative standard error", "mean": "mean relative standard error"}
 
 
-def sentences(design: Design) -> list[str]:
-    """Return the summary: comparison with the best standard manoeuvre, ships drawn, simulated trials, limits."""
-    parts = [_comparison(design), _prior_draws(design), _confirmation(design), _limits(design)]
-    return [sentence for sentence in parts if sentence]
+def verdict(design: Design) -> str:
+    """Return how precise the manoeuvre is, compared with the best standard one."""
+    return _comparison(design)
+
+
+def key_facts(design: Design) -> tuple[KeyFact, ...]:
+    """Return the rows at the top: ships that differ, simulated trials, limits, warnings."""
+    is_kept = is_within_limits(design.designed, design.limits) and not count_outside_limits(
+        design.designed, design.limits
+    )
+    rows = (
+        KeyFact("Ships that differ", _prior_draws(design), "ships"),
+        KeyFact("Simulated trials", _confirmation(design), "confirmation"),
+        KeyFact("Limits", _limits(design), "orders", is_kept),
+    )
+    warned = [f.code for f in design.findings if f.severity is not Severity.INFO]
+    warnings = KeyFact("Warnings", enumeration(warned) or "none", "findings" if design.findings else "", not warned)
+    return (*(row for row in rows if row.text), warnings)
+
+
+def order_warnings(design: Design) -> list[str]:
+    """Return what the helmsman must know beside the orders: limits that are left, and the checks' warnings."""
+    is_left = has_track(design) and not is_within_limits(design.designed, design.limits)
+    limits = [_limits(design)] if is_left else []
+    return limits + [sentence(f.text) for f in design.findings if f.severity is not Severity.INFO]
 
 
 def _percent(share: float) -> str:
@@ -50,7 +73,8 @@ def _comparison(design: Design) -> str:
         return f"{start}; there is no standard manoeuvre to compare it with."
     theirs = criterion_error(best, criterion)
     against = f"{_percent(theirs)}{_weakest_coefficient(best, design)} with the best standard manoeuvre of equal length"
-    against += f", {best.name}" + ("" if is_within_limits(best, design.limits) else ", which leaves the limits")
+    leaving = "" if is_within_limits(best, design.limits) else ", which leaves the limits"
+    against += f", {manoeuvre_name(best.name)}{leaving}"
     if error >= theirs:
         return f"{start}, no better than the {against}."
     ratio = f" ({significant(theirs / error, 2)} times as much)" if theirs < LARGEST_SHOWN_ERROR else ""

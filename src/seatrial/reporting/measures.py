@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from seatrial.core.results import Extrapolation, Measure
 from seatrial.core.text.numbers import ratio_text
-from seatrial.core.text.words import enumeration, ordinal
+from seatrial.core.text.words import counted, enumeration, ordinal
 
 _MEASURES = {
     "rudder_deg": ("rudder angle", "deg"),
@@ -40,6 +40,23 @@ def measure_label(name: str) -> tuple[str, str]:
         if name.endswith(ending):
             return name.removesuffix(ending).replace("_", " "), unit
     return name.replace("_", " "), ""
+
+
+def manoeuvre_name(text: str) -> str:
+    """Return a manoeuvre as people call it: ``zigzag:20/10:port`` -> zigzag 20°/10°, first to port."""
+    kind, *rest = text.split(":")
+    side = rest.pop() if rest and rest[-1] in ("port", "starboard") else ""
+    angles = rest[0] if rest else ""
+    if kind == "zigzag" and re.fullmatch(r"[\d.]+/[\d.]+", angles):
+        return f"zigzag {angles.replace('/', '°/')}°" + (f", first to {side}" if side else "")
+    if kind == "turning-circle" and angles:
+        return f"turning circle with {angles}°" + (f" to {side}" if side else "")
+    if kind == "consecutive-zigzags" and angles:
+        return f"consecutive zigzags, {counted(int(angles), 'execute')} each"
+    if kind == "prbs" and len(rest) == 3:
+        share, hold, seed = rest
+        return f"random steps (PRBS), {share.replace('%', ' %')} of the range, {hold} at least, seed {seed}"
+    return text.replace("-", " ").replace(":", " ")
 
 
 def measure_decimals(unit: str, m: Measure) -> int:

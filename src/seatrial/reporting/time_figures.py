@@ -17,11 +17,18 @@ from seatrial.core.text.numbers import duration, significant
 NO_SCRIPT = "Time series are drawn by this page’s own script; allow it for this file to see them."
 
 
-def run_figure(view: RunView, spans: Sequence[TimeSpan] = (), *, x_label: str = "t [s]") -> Markup:
-    """Return the figure of one run: legend, track with its band, and linked plots of its channels."""
-    track = track_chart(view)
+def run_figure(view: RunView, spans: Sequence[TimeSpan] = (), *, x_label: str = "t [s]", is_wide: bool = False,
+               track: Chart | None = None) -> Markup:  # fmt: skip
+    """Return the figure of one run: legend, track with its band, and linked plots of its channels.
+
+    Args:
+        is_wide: whether each channel takes the whole width.
+        track: a picture of the view's tracks in place of the plain one.
+    """
+    track = track or track_chart(view)
     document = plot_document(view.channels, spans=spans, x_label=x_label) if view.channels else None
     shape = "" if track is None else (" strip" if is_slender(view.tracks) else " square")
+    shape += " wide" if is_wide else ""
     parts = [_legend(view.legend), f'<div class="run{shape}">']
     if track is not None:
         parts.append(f'<div class="track">{svg(track)}</div>')

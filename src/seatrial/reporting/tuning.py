@@ -7,19 +7,21 @@ from seatrial.core.figures.bars import bars_chart
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results.front_chart import degree_unit, front_chart
 from seatrial.core.results.loop_charts import bode_chart, nyquist_chart, sensitivity_chart, styled_controllers
-from seatrial.core.results.tuning import Tuning
+from seatrial.core.results.tuning import ManoeuvreResponse, Tuning
 from seatrial.core.text.numbers import fixed
 from seatrial.core.values.channel_text import channel_meaning
 from seatrial.reporting import gain_search, tuning_rows, tuning_text
 from seatrial.reporting.document import page_text
-from seatrial.reporting.figures.controlled_runs import manoeuvre_chart, seaway_chart
+from seatrial.reporting.figures.controlled_runs import manoeuvre_view, seaway_view
 from seatrial.reporting.figures.loop_diagram import loop_diagram, signal_order
 from seatrial.reporting.figures.paired_differences import difference_chart
 from seatrial.reporting.figures.schedule_maps import schedule_chart
+from seatrial.reporting.first_screen import FirstScreen
 from seatrial.reporting.tables import finding_groups
+from seatrial.reporting.time_figures import run_figure
 
 TITLES = {
-    "answer": "Recommendation",
+    "reasons": "Why these gains",
     "findings": "Findings",
     "controllers": "Controllers compared",
     "front": "Front",
@@ -32,16 +34,25 @@ TITLES = {
     "loop": "The loop",
     "method": "Method and provenance",
 }
+FRONT_CAPTION = (
+    "Controllers of which none is better than another in every objective, and those compared. Smaller is better along "
+    "every axis."
+)
+SEAWAY_CAPTION = (
+    "First sea, the stretch about the largest motion, with all limits and stall. Red, dashed: limits of the actuator."
+)
 # rows of a schedule from which on it is folded
 MAX_UNFOLDED_CONDITIONS = 40
 
 
 def html(tuning: Tuning) -> str:
     """Return the page as text; sections without content are left out."""
-    front, controllers = svg(front_chart(tuning)), tuning_rows.controller_rows(tuning)
+    front, controllers = Markup(svg(front_chart(tuning))), tuning_rows.controller_rows(tuning)
+    lead, lead_caption = _lead_figure(tuning)
     has_content = {
+        "reasons": bool(tuning.reasons),
         "findings": bool(tuning.findings),
-        "front": bool(front),
+        "front": bool(front) and bool(lead),
         "search": tuning.search is not None,
         "margins": len(styled_controllers(tuning)) > 0,
         "simulation": bool(tuning.seaway_simulations),
@@ -50,11 +61,17 @@ def html(tuning: Tuning) -> str:
         "bounds": bool(tuning.bounds),
         "loop": bool(tuning.components),
     }
-    titles = TITLES if tuning.search is None else {**TITLES, "answer": "Answer of the genetic algorithm"}
+    about = "Answer of the genetic algorithm" if tuning.search else "Recommended gains"
     context: dict[str, object] = {
         "tuning": tuning,
-        "titles": {key: title for key, title in titles.items() if has_content.get(key, True)},
-        "answer": tuning_text.sentences(tuning),
+        "titles": {key: title for key, title in TITLES.items() if has_content.get(key, True)},
+        "screen": FirstScreen(
+            tuning_text.verdict(tuning),
+            tuning_text.key_facts(tuning),
+            lead or front,
+            lead_caption if lead else FRONT_CAPTION if front else "",
+        ),
+        "about_gains": about,
         "facts": tuning_text.facts(tuning),
         "settings": tuning_text.settings(tuning),
         "gains": list(zip(map(tuning_rows.gain_symbol, tuning.chosen.gains), controllers[0].gains, strict=False)),
@@ -70,7 +87,8 @@ def html(tuning: Tuning) -> str:
         "work_heads": tuning_rows.work_headings(tuning),
         "has_reduction": tuning_text.has_reduction(tuning),
         "controllers": controllers,
-        "front": Markup(front),
+        "front": front,
+        "front_caption": FRONT_CAPTION,
         "search": _search_context(tuning),
         "sensitivities": Markup(svg(sensitivity_chart(tuning))),
         "bode": Markup(svg(bode_chart(tuning))),
@@ -78,11 +96,8 @@ def html(tuning: Tuning) -> str:
         "nyquist": Markup(svg(nyquist_chart(tuning))),
         "reductions": Markup(_reductions_figure(tuning)),
         "differences": Markup(svg(difference_chart(tuning.paired_differences))),
-        "histories": Markup(svg(seaway_chart(tuning))),
         "seeds": len(tuning.seaway_simulations[0].linear) if tuning.seaway_simulations else 0,
-        "manoeuvres": [
-            (m, Markup(svg(manoeuvre_chart(m, tuning))), tuning_text.demand_sentence(m)) for m in tuning.manoeuvres
-        ],
+        "manoeuvres": [(m, _manoeuvre_figure(m, tuning), tuning_text.demand_sentence(m)) for m in tuning.manoeuvres],
         "maps": Markup(svg(schedule_chart(tuning.schedule))),
         "schedule": tuning_rows.schedule_table(tuning.schedule),
         "trades": [(tuning_text.step_text(t.largest_step), fixed(t.cost, 3)) for t in tuning.schedule_trades],
@@ -93,6 +108,17 @@ def html(tuning: Tuning) -> str:
         "components": [tuning_rows.component_row(c, tuning.chosen.gains) for c in signal_order(tuning.components)],
     }
     return page_text("tuning.html", context)
+
+
+def _lead_figure(tuning: Tuning) -> tuple[Markup, str]:
+    """The roughest stretch of a simulated sea, with its caption; both empty without a simulation."""
+    view = seaway_view(tuning)
+    return (run_figure(view, is_wide=True), SEAWAY_CAPTION) if view else (Markup(), "")
+
+
+def _manoeuvre_figure(m: ManoeuvreResponse, tuning: Tuning) -> Markup:
+    view = manoeuvre_view(m, tuning)
+    return run_figure(view, is_wide=True) if view else Markup()
 
 
 def _search_context(tuning: Tuning) -> dict[str, object]:

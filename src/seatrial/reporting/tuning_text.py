@@ -7,29 +7,44 @@ import numpy as np
 from seatrial.core.results.tuning import Controller, ManoeuvreResponse, PairedDifference, Tuning
 from seatrial.core.text.numbers import duration, exact, fixed, significant
 from seatrial.core.text.words import counted, enumeration, sentence
+from seatrial.core.values import Severity
 from seatrial.core.values.channel_text import channel_meaning
 from seatrial.data.folder.orders import channel_display_unit
+from seatrial.reporting.first_screen import KeyFact
 
 _SIMULATION_LABELS = {"limited": "with angle and rate limits", "stalled": "with stall, too", "linear": "without limits"}
 
 
-def sentences(tuning: Tuning) -> list[str]:
-    """Return the recommendation: motion, margins, saturation, simulation, comparison, demands, schedule."""
-    parts = [
-        *_on_bounds(tuning),
-        _motion(tuning),
-        _margins(tuning),
-        _saturation(tuning),
-        _violations(tuning.chosen),
-        _simulation(tuning),
-    ]
-    parts += [comparison_sentence(pair) for pair in tuning.paired_differences]
-    parts += [demand_sentence(m) for m in tuning.manoeuvres if m.controller == tuning.chosen.name]
-    return [sentence for sentence in [*parts, _schedule(tuning)] if sentence]
+def verdict(tuning: Tuning) -> str:
+    """Return what the gains do to the motion, or that they must not be used, in one sentence."""
+    chosen = [m for m in tuning.manoeuvres if m.controller == tuning.chosen.name]
+    if not math.isfinite(tuning.chosen.Ms):
+        return _margins(tuning)
+    return _motion(tuning) or next((demand_sentence(m) for m in chosen), _margins(tuning))
+
+
+def key_facts(tuning: Tuning) -> tuple[KeyFact, ...]:
+    """Return the rows at the top: margins, actuator, simulation, comparison, demands, schedule, warnings."""
+    c, pairs = tuning.chosen, tuning.paired_differences
+    demands = [demand_sentence(m) for m in tuning.manoeuvres if m.controller == c.name]
+    warned = list(dict.fromkeys(f.code for f in tuning.findings if f.severity is not Severity.INFO))
+    rows = (
+        KeyFact("Margins", _margins(tuning), "margins", math.isfinite(c.Ms) and not c.violated),
+        KeyFact("Constraints", _violations(c), "controllers", not c.violated),
+        KeyFact("Actuator", _saturation(tuning), "controllers"),
+        KeyFact("Simulated", _simulation(tuning), "simulation"),
+        KeyFact("Compared", " ".join(map(comparison_sentence, pairs)), "simulation",
+                all(pair.upper >= 0.0 for pair in pairs)),
+        KeyFact("Demands", " ".join(demands), "manoeuvres"),
+        KeyFact("Schedule", _schedule(tuning), "schedule", all(s.is_feasible for s in tuning.schedule)),
+    )  # fmt: skip
+    text = " ".join(_on_bounds(tuning)) or enumeration(warned) or "none"
+    warnings = KeyFact("Warnings", text, "findings" if tuning.findings else "", not warned)
+    return (*(row for row in rows if row.text and row.text != verdict(tuning)), warnings)
 
 
 def _on_bounds(tuning: Tuning) -> list[str]:
-    """Return the warnings that a gain ends on a bound of the search: they come first."""
+    """Return the warnings that a gain ends on a bound of the search."""
     return [sentence(f"{f.text}; {f.advice}") for f in tuning.findings if f.code == "gain-on-bound"]
 
 

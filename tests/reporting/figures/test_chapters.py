@@ -10,9 +10,9 @@ from tests.reporting.fabricated_design import fabricated_design
 from tests.reporting.fabricated_tuning import fabricated_fin
 from tests.reporting.test_roll_chapter import KNOWN
 
-from seatrial.core.figures.marks import Area, Line, Points, Rule, Text
+from seatrial.core.figures.marks import Area, Line, Points, Text
 from seatrial.core.results import Bars, Curve, Figure, Fit, Matrix, TrialLimits
-from seatrial.reporting.figures.designed_manoeuvre import drift_angle, order_chart, track_chart
+from seatrial.reporting.figures.designed_manoeuvre import drift_angle, order_view, track_chart
 from seatrial.reporting.figures.directions import profile_chart
 from seatrial.reporting.figures.paired_differences import difference_chart
 from seatrial.reporting.figures.record_charts import track_overview
@@ -71,11 +71,14 @@ def test_differences_have_a_row_each() -> None:
 
 def test_a_design_shows_its_orders_and_limits() -> None:
     design = fabricated_design()
-    panels = order_chart(design).panels
-    assert [panel.y.name for panel in panels] == ["δ [deg]", "drift β [deg]"]
-    assert [mark.value for mark in panels[0].marks if isinstance(mark, Rule)] == pytest.approx([-35.0, 35.0])
-    free = order_chart(replace(design, limits=TrialLimits())).panels
-    assert sum(isinstance(mark, Rule) for mark in free[1].marks) == 0
+    view = order_view(design)
+    assert [panel.label for panel in view.channels] == ["δ [deg]", "drift β [deg]"] and len(view.tracks) == 1
+    assert [rule.value for rule in view.channels[0].limits] == pytest.approx([-35.0, 35.0])
+    ordered, moved = view.channels[0].curves
+    assert (ordered.name, moved.name) == ("ordered", "moved")
+    first = design.orders[0]
+    assert ordered.values[ordered.time >= first.time][0] == pytest.approx(np.degrees(first.values["delta"]))
+    assert order_view(replace(design, limits=TrialLimits())).channels[1].limits == ()
 
 
 def test_the_drift_angle_is_positive_with_the_bow_to_starboard_of_the_course() -> None:

@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 from tests.reporting.fabricated_tuning import fabricated_autopilot, fabricated_bare, fabricated_fin
 
-from seatrial.core.figures.marks import Line, Rule
-from seatrial.core.values import frozen
+from seatrial.core.values import Record, frozen
 from seatrial.reporting.figures.controlled_runs import (
     FREE,
     first_channel,
-    manoeuvre_chart,
-    seaway_chart,
+    manoeuvre_view,
+    seaway_view,
     uncontrolled_channel,
 )
 
@@ -20,29 +19,29 @@ from seatrial.reporting.figures.controlled_runs import (
 def test_the_motion_without_control_is_shown_where_it_is_known() -> None:
     fin = fabricated_fin()
     bare = [replace(s, record=s.record.without("phi_uncontrolled")) for s in fin.seaway_simulations]
-    chart, alone = seaway_chart(fin), seaway_chart(replace(fin, seaway_simulations=tuple(bare)))
+    chart, alone = seaway_view(fin), seaway_view(replace(fin, seaway_simulations=tuple(bare)))
     assert chart is not None and alone is not None
     assert [entry.words for entry in chart.legend] == ["with control", "without"]
     assert [entry.words for entry in alone.legend] == ["with control"]
-    free = [mark.stroke is FREE for panel in chart.panels for mark in panel.marks if isinstance(mark, Line)]
+    free = [curve.stroke is FREE for panel in chart.channels for curve in panel.curves]
     assert sum(free) == len(fin.seaway_simulations)
-    assert seaway_chart(fabricated_bare()) is None
+    assert seaway_view(fabricated_bare()) is None
 
 
 def test_panels_of_one_quantity_share_their_axes() -> None:
-    chart = seaway_chart(fabricated_fin())
+    chart = seaway_view(fabricated_fin())
     assert chart is not None
     for name in ("φ [deg]", "α [deg]"):
-        assert len({panel.y.ends for panel in chart.panels if panel.y.name == name}) == 1
-    assert len({panel.x.ends for panel in chart.panels}) == 1
+        assert len({panel.ends for panel in chart.channels if panel.label.startswith(name)}) == 1
 
 
 def test_a_demand_is_drawn_with_the_ships() -> None:
     tuning = fabricated_autopilot()
-    chart = manoeuvre_chart(tuning.manoeuvres[0], tuning)
-    assert chart is not None and len(chart.panels) == 2
-    assert [entry.words for entry in chart.legend] == ["response", "demand", "reference", "12 ships drawn"]
-    assert manoeuvre_chart(replace(tuning.manoeuvres[0], output="none"), tuning) is None
+    chart = manoeuvre_view(tuning.manoeuvres[0], tuning)
+    assert chart is not None and len(chart.channels) == 2
+    assert [entry.words for entry in chart.legend] == ["response", "demand", "reference", "range of 12 ships drawn"]
+    assert chart.channels[0].lower is not None
+    assert manoeuvre_view(replace(tuning.manoeuvres[0], output="none"), tuning) is None
 
 
 def test_limits_of_an_actuator_lie_about_its_steady_value() -> None:
@@ -54,10 +53,10 @@ def test_limits_of_an_actuator_lie_about_its_steady_value() -> None:
     near = replace(tuning, constraints=replace(tuning.constraints, limit=limit))
     record = response.record.with_channel("delta", replace(rudder, values=frozen(rudder.values + 2.0)))
 
-    def limits(record_of_run: object) -> list[float]:
-        chart = manoeuvre_chart(replace(response, record=record_of_run), near)
+    def limits(record_of_run: Record) -> list[float]:
+        chart = manoeuvre_view(replace(response, record=record_of_run), near)
         assert chart is not None
-        return [mark.value for mark in chart.panels[1].marks if isinstance(mark, Rule)]
+        return [rule.value for rule in chart.channels[1].limits]
 
     assert np.array(limits(record)) - limits(response.record) == pytest.approx(np.degrees([2.0, 2.0]))
 

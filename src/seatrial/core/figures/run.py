@@ -30,7 +30,8 @@ class TimeCurve:
 class ChannelPanel:
     """Curves of one channel with its label.
 
-    `lower` and `upper` are the edges of a band about the last curve; `limits` are levels that are marked.
+    `lower` and `upper` are the edges of a band about the last curve; `limits` are levels that are marked; `ends` is the
+    range of the axis, None: about what is shown.
     """
 
     label: str
@@ -38,6 +39,7 @@ class ChannelPanel:
     lower: Array | None = None
     upper: Array | None = None
     limits: tuple[Rule, ...] = ()
+    ends: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,5 +103,6 @@ def channel_panel(channel: ChannelPanel, box: Region, *, is_last: bool = True, x
     marks += [Line(*decimated(curve.time, curve.values, points), curve.stroke) for curve in channel.curves]
     marks += channel.limits
     start, end = float(channel.curves[0].time[0]), float(channel.curves[0].time[-1])
+    y_ends = channel.ends or span(values)
     x = Axis((start, end if end > start else start + 1.0), "t [s]" if is_last else "", tick_count=x_ticks)
-    return Panel(box, x, Axis(span(values), channel.label, tick_count=y_ticks), tuple(marks))
+    return Panel(box, x, Axis(y_ends, channel.label, tick_count=y_ticks), tuple(marks))

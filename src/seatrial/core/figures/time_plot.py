@@ -90,7 +90,7 @@ def _panel(channel: ChannelPanel, base: Array) -> dict[str, Any]:
         kept = np.unique(np.linspace(0, len(base) - 1, min(BAND_POINTS, len(base))).astype(int))
         panel["band"] = [packed(edge[kept]) for edge in edges]
     levels = [rule.value for rule in channel.limits]
-    ends = span([*shown, np.array(levels, float)])
+    ends = channel.ends or span([*shown, np.array(levels, float)])
     panel["ends"] = [_short(end) for end in ends]
     panel["curves"] = [
         {"name": curve.name, "stroke": _stroke(curve.stroke), **packed(grid_values(base, values))}

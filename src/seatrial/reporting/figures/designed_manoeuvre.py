@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
-from seatrial.core.figures.chart import WIDTH, Axis, Chart, Panel, Region, tiles
-from seatrial.core.figures.marks import ACCENT, GREY, INK, SECOND, Anchor, Array, Line, Mark, Rule, Stroke, Text
-from seatrial.core.figures.ticks import decimated, span
+from seatrial.core.figures.chart import WIDTH, Chart, LegendEntry, Panel, Region
+from seatrial.core.figures.marks import ACCENT, GREY, INK, SECOND, Anchor, Array, Mark, Rule, Stroke, Text
+from seatrial.core.figures.run import TRACK_SIDE, ChannelPanel, RunView, TimeCurve
 from seatrial.core.figures.tracks import Track, is_slender, strip_height, track_panel
 from seatrial.core.results import Actuator, Design
 from seatrial.core.results.design import has_drift
@@ -15,27 +15,24 @@ from seatrial.core.values.channel_text import channel_label, channel_unit, displ
 from seatrial.core.values.record_chart import has_track, record_track
 
 ORDERED, EXECUTED, LIMIT = Stroke(GREY, 2.6), Stroke(ACCENT, 1.3), Stroke(SECOND, 1.0, "6 3")  # px, chosen
-HEIGHT, POINTS = 120.0, 700  # px, chosen
 LEFT, RIGHT = 64.0, 12.0  # px, chosen
 # a sea room larger than the track by this ratio is not drawn
 LARGEST_ROOM_RATIO = 2.0
-# share of the page's width that a track takes which is no strip; least height of a strip [px]
-SQUARE_SHARE, MIN_STRIP = 0.62, 70.0
+# least height of a strip [px]
+MIN_STRIP = 70.0
 
 
-def order_chart(design: Design) -> Chart:
-    """Return a panel for each input that is moved and one for the drift angle, if there is one, over one time axis."""
-    drift = drift_angle(design.designed.executed) if has_drift(design) else None
-    count = len(design.actuators) + (drift is not None)
-    boxes = tiles(count, 1, HEIGHT, left=LEFT, right=RIGHT, gap=30.0, top=6.0)  # px, chosen
-    panels = []
-    for k, box in enumerate(boxes):
-        x = Axis((0.0, design.duration), "t [s]" if k == count - 1 else "", tick_count=9)  # px and ticks, chosen
-        is_order = k < len(design.actuators)
-        panels.append(
-            _order_panel(design, design.actuators[k], box, x) if is_order else _drift_panel(design, drift, box, x)
-        )
-    return Chart("orders over time", tuple(panels))
+def order_view(design: Design) -> RunView:
+    """Return a panel for each input that is moved and one for the drift angle; the track where there are positions."""
+    executed = design.designed.executed
+    drift = drift_angle(executed) if has_drift(design) else None
+    panels = [_order_panel(design, actuator) for actuator in design.actuators]
+    panels += [] if drift is None else [_drift_panel(design, drift)]
+    tracks = (record_track(executed, EXECUTED),) if has_track(executed) else ()
+    length = design.model.parameters["L"].value if "L" in design.model.parameters else 0.0
+    legend = (LegendEntry("ordered", ORDERED), LegendEntry("moved, ship as assumed", EXECUTED),
+              LegendEntry("limit", LIMIT))  # fmt: skip
+    return RunView(f"orders of {design.designed.name}", tuple(panels), tracks, length, legend)
 
 
 def drift_angle(record: Record) -> Array | None:
@@ -43,26 +40,25 @@ def drift_angle(record: Record) -> Array | None:
     return np.arctan2(-record["v"], record["u"]) if {"u", "v"} <= set(record.channels) else None
 
 
-def _order_panel(design: Design, actuator: Actuator, box: Region, x: Axis) -> Panel:
+def _order_panel(design: Design, actuator: Actuator) -> ChannelPanel:
     name, unit = actuator.name, channel_unit(actuator.name)
     factor, executed = display_unit(unit)[0], design.designed.executed
     ordered = [(order.time, order.values[name]) for order in design.orders if name in order.values]
-    limits = factor * np.array([actuator.lower, actuator.upper])
-    marks: list[Mark] = [Rule(float(limit), LIMIT) for limit in limits]
+    curves = [TimeCurve(executed.time, display_values(name, executed[name], unit), EXECUTED, "moved")]
     if ordered:
-        times = np.repeat(np.array([time for time, _ in ordered] + [design.duration]), 2)[1:-1]
-        marks.append(Line(times, np.repeat([value * factor for _, value in ordered], 2), ORDERED))
-    marks.append(Line(*decimated(executed.time, display_values(name, executed[name], unit), POINTS), EXECUTED))
-    # px and ticks, chosen
-    return Panel(box, x, Axis(span([limits], 0.1), channel_label(name, unit), tick_count=3), tuple(marks))
+        times, values = np.array(ordered).T
+        latest = np.searchsorted(times, executed.time - executed.time[0], side="right") - 1
+        held = np.where(latest >= 0, factor * values[np.maximum(latest, 0)], math.nan)
+        curves.insert(0, TimeCurve(executed.time, held, ORDERED, "ordered"))
+    limits = tuple(Rule(factor * limit, LIMIT) for limit in (actuator.lower, actuator.upper))
+    return ChannelPanel(channel_label(name, unit), tuple(curves), limits=limits)
 
 
-def _drift_panel(design: Design, drift: Array | None, box: Region, x: Axis) -> Panel:
-    degrees, limit = np.degrees(np.zeros(0) if drift is None else drift), math.degrees(design.limits.drift)
-    limits = np.array([-limit, limit]) if math.isfinite(limit) else np.empty(0)
-    marks: list[Mark] = [Rule(float(end), LIMIT) for end in limits]
-    marks.append(Line(*decimated(design.designed.executed.time, degrees, POINTS), Stroke(INK, 1.1)))  # px, chosen
-    return Panel(box, x, Axis(span([degrees, limits], 0.1), "drift β [deg]", tick_count=3), tuple(marks))
+def _drift_panel(design: Design, drift: Array) -> ChannelPanel:
+    limit = math.degrees(design.limits.drift)
+    limits = tuple(Rule(end, LIMIT) for end in (-limit, limit)) if math.isfinite(limit) else ()
+    curve = TimeCurve(design.designed.executed.time, np.degrees(drift), Stroke(INK, 1.1), "drift")  # px, chosen
+    return ChannelPanel("drift β [deg]", (curve,), limits=limits)
 
 
 def track_chart(design: Design) -> Chart | None:
@@ -75,11 +71,11 @@ def track_chart(design: Design) -> Chart | None:
     is_near = room < LARGEST_ROOM_RATIO * float(np.hypot(executed["x0"], executed["y0"]).max())
     track, circle = record_track(executed, EXECUTED), [_circle(room)] if is_near else []
     is_strip = is_slender([track, *circle])
-    width = WIDTH - LEFT - RIGHT if is_strip else SQUARE_SHARE * WIDTH
+    width = WIDTH - LEFT - RIGHT if is_strip else TRACK_SIDE
     height = max(MIN_STRIP, strip_height([track, *circle], width, length)) if is_strip else width
     # px and ticks, chosen
-    panel = track_panel([track], length, Region(LEFT, 12.0, width, height), room=circle, x_ticks=7,
-                        y_ticks=3 if is_strip else 7)  # fmt: skip
+    panel = track_panel([track], length, Region(LEFT, 12.0, width, height), room=circle, x_ticks=7 if is_strip else 5,
+                        y_ticks=3 if is_strip else 5)  # fmt: skip
     note: tuple[Mark, ...] = ()
     if math.isfinite(room):
         words = f"sea room {room:.4g} m" + ("" if is_near else ", beyond the picture")

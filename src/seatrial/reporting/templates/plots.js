@@ -108,11 +108,11 @@
       this.node = node;
       this.id = id;
       this.document = JSON.parse(node.querySelector("script").textContent);
-      const { start, stop, count } = this.document;
+      const { start, stop, count } = this.document, isWide = node.closest(".first, .wide");
       this.time = Array.from({ length: count }, (_, k) => start + (stop - start) * k / Math.max(1, count - 1));
       this.panels = [];
-      this.height = node.closest(".first") && node.parentElement.classList.contains("square") ? TALL : HEIGHT;
-      this.printWidth = this.height === HEIGHT && node.closest(".first") ? FULL_PRINT_WIDTH : PRINT_WIDTH;
+      this.height = node.closest(".first .square") && this.document.panels.length === 1 ? TALL : HEIGHT;
+      this.printWidth = this.height === HEIGHT && isWide ? FULL_PRINT_WIDTH : PRINT_WIDTH;
     }
     draw() {
       if (this.panels.length) return false;
