@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 
+import mpmath
 import numpy as np
 import pytest
 
@@ -208,3 +209,16 @@ def test_every_equation_names_its_source() -> None:
         lines = latex_equations(model)
         assert len(lines) == len(model.bindings) + len(model.states)
         assert all(line.latex.count("{") == line.latex.count("}") for line in lines)
+
+
+def test_the_slipstream_keeps_its_digits_where_the_screw_pulls_astern() -> None:
+    # z + sqrt(z^2 + U_0^4) of a negative z, with 50 digits
+    model = kvlcc2()
+    state = np.array([[1.2, 0.1, 0.02, 0.0, 0.0, 0.0]])
+    held = np.array([[0.1, -9.0, 0.0, 0.0]])
+    values = model.forces(state, held)
+    assert values["z"][0] < -0.1
+    with mpmath.workdps(50):
+        z, U_0 = mpmath.mpf(float(values["z"][0])), mpmath.mpf(model.parameters["U_0"].value)
+        exact = float(mpmath.sqrt((z + mpmath.sqrt(z**2 + U_0**4)) / 2))
+    assert values["u_inf"][0] == pytest.approx(exact, rel=1e-14)

@@ -34,8 +34,10 @@ EARLIER_MODEL_NAMES = {"heave_pitch_held": "heave_pitch_zoh"}
 EARLIER_HASHES = {
     "d022a3005b5d29afd2fc92242e7ab6656ca7e988b9145f610ee9406e2d514b19":
         "3d303f461f66a0bcb49e760eb51abc143d419544205fddf72d17549ec3773eb2",
+    "786c8cc350b9646c51e551f47900daf14c7f3e34b598e760f89ed56c77843e42":
+        "9a8b6f6c8af885194efe1e03d4d371fe890c095ecee247b74c9069efcb5961df",
 }  # fmt: skip
-"""Hash of the same equations under an older name -> their hash today."""
+"""Hash of the same equations under an older name, or written with other rounding -> their hash today."""
 CONVENTIONS = (
     "SI units and radians; x forward, y starboard, z down, psi clockwise; "
     "unit '1' marks a coefficient made nondimensional as its model's source says"
