@@ -2,14 +2,16 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from tests.reporting.fabricated import fabricated_fit
 
 import seatrial.api as sea
-from seatrial.core.values import InputError, Ship
+from seatrial.core.values import InputError, Record, Ship
 from seatrial.data.folder.model_file import ModelFile
 from seatrial.data.folder.result_folder import model_of_fit
 from seatrial.data.trial import Role
+from seatrial.physics.models import model_named
 
 
 def test_the_demo_trial_loads_with_its_truth(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -107,3 +109,13 @@ def test_what_takes_a_trial_takes_its_file(repository: Path) -> None:
     with pytest.raises(InputError, match=r"\[follow\]"):
         sea.follow(str(path))
     assert sea.identify(path).validation
+
+
+def test_commands_without_a_motion_begin_at_rest() -> None:
+    craft, time = model_named("thrusters"), 0.1 * np.arange(100)
+    table = Record.from_arrays("table", time, {n: np.full(100, 0.6) for n in ("command_1", "command_2")})
+    run = sea.simulate(craft, table)
+    assert run["u"][0] == 0.0
+    assert run["u"][-1] > 1.0
+    assert np.all(np.abs(run["v"]) < 1e-12)
+    assert sea.simulate(craft, table, speed=1.0)["u"][0] == 1.0

@@ -116,20 +116,23 @@ def simulate(
 
 
 def replay(model: "ModelFile", record: "Record", speed: float | None = None) -> "Record":
-    """Simulate the inputs of a record from its first sample; those of a planned one from a straight run.
+    """Simulate the inputs of a record from its first sample; those of one without a motion from a straight run.
 
     Args:
-        speed: approach speed of a planned record, m/s; without it the speed at which surge balances.
+        speed: approach speed of a record without a motion, m/s; without it the speed at which surge balances, or rest
+            of a craft with thrusters.
 
     Raises:
-        InputError: an input channel is missing, or the simulation diverges.
+        InputError: an input channel is missing, a command lies beyond its span, or the simulation diverges.
     """
     from seatrial.core.values import RecordKind
+    from seatrial.data.check import refuse_impossible_commands
     from seatrial.physics.simulate import replay
     from seatrial.physics.simulate.approach import straight_run
 
-    start = straight_run(model.model, record, speed) if record.kind is RecordKind.PLANNED else None
-    return replay(model.model, record, start)
+    refuse_impossible_commands(model.model, record)
+    is_planned = record.kind is RecordKind.PLANNED or not set(model.model.states) & set(record.channels)
+    return replay(model.model, record, straight_run(model.model, record, speed) if is_planned else None)
 
 
 def as_model_file(model: "Fit | ModelFile | Model") -> "ModelFile":

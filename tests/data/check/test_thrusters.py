@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from seatrial.core.values import Record, Severity
-from seatrial.data.check.thrusters import thruster_findings
+from seatrial.core.values import InputError, Record, Severity
+from seatrial.data.check.thrusters import refuse_impossible_commands, thruster_findings
 from seatrial.physics.models import model_named
 from seatrial.physics.models.thruster_layout import CATAMARAN, AngleInput, CommandInput, Thruster, ThrusterLayout
 from seatrial.physics.simulate.replay import replay
@@ -103,3 +103,13 @@ def test_a_direction_in_degrees_is_seen() -> None:
 
 def test_records_without_the_thrusters_are_left_alone() -> None:
     assert thruster_findings(CATAMARAN, [Record.from_arrays("other", RECORDS[0].time, {"u": RECORDS[0]["u"]})]) == ()
+
+
+def test_inputs_that_no_thruster_can_follow_are_refused() -> None:
+    craft, time = model_named("thrusters"), 0.1 * np.arange(50)
+    shares = {"command_1": np.full(50, 0.5), "command_2": np.full(50, -1.0)}
+    refuse_impossible_commands(craft, Record.from_arrays("plan", time, shares))
+    pulses = Record.from_arrays("plan", time, shares | {"command_2": np.linspace(1100.0, 1900.0, 50)})
+    with pytest.raises(InputError, match=r"record 'plan': thruster 'starboard': 'command_2' goes to 1.9e\+03 of full"):
+        refuse_impossible_commands(craft, pulses)
+    refuse_impossible_commands(model_named("nomoto"), pulses)

@@ -28,6 +28,14 @@ def test_an_assumed_value_that_a_fitted_one_can_replace_leaves_no_trace() -> Non
     assert misfit == pytest.approx(0.0, abs=1e-12)
 
 
+def test_what_the_information_does_not_determine_stays() -> None:
+    matrix = np.array([[1.0, 0.0, 2.0], [2.0, 0.0, 4.0], [0.5, 0.0, 1.5]])
+    moves, misfit = estimate_shifts(matrix.T @ matrix, np.array([0, 1]), 2, 0.1)
+    assert moves[0] < 0.0
+    assert moves[1] == 0.0
+    assert misfit > 0.0
+
+
 @pytest.mark.parametrize(
     ("misfit", "says"), [(2.0, "hardly show it (they would grow by 0.1 %, chi squared by 2)"), (300.0, "would show it")]
 )

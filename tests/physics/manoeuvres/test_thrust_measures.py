@@ -46,6 +46,11 @@ def test_a_zigzag_has_overshoots_behind_its_executes() -> None:
     assert found["period_s"] == pytest.approx(4.0 * np.pi, rel=0.01)
 
 
+def test_commands_that_step_at_will_are_no_manoeuvre() -> None:
+    steps = np.repeat([0.1, 0.7, -0.3, 0.4, 0.2], 80)
+    assert thrust_measures(record(psi=0.5 * np.sin(0.5 * TIME), command_1=steps)) == {}
+
+
 def test_what_is_missing_is_named() -> None:
     with pytest.raises(InputError, match="has no 'psi'"):
         thrust_measures(record().without("psi"))

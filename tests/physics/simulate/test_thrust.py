@@ -103,5 +103,14 @@ def test_options_of_ships_are_refused(craft: Model) -> None:
         refuse_rudder_options(None, 0.1)
     with pytest.raises(InputError, match="ahead 2 is no share"):
         thrust_manoeuvre(craft, thrust_programme("zigzag:30/20"), inputs={"ahead": 2.0})
-    with pytest.raises(InputError, match="'n' is no held input"):
+    with pytest.raises(InputError, match="'n' cannot be set in the manoeuvre 'spin:50'; nothing can"):
         thrust_manoeuvre(craft, thrust_programme("spin:50"), inputs={"n": 2.0})
+    with pytest.raises(InputError, match="did you mean 'ahead'"):
+        thrust_manoeuvre(craft, thrust_programme("zigzag:30/20"), inputs={"ahed": 0.5})
+    with pytest.raises(InputError, match="gives the command 'command_1' itself"):
+        thrust_manoeuvre(craft, thrust_programme("zigzag:30/20"), inputs={"command_1": 0.5})
+
+
+def test_a_craft_without_thrust_is_refused(craft: Model) -> None:
+    with pytest.raises(InputError, match="'stop:50' ends where it begins"):
+        thrust_manoeuvre(craft.with_values({"k_f": 0.0, "k_b": 0.0}), thrust_programme("stop:50"))

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from seatrial.core.values import Array, Finding, Record, Severity
+from seatrial.core.equations import Model
+from seatrial.core.values import Array, Finding, InputError, Record, Severity
 from seatrial.numerics.local_polynomials import smoothed_locally
 from seatrial.physics.models.thruster_layout import AngleInput, Thruster, ThrusterLayout
 
@@ -42,6 +43,7 @@ def thruster_findings(layout: ThrusterLayout, records: Sequence[Record]) -> tupl
     records do not show is not mentioned.
     """
     channels = {t.command.channel for t in layout.thrusters}
+    channels |= {t.angle.channel for t in layout.thrusters if isinstance(t.angle, AngleInput)}
     complete = [r for r in records if channels <= set(r.channels)]
     if not complete:
         return ()
@@ -50,6 +52,21 @@ def thruster_findings(layout: ThrusterLayout, records: Sequence[Record]) -> tupl
         return tuple(ranges)
     moving = [r for r in complete if {"u", "r"} <= set(r.channels)]
     return tuple(_side_findings(layout, moving)) if moving else ()
+
+
+def refuse_impossible_commands(model: Model, record: Record) -> None:
+    """Refuse inputs that no thruster can follow: commands beyond their span, directions that are degrees.
+
+    Raises:
+        InputError: which command or direction of the record, and what to correct.
+    """
+    if not model.equations.layout:
+        return
+    for thruster in ThrusterLayout.from_text(model.equations.layout).thrusters:
+        commands = _command_findings(thruster, [record]) if thruster.command.channel in record else []
+        for finding in (*commands, *_angle_findings(thruster, [record])):
+            if finding.severity is Severity.ERROR:
+                raise InputError(f"record '{record.name}': {finding.text}; {finding.advice}")
 
 
 def _orders(thruster: Thruster, record: Record) -> Array:

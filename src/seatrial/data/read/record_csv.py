@@ -78,7 +78,10 @@ def _cell_text(value: float) -> str:
 def _split_heading(cell: str, file: str) -> tuple[str, str]:
     symbol, bracket, unit = cell.strip().partition(" [")
     if not bracket or not unit.endswith("]"):
-        raise InputError(f"{file} is not a record table: column '{cell.strip()}' should read 'symbol [unit]'")
+        raise InputError(
+            f"{file} is not a record table: column '{cell.strip()}' should read 'symbol [unit]', as in "
+            "time [s], delta [rad], command_1 [1]"
+        )
     return symbol, unit[:-1]
 
 

@@ -13,15 +13,20 @@ from seatrial.core.values import Array, Index
 
 _MOST_NAMED, _LEAST_SHIFT = 4, 0.005  # coefficients named in a text; relative shift worth naming; chosen
 _VISIBLE_GROWTH = 0.05  # relative growth of the residuals that is visible; chosen
+_ROUNDING = 1e-13  # of a singular information matrix, over its largest singular value; chosen
 
 
 def estimate_shifts(information: Array, fitted: Index, assumed: int, step: float) -> tuple[Array, float]:
     """Changes of the fitted parameters, (len(fitted),), and the growth of chi squared, for a step of the assumed one.
 
-    information: shape (n, n); fitted, assumed: positions in it.
+    information: shape (n, n); fitted, assumed: positions in it. What the information does not determine stays.
     """
     cross = information[fitted, assumed]
-    moves = np.asarray(-step * np.linalg.solve(information[np.ix_(fitted, fitted)], cross), dtype=np.float64)
+    size = np.sqrt(information[fitted, fitted])
+    scale = np.where(size > 0.0, 1.0 / np.where(size > 0.0, size, 1.0), 0.0)
+    scaled = information[np.ix_(fitted, fitted)] * scale[:, None] * scale
+    solved = np.linalg.lstsq(scaled, scale * cross, rcond=_ROUNDING)[0]
+    moves = np.asarray(-step * scale * solved, dtype=np.float64)
     return moves, max(float(step * (information[assumed, assumed] * step + cross @ moves)), 0.0)
 
 

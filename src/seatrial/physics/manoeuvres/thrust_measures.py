@@ -28,8 +28,9 @@ def thrust_measures(record: Record) -> dict[str, float]:
     Spin (commands held, more than a turn): ``steady_yaw_rate_deg_s``, ``time_360_s``, ``time_constant_s`` to 63 % of
     the rate. Straight run (commands held):
     ``steady_speed`` [m/s], ``time_constant_s`` to 63 % of it. Stop (the speed falls through zero behind a change of
-    commands): ``approach_speed`` [m/s], ``stopping_distance_m``, ``stopping_time_s``. Zigzag (two changes and more):
-    ``approach_speed``, ``overshoot_1_deg`` and so on, ``period_s``.
+    commands): ``approach_speed`` [m/s], ``stopping_distance_m``, ``stopping_time_s``. Zigzag (two changes and more,
+    between the same two commands): ``approach_speed``, ``overshoot_1_deg`` and so on, ``period_s``. Commands that
+    change otherwise are no manoeuvre: no measures.
 
     Raises:
         InputError: heading or surge speed is missing.
@@ -42,6 +43,8 @@ def thrust_measures(record: Record) -> dict[str, float]:
         return _spin(record.time, psi) if abs(psi[-1] - psi[0]) > _FULL_TURN else _straight(record)
     if len(executes) == 1:
         return _stop(record, int(executes[0]))
+    if not _alternates(record, executes):
+        return {}
     return {"approach_speed": float(record["u"][executes[0]])} | _overshoots(record.time, psi, executes)
 
 
@@ -51,6 +54,14 @@ def _changes(record: Record) -> Index:
     moved = np.any(np.abs(np.diff(values, axis=0)) > _MOVED * np.maximum(np.ptp(values, axis=0), _MOVED), axis=1)
     rows = np.flatnonzero(moved)
     return rows[np.diff(rows, prepend=-2) > 1] if len(rows) else rows
+
+
+def _alternates(record: Record, executes: Index) -> bool:
+    """Whether commands after the first change alternate between two settings."""
+    values = np.stack([record[name] for name in commands_of(record)], axis=1)
+    held = values[[*executes[1:], len(values) - 1]]  # the last sample of what each change ordered
+    near = _MOVED * np.maximum(np.ptp(values, axis=0), _MOVED)
+    return bool(np.all(np.abs(held[2:] - held[:-2]) <= near))
 
 
 def _spin(time: Array, psi: Array) -> dict[str, float]:

@@ -53,14 +53,15 @@ def approach_speed(model: Model, held: Array) -> float:
 
 
 def straight_run(model: Model, plan: Record, speed: float | None = None) -> dict[str, float]:
-    """Return where a planned record starts: on a straight course at u = `speed`, all else zero.
+    """Return where a planned record starts: on a straight course at u = `speed`, thrusters at rest, all else zero.
 
-    Without a speed it is the one at which surge balances with the plan's first inputs, rudder amidships.
+    Without a speed it is the one at which surge balances with the plan's first inputs, rudder amidships; a craft with
+    thrusters starts at rest.
     """
     start = dict.fromkeys(model.states, 0.0)
     if "u" in start and speed is not None:
         start["u"] = speed
-    elif "u" in start:
+    elif "u" in start and not model.equations.layout:
         first = inputs_of(model, plan)[0].copy()
         first[[name == RUDDER for name in model.input_names]] = 0.0
         start["u"] = approach_speed(model, first)

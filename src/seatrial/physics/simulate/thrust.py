@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.values import Array, InputError, Provenance, Record, frozen
+from seatrial.core.values import Array, InputError, Provenance, Record, frozen, spelling_hint
 from seatrial.core.values.record import MAX_SAMPLES
 from seatrial.numerics.kernels.feedback import steer
 from seatrial.physics.manoeuvres.thrust_programme import (
@@ -57,6 +57,7 @@ def thrust_manoeuvre(
     ahead = given.pop(AHEAD, DEFAULT_AHEAD) if programme.ahead is None else programme.ahead
     if not 0.0 <= ahead <= 1.0:
         raise InputError(f"the order ahead {ahead:g} is no share of full command; give 0 to 1")
+    _refuse_driven_inputs(model, layout, programme, given)
     thrusters = _allocation(model, layout)
     longest = LONGEST_S if duration is None else duration
     held = held_inputs(model, {**_at_rest(layout), **given}, "")
@@ -66,6 +67,8 @@ def thrust_manoeuvre(
         start = start if run_up is None else _steered(model, run_up, ahead, thrusters, start, held, dt, LONGEST_S)[1]
         start[[model.states.index(s) for s in ("psi", "x0", "y0")]] = 0.0
     used, _, finished = _steered(model, programme, ahead, thrusters, start, held, dt, longest)
+    if len(used) < 2:
+        raise InputError(f"manoeuvre '{programme.text}' ends where it begins: this craft does not move by its orders")
     time = frozen(dt * np.arange(len(used)))
     states, outputs = trajectory(model, used, float(time[-1] - time[0]) / (len(time) - 1), start)
     require_bounded(model, time, states, f"manoeuvre '{programme.text}'")
@@ -73,6 +76,20 @@ def thrust_manoeuvre(
     ending = f"finished at {time[-1]:g} s" if finished else f"not finished after {time[-1]:g} s"
     source = f"manoeuvre '{programme.text}' of model '{model.name}'"
     return replace(simulated, provenance=Provenance(source, steps=(f"ahead {ahead:g}", ending)))
+
+
+def _refuse_driven_inputs(
+    model: Model, layout: ThrusterLayout, programme: ThrustProgramme, given: Mapping[str, float]
+) -> None:
+    commands = [t.command.channel for t in layout.thrusters]
+    free = [name for name in model.input_names if name not in commands]
+    allowed = [*free, *([AHEAD] if programme.ahead is None else [])]
+    for name in given:
+        if name in commands:
+            raise InputError(f"the manoeuvre '{programme.text}' gives the command '{name}' itself; do not set it")
+        if name not in free:
+            hint = spelling_hint(name, allowed) if allowed else "; nothing can"
+            raise InputError(f"'{name}' cannot be set in the manoeuvre '{programme.text}'{hint}")
 
 
 def refuse_rudder_options(speed: float | None, rudder_rate: float | None) -> None:
