@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import sympy as sp
 from sympy.printing.c import C99CodePrinter
 from sympy.printing.codeprinter import CodePrinter
+from sympy.printing.jscode import JavascriptCodePrinter
 from sympy.printing.octave import OctaveCodePrinter
 from sympy.printing.pycode import PythonCodePrinter
 
@@ -74,6 +75,11 @@ class _NumbaPrinter(_ScalarRules, PythonCodePrinter):
 class _CPrinter(_ScalarRules, C99CodePrinter):
     # C99 without extensions has no M_PI
     _print_Pi = _print_Exp1 = _ScalarRules._print_number
+
+
+class _JavaScriptPrinter(_ScalarRules, JavascriptCodePrinter):
+    square_root, absolute, sign = "Math.sqrt({})", "Math.abs({})", "({} < 0.0 ? -1.0 : 1.0)"
+    power = "Math.pow({}, {})"
 
 
 class _MatlabPrinter(_ScalarRules, OctaveCodePrinter):
@@ -153,6 +159,17 @@ class CDialect(Dialect):
         return [
             Assignment(pair, angle, is_pair=True), Assignment(sine, f"{pair}[0]"), Assignment(cosine, f"{pair}[1]")
         ]  # fmt: skip
+
+
+class JavaScriptDialect(Dialect):
+    """JavaScript: arrays as in scalar Python, the functions of `Math`."""
+
+    def __init__(self) -> None:
+        self.printer = _JavaScriptPrinter()
+
+    def sine_and_cosine(self, sine: str, cosine: str, angle: str) -> list[Assignment]:
+        """Return two calls."""
+        return [Assignment(sine, f"Math.sin({angle})"), Assignment(cosine, f"Math.cos({angle})")]
 
 
 class MatlabDialect(Dialect):

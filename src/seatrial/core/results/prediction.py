@@ -86,6 +86,13 @@ class Prediction:
     divergence: Annotated[
         Divergence | None, Field(description="null: the simulation lasts as long as the run; else NaN follows it")
     ] = None
+    offsets: Annotated[
+        dict[str, Number],
+        Field(
+            description="offset of the run (delta zero; gain; delay, s) or parameter of its session -> value with "
+            "which it was simulated, SI; empty: none"
+        ),
+    ] = field(default_factory=dict)
     windows: Annotated[
         tuple[WindowScore, ...], Field(description="windows of the run, each predicted by itself; validation runs only")
     ] = ()

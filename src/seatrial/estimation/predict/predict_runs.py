@@ -182,6 +182,7 @@ def predict_runs(
     for item, run, own, stream in zip(items, runs, offsets, streams, strict=True):
         role = "training" if item.role is Role.TRAIN else "validation"
         one = predict_run(estimation.model, item.record, role, run, seconds, length)
+        one = replace(one, offsets=dict(zip(problem.session_unknowns, map(float, own.expected), strict=True)))
         # a runaway simulation says nothing of what the run reached
         reached = item.record if run.divergence is not None else with_recorded_speed(run.record, item.record)
         one = replace(one, extrapolation=extrapolation(reached, covered, layout))

@@ -1,0 +1,166 @@
+"""A held-out run that the page simulates again with other coefficients: data, controls and script, in one piece."""
+
+import base64
+import json
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from markupsafe import Markup
+
+from seatrial.core.equations import Model
+from seatrial.core.equations.javascript import rates_function
+from seatrial.core.results import Coefficient, Fit, Prediction
+from seatrial.core.values import Array, InputError, Record, display_unit
+from seatrial.core.values.channel_text import (
+    channel_label,
+    channel_letter,
+    channel_meaning,
+    channel_unit,
+    display_values,
+)
+from seatrial.physics.simulate.channels import inputs_of
+from seatrial.physics.simulate.divergence import state_limits
+from seatrial.reporting.document import environment
+
+# a slider reaches so many half widths of the 95 % interval to each side, and this share of the estimate; both chosen
+HALF_WIDTHS, SHARE = 3.0, 0.5
+MAX_SAMPLES = 6000  # of a run: with two inputs and three channels 250 kB of page; chosen
+_CHANNELS = ("psi", "theta", "phi", "z", "u")  # of which the first that the run has is drawn; chosen, as at the top
+_POSITION = ("y0", "x0")  # east, north
+# deviation from the prediction of the fit, as a share of its range, from which on the page does not draw the run
+AGREEMENT = 1e-6
+COMPARED = 60  # samples of each channel that are compared; chosen
+
+
+@dataclass(frozen=True)
+class Slider:
+    """A coefficient that can be moved, SI."""
+
+    name: str
+    meaning: str
+    unit: str
+    place: int
+    value: float
+    low: float
+    high: float
+    interval: tuple[float, float] | None
+
+
+def resimulation(fit: Fit) -> Markup:
+    """Return the part of the page that simulates the first held-out run again; empty where there is none to simulate.
+
+    The model has to be integrated step by step (no exact propagator), the run has to have all inputs, and every state
+    needs a start. The script compares its own run with the prediction before it draws.
+    """
+    chosen = next((p for p in fit.validation if _can_be_simulated(p, fit)), None)
+    free = [c for c in fit.coefficients if not c.fixed]
+    if chosen is None or not free:
+        return Markup()
+    sliders = [_slider(c, fit) for c in free]
+    document = json.dumps(_document(chosen, fit, sliders), separators=(",", ":"), ensure_ascii=False)
+    values = {
+        "run": chosen.record,
+        "sliders": sliders,
+        "data": Markup(document.replace("<", "\\u003c")),  # a closing tag inside the text would end the element
+        "script": Markup(replay_script(fit.model)),
+    }
+    return Markup(environment().get_template("resimulation.html").render(values))
+
+
+def replay_script(model: Model) -> str:
+    """Return the script that simulates a run: `replay`, the integrator, and the model's `rates`."""
+    return f"{environment().get_template('replay.js').render()}\nconst rates = {rates_function(model)};\n"
+
+
+def _can_be_simulated(p: Prediction, fit: Fit) -> bool:
+    model = fit.model
+    if model.is_affine or len(p.measured) > MAX_SAMPLES or not set(model.states) <= set(p.simulated.channels):
+        return False
+    if not all(np.isfinite(p.simulated[s][0]) for s in model.states) or not _plotted_channels(p, model.states):
+        return False
+    try:
+        inputs_of(model, p.measured)
+    except InputError:
+        return False
+    return True
+
+
+def _plotted_channels(p: Prediction, states: tuple[str, ...]) -> list[str]:
+    """Channels to be drawn: positions where the run has both, and the one that says most of it."""
+    both = [s for s in states if s in p.measured and np.isfinite(p.measured[s]).any()]
+    first = next((s for s in _CHANNELS if s in both), None)
+    return [*(_POSITION if set(_POSITION) <= set(both) else ()), *([first] if first else [])]
+
+
+def _document(p: Prediction, fit: Fit, sliders: list[Slider]) -> dict[str, Any]:
+    model, names = fit.model, _plotted_channels(p, fit.model.states)
+    values = [p.offsets.get(q.name, float(q.value)) for q in model.parameters]
+    return {
+        "dt": p.measured.dt, "count": len(p.measured), "limits": state_limits(model).tolist(),
+        "start": [float(p.simulated[s][0]) for s in model.states],
+        "inputs": [_packed(column, np.float64) for column in corrected_inputs(p, fit).T],
+        "parameters": values,
+        "sliders": [{"place": s.place, "value": s.value, "low": s.low, "high": s.high} for s in sliders],
+        "reference": p.reference_word, "agreement": AGREEMENT,
+        "channels": [_channel(p, name, model.states.index(name)) for name in names],
+    }  # fmt: skip
+
+
+def corrected_inputs(p: Prediction, fit: Fit) -> Array:
+    """Return the inputs with which the run was simulated, in the model's signs, shape (n, nu).
+
+    Each is gain times the recorded one, `delay` seconds earlier, plus zero; linear between samples.
+    """
+    inputs, time = inputs_of(fit.model, p.measured).copy(), np.arange(len(p.measured)) * p.measured.dt
+    for j, name in enumerate(fit.model.input_names):
+        gain, zero, delay = (p.offsets.get(f"{name} {kind}", neutral) for kind, neutral in _CORRECTIONS)
+        late = np.interp(time - delay, time, inputs[:, j]) if delay else inputs[:, j]
+        inputs[:, j] = gain * late + zero
+    return inputs
+
+
+_CORRECTIONS = (
+    ("gain", 1.0),
+    ("zero", 0.0),
+    ("delay", 0.0),
+)  # kinds of a correction of an input, and what does nothing
+
+
+def _channel(p: Prediction, name: str, place: int) -> dict[str, Any]:
+    unit = channel_unit(name)
+    return {
+        "state": place, "label": channel_label(name, unit), "name": channel_letter(name),
+        "meaning": channel_meaning(name), "unit": display_unit(unit)[1], "factor": display_unit(unit)[0],
+        "is_position": name in _POSITION,
+        "measured": _packed(_without_wrap(p.measured, name, unit), np.float32),
+        "predicted": [float(v) for v in p.simulated[name][:: _stride(p)]], "stride": _stride(p),
+    }  # fmt: skip
+
+
+def _stride(p: Prediction) -> int:
+    """Samples from one that is compared with the prediction to the next."""
+    return max(1, len(p.simulated) // COMPARED)
+
+
+def _without_wrap(record: Record, name: str, unit: str) -> Array:
+    """Values in SI, headings without wrap."""
+    return display_values(name, record[name], unit) / display_unit(unit)[0]
+
+
+def _packed(values: Array, kind: type) -> str | float:
+    """Little-endian numbers in base 64; a channel that is constant is its value."""
+    if np.all(values == values[0]):
+        return float(values[0])
+    return base64.b64encode(np.ascontiguousarray(values, dtype=np.dtype(kind).newbyteorder("<")).tobytes()).decode()
+
+
+def _slider(c: Coefficient, fit: Fit) -> Slider:
+    parameter = fit.model.parameters[c.name]
+    interval = None if c.lower is None or c.upper is None else (c.lower, c.upper)
+    half = 0.0 if interval is None else 0.5 * (interval[1] - interval[0])
+    reach = max(HALF_WIDTHS * half, SHARE * abs(c.estimate)) or parameter.characteristic_scale
+    low, high = max(c.estimate - reach, parameter.lower), min(c.estimate + reach, parameter.upper)
+    unit = "" if c.unit == "1" else c.unit
+    place = fit.model.parameters.index(c.name)
+    return Slider(c.name, c.meaning, unit, place, c.estimate, low, high, interval)

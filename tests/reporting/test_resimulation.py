@@ -1,0 +1,149 @@
+"""Sliders of a page: what they hold, when there are none, and what a browser simulates with them."""
+
+import json
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+from tests.reporting.fabricated import fabricated_fit
+
+from seatrial.core.results import Fit, Prediction
+from seatrial.physics.models import model_named
+from seatrial.physics.simulate.channels import inputs_of
+from seatrial.physics.simulate.replay import trajectory
+from seatrial.reporting.pages import report_page
+from seatrial.reporting.resimulation import corrected_inputs, resimulation
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
+
+ZERO = 0.02  # rad: of the rudder in the run
+
+
+def simulated_fit() -> Fit:
+    """The fabricated fit with its held-out run truly simulated, with a rudder's zero."""
+    fit = fabricated_fit()
+    (held,) = fit.validation
+    shifted = replace(held, offsets={"delta zero": ZERO})
+    start = np.array([held.measured[s][0] for s in fit.model.states])
+    states, _ = trajectory(fit.model, corrected_inputs(shifted, fit), held.measured.dt, start)
+    record = held.simulated
+    for name, values in zip(fit.model.states, states.T, strict=True):
+        record = record.with_channel(name, record.channel(name).with_values(values))
+    return replace(
+        fit, predictions=(*(p for p in fit.predictions if p is not held), replace(shifted, simulated=record))
+    )
+
+
+@pytest.fixture(scope="module")
+def fit() -> Fit:
+    return simulated_fit()
+
+
+def data(text: str) -> dict:
+    """What the script of the page reads."""
+    found = re.search(r'<script type="application/json">(.*?)</script>', text, re.DOTALL)
+    assert found is not None
+    return json.loads(found[1])
+
+
+def test_every_free_coefficient_has_a_slider_about_its_estimate(fit: Fit) -> None:
+    held = data(resimulation(fit))
+    free = [c for c in fit.coefficients if not c.fixed]
+    assert [s["value"] for s in held["sliders"]] == [c.estimate for c in free]
+    assert all(s["low"] < s["value"] < s["high"] for s in held["sliders"])
+    assert [held["parameters"][s["place"]] for s in held["sliders"]] == [c.estimate for c in free]
+    assert [c["name"] for c in held["channels"]] == ["y₀", "x₀", "ψ"]
+
+
+def test_inputs_are_those_of_the_prediction(fit: Fit) -> None:
+    (p,) = fit.validation
+    recorded = inputs_of(fit.model, p.measured)
+    both = replace(p, offsets={"delta zero": 0.1, "delta gain": 2.0, "delta delay": p.measured.dt})
+    column = corrected_inputs(both, fit)[:, fit.model.input_names.index("delta")]
+    delta = recorded[:, fit.model.input_names.index("delta")]
+    np.testing.assert_allclose(column[1:], 2.0 * delta[:-1] + 0.1, rtol=0.0, atol=1e-12)
+
+
+def test_without_a_held_out_run_or_a_model_of_steps_there_are_none(fit: Fit) -> None:
+    trained = tuple(replace(p, role="training") for p in fit.predictions)
+    assert resimulation(replace(fit, predictions=trained)) == ""
+    assert resimulation(replace(fit, model=model_named("heave_pitch"))) == ""
+    assert resimulation(replace(fit, coefficients=tuple(replace(c, fixed=True) for c in fit.coefficients))) == ""
+    assert "resimulation" in report_page(fit)
+
+
+playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed; pip install playwright")
+
+
+@pytest.fixture(scope="module")
+def browser(browser_path: str) -> "Iterator[Browser]":
+    with playwright.sync_playwright() as started:
+        opened = started.chromium.launch(executable_path=browser_path, args=["--no-sandbox", "--disable-gpu"])
+        yield opened
+        opened.close()
+
+
+def page_with(browser: "Browser", fit: Fit, folder: Path, width: int = 1100):
+    path = folder / "report.html"
+    path.write_text(report_page(fit), encoding="utf-8")
+    page = browser.new_page(viewport={"width": width, "height": 900})
+    said: list[str] = []
+    page.on("console", lambda message: said.append(message.text))
+    page.on("pageerror", lambda error: said.append(str(error)))
+    page.goto(path.as_uri())
+    page.locator(".resimulation > summary").click()
+    return page, said
+
+
+def move(page, k: int, place: int) -> None:
+    script = f"n => {{ n.value = {place}; n.dispatchEvent(new Event('input')); }}"
+    page.locator(".slider input").nth(k).evaluate(script)
+    page.wait_for_timeout(200)
+
+
+def heading_error(p: Prediction) -> float:
+    return float(np.degrees(np.sqrt(np.mean((p.simulated["psi"] - p.measured["psi"]) ** 2))))
+
+
+def test_a_browser_simulates_the_run_and_a_moved_slider_changes_it(
+    browser: "Browser", fit: Fit, tmp_path: Path
+) -> None:
+    page, said = page_with(browser, fit, tmp_path)
+    page.wait_for_selector(".resimulation[data-examined]")
+    state = page.locator(".resimulation .state")
+    before = re.search(r"heading ([\d.]+) \(([\d.]+)\) deg", state.inner_text())
+    assert before is not None
+    assert before[1] == before[2] == f"{heading_error(fit.validation[0]):.3g}"
+    move(page, 3, 900)
+    after = re.search(r"heading ([\d.]+) \(([\d.]+)\) deg", state.inner_text())
+    assert after is not None and after[1] != after[2] == before[2]
+    page.locator(".resimulation .reset").click()
+    assert state.inner_text().count(before[2]) >= 2
+    assert page.locator(".resimulation svg").count() == 2
+    assert said == []
+
+
+def test_a_coefficient_that_makes_the_run_diverge_is_reported(browser: "Browser", fit: Fit, tmp_path: Path) -> None:
+    """Y_v far on either side: on one of them the craft no longer comes back from a sway."""
+    wide = tuple(replace(c, lower=c.estimate - 3.0, upper=c.estimate + 3.0) if c.name == "Y_v" else c
+                 for c in fit.coefficients)  # fmt: skip
+    page, said = page_with(browser, replace(fit, coefficients=wide), tmp_path, 390)
+    page.wait_for_selector(".resimulation[data-examined]")
+    k = [c.name for c in wide if not c.fixed].index("Y_v")
+    assert "the run diverges above" in page.locator(".slider .range").nth(k).inner_text()
+    move(page, k, 1000)
+    assert "the simulation diverges after" in page.locator(".resimulation .state").inner_text()
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    assert said == []
+
+
+def test_a_run_that_the_page_cannot_repeat_is_not_drawn(browser: "Browser", tmp_path: Path) -> None:
+    page, _ = page_with(browser, fabricated_fit(), tmp_path)
+    assert "cannot be simulated here" in page.locator(".resimulation .state").inner_text()
+    assert page.locator(".resimulation svg").count() == 0
+    assert page.locator(".slider input:not([disabled])").count() == 0
