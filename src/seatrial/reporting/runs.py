@@ -29,7 +29,7 @@ ERROR_LABELS = {"psi_deg": ("heading", "deg"), "position_m": ("position", "m"), 
 # degrees of a radian
 _DEGREES = math.degrees(1.0)
 # runs up to which all are drawn; beyond, how many of the worst ones of each role
-MAX_DRAWN, WORST_HELD_OUT, WORST_TRAINING = 15, 24, 12
+MAX_DRAWN, WORST_DRAWN = 15, 12
 # overshoots in the table; later ones are folded
 MAX_OVERSHOOTS = 6
 
@@ -200,8 +200,8 @@ def drawn_predictions(predictions: Sequence[Prediction]) -> list[Prediction]:
     if len(predictions) <= MAX_DRAWN:
         return list(predictions)
     kept: list[Prediction] = []
-    for role, count in (("validation", WORST_HELD_OUT), ("training", WORST_TRAINING)):
-        kept += sorted((p for p in predictions if p.role == role), key=badness, reverse=True)[:count]
+    for role in ("validation", "training"):
+        kept += sorted((p for p in predictions if p.role == role), key=badness, reverse=True)[:WORST_DRAWN]
     return [p for p in predictions if any(p is one for one in kept)]
 
 
@@ -217,8 +217,8 @@ def hidden_runs_sentence(predictions: Sequence[Prediction]) -> str:
     if len(drawn_predictions(predictions)) == len(predictions):
         return ""
     held = sum(p.role == "validation" for p in predictions)
-    of_held = "the held-out runs" if held <= WORST_HELD_OUT else f"the {WORST_HELD_OUT} worst held-out runs"
-    return f"Of {len(predictions)} runs, {of_held} and the {WORST_TRAINING} worst training runs are drawn."
+    of_held = "the held-out runs" if held <= WORST_DRAWN else f"the {WORST_DRAWN} worst held-out runs"
+    return f"Of {len(predictions)} runs, {of_held} and the {WORST_DRAWN} worst training runs are drawn."
 
 
 def _summary(p: Prediction) -> str:

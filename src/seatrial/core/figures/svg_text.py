@@ -22,6 +22,7 @@ from seatrial.core.figures.marks import (
     Stroke,
     Text,
 )
+from seatrial.core.figures.svg_path import path_data
 
 FONT = "Arial, Helvetica, 'Liberation Sans', 'DejaVu Sans', sans-serif"
 GRID, AXIS = Stroke("#ececec", 0.8), Stroke("#8a9299", 0.8)  # px, chosen
@@ -71,17 +72,15 @@ def _axes(panel: Panel) -> str:
     """Grid, axis lines, texts of the ticks, names and title."""
     box, size = panel.box, panel.tick_size
     middle = 0.36 * size  # from the middle of a letter to its base line
-    is_turned, parts = panel.has_turned_labels(), []
+    is_turned, parts = panel.has_turned_labels(), [_grid(panel)]
     for tick in panel.x.tick_list():
         x = float(panel.px(tick.value))
-        parts.append(_segment(x, box.top, x, box.bottom, GRID) if panel.x.has_grid else "")
         if panel.x.has_labels and is_turned:
             parts.append(_text(x + middle, box.bottom + 6.0, tick.text, Anchor.END, size, turn=-90.0))  # px, chosen
         elif panel.x.has_labels:
             parts.append(_text(x, box.bottom + size + 3.0, tick.text, Anchor.MIDDLE, size))
     for tick in panel.y.tick_list():
         y = float(panel.py(tick.value))
-        parts.append(_segment(box.left, y, box.right, y, GRID) if panel.y.has_grid else "")
         # px, chosen
         parts.append(_text(box.left - 5.0, y + middle, tick.text, Anchor.END, size) if panel.y.has_labels else "")
     if panel.has_lines:
@@ -95,6 +94,16 @@ def _axes(panel: Panel) -> str:
     if panel.title:
         parts.append(_text(box.left, box.top - 7.0, panel.title))  # px, chosen
     return "".join(parts)
+
+
+def _grid(panel: Panel) -> str:
+    """All grid lines as one path."""
+    box, steps = panel.box, ""
+    if panel.x.has_grid:
+        steps += "".join(f"M{panel.px(t.value):.1f} {box.top:.1f}v{box.height:.1f}" for t in panel.x.tick_list())
+    if panel.y.has_grid:
+        steps += "".join(f"M{box.left:.1f} {panel.py(t.value):.1f}h{box.width:.1f}" for t in panel.y.tick_list())
+    return f'<path d="{steps}" fill="none"{_stroke(GRID)}/>' if steps else ""
 
 
 def _mark(panel: Panel, mark: Mark) -> str:
@@ -143,11 +152,7 @@ def _clipped_path(panel: Panel, px: Array, py: Array, stroke: Stroke, fill: str 
 
 def _path(px: Array, py: Array, stroke: Stroke, fill: str = "none") -> str:
     """Line through positions in px; NaN leaves a gap."""
-    finite = np.isfinite(px) & np.isfinite(py)
-    starts = finite & ~np.concatenate([[False], finite[:-1]])
-    steps = "".join(
-        f"{'M' if start else 'L'}{x:.1f} {y:.1f}" for x, y, k, start in zip(px, py, finite, starts, strict=True) if k
-    )
+    steps = path_data(px, py)
     return f'<path d="{steps}" fill="{fill}"{_stroke(stroke)} stroke-linejoin="round"/>' if steps else ""
 
 
