@@ -17,7 +17,15 @@ extensions = [
     "sphinx_design",
     "sphinx_gallery.gen_gallery",
 ]
-exclude_patterns = ["pictures", "recipes", "gallery/*.ipynb", "gallery/*.py", "gallery/*.md5", "gallery/*.json"]
+exclude_patterns = [
+    "pictures",
+    "static",
+    "recipes",
+    "gallery/*.ipynb",
+    "gallery/*.py",
+    "gallery/*.md5",
+    "gallery/*.json",
+]
 suppress_warnings = ["config.cache"]  # the sorting of recipes is a class, which no cache of the configuration can hold
 
 # pages: MyST Markdown; headings down to this level can be linked to
@@ -59,6 +67,8 @@ python_use_unqualified_type_names = True
 html_theme = "pydata_sphinx_theme"
 html_title = "seatrial"
 html_show_sourcelink = False
+html_static_path = ["static"]
+html_css_files = ["pages.css"]
 # a browser that reads the pages from disk may not fetch them for excerpts; titles and links are found without
 html_show_search_summary = False
 html_theme_options = {

@@ -6,6 +6,7 @@ A controller ties the rudder to the disturbances it answers. An estimate that ov
 tests for it, ``[feedback]`` declares it, and either way the disturbance is estimated together with the coefficients.
 """
 
+import matplotlib.pyplot as plt
 import numpy as np
 
 import seatrial as st
@@ -30,7 +31,11 @@ delta[-1] = delta[-2]
 noise = np.radians(0.2) * rng.standard_normal((2, count))
 noisy = {"psi": psi + noise[0], "r": r + noise[1]}
 record = st.Record.from_arrays("on_autopilot", step * np.arange(count), {**noisy, "delta": delta, "psi_ref": reference})
-record.plot()
+figure, axes = plt.subplots(figsize=(5, 3), layout="constrained")
+axes.plot(record.time, np.degrees(reference), label="ordered")
+axes.plot(record.time, np.degrees(record["psi"]), label="measured")
+axes.set(xlabel="time [s]", ylabel="heading [deg]")
+axes.legend(loc="lower left")
 
 # %%
 # The declaration: input, output, and the reference where it was logged. The same in a trial file is a table

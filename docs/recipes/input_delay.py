@@ -6,6 +6,7 @@ A servo, a filter or a network delays what is logged. A tenth of a second can co
 delay is not known it is estimated.
 """
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
@@ -31,6 +32,13 @@ noise = np.radians(0.1) * rng.standard_normal((2, time.size))
 record = st.Record.from_arrays(
     "zigzag", time, {"psi": true["psi"] + noise[0], "r": true["r"] + noise[1], "delta": order(time)}
 )
+
+part = time < 60.0
+figure, axes = plt.subplots(figsize=(5, 3), layout="constrained")
+axes.plot(time[part], np.degrees(order(time[part])), label="order as logged")
+axes.plot(time[part], np.degrees(order(time[part] - delay)), "--", label="rudder")
+axes.set(xlabel="time [s]", ylabel="rudder [deg]")
+axes.legend(loc="lower left")
 
 # %%
 # Without and with ``delays``:

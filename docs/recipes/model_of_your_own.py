@@ -6,6 +6,7 @@ Equations are written once, as in the paper. Jacobians, compiled code, the start
 report come from them.
 """
 
+import matplotlib.pyplot as plt
 import numpy as np
 
 import seatrial as st
@@ -35,6 +36,12 @@ truth = {"T": 8.0, "K": 0.15, "alpha": 30.0}
 run = replay(model().with_values(truth), st.Record.from_arrays("zigzag", time, {"delta": rudder}), {"r": 0.0})
 psi = run["psi"] + np.radians(0.1) * np.random.default_rng(1).standard_normal(len(time))
 zigzag = st.Record.from_arrays("zigzag", time, {"psi": psi, "delta": rudder})
+
+figure, axes = plt.subplots(figsize=(5, 3), layout="constrained")
+axes.plot(time, np.degrees(rudder), label="rudder")
+axes.plot(time, np.degrees(psi), label="heading")
+axes.set(xlabel="time [s]", ylabel="angle [deg]")
+axes.legend(loc="lower left")
 
 # %%
 # A trial made in code takes the model as it takes a built-in one.

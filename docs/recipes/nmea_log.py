@@ -7,6 +7,7 @@ What a bridge network carries is read as it is: sentences in a text file, with o
 
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 import numpy as np
 from pymap3d import ned2geodetic
 
@@ -31,6 +32,13 @@ def degrees_minutes(angle: float, digits: int) -> str:
 
 craft = st.models.nomoto().with_values({"K": 0.15, "T": 8.0, "U": 2.0})
 run = st.simulate(craft, "zigzag:20/20", duration=200.0, rudder_rate=10.0).resampled(1.0)
+figure, axes = plt.subplots(figsize=(5, 3), layout="constrained")
+axes.plot(run["x0"], run["y0"])
+axes.set(xlabel="north [m]", ylabel="east [m]", aspect="equal")
+
+# %%
+# As sentences:
+
 latitude, longitude, _ = ned2geodetic(run["x0"], run["y0"], 0.0 * run.time, 57.62, 10.95, 0.0)
 lines = []
 for k, time in enumerate(run.time):

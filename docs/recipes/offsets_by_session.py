@@ -6,6 +6,7 @@ What a session has of its own is not the ship's: a zero of the rudder's indicato
 once a session, as a draw from a population.
 """
 
+import matplotlib.pyplot as plt
 import numpy as np
 
 import seatrial as st
@@ -45,6 +46,10 @@ fit.summary()
 # The zeros, with their standard errors. What was added to the indicator is 2, -1 and -3 degrees, to take the error
 # away.
 
-for offset in fit.offsets:
-    value, error = np.degrees([offset.estimate, offset.standard_error])
-    print(f"{offset.name} {offset.group}: {value:.2f} +- {error:.3f} deg")
+days = [offset.group for offset in fit.offsets]
+zeros, errors = np.degrees([(o.estimate, o.standard_error) for o in fit.offsets]).T
+print(dict(zip(days, zeros.round(3), strict=True)))
+
+figure, axes = plt.subplots(figsize=(5, 3), layout="constrained")
+axes.errorbar(days, zeros, 1.96 * errors, fmt="o", capsize=4)
+axes.set(ylabel="added to the indicator [deg]")

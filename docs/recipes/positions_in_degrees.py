@@ -8,6 +8,8 @@ A GNSS log has degrees. Named ``lat`` and ``lon``, they become metres north and 
 
 from pathlib import Path
 
+import matplotlib.pyplot as plt
+
 from seatrial.api import prepared_run
 
 # %%
@@ -27,7 +29,7 @@ name = "nomoto"
 
 [[records]]
 files = "circle_35_*.csv"
-origin = { lat = 57.62, lon = 10.95 }
+origin = { lat = { value = 57.62, unit = "deg" }, lon = { value = 10.95, unit = "deg" } }
 time = { column = "UTC", unit = "utc" }
 
 [records.channels]
@@ -44,5 +46,7 @@ record = prepared_run(trial_file, "circle_35_port")
 print(record.to_dataframe().describe().loc[["min", "max"]].round(2))
 
 # %%
-record.plot()
+figure, axes = plt.subplots(figsize=(5, 4), layout="constrained")
+axes.plot(record["y0"], record["x0"])
+axes.set(xlabel="east [m]", ylabel="north [m]", aspect="equal")
 trial_file.unlink()

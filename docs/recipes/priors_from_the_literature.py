@@ -9,6 +9,7 @@ with its source and its scatter.
 
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 import pandas as pd
 
 import seatrial as st
@@ -54,7 +55,15 @@ rows = [
     for p in trial.model.parameters
     if p.free and p.prior
 ]
-pd.DataFrame(rows, columns=["coefficient", "mean", "standard deviation", "source"]).round(4)
+priors = pd.DataFrame(rows, columns=["coefficient", "mean", "standard deviation", "source"])
+priors.round(4)
+
+# %%
+# The same as intervals of one standard deviation. The thrust deduction is the one that was stated.
+
+figure, axes = plt.subplots(figsize=(5, 3), layout="constrained")
+axes.errorbar(priors["mean"], priors["coefficient"], xerr=priors["standard deviation"], fmt="o", capsize=4)
+axes.set(xlabel="prior")
 
 # %%
 # The report shows for each coefficient how much of its interval comes from the prior and how much from the records.

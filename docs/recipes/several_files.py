@@ -7,6 +7,7 @@ A compass and a rudder that were logged by two boxes, each at its own rate, one 
 
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
@@ -60,7 +61,11 @@ print(record.to_dataframe().head())
 # The result is one record on one time base. An order (``kind = "command"``) is held between its stamps, a measurement
 # is interpolated.
 
-record.plot()
+figure, axes = plt.subplots(figsize=(5, 3), layout="constrained")
+axes.plot(record.time, np.degrees(record["psi"]), label="heading")
+axes.plot(record.time, np.degrees(record["delta"]), label="rudder")
+axes.set(xlabel="time [s]", ylabel="angle [deg]")
+axes.legend(loc="lower left")
 
 for name in ("compass.csv", "servo.csv", "two_files.toml"):
     Path(name).unlink()
