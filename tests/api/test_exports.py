@@ -31,3 +31,23 @@ def test_a_path_that_exists_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="a folder, without a suffix"):
         st.export(kvlcc2(), "c99", tmp_path / "ship.c")
     assert list((tmp_path / "ship").iterdir()) == []
+
+
+def test_a_result_folder_stands_for_its_model(tmp_path: Path) -> None:
+    write_model(ModelFile(kvlcc2()), tmp_path / "model.toml")
+    assert sorted(st.export(tmp_path, "c99", tmp_path / "ship").files) == ["ship.c", "ship.h"]
+
+
+def test_a_folder_of_gains_is_refused_with_what_to_give(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"holds no model\.toml; give the folder that 'seatrial identify' wrote"):
+        st.export(tmp_path, "ardupilot", tmp_path / "boat.param")
+    (tmp_path / "gains.toml").write_text("[gains]\nKP = 1.0\n")
+    with pytest.raises(InputError, match="holds gains and no model; give the model file they were tuned on"):
+        st.export(tmp_path, "ardupilot", tmp_path / "boat.param")
+
+
+@pytest.mark.parametrize(("name", "example"), [("7ship", "ship_7ship"), ("while", "ship_while"), ("a b", "a_b")])
+def test_a_name_that_is_no_identifier_is_refused_with_one_that_is(name: str, example: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=f"such as '{example}'"):
+        st.export(kvlcc2(), "c99", tmp_path / name)
+    assert list(tmp_path.iterdir()) == []

@@ -128,6 +128,12 @@ def test_a_model_without_a_place_is_refused(model: st.Model, sentence: str) -> N
     assert sentence in unsuitable_craft(ExportSource(ModelFile(model), "model.toml", "2026-01-01"))
 
 
+def test_a_craft_whose_forces_are_not_newtons_is_refused() -> None:
+    file = ModelFile(st.models.model_named("thrusters"), ship=st.Ship("boat", {"m": 20.0, "I_z": 3.0}, "made", 1.0))
+    reason = unsuitable_craft(ExportSource(file, "model.toml", "2026-01-01"))
+    assert "M_u of 1 kg is less than the mass m of 20 kg" in reason
+
+
 def test_the_refusal_is_one_sentence(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="model 'nomoto' has no place in target 'vrx': it has no state 'u'"):
         st.export(st.models.nomoto(), "vrx", tmp_path / "ship.xml")

@@ -24,7 +24,7 @@ def export(
     """Write a model as files of another tool, all of them or none, and return them with notes on what they cost.
 
     Args:
-        model: a model, a fit, a model file or the path of one.
+        model: a model, a fit, a model file, or the path of one or of the result folder that holds it.
         to: name of the target, as `export_targets` lists them.
         path: new file, or new folder where the target writes several; its name, without suffix, becomes that of
             functions and identifiers.
@@ -77,9 +77,29 @@ def _source(model: "Fit | ModelFile | Model | str | Path") -> "ExportSource":
     from seatrial.api.simulation import as_model_file
     from seatrial.exporting import ExportSource
 
-    is_path = isinstance(model, str | Path)
-    file = load_model(model) if is_path else as_model_file(model)
-    return ExportSource(file, str(model) if is_path else f"model '{file.model.name}'", _date())
+    if isinstance(model, str | Path):
+        path = _model_path(Path(model))
+        return ExportSource(load_model(path), str(path), _date())
+    file = as_model_file(model)
+    return ExportSource(file, f"model '{file.model.name}'", _date())
+
+
+def _model_path(path: Path) -> Path:
+    """Return the model file that a path names: itself, or that of a result folder."""
+    if not path.is_dir():
+        return path
+    from seatrial.data.folder.result_folder import MODEL
+
+    if (path / MODEL).is_file():
+        return path / MODEL
+    gains = path / "gains.toml"
+    if gains.is_file():
+        raise InputError(
+            f"'{path}' holds gains and no model; give the model file they were tuned on, and --gains {gains}"
+        )
+    raise InputError(
+        f"folder '{path}' holds no {MODEL}; give the folder that 'seatrial identify' wrote, or a model file"
+    )
 
 
 def _date() -> str:

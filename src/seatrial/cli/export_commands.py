@@ -11,7 +11,9 @@ from seatrial.cli.screen import print_file, print_lines
 
 @app.command()
 def export(
-    model_file: Annotated[Path, typer.Argument(metavar="MODEL.toml", help="Model file, as identify writes it.")],
+    model_file: Annotated[
+        Path, typer.Argument(metavar="MODEL.toml", help="Model file, as identify writes it, or its folder.")
+    ],
     to: Annotated[
         str | None,
         typer.Option("--to", metavar="TARGET", help="c99, fmu, casadi, matlab, vrx, gazebo or ardupilot; see --list."),

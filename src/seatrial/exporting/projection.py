@@ -106,8 +106,14 @@ def unsuitable_hull(file: ModelFile) -> str:
     absent = [b for b in (*HULL, "X_sum", "Y_sum", "N_sum") if b not in names]
     if absent:
         return f"it has no binding '{absent[0]}', so that forces of hull and actuators cannot be separated"
-    if _rigid_body(file) is None:
+    rigid = _rigid_body(file)
+    if rigid is None:
         return "neither the model nor its ship states the mass m and the inertia I_z that the link needs"
+    if "M_u" in model.parameters and model.parameters["M_u"].value < rigid.mass:
+        return (
+            f"its M_u of {model.parameters['M_u'].value:.4g} kg is less than the mass m of {rigid.mass:.4g} kg, so "
+            "that its forces are not in newtons; identify it with the bollard thrust of a thruster"
+        )
     return ""
 
 

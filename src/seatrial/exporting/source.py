@@ -159,9 +159,11 @@ def require_identifiers(source: ExportSource, name: str) -> None:
         InputError: the name of the file, or a symbol of the model, is none.
     """
     if not _is_c_identifier(name):
+        cleaned = re.sub(r"[^A-Za-z0-9_]", "_", name)
+        example = cleaned if _is_c_identifier(cleaned) else f"ship_{cleaned}"
         raise InputError(
             f"'{name}', the name that the path gives, is no C identifier; use letters, digits and underscores, such as "
-            f"{re.sub(r'[^A-Za-z0-9_]', '_', name) or 'ship'!r}"
+            f"'{example}'"
         )
     model = source.model
     for symbol in (*model.states, *model.input_names, *model.outputs, *model.parameters.names):
