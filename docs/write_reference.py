@@ -1,6 +1,6 @@
-"""Write docs/command-line.md from the commands themselves.
+"""Write docs/command-line.md from the commands, and the keys at the end of docs/trial-file.md from their schema.
 
-`python docs/write_reference.py --check` writes nothing and says whether the page differs.
+`python docs/write_reference.py --check` writes nothing and names each page that differs.
 """
 
 import re
@@ -10,10 +10,14 @@ from pathlib import Path
 from typing import Any
 
 import typer
+from trial_keys import trial_keys
 
 from seatrial.cli import app
+from seatrial.data.trial.schema import trial_schema
 
-PAGE = Path(__file__).parent / "command-line.md"
+DOCS = Path(__file__).parent
+TRIAL_FILE = DOCS / "trial-file.md"
+MARK = "<!-- written by write_reference.py -->\n"
 HEAD = """# Command line
 
 Each command is also a function of the same name in Python ([Names in Python](api.md)). Exit codes: 0 done, 2 bad
@@ -79,16 +83,22 @@ def _default(parameter: Any) -> str:
     return "" if value is None or value is False or value in ("", ()) or callable(value) else f"`{value}`"
 
 
+def pages() -> Iterator[tuple[Path, str]]:
+    """Yield path and text of each page."""
+    yield DOCS / "command-line.md", page()
+    by_hand, mark, _ = TRIAL_FILE.read_text(encoding="utf-8").partition(MARK)
+    yield TRIAL_FILE, f"{by_hand}{mark}\n{trial_keys(trial_schema())}"
+
+
 def main(*, check: bool) -> int:
-    """Write the page, or say that it differs; return 1 where it did."""
-    text = page()
-    if PAGE.is_file() and PAGE.read_text(encoding="utf-8") == text:
-        return 0
-    if check:
-        print(f"{PAGE.name} is not what the commands say; run python docs/write_reference.py")
-    else:
-        PAGE.write_text(text, encoding="utf-8")
-    return int(check)
+    """Write the pages, or name those that differ; return 1 where one did."""
+    differing = [(p, t) for p, t in pages() if not p.is_file() or p.read_text(encoding="utf-8") != t]
+    for path, text in differing:
+        if check:
+            print(f"{path.name} is not what the code says; run python docs/write_reference.py")
+        else:
+            path.write_text(text, encoding="utf-8")
+    return int(check and bool(differing))
 
 
 if __name__ == "__main__":

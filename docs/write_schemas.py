@@ -54,14 +54,14 @@ def page_text(page: str) -> str:
             if entry.get("properties"):
                 tables.setdefault(title, f"### {title}\n\n{_table(entry)}")
             else:
-                words[title] = _kind(entry)
+                words[title] = kind_of(entry)
     text = re.sub(r"\[(\w+)\]\(#\w+\)", lambda link: words.get(link[1], link[0]), "\n".join(tables.values()))
     parts = re.split(r"(<!-- (?:written|end of what is written) by write_schemas\.py -->\n)", page)
     return "".join([parts[0], parts[1], "\n" + text, *parts[3:]])
 
 
 def _table(schema: JsonSchema) -> str:
-    rows = [f"| `{key}` | {_kind(entry)} | {_remark(entry)} |" for key, entry in schema["properties"].items()]
+    rows = [f"| `{key}` | {kind_of(entry)} | {_remark(entry)} |" for key, entry in schema["properties"].items()]
     return "\n".join(
         [schema.get("description", "").split("\n\n")[0], "", "| key | type | meaning |", "|---|---|---|", *rows, ""]
     )
@@ -72,7 +72,7 @@ def _remark(entry: JsonSchema) -> str:
     return f"{text} (derived)".lstrip() if entry.get("readOnly") else text
 
 
-def _kind(entry: JsonSchema) -> str:
+def kind_of(entry: JsonSchema) -> str:
     """Return the type of a value in a word or two, with a link where it has a table of its own."""
     if entry.get("x-stored"):
         return "name in arrays.npz"
@@ -80,17 +80,17 @@ def _kind(entry: JsonSchema) -> str:
         title = entry["$ref"].rpartition("/")[2]
         return f"[{title}](#{title.lower()})"
     if "anyOf" in entry or "oneOf" in entry:
-        kinds = (_kind(part) for part in entry.get("anyOf", entry.get("oneOf")))
+        kinds = (kind_of(part) for part in entry.get("anyOf", entry.get("oneOf")))
         return " or ".join(dict.fromkeys(word for kind in kinds for word in kind.split(" or ")))
     if "enum" in entry:
         return ", ".join(map(str, entry["enum"]))
     if isinstance(entry.get("type"), list):
         return " or ".join(entry["type"])
     if entry.get("type") == "array":
-        return f"list of {_kind(entry['items'])}" if isinstance(entry.get("items"), dict) else "list"
+        return f"list of {kind_of(entry['items'])}" if isinstance(entry.get("items"), dict) else "list"
     if entry.get("type") == "object":
         values = entry.get("additionalProperties")
-        return f"name → {_kind(values)}" if isinstance(values, dict) else entry.get("title", "table")
+        return f"name → {kind_of(values)}" if isinstance(values, dict) else entry.get("title", "table")
     return entry.get("type", "value")
 
 

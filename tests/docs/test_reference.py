@@ -1,11 +1,21 @@
-"""The page of the command line is what the commands say."""
+"""Command line and keys of the trial file are what the code says."""
 
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 
-def test_the_page_of_the_command_line_is_current(repository: Path) -> None:
+def test_command_line_and_keys_are_current(repository: Path) -> None:
     command = [sys.executable, "docs/write_reference.py", "--check"]
     done = subprocess.run(command, cwd=repository, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_every_key_of_the_trial_file_has_its_meaning_on_its_page_or_that_of_thrusters(repository: Path) -> None:
+    page = (repository / "docs" / "trial-file.md").read_text(encoding="utf-8")
+    meanings, _, keys = page.partition("## Every key, with type, unit and default")
+    meanings += (repository / "docs" / "thrusters.md").read_text(encoding="utf-8")
+    listed = set(re.findall(r"^\| `(\w+)` \|", keys, re.MULTILINE))
+    assert len(listed) > 100
+    assert sorted(key for key in listed if not re.search(rf"\b{key}\b", meanings)) == []

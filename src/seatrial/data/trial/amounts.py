@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, GetCoreSchemaHandler
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic.json_schema import JsonSchemaValue
 from pydantic_core.core_schema import CoreSchema, no_info_after_validator_function
 
 from seatrial.core.values import InputError, si_unit
@@ -87,6 +88,9 @@ class InSi:
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         written = SiAmount if self.table is Amount else SiStandardDeviation
         return no_info_after_validator_function(self._in_si, handler.generate_schema(written))
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        return {**handler(schema), **({"x-unit": self.unit} if self.unit else {})}
 
     def _in_si(self, amount: Amount | StandardDeviation) -> float | None:
         if self.unit and amount.unit and si_unit(amount.unit)[1] != self.unit:

@@ -1,0 +1,96 @@
+"""The part of docs/trial-file.md that lists every key: type, unit and default, from the schema of the trial file."""
+
+import json
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from write_schemas import kind_of
+
+JsonSchema = Mapping[str, Any]
+REQUIRED = "required"
+
+
+def trial_keys(schema: JsonSchema) -> str:
+    """Return a table for each table of the trial file, in the order in which they are met from the root."""
+    return "\n".join(_table(path, entry, schema) for path, entry in _tables(schema))
+
+
+def _tables(schema: JsonSchema) -> Iterator[tuple[str, JsonSchema]]:
+    """Yield the heading and the schema of each table, every one once."""
+    waiting, met = [("", schema)], set()
+    while waiting:
+        path, entry = waiting.pop(0)
+        yield path, entry
+        for key, value in entry.get("properties", {}).items():
+            for name, form in _references(value):
+                if name in met or not schema["$defs"][name].get("properties"):
+                    continue
+                met.add(name)
+                waiting.append((form.format(f"{path.strip('[]')}.{key}".lstrip(".")), schema["$defs"][name]))
+
+
+def _references(value: JsonSchema) -> Iterator[tuple[str, str]]:
+    """Yield the tables that a value may be, each with how its heading is written."""
+    if "$ref" in value:
+        yield value["$ref"].rpartition("/")[2], "[{}]"
+    for part in value.get("anyOf", ()):
+        yield from _references(part)
+    for inner, form in ((value.get("items"), "[[{}]]"), (value.get("additionalProperties"), "[{}.NAME]")):
+        if isinstance(inner, dict):
+            yield from ((name, form) for name, _ in _references(inner))
+
+
+def _table(path: str, entry: JsonSchema, schema: JsonSchema) -> str:
+    required = set(entry.get("required", ()))
+    rows = [
+        f"| `{key}` | {_type(value, schema)} | {REQUIRED if key in required else _default(value)} |"
+        for key, value in entry.get("properties", {}).items()
+    ]
+    heading = f"### Keys of `{path}`" if path else "### Keys outside any table"
+    return "\n".join([heading, "", "| key | type | default |", "|---|---|---|", *rows, ""])
+
+
+def _type(value: JsonSchema, schema: JsonSchema) -> str:
+    """Return the type in words; an amount with the SI unit that counts where none is written."""
+    if "$ref" in value:
+        target = schema["$defs"][value["$ref"].rpartition("/")[2]]
+        return _words(target["enum"]) if "enum" in target else "table"
+    if "enum" in value:
+        return _words(value["enum"])
+    if "anyOf" in value:
+        parts = list(_alternatives(value))
+        unit = next((f" [{part['x-unit']}]" for part in (value, *value["anyOf"]) if "x-unit" in part), "")
+        if any(map(_is_amount, parts)):
+            rest = (_type(part, schema) for part in parts if not _is_amount(part) and part.get("type") != "number")
+            return " or ".join(["amount" + unit, *rest])
+        return " or ".join(dict.fromkeys(_type(part, schema) for part in parts)) + unit
+    if value.get("type") == "array":
+        return f"list of {_type(value['items'], schema)}" if isinstance(value.get("items"), dict) else "list"
+    if value.get("type") == "object":
+        values = value.get("additionalProperties")
+        return f"name → {_type(values, schema)}" if isinstance(values, dict) else "table"
+    return kind_of(value)
+
+
+def _words(values: list[str]) -> str:
+    return ", ".join(f"`{json.dumps(value)}`" for value in values)
+
+
+def _alternatives(value: JsonSchema) -> Iterator[JsonSchema]:
+    """Yield what a value may be besides null, through nested alternatives."""
+    for part in value["anyOf"]:
+        if "anyOf" in part:
+            yield from _alternatives(part)
+        elif part.get("type") != "null":
+            yield part
+
+
+def _is_amount(part: JsonSchema) -> bool:
+    return part.get("$ref", "").rpartition("/")[2] in ("Amount", "StandardDeviation")
+
+
+def _default(value: JsonSchema) -> str:
+    default = value.get("default")
+    if default is None or default in ("", [], {}) or isinstance(default, dict):
+        return ""
+    return f"`{json.dumps(default, ensure_ascii=False)}`"
