@@ -9,6 +9,7 @@ from seatrial.data.trial import EstimateSettings, Role, TrialRecord
 from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.predict.holdout_windows import HoldoutProtocol
 from seatrial.estimation.predict.predict_runs import RunPredictions, predict_runs
+from seatrial.estimation.predict.prediction_intervals import holdout_draws
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.simulate import replay
@@ -98,3 +99,8 @@ def test_bands_cannot_be_judged_with_few_runs(model: Model) -> None:
     found = estimate_model(model, Runs.one_session_each(runs, 8.0), SETTINGS, EstimatorOptions(workers=1))
     with pytest.raises(InputError, match="too few training runs"):
         holdout_windows(found, [TrialRecord(r, Role.TRAIN, r.name) for r in runs], [], HoldoutProtocol(window_s=25.0))
+
+
+@pytest.mark.parametrize(("runs", "draws"), [(4, 32), (50, 32), (100, 16), (200, 8), (1000, 8)])
+def test_many_runs_left_out_need_few_draws_each(runs: int, draws: int) -> None:
+    assert holdout_draws(runs) == draws

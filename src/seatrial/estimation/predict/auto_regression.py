@@ -20,8 +20,8 @@ _PENALTIES = 10.0 ** np.arange(-6, 6)
 """Ridge penalties tried on standardised features; that which predicts training windows best, run freely, is taken."""
 _CHOICE_LENGTH = 10.0
 """Length of the training windows by which the penalty is chosen, in beginnings of a window; chosen."""
-_MAX_ROWS, _MAX_CHOICE_WINDOWS = 20_000, 40
-"""Samples of all runs that a regression is fitted to, and windows of a run it is chosen by, evenly spread; chosen."""
+_MAX_ROWS, _MAX_CHOICE_WINDOWS, _MAX_CHOICES = 20_000, 40, 400
+"""Samples of all runs that a regression is fitted to, windows of a run it is chosen by, and of all runs; chosen."""
 _DEGREE = 2
 """Of the polynomial through a window's beginning: what a craft does in it is no more than to accelerate; chosen."""
 _RATES = ("u", "v", "r", "p", "q", "w")
@@ -119,13 +119,16 @@ def fit_auto_regression(
 def _with_best_penalty(box: AutoRegression, train: Sequence[Record], weights: Array, seconds: float) -> AutoRegression:
     """The regression with those of the weights (p, k + 1, channels) that predict training windows best."""
     length = min(_CHOICE_LENGTH * seconds, 0.5 * min(record.duration for record in train))
-    errors = np.zeros(len(weights))
-    for record in train:
-        windows = Windows.cut([record], length).evenly_spread(_MAX_CHOICE_WINDOWS)
-        if len(windows) and windows.steps > box.lags:
-            measured = np.stack([piece.matrix(box.channels) for piece in windows.pieces])
-            runs = box._run(measured, windows.inputs(box.model), weights, box.lags)
-            errors += np.sum(np.square((runs - measured) / np.ptp(box.limits, axis=0)), axis=(1, 2, 3))
+    cut = Windows.cut(train, length)
+    of_run = [np.flatnonzero(cut.run == i) for i in range(len(train))]
+    spread = [rows[np.linspace(0, len(rows) - 1, min(len(rows), _MAX_CHOICE_WINDOWS)).round().astype(np.int64)]
+              for rows in of_run]  # fmt: skip
+    windows = cut.selected(np.concatenate(spread)).evenly_spread(_MAX_CHOICES)
+    if not len(windows) or windows.steps <= box.lags:
+        return replace(box, weights=weights[0])
+    measured = np.stack([piece.matrix(box.channels) for piece in windows.pieces])
+    runs = box._run(measured, windows.inputs(box.model), weights, box.lags)
+    errors = np.sum(np.square((runs - measured) / np.ptp(box.limits, axis=0)), axis=(1, 2, 3))
     return replace(box, weights=weights[int(np.argmin(errors))])
 
 

@@ -29,6 +29,7 @@ from seatrial.estimation.predict.open_loop import (
 )
 from seatrial.estimation.predict.prediction_intervals import (
     DRAWS,
+    holdout_draws,
     holdout_error,
     holdout_model,
     prediction_spread,
@@ -106,7 +107,7 @@ def calibrate_intervals(
     def one(i: int) -> list[HoldoutError]:
         record, rng = train[i].record, np.random.default_rng(streams[i])
         by = holdout_model(problem, left_out[i], train[i].session, record)
-        missed = [holdout_error(problem, by, record, seconds, length, scatter, rng)]
+        missed = [holdout_error(problem, by, record, seconds, length, scatter, rng, holdout_draws(len(train)))]
         pieces = Windows.cut([record], PIECE_S).pieces[1:] if layout else []
         missed += [track_holdout_error(problem, by, piece, seconds, scatter, rng) for piece in pieces]
         index = extrapolation_index(moved[i], [*moved[:i], *moved[i + 1 :]], layout)

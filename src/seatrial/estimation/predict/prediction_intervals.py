@@ -30,6 +30,7 @@ from seatrial.physics.simulate.channels import inputs_of
 _TRACK_CHANNELS = ("psi", "x0", "y0")
 # ships drawn for the interval of a prediction, and for that of a run left out, ours
 DRAWS, HOLDOUT_DRAWS = 100, 32
+_POOLED_DRAWS, _FEWEST_DRAWS = 1600, 8  # of all runs left out together, and of each where they are many; chosen
 _ROWS_AT_ONCE = 200_000  # of drawn windows, simulated together; chosen: some 20 MB
 
 
@@ -142,6 +143,11 @@ def _measure_spread(
     return {n: float(np.sqrt(np.mean(np.square(d)))) for n, d in values_by_measure.items() if len(d) >= enough}
 
 
+def holdout_draws(runs: int) -> int:
+    """Return the draws for each of so many runs left out: what they miss is pooled, so that many runs need few each."""
+    return max(_FEWEST_DRAWS, min(HOLDOUT_DRAWS, _POOLED_DRAWS // max(runs, 1)))
+
+
 @dataclass(frozen=True, eq=False)
 class HoldoutModel:
     """A model fitted without a session's run, and what the run is expected to have by the other sessions."""
@@ -164,15 +170,14 @@ def holdout_error(
     length: float,
     uncertainty: PredictionUncertainty,
     rng: np.random.Generator,
+    draws: int = HOLDOUT_DRAWS,
 ) -> HoldoutError | None:
     """Return how a run is missed by a model that was fitted without it; None where the simulation diverges."""
     try:
         run = simulate_open_loop(template, holdout.model, record, holdout.nuisances, seconds)
     except InputError:
         return None
-    spread = prediction_spread(
-        template, holdout.model, record, run, holdout.nuisances, length, uncertainty, rng, HOLDOUT_DRAWS
-    )
+    spread = prediction_spread(template, holdout.model, record, run, holdout.nuisances, length, uncertainty, rng, draws)
     if not spread.channels:
         return None
     pairs = compare_measures(record, run.record, length) if is_steered(record, holdout.model) else {}
