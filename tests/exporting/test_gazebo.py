@@ -12,7 +12,7 @@ import seatrial as st
 from seatrial.core.values import InputError, Record
 from seatrial.data.folder.model_file import ModelFile
 from seatrial.exporting import ExportSource
-from seatrial.exporting.gazebo import GZ_SIM, VRX, training_motions, unsuitable_craft
+from seatrial.exporting.gazebo import GZ_SIM, VRX, training_motions, training_runs, unsuitable_craft
 from seatrial.exporting.projection import project
 
 MASS, INERTIA, ADDED = 20.0, 3.0, (2.0, 12.0, 1.0)  # kg, kg m^2, of a craft of a metre
@@ -61,7 +61,8 @@ def motions(with_more_terms: ModelFile) -> list[Record]:
 def test_what_the_target_has_is_taken_over_unchanged() -> None:
     file = ModelFile(craft(), ship=st.Ship("barge", {"L": 1.0}, "made", 30.0))
     records = training_motions(ExportSource(file, "model.toml", "2026-01-01"))
-    found = project(file, VRX, records)
+    found = project(file, VRX, records, records[:1])
+    assert found.run_errors[0].refitted == found.errors[0].refitted
     wanted = dict(zip(("xDotU", "yDotV", "nDotR"), ADDED, strict=True)) | DRAG
     # of surge little is determined: the speed hardly changes
     for name in ("yDotV", "nDotR", "yV", "nR", "nRR"):
@@ -126,6 +127,13 @@ def test_the_file_holds_the_plugin_and_its_price(with_more_terms: ModelFile, tmp
 )
 def test_a_model_without_a_place_is_refused(model: st.Model, sentence: str) -> None:
     assert sentence in unsuitable_craft(ExportSource(ModelFile(model), "model.toml", "2026-01-01"))
+
+
+def test_training_runs_are_those_of_the_model_that_turn_most(with_more_terms: ModelFile, motions: list[Record]) -> None:
+    source = ExportSource(with_more_terms, "model.toml", "2026-01-01", runs=tuple(motions))
+    runs = training_runs(source)
+    assert [run.name for run in runs] == ["turning-circle:20", "zigzag:20/20"]
+    assert runs[0]["psi"] == pytest.approx(motions[1]["psi"], abs=1e-9)
 
 
 def test_a_craft_whose_forces_are_not_newtons_is_refused() -> None:

@@ -1,6 +1,7 @@
 """Models written as files of other tools."""
 
 import os
+from contextlib import suppress
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -44,6 +45,7 @@ def export(
     _require_new(path, target)
     if reason := target.unsuitable(source):
         raise InputError(f"model '{source.model.name}' has no place in target '{to}': {reason}")
+    source = replace(source, runs=_training_runs(model)) if target.takes_runs else source
     result = target.export(source, path.stem)
     if target.suffix:
         (content,) = result.files.values()
@@ -82,6 +84,21 @@ def _source(model: "Fit | ModelFile | Model | str | Path") -> "ExportSource":
         return ExportSource(load_model(path), str(path), _date())
     file = as_model_file(model)
     return ExportSource(file, f"model '{file.model.name}'", _date())
+
+
+def _training_runs(model: "Fit | ModelFile | Model | str | Path") -> "tuple[Record, ...]":
+    """Return the runs that a fit, or the fit beside the model file, was trained on; none of other models."""
+    from seatrial.core.results import Fit
+    from seatrial.data.folder.result_folder import load_result
+
+    fit = model
+    if isinstance(model, str | Path):
+        with suppress(InputError):  # a model file may stand alone, or beside something else
+            fit = load_result(_model_path(Path(model)).parent)
+    if not isinstance(fit, Fit):
+        return ()
+    held_out = {prediction.record for prediction in fit.validation}
+    return tuple(record for record in fit.records if record.name not in held_out)
 
 
 def _model_path(path: Path) -> Path:

@@ -8,15 +8,21 @@ leaves these coefficients as they are.
 """
 
 import math
+from collections.abc import Sequence
+from contextlib import suppress
+
+import numpy as np
 
 from seatrial.core.values import InputError, Record
 from seatrial.exporting.identified_range import range_text
-from seatrial.exporting.projection import ForceTerm, MotionError, TargetStructure, project, unsuitable_hull
-from seatrial.exporting.source import ExportSource, provenance_lines, require_values
+from seatrial.exporting.projection import MotionError, project
+from seatrial.exporting.source import ExportSource, plain, provenance_lines, require_values
 from seatrial.exporting.target import Export
+from seatrial.exporting.target_structure import ForceTerm, TargetStructure, unsuitable_hull
 from seatrial.exporting.templating import rendered
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.manoeuvres.thrust_programme import thrust_programme
+from seatrial.physics.simulate.replay import replay
 from seatrial.physics.simulate.steer import SOLAS_SLEW_RATE, manoeuvre
 from seatrial.physics.simulate.thrust import thrust_manoeuvre
 
@@ -46,6 +52,7 @@ GZ_SIM = TargetStructure(
 )  # fmt: skip
 """Stability derivatives: drag and added mass are negative."""
 RUDDER_MOTIONS, THRUST_MOTIONS = ("zigzag:20/20", "turning-circle:20"), ("zigzag:30/20", "spin:30")
+_MOST_RUNS = 4  # training runs that a projection is refitted over; chosen
 _DIGITS = 9  # of a coefficient: more than any refit determines
 
 
@@ -72,6 +79,15 @@ def unsuitable_craft(source: ExportSource) -> str:
     return unsuitable_hull(source.file)
 
 
+def training_runs(source: ExportSource) -> list[Record]:
+    """Return the model under the inputs of its training runs: those that turn most, without those it runs away on."""
+    runs = []
+    for record in source.runs:
+        with suppress(InputError):
+            runs.append(replay(source.model, record))
+    return sorted(runs, key=lambda run: -float(np.mean(run["r"] ** 2)))[:_MOST_RUNS]
+
+
 def training_motions(source: ExportSource) -> list[Record]:
     """Return a zigzag and a circle of the model, of a craft without a rudder a zigzag and a turn by thrust.
 
@@ -95,8 +111,10 @@ def _export(source: ExportSource, name: str, structure: TargetStructure, templat
         motions = training_motions(source)
     except InputError as error:
         raise InputError(f"the motions to fit the projection to cannot be simulated: {error}") from None
-    projection = project(source.file, structure, motions)
+    runs = training_runs(source)
+    projection = project(source.file, structure, motions, runs)
     price = [_price_text(error) for error in projection.errors]
+    price.append(_runs_text(projection.run_errors))
     content = rendered(
         template,
         head=[*provenance_lines(source), range_text(source)],
@@ -107,6 +125,17 @@ def _export(source: ExportSource, name: str, structure: TargetStructure, templat
         coefficients=[(tag, f"{value:.{_DIGITS}g}") for tag, value in projection.coefficients.items()],
     )
     return Export({f"{name}.xml": content}, (*price, range_text(source)))
+
+
+def _runs_text(errors: Sequence[MotionError]) -> str:
+    if not errors:
+        return "Refitted over these two alone: no training runs lie beside the model file."
+    names = ", ".join(plain(error.manoeuvre) for error in errors)
+    refitted, truncated = (
+        math.sqrt(math.fsum(value**2 for value in values) / len(errors))
+        for values in ([e.refitted for e in errors], [e.truncated for e in errors])
+    )
+    return _price_text(MotionError(f"training runs {names}", refitted, truncated))
 
 
 def _price_text(error: MotionError) -> str:

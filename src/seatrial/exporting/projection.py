@@ -16,65 +16,22 @@ from seatrial.core.equations import Model, ModelEquations
 from seatrial.core.equations.manifest import stored_equations
 from seatrial.core.values import Array, InputError, Parameter, Parameters, Record
 from seatrial.data.folder.model_file import ModelFile
-from seatrial.numerics.kernels.integrate import evaluate
+from seatrial.exporting.target_structure import ADDED, OFF_COURSE, RigidBody, TargetStructure, rigid_body
+from seatrial.exporting.truncation import truncation
 from seatrial.physics.simulate.channels import inputs_of
 from seatrial.physics.simulate.replay import trajectory
 
 if TYPE_CHECKING:
     import sympy as sp
 
-HULL = ("X_H", "Y_H", "N_H")
 MOTION = ("u", "v", "r", "psi")
 _MASS, _INERTIA, _X_G = "rigid_mass", "rigid_inertia", "rigid_x_G"
-_ADDED: tuple[str, ...] = ("xDotU", "yDotV", "nDotR")
 _LARGEST_ADDED = (
     0.9  # of the rigid mass: a simulator that adds the force of added mass a step late diverges at 1; chosen
 )
 _RIDGE = 1e-3  # weight of a coefficient's departure from truncation, for what the motions do not determine; chosen
 _EVALUATIONS = 60  # rounds of the refit; chosen, it ends before
-_OFF_COURSE = 0.2  # v over u, and L r over u, at which quadratic terms are read off the model; chosen
-_SMALL = 1e-3  # the same for linear terms; chosen
 _DIVERGED_SIZE = 10.0  # of a residual, in rms values of its channel, where the projected craft runs away; chosen
-
-
-@dataclass(frozen=True)
-class RigidBody:
-    """Mass [kg], yaw inertia about the centre of gravity [kg m^2], and how far forward of the origin that is [m]."""
-
-    mass: float
-    inertia: float
-    x_G: float
-
-    @property
-    def inertia_at_origin(self) -> float:
-        """Yaw inertia about the origin [kg m^2]."""
-        return self.inertia + self.mass * self.x_G**2
-
-
-@dataclass(frozen=True)
-class ForceTerm:
-    """A term of the target: `tag` times `first` times `second` (of u, v, r; ``|u|`` for a magnitude; empty: 1)."""
-
-    tag: str
-    force: str
-    first: str
-    second: str = ""
-    sign: float = 1.0
-
-
-@dataclass(frozen=True)
-class TargetStructure:
-    """What a simulator computes for one link.
-
-    Attributes:
-        terms: of damping.
-        added_mass_sign: of xDotU, yDotV, nDotR for an added mass that is positive.
-        is_inertial: whether added mass acts on the acceleration in space (u' - v r), else on the rate (u') alone.
-    """
-
-    terms: tuple[ForceTerm, ...]
-    added_mass_sign: float
-    is_inertial: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,135 +51,45 @@ class Projection:
     truncated: Mapping[str, float]
     rigid: RigidBody
     errors: tuple[MotionError, ...]
+    run_errors: tuple[MotionError, ...] = ()
 
 
-def unsuitable_hull(file: ModelFile) -> str:
-    """Return why a model cannot be projected; empty where it can."""
-    model = file.model
-    absent = [s for s in ("u", "v", "r", "psi") if s not in model.states]
-    if absent:
-        return f"it has no state '{absent[0]}', and the target is a craft in surge, sway and yaw"
-    names = {b.name for b in model.bindings}
-    absent = [b for b in (*HULL, "X_sum", "Y_sum", "N_sum") if b not in names]
-    if absent:
-        return f"it has no binding '{absent[0]}', so that forces of hull and actuators cannot be separated"
-    rigid = _rigid_body(file)
-    if rigid is None:
-        return "neither the model nor its ship states the mass m and the inertia I_z that the link needs"
-    if "M_u" in model.parameters and model.parameters["M_u"].value < rigid.mass:
-        return (
-            f"its M_u of {model.parameters['M_u'].value:.4g} kg is less than the mass m of {rigid.mass:.4g} kg, so "
-            "that its forces are not in newtons; identify it with the bollard thrust of a thruster"
-        )
-    return ""
+def project(
+    file: ModelFile, structure: TargetStructure, records: Sequence[Record], runs: Sequence[Record] = ()
+) -> Projection:
+    """Return the coefficients refitted over records and runs, all of which the model of the file has simulated.
 
-
-def project(file: ModelFile, structure: TargetStructure, records: Sequence[Record]) -> Projection:
-    """Return the coefficients refitted over the records, which the model of the file has simulated.
+    Args:
+        records: manoeuvres, on each of which the refit has to be better than truncation.
+        runs: under the inputs of the training runs; together they weigh as much as the manoeuvres.
 
     Raises:
         InputError: the truncated and the refitted craft both run away.
     """
-    rigid = _rigid_body(file)
+    rigid = rigid_body(file)
     assert rigid is not None
-    model, truncated = file.model, _truncation(file, structure, rigid, records)
+    model, truncated = file.model, truncation(file, structure, rigid, records)
     craft = _projected(model, structure, rigid)
     start = np.array(list(truncated.values()))
     first = _errors(craft, truncated, records)
-    fitted = _refitted(craft, structure, rigid, start, records)
+    fitted = _refitted(craft, structure, rigid, start, records, runs)
     second = _errors(craft, dict(zip(truncated, fitted, strict=True)), records)
     if not math.fsum(second) < math.fsum(first) or any(b > a for a, b in zip(first, second, strict=True)):
         fitted, second = start, first
     if not math.isfinite(math.fsum(second)):
         raise InputError(f"model '{model.name}' projected onto the target runs away; the target cannot hold it")
+    values = dict(zip(truncated, fitted.tolist(), strict=True))
     errors = tuple(MotionError(r.name, b, a) for r, a, b in zip(records, first, second, strict=True))
-    return Projection(dict(zip(truncated, fitted.tolist(), strict=True)), truncated, rigid, errors)
-
-
-def _rigid_body(file: ModelFile) -> RigidBody | None:
-    ship = {} if file.ship is None else file.ship.particulars
-    values = {**ship, **{p.name: p.value for p in file.model.parameters}}
-    if not {"m", "I_z"} <= set(values):
-        return None
-    return RigidBody(float(values["m"]), float(values["I_z"]), float(values.get("x_G", 0.0)))
-
-
-def _added_masses(file: ModelFile, rigid: RigidBody, forces: Mapping[str, Array]) -> list[float]:
-    """m_x, m_y, J_z of the model; from its sums with the rigid body where it has these."""
-    parameters = file.model.parameters
-    if "m_x" in parameters:
-        return [parameters[n].value for n in ("m_x", "m_y", "J_z")]
-    sums = [float(forces[n][0]) if n in forces else parameters[n].value for n in ("M_u", "M_v", "M_r")]
-    return [total - own for total, own in zip(sums, (rigid.mass, rigid.mass, rigid.inertia_at_origin), strict=True)]
-
-
-def _required_forces(
-    model: Model, structure: TargetStructure, rigid: RigidBody, added: list[float], states: Array,
-    inputs: Array, bindings: Mapping[str, Array],
-) -> dict[str, Array]:  # fmt: skip
-    """Return the damping forces X, Y, N with which the target would accelerate as the model does, (n,) each."""
-    rates = np.empty_like(states)
-    evaluate(model.compiled.rates, states, inputs, model.parameters.values, 0.0, rates)
-    u, v, r = (states[:, model.states.index(s)] for s in ("u", "v", "r"))
-    u_dot, v_dot, r_dot = (rates[:, model.states.index(s)] for s in ("u", "v", "r"))
-    m, x_G = rigid.mass, rigid.x_G
-    A_x, A_y, A_r = added
-    in_space = 1.0 if structure.is_inertial else 0.0
-    X, Y, N = (bindings[f"{axis}_sum"] - bindings[f"{axis}_H"] for axis in "XYN")
-    across = v_dot + u * r
-    return {
-        "X": (m + A_x) * u_dot - (m + in_space * A_x) * v * r - m * x_G * r**2 - X,
-        "Y": m * across + A_y * (v_dot + in_space * u * r) + m * x_G * r_dot - Y,
-        "N": (rigid.inertia_at_origin + A_r) * r_dot + m * x_G * across - N,
-    }
-
-
-def _truncation(
-    file: ModelFile, structure: TargetStructure, rigid: RigidBody, records: Sequence[Record]
-) -> dict[str, float]:
-    """Return the coefficients that the model itself has for the target's terms, at its approach speed."""
-    model, speed = file.model, float(records[0]["u"][0]) or 1.0
-    length = model.parameters["L"].value if "L" in model.parameters else 1.0
-    sway, turn = _OFF_COURSE * speed, _OFF_COURSE * speed / length
-    rows = {"": (speed, 0.0, 0.0), "v": (speed, sway, 0.0), "r": (speed, 0.0, turn), "vr": (speed, sway, turn),
-            "small v": (speed, _SMALL * speed, 0.0), "small r": (speed, 0.0, _SMALL * speed / length)}  # fmt: skip
-    states = np.zeros((2 * len(rows), len(model.states)))
-    places = [model.states.index(s) for s in ("u", "v", "r")]
-    states[: len(rows), places] = list(rows.values())
-    states[len(rows) :, places] = [(u, -v, -r) for u, v, r in rows.values()]
-    inputs = np.repeat(inputs_of(model, records[0])[:1], len(states), axis=0)
-    bindings = model.forces(states, inputs)
-    added = _added_masses(file, rigid, bindings)
-    forces = _required_forces(model, structure, rigid, added, states, inputs, bindings)
-    index = {key: k for k, key in enumerate(rows)}
-
-    def part(force: str, key: str, parity: float) -> float:
-        """The part of a force that is odd (-1) or even (1) in sway and yaw."""
-        values, k = forces[force], index[key]
-        return 0.5 * float(values[k] + parity * values[k + len(rows)])
-
-    made = dict(zip(_ADDED, (structure.added_mass_sign * a for a in added), strict=True))
-    ahead = part("X", "", 1.0)
-    for term in structure.terms:
-        kind = f"{term.first}{term.second}"
-        force = term.force
-        linear = {"v": part(force, "small v", -1.0) / (_SMALL * speed),
-                  "r": part(force, "small r", -1.0) / (_SMALL * speed / length)}  # fmt: skip
-        value = {
-            "u|u|": ahead / speed**2, "vv": (part(force, "v", 1.0) - ahead) / sway**2,
-            "rr": (part(force, "r", 1.0) - ahead) / turn**2,
-            "vr": (part(force, "vr", 1.0) - part(force, "v", 1.0) - part(force, "r", 1.0) + ahead) / (sway * turn),
-            "v": linear["v"], "r": linear["r"],
-            "v|v|": (part(force, "v", -1.0) - linear["v"] * sway) / sway**2,
-            "r|r|": (part(force, "r", -1.0) - linear["r"] * turn) / turn**2,
-        }.get(kind, 0.0)  # fmt: skip
-        made[term.tag] = term.sign * value
-    return made
+    run_errors = tuple(
+        MotionError(r.name, b, a)
+        for r, a, b in zip(runs, _errors(craft, truncated, runs), _errors(craft, values, runs), strict=True)
+    )
+    return Projection(values, truncated, rigid, errors, run_errors)
 
 
 def _projected(model: Model, structure: TargetStructure, rigid: RigidBody) -> Model:
     """Return the model with the target's forces in place of hull, added mass and Coriolis terms."""
-    tags = (*_ADDED, *(t.tag for t in structure.terms))
+    tags = (*ADDED, *(t.tag for t in structure.terms))
     names = (_MASS, _INERTIA, _X_G, *tags)
     equations = stored_equations(
         (model.equation_hash, "projected", repr(structure)), lambda: _write(model, structure, names)
@@ -242,7 +109,7 @@ def _write(model: Model, structure: TargetStructure, names: tuple[str, ...]) -> 
         return sp.Integer(1) if not name else sp.Abs(symbol(name[1])) if name[0] == "|" else symbol(name)
 
     u, v, r, m, inertia, x_G = (symbol(n) for n in ("u", "v", "r", _MASS, _INERTIA, _X_G))
-    A_x, A_y, A_r = (structure.added_mass_sign * symbol(n) for n in _ADDED)
+    A_x, A_y, A_r = (structure.added_mass_sign * symbol(n) for n in ADDED)
     force = {axis: symbol(f"{axis}_sum") - symbol(f"{axis}_H") for axis in "XYN"}
     for t in structure.terms:
         force[t.force] += t.sign * symbol(t.tag) * factor(t.first) * factor(t.second)
@@ -273,10 +140,13 @@ def _errors(craft: Model, values: Mapping[str, float], records: Sequence[Record]
 
 
 def _refitted(
-    craft: Model, structure: TargetStructure, rigid: RigidBody, start: Array, records: Sequence[Record]
-) -> Array:
+    craft: Model, structure: TargetStructure, rigid: RigidBody, start: Array, manoeuvres: Sequence[Record],
+    runs: Sequence[Record],
+) -> Array:  # fmt: skip
     from scipy.optimize import least_squares
 
+    records = (*manoeuvres, *runs)
+    weights = [1.0] * len(manoeuvres) + [math.sqrt(len(manoeuvres) / max(len(runs), 1))] * len(runs)
     wanted = [np.column_stack([record[s] for s in MOTION]) for record in records]
     scales = [np.sqrt(np.mean(w**2, axis=0)) + np.finfo(float).tiny for w in wanted]
     unit = np.abs(start) + _unit_sizes(structure, rigid, records)
@@ -292,8 +162,8 @@ def _refitted(
     def residuals(scaled: Array) -> Array:
         moved = craft.with_values(dict(zip(names, scaled * unit, strict=True)))
         parts = [
-            np.nan_to_num((_motion(moved, r) - w) / s, nan=_DIVERGED_SIZE) / math.sqrt(len(w))
-            for r, w, s in zip(records, wanted, scales, strict=True)
+            weight * np.nan_to_num((_motion(moved, r) - w) / s, nan=_DIVERGED_SIZE) / math.sqrt(len(w))
+            for r, w, s, weight in zip(records, wanted, scales, weights, strict=True)
         ]
         bounded = [np.clip(p, -_DIVERGED_SIZE, _DIVERGED_SIZE).ravel() for p in parts]
         return np.concatenate([*bounded, _RIDGE * (scaled - start / unit)])
@@ -308,8 +178,8 @@ def _unit_sizes(structure: TargetStructure, rigid: RigidBody, records: Sequence[
     m, inertia = rigid.mass, rigid.inertia
     speed = float(np.max(np.abs(records[0]["u"])))
     rate = max(float(np.max(np.abs(record["r"]))) for record in records)
-    typical = {"u": speed, "v": _OFF_COURSE * speed, "r": rate, "": 1.0}
-    force = {"X": _OFF_COURSE * m * speed * rate, "Y": m * speed * rate, "N": inertia * rate**2}
+    typical = {"u": speed, "v": OFF_COURSE * speed, "r": rate, "": 1.0}
+    force = {"X": OFF_COURSE * m * speed * rate, "Y": m * speed * rate, "N": inertia * rate**2}
     sizes = [m, m, inertia]
     sizes += [force[t.force] / (typical[t.first.strip("|")] * typical[t.second.strip("|")]) for t in structure.terms]
-    return _OFF_COURSE * np.array(sizes)
+    return OFF_COURSE * np.array(sizes)

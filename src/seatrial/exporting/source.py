@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from seatrial.core.equations import Model
 from seatrial.core.text.words import printable
-from seatrial.core.values import NOTATION, InputError
+from seatrial.core.values import NOTATION, InputError, Record
 from seatrial.data.folder.model_file import CONVENTIONS, ModelFile
 
 _LONGEST_NOTE = 200  # letters of a text from a file that a comment repeats; chosen
@@ -60,12 +60,14 @@ class ExportSource:
         origin: path of the model file, or what the model is called.
         date: of the export, year-month-day.
         gains: of a tuned autopilot, name -> value; None: the target that needs gains chooses them.
+        runs: the training runs, where the result of the fit is at hand.
     """
 
     file: ModelFile
     origin: str
     date: str
     gains: Mapping[str, float] | None = None
+    runs: tuple[Record, ...] = ()
 
     @property
     def model(self) -> Model:

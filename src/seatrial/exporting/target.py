@@ -29,6 +29,7 @@ class Target:
         unsuitable: returns why the target has no place for a model; empty where it has one.
         export: returns the files; its second argument is the name that the path gives.
         takes_gains: whether gains of a tuned autopilot have a place in it.
+        takes_runs: whether it is fitted to the training runs.
     """
 
     name: str
@@ -37,3 +38,4 @@ class Target:
     unsuitable: Callable[[ExportSource], str]
     export: Callable[[ExportSource, str], Export] = field(repr=False)
     takes_gains: bool = False
+    takes_runs: bool = False

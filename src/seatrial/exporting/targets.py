@@ -19,8 +19,15 @@ _ALL = (
     Target("fmu", "an FMU of FMI 2.0 for co-simulation, with C sources", ".fmu", _suits_every_model, export_fmu),
     Target("casadi", "a Python module that builds CasADi functions", ".py", _suits_every_model, export_casadi),
     Target("matlab", "a folder with a function as MSS calls it and a .mat", "", _suits_every_model, export_matlab),
-    Target("vrx", "the hydrodynamics plugin of VRX, refitted", ".xml", unsuitable_craft, export_vrx),
-    Target("gazebo", "the hydrodynamics plugin of gz-sim, refitted", ".xml", unsuitable_craft, export_gazebo),
+    Target("vrx", "the hydrodynamics plugin of VRX, refitted", ".xml", unsuitable_craft, export_vrx, takes_runs=True),
+    Target(
+        "gazebo",
+        "the hydrodynamics plugin of gz-sim, refitted",
+        ".xml",
+        unsuitable_craft,
+        export_gazebo,
+        takes_runs=True,
+    ),
     Target(
         "ardupilot",
         "gains of ArduPilot's heading and speed control",
