@@ -13,13 +13,16 @@ _APART = 3.0
 
 
 def other_optima(estimation: Estimation) -> list[Finding]:
-    """Return findings on ends of the search that explain the records as well with other coefficients."""
+    """Return findings on ends of the search that explain the records as well with other coefficients.
+
+    Ends are compared with the best one: where the criterion is another than that of the search, the estimate went on.
+    """
     problem, errors = estimation.estimate.problem, estimation.interval.standard_error
-    point = estimation.estimate.common_parameters
     findings = []
     for attempt in estimation.search_attempts[1:]:
         if attempt.loss > _AS_GOOD:
             continue
+        point = [estimation.search_attempts[0].values[name] for name in problem.free]
         apart = np.array([attempt.values[name] - point[i] for i, name in enumerate(problem.free)])
         ratio = np.abs(apart) / np.maximum(errors[: len(apart)], np.finfo(float).tiny)
         worst = int(np.argmax(ratio))

@@ -42,6 +42,9 @@ _WEIGHTS = (0.1012285362903763, 0.2223810344533745, 0.3137066458778873, 0.362683
 """Gauss-Legendre rule of eight points, its negative half (Abramowitz & Stegun 1964, table 25.4)."""
 _GYRATION = 0.1  # I_z + J_z over M_u L^2, start: a radius of gyration of about 0.3 L, water included; chosen
 _BOUNDS = (0.05, 30.0)  # of masses and inertia over where they start: beyond, no craft; chosen
+_LEAST_SWAY = 0.7
+"""M_v over m, or over M_u where that is 1: m + m_y is no less than m, and no hull drags 0.43 of its mass along in
+surge; chosen. Below, sway follows its force within a sample, and sensitivities at 10 Hz are rounding."""
 _EMPTY = sp.Float(0.01)  # share of the nominal voltage below which a power of it is held; chosen
 _SCALE = 0.05  # size of a coefficient that counts, on each kg of M_u for a hull of 1 m; chosen
 
@@ -158,7 +161,7 @@ def _accelerations(sheet: Sheet, layout: ThrusterLayout, water: Water, force: Pl
         "M_u", m, "kg", "m + m_x; 1: forces are those on each kg of it", MASSES, free=layout.has_bollard, lower=low * m,
         upper=high * m,
     )  # fmt: skip
-    M_v = sheet.parameter("M_v", 1.5 * m, "kg", "m + m_y", MASSES, free=True, lower=low * m, upper=high * m)
+    M_v = sheet.parameter("M_v", 1.5 * m, "kg", "m + m_y", MASSES, free=True, lower=_LEAST_SWAY * m, upper=high * m)
     M_c = sheet.parameter("M_c", 0.0, "kg m", "m x_G - Y_rdot", MASSES, scale=_SCALE * m * layout.length)
     M_r = sheet.parameter(
         "M_r", inertia, "kg m^2", "I_z + J_z", MASSES, free=True, lower=low * inertia, upper=high * inertia
