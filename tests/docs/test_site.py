@@ -3,11 +3,24 @@
 import re
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
 import seatrial
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+# whether the page is wider than the window, or a table sticks out of it that nothing around it lets scroll
+OVERFLOWS = """() => {
+  const width = document.documentElement.clientWidth;
+  const scrolls = (e) => e && (["auto", "scroll"].includes(getComputedStyle(e).overflowX) || scrolls(e.parentElement));
+  const cut = (t) => t.getBoundingClientRect().right > width + 1 && !scrolls(t.parentElement);
+  return document.documentElement.scrollWidth > width || [...document.querySelectorAll("table")].some(cut);
+}"""
 
 
 @pytest.fixture(scope="module")
@@ -44,3 +57,31 @@ def test_every_public_name_is_described(site: Path) -> None:
     page = (site / "api.html").read_text(encoding="utf-8")
     described = set(re.findall(r'id="seatrial\.(\w+)"', page)) | set(re.findall(r">st\.(\w+)<", page))
     assert set(seatrial.__all__) <= described
+
+
+@pytest.fixture(scope="module")
+def phone(browser_path: str) -> "Iterator[Page]":
+    """A window as wide as a phone's, 390 pixels."""
+    playwright = pytest.importorskip(
+        "playwright.sync_api", reason="playwright is not installed; pip install playwright"
+    )
+    with playwright.sync_playwright() as started:
+        browser = started.chromium.launch(executable_path=browser_path, args=["--no-sandbox", "--disable-gpu"])
+        yield browser.new_page(viewport={"width": 390, "height": 844})
+        browser.close()
+
+
+def test_the_search_answers_from_disk(site: Path, phone: "Page") -> None:
+    phone.goto(f"{(site / 'search.html').as_uri()}?q=jackknife")
+    phone.wait_for_selector("#search-results ul.search li a", timeout=20_000)  # ms
+    phone.wait_for_function("document.body.innerText.includes('Search finished')", timeout=20_000)  # ms
+    assert "Intervals" in phone.inner_text("#search-results")
+
+
+def test_no_page_and_no_table_is_cut_on_a_phone(site: Path, phone: "Page") -> None:
+    cut = []
+    for path in sorted(site.rglob("*.html")):
+        phone.goto(path.as_uri(), wait_until="domcontentloaded")
+        if phone.evaluate(OVERFLOWS):
+            cut.append(path.relative_to(site).as_posix())
+    assert cut == []
