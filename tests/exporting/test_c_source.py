@@ -17,10 +17,12 @@ from benchmarks.export_c99 import (
 from tests.exporting.conftest import ENVELOPE
 
 import seatrial as st
+from seatrial.core.results import IntervalBasis
 from seatrial.core.values import Channel, InputError, Record, RecordKind
 from seatrial.data.folder.model_file import ModelFile
 from seatrial.estimation.information.extrapolation import extrapolation
 from seatrial.exporting.c_source import export_c
+from seatrial.exporting.identified_range import range_text, range_use
 from seatrial.exporting.source import ExportSource, plain
 from seatrial.physics.models.published import kvlcc2
 
@@ -110,3 +112,18 @@ def test_a_symbol_that_is_no_identifier_is_refused(tmp_path: Path) -> None:
     sheet.rate(r, -r * sheet.parameter("κ", 1.0))
     with pytest.raises(InputError, match="'κ' of model 'greek' is no C identifier; rename"):
         st.export(sheet.model(), "c99", tmp_path / "greek")
+
+
+def test_the_range_of_a_craft_with_thrusters_holds_its_commands() -> None:
+    envelope = {"fastest": 2.0, "slowest": 0.1, "command port ahead": 0.8, "command port astern": 0.5}
+    basis = IntervalBasis(np.empty((0, 0)), 1.0, 1.0, training_envelope=envelope)
+    file = ModelFile(st.models.model_named("thrusters"), interval_basis=basis)
+    source = ExportSource(file, "model.toml", "2026-01-01")
+    assert "command port ahead <= 80 %, command port astern <= 50 %" in range_text(source)
+    use = range_use(source)
+    assert use is not None
+    values = {"u": 1.0, "v": 0.0, "zero_port": 0.0, "span_port": 1.0}
+    symbols = {symbol: symbol.name for symbol in use.expression.free_symbols}
+    for command, wanted in ((0.8, 1.0), (1.0, 1.2), (-0.9, 1.4)):
+        at_command = {symbol: (values | {"command_1": command})[name] for symbol, name in symbols.items()}
+        assert float(use.expression.subs(at_command)) == pytest.approx(wanted)
