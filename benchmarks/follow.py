@@ -28,6 +28,7 @@ from seatrial.estimation.problem.linear_output_error import LinearOutputError
 from seatrial.estimation.problem.segments import cut_segments
 from seatrial.numerics.optimise import ImprovedHerdSettings, ImprovedWildHorse, search
 from seatrial.physics.models.published import QI2025_SHIP
+from seatrial.problems import off_centre_box
 from seatrial_studies import swarm_search
 from seatrial_studies.output_error_fit import with_physics_start
 from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE, SeawayRun, SeawayScenario, ship, simulate_seaway_run
@@ -226,7 +227,7 @@ def compare_with_wild_horses(seas: int) -> Iterator[Line]:
     for run in range(seas):
         rng = np.random.default_rng([135, run, 4])
         data = swarm_search.simulate_search_data(135, rng, noise=(HEAVE_NOISE, PITCH_NOISE))
-        box = swarm_search.off_centre_box(data.truth, 0.5, rng)
+        box = off_centre_box(data.truth, 0.5, rng)
         settings = ImprovedHerdSettings(iterations=len(data.measured) - 2)
         horses = ImprovedWildHorse(box, np.random.default_rng(run), settings)
         found = search(horses, swarm_search.one_sample_objective(data, horses, swarm_search.PitchUnit.RADIANS)).point

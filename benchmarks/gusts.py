@@ -11,34 +11,27 @@ import argparse
 import sys
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
-from disturbed_craft import SAMPLE_S, SECONDS, Craft, Disturbance, independent_nomoto, records
 from measure import Line, machine
 from numpy.typing import NDArray
 from standard_craft import CRAFT
 
-from seatrial.core.equations.augment import gust_name, with_gusts
 from seatrial.core.values import InputError, Record
-from seatrial.data.trial import EstimateSettings
-from seatrial.estimation.estimate.assemble import output_error_problem
 from seatrial.estimation.estimate.fit import estimate_model
-from seatrial.estimation.estimate.input_offsets import with_input_offsets
-from seatrial.estimation.estimate.point_estimate import PointEstimate
-from seatrial.estimation.estimate.process_noise import ProcessNoise, initial_problem, newton_step
 from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions
 from seatrial.estimation.identify.short_records import default_profiles
-from seatrial.numerics.optimise import Optimum, Solution, Status
 from seatrial.numerics.workers import map_in_processes
+from seatrial.problems.disturbed_craft import SECONDS, Disturbance, independent_nomoto, records
+from seatrial.problems.gust_bound import limit_of
 
 Array = NDArray[np.float64]
 SIZES, MEMORIES, RUNS, SEED = (0.1, 0.3, 1.0), (0.0, 1.0, 5.0, 30.0), 80, 16
 CELL_COVERAGE, POOLED_COVERAGE = 0.86, 0.92
 CELL_BIAS, POOLED_BIAS, RMSE_LIMIT, WIDTHS = 0.35, 0.15, 1.2, (0.9, 1.15)
-NONE = np.zeros((0, 0))
 
 
 @dataclass(frozen=True)
@@ -87,52 +80,6 @@ class Item:
 
     cell: Cell
     record: Record
-
-
-@dataclass(frozen=True, eq=False)
-class Limit:
-    """Standard errors that a likelihood admits on a record, and the errors of an efficient estimate, both (k,)."""
-
-    standard_error: Array
-    efficient: Array
-
-
-def limit_of(craft: Craft, disturbance: Disturbance, record: Record) -> Limit:
-    """What the likelihood of the true disturbance admits on this record."""
-    model = craft.model
-    problem = output_error_problem(model, Runs.one_session_each([record], craft.length), np.inf, EstimateSettings(), 1)
-    problem = replace(problem, noise=np.array([craft.sensors[o] for o in problem.data.outputs]))
-    local = np.array([[craft.start.get(s, 0.0) for s in problem.starts]])
-    optimum = Optimum(
-        Solution(problem.start(), 0.0, Status.CONVERGED, 1), local, problem.normal(problem.start(), local)
-    )
-    estimate = PointEstimate(problem, optimum)
-    if disturbance.size or disturbance.offset:
-        estimate = with_input_offsets(estimate)
-    driven = tuple(craft.driven) if disturbance.size else ()
-    white = initial_problem(estimate, {}, tuple(craft.driven))
-    white = replace(white, process=driven)
-    squared = np.array([(disturbance.size * craft.driven[s]) ** 2 for s in driven])
-    constants: list[float] = []
-    if disturbance.memory > 0.0 and driven:
-        augmented = with_gusts(model, dict.fromkeys(driven, disturbance.memory))
-        spread = np.tile(squared, (1, 1))
-        white = replace(white, runs=replace(white.runs, model=augmented), process=tuple(map(gust_name, driven)),
-                        start=np.column_stack([white.start, np.zeros((1, len(driven)))]),
-                        start_variance=np.hstack([white.start_variance, spread]))  # fmt: skip
-        squared, constants = 2.0 * squared / disturbance.memory, [disturbance.memory] * len(driven)
-    else:
-        squared = squared * SAMPLE_S
-    common, free = estimate.common_parameters, len(problem.free)
-    own = common[free:].copy()
-    own[-1:] = disturbance.offset
-    variances = [craft.sensors[o] ** 2 for o in problem.data.outputs]
-    point = np.concatenate([common[:free], constants, own, squared, variances])
-    normal = white.normal(point, NONE)
-    exact = replace(white, steps=white.difference_steps(point, normal.hessian))
-    at = Optimum(Solution(point, 0.0, Status.CONVERGED, 1), NONE, exact.normal(point, NONE))
-    noise = ProcessNoise(exact, at, 0.0, None, estimate.problem)  # type: ignore[arg-type]
-    return Limit(noise.interval.standard_error[:free], (newton_step(exact, point) - point)[:free])
 
 
 def outcome(item: Item) -> Outcome:

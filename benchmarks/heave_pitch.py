@@ -22,6 +22,7 @@ from seatrial.numerics.optimise.wild_horse import ImprovedHerdSettings, Improved
 from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
 from seatrial.physics.models.heave_pitch_coefficients import physical_start_values
+from seatrial.problems import off_centre_box
 from seatrial_studies import swarm_search
 from seatrial_studies.seaway import SeawayScenario, simulate_seaway_run
 
@@ -208,7 +209,7 @@ def from_continuous_truth(heading: int, repeats: int) -> Iterator[Line]:
 def compare_with_wild_horses() -> list[Line]:
     """One fit from the physics start and one search of the improved wild horse optimiser, as published, same data."""
     data = swarm_search.simulate_search_data(135, np.random.default_rng(135))
-    box = swarm_search.off_centre_box(data.truth, 0.5, np.random.default_rng(136))
+    box = off_centre_box(data.truth, 0.5, np.random.default_rng(136))
     problem, settings = problem_from_rest(data), ImprovedHerdSettings()
     start = physics_start_point(problem)
 

@@ -5,25 +5,15 @@ from functools import cache
 from types import MappingProxyType
 
 import sympy as sp
-from disturbed_craft import AMPLITUDE, Craft
 
 from seatrial.core.equations import Model, Sheet
-from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.roll import roll
 from seatrial.physics.models.waterjet import waterjet
+from seatrial.problems.disturbed_craft import DisturbedCraft
+from seatrial.problems.nomoto_gusts import NOMOTO
 
-K, T = 0.15, 8.0
-NOMOTO = Craft(
-    "nomoto",
-    nomoto().with_values({"K": K, "T": T}),
-    {"r": AMPLITUDE * K / T},
-    {"psi": math.radians(0.05), "r": math.radians(0.02)},
-    50.0,
-    {"K": 0.1, "T": 10.0},
-    constant={"u": 5.0},
-)
 # accelerations by a nozzle angle of 20 deg, and in surge a force of the same size as in sway
-WATERJET = Craft(
+WATERJET = DisturbedCraft(
     "waterjet",
     waterjet(),
     {"u": 1.0e-3, "v": 2.5e-3, "r": 1.55e-3},
@@ -62,7 +52,7 @@ def twin_thrusters() -> Model:
     return sheet.model()
 
 
-THRUSTERS = Craft(
+THRUSTERS = DisturbedCraft(
     "thrusters",
     twin_thrusters(),
     {"u": 0.05, "v": 0.05, "r": 0.18},
@@ -87,7 +77,7 @@ def _roll() -> Model:
     return model.with_parameters(fixed.freed("K_alpha", "r_w"))
 
 
-ROLL = Craft(
+ROLL = DisturbedCraft(
     "roll",
     _roll(),
     {"p": 0.5 * 0.3 * math.radians(10.0)},

@@ -15,13 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import stdtrit
 
-from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.trial import EstimateSettings, FitCriterion
 from seatrial.estimation.estimate import EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.estimate.assemble import output_error_problem
 from seatrial.physics.models.thruster_layout import (
-    CATAMARAN,
     AngleInput,
     CommandInput,
     Damping,
@@ -31,32 +29,13 @@ from seatrial.physics.models.thruster_layout import (
     ThrusterLayout,
 )
 from seatrial.physics.models.thrusters import thrusters
-from seatrial.physics.simulate.actuators import actuator_motion
-from seatrial.physics.simulate.replay import replay
+from seatrial.problems.thruster_craft import NOISE, TWO_FIXED, ThrusterCraft, noisy, simulated_runs
 
-NOISE = {"u": 0.03, "v": 0.03, "r": 0.01, "psi": 0.01, "x0": 0.1, "y0": 0.1}
-"""Standard deviations: m/s, m/s, rad/s, rad, m, m; of a small craft's receiver and compass."""
 SETTINGS = EstimateSettings(method=FitCriterion.OUTPUT_ERROR)
-SECONDS, STEP_S, DT = 60, 3, 0.1
-"""Length of a run, of a step of the commands, and of a sample [s]."""
 FAR = 8.0
 """Bounds by which no coefficient errs in the right optimum: no draw of a normal law goes that far."""
 LINE = 10
 """Draws after which a line is printed; after five times as many the table."""
-
-
-@dataclass(frozen=True)
-class Craft:
-    """A craft that is known: its thrusters, the true coefficients, and the range of each input's steps."""
-
-    layout: ThrusterLayout
-    values: dict[str, float]
-    ranges: dict[str, tuple[float, float]]
-
-    @property
-    def truth(self) -> Model:
-        """The model with the true coefficients."""
-        return thrusters(self.layout).with_values(self.values)
 
 
 def _azimuths() -> ThrusterLayout:
@@ -88,16 +67,8 @@ def _twin_screw() -> ThrusterLayout:
 
 
 CRAFTS = {
-    "two-fixed": Craft(
-        CATAMARAN,
-        {
-            "tau": 0.3, "tau_down": 0.15, "k_f": 1.6, "k_b": 1.1, "p_f": 1.6, "p_b": 1.4, "k_J": 0.15, "k_4": 0.05,
-            "X_u": -0.1, "X_uu": -0.3, "Y_v": -0.6, "Y_vv": -1.5, "N_r": -0.1, "N_rr": -0.2, "N_ur": -0.2,
-            "Y_uv": -0.5, "Y_NT": 0.1, "M_v": 1.6, "M_r": 0.15,
-        },
-        {"command_1": (-1.0, 1.0), "command_2": (-1.0, 1.0)},
-    ),
-    "azimuths": Craft(
+    "two-fixed": TWO_FIXED,
+    "azimuths": ThrusterCraft(
         _azimuths(),
         {
             "tau": 0.35, "tau_down": 0.2, "tau_a": 0.5, "k_f": 0.25, "k_b": 0.2, "k_J": 0.05, "k_4": 0.1,
@@ -105,7 +76,7 @@ CRAFTS = {
         },
         {f"command_{k}": (-1.0, 1.0) for k in (1, 2, 3, 4)} | {f"alpha_{k}": (-3.0, 3.0) for k in (1, 2, 3, 4)},
     ),
-    "twin-screw": Craft(
+    "twin-screw": ThrusterCraft(
         _twin_screw(),
         {
             "tau": 0.5, "tau_down": 0.3, "k_0": 0.45, "k_1": -0.35, "k_0_astern": -0.3, "f_alpha": 3.0, "gamma_R": 0.4,
@@ -118,30 +89,7 @@ CRAFTS = {
 """Craft by name; values chosen: a catamaran of 1 m, a ferry of 5 m by mass, a model ship of 4.4 m and 400 kg."""
 
 
-def simulated_runs(craft: Craft, rng: np.random.Generator, count: int = 3) -> list[Record]:
-    """Return runs of steps of all inputs, without noise."""
-    model, runs = craft.truth, []
-    for k in range(count):
-        steps = rng.uniform(0.0, 1.0, size=(SECONDS // STEP_S, len(craft.ranges)))
-        shares = np.repeat(steps, round(STEP_S / DT), axis=0)
-        inputs = {n: low + (high - low) * shares[:, j] for j, (n, (low, high)) in enumerate(craft.ranges.items())}
-        planned = Record.from_arrays(f"run_{k + 1}", DT * np.arange(len(shares)), inputs)
-        columns = np.stack([inputs[n] for n in model.input_names], axis=1)
-        settled = {n: float(motion[0]) for n, motion in actuator_motion(model, columns, DT).items()}
-        run = replay(model, planned, dict.fromkeys(model.states, 0.0) | settled)
-        runs.append(replace(run, channels={n: run.channel(n) for n in (*NOISE, *inputs)}))
-    return runs
-
-
-def noisy(run: Record, rng: np.random.Generator) -> Record:
-    """Return what instruments record of a run."""
-    channels = dict(run.channels)
-    for name, spread in NOISE.items():
-        channels[name] = channels[name].with_values(run[name] + spread * rng.standard_normal(len(run)))
-    return replace(run, channels=channels)
-
-
-def bound(craft: Craft, runs: list[Record]) -> Array:
+def bound(craft: ThrusterCraft, runs: list[Record]) -> Array:
     """Return the Cramer-Rao bound of each free coefficient at the truth: standard deviations, (free,)."""
     sessions = Runs.one_session_each(runs, craft.layout.length)
     problem = output_error_problem(craft.truth, sessions, np.inf, SETTINGS)

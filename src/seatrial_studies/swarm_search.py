@@ -138,19 +138,6 @@ def whole_record_objective(data: SearchData, pitch_unit: PitchUnit = PitchUnit.D
     return whole_record_fitness(candidates_for(data, pitch_unit))
 
 
-def centred_box(truth: Array, half_width: float) -> Box:
-    """Return the box of the truth +- a share of it: the truth in the middle."""
-    ends = np.stack([truth * (1.0 - half_width), truth * (1.0 + half_width)])
-    return Box(ends.min(axis=0), ends.max(axis=0))
-
-
-def off_centre_box(truth: Array, half_width: float, rng: np.random.Generator) -> Box:
-    """As wide, the truth anywhere between a fifth and four fifths of it."""
-    below = 2.0 * half_width * rng.uniform(0.2, 0.8, len(truth))
-    ends = np.stack([truth * (1.0 - below), truth * (1.0 + 2.0 * half_width - below)])
-    return Box(ends.min(axis=0), ends.max(axis=0))
-
-
 @dataclass(frozen=True, eq=False)
 class RepeatedSearches:
     """Repeated searches of one optimiser for one truth.

@@ -6,8 +6,15 @@ import numpy as np
 import pytest
 from tests.installed_package import install
 
-from seatrial.core.values import InputError
-from seatrial.problems import BenchmarkProblem, attempt, built_in_methods, method_named
+from seatrial.core.values import Array, InputError
+from seatrial.problems import (
+    BenchmarkProblem,
+    PosedProblem,
+    attempt,
+    built_in_methods,
+    entered_method,
+    method_named,
+)
 
 OPTIMISER = """
 import numpy as np
@@ -98,6 +105,14 @@ def test_a_file_without_a_method_is_refused(code: str, sentence: str, tmp_path: 
     path.write_text(code)
     with pytest.raises(InputError, match=sentence):
         method_named(str(path))
+
+
+def test_a_class_can_be_tried_before_it_is_entered(paraboloid: BenchmarkProblem) -> None:
+    class Start:
+        def estimate(self, problem: PosedProblem, rng: np.random.Generator) -> Array:  # noqa: ARG002
+            return problem.start
+
+    np.testing.assert_array_equal(attempt(entered_method(Start), paraboloid, 0).values, 0.0)
 
 
 def test_the_built_in_methods_name_their_sources() -> None:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seatrial.problems import HeldOutRuns, KnownOptimum, KnownTruth
+from seatrial.problems import KnownOptimum, KnownTruth
 
 
 def test_errors_over_the_bound() -> None:
@@ -20,8 +20,3 @@ def test_errors_of_gains_are_excess_of_the_objective() -> None:
     stick = KnownOptimum(lambda points: 2.0 + np.sum(points**2, axis=1), 2.0)
     assert stick.error(np.array([0.0, 0.1])) == pytest.approx(0.5)
     assert KnownOptimum(lambda points: np.full(len(points), np.inf), 2.0).error(np.zeros(2)) == np.inf
-
-
-def test_errors_of_held_out_runs_are_over_a_baseline() -> None:
-    stick = HeldOutRuns(lambda values: float(values[0]), "constant course and speed")
-    assert stick.error(np.array([0.4])) == 0.4 and "constant course" in stick.unit

@@ -7,6 +7,7 @@ import pytest
 from seatrial.core.results.benchmark import (
     Benchmark,
     BenchmarkMethod,
+    CheckedClaim,
     MethodScore,
     PairedTest,
     ProblemScore,
@@ -25,7 +26,7 @@ def result() -> Benchmark:
                       TargetCurve((5, 6), 18), 4, 3, (0.2, 0.99), 1, 0, None)  # fmt: skip
     test = PairedTest("a<b>.py", "de", 0, 3, 0.25, 0.25)
     problem = ProblemScore("toy-2", 1, "a title", "a paper", "white", ("a", "b"), 400, "the bound", 2.0, (good, own),
-                           (test,))  # fmt: skip
+                           (test,), (CheckedClaim("a is better than b", test),))  # fmt: skip
     methods = (BenchmarkMethod("de", "Storn", "", True), BenchmarkMethod("a<b>.py", "a<b>.py", 64 * "0", False))
     status = CampaignStatus(6, 5, 1, 1.0)
     return Benchmark("truth shifted", (0, 2), (300.0, 1.0), status, methods, (problem,), "cite <me>", (), ("cpu",),
@@ -34,7 +35,16 @@ def result() -> Benchmark:
 
 def test_the_page_shows_everything_and_escapes_what_users_wrote(result: Benchmark) -> None:
     page = html(result)
-    for text in ("toy-2, version 1", "a paper", "the bound", "To cite: cite &lt;me&gt;", "it raises &lt;x&gt;", "Holm"):
+    for text in (
+        "toy-2, version 1",
+        "a paper",
+        "the bound",
+        "To cite: cite &lt;me&gt;",
+        "it raises &lt;x&gt;",
+        "Holm",
+        "a is better than b",
+        "not shown",
+    ):
         assert text in page
     assert "<x>" not in page and "a<b>" not in page
 

@@ -8,6 +8,7 @@ import pytest
 from seatrial.core.results import CheckStatus, Figure, Matrix, Study, Verdict
 from seatrial.numerics.optimise import HerdSettings, WildHorse, search
 from seatrial.physics.models.published import QI2025_HEADINGS
+from seatrial.problems import centred_box, off_centre_box
 from seatrial_studies import qi2025
 from seatrial_studies.controller_cost import TRUTH
 from seatrial_studies.pitch_control import CONTROLLER_COST_TITLE
@@ -22,8 +23,6 @@ from seatrial_studies.qi2025.search_claims import judged_in_settings
 from seatrial_studies.qi2025.ten_runs import FAMILY_PROBABILITY, RUNS, TenRuns
 from seatrial_studies.qi2025.tracking import Tracking, relative_error, tracked_states
 from seatrial_studies.swarm_search import (
-    centred_box,
-    off_centre_box,
     one_sample_objective,
     repeat_searches,
     simulate_search_data,

@@ -23,6 +23,7 @@ from seatrial.estimation.identify.search_problem import search_candidates, simul
 from seatrial.estimation.search import run_search, whole_record_fitness
 from seatrial.numerics.optimise import Box, FitnessMemory
 from seatrial.physics.simulate import record_of
+from seatrial.problems import centred_box
 from seatrial_studies.meng2014 import reproduction as meng
 from seatrial_studies.published_ship import SHIP
 from seatrial_studies.qi2025 import reproduction as qi
@@ -31,7 +32,6 @@ from seatrial_studies.swarm_search import (
     STEP,
     PitchUnit,
     SearchData,
-    centred_box,
     one_sample_objective,
     repeat_searches,
     simulate_search_data,

@@ -17,6 +17,7 @@ from seatrial.campaigns.summary import coverage_interval, store_findings
 from seatrial.core.results.benchmark import (
     Benchmark,
     BenchmarkMethod,
+    CheckedClaim,
     MethodScore,
     PairedTest,
     ProblemScore,
@@ -116,6 +117,8 @@ def _problem_score(
     return ProblemScore(
         problem.name, problem.version, problem.title, problem.source, problem.noise, draw.unknowns, problem.budget,
         draw.yardstick.unit, draw.yardstick.success_limit, tuple(scores), tuple(_tests(by_method, built_in, scores)),
+        tuple(CheckedClaim(claim.text, sign_test(by_method[claim.better], by_method[claim.worse]))
+              for claim in problem.claims if {claim.better, claim.worse} <= by_method.keys()),
     )  # fmt: skip
 
 
@@ -176,8 +179,13 @@ def holm(p_values: Sequence[float]) -> list[float]:
 
 def _corrected(scores: Sequence[ProblemScore]) -> tuple[ProblemScore, ...]:
     """The scores with the p-values of all tests corrected together."""
-    adjusted = iter(holm([test.p for score in scores for test in score.tests]))
-    return tuple(
-        replace(score, tests=tuple(replace(test, p_adjusted=next(adjusted)) for test in score.tests))
-        for score in scores
-    )
+    every = [[*score.tests, *(claim.test for claim in score.claims)] for score in scores]
+    adjusted = iter(holm([test.p for tests in every for test in tests]))
+    corrected = []
+    for score, tests in zip(scores, every, strict=True):
+        done = [replace(test, p_adjusted=next(adjusted)) for test in tests]
+        claims = zip(score.claims, done[len(score.tests) :], strict=True)
+        corrected.append(replace(
+            score, tests=tuple(done[: len(score.tests)]), claims=tuple(replace(c, test=test) for c, test in claims)
+        ))  # fmt: skip
+    return tuple(corrected)

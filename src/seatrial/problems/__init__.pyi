@@ -5,11 +5,14 @@ from seatrial.problems.attempt import Answer as Answer, attempt as attempt, repe
 from seatrial.problems.attempt import suits as suits
 from seatrial.problems.estimate import Estimate as Estimate
 from seatrial.problems.method import EnteredMethod as EnteredMethod, built_in_methods as built_in_methods
-from seatrial.problems.method import method_named as method_named
+from seatrial.problems.method import entered_method as entered_method, method_named as method_named
+from seatrial.problems.boxes import centred_box as centred_box, off_centre_box as off_centre_box
+from seatrial.problems.boxes import scaled_values as scaled_values
 from seatrial.problems.posed import BudgetSpent as BudgetSpent, PosedProblem as PosedProblem
-from seatrial.problems.problem import BenchmarkProblem as BenchmarkProblem, Placement as Placement
+from seatrial.problems.problem import BenchmarkProblem as BenchmarkProblem, PaperClaim as PaperClaim
+from seatrial.problems.problem import Placement as Placement
 from seatrial.problems.problem import ProblemDraw as ProblemDraw
 from seatrial.problems.registry import list_problems as list_problems, problem_named as problem_named
 from seatrial.problems.registry import problems_matching as problems_matching
-from seatrial.problems.yardstick import HeldOutRuns as HeldOutRuns, KnownOptimum as KnownOptimum
-from seatrial.problems.yardstick import KnownTruth as KnownTruth, Yardstick as Yardstick
+from seatrial.problems.yardstick import KnownOptimum as KnownOptimum, KnownTruth as KnownTruth
+from seatrial.problems.yardstick import Yardstick as Yardstick

@@ -80,6 +80,11 @@ def method_named(text: str) -> EnteredMethod:
     return _method(text, _member(module, name, place), text, _source_digest(module))
 
 
+def entered_method(member: Any) -> EnteredMethod:
+    """Return a class or function of this process as a method, to try it; benchmarks take it by its file."""
+    return _method(member.__name__, member, f"{member.__module__}:{member.__name__}", "")
+
+
 def _method(name: str, member: Any, source: str, digest: str) -> EnteredMethod:
     """Return an object of a user as a method."""
     if _is_optimiser(member):

@@ -58,6 +58,19 @@ class ProblemDraw:
 
 
 @dataclass(frozen=True)
+class PaperClaim:
+    """What a paper says of two methods on its problem.
+
+    Attributes:
+        text: one sentence; better, worse: names of built-in methods.
+    """
+
+    text: str
+    better: str
+    worse: str
+
+
+@dataclass(frozen=True)
 class BenchmarkProblem:
     """A named, versioned problem.
 
@@ -68,6 +81,7 @@ class BenchmarkProblem:
         noise: of the records, in words; budget: evaluations that a method may spend.
         is_changing: whether the fitness differs from iteration to iteration, as one that judges sample by sample.
         draw_with: makes a draw from random numbers.
+        claims: what its paper says of methods on it.
     """
 
     name: str
@@ -78,6 +92,7 @@ class BenchmarkProblem:
     budget: int
     draw_with: Callable[[np.random.Generator, Placement], ProblemDraw]
     is_changing: bool = False
+    claims: tuple[PaperClaim, ...] = ()
 
     @property
     def label(self) -> str:

@@ -101,33 +101,3 @@ class KnownOptimum:
         """Return by how many per cent the objective lies above the least known one; a smaller one counts as zero."""
         value = float(self.fitness(values[None])[0])
         return max(100.0 * (value / self.least - 1.0), 0.0) if np.isfinite(value) else np.inf
-
-
-@dataclass(frozen=True, eq=False)
-class HeldOutRuns:
-    """Runs that no method saw, simulated with the answer from their measured initial states.
-
-    Attributes:
-        prediction_error: values (d,) -> root-mean-square error over channels and runs, each over its baseline's;
-            infinite where the simulation diverges.
-        baseline: what the errors are divided by, in words.
-    """
-
-    prediction_error: Callable[[Array], float]
-    baseline: str
-    truth: None = None
-    bound: None = None
-
-    @property
-    def unit(self) -> str:
-        """What an error of 1 is."""
-        return f"the error of {self.baseline}"
-
-    @property
-    def success_limit(self) -> float:
-        """Better than the trivial baseline."""
-        return 1.0
-
-    def error(self, values: Array) -> float:
-        """Return the error of the predicted runs over that of the baseline."""
-        return self.prediction_error(values)

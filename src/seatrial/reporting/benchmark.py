@@ -11,7 +11,7 @@ from seatrial.core.figures.chart import WIDTH, Axis, Chart, LegendEntry, Panel, 
 from seatrial.core.figures.curves import HEIGHT, LEFT, STROKES
 from seatrial.core.figures.marks import GREY, Line, Mark, Rule, Stroke
 from seatrial.core.figures.svg_text import svg
-from seatrial.core.results.benchmark import Benchmark, MethodScore, PairedTest, ProblemScore
+from seatrial.core.results.benchmark import Benchmark, CheckedClaim, MethodScore, PairedTest, ProblemScore
 from seatrial.core.text.numbers import DASH, fixed, p_value, significant
 from seatrial.core.text.words import counted, enumeration
 from seatrial.reporting.document import page_text
@@ -43,6 +43,7 @@ class ProblemPart:
     targets: Markup
     waterfall: Markup
     tests: TextTable | None
+    claims: TextTable | None
 
 
 def html(result: Benchmark) -> str:
@@ -100,7 +101,7 @@ def problem_part(score: ProblemScore, targets: Sequence[float]) -> ProblemPart:
     limits = ", ".join(f"{factor * score.success_limit:g}" for factor in targets)
     return ProblemPart(
         score, (*facts, ("Targets", f"errors of {limits}")), method_table(score), Markup(svg(target_chart(score))),
-        Markup(svg(waterfall_chart(score))), tests,
+        Markup(svg(waterfall_chart(score))), tests, claim_table(score.claims) if score.claims else None,
     )  # fmt: skip
 
 
@@ -144,6 +145,19 @@ def comparison_table(tests: Sequence[PairedTest]) -> TextTable:
         "Paired comparisons", ("method", "against", "smaller error", "larger error", "p, corrected", ""),
         (False, False, True, True, True, False), rows,
         "Sign tests on the same draws, corrected for all comparisons of this page (Holm 1979).",
+    )  # fmt: skip
+
+
+def claim_table(claims: Sequence[CheckedClaim]) -> TextTable:
+    """Return what the problem's paper says, and what the draws show."""
+    rows = tuple(
+        (c.text, str(c.test.smaller), str(c.test.larger), p_value(c.test.p_adjusted).removeprefix("p "), c.verdict)
+        for c in claims
+    )
+    return TextTable(
+        "Claims of the paper", ("claim", "draws for it", "against it", "p, corrected", ""),
+        (False, True, True, True, False), rows,
+        "Contradicted: the other method is significantly better here. Not shown: they do not differ significantly.",
     )  # fmt: skip
 
 

@@ -12,7 +12,15 @@ from seatrial.estimation.problem import LinearOutputError
 from seatrial.estimation.search import JudgedRun, LinearCandidates
 from seatrial.numerics.optimise import Box
 from seatrial.physics.models import HEAVE_PITCH_STIFFNESSES
-from seatrial.problems import BenchmarkProblem, KnownTruth, Placement, ProblemDraw
+from seatrial.problems import (
+    BenchmarkProblem,
+    KnownTruth,
+    PaperClaim,
+    Placement,
+    ProblemDraw,
+    centred_box,
+    off_centre_box,
+)
 from seatrial_studies.output_error_fit import MOTION_NOISE, output_error_problem
 from seatrial_studies.published_ship import SHIP
 from seatrial_studies.swarm_search import (
@@ -20,9 +28,7 @@ from seatrial_studies.swarm_search import (
     STEP,
     WAVE_FORCE_INPUTS,
     SearchData,
-    centred_box,
     held_force_ship,
-    off_centre_box,
     simulate_search_data,
 )
 
@@ -130,9 +136,8 @@ def _trial(data: SearchData, problem: LinearOutputError, start: Array, has_noise
 
 
 def heave_pitch_problem(
-    name: str, title: str, source: str, budget: int, setting: HeavePitchSetting
+    name: str, title: str, source: str, budget: int, setting: HeavePitchSetting, claims: tuple[PaperClaim, ...]
 ) -> BenchmarkProblem:  # fmt: skip
     """Return the benchmark problem of a setting."""
-    return BenchmarkProblem(
-        name, 1, title, source, setting.noise_text, budget, setting.draw, setting.judged is Judged.ONE_SAMPLE
-    )
+    is_changing = setting.judged is Judged.ONE_SAMPLE
+    return BenchmarkProblem(name, 1, title, source, setting.noise_text, budget, setting.draw, is_changing, claims)

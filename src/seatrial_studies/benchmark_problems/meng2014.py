@@ -1,6 +1,6 @@
 """Meng et al. 2014: eight coefficients, or twelve with the stiffnesses, in sea state 3 under waves and a fin."""
 
-from seatrial.problems import BenchmarkProblem
+from seatrial.problems import BenchmarkProblem, PaperClaim
 from seatrial_studies.benchmark_problems.heave_pitch import HeavePitchSetting, Judged, heave_pitch_problem
 from seatrial_studies.meng2014.reproduction import SEA_STATE_3, SOURCE, WIDE_HALF_WIDTH
 
@@ -20,6 +20,7 @@ def problems() -> tuple[BenchmarkProblem, ...]:
                 _HEADING, SEA_STATE_3, WIDE_HALF_WIDTH, False, Judged.WHOLE_RECORD, has_noise=True, has_fin=True,
                 stiffnesses=has_stiffnesses,
             ),
+            (PaperClaim("the cloud improves the accuracy of the swarm", "icpso", "pso"),),
         )
         for count, has_stiffnesses in ((8, False), (12, True))
     )  # fmt: skip

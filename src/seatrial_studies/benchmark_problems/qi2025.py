@@ -1,6 +1,6 @@
 """Qi et al. 2025: eight coefficients at three headings, by one sample an iteration or by the whole record."""
 
-from seatrial.problems import BenchmarkProblem
+from seatrial.problems import BenchmarkProblem, PaperClaim
 from seatrial_studies.benchmark_problems.heave_pitch import HeavePitchSetting, Judged, heave_pitch_problem
 from seatrial_studies.published_ship import HEADINGS, SIGNIFICANT_HEIGHT
 from seatrial_studies.qi2025.published import SOURCE
@@ -8,6 +8,11 @@ from seatrial_studies.qi2025.reproduction import ITERATIONS, NARROW_HALF_WIDTH, 
 
 # candidates of the paper's searches: a population of 40 in 200 iterations
 _BUDGET = 40 * ITERATIONS
+_CLAIMS = (
+    PaperClaim("IWHO is far more accurate than WHO", "iwho", "who"),
+    PaperClaim("PSO is far less accurate than IWHO", "iwho", "pso"),
+    PaperClaim("PSO is less accurate than WHO", "who", "pso"),
+)
 
 
 def problems() -> tuple[BenchmarkProblem, ...]:
@@ -27,6 +32,7 @@ def _settings(heading: int) -> tuple[BenchmarkProblem, ...]:
             HeavePitchSetting(
                 heading, SIGNIFICANT_HEIGHT, width, is_centred, judged, has_noise=judged is Judged.WHOLE_RECORD
             ),
+            _CLAIMS,
         )
         for name, (width, is_centred, judged, words) in settings.items()
     )  # fmt: skip

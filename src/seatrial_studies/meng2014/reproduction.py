@@ -17,12 +17,11 @@ from seatrial.numerics.optimise import (
     Population,
     SwarmSettings,
 )
+from seatrial.problems import centred_box, off_centre_box
 from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE
 from seatrial_studies.swarm_search import (
     RepeatedSearches,
     SearchData,
-    centred_box,
-    off_centre_box,
     repeat_searches,
     simulate_search_data,
     whole_record_objective,

@@ -20,6 +20,7 @@ from seatrial.numerics.optimise import (
     SwarmSettings,
     WildHorse,
 )
+from seatrial.problems import centred_box, off_centre_box
 from seatrial_studies.published_ship import HEADINGS
 from seatrial_studies.qi2025.model_state_objective import model_state_objective
 from seatrial_studies.qi2025.published import SearchAlgorithm
@@ -29,8 +30,6 @@ from seatrial_studies.swarm_search import (
     PitchUnit,
     RepeatedSearches,
     SearchData,
-    centred_box,
-    off_centre_box,
     one_sample_objective,
     repeat_searches,
     simulate_search_data,

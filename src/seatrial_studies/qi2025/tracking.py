@@ -5,11 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.values import Array
+from seatrial.problems import centred_box
 from seatrial_studies.published_ship import HEADINGS
 from seatrial_studies.qi2025.published import SearchAlgorithm
 from seatrial_studies.qi2025.reproduction import FIGURE_HEADING, NARROW_HALF_WIDTH, SearchSetting, WildHorseReproduction
 from seatrial_studies.sign_test import is_smaller
-from seatrial_studies.swarm_search import SearchData, candidates_for, centred_box
+from seatrial_studies.swarm_search import SearchData, candidates_for
 
 # guesses drawn from the box of the search; our choice
 GUESSES = 20

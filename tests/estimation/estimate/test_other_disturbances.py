@@ -2,7 +2,6 @@
 
 import math
 
-import disturbed_craft
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -11,6 +10,7 @@ from standard_craft import NOMOTO
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
 from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions
+from seatrial.problems import disturbed_craft
 
 TONES = (0.5, 1.6)
 """Frequencies [rad/s] of a swell and of a second one: the candidates hold one wave frequency."""

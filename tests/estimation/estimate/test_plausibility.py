@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from disturbed_craft import Disturbance, independent_nomoto
 from standard_craft import NOMOTO
 
 from seatrial.core.values import InputError, Prior, Record
@@ -17,6 +16,7 @@ from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions
 from seatrial.numerics.optimise import Optimum, Solution, Status
 from seatrial.physics.models.nomoto import nomoto
+from seatrial.problems.disturbed_craft import Disturbance, independent_nomoto
 
 LENGTH, ERRORS = 50.0, np.array([0.01, 1.0])
 

@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from disturbed_craft import GAIN, RATE_GAIN, SAMPLE_S, Disturbance, course_at, independent_nomoto
 from standard_craft import NOMOTO
 
 import seatrial as st
 from seatrial.core.results.closed_loop import FeedbackEvidence
 from seatrial.data.trial import ControllerGains, EstimateMethod, Feedback
 from seatrial.estimation.identify.closed_loop_findings import closed_loop_findings
+from seatrial.problems.disturbed_craft import GAIN, RATE_GAIN, SAMPLE_S, Disturbance, course_at, independent_nomoto
 
 LOOP = FeedbackEvidence(
     "delta", "psi", ("run",), is_declared=True, reference="psi_ref", reference_steps=9, reference_p=0.4,

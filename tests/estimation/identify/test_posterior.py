@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from disturbed_craft import Disturbance, independent_nomoto
 from standard_craft import NOMOTO
 from tests.estimation.identify.conftest import NOISE, TRUTH, WriteTrial, square, steered
 
@@ -24,6 +23,7 @@ from seatrial.estimation.identify import identify
 from seatrial.estimation.identify.posterior import sample_posterior, sampling_findings
 from seatrial.numerics.sampling import ChainSettings
 from seatrial.physics.models.nomoto import nomoto
+from seatrial.problems.disturbed_craft import Disturbance, independent_nomoto
 
 OFFSETS = "[estimate]\noffsets = { delta = { sd = 3, unit = 'deg' } }"
 Z_95 = 1.96

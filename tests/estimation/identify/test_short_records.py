@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from disturbed_craft import Disturbance, independent_nomoto
 from standard_craft import NOMOTO
 
 from seatrial.core.results import Profile
@@ -15,6 +14,7 @@ from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions
 from seatrial.estimation.identify import short_records
 from seatrial.estimation.identify.short_records import default_profiles, short_record_findings
+from seatrial.problems.disturbed_craft import Disturbance, independent_nomoto
 
 PROFILE = Profile("K", (0.1, 0.2), (0.0, 4.0), None, 0.19)
 

@@ -100,6 +100,20 @@ class PairedTest:
 
 
 @dataclass(frozen=True)
+class CheckedClaim:
+    """What a paper says of two methods, and the same methods on the same draws."""
+
+    text: str
+    test: PairedTest
+
+    @computed_field(description="supported, contradicted, or not shown: the methods do not differ significantly")
+    @property
+    def verdict(self) -> str:
+        """Return what the test says of the claim."""
+        return {"better": "supported", "worse": "contradicted"}.get(self.test.verdict, "not shown")
+
+
+@dataclass(frozen=True)
 class ProblemScore:
     """All methods on one problem."""
 
@@ -114,6 +128,7 @@ class ProblemScore:
     success_limit: Annotated[Number, Field(description="largest error of a success")]
     methods: Annotated[tuple[MethodScore, ...], Field(description="the best median first")]
     tests: tuple[PairedTest, ...]
+    claims: Annotated[tuple[CheckedClaim, ...], Field(description="of the problem's paper, where both methods ran")]
 
 
 @dataclass(frozen=True)

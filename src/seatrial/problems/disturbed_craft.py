@@ -16,13 +16,19 @@ from seatrial.core.values import Record
 from seatrial.physics.simulate.batch import SegmentBatch
 
 Array = NDArray[np.float64]
+# s: sample and length of a record, step of the independent simulation; chosen
 SAMPLE_S, SECONDS = 0.1, 600.0
-FINE_S = 0.02
+FINE_S = 0.02  # s, as above
+# rad/s: rate of the rudder under the controller, and under a programme; chosen
 SLEW, PROGRAMME_SLEW = math.radians(5.0), math.radians(20.0)
+# rad: rudder of the programme, largest rudder, and courses ordered to both sides; chosen
 AMPLITUDE, LIMIT, COURSE = math.radians(4.0), math.radians(20.0), math.radians(10.0)
+# s: shortest time on one side of the programme, and time on one course; chosen
 BIT_S, LEG_S = 4.0, 60.0
 GAIN, RATE_GAIN = 1.0, 4.0
+"""Of the controller: rudder over heading error [1], and over yaw rate [s]; chosen."""
 WAVE_FREQUENCY, WAVE_DAMPING = 0.8, 0.1
+"""Of wave forces: natural frequency [rad/s] and damping ratio [1]; chosen."""
 WAVE_SLOPE = math.radians(1.0)
 
 
@@ -42,7 +48,7 @@ class Disturbance:
 
 
 @dataclass(frozen=True, eq=False)
-class Craft:
+class DisturbedCraft:
     """A craft and how it is measured and steered.
 
     Attributes:
@@ -77,7 +83,7 @@ class Craft:
     rate_gain: float = RATE_GAIN
 
 
-def programme(craft: Craft, rows: int, step: float, rng: np.random.Generator) -> Array:
+def programme(craft: DisturbedCraft, rows: int, step: float, rng: np.random.Generator) -> Array:
     """A random binary rudder: a new side every `bit_s` with probability a half, at 20 deg/s, (rows,)."""
     bits = rng.choice([-1.0, 1.0], math.ceil(rows * step / craft.bit_s) + 1)
     target, angle = craft.amplitude * np.repeat(bits, round(craft.bit_s / step))[:rows], np.zeros(rows)
@@ -86,12 +92,12 @@ def programme(craft: Craft, rows: int, step: float, rng: np.random.Generator) ->
     return angle
 
 
-def course_at(time: float, craft: Craft) -> float:
+def course_at(time: float, craft: DisturbedCraft) -> float:
     """The heading that is ordered: a square wave."""
     return craft.course if int(time // craft.leg_s) % 2 == 0 else -craft.course
 
 
-def _rudder_rate(craft: Craft, error: Array, turning: Array, angle: Array) -> Array:
+def _rudder_rate(craft: DisturbedCraft, error: Array, turning: Array, angle: Array) -> Array:
     """Rate by which the rudder reaches the ordered angle at the next sample, within its limits, (runs,)."""
     ordered = np.clip(craft.gain * error - craft.rate_gain * turning, -craft.limit, craft.limit)
     return np.clip((ordered - angle) / SAMPLE_S, -craft.slew, craft.slew)
@@ -132,7 +138,7 @@ def _waves(rows: int, count: int, step: float, rng: np.random.Generator) -> Arra
 
 
 def records(
-    craft: Craft, disturbance: Disturbance, count: int, rng: np.random.Generator, *, is_closed: bool,
+    craft: DisturbedCraft, disturbance: Disturbance, count: int, rng: np.random.Generator, *, is_closed: bool,
     step: float = SAMPLE_S, seconds: float = SECONDS,
 ) -> list[Record]:  # fmt: skip
     """Simulate runs of a craft by its compiled model, in steps of `step` [s]."""
@@ -193,7 +199,7 @@ def records(
 
 
 def independent_nomoto(
-    craft: Craft, disturbance: Disturbance, count: int, rng: np.random.Generator, *, is_closed: bool,
+    craft: DisturbedCraft, disturbance: Disturbance, count: int, rng: np.random.Generator, *, is_closed: bool,
     seconds: float = SECONDS,
 ) -> list[Record]:  # fmt: skip
     """T r' + r = K (delta + w): exact in steps of 0.02 s for forces constant within each, with numpy alone."""
