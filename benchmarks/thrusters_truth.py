@@ -29,7 +29,7 @@ from seatrial.physics.models.thruster_layout import (
     ThrusterLayout,
 )
 from seatrial.physics.models.thrusters import thrusters
-from seatrial.problems.thruster_craft import NOISE, TWO_FIXED, ThrusterCraft, noisy, simulated_runs
+from seatrial.problems.thruster_craft import NOISE, TWO_FIXED, KnownThrusterCraft, noisy, simulated_runs
 
 SETTINGS = EstimateSettings(method=FitCriterion.OUTPUT_ERROR)
 FAR = 8.0
@@ -68,7 +68,7 @@ def _twin_screw() -> ThrusterLayout:
 
 CRAFTS = {
     "two-fixed": TWO_FIXED,
-    "azimuths": ThrusterCraft(
+    "azimuths": KnownThrusterCraft(
         _azimuths(),
         {
             "tau": 0.35, "tau_down": 0.2, "tau_a": 0.5, "k_f": 0.25, "k_b": 0.2, "k_J": 0.05, "k_4": 0.1,
@@ -76,7 +76,7 @@ CRAFTS = {
         },
         {f"command_{k}": (-1.0, 1.0) for k in (1, 2, 3, 4)} | {f"alpha_{k}": (-3.0, 3.0) for k in (1, 2, 3, 4)},
     ),
-    "twin-screw": ThrusterCraft(
+    "twin-screw": KnownThrusterCraft(
         _twin_screw(),
         {
             "tau": 0.5, "tau_down": 0.3, "k_0": 0.45, "k_1": -0.35, "k_0_astern": -0.3, "f_alpha": 3.0, "gamma_R": 0.4,
@@ -89,7 +89,7 @@ CRAFTS = {
 """Craft by name; values chosen: a catamaran of 1 m, a ferry of 5 m by mass, a model ship of 4.4 m and 400 kg."""
 
 
-def bound(craft: ThrusterCraft, runs: list[Record]) -> Array:
+def bound(craft: KnownThrusterCraft, runs: list[Record]) -> Array:
     """Return the Cramer-Rao bound of each free coefficient at the truth: standard deviations, (free,)."""
     sessions = Runs.one_session_each(runs, craft.layout.length)
     problem = output_error_problem(craft.truth, sessions, np.inf, SETTINGS)

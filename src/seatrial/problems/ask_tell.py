@@ -43,8 +43,10 @@ def searched(optimiser: AskTell, problem: PosedProblem) -> Estimate:
     """
     try:
         while not getattr(optimiser, "done", False):
-            points = _inside(optimiser.ask(), problem)
-            optimiser.tell(problem.fitness(points))
+            points = np.array(optimiser.ask(), dtype=np.float64)
+            if not _is_inside(points, problem):
+                raise _misplaced(points, problem)
+            optimiser.tell(problem.fitness_inside(points))
             if problem.is_changing:
                 problem.declare_best(optimiser.best[0])
     except BudgetSpent:
@@ -52,19 +54,22 @@ def searched(optimiser: AskTell, problem: PosedProblem) -> Estimate:
     return Estimate(np.array(optimiser.best[0], dtype=np.float64))
 
 
-def _inside(points: object, problem: PosedProblem) -> Array:
-    """Return the points of an ask as an array."""
-    array = np.array(points, dtype=np.float64)
+def _is_inside(points: Array, problem: PosedProblem) -> bool:
+    """Whether the points of an ask have their shape and lie in the box; those that are not finite do not."""
+    box = problem.box
+    has_shape = points.ndim == 2 and points.shape[1] == box.size and len(points) > 0
+    return bool(has_shape and (points >= box.lower).all() and (points <= box.upper).all())
+
+
+def _misplaced(points: Array, problem: PosedProblem) -> MethodError:
+    """What is wrong with the points of an ask."""
     size, box = problem.box.size, problem.box
-    if array.ndim != 2 or array.shape[1] != size or not len(array):
-        raise MethodError(f"ask() returns the shape {array.shape}, not (n, {size})")
-    if not np.all(np.isfinite(array)):
-        raise MethodError("ask() returns a point that is not finite")
-    outside = np.flatnonzero(np.any((array < box.lower) | (array > box.upper), axis=1))
-    if outside.size:
-        row, column = outside[0], int(np.argmax((array < box.lower)[outside[0]] | (array > box.upper)[outside[0]]))
-        raise MethodError(
-            f"ask() leaves the box: {problem.unknowns[column]} = {array[row, column]:g}, allowed are "
-            f"{box.lower[column]:g} to {box.upper[column]:g}; clip it"
-        )
-    return array
+    if points.ndim != 2 or points.shape[1] != size or not len(points):
+        return MethodError(f"ask() returns the shape {points.shape}, not (n, {size})")
+    if not np.all(np.isfinite(points)):
+        return MethodError("ask() returns a point that is not finite")
+    row, column = np.argwhere((points < box.lower) | (points > box.upper))[0]
+    return MethodError(
+        f"ask() leaves the box: {problem.unknowns[column]} = {points[row, column]:g}, allowed are "
+        f"{box.lower[column]:g} to {box.upper[column]:g}; clip it"
+    )

@@ -183,7 +183,7 @@ def records(
         for i, kick in half.items():
             x[:, i] += kick
     sensed = {s: states[::kept, :, model.states.index(s)] + n[: len(states[::kept])] for s, n in noise.items()}
-    time = SAMPLE_S * np.arange(len(inputs[::kept]))
+    time = SAMPLE_S * np.arange(len(inputs[::kept]), dtype=np.float64)
     kept_angle = inputs[::kept]
     worked = {n: craft.held.get(n, 0.0) + f * kept_angle for n, f in craft.steered.items()}
     worked |= {craft.wave_slope: slope[::kept]} if craft.wave_slope else {}
@@ -222,7 +222,7 @@ def independent_nomoto(
         final = gain * (0.5 * (now + after) + push[k])
         psi, r = psi + final * FINE_S + (r - final) * lag * (1.0 - decay), final + (r - final) * decay
         angle = after
-    time = SAMPLE_S * np.arange(kept_rows.shape[1])
+    time = SAMPLE_S * np.arange(kept_rows.shape[1], dtype=np.float64)
     return [
         Record.from_arrays(f"run {i}", time, {"delta": kept_rows[0, :, i], "psi": kept_rows[1, :, i],
                                                "r": kept_rows[2, :, i], "u": np.full(len(time), craft.constant["u"])})

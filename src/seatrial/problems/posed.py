@@ -112,12 +112,22 @@ class PosedProblem:
         points = np.array(points, dtype=np.float64, ndmin=2)
         if points.ndim != 2 or points.shape[1] != self.box.size or not np.all(np.isfinite(points)):
             raise InputError(f"fitness takes finite points of shape (n, {self.box.size}), not {points.shape}")
-        self._meter.spend(len(points))
-        values = self._draw.fitness(points, self._meter.calls)
-        self._meter.calls += 1
+        return self.fitness_inside(points)
+
+    def fitness_inside(self, points: Array) -> Array:
+        """Return the fitness (n,) of finite points (n, d), which are not checked again.
+
+        Raises:
+            BudgetSpent: as `fitness`.
+        """
+        meter = self._meter
+        meter.spend(len(points))
+        values = self._draw.fitness(points, meter.calls)
+        meter.calls += 1
         if len(points) and not self.is_changing:
-            least = int(np.argmin(values))
-            self._meter.compare(points[least], float(values[least]))
+            least = values.argmin()
+            if values[least] < meter.best_fitness:
+                meter.compare(points[least], float(values[least]))
         return values
 
     @property

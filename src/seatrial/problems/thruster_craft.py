@@ -7,7 +7,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Record, Ship
-from seatrial.data.trial import EstimateSettings, FitCriterion
+from seatrial.data.trial import EstimateMethod, EstimateSettings
 from seatrial.physics.models.thruster_layout import CATAMARAN, ThrusterLayout
 from seatrial.physics.models.thrusters import thrusters
 from seatrial.physics.simulate.actuators import actuator_motion
@@ -27,7 +27,7 @@ _BUDGET = 1000
 
 
 @dataclass(frozen=True)
-class ThrusterCraft:
+class KnownThrusterCraft:
     """A craft that is known: its thrusters, the true coefficients, and the range of each input's steps."""
 
     layout: ThrusterLayout
@@ -41,7 +41,7 @@ class ThrusterCraft:
 
 
 # SI; a catamaran of 1 m, values chosen
-TWO_FIXED = ThrusterCraft(
+TWO_FIXED = KnownThrusterCraft(
     CATAMARAN,
     {
         "tau": 0.3, "tau_down": 0.15, "k_f": 1.6, "k_b": 1.1, "p_f": 1.6, "p_b": 1.4, "k_J": 0.15, "k_4": 0.05,
@@ -59,14 +59,14 @@ def problems() -> tuple[BenchmarkProblem, ...]:
     return (BenchmarkProblem("thrusters-two-fixed", 1, title, "ours", noise, _BUDGET, _draw),)
 
 
-def simulated_runs(craft: ThrusterCraft, rng: np.random.Generator, count: int = 3) -> list[Record]:
+def simulated_runs(craft: KnownThrusterCraft, rng: np.random.Generator, count: int = 3) -> list[Record]:
     """Return runs of steps of all inputs, without noise."""
     model, runs = craft.truth, []
     for k in range(count):
         steps = rng.uniform(0.0, 1.0, size=(SECONDS // STEP_S, len(craft.ranges)))
         shares = np.repeat(steps, round(STEP_S / DT), axis=0)
         inputs = {n: low + (high - low) * shares[:, j] for j, (n, (low, high)) in enumerate(craft.ranges.items())}
-        planned = Record.from_arrays(f"run_{k + 1}", DT * np.arange(len(shares)), inputs)
+        planned = Record.from_arrays(f"run_{k + 1}", DT * np.arange(len(shares), dtype=np.float64), inputs)
         columns = np.stack([inputs[n] for n in model.input_names], axis=1)
         settled = {n: float(motion[0]) for n, motion in actuator_motion(model, columns, DT).items()}
         run = replay(model, planned, dict.fromkeys(model.states, 0.0) | settled)
@@ -91,6 +91,6 @@ def _draw(rng: np.random.Generator, placement: Placement) -> ProblemDraw:
     records = [noisy(run, rng) for run in simulated_runs(craft, rng)]
     box = off_centre_box(truth, _HALF_WIDTH, rng)
     ship = Ship("catamaran with two thrusters", {"L": craft.layout.length})
-    settings = EstimateSettings(method=FitCriterion.OUTPUT_ERROR)
+    settings = EstimateSettings(method=EstimateMethod.OUTPUT_ERROR)
     known = KnownCraft(ship, craft.truth, records, NOISE, dict.fromkeys(craft.truth.states, 0.0), settings)
     return craft_draw(known, box, 0.5 * (box.lower + box.upper))
