@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 from tests.onboard.fabricated import faulty_counts, heave_pitch, mmg
+from tests.reporting.fabricated import zigzag
 
 from seatrial.core.results.online import SampleCounts
 from seatrial.core.values import Finding, Severity
@@ -71,6 +72,20 @@ def test_opens_with_nothing_moves_with_what_comes_and_says_when_it_ends(browser:
         assert window.locator("#status").inner_text() == "following"
         page.end("end of trial.csv")
         window.get_by_text("the stream has ended: end of trial.csv").wait_for()
+        assert said == []
+
+
+def test_track_rudder_heading_and_what_to_do_next_stand_on_the_first_screen(browser: "Browser", page: Page) -> None:
+    snapshot = replace(list(mmg(40.0))[-1], recent=(zigzag("z", 20.0),))
+    page.show(snapshot, SampleCounts())
+    with opened(browser, page) as (window, said):
+        window.get_by_text("What to do next").wait_for()
+        assert [text[:5] for text in window.locator("#recent .name").all_text_contents()] == ["track", "δ [de", "ψ [de"]
+        for place in ("#next", "#recent"):
+            box = window.locator(place).bounding_box()
+            assert box is not None and box["y"] + box["height"] < 900
+        window.set_viewport_size({"width": 390, "height": 844})
+        assert window.evaluate("document.documentElement.scrollWidth") <= 390
         assert said == []
 
 

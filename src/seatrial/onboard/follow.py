@@ -140,6 +140,8 @@ class _Display:
     def __init__(self, session: StreamSession, adviser: ManoeuvreAdviser, show: Show | None, stop: Stop | None) -> None:
         self._session, self._adviser, self._show, self._stop = session, adviser, show, stop
         self._shown_at = -math.inf
+        self._advised: Snapshot | None = None
+        self._shown: Snapshot | None = None
 
     def should_continue(self, source: SampleSource) -> bool:
         """Return False once `stop` has returned True."""
@@ -147,8 +149,15 @@ class _Display:
             return True
         self._shown_at = monotonic()
         if self._show is not None and self._session.snapshot is not None:
-            self._show(self._adviser.with_advice(self._session.snapshot), self._session.counts(source.counts))
+            self._show(self._with_run(self._session.snapshot), self._session.counts(source.counts))
         return self._stop is None or not self._stop()
+
+    def _with_run(self, snapshot: Snapshot) -> Snapshot:
+        """The snapshot with advice and the run so far; the same object for the same snapshot."""
+        advised = self._adviser.with_advice(snapshot)
+        if self._shown is None or advised is not self._advised:
+            self._advised, self._shown = advised, replace(advised, recent=self._session.recent_run.records())
+        return self._shown
 
 
 def _replay_journal(

@@ -92,6 +92,7 @@ class Page:
             "is_over": end_reason is not None,
             "reason": end_reason or "",
             "snapshot": None if newest is None else page_state.snapshot_json(*newest),
+            "recent": page_state.recent_json(() if newest is None else newest[0].recent),
             "points": [] if newest is None else page_state.plot_points(points, newest[0]),
         }
 

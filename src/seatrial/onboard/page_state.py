@@ -7,13 +7,22 @@ import numpy as np
 
 from seatrial.core.results.online import SampleCounts, Snapshot
 from seatrial.core.text.words import printable
-from seatrial.core.values import NOTATION, Array, display_unit, worst_first
-from seatrial.core.values.channel_text import channel_unit
+from seatrial.core.values import NOTATION, Array, Record, display_unit, worst_first
+from seatrial.core.values.channel_text import (
+    POSITIONS,
+    channel_label,
+    channel_unit,
+    display_values,
+    reading_order,
+)
+from seatrial.core.values.record_chart import has_track, is_constant
 from seatrial.onboard import snapshot_text
 from seatrial.onboard.history import HistoryPoint
 
 # digits of plotted points, letters of a finding; chosen: finer than a screen, longer than any sentence of ours
 JSON_DIGITS, MAX_LENGTH = 8, 1000
+# channels that say most of a manoeuvre, and how many of others are shown where a stream has neither
+_FIRST_CHANNELS, MAX_CHANNELS = ("delta", "psi"), 2
 
 
 def snapshot_json(snapshot: Snapshot, counts: SampleCounts) -> dict[str, Any]:
@@ -44,6 +53,26 @@ def snapshot_json(snapshot: Snapshot, counts: SampleCounts) -> dict[str, Any]:
             for f in worst_first(snapshot.findings)
         ],
     }
+
+
+def recent_json(records: tuple[Record, ...]) -> dict[str, Any]:
+    """Return the run so far in display units: track [m], and rudder and heading, or the first channels that move."""
+    if not records:
+        return {"track": None, "channels": []}
+    record = records[-1]
+    moving = [name for name in reading_order(list(record.channels)) if not is_constant(record, name)]
+    names = [name for name in _FIRST_CHANNELS if name in moving] or moving[:MAX_CHANNELS]
+    elapsed = _json_numbers(record.time - record.time[0])
+    channels = [
+        {
+            "label": channel_label(name, record.channel(name).unit),
+            "time": elapsed,
+            "values": _json_numbers(display_values(name, record[name], record.channel(name).unit)),
+        }
+        for name in names
+    ]
+    track = {name: _json_numbers(record[name]) for name in POSITIONS} if has_track(record) else None
+    return {"track": track, "channels": channels}
 
 
 def plot_points(points: list[HistoryPoint], snapshot: Snapshot) -> list[list[Any]]:

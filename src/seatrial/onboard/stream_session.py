@@ -10,6 +10,7 @@ from seatrial.core.text.words import counted
 from seatrial.core.values import InputError
 from seatrial.data.trial.stream import Stream
 from seatrial.onboard.journal import Journal, RunEntry
+from seatrial.onboard.recent_run import RecentRun
 from seatrial.onboard.run_buffer import RunBuffer
 from seatrial.onboard.sample_order import RunStart, SampleOrder, StreamEvent, combined_counts
 
@@ -37,6 +38,7 @@ class StreamSession:
     Attributes:
         snapshot: the newest; None before the first sample.
         last_journalled: the last sample of the journal, if any.
+        recent_run: the run so far, for people.
         messages: errors of the estimator and of the journal, in words, each once.
     """
 
@@ -49,6 +51,7 @@ class StreamSession:
         self._name, self._estimator, self._journal, self._buffer = stream.name, estimator, journal, buffer
         self._stream, self._order, self._earlier_counts = stream, _sample_order(stream), SampleCounts()
         self._run_count, self._restarts = 0, False
+        self.recent_run = RecentRun(stream.layout)
         self._estimator_error = ""
 
     def journal_events(self, journal: Journal, *, continues: bool) -> Iterator[StreamEvent]:
@@ -95,6 +98,7 @@ class StreamSession:
                 return
             if self._buffer is not None:
                 self._buffer.add(event)
+            self.recent_run.add(event)
             self.snapshot = self._estimator.update(event)
         except (InputError, np.linalg.LinAlgError, ArithmeticError) as error:
             self._estimator_error = f"t = {event.time:g} s: {error}"
@@ -122,6 +126,7 @@ class StreamSession:
         self._run_count += 1
         if self._buffer is not None:
             self._buffer.start_run(self._name if self._run_count == 1 else f"{self._name}_{self._run_count}")
+        self.recent_run.start_run()
         self._estimator.begin_run()
 
     def _add_message(self, text: str) -> None:

@@ -30,7 +30,7 @@ from seatrial.reporting.document import page_text
 from seatrial.reporting.figures.record_charts import track_overview
 from seatrial.reporting.figures.residual_charts import residual_series, whiteness_chart
 from seatrial.reporting.figures.search_charts import attempts_chart
-from seatrial.reporting.windows import baseline_sentence
+from seatrial.reporting.windows import WINDOW_NOTE, baseline_sentence
 
 TITLES = {
     "published": "The published method and the package’s own estimate",
@@ -96,6 +96,7 @@ def html(fit: Fit) -> str:
         "convergence_sentence": summary.convergence_sentence(fit),
         "better_baselines": baseline_sentence(fit.validation, runs.ERROR_LABELS),
         "reading_note": runs.reading_note(fit.predictions),
+        "window_note": WINDOW_NOTE if any(p.windows for p in fit.predictions) else "",
         "scores": runs.score_table(fit.predictions, 0.0 if has_thrusters else length),
         "records": tables.records(fit),
         "without": _prefix_note(fit),

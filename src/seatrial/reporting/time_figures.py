@@ -7,6 +7,7 @@ import numpy as np
 from markupsafe import Markup
 
 from seatrial.core.figures.chart import Chart, LegendEntry
+from seatrial.core.figures.marks import text_width
 from seatrial.core.figures.run import ChannelPanel, RunView, track_chart
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.figures.ticks import thinned
@@ -14,6 +15,8 @@ from seatrial.core.figures.time_plot import BAND_POINTS, TimeSpan, packed, plot_
 from seatrial.core.figures.tracks import is_slender
 from seatrial.core.text.numbers import duration, significant
 
+# px that an entry of a legend is wider than estimated; chosen
+SPARE = 8.0
 NO_SCRIPT = "Time series are drawn by this page’s own script; allow it for this file to see them."
 
 
@@ -46,7 +49,9 @@ def run_figure(view: RunView, spans: Sequence[TimeSpan] = (), *, x_label: str = 
 
 
 def _legend(entries: Sequence[LegendEntry]) -> str:
-    return svg(Chart("legend", (), tuple(entries))) if entries else ""
+    """One picture for each entry, so that they wrap on a narrow screen."""
+    pictures = (svg(Chart(e.words, (), (e,), e.sample_width + text_width(e.words) + SPARE)) for e in entries)
+    return f'<div class="legend">{"".join(pictures)}</div>' if entries else ""
 
 
 def _positions(view: RunView, track: Chart) -> list[list[dict[str, object]]]:

@@ -8,11 +8,12 @@ from seatrial.core.text.numbers import DASH, fixed, significant
 from seatrial.core.text.words import counted, enumeration
 from seatrial.reporting.text_tables import TextTable
 
-_NOTE = "Root-mean-square errors open loop, each window from the state estimated in its first seconds."
-_FIT_NOTE = (
-    "100 % less the error over the spread about the mean (NRMSE, as MATLAB's compare): 100 is perfect, 0 no "
-    "better than the mean. In brackets R², one less the squares of the errors over those about the mean."
+WINDOW_NOTE = (
+    "Errors in windows: root-mean-square errors open loop, each window from the state estimated in its first seconds. "
+    "Fit in windows: 100 % less the error over the spread about the mean (NRMSE, as MATLAB's compare): 100 is perfect, "
+    "0 no better than the mean; in brackets R², one less the squares of the errors over those about the mean."
 )
+"""How the tables of windows are to be read, once for all runs."""
 
 
 def window_tables(
@@ -41,7 +42,7 @@ def _errors(
         rows.append((f"{labels[name][0]}, {labels[name][1]}", *texts, share))
     columns = ("", *header, "inside 95 % band")
     title = f"{counted(w.count, 'window')} of {w.window}"
-    return TextTable(title, columns, (False, *(True for _ in columns[1:])), tuple(rows), _NOTE)
+    return TextTable(title, columns, (False, *(True for _ in columns[1:])), tuple(rows), "")
 
 
 def _fits(w: WindowScore, header: tuple[str, ...], labels: dict[str, tuple[str, str]]) -> TextTable:
@@ -53,7 +54,7 @@ def _fits(w: WindowScore, header: tuple[str, ...], labels: dict[str, tuple[str, 
         for name in w.scores
     )
     numeric = (False, *(True for _ in header))
-    return TextTable(f"Fit in windows of {w.window}, % (R²)", ("", *header), numeric, rows, _FIT_NOTE)
+    return TextTable(f"Fit in windows of {w.window}, % (R²)", ("", *header), numeric, rows, "")
 
 
 def baseline_sentence(predictions: Sequence[Prediction], labels: dict[str, tuple[str, str]]) -> str:

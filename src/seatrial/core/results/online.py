@@ -7,7 +7,7 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field, computed_field
 
-from seatrial.core.results.fields import ListedArray, Number, ReportedFinding
+from seatrial.core.results.fields import ListedArray, Number, ReportedFinding, StoredRecord
 from seatrial.core.values import Array
 
 
@@ -104,6 +104,8 @@ class Snapshot:
     change: Annotated[CoefficientChange | None, Field(description="null: not tested")] = None
     findings: tuple[ReportedFinding, ...] = ()
     counts: SampleCounts = SampleCounts()
+    recent: Annotated[tuple[StoredRecord, ...], Field(exclude=True)] = ()
+    """The run so far, thinned, for people to look at; empty: not kept."""
 
     @computed_field
     @property

@@ -109,8 +109,8 @@ function spread(low, high) {
 }
 
 // a value with its band; the axis covers the later values and the interval as it is now
-function course(title, now, xs, values, halves, isIdentified) {
-  const last = xs.at(-1) ?? 0, half = halves.at(-1), from = (xs[0] ?? 0) + 0.2 * (last - (xs[0] ?? 0));
+function course(title, now, xs, values, halves, isIdentified, forgotten = 0.2) {
+  const last = xs.at(-1) ?? 0, half = halves.at(-1), from = (xs[0] ?? 0) + forgotten * (last - (xs[0] ?? 0));
   const later = values.filter((v, k) => Number.isFinite(v) && (xs[k] >= from || values.length < 5));
   const ends = Number.isFinite(half) && Number.isFinite(values.at(-1))
     ? [values.at(-1) - 1.5 * half, values.at(-1) + 1.5 * half] : [];
@@ -127,11 +127,41 @@ function course(title, now, xs, values, halves, isIdentified) {
   return nested("figure", {}, [svg]);
 }
 
+// the track from above, north up, one scale; the ring is where the craft is
+function track(north, east) {
+  const svg = svgNode("svg", { viewBox: "0 0 346 260", role: "img", "aria-label": "track from above, north up" });
+  const known = north.map((_, k) => k).filter(k => north[k] !== null && east[k] !== null);
+  const ends = values => spread(Math.min(...values), Math.max(...values));
+  const [x0, x1] = ends(known.map(k => east[k])), [y0, y1] = ends(known.map(k => north[k]));
+  const [left, top, width, height] = [52, 26, 282, 206], scale = Math.max((x1 - x0) / width, (y1 - y0) / height);
+  const X = x => left + width / 2 + (x - (x0 + x1) / 2) / scale, Y = y => top + height / 2 - (y - (y0 + y1) / 2) / scale;
+  const across = [(x0 + x1 - width * scale) / 2, (x0 + x1 + width * scale) / 2], along = [(y0 + y1 - height * scale) / 2, (y0 + y1 + height * scale) / 2];
+  for (const [value, words] of linear(...across)) svg.append(svgNode("path", { class: "gridline", d: `M${X(value)} ${top}v${height}` }),
+    svgNode("text", { class: "tick", x: X(value), y: top + height + 14, "text-anchor": "middle" }, words));
+  for (const [value, words] of linear(...along)) svg.append(svgNode("path", { class: "gridline", d: `M${left} ${Y(value)}h${width}` }),
+    svgNode("text", { class: "tick", x: left - 5, y: Y(value) + 3.5, "text-anchor": "end" }, words));
+  svg.append(svgNode("path", { class: "course", d: path(known.map(k => X(east[k])), known.map(k => Y(north[k]))) }));
+  const last = known.at(-1);
+  svg.append(svgNode("circle", { class: "craft", cx: X(east[last]), cy: Y(north[last]), r: 5 }));
+  svg.append(svgNode("text", { class: "name", x: left, y: 15 }, "track, north up [m]"));
+  return nested("figure", {}, [svg]);
+}
+function renderRecent({ track: places, channels }) {
+  const figures = channels.map(({ label, time, values }) => {
+    const numbers = values.map(v => v ?? NaN), latest = numbers.findLast(Number.isFinite);
+    return course(label, latest === undefined ? "–" : latest.toPrecision(3).replace("-", "−"), time, numbers, numbers.map(() => NaN), true, 0);
+  });
+  const hasTrack = places && places.x0.some((x, k) => x !== null && places.y0[k] !== null);
+  byId("recent").replaceChildren(...(hasTrack ? [track(places.x0, places.y0)] : []), ...figures);
+  byId("recent").hidden = byId("recent").children.length === 0;
+}
+
 // standard errors in per cent of values, logarithmic, named at their ends
 function shares(width, rows, xs, values, halves) {
   const lines = rows.map((row, k) => ({ name: row.name, isIdentified: row.is_identified,
     ys: xs.map((_, j) => Math.log10(100 * halves[j][k] / Z95 / Math.abs(values[j][k]))) }));
-  const finite = lines.flatMap(line => line.ys).filter(Number.isFinite);
+  const from = xs.findIndex(x => x >= 0.2 * (xs.at(-1) ?? 0));
+  const finite = lines.flatMap(line => line.ys.slice(xs.length < 5 ? 0 : from)).filter(Number.isFinite);
   const low = finite.length ? Math.floor(Math.min(...finite.map(y => Math.max(y, -4))) + 1e-9) : 0;
   const high = finite.length ? Math.min(3, Math.max(low + 1, Math.ceil(Math.max(...finite)))) : 2;
   const decades = Array.from({ length: high - low + 1 }, (_, k) => [low + k, `${+(10 ** (low + k)).toPrecision(1)} %`]);
@@ -189,7 +219,7 @@ function renderText(snapshot) {
     node("p", {}, snapshot.unidentified.length ? `The data so far do not identify ${listed(snapshot.unidentified)}.` : "No estimate yet."),
     node("p", {}, snapshot.advice)]);
   byId("change").hidden = snapshot.change === "";
-  byId("unidentified").hidden = snapshot.unidentified.length === 0 && snapshot.advice === "";
+  byId("next").hidden = snapshot.unidentified.length === 0 && snapshot.advice === "";
   byId("findings_section").hidden = snapshot.findings.length === 0;
   byId("residuals").hidden = snapshot.noise.length === 0;
   byId("last").textContent = snapshot.last ? `Latest fault: ${snapshot.last}` : "";
@@ -246,7 +276,7 @@ async function turn() {
   document.title = state.title ? `${state.title} · seatrial` : "seatrial";
   if (state.snapshot) {
     renderText(state.snapshot);
-    if (state.points.length) renderPlots(state.snapshot);
+    if (state.points.length) { renderRecent(state.recent); renderPlots(state.snapshot); }
   }
 }
 async function follow() {
