@@ -99,7 +99,7 @@ def test_texts_are_escaped(full: Fit) -> None:
         predictions=tuple(replace(p, extrapolation=Extrapolation(3.0, {HOSTILE: 3.0})) for p in full.predictions),
     )
     text = html(hostile)
-    assert HOSTILE not in text and text.count("<script>") == 3
+    assert HOSTILE not in text and text.count("<script>") == html(full).count("<script>")
 
 
 def test_intervals_of_measures_say_whether_they_hold(full: Fit) -> None:

@@ -70,7 +70,7 @@ def test_text_from_files_is_escaped_everywhere() -> None:
     fit = replace(fit, question=HOSTILE, ship=replace(fit.ship, name=HOSTILE, source=HOSTILE))
     text = html(fit)
     assert HOSTILE not in text and "><script>d" not in text
-    assert text.count("<script>") == 3
+    assert text.count("<script>") == html(fabricated_fit(names=("a", "b"))).count("<script>")
 
 
 def test_a_fit_with_next_to_nothing_renders(fit: Fit) -> None:

@@ -22,9 +22,13 @@ class KeyFact:
 
 @dataclass(frozen=True)
 class FirstScreen:
-    """A verdict, its table, and a picture with its caption; an empty picture is not shown."""
+    """A verdict, its table, and a picture with its caption; an empty picture or lead is not shown.
+
+    lead: what the result means to those who operate the craft, in a sentence.
+    """
 
     verdict: str
     facts: tuple[KeyFact, ...]
     figure: Markup = field(default_factory=Markup)
     caption: str = ""
+    lead: str = ""

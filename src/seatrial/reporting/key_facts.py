@@ -9,6 +9,7 @@ from seatrial.core.values import Severity
 from seatrial.reporting.first_screen import FirstScreen, KeyFact
 from seatrial.reporting.identifiability_chapter import determined_sentence
 from seatrial.reporting.measures import is_inside
+from seatrial.reporting.operators import operators_sentence
 from seatrial.reporting.runs import ERROR_LABELS, badness
 from seatrial.reporting.time_figures import run_figure
 from seatrial.reporting.verdict import error_text, verdict, worst_errors
@@ -21,13 +22,13 @@ def first_screen(fit: Fit, length: float) -> FirstScreen:
     """Return the verdict, the five rows, and the worst held-out run as track and heading; length: of the ship [m]."""
     held = fit.validation or fit.predictions
     if not held:
-        return FirstScreen(verdict(fit), key_facts(fit))
+        return FirstScreen(verdict(fit), key_facts(fit), lead=operators_sentence(fit))
     p = max(held, key=badness)
     view = headline_view(p, length, fit.model.input_names)
     which = "The held-out run" if len(fit.validation) == 1 else (
         "The worst held-out run" if fit.validation else "The worst training run")  # fmt: skip
     caption = f"{which}, {p.record}: {p.reference_word} and {p.model_word}."
-    return FirstScreen(verdict(fit), key_facts(fit), run_figure(view), caption)
+    return FirstScreen(verdict(fit), key_facts(fit), run_figure(view), caption, operators_sentence(fit))
 
 
 def key_facts(fit: Fit) -> tuple[KeyFact, ...]:

@@ -91,7 +91,6 @@ def html(fit: Fit) -> str:
         "screen": key_facts.first_screen(fit, 0.0 if has_thrusters else length),
         "facts": summary.facts(fit),
         "coefficient_sentences": summary.coefficient_sentences(fit),
-        "roll_sentence": summary.roll_sentence(fit),
         "residual_sentence": summary.residual_sentence(fit),
         "convergence_sentence": summary.convergence_sentence(fit),
         "better_baselines": baseline_sentence(fit.validation, runs.ERROR_LABELS),

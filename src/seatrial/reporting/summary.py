@@ -2,7 +2,7 @@
 
 from seatrial.core.results import Coefficient, Fit, ReferenceEstimate, Search
 from seatrial.core.results.method_comparison import inside_own_intervals
-from seatrial.core.text.numbers import duration, estimate_text, exact, percent
+from seatrial.core.text.numbers import duration, exact, percent
 from seatrial.core.text.words import counted, enumeration
 
 # distance of an estimate from its prior's mean, in the prior's standard deviations, from which on they disagree
@@ -28,26 +28,6 @@ def coefficient_sentences(fit: Fit) -> list[str]:
     """Return which coefficients differ from zero, contain a known value, or disagree with their prior."""
     parts = [_significance(fit), _truth_coverage(fit), _prior_disagreement(fit)]
     return [text for text in parts if text]
-
-
-def roll_sentence(fit: Fit) -> str:
-    """Return period, damping and metacentric height; empty for another model."""
-    roll = fit.roll
-    if roll is None:
-        return ""
-    period, ratio = (estimate_text(e.value, 0.5 * (e.upper - e.lower), e.lower, e.upper)
-                     for e in (roll.natural_period, roll.damping_ratio.scaled(100.0)))  # fmt: skip
-    text = (
-        f"The natural period at small angles is {period.value} s ({period.lower} to {period.upper} s), the linear "
-        f"damping {ratio.value} % of critical ({ratio.lower} to {ratio.upper} %)"
-    )
-    height = roll.metacentric_height
-    if height is None:
-        return f"{text}."
-    gm = estimate_text(height.value, 0.5 * (height.upper - height.lower), height.lower, height.upper)
-    return (
-        f"{text}; GM would be {gm.value} m ({gm.lower} to {gm.upper} m) with {roll.gyradius_source.partition(',')[0]}."
-    )
 
 
 def _free_coefficients(fit: Fit) -> list[Coefficient]:

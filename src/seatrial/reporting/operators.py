@@ -1,0 +1,59 @@
+"""What a fit means to those who operate the craft, in a sentence: roll, thrusters, motions in waves."""
+
+from seatrial.core.results import Fit, RollCharacteristics, Seakeeping
+from seatrial.core.results.ship_motions import IntervalEstimate
+from seatrial.core.results.thruster_craft import CraftMeasure, ThrusterCraft
+from seatrial.core.text.numbers import estimate_text, significant
+from seatrial.core.text.words import enumeration
+
+# measures of a craft with thrusters that a sentence names: key -> text before the value, unit after it
+_CRAFT_MEASURES = {
+    "top_speed": ("makes", "m/s"),
+    "yaw_rate_deg_s": ("turns at", "°/s"),
+    "stopping_distance_m": ("stops within", "m"),
+}
+
+
+def operators_sentence(fit: Fit) -> str:
+    """Return what the ship does in terms of those who operate it; empty for a model of manoeuvring by a rudder."""
+    if fit.roll is not None:
+        return _roll(fit.roll)
+    if fit.thruster_craft is not None:
+        return _craft(fit.thruster_craft)
+    return "" if fit.seakeeping is None else _waves(fit.seakeeping)
+
+
+def _roll(roll: RollCharacteristics) -> str:
+    period, ratio = _estimate(roll.natural_period, " s"), _estimate(roll.damping_ratio.scaled(100.0), " %")
+    text = f"The natural period at small angles is {period}, the linear damping {ratio} of critical"
+    if roll.metacentric_height is None:
+        return f"{text}."
+    height = _estimate(roll.metacentric_height, " m")
+    return f"{text}; GM would be {height} with {roll.gyradius_source.partition(',')[0]}."
+
+
+def _estimate(e: IntervalEstimate, unit: str) -> str:
+    """A value with its interval: ``2.55 s (2.54 to 2.56 s)``."""
+    text = estimate_text(e.value, 0.5 * (e.upper - e.lower), e.lower, e.upper)
+    return f"{text.value}{unit} ({text.lower} to {text.upper}{unit})"
+
+
+def _craft(craft: ThrusterCraft) -> str:
+    clauses = [f"{verb} {_measure(craft.measures[name], unit)}" for name, (verb, unit) in _CRAFT_MEASURES.items()
+               if name in craft.measures]  # fmt: skip
+    return f"At full command it {enumeration(clauses)}." if clauses else ""
+
+
+def _measure(m: CraftMeasure, unit: str) -> str:
+    gap = "" if unit.startswith("°") else " "
+    if m.lower is None or m.upper is None:
+        return f"{significant(m.value, 2)}{gap}{unit} (interval not determined)"
+    return _estimate(IntervalEstimate(m.value, m.lower, m.upper), f"{gap}{unit}")
+
+
+def _waves(seakeeping: Seakeeping) -> str:
+    heave, pitch = significant(seakeeping.heave_significant, 2), significant(seakeeping.pitch_significant, 2)
+    return (
+        f"In {seakeeping.sea}, at {significant(seakeeping.speed, 3)} m/s and {seakeeping.heading:.0f}° to the waves, "
+        f"significant amplitudes are {heave} m of heave and {pitch}° of pitch."
+    )
