@@ -53,7 +53,7 @@ def test_it_has_what_the_tuning_holds(page: str, fin: Tuning) -> None:
                  *(c.name for c in fin.components), *(b.name.replace("'", "&#39;") for b in fin.bounds),
                  *(f.code for f in fin.findings), fin.front.name, fin.extended_fronts[0].name):  # fmt: skip
         assert word in page
-    assert page.count("<svg xmlns") == 9
+    assert page.count("<svg xmlns") == 10
     assert page.count("<mfrac>") == 7
 
 
