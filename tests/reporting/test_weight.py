@@ -12,7 +12,7 @@ from seatrial.core.values import Record
 from seatrial.reporting.page import html
 from seatrial.reporting.runs import MAX_DRAWN, WORST_DRAWN, drawn_predictions, hidden_runs_sentence
 
-SAMPLES = 5_000
+SAMPLES = 4_000
 
 
 def dense(record: Record, name: str, rng: np.random.Generator) -> Record:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from markupsafe import Markup
 
@@ -166,7 +166,7 @@ def _run_section(p: Prediction, length: float, inputs: Sequence[str], key: str) 
     rows = {name: _measure_row(name, m, p.tied_spread.get(name)) for name, m in p.measures.items()}
     late = {name for name in rows if name.startswith("overshoot_") and int(name.split("_")[1]) > MAX_OVERSHOOTS}
     return RunSection(
-        p.record, key, p.role == "validation", _summary(p), run_figure(prediction_view(p, length, inputs)),
+        p.record, key, p.role == "validation", _summary(p), run_figure(replace(prediction_view(p, length, inputs), legend=())),
         p.reference_word, p.model_word,
         _measure_table([row for name, row in rows.items() if name not in late]),
         _measure_table([row for name, row in rows.items() if name in late]),

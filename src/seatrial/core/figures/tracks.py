@@ -15,6 +15,8 @@ from seatrial.core.figures.ticks import span, thinned
 HULLS, SLENDER = 7, 2.5
 # free distance about a track: in lengths of the ship, and as a share of the extent
 FREE_LENGTHS, FREE_SHARE = 0.6, 0.03
+# points of a track; finer than hulls along it, coarser than the noise of positions
+POINTS = 240
 # half a hull from above, in lengths: forward, starboard
 _HALF_HULL = np.array([[0.5, 0], [0.3, 0.075], [-0.4, 0.075], [-0.5, 0.05]])
 _HULL = np.vstack([_HALF_HULL, _HALF_HULL[::-1] * [1, -1], _HALF_HULL[:1]])
@@ -111,7 +113,7 @@ def _marks(track: Track, length: float, *, is_rotated: bool) -> list[Mark]:
         halves = (track.half_north, track.half_east) if is_rotated else (track.half_east, track.half_north)
         envelope = track_envelope(across, along, *halves)
         marks += [envelope] if envelope else []
-    marks.append(Line(*thinned(across, along), track.stroke))
+    marks.append(Line(*thinned(across, along, POINTS), track.stroke))
     if track.heading is not None and length > 0.0:
         edge = Stroke(track.stroke.colour if track.hull_fill == "none" else "#9a9a9a", 0.8)  # px, chosen
         for i in np.linspace(0, len(track.north) - 1, HULLS).astype(int):
