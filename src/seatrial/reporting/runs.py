@@ -165,8 +165,9 @@ def run_sections(predictions: Sequence[Prediction], length: float, inputs: Seque
 def _run_section(p: Prediction, length: float, inputs: Sequence[str], key: str) -> RunSection:
     rows = {name: _measure_row(name, m, p.tied_spread.get(name)) for name, m in p.measures.items()}
     late = {name for name in rows if name.startswith("overshoot_") and int(name.split("_")[1]) > MAX_OVERSHOOTS}
+    view = replace(prediction_view(p, length, inputs), legend=())  # explained once, by `reading_note`
     return RunSection(
-        p.record, key, p.role == "validation", _summary(p), run_figure(replace(prediction_view(p, length, inputs), legend=())),
+        p.record, key, p.role == "validation", _summary(p), run_figure(view),
         p.reference_word, p.model_word,
         _measure_table([row for name, row in rows.items() if name not in late]),
         _measure_table([row for name, row in rows.items() if name in late]),
