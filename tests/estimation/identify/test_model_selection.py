@@ -27,6 +27,8 @@ from seatrial.estimation.identify.model_selection import (
 from seatrial.estimation.predict.predict_runs import TiedModel
 from seatrial.physics.models.abkowitz import abkowitz
 from seatrial.physics.models.nomoto import nomoto
+from seatrial.physics.models.published import kvlcc2
+from seatrial.physics.models.thrusters import thrusters
 from seatrial.physics.simulate import replay
 
 RUNS = 6
@@ -150,6 +152,17 @@ def test_the_family_of_the_package_knows_its_models(model: Model) -> None:
         "priors x 0.5",
         "priors x 3",
     ]
+
+
+def test_built_in_structures_are_those_that_a_model_has() -> None:
+    craft = thrusters()
+    named = {v.name: v for v in variants(craft, None, is_segmented=False)}
+    assert {"side force of thrust", "moment of speed", "sway and yaw coupled"} <= set(named)
+    freed = apply_variant(craft, named["moment of speed"]).parameters
+    assert freed["N_u"].free and freed["N_uu"].free and freed["N_u"].prior is not None
+    assert "even terms" in [v.name for v in variants(kvlcc2(), None, is_segmented=True)]
+    without = craft.with_parameters(craft.parameters.freed("Y_T"))
+    assert "side force of thrust" not in [v.name for v in variants(without, None, is_segmented=False)]
 
 
 def test_a_declared_family_is_fitted_and_scored(found: Estimation, model: Model, records: list[Record]) -> None:

@@ -12,6 +12,8 @@ from seatrial.estimation.identify import identify
 from seatrial.estimation.predict.window_baselines import ARX, CONSTANT_COURSE, NARX, at_rest, constant_course
 from seatrial.estimation.predict.window_scores import WindowLength, pooled_rms, window_lengths
 from seatrial.physics.models.nomoto import nomoto
+from seatrial.physics.models.roll import roll
+from seatrial.physics.simulate.replay import trajectory
 
 
 @pytest.fixture(scope="module")
@@ -45,6 +47,20 @@ def test_windows_of_both_units_are_scored_with_baselines(fit: Fit) -> None:
     (straight,) = [b for b in in_seconds.baselines if b.name == CONSTANT_COURSE]
     assert score.rms < straight.scores["r"].rms
     assert straight.scores["r"].rms == pytest.approx(np.sqrt(np.mean(fit.validation[0].measured["r"] ** 2)), rel=0.25)
+
+
+def test_a_ship_that_rolls_about_its_rest_has_windows_in_seconds() -> None:
+    """Of 0.4 periods and multiples: it travels no ship lengths."""
+    ship, rng = roll().with_values({"b_1": 0.05, "c_1": 6.0, "b_2": 0.2}), np.random.default_rng(0)
+    decays = []
+    for name, angle in (("a", 0.3), ("b", 0.25)):
+        states, _ = trajectory(ship, np.zeros((600, 2)), 0.05, np.array([angle, 0.0]))
+        noise = 3e-4 * rng.standard_normal(600)
+        decays.append(Record.from_arrays(name, 0.05 * np.arange(600.0), {"phi": states[:, 0] + noise}))
+    roles = (Role.TRAIN, Role.VALIDATE)
+    runs = tuple(TrialRun(d, role) for d, role in zip(decays, roles, strict=True))
+    (prediction,) = identify(Trial(Ship("hull", {"L": 5.0}), runs, roll())).validation
+    assert [w.window for w in prediction.windows] == ["1 s", "5.1 s"]  # 0.4 periods of 2 pi / sqrt(6) s
 
 
 def test_a_baseline_that_errs_less_is_named(fit: Fit) -> None:

@@ -46,7 +46,7 @@ def unphysical_finding(model: Model, records: Sequence[Record]) -> tuple[Finding
     advice = "record a decay from a larger angle, or fix b_2 and b_3 at 0 under [model.fixed]; --choose tries that"
     if not is_pure_roll(model):
         advice = "fix these under [model.fixed], or look for what the model lacks; --choose takes no such model"
-    what = f"the estimate has values that no craft has, or that its priors exclude: {', '.join(against)}"
+    what = f"the estimate is implausible: {', '.join(against)}"
     return (Finding(Severity.WARNING, "unphysical-values", what, "", advice),)
 
 

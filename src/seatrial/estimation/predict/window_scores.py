@@ -93,9 +93,9 @@ def window_scores(
         unit = None
     seconds_of = {"s": 1.0} | ({} if unit is None else {"L": unit})
     has_thrusters = bool(predictor.model.equations.layout)
-    usual = [WindowLength(n, "s") for n in THRUSTER_LENGTHS] if has_thrusters else [
-        WindowLength(n, "L") for n in DEFAULT_LENGTHS
-    ]  # fmt: skip
+    usual = [WindowLength(n, "s") for n in THRUSTER_LENGTHS]
+    if not has_thrusters:
+        usual = [_usual_length(n, unit, is_steered="psi" in predictor.model.states) for n in DEFAULT_LENGTHS]
     wanted = [(str(w), w.value * seconds_of[w.unit]) for w in lengths or usual if w.unit in seconds_of]
     if not lengths:
         wanted = [(name, seconds) for name, seconds in wanted if 2.0 * seconds <= record.duration]
@@ -105,6 +105,13 @@ def window_scores(
         for name, seconds in wanted
         if len(windows := Windows.cut([record], seconds))
     )
+
+
+def _usual_length(many: float, unit: float | None, *, is_steered: bool) -> WindowLength:
+    """So many ship lengths; of a ship that rolls or heaves about its rest, so many of its times `unit` [s]."""
+    if is_steered or unit is None:
+        return WindowLength(many, "L")
+    return WindowLength(float(f"{many * unit:.2g}"), "s")
 
 
 def _score(
