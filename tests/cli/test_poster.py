@@ -15,7 +15,7 @@ def test_a_result_folder_becomes_a_poster(
     folder = st.save(fabricated_fit(), tmp_path / "fit")
     page = tmp_path / "poster.html"
     assert run_command("poster", Path(folder).parent if Path(folder).is_file() else folder, "--out", page) == 0
-    assert "turning-circle" in capsys.readouterr().out.lower()
+    assert "turning circle with 35 deg to port" in capsys.readouterr().out.lower()
     assert page.read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
 
 

@@ -47,7 +47,7 @@ def test_it_writes_six_files_and_prints_what_they_say(
     assert table["chosen"]["gains"] == tuning.chosen.gains
     said = capsys.readouterr().out
     assert all(reason in said for reason in tuning.reasons)
-    rows = {line.partition("  ")[0]: line for line in reversed(said.splitlines())}
+    rows = {line.strip().partition("  ")[0]: line for line in reversed(said.splitlines())}
     assert rows["chosen"].split()[1:3] == ["74.0", "2.1"]
     assert rows["least roll"].endswith("20 % allowed")
     assert "schedule of 18 conditions" in said and "0.9800 of a grid's hypervolume" in said
@@ -73,13 +73,13 @@ def test_an_autopilot_has_no_schedule_to_write_and_says_what_it_turns(
     said = capsys.readouterr().out
     assert "psi [deg]" in said and "stable for 100 of 100 ships that the fit allows" in said
     assert "does not settle" in said
-    (row,) = [line for line in said.splitlines() if line.startswith("chosen   ")]
+    (row,) = [line for line in said.splitlines() if line.startswith("  chosen   ")]
     assert len(row.split()) == 7, "a heading drifts without control; it has no reduction"
 
 
 def test_a_speed_is_stated_in_its_own_units(capsys: pytest.CaptureFixture) -> None:
     print_tuning(replace(fabricated_bare(), output="u", actuator="v_j"))
-    head = next(line for line in capsys.readouterr().out.splitlines() if line.startswith("controller"))
+    head = next(line for line in capsys.readouterr().out.splitlines() if line.strip().startswith("controller"))
     assert "u [m/s]" in head and "v_j [m/s]" in head and "rate [m/s^2]" in head
 
 

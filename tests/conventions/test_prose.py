@@ -19,6 +19,10 @@ PAGES = sorted([*REPOSITORY.glob("*.md"), *(REPOSITORY / "docs").rglob("*.md")])
 MOST_IN_SOURCE = 0
 
 
+# A number without its leading zero, in prose; formats and parsers have such texts, and so has code between backticks.
+BARE_DECIMAL = re.compile(r"(?<=[\s(\[|±,-])\.\d{1,6}(?![\w.])")
+CODE = re.compile(r"```.*?```|`[^`\n]*`", re.DOTALL)
+
 # The protocol of optimisers, by its name in the field.
 ASK_AND_TELL = re.compile(r"ask(?:ing)?[ ,/-]+(?:and )?tell(?:ing)?|`?tell`? *\(|`tell`", re.IGNORECASE)
 
@@ -46,3 +50,34 @@ def test_texts_of_the_packages_use_fewer_and_fewer_retired_words() -> None:
             texts = (n.value for n in ast.walk(file.tree) if isinstance(n, ast.Constant) and isinstance(n.value, str))
             count += sum(1 for text in texts for _ in _retired(text))
     assert count <= MOST_IN_SOURCE
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: str(p.relative_to(REPOSITORY)))
+def test_no_page_has_a_number_without_its_leading_zero(page: Path) -> None:
+    prose = CODE.sub("", page.read_text(encoding="utf-8"))
+    assert [line for line in prose.splitlines() if BARE_DECIMAL.search(line)] == []
+
+
+def test_no_text_of_the_packages_has_a_number_without_its_leading_zero() -> None:
+    bare = [
+        f"{file.folder}: {line.strip()[:100]}"
+        for package in PACKAGES
+        for file in source_files(package)
+        for node in ast.walk(file.tree)
+        if isinstance(node, ast.Constant) and isinstance(node.value, str)
+        for line in node.value.splitlines()
+        if BARE_DECIMAL.search(line)
+    ]
+    assert bare == []
+
+
+def test_what_counts_as_a_retired_word_or_a_bare_decimal() -> None:
+    """So that the lists above cannot become lists of nothing."""
+    assert [hit.split(": ")[1] for hit in _retired("They tell of unrest\nin the house.")] == [
+        "tell",
+        "unrest",
+        "the house",
+    ]
+    assert list(_retired("ask and tell; intelligence; headings")) == []
+    assert BARE_DECIMAL.search("a share of .28") and BARE_DECIMAL.search("(.5)") and BARE_DECIMAL.search("| -.2 |")
+    assert not any(map(BARE_DECIMAL.search, ("0.28", "{:.1%}", "fig.2", "a .csv file", "eq. .5a")))

@@ -86,7 +86,7 @@ def status(store: StorePath, json: Json = None) -> None:
 @campaigns.command("gather")
 def gather(
     store: StorePath,
-    to: Annotated[Path, typer.Option("--to", metavar="FILE", help="Table, .csv or .parquet; the page stands beside.")],
+    to: Annotated[Path, typer.Option("--to", metavar="FILE", help="Table, .csv or .parquet; the page: .html.")],
     json: Json = None,
 ) -> None:
     """Gather the results into one table, a row a coefficient and task, and a page.

@@ -3,44 +3,47 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from seatrial.cli.finding_output import print_findings
-from seatrial.cli.screen import print_lines, print_table
+from seatrial.cli.finding_output import print_warnings
+from seatrial.cli.run_errors import quantity_label
+from seatrial.cli.screen import print_heading, print_lines, print_table
 
 if TYPE_CHECKING:
     from seatrial.core.results import Comparison, Difference
 
 # significant digits of values; chosen
 DIGITS = 5
+MARKED = "'differs': by all rows of a table together (joint 95 %), stricter than the interval of one row by itself"
 
 
 def print_comparison(comparison: "Comparison") -> None:
-    """Print what changed, differences of coefficients and their joint test, then those of each manoeuvre."""
-    from seatrial.core.text.numbers import exact, p_value
+    """Print whether the fits differ, what else changed, differences of coefficients, then those of each manoeuvre."""
+    from seatrial.reporting.comparison import outcome
+    from seatrial.reporting.measures import manoeuvre_name
 
-    print_lines([f"first: {comparison.first.name}", f"second: {comparison.second.name}"])
-    print_lines((change.replace("→", "->") for change in comparison.changes), "  ")
-    if comparison.coefficients:
-        _print_differences("coefficient", comparison.coefficients)
-    test = comparison.joint_test
-    if test is not None:
-        statistic = f"chi-square {exact(test.statistic, 4)}, {test.degrees_of_freedom} degrees of freedom"
-        print_lines([f"all coefficients together: {statistic}, {p_value(test.p)}"])
+    print_heading(f"{comparison.first.name} (first) and {comparison.second.name} (second)")
+    print_lines(outcome(comparison))
+    if comparison.changes:
+        print_heading("What else changed")
+        print_lines(comparison.changes, "  ")
+    print_heading("Differences, second minus first")
+    print_lines([MARKED], "  ")
+    _print_differences(comparison.coefficients)
     for m in comparison.manoeuvres:
         if m.measures:
-            _print_differences(m.manoeuvre, m.measures)
+            print_heading(manoeuvre_name(m.manoeuvre))
+            _print_differences(m.measures)
         else:
-            print_lines([f"{m.manoeuvre}: {m.note or 'no measure in common'}"])
-    if comparison.findings:
-        print_findings(comparison.findings, 1)
-    names = ", ".join(comparison.significant) or "nothing"
-    print_lines([f"differs significantly (joint 95 %): {names}"])
+            print_lines([f"{manoeuvre_name(m.manoeuvre)}: {m.note or 'no measure in common'}"], "  ")
+    print_warnings(comparison.findings)
 
 
-def _print_differences(name: str, rows: "Sequence[Difference]") -> None:
+def _print_differences(rows: "Sequence[Difference]") -> None:
     from seatrial.core.text.numbers import exact
 
-    table = [[name, "first", "second", "difference", "95 % from", "to", ""]]
+    if not rows:
+        return
+    table = [["", "first", "second", "difference", "95 % from", "to", ""]]
     for d in rows:
         numbers = ("" if v is None else exact(v, DIGITS) for v in (d.first, d.second, d.difference, d.lower, d.upper))
-        table.append([d.name, *numbers, "differs" if d.is_significant else ""])
-    print_table(table, flush_left=(0, len(table[0]) - 1))
+        table.append([quantity_label(d.name), *numbers, "differs" if d.is_significant else ""])
+    print_table(table, flush_left=(0, len(table[0]) - 1), indent="  ")

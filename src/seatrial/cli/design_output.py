@@ -1,9 +1,10 @@
-"""What `design` prints: the manoeuvre beside the standard ones, findings, the first orders."""
+"""What `design` prints: the manoeuvre compared with standard ones, findings, the first orders."""
 
 from typing import TYPE_CHECKING
 
 from seatrial.cli.finding_output import print_warnings
-from seatrial.cli.screen import print_lines, print_table
+from seatrial.cli.screen import print_heading, print_lines, print_table
+from seatrial.cli.summary_output import print_summary
 
 if TYPE_CHECKING:
     from seatrial.core.results import Design
@@ -16,22 +17,22 @@ MAX_ORDERS_PRINTED = 8
 def print_design(design: "Design") -> None:
     """Print the manoeuvre's precision compared with the standard ones, findings, and its first orders."""
     from seatrial.core.results.design import has_drift, has_track, ranked_baselines
-    from seatrial.core.text.numbers import duration, exact
+    from seatrial.reporting.design_text import key_facts, verdict
 
+    print_summary(_heading(design), verdict(design), key_facts(design))
+    print_heading("Designed and standard manoeuvres")
     track = ["drift deg"] * has_drift(design) + ["distance m"] if has_track(design) else []
-    rows = [["relative std. error, %", "worst", "mean", "ships drawn", *track, ""]]
+    rows = [["rel. std. error, %", "worst", "mean", "ships drawn", *track, ""]]
     rows += [_manoeuvre_cells(manoeuvre, design) for manoeuvre in (design.designed, *ranked_baselines(design))]
-    print_table(rows, flush_left=(0, len(rows[0]) - 1))
-    confirmation = design.confirmation
-    if confirmation is not None:
-        text = f"{confirmation.converged_runs} of {confirmation.runs} fits of simulated trials succeed"
-        if confirmation.converged_runs:
-            error, bound = (exact(100.0 * max(values), 3) for values in (confirmation.error, confirmation.bound))
-            text += f": worst error over them {error} %, {bound} % predicted"
-        print_lines([text])
+    print_table(rows, flush_left=(0, len(rows[0]) - 1), indent="  ")
     print_warnings(design.findings)
     _print_orders(design)
-    print_lines([f"{design.solution.evaluations} manoeuvres tried; {duration(design.elapsed_s)}"])
+
+
+def _heading(design: "Design") -> str:
+    from seatrial.core.text.numbers import duration
+
+    return f"Designed manoeuvre, {design.solution.evaluations} tried, {duration(design.elapsed_s)}"
 
 
 def _manoeuvre_cells(manoeuvre: "ManoeuvrePrecision", design: "Design") -> list[str]:
@@ -51,7 +52,10 @@ def _manoeuvre_cells(manoeuvre: "ManoeuvrePrecision", design: "Design") -> list[
 
 def _print_orders(design: "Design") -> None:
     from seatrial.data.folder.orders import order_cells, order_headings
+    from seatrial.reporting.design_text import order_meaning
 
+    print_heading("Orders")
+    print_lines((f"{a.name}: {order_meaning(a.name)}" for a in design.actuators), "  ")
     orders = [order_cells(order, design.actuators) for order in design.orders[:MAX_ORDERS_PRINTED]]
     print_table([order_headings(design.actuators), *orders], flush_left=(), indent="  ")
     if len(design.orders) > MAX_ORDERS_PRINTED:

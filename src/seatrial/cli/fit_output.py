@@ -13,8 +13,9 @@ from seatrial.cli.fit_details import (
     print_model_selection,
     print_windows,
 )
-from seatrial.cli.run_errors import ERROR_DIGITS, error_text, label_and_unit
+from seatrial.cli.run_errors import ERROR_DIGITS, error_text, label_and_unit, quantity_label
 from seatrial.cli.screen import is_quiet, is_verbose, print_heading, print_lines, print_table
+from seatrial.cli.summary_output import print_summary
 
 if TYPE_CHECKING:
     from seatrial.core.results import Coefficient, Extrapolation, Fit, Measure, Prediction
@@ -25,7 +26,6 @@ EXTRAPOLATION_NOTE = ": beyond the training runs, read its intervals as lower li
 NOT_DETERMINED = "not determined"
 # measures and held-out runs that stand in the tables without --verbose; chosen, one screen
 MAX_MEASURES, MAX_RUNS = 8, 4
-GOOD_MARKS = {True: "+", False: "!", None: ""}  # before a key figure that is good, or that limits the result
 
 
 def print_fit(fit: "Fit") -> None:
@@ -54,18 +54,15 @@ def print_fit(fit: "Fit") -> None:
 
 def _print_summary(fit: "Fit") -> None:
     from seatrial.core.text.numbers import duration
+    from seatrial.core.text.words import counted
     from seatrial.reporting.key_facts import key_facts
     from seatrial.reporting.verdict import verdict
 
     free = sum(not c.fixed for c in fit.coefficients)
     runs = sum(p.role == "training" for p in fit.predictions)
-    print_heading(
-        f"{fit.ship.name}: model {fit.model.name}, {free} coefficients from {runs} run{'s' * (runs != 1)}, "
-        f"{duration(fit.elapsed_s)}"
-    )
-    print_lines([verdict(fit)])
-    rows = [(GOOD_MARKS[fact.is_good], fact.name, fact.text) for fact in key_facts(fit)]
-    print_table(rows, flush_left=(0, 1, 2), indent="  ")
+    sizes = f"{counted(free, 'coefficient')} from {counted(runs, 'run')}"
+    heading = f"{fit.ship.name}: model {fit.model.name}, {sizes}, {duration(fit.elapsed_s)}"
+    print_summary(heading, verdict(fit), key_facts(fit))
 
 
 def _print_coefficients(fit: "Fit") -> None:
@@ -154,7 +151,7 @@ def _print_measures(p: "Prediction") -> None:
             simulated = exact(m.simulated, 4) if m.is_determined else NOT_DETERMINED
             ends = ("" if x is None or not m.is_determined else exact(x, 4) for x in (m.lower, m.upper))
             measured = "" if m.measured is None else exact(m.measured, 4)
-            rows.append([_label(name), measured, simulated, *ends, _measure_mark(m)])
+            rows.append([quantity_label(name), measured, simulated, *ends, _measure_mark(m)])
     if len(rows) > 1:
         print_table(rows, flush_left=words, indent="  ")
     if len(p.measures) > len(chosen):
@@ -167,10 +164,6 @@ def _measure_mark(m: "Measure") -> str:
     return {True: "inside", False: "OUTSIDE", None: ""}[is_inside(m) if m.is_determined else None]
 
 
-def _label(name: str) -> str:
-    return ", ".join(part for part in label_and_unit(name) if part)
-
-
 def _print_thruster_craft(fit: "Fit") -> None:
     """What a craft with thrusters does at full command."""
     from seatrial.core.text.numbers import exact
@@ -181,7 +174,7 @@ def _print_thruster_craft(fit: "Fit") -> None:
     rows = [["", "", "95 % from", "to"]]
     for name, m in fit.thruster_craft.measures.items():
         ends = ("" if x is None else exact(x, ERROR_DIGITS) for x in (m.lower, m.upper))
-        rows.append([_label(name), exact(m.value, ERROR_DIGITS), *ends])
+        rows.append([quantity_label(name), exact(m.value, ERROR_DIGITS), *ends])
     print_table(rows, indent="  ")
 
 
@@ -226,4 +219,4 @@ def _simulated_measure(name: str, value: float, is_judged: bool, pair: Iterable[
     from seatrial.core.text.numbers import exact
 
     ends = [exact(end, 4) for end in pair] if pair is not None else [NOT_DETERMINED if is_judged else "", ""]
-    return [_label(name), exact(value, 4), *ends]
+    return [quantity_label(name), exact(value, 4), *ends]

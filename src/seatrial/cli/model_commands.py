@@ -25,7 +25,7 @@ def tune(
         Path | None, typer.Option("--from", metavar="MODEL.toml", help="Ship model in place of plant.model.")
     ] = None,
     method: Annotated[
-        str, typer.Option("--method", metavar="METHOD", help="front, or genetic (Yu et al. 2014) beside it.")
+        str, typer.Option("--method", metavar="METHOD", help="front, or genetic (Yu et al. 2014), compared with it.")
     ] = "front",
     model: OwnModelPath = None,
     json: Json = None,

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from seatrial.cli.screen import print_heading, print_lines, print_verbatim
+from seatrial.cli.screen import print_heading, print_lines, print_next, print_table, print_verbatim
 
 if TYPE_CHECKING:
     from seatrial.data.trial.model_guide import FilledValue, ModelGuide
@@ -12,13 +12,13 @@ if TYPE_CHECKING:
 
 def print_models(summaries: "Sequence[ModelSummary]") -> None:
     """Print name, states, inputs and source of each model; why an installed one cannot be loaded."""
+    rows = []
     for model in summaries:
         signature = f"states {', '.join(model.states)}; inputs {', '.join(model.inputs)}"
-        print(f"{model.name:20s} {model.problem or signature}")
-        if model.source:
-            print(f"{'':20s} {model.source}")
-        if model.package:
-            print(f"{'':20s} installed by {model.package}")
+        rows.append([model.name, model.problem or signature])
+        rows += [["", text] for text in (model.source, model.package and f"installed by {model.package}") if text]
+    print_table(rows, flush_left=(0, 1))
+    print_next("seatrial models NAME says what a model needs, with a trial file to begin with")
 
 
 def print_model_guide(guide: "ModelGuide") -> None:

@@ -19,9 +19,12 @@ ONE_MINUTE_S = 60.0  # s: less is shown in whole seconds
 
 
 @contextmanager
-def progress_reporter() -> Iterator[Callable[[str], None]]:
-    """Give a function that takes reports: nothing is printed with --quiet, every report with --verbose."""
-    if is_quiet():
+def progress_reporter(*, has_live_table: bool = False) -> Iterator[Callable[[str], None]]:
+    """Give a function that takes reports: nothing is printed with --quiet, every report with --verbose.
+
+    has_live_table: whether the command draws a table of its own on a terminal, which lines between would tear.
+    """
+    if is_quiet() or (has_live_table and sys.stdout.isatty()):
         yield lambda _: None
     elif is_verbose() or not sys.stderr.isatty():
         yield _printer(every=is_verbose())

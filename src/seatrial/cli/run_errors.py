@@ -23,6 +23,14 @@ def label_and_unit(key: str) -> tuple[str, str]:
     return ERROR_LABELS[key] if key in ERROR_LABELS else measure_label(key)
 
 
+def quantity_label(name: str) -> str:
+    """Return name and unit of a measure, or the name of a coefficient as it is: ``advance, L``."""
+    from seatrial.reporting.measures import measure_label
+
+    label, unit = measure_label(name)
+    return f"{label}, {unit}" if unit else label if label != name.replace("_", " ") else name
+
+
 def error_text(key: str, value: float) -> str:
     """Return the number of an error of `Prediction.rms` in the unit of `label_and_unit`."""
     from seatrial.core.text.numbers import exact

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from seatrial.cli.screen import print_lines, print_table
+from seatrial.cli.screen import print_heading, print_lines, print_table
 
 if TYPE_CHECKING:
     from seatrial.core.results import Study
@@ -13,7 +13,9 @@ def print_study(study: "Study") -> None:
     from seatrial.core.results import CheckStatus
     from seatrial.core.text.numbers import exact
 
-    print_lines(line for line in (study.question, *study.answer) if line)
+    print_heading(study.question or study.title or study.name)
+    print_lines(study.answer)
+    print_lines([f"claims: {study.claim_counts or 'none'}", f"checks: {study.check_counts}"])
     rows = []
     for claim in study.claims:
         setting = f". Setting: {claim.setting}" if claim.setting else ""
@@ -23,5 +25,5 @@ def print_study(study: "Study") -> None:
         status = check.status.upper() if check.status is CheckStatus.FAILS else check.status
         remark = f": {check.remark}" if check.remark else ""
         rows.append([status, f"{check.name}: {exact(check.value, 4)} (limit {limit}){remark}"])
+    print_heading("Claims and checks")
     print_table(rows, flush_left=(0, 1), indent="  ")
-    print_lines([f"claims: {study.claim_counts or 'none'}", f"checks: {study.check_counts}"])

@@ -166,7 +166,7 @@ def follow(
     with (
         stop_on_signal() as stop,
         live_display(stream_heading(stream), port) as show,
-        progress_reporter() as report_progress,
+        progress_reporter(has_live_table=True) as report_progress,
     ):
         outcome = api.follow(
             stream,

@@ -4,7 +4,8 @@ import math
 from typing import TYPE_CHECKING
 
 from seatrial.cli.finding_output import print_warnings
-from seatrial.cli.screen import print_lines, print_table
+from seatrial.cli.screen import print_heading, print_lines, print_table
+from seatrial.cli.summary_output import print_summary
 
 if TYPE_CHECKING:
     from seatrial.core.results.tuning import Controller, Tuning
@@ -13,10 +14,14 @@ if TYPE_CHECKING:
 def print_tuning(tuning: "Tuning") -> None:
     """Print everything a tuning contains, the chosen gains first."""
     from seatrial.core.text.numbers import exact
+    from seatrial.reporting.tuning_text import key_facts, verdict
 
     gains = ", ".join(f"{name} {exact(value, 5)}" for name, value in tuning.chosen.gains.items())
-    print_lines([f"{tuning.name}: {tuning.plant}", *(f"  in {sea}" for sea in tuning.seas), f"chosen: {gains}"])
-    print_lines([_margins_text(tuning.chosen), *tuning.reasons], "  ")
+    print_summary(tuning.name, verdict(tuning), key_facts(tuning))
+    print_heading("Chosen gains")
+    print_lines([f"chosen: {gains}", _margins_text(tuning.chosen), *tuning.reasons], "  ")
+    print_heading("Loop")
+    print_lines([tuning.plant, *(f"in {sea}" for sea in tuning.seas)], "  ")
     _print_controllers(tuning)
     _print_fronts(tuning)
     _print_search(tuning)
@@ -30,7 +35,7 @@ def print_tuning(tuning: "Tuning") -> None:
 
 
 def _effort_text(tuning: "Tuning") -> str:
-    """What each part of the work took; with a published search, the parts that stand beside it too."""
+    """What each part of the work took; with a published search, the parts that it is compared with, too."""
     from seatrial.control.published_search import FRONT_NAME
     from seatrial.core.text.numbers import duration
 
@@ -80,7 +85,9 @@ def _print_controllers(tuning: "Tuning") -> None:
             *(exact(factor * c.rms.get(key, math.nan), 4) for key, factor in factors.items()), exact(c.Ms, 3),
             fixed(100.0 * c.saturation, 1), fixed(100.0 * c.rate_saturation, 1), "; ".join(c.violated),
         ])  # fmt: skip
-    print_table(rows, flush_left=(0, 8))
+    print_heading("Controllers compared, by linear theory")
+    print_table(rows, flush_left=(0, len(rows[0]) - 1), indent="  ")
+    print_heading("Search and simulation")
 
 
 def _print_fronts(tuning: "Tuning") -> None:

@@ -190,7 +190,7 @@ def _meaning(controller: Controller) -> str:
 def _comparison_reasons(chosen: Controller, baselines: tuple[Controller, ...]) -> tuple[str, ...]:
     """Return the chosen one beside each rival, a sentence each."""
     return tuple(
-        f"By linear theory, beside '{other.name}'{_meaning(other)} it leaves "
+        f"By linear theory, compared with '{other.name}'{_meaning(other)}, it leaves "
         f"{100.0 * (1.0 - chosen.reduction):.1f} % of the motion instead of "
         f"{100.0 * (1.0 - other.reduction):.1f} %, at "
         f"{chosen.rms['actuator_rate'] / other.rms['actuator_rate']:.2f} times the actuator's rms rate and Ms "

@@ -20,7 +20,7 @@ from seatrial.core.results.design import (
 )
 from seatrial.core.text.numbers import DASH, exact, fixed, significant
 from seatrial.core.values import NOTATION, Record
-from seatrial.core.values.channel_text import channel_meaning, reading_order
+from seatrial.core.values.channel_text import reading_order
 from seatrial.core.values.record_chart import channel_panels, is_constant
 from seatrial.data.folder.orders import channel_display_unit, order_cells
 from seatrial.reporting import design_text
@@ -45,7 +45,6 @@ TITLES = {
 }
 # columns of orders side by side, rows from which there is a second one, baselines in the table
 MAX_COLUMNS, MIN_COLUMN_ROWS, MAX_BASELINES = 4, 12, 3
-_POSITIVE_TEXTS = {"starboard": "to starboard", "port": "to port"}
 
 
 @dataclass(frozen=True)
@@ -147,17 +146,11 @@ def order_headings(actuators: tuple[Actuator, ...]) -> list[tuple[Markup, str]]:
 
 def order_meanings(actuators: tuple[Actuator, ...]) -> list[tuple[Markup, str]]:
     """Return symbol and meaning of each input, with its positive direction."""
-    return [(Markup(inline(_latex(a.name))), _meaning(a.name)) for a in actuators]
+    return [(Markup(inline(_latex(a.name))), design_text.order_meaning(a.name)) for a in actuators]
 
 
 def _latex(name: str) -> str:
     return NOTATION[name].latex if name in NOTATION else latex_symbol(name)
-
-
-def _meaning(name: str) -> str:
-    if name not in NOTATION or NOTATION[name].positive == "none":
-        return channel_meaning(name)
-    return f"{NOTATION[name].meaning}, positive {_POSITIVE_TEXTS.get(NOTATION[name].positive, NOTATION[name].positive)}"
 
 
 def order_columns(design: Design) -> list[list[list[str]]]:

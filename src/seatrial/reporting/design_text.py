@@ -16,13 +16,14 @@ from seatrial.core.results.design import (
 from seatrial.core.text.numbers import duration, exact, fixed, significant
 from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import NOTATION, Severity, display_unit
-from seatrial.core.values.channel_text import unit_text
+from seatrial.core.values.channel_text import channel_meaning, unit_text
 from seatrial.data.folder.orders import channel_display_unit
 from seatrial.reporting.first_screen import KeyFact
 from seatrial.reporting.measures import manoeuvre_name
 
 # relative standard error from which on only its order is shown
 LARGEST_SHOWN_ERROR = 100.0
+_SIDES = ("port", "starboard")
 _CRITERION_NAMES = {"worst": "worst relative standard error", "mean": "mean relative standard error"}
 
 
@@ -44,6 +45,14 @@ def key_facts(design: Design) -> tuple[KeyFact, ...]:
     warned = [f.code for f in design.findings if f.severity is not Severity.INFO]
     warnings = KeyFact("Warnings", enumeration(warned) or "none", "findings" if design.findings else "", not warned)
     return (*(row for row in rows if row.text), warnings)
+
+
+def order_meaning(name: str) -> str:
+    """Return what an input is and where its orders count positive: ``rudder angle, positive to starboard``."""
+    if name not in NOTATION or NOTATION[name].positive == "none":
+        return channel_meaning(name)
+    side = NOTATION[name].positive
+    return f"{NOTATION[name].meaning}, positive {'to ' if side in _SIDES else ''}{side}"
 
 
 def order_warnings(design: Design) -> list[str]:

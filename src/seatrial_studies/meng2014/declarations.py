@@ -53,7 +53,7 @@ _ASSUMPTIONS = (
         "heave and pitch as Qi et al. 2025 have them, eqs. (1) to (5), the fin's force and moment added",
     ),
     Assumption("heading of figures 2, 3", "not printed", "135°"),
-    Assumption("box of the searches", "not printed", "±50 % with the truth off centre; ±10 % about it beside"),
+    Assumption("box of the searches", "not printed", "±50 % with the truth off centre; compared with ±10 % about it"),
     Assumption("sea state 3", "no height printed", "0.88 m, ITTC spectrum, 30 equal intervals, random phases"),
     Assumption("forces of the waves", "not printed", "box-shaped hull in closed form, Jensen, Mansour & Olsen 2004"),
     Assumption("fin", "±10, no unit, pseudo-random", "±10° held for 1 s; 6 m², lift slope 3/rad, 25 m aft"),
@@ -71,7 +71,7 @@ _ASSUMPTIONS = (
     Assumption(
         "PSO compared with",
         "inertia not printed",
-        "Clerc and Kennedy's constriction values 0.7298, 1.49618, 1.49618; eq. (4) as printed beside",
+        "Clerc and Kennedy's constriction values 0.7298, 1.49618, 1.49618; compared with eq. (4) as printed",
     ),
     Assumption(
         "coefficients of the sea", "one set for each course", "constant in an irregular sea, as Qi et al. 2025 have it"

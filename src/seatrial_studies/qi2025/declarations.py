@@ -59,7 +59,8 @@ _SYMBOLS = (
 )
 _ASSUMPTIONS = (
     Assumption(
-        "box of the searches", "not printed", "±10 % about the truth, as WHO's clipped values suggest; others beside it"
+        "box of the searches", "not printed",
+        "±10 % about the truth, as WHO's clipped values suggest; compared with others",
     ),
     Assumption("ω, c1, c2 of PSO", "not printed",
                "Clerc and Kennedy's constriction values 0.7298, 1.49618, 1.49618; clipped to the box"),
@@ -71,9 +72,9 @@ _ASSUMPTIONS = (
     Assumption("coefficients of the sea", "one set for each heading",
                f"as printed, constant in an irregular sea; what that means: '{FREQUENCY_TITLE}'"),
     Assumption(
-        "state a candidate steps from", "not printed", "the true previous one (generous); the model's own beside it"
+        "state a candidate steps from", "not printed", "the true previous one (generous); compared with the model's own"
     ),
-    Assumption("unit of pitch in eq. (28)", "not printed", "rad; degrees beside it"),
+    Assumption("unit of pitch in eq. (28)", "not printed", "rad; compared with degrees"),
     Assumption("remembered fitness", "not printed",
                "judged again by each new sample; kept beside it, at 45° and, in the full version, at all headings"),
     Assumption("coefficients at 45°", "not printed", "those of 90°"),

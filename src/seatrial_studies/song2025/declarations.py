@@ -65,7 +65,7 @@ _DEVIATIONS = (
               "driven (misprints, with evidence)"),
     Deviation("eqs. (1), (2), (3), (13), (14)", "as printed", "corrected", "see the misprints, each with what it does"),
     Deviation("section 1.3.1, responses of Lasso", "forces X_H, Y_H, N_H on raw products",
-              "acceleration times inertia on eq. (14)'s features; the printed ones beside", "forces are not measured"),
+              "acceleration times inertia on eq. (14)'s features; also the printed ones", "forces are not measured"),
     Deviation("section 1.2, training data",
               "10/10, 15/15, 20/20, 25/25, 30/30, five executes each, 0.1 s: 2100 s, 21000 samples",
               "the same, ending with the last execute; samples in the table of cleaning",

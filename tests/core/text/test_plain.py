@@ -14,6 +14,7 @@ def test_numbers_can_be_read_back(value: float) -> None:
 def test_signs_have_plain_forms() -> None:
     assert ascii_text("10⁻³ kg m² ± 5 …") == "10^-3 kg m^2 ± 5 ..."
     assert ascii_text("−9.5°, ∞ – ×") == "-9.5 deg, inf - x"
+    assert ascii_text("‘as it’ → “χ² ≤ 3”") == "'as it' -> \"chi^2 <= 3\""
 
 
 def test_columns_line_up() -> None:

@@ -7,7 +7,9 @@ from collections.abc import Sequence
 from seatrial.core.text.numbers import MINUS, SUPERSCRIPTS, THIN_SPACE
 
 _RAISED = {raised: sign for sign, raised in SUPERSCRIPTS.items()}
-_PLAIN = str.maketrans({MINUS: "-", THIN_SPACE: "", "–": "-", "×": "x", "…": "...", "·": "?", "°": " deg", "∞": "inf"})
+_PLAIN = str.maketrans({MINUS: "-", THIN_SPACE: "", "–": "-", "×": "x", "…": "...", "·": "?", "°": " deg", "∞": "inf",
+    "‘": "'", "’": "'", "“": '"', "”": '"', "→": "->", "≤": "<=", "≥": ">=", "χ": "chi",
+})  # fmt: skip
 _POWER = re.compile(f"{THIN_SPACE}×{THIN_SPACE}10([{''.join(_RAISED)}]+)")
 _INDEX = re.compile(f"[{''.join(_RAISED)}]+")
 # spaces between columns; letters below which a column of words is not read with ease; both chosen

@@ -48,7 +48,7 @@ def force_findings(points: ForcePoints, reference_force: float | None = None) ->
 def _side_force_findings(
     points: ForcePoints, slopes: dict[tuple[str, str], _Slope], reference_force: float
 ) -> list[Finding]:
-    """Y_v' by slender bodies is -pi d/L - 1.4 C_b B/L (Kijima et al. 1990), -.2 to -.7; else another system."""
+    """Y_v' by slender bodies is -pi d/L - 1.4 C_b B/L (Kijima et al. 1990), -0.2 to -0.7; else another system."""
     slope = slopes.get(("Y", "v"))
     low, high = _SIDE_FORCE_RANGE
     if slope is None or slope.sign == 0 or low <= abs(slope.value) / reference_force <= high:

@@ -161,7 +161,7 @@ def choose_criterion(
 
 
 def is_coarsely_sampled(problem: OutputError) -> bool:
-    """Whether a continuous input of a linear model turns by more than .3 rad from sample to sample.
+    """Whether a continuous input of a linear model turns by more than 0.3 rad from sample to sample.
 
     Its power lies below that frequency but for 5 %; straight lines between samples then flatten it by (w dt)^2 / 12.
     """

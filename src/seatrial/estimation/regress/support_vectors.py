@@ -21,7 +21,7 @@ class SupportVectors:
     Attributes:
         penalty: C; tube: half width epsilon within which a residual costs nothing.
         is_standardised: whether columns and target are brought to unit root mean square; else penalty and tube act
-            on the numbers as they come, and a tube of .1 swallows a target of .03 whole.
+            on the numbers as they come, and a tube of 0.1 swallows a target of 0.03 whole.
         max_rows: samples at most, evenly taken; the paper thins its record, too (section 1.2).
         max_iterations: iterations of the solver, after which it ends with a finding.
     """

@@ -3,7 +3,8 @@
 Every function returns MMG prime values (rho/2 L d U^2, r' = r L / U, added mass over rho/2 L^2 d, added inertia over
 rho/2 L^4 d), positive rudder to starboard, moments about midship. Read through Sukas, Kinaci & Bal 2019, Ocean Eng.
 192, 106239 (MANSIM), and public implementations of it; Zhou's three formulae also reproduce the added masses of
-Song et al. 2025 (.0281, .785, .0699) and of KVLCC2 (m_y' .222, J_z' .0111 against .223, .011 of Yasukawa & Yoshimura).
+Song et al. 2025 (0.0281, 0.785, 0.0699) and of KVLCC2 (m_y' 0.222, J_z' 0.0111 against 0.223, 0.011 of
+Yasukawa & Yoshimura).
 """
 
 import math

@@ -56,7 +56,7 @@ def fin_loop(
 ) -> TransferLoop:
     """The published loop, speed and wave regulators at 1 (G_h = G_l = 1), from the wave slope alpha_w to the roll phi.
 
-    K_alpha: equivalent wave slope for each radian of fin; .256 in the paper, whatever the speed.
+    K_alpha: equivalent wave slope for each radian of fin; 0.256 in the paper, whatever the speed.
     """
     terms = (Term("KP", Block("proportional")), Term("KI", INTEGRAL), Term("KD", DERIVATIVE))
     return TransferLoop(

@@ -99,8 +99,8 @@ def motion_interruptions(height: float, friction: float = 0.25) -> Objective:
 def motion_sickness(lever: float) -> Objective:
     """Share of people sick within two hours, `lever` [m] off the axis; O'Hanlon & McCauley 1974 as in `sea.response`.
 
-    The vertical acceleration of the output alone, lever omega^2 phi. Phi((log10(.798 sqrt(v_4) / g) - mu) / .4),
-    mu = -.819 + 2.32 log10(omega)^2, omega = sqrt(v_4 / v_2).
+    The vertical acceleration of the output alone, lever omega^2 phi. Phi((log10(0.798 sqrt(v_4) / g) - mu) / 0.4),
+    mu = -0.819 + 2.32 log10(omega)^2, omega = sqrt(v_4 / v_2).
     """
 
     def score(v: Array) -> tuple[Array, Array]:

@@ -102,8 +102,8 @@ def vertical_motion(heave: Complex, pitch: Complex, x: float) -> Complex:
 def motion_sickness(motion: MotionStatistics) -> float:
     """Return share of people sick within two hours in a vertical motion, 0 to 1 (O'Hanlon & McCauley 1974; Lloyd 1989).
 
-    Phi((log10(a / g) - mu) / .4), mu = -.819 + 2.32 log10(omega_e)^2, a = .798 sqrt(m4) the mean absolute acceleration,
-    omega_e = sqrt(m4 / m2) its mean frequency.
+    Phi((log10(a / g) - mu) / 0.4), mu = -0.819 + 2.32 log10(omega_e)^2, a = 0.798 sqrt(m4) the mean absolute
+    acceleration, omega_e = sqrt(m4 / m2) its mean frequency.
     """
     if motion.m4 <= 0.0:
         return 0.0

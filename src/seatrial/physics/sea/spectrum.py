@@ -22,7 +22,7 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)  # 64 points of Gauss-Leg
 class Spectrum:
     """One-sided density over wave frequency, A / omega^5 exp(-B / omega^4) gamma^r (Bretschneider 1959; ITTC 1978).
 
-    r = exp(-(omega / omega_p - 1)^2 / (2 sigma^2)), sigma = .07 up to the peak and .09 above it (JONSWAP: Hasselmann
+    r = exp(-(omega / omega_p - 1)^2 / (2 sigma^2)), sigma = 0.07 up to the peak and 0.09 above it (JONSWAP: Hasselmann
     et al. 1973); gamma = 1 leaves the peak alone. Made by `ittc`, `ittc_two_parameter`, `bretschneider`, `jonswap`.
 
     Attributes:
