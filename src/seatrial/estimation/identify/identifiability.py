@@ -149,7 +149,7 @@ def _consequence(
 def _stability(estimation: Estimation, approach: Mapping[str, float], length: float) -> Stability | None:
     model, count = estimation.model, len(estimation.estimate.problem.free)
     speed = approach.get("u", 0.0)
-    if speed <= 0.0:
+    if speed <= 0.0 or model.equations.layout:  # in ship lengths, rudder amidships: nothing that thrusters have
         return None
     inputs = np.array(
         [
