@@ -55,7 +55,7 @@ def print_k_step_errors(fit: "Fit") -> None:
         factor, unit = display_unit(e.unit)
         ends = dict.fromkeys(exact(factor * e.rms[k], ERROR_DIGITS) for k in (0, -1))
         texts.append(f"{e.channel} {' to '.join(ends)} {unit}")
-    print_lines([f"samples ahead {ahead}, {'held-out' if held else 'training'} runs, rms: {', '.join(texts)}"])
+    print_lines([f"samples ahead {ahead}, {'held-out' if held else 'training'} runs, rms: {', '.join(texts)}"], "  ")
 
 
 def print_frequency_responses(fit: "Fit") -> None:
@@ -70,7 +70,7 @@ def print_frequency_responses(fit: "Fit") -> None:
             inside = int((r.is_inside & compared).sum())
             texts.append(f"{r.output}/{r.input} {inside} of {int(compared.sum())} ({low} to {high} rad/s)")
     if texts:
-        print_lines([f"frequency response, model inside the records' 95 % region: {', '.join(texts)}"])
+        print_lines([f"frequency response, model inside the records' 95 % region: {', '.join(texts)}"], "  ")
 
 
 def print_windows(p: "Prediction") -> None:

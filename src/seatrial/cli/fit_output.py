@@ -41,7 +41,9 @@ def print_fit(fit: "Fit") -> None:
     else:
         print_method_comparison(fit, fit.reference)
     _print_held_out(fit)
-    print_lines(population.sentence for population in fit.offset_populations)
+    if fit.offset_populations:
+        print_heading("Offsets of a new session")
+        print_lines((population.sentence for population in fit.offset_populations), "  ")
     _print_thruster_craft(fit)
     print_model_selection(fit)
     print_baselines(fit)
@@ -187,6 +189,8 @@ def _print_extrapolation(e: "Extrapolation") -> None:
 
 def _print_details(fit: "Fit") -> None:
     """What the estimate rests on: errors samples ahead, responses, symmetries, disturbances, method."""
+    if fit.k_step_errors or fit.frequency_responses:
+        print_heading("Samples ahead, and over frequency")
     print_k_step_errors(fit)
     print_frequency_responses(fit)
     noise_model = fit.noise_model
