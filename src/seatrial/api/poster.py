@@ -56,6 +56,7 @@ def poster(
     Raises:
         InputError: the model has no rudder or heading, the ship no length, or no manoeuvre can be steered.
     """
+    from seatrial.api.simulation import rudder_rate_of
     from seatrial.core.results.poster import Poster
     from seatrial.core.values.versions import versions
 
@@ -76,7 +77,8 @@ def poster(
     held_out = {p.record for p in fit.validation}
     return Poster(
         fit.ship.name, dict(fit.ship.particulars), fit.ship.scale, fit.model.name, _approach_speed(fit, speed),
-        rudder_deg, tuple(manoeuvres), tuple(r.name for r in fit.records if r.name not in held_out), fit.intervals,
+        rudder_deg, tuple(manoeuvres), rudder_rate_of(fit).text,
+        tuple(r.name for r in fit.records if r.name not in held_out), fit.intervals,
         versions(),
     )  # fmt: skip
 

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from seatrial.core.results import Fit
     from seatrial.core.values import Record
     from seatrial.data.folder.model_file import ModelFile
+    from seatrial.physics.simulate.rudder_rate import RudderRate
 
 Steering = Callable[["Model"], "Record"]
 
@@ -35,7 +36,7 @@ def steering(
         inputs: constant inputs besides the rudder, SI; without them those of the trials. ``ahead``: order ahead of a
             zigzag by thrusters, share of full command.
         duration: s at most.
-        rudder_rate: rad/s; without it SOLAS's at the ship's scale.
+        rudder_rate: rad/s; without it that of `rudder_rate_of`.
         seed: of a random binary sequence.
 
     Raises:
@@ -45,14 +46,9 @@ def steering(
     if file.model.equations.layout:
         return _by_thrusters(manoeuvre, speed, inputs, duration, rudder_rate)
     from seatrial.physics.manoeuvres.programme import programme
-    from seatrial.physics.simulate.steer import SOLAS_SLEW_RATE
     from seatrial.physics.simulate.steer import manoeuvre as steered
 
-    if rudder_rate is not None and not 0.0 < rudder_rate < math.inf:
-        raise InputError(
-            f"the rudder rate {math.degrees(rudder_rate):g} deg/s is not positive; leave it out for SOLAS's"
-        )
-    scale = file.ship.scale if file.ship else 1.0
+    rate = rudder_rate_of(file, rudder_rate).value
     constant = {name: value for name, value in file.approach.items() if name in file.model.input_names}
     approach_speed = file.approach.get("u") if "u" not in file.model.states else None
     orders = programme(_with_seed(manoeuvre, seed))
@@ -64,10 +60,31 @@ def steering(
             duration=duration,
             speed=approach_speed if speed is None else speed,
             inputs={**constant, **(inputs or {})},
-            slew_rate=rudder_rate or SOLAS_SLEW_RATE * math.sqrt(scale),
+            slew_rate=rate,
         )
 
     return steer
+
+
+def rudder_rate_of(model: "Fit | ModelFile | Model", given: float | None = None) -> "RudderRate":
+    """Return the rate at which a manoeuvre moves the rudder, and where it is from.
+
+    The given one, rad/s; without it the fastest sustained move of the training runs, where it is clearly faster than
+    SOLAS requires at the ship's scale (chapter II-1, regulation 29.3.2), or else SOLAS's.
+
+    Raises:
+        InputError: the given rate is not positive.
+    """
+    from seatrial.physics.simulate.rudder_rate import RudderRate
+
+    if given is None:
+        return as_model_file(model).rudder_rate
+    if not 0.0 < given < math.inf:
+        raise InputError(
+            f"the rudder rate {math.degrees(given):g} deg/s is not positive; leave it out for that of the training "
+            "runs or SOLAS's"
+        )
+    return RudderRate(given, "as given")
 
 
 def _by_thrusters(

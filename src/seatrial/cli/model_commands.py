@@ -80,7 +80,9 @@ def simulate(
     constant_inputs: Annotated[
         list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="A constant input in SI units.")
     ] = None,
-    rudder_rate: Annotated[float | None, typer.Option(help="deg/s; default: SOLAS's at the ship's scale.")] = None,
+    rudder_rate: Annotated[
+        float | None, typer.Option(help="deg/s; default: the fastest of the training runs, at least SOLAS's.")
+    ] = None,
     model: OwnModelPath = None,
     json: Json = None,
     seed: Seed = 0,
@@ -113,11 +115,13 @@ def simulate(
         print_file("record", out)
         return
     file = api.load_model(model_file, own_model(model))
-    measured, intervals = None, dict[str, tuple[float, float] | None]()
+    measured, rate, intervals = None, None, dict[str, tuple[float, float] | None]()
     if inputs is not None:
         measured = read_record_csv(Path(inputs)) if trial is None else api.prepared_run(trial, inputs)
         record = api.replay(file, measured, speed)
     else:
+        given_rate = None if rudder_rate is None else math.radians(rudder_rate)
+        rate = None if file.model.equations.layout else api.rudder_rate_of(file, given_rate)
         constant = dict(_name_and_value(text) for text in constant_inputs or [])
         steer = api.steering(
             file,
@@ -125,7 +129,7 @@ def simulate(
             speed=speed,
             inputs=constant,
             duration=duration,
-            rudder_rate=None if rudder_rate is None else math.radians(rudder_rate),
+            rudder_rate=given_rate,
             seed=seed,
         )
         record = steer(file.model)
@@ -141,10 +145,13 @@ def simulate(
     rms = {} if measured is None else api.rms_differences(measured, record)
     if measured is not None and rms:
         print_lines([f"against {measured.name}: rms {errors_text(rms)}"])
+    if rate is not None:
+        print_lines([rate.text])
     write_json(
         json,
         lambda: {
             "record": str(out),
+            "rudder_rate": None if rate is None else {"value": rate.value, "origin": rate.origin},
             "measures": measures,
             "intervals": {name: pair and list(pair) for name, pair in intervals.items()},
             "extrapolation_index": None if leaving is None else leaving.index,

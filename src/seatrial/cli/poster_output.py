@@ -29,3 +29,4 @@ def print_poster(poster: "Poster") -> None:
             ends = ("" if v is None else exact(v, DIGITS) for v in (q.lower, q.upper))
             rows.append([quantity_label(q.name), value, *ends, q.basis.value])
         print_table(rows, flush_left=(0, len(rows[0]) - 1), indent="  ")
+    print_lines([poster.rudder_rate])

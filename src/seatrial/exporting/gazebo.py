@@ -23,7 +23,7 @@ from seatrial.exporting.templating import rendered
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.manoeuvres.thrust_programme import thrust_programme
 from seatrial.physics.simulate.replay import replay
-from seatrial.physics.simulate.steer import SOLAS_SLEW_RATE, manoeuvre
+from seatrial.physics.simulate.steer import manoeuvre
 from seatrial.physics.simulate.thrust import thrust_manoeuvre
 
 VRX = TargetStructure(
@@ -98,11 +98,7 @@ def training_motions(source: ExportSource) -> list[Record]:
     if "delta" not in model.input_names:
         return [thrust_manoeuvre(model, thrust_programme(text)) for text in THRUST_MOTIONS]
     held = {name: value for name, value in file.approach.items() if name in model.input_names}
-    scale = 1.0 if file.ship is None else file.ship.scale
-    return [
-        manoeuvre(model, programme(text), inputs=held, slew_rate=SOLAS_SLEW_RATE * scale**0.5)
-        for text in RUDDER_MOTIONS
-    ]
+    return [manoeuvre(model, programme(text), inputs=held, slew_rate=file.rudder_rate.value) for text in RUDDER_MOTIONS]
 
 
 def _export(source: ExportSource, name: str, structure: TargetStructure, template: str) -> Export:

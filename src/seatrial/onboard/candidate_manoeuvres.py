@@ -17,11 +17,13 @@ from seatrial.estimation.design.ships import PriorShips
 from seatrial.estimation.design.standard_manoeuvres import standard_manoeuvres
 from seatrial.estimation.design.task import DesignTask
 from seatrial.estimation.estimate.time_scale import characteristic_time, is_pure_roll
+from seatrial.estimation.information.extrapolation import motion_envelope
 from seatrial.numerics.optimise import NormalEquations
 from seatrial.physics.simulate.channels import ZERO_BY_DEFAULT
 from seatrial.physics.simulate.divergence import state_limits
 from seatrial.physics.simulate.linear import batch_class
-from seatrial.physics.simulate.steer import RUDDER, SOLAS_SLEW_RATE
+from seatrial.physics.simulate.rudder_rate import RUDDER_RATE, rudder_rate
+from seatrial.physics.simulate.steer import RUDDER
 
 # where the trial has no [design]: duration and hold in characteristic times of the ship (length over speed, or a
 # period); chosen: 20 cover a zigzag or two, 40 the resonances of a linear model
@@ -139,7 +141,7 @@ def _default_request(trial: Trial, model: Model, records: Sequence[Record], rate
     unit = characteristic_time(model, records, trial.ship.length)
     duration = _rounded((_LINEAR_DURATION if model.is_affine else _DURATION) * unit)
     hold = max(_HOLD * unit, 4.0 / rate)
-    ranges = {name: _default_range(trial, model, name, hold) for name in model.input_names}
+    ranges = {name: _default_range(trial, model, name, hold, records) for name in model.input_names}
     inputs = {name: one for name, one in ranges.items() if one is not None}
     if not inputs:
         raise InputError(f"model '{model.name}' has no rudder and no fin that could be moved")
@@ -150,10 +152,10 @@ def _default_request(trial: Trial, model: Model, records: Sequence[Record], rate
     return DesignRequest(duration=duration, rate=rate, inputs=inputs, held=held, speed=speed, draws=0)
 
 
-def _default_range(trial: Trial, model: Model, name: str, hold: float) -> InputRange | None:
+def _default_range(trial: Trial, model: Model, name: str, hold: float, records: Sequence[Record]) -> InputRange | None:
     """Return the limits of a rudder, or of a fin that has lift; None for any other input; hold: s."""
     if name == RUDDER:
-        rate = SOLAS_SLEW_RATE * math.sqrt(trial.ship.scale)
+        rate = rudder_rate(trial.ship.scale, motion_envelope(records).get(RUDDER_RATE)).value
         return InputRange(lower=-_RUDDER_LIMIT, upper=_RUDDER_LIMIT, unit="rad", rate=rate, hold=hold)
     lift = name.replace("delta_f", "lift_")
     if name in _FIN_INPUTS and lift in model.parameters.names and model.parameters[lift].value:

@@ -59,6 +59,7 @@ class Poster:
     approach_speed: Annotated[Number, Field(description="m/s at the scale of the trials")]
     rudder_deg: Annotated[Number, Field(description="angle of the turning circles")]
     manoeuvres: tuple[PosterManoeuvre, ...]
+    rudder_rate: Annotated[str, Field(description="rate of the rudder in all manoeuvres, and where it is from")] = ""
     training_runs: tuple[str, ...] = ()
     intervals: Annotated[str, Field(description="method of the coefficients' intervals")] = ""
     versions: Annotated[dict[str, str], Field(description="package -> version")] = field(default_factory=dict)

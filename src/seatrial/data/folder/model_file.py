@@ -27,6 +27,7 @@ from seatrial.data.folder.model_tables import (
 )
 from seatrial.physics.models import model_named
 from seatrial.physics.sensors import Sensors, with_sensors
+from seatrial.physics.simulate.rudder_rate import RUDDER_RATE, RudderRate, rudder_rate
 
 FORMAT = 1
 EARLIER_MODEL_NAMES = {"heave_pitch_held": "heave_pitch_zoh"}
@@ -63,6 +64,12 @@ class ModelFile:
     ship: Ship | None = None
     approach: Mapping[str, float] = field(default_factory=dict)
     interval_basis: IntervalBasis | None = None
+
+    @property
+    def rudder_rate(self) -> RudderRate:
+        """The rate that manoeuvres are steered with: of the training runs, or what SOLAS requires."""
+        envelope = {} if self.interval_basis is None else self.interval_basis.training_envelope
+        return rudder_rate(self.ship.scale if self.ship else 1.0, envelope.get(RUDDER_RATE))
 
 
 def model_text(file: ModelFile) -> str:

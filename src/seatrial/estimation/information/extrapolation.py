@@ -7,6 +7,7 @@ import numpy as np
 from seatrial.core.results import Extrapolation
 from seatrial.core.values import Array, Record
 from seatrial.estimation.information.thruster_conditions import thruster_conditions
+from seatrial.physics.simulate.rudder_rate import RUDDER_RATE, sustained_rudder_rate
 
 _PERCENTILE = 99.5  # per cent of the samples within the envelope; chosen
 # rad/s, rad, rad, m/s, m/s, below which a range counts as none; chosen
@@ -21,6 +22,8 @@ COMMAND_GAIN = 1.0
 
 def motion_envelope(records: Sequence[Record], layout: str = "") -> dict[str, float]:
     """What the records cover, SI: largest yaw rate, drift and rudder angle, fastest and slowest speed, commands.
+
+    Also the rate of the fastest move of the rudder (`sustained_rudder_rate`), which is no limit of a prediction.
 
     The largest is the 99.5th percentile of all samples, so that a single bad one does not count. What no record holds
     is absent. Drift is atan2(-v, u). Of every thruster of a `layout` (its text): ``command NAME ahead`` and ``astern``,
@@ -40,6 +43,9 @@ def motion_envelope(records: Sequence[Record], layout: str = "") -> dict[str, fl
         flow = np.concatenate(speeds)
         made["fastest"] = float(np.nanpercentile(flow, _PERCENTILE))
         made["slowest"] = float(np.nanpercentile(flow, 100.0 - _PERCENTILE))
+    rates = [rate for r in records if (rate := sustained_rudder_rate(r)) is not None]
+    if rates:
+        made[RUDDER_RATE] = max(rates)
     for name, conditions in thruster_conditions(layout, records).items():
         ranges = {"ahead": conditions.order, "astern": -conditions.order} | conditions.quadrants()
         for kind, samples in ranges.items():

@@ -15,7 +15,6 @@ from seatrial.physics.models.thrust_orders import AHEAD, YAW, with_orders, work_
 from seatrial.physics.models.thruster_layout import ThrusterLayout
 from seatrial.physics.simulate.channels import ZERO_BY_DEFAULT
 from seatrial.physics.simulate.replay import trajectory
-from seatrial.physics.simulate.steer import SOLAS_SLEW_RATE
 from seatrial.physics.simulate.thrust import DEFAULT_AHEAD
 
 RUDDER = "delta"
@@ -115,8 +114,8 @@ def steered_craft(file: ModelFile) -> SteeredCraft:
     """Return the craft of a model file at its approach; a craft with thrusters at half throttle, or at
     the fastest of its trials where that is slower.
 
-    A rudder has 35 degrees to either side and SOLAS's rate at the scale of the ship. Full throttle of other craft than
-    those with thrusters is twice the propulsion of the approach.
+    A rudder has 35 degrees to either side and the rate that the model file's manoeuvres are steered with. Full throttle
+    of other craft than those with thrusters is twice the propulsion of the approach.
 
     Raises:
         InputError: the craft has no steady straight run, no known speed, or does not answer its steering.
@@ -137,7 +136,6 @@ def steered_craft(file: ModelFile) -> SteeredCraft:
     throttle = AHEAD if is_skid else _throttle_input(model)
     trim = 0.0 if not throttle else float(ship.inputs[model.input_names.index(throttle)])
     throttle = throttle if trim > 0.0 and "u" in model.states else ""
-    scale = 1.0 if file.ship is None else file.ship.scale
     sign = -1.0 if model.inputs[model.input_names.index(steering)].is_reversed else 1.0
     towards = sign * math.copysign(1.0, plant_and_disturbance(ship)[0].num[0])
     return SteeredCraft(
@@ -145,7 +143,7 @@ def steered_craft(file: ModelFile) -> SteeredCraft:
         speed=_cruising_speed(file, ship),
         is_skid=is_skid,
         full_steering=towards * (1.0 if is_skid else FULL_RUDDER),
-        steering_rate=math.inf if is_skid else SOLAS_SLEW_RATE * math.sqrt(scale) / FULL_RUDDER,
+        steering_rate=math.inf if is_skid else file.rudder_rate.value / FULL_RUDDER,
         throttle=throttle,
         full_throttle=1.0 if is_skid else trim / CRUISE_SHARE,
     )
