@@ -8,8 +8,10 @@ import pytest
 from tests.reporting.fabricated_comparison import fabricated_comparison
 from tests.reporting.fabricated_design import fabricated_design
 from tests.reporting.fabricated_tuning import fabricated_autopilot, fabricated_fin
+from tests.reporting.test_campaign import fabricated_campaign
 
 from seatrial.core.results import Fit, Study
+from seatrial.reporting.campaign import html as campaign_html
 from seatrial.reporting.comparison import html as comparison_html
 from seatrial.reporting.design import html as design_html
 from seatrial.reporting.page import html as fit_html
@@ -93,11 +95,11 @@ def pages_of_every_kind(fit: Fit, study: Study) -> "dict[str, str]":
     return {
         "fit": fit_html(fit), "study": study_html(study), "fin": tuning_html(fabricated_fin()),
         "autopilot": tuning_html(fabricated_autopilot()), "design": design_html(fabricated_design()),
-        "comparison": comparison_html(fabricated_comparison()),
+        "comparison": comparison_html(fabricated_comparison()), "campaign": campaign_html(fabricated_campaign()),
     }  # fmt: skip
 
 
-KINDS = ("fit", "study", "fin", "autopilot", "design", "comparison")
+KINDS = ("fit", "study", "fin", "autopilot", "design", "comparison", "campaign")
 
 
 @pytest.fixture(scope="module")

@@ -22,8 +22,8 @@ def coefficient(name: str = "Y_v", covered: int = 95) -> RepeatedCoefficient:
                                (0.887, 0.984), counts)  # fmt: skip
 
 
-@pytest.fixture
-def summary() -> CampaignSummary:
+def fabricated_campaign() -> CampaignSummary:
+    """A campaign with everything its page can show."""
     return CampaignSummary(
         "Do <zigzags> suffice?", "montecarlo", CampaignStatus(102, 100, 1, 2.0),
         (coefficient(), coefficient("N_r", 90)), (RepeatedScore("rms psi_deg", "deg", 3, 1.0, 1.2, 2.0),),
@@ -33,6 +33,11 @@ def summary() -> CampaignSummary:
         (Finding(Severity.WARNING, "incomplete", "1 of 102 tasks are not done yet"),), ("a processor",), ("a library",),
         {"seatrial": "0.1.0"},
     )  # fmt: skip
+
+
+@pytest.fixture
+def summary() -> CampaignSummary:
+    return fabricated_campaign()
 
 
 def test_the_page_has_a_section_for_all_there_is(summary: CampaignSummary) -> None:

@@ -2,9 +2,10 @@
 
 import colorsys
 
+import numpy as np
 import pytest
 
-from seatrial.core.figures.marks import ACCENT, GREY, INK, SECOND
+from seatrial.core.figures.marks import ACCENT, GREY, INK, SECOND, Array
 from seatrial.core.figures.night import night_colour, night_rules
 
 GROUND = "#14191c"  # --ground of reporting/templates/dark.css
@@ -44,3 +45,29 @@ def test_hue_and_transparency_stay() -> None:
 def test_a_rule_is_written_once_for_a_colour() -> None:
     rules = night_rules(["#1b4f72", "#1b4f72"])
     assert rules.count("[fill='#1b4f72']") == rules.count("[stroke='#1b4f72']") == 1
+
+
+# linear RGB as seen without red-sensitive and without green-sensitive cones (Machado, Oliveira & Fernandes 2009,
+# IEEE Trans. Vis. Comput. Graph. 15, 1291-1298, severity 1.0)
+PROTANOPIA = ((0.152286, 1.052583, -0.204868), (0.114503, 0.786281, 0.099216), (-0.003882, -0.048116, 1.051998))
+DEUTERANOPIA = ((0.367322, 0.860646, -0.227968), (0.280085, 0.672501, 0.047413), (-0.011820, 0.042940, 0.968881))
+TO_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])  # IEC 61966-2-1
+WHITE = TO_XYZ.sum(axis=1)
+
+
+def lab_as_seen(colour: str, sight: tuple[tuple[float, ...], ...]) -> Array:
+    """CIELAB (ISO/CIE 11664-4) of a colour as such a reader sees it."""
+    parts = np.array([int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)])
+    linear = np.where(parts <= 0.04045, parts / 12.92, ((parts + 0.055) / 1.055) ** 2.4)
+    x = TO_XYZ @ np.clip(np.array(sight) @ linear, 0.0, 1.0) / WHITE
+    f = np.where(x > (6 / 29) ** 3, np.cbrt(x), x / (3 * (6 / 29) ** 2) + 4 / 29)
+    return np.array([116 * f[1] - 16, 500 * (f[0] - f[1]), 200 * (f[1] - f[2])])
+
+
+@pytest.mark.parametrize("sight", [PROTANOPIA, DEUTERANOPIA])
+def test_lines_differ_for_readers_who_see_no_red_or_no_green(sight: tuple[tuple[float, ...], ...]) -> None:
+    """Ten units of CIELAB are ten times what is just seen (CIE 1976)."""
+    for colours in ((ACCENT, GREY, SECOND, INK), tuple(map(night_colour, (ACCENT, GREY, SECOND, INK)))):
+        seen = [lab_as_seen(colour, sight) for colour in colours]
+        for k, one in enumerate(seen):
+            assert all(np.linalg.norm(one - other) > 10.0 for other in seen[:k])
