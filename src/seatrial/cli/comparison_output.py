@@ -1,6 +1,6 @@
 """What `compare` prints."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from seatrial.cli.finding_output import print_warnings
@@ -27,17 +27,17 @@ def print_comparison(comparison: "Comparison") -> None:
         print_lines(comparison.changes, "  ")
     print_heading("Differences, second minus first")
     print_lines([MARKED], "  ")
-    _print_differences(comparison.coefficients)
+    _print_differences(comparison.coefficients, str)
     for m in comparison.manoeuvres:
         if m.measures:
             print_heading(manoeuvre_name(m.manoeuvre))
-            _print_differences(m.measures)
+            _print_differences(m.measures, quantity_label)
         else:
             print_lines([f"{manoeuvre_name(m.manoeuvre)}: {m.note or 'no measure in common'}"], "  ")
     print_warnings(comparison.findings)
 
 
-def _print_differences(rows: "Sequence[Difference]") -> None:
+def _print_differences(rows: "Sequence[Difference]", label: Callable[[str], str]) -> None:
     from seatrial.core.text.numbers import exact
 
     if not rows:
@@ -45,5 +45,5 @@ def _print_differences(rows: "Sequence[Difference]") -> None:
     table = [["", "first", "second", "difference", "95 % from", "to", ""]]
     for d in rows:
         numbers = ("" if v is None else exact(v, DIGITS) for v in (d.first, d.second, d.difference, d.lower, d.upper))
-        table.append([quantity_label(d.name), *numbers, "differs" if d.is_significant else ""])
+        table.append([label(d.name), *numbers, "differs" if d.is_significant else ""])
     print_table(table, flush_left=(0, len(table[0]) - 1), indent="  ")

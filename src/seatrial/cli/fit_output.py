@@ -169,6 +169,7 @@ def _measure_mark(m: "Measure") -> str:
 def _print_thruster_craft(fit: "Fit") -> None:
     """What a craft with thrusters does at full command."""
     from seatrial.core.text.numbers import exact
+    from seatrial.reporting.thruster_chapter import MEASURE_LABELS
 
     if fit.thruster_craft is None or not fit.thruster_craft.measures:
         return
@@ -176,7 +177,7 @@ def _print_thruster_craft(fit: "Fit") -> None:
     rows = [["", "", "95 % from", "to"]]
     for name, m in fit.thruster_craft.measures.items():
         ends = ("" if x is None else exact(x, ERROR_DIGITS) for x in (m.lower, m.upper))
-        rows.append([quantity_label(name), exact(m.value, ERROR_DIGITS), *ends])
+        rows.append([MEASURE_LABELS.get(name, quantity_label(name)), exact(m.value, ERROR_DIGITS), *ends])
     print_table(rows, indent="  ")
 
 

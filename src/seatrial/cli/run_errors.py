@@ -24,11 +24,10 @@ def label_and_unit(key: str) -> tuple[str, str]:
 
 
 def quantity_label(name: str) -> str:
-    """Return name and unit of a measure, or the name of a coefficient as it is: ``advance, L``."""
+    """Return name and unit of a measure: ``advance, L``."""
     from seatrial.reporting.measures import measure_label
 
-    label, unit = measure_label(name)
-    return f"{label}, {unit}" if unit else label if label != name.replace("_", " ") else name
+    return ", ".join(part for part in measure_label(name) if part)
 
 
 def error_text(key: str, value: float) -> str:

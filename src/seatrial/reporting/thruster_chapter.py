@@ -13,7 +13,7 @@ from seatrial.reporting.figures.thruster_charts import compass_chart, quadrant_c
 from seatrial.reporting.measures import EDGE_INDEX
 from seatrial.reporting.text_tables import TextTable
 
-_LABELS = {
+MEASURE_LABELS = {
     "top_speed": "top speed, m/s", "surge_time_constant_s": "time constant of surge (63 % of top speed), s",
     "yaw_rate_deg_s": "yaw rate of a spin, deg/s", "yaw_time_constant_s": "time constant of yaw (63 % of that rate), s",
     "time_360_s": "time of a full turn, s", "stopping_distance_m": "stopping distance, m",
@@ -70,7 +70,7 @@ def _left_out(craft: ThrusterCraft) -> tuple[str, ...]:
 
 def _measures_table(measures: dict[str, CraftMeasure]) -> TextTable:
     rows, far = [], False
-    for name, label in _LABELS.items():
+    for name, label in MEASURE_LABELS.items():
         m = measures.get(name)
         if m is None:
             continue
