@@ -98,3 +98,12 @@ def test_an_offset_turns_the_compass_only() -> None:
     assert math.isclose(model.parameters["compass_A"].value, 0.0)
     assert model.parameters["compass_A"].free
     assert model.outputs == ("psi_measured",)
+
+
+def test_a_model_read_from_the_cache_knows_whether_it_is_affine_and_keeps_its_layout() -> None:
+    """Asking the equations themselves would import SymPy in every process."""
+    craft = model_named("thrusters")
+    for _ in range(2):
+        shown = with_sensors(craft, Sensors(compass=Compass.HARMONIC)).equations
+        assert vars(shown)["is_affine"] is False
+        assert shown.layout == craft.equations.layout

@@ -43,10 +43,9 @@ def with_sensors(model: Model, sensors: Sensors) -> Model:
     for state in sorted(_required_states(sensors)):
         if state not in model.states:
             raise InputError(f"model '{model.name}' has no state '{state}'; leave its sensor out of [sensors]")
-    equations = stored_equations(
-        (model.equation_hash, "sensors", sensors.text()), lambda: _Writer(model, sensors, parameters).equations()
-    )
-    equations = replace(equations, layout=model.equations.layout)
+    layout = model.equations.layout  # no part of the hash
+    key = (model.equation_hash, layout, "sensors", sensors.text())
+    equations = stored_equations(key, lambda: _Writer(model, sensors, parameters).equations())
     return Model(equations, Parameters((*model.parameters, *parameters)))
 
 
