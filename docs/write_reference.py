@@ -69,7 +69,7 @@ def _name(parameter: Any) -> str:
     if not parameter.opts[0].startswith("-"):
         return _placed(parameter).replace("|", "\\|")
     value = "" if getattr(parameter, "is_flag", False) else f" {parameter.metavar or 'VALUE'}"
-    return parameter.opts[-1] + value.replace("|", "\\|")
+    return ", ".join(parameter.opts) + value.replace("|", "\\|")
 
 
 def _meaning(parameter: Any) -> str:
