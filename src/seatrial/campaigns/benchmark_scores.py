@@ -178,14 +178,14 @@ def holm(p_values: Sequence[float]) -> list[float]:
 
 
 def _corrected(scores: Sequence[ProblemScore]) -> tuple[ProblemScore, ...]:
-    """The scores with the p-values of all tests corrected together."""
-    every = [[*score.tests, *(claim.test for claim in score.claims)] for score in scores]
-    adjusted = iter(holm([test.p for tests in every for test in tests]))
-    corrected = []
-    for score, tests in zip(scores, every, strict=True):
-        done = [replace(test, p_adjusted=next(adjusted)) for test in tests]
-        claims = zip(score.claims, done[len(score.tests) :], strict=True)
-        corrected.append(replace(
-            score, tests=tuple(done[: len(score.tests)]), claims=tuple(replace(c, test=test) for c, test in claims)
-        ))  # fmt: skip
-    return tuple(corrected)
+    """The scores with the p-values of all comparisons corrected together, and those of all claims."""
+    tests = iter(holm([test.p for score in scores for test in score.tests]))
+    claims = iter(holm([claim.test.p for score in scores for claim in score.claims]))
+    return tuple(
+        replace(
+            score,
+            tests=tuple(replace(test, p_adjusted=next(tests)) for test in score.tests),
+            claims=tuple(replace(c, test=replace(c.test, p_adjusted=next(claims))) for c in score.claims),
+        )
+        for score in scores
+    )

@@ -157,7 +157,8 @@ def claim_table(claims: Sequence[CheckedClaim]) -> TextTable:
     return TextTable(
         "Claims of the paper", ("claim", "draws for it", "against it", "p, corrected", ""),
         (False, True, True, True, False), rows,
-        "Contradicted: the other method is significantly better here. Not shown: they do not differ significantly.",
+        "Contradicted: the other method is significantly better here. Not shown: they do not differ significantly. "
+        "Corrected for all claims of this page.",
     )  # fmt: skip
 
 

@@ -83,7 +83,7 @@ class PairedTest:
     smaller: Annotated[int, Field(description="draws on which the method has the smaller error")]
     larger: Annotated[int, Field(description="draws on which it has the larger one, or no answer")]
     p: Annotated[Number, Field(description="of the two-sided sign test")]
-    p_adjusted: Annotated[Number, Field(description="for all tests of the benchmark together (Holm 1979)")]
+    p_adjusted: Annotated[Number, Field(description="for all comparisons of the benchmark, or all claims (Holm 1979)")]
 
     @computed_field(description="whether the methods differ at the 5 % level after the correction")
     @property
