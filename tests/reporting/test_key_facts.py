@@ -1,11 +1,15 @@
 """The five rows: what each says, and when it is a warning."""
 
+import math
 from dataclasses import replace
 
 from seatrial.core.results import ChannelScore, Fit, Measure, WindowBaseline, WindowScore
+from seatrial.core.results.identifiability import Collinearity
 from seatrial.core.values import Severity
+from seatrial.numerics.optimise import Status
 from seatrial.reporting.first_screen import KeyFact
 from seatrial.reporting.key_facts import first_screen, key_facts
+from seatrial.reporting.windows import baseline_sentence
 
 
 def rows(fit: Fit) -> dict[str, KeyFact]:
@@ -54,3 +58,29 @@ def test_the_picture_is_the_worst_held_out_run_with_its_heading(fit: Fit) -> Non
     screen = first_screen(fit, 9.8)
     assert "zigzag_25_25" in screen.caption and screen.figure.count('"label"') == 1 and "ψ [deg]" in screen.figure
     assert first_screen(replace(fit, predictions=()), 9.8).figure == ""
+
+
+def test_a_search_that_did_not_converge_comes_first(fit: Fit) -> None:
+    stalled = replace(fit, solution=replace(fit.solution, status=Status.STALLED))
+    assert key_facts(stalled)[0].name == "Warnings" and "did not converge" in key_facts(stalled)[0].text
+    assert first_screen(stalled, 9.8).verdict.startswith("Do not use the coefficients: the search did not converge")
+    assert rows(stalled)["Identifiability"].is_good is False
+
+
+def test_collinear_coefficients_are_not_determined_one_by_one(fit: Fit) -> None:
+    assert fit.identifiability is not None
+    tied = replace(fit.identifiability, collinearity=(Collinearity("N_v", 140.0, "N_r", -0.99),))
+    fact = rows(replace(fit, identifiability=tied))["Identifiability"]
+    assert fact.is_good is False and "N_v only together with others (variance inflation up to 140)" in fact.text
+
+
+def test_windows_that_diverge_have_no_better_baseline(fit: Fit) -> None:
+    lost = with_windows(fit, math.inf, 1.0)
+    run = lost.validation[0]
+    windows = tuple(replace(w, diverged=3) for w in run.windows)
+    lost = replace(lost, predictions=(replace(run, windows=windows),))
+    fact = rows(lost)["Closest baseline"]
+    assert fact.is_good is False and "the model diverges in 3 of 4 windows of 5 L" in fact.text
+    assert windows[0].better_baselines == {}
+    text = baseline_sentence(lost.validation, {"psi_deg": ("heading", "deg")})
+    assert "diverges in 3 of 4 windows" in text and "without this fit" not in text

@@ -1,21 +1,26 @@
 """The five rows at the top of a fit's page: score, baseline, coverage, identifiability, warnings."""
 
+import math
+
 from seatrial.core.results import Fit, Prediction, WindowScore
 from seatrial.core.results.fit_charts import headline_view
+from seatrial.core.results.identifiability import NOT_CONVERGED, NOT_IDENTIFIABLE
 from seatrial.core.results.window_scores import ChannelScore
-from seatrial.core.text.numbers import fixed
+from seatrial.core.text.numbers import fixed, significant
 from seatrial.core.text.words import counted, enumeration
 from seatrial.core.values import Severity
 from seatrial.reporting.first_screen import FirstScreen, KeyFact
-from seatrial.reporting.identifiability_chapter import determined_sentence
+from seatrial.reporting.identifiability_chapter import MIN_VARIANCE_INFLATION, determined_sentence
 from seatrial.reporting.measures import is_inside
 from seatrial.reporting.operators import operators_sentence
 from seatrial.reporting.runs import ERROR_LABELS, badness
 from seatrial.reporting.time_figures import run_figure
-from seatrial.reporting.verdict import error_text, verdict, worst_errors
+from seatrial.reporting.verdict import error_text, has_converged, verdict, worst_errors
 
 # share of values inside their 95 % intervals that counts as kept; chosen between 0.95 and the scatter of few values
 LEAST_COVERAGE = 0.9
+# names that a row holds, chosen
+MAX_NAMES = 4
 
 
 def first_screen(fit: Fit, length: float) -> FirstScreen:
@@ -32,8 +37,9 @@ def first_screen(fit: Fit, length: float) -> FirstScreen:
 
 
 def key_facts(fit: Fit) -> tuple[KeyFact, ...]:
-    """Return the rows; what the fit does not contain is said to be so."""
-    return _score(fit), _baseline(fit), _coverage(fit), _identifiability(fit), _warnings(fit)
+    """Return the rows; a search that did not converge comes first; what the fit does not contain is said to be so."""
+    rows = _score(fit), _baseline(fit), _coverage(fit), _identifiability(fit)
+    return (*rows, _warnings(fit)) if has_converged(fit) else (_warnings(fit), *rows)
 
 
 def _score(fit: Fit) -> KeyFact:
@@ -55,20 +61,28 @@ def _longest_windows(p: Prediction) -> WindowScore | None:
 
 def _baseline(fit: Fit) -> KeyFact:
     """The quantity and run in which the best prediction without the fit comes closest to it, or is better."""
+    lost = [(w, p) for p in fit.validation for w in reversed(p.windows) if w.diverged]
+    if lost:
+        (w, p), *_ = lost
+        text = f"none compared: {w.divergence_text} of {w.window}{_run_name(fit, p)}"
+        return KeyFact("Closest baseline", text, "prediction", is_good=False)
     compared = [(_ratio(key, w, score), p, w, key) for p in fit.validation if (w := _longest_windows(p))
                 for key, score in w.scores.items() if key in ("psi_deg", "position_m", "z", "theta_deg", "phi_deg")
-                and any(key in b.scores for b in w.baselines)]  # fmt: skip
+                and math.isfinite(score.rms) and any(key in b.scores for b in w.baselines)]  # fmt: skip
     if not compared:
         return KeyFact("Baseline", "none compared")
     ratio, p, w, key = min(compared, key=lambda row: row[0])
     best = min((b for b in w.baselines if key in b.scores), key=lambda b: b.scores[key].rms)
-    run = f" of {p.record}" if len(fit.validation) > 1 else ""
     text = (
-        f"{ERROR_LABELS[key][0]} over {w.window}{run}: {error_text(key, w.scores[key].rms)} by this fit, "
+        f"{ERROR_LABELS[key][0]} over {w.window}{_run_name(fit, p)}: {error_text(key, w.scores[key].rms)} by this fit, "
         f"{error_text(key, best.scores[key].rms)} by {best.name}"
     )
     verdict = "better without this fit" if ratio < 1.0 else "this fit is best in every quantity compared"
     return KeyFact("Closest baseline", f"{text}; {verdict}", "prediction", ratio >= 1.0)
+
+
+def _run_name(fit: Fit, p: Prediction) -> str:
+    return f" of {p.record}" if len(fit.validation) > 1 else ""
 
 
 def _ratio(key: str, w: WindowScore, score: ChannelScore) -> float:
@@ -102,13 +116,27 @@ def _identifiability(fit: Fit) -> KeyFact:
         return KeyFact("Identifiability", "not examined", "identifiability" if fit.noise_model else "")
     free = sum(not c.fixed for c in fit.coefficients)
     is_complete = fit.identifiability is not None and round(fit.identifiability.effective_parameters) >= free
-    return KeyFact("Identifiability", text.removesuffix("."), "identifiability", is_complete)
+    limits = _determination_limits(fit)
+    return KeyFact("Identifiability", "; ".join([text.removesuffix("."), *limits]), "identifiability",
+                   is_complete and not limits)  # fmt: skip
+
+
+def _determination_limits(fit: Fit) -> list[str]:
+    """What keeps the coefficients from being used one by one: no optimum, wide intervals, collinearity."""
+    limits = [] if has_converged(fit) else ["but the search did not converge, and this holds at no optimum"]
+    limits += [f.text for f in fit.findings if f.code == NOT_IDENTIFIABLE]
+    collinear = fit.identifiability.collinearity if fit.identifiability else ()
+    inflated = [c for c in collinear if c.variance_inflation >= MIN_VARIANCE_INFLATION]
+    if inflated:
+        most = max(c.variance_inflation for c in inflated)
+        names = enumeration([c.parameter for c in inflated], MAX_NAMES)
+        limits.append(f"{names} only together with others (variance inflation up to {significant(most, 2)})")
+    return limits
 
 
 def _warnings(fit: Fit) -> KeyFact:
     codes = list(dict.fromkeys(f.code for f in fit.findings if f.severity is not Severity.INFO))
-    has_converged = fit.search is not None or fit.solution.status.is_success
-    texts = ([] if has_converged else ["the search did not converge"]) + codes
+    texts = codes if has_converged(fit) else ["the search did not converge", *(c for c in codes if c != NOT_CONVERGED)]
     if not texts:
         return KeyFact("Warnings", "none", "findings" if fit.findings else "", is_good=True)
     return KeyFact("Warnings", enumeration(texts), "findings" if codes else "method", is_good=False)

@@ -27,7 +27,19 @@ _MAIN_ERRORS = ("psi_deg", "position_m", "z", "theta_deg", "phi_deg")
 def verdict(fit: Fit) -> str:
     """Return how well runs that were not fitted are predicted, and where the model extrapolates, in one sentence."""
     clauses = [_score_clause(fit), extrapolation_limit(fit)]
-    return f"{'; '.join(clause for clause in clauses if clause)}."
+    return f"{unusable_sentence(fit)}{'; '.join(clause for clause in clauses if clause)}."
+
+
+def unusable_sentence(fit: Fit) -> str:
+    """Return that the coefficients must not be used, with the reason and a space behind it; empty where they can."""
+    if has_converged(fit):
+        return ""
+    return f"Do not use the coefficients: the search did not converge ({fit.solution.status.value.partition(';')[0]}). "
+
+
+def has_converged(fit: Fit) -> bool:
+    """Return whether the search ended at an optimum; one by a population has no test of it and counts as ended."""
+    return fit.search is not None or fit.solution.status.is_success
 
 
 def _score_clause(fit: Fit) -> str:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from seatrial.core.results import Prediction, WindowScore
 from seatrial.core.results.window_scores import ChannelScore
 from seatrial.core.text.numbers import DASH, fixed, significant
-from seatrial.core.text.words import counted, enumeration
+from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.reporting.text_tables import TextTable
 
 WINDOW_NOTE = (
@@ -41,7 +41,8 @@ def _errors(
         share = DASH if own.inside_band is None else f"{fixed(100.0 * own.inside_band, 0)} %"
         rows.append((f"{labels[name][0]}, {labels[name][1]}", *texts, share))
     columns = ("", *header, "inside 95 % band")
-    title = f"{counted(w.count, 'window')} of {w.window}"
+    lost = f"; {w.divergence_text}" if w.diverged else ""
+    title = f"{counted(w.count, 'window')} of {w.window}{lost}"
     return TextTable(title, columns, (False, *(True for _ in columns[1:])), tuple(rows), "")
 
 
@@ -58,13 +59,18 @@ def _fits(w: WindowScore, header: tuple[str, ...], labels: dict[str, tuple[str, 
 
 
 def baseline_sentence(predictions: Sequence[Prediction], labels: dict[str, tuple[str, str]]) -> str:
-    """Return which runs a prediction without this fit predicts better, and in what; empty where none does."""
-    clauses = []
+    """Return in which windows the model diverges, and which runs predictions without this fit predict better."""
+    clauses, lost = [], []
     for p in predictions:
         for w in p.windows:
+            if w.diverged:
+                lost.append(f"{p.record}, windows of {w.window}: {w.divergence_text}")
             better = [f"{labels[name][0]} by {baseline}" for name, baseline in w.better_baselines.items()]
             if better:
                 clauses.append(f"{p.record} in windows of {w.window}: {enumeration(better)}")
-    if not clauses:
-        return ""
-    return f"Predictions without this fit are better in places, so do not rely on it there: {'; '.join(clauses)}."
+    sentences = [f"{sentence('; '.join(lost))}"] if lost else []
+    if clauses:
+        sentences.append(
+            f"Predictions without this fit are better in places, so do not rely on it there: {'; '.join(clauses)}."
+        )
+    return " ".join(sentences)

@@ -7,6 +7,9 @@ from pydantic import Field
 
 from seatrial.core.results.fields import Number
 
+NOT_CONVERGED, NOT_IDENTIFIABLE = "not-converged", "not-identifiable"
+"""Codes of the findings that coefficients must not be used, or not alone."""
+
 
 @dataclass(frozen=True)
 class Symmetry:

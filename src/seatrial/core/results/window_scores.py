@@ -1,5 +1,6 @@
 """Predictions over windows of a run, with baselines that anybody could make."""
 
+import math
 from dataclasses import dataclass, field
 from typing import Annotated
 
@@ -44,12 +45,23 @@ class WindowScore:
         default_factory=dict
     )
     baselines: tuple[WindowBaseline, ...] = ()
+    diverged: Annotated[int, Field(description="number of windows in which the model diverges")] = 0
+
+    @property
+    def divergence_text(self) -> str:
+        """Return in how many windows the model diverges; empty where it does in none."""
+        return f"the model diverges in {self.diverged} of {self.count} windows" if self.diverged else ""
 
     @property
     def better_baselines(self) -> dict[str, str]:
-        """Return the channel of each baseline that errs less than the fit -> name of the best one there."""
+        """Return the channel of each baseline that errs less than the fit -> name of the best one there.
+
+        An error of the fit without a number, after a divergence, is compared with none.
+        """
         better: dict[str, str] = {}
         for channel, score in self.scores.items():
+            if not math.isfinite(score.rms):
+                continue
             rivals = [
                 (b.scores[channel].rms, b.name) for b in self.baselines if b.scores.get(channel, score).rms < score.rms
             ]

@@ -6,6 +6,7 @@ from types import MappingProxyType
 import numpy as np
 
 from seatrial.core.results import Coefficient, Method, Noise, Offset, OffsetPopulation, Residuals
+from seatrial.core.results.identifiability import NOT_CONVERGED, NOT_IDENTIFIABLE
 from seatrial.core.values import NOTATION, Array, DivergedError, Finding, InputError, Parameter, Parameters, Severity
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import split_segments
@@ -185,7 +186,7 @@ def unidentified(estimation: Estimation) -> list[Finding]:
     names = _unidentified_names(estimation)
     if not names:
         return []
-    return [Finding(Severity.WARNING, "not-identifiable", f"the records do not determine {', '.join(names)}: the "
+    return [Finding(Severity.WARNING, NOT_IDENTIFIABLE, f"the records do not determine {', '.join(names)}: the "
                     "standard error exceeds the value", "", "do not use them alone; seatrial design finds a manoeuvre "
                     "that identifies them, or give a prior")]  # fmt: skip
 
@@ -211,7 +212,7 @@ def unconverged(estimation: Estimation) -> list[Finding]:
     """Return a warning where the search did not converge, and where noise levels and residuals do not agree."""
     status, findings = estimation.estimate.optimum.solution.status, []
     if not status.is_success:
-        findings.append(Finding(Severity.WARNING, "not-converged", "the search did not converge", status.value,
+        findings.append(Finding(Severity.WARNING, NOT_CONVERGED, "the search did not converge", status.value,
                         "do not use the coefficients before this is understood"))  # fmt: skip
     if not estimation.estimate.is_settled:
         findings.append(Finding(Severity.WARNING, "noise-not-settled", "the noise levels still change from round to "

@@ -137,7 +137,8 @@ def _score(
         WindowBaseline(n, _baseline_scores(predict(windows, initial), pieces, scores))
         for n, predict in p.baselines.items()
     ]
-    return WindowScore(name, seconds, len(windows), scores, tuple(r for r in rivals if r.scores))
+    diverged = sum(run.divergence is not None for run in runs)
+    return WindowScore(name, seconds, len(windows), scores, tuple(r for r in rivals if r.scores), diverged)
 
 
 def _is_compared(windows: list[Record], simulated: list[Record], channels: tuple[str, ...]) -> bool:
