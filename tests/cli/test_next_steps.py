@@ -8,6 +8,7 @@ from tests.reporting.fabricated import fabricated_fit
 from seatrial.cli.next_steps import after_campaign, after_check, after_fit
 from seatrial.core.results.campaign import CampaignStatus
 from seatrial.core.values import Finding, Severity, TrialEdit
+from seatrial.physics.models import heave_pitch
 
 TRIAL, OUT = Path("my trial.toml"), Path("results")
 
@@ -27,6 +28,11 @@ def test_after_a_fit_a_run_is_held_out_or_a_manoeuvre_simulated() -> None:
     assert after_fit(fit, OUT) == "seatrial simulate results/model.toml --manoeuvre turning-circle:35 --out circle.csv"
     trained = replace(fit, predictions=tuple(replace(p, role="training") for p in fit.predictions))
     assert after_fit(trained, OUT, TRIAL).startswith("name a run to hold out in 'my trial.toml'")
+
+
+def test_after_a_fit_of_spectra_which_predicts_no_run_its_report_is_named() -> None:
+    spectral = replace(fabricated_fit(), model=heave_pitch(), predictions=())
+    assert after_fit(spectral, OUT, TRIAL) == "seatrial report results"
 
 
 def test_after_a_campaign_it_goes_on_is_tried_again_or_gathered() -> None:

@@ -37,10 +37,12 @@ def after_fit(fit: "Fit", folder: Path, trial: Path | None = None) -> str:
         return f"seatrial simulate {model} --manoeuvre spin:50 --out spin.csv"
     if "delta" in fit.model.input_names and "psi" in fit.model.states:
         return f"seatrial simulate {model} --manoeuvre turning-circle:35 --out circle.csv"
-    run = (fit.validation or fit.predictions)[0].record
-    if trial is None:
+    predicted = fit.validation or fit.predictions  # none where only spectra were compared
+    if trial is None or not predicted:
         return f"seatrial report {in_shell(folder)}"
-    return f"seatrial simulate {model} --trial {in_shell(trial)} --inputs {in_shell(run)} --out replay.csv"
+    return (
+        f"seatrial simulate {model} --trial {in_shell(trial)} --inputs {in_shell(predicted[0].record)} --out replay.csv"
+    )
 
 
 def after_campaign(status: "CampaignStatus", store: Path) -> str:
