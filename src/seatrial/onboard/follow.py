@@ -141,7 +141,7 @@ class _Display:
         self._session, self._adviser, self._show, self._stop = session, adviser, show, stop
         self._shown_at = -math.inf
         self._advised: Snapshot | None = None
-        self._shown: Snapshot | None = None
+        self._newest: Snapshot | None = None
 
     def should_continue(self, source: SampleSource) -> bool:
         """Return False once `stop` has returned True."""
@@ -155,9 +155,9 @@ class _Display:
     def _with_run(self, snapshot: Snapshot) -> Snapshot:
         """The snapshot with advice and the run so far; the same object for the same snapshot."""
         advised = self._adviser.with_advice(snapshot)
-        if self._shown is None or advised is not self._advised:
-            self._advised, self._shown = advised, replace(advised, recent=self._session.recent_run.records())
-        return self._shown
+        if self._newest is None or advised is not self._advised:
+            self._advised, self._newest = advised, replace(advised, recent=self._session.recent_run.records())
+        return self._newest
 
 
 def _replay_journal(
