@@ -1,5 +1,6 @@
 """The tables of a trial file: strict pydantic models; `seatrial.data.trial.schema_errors` words what they refuse."""
 
+from math import pi
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
@@ -165,6 +166,16 @@ class OriginTable(StrictTable):
 
     lat: Angle
     lon: Angle
+
+    @model_validator(mode="after")
+    def _on_the_earth(self) -> Self:
+        for key, angle, largest in (("lat", self.lat, pi / 2), ("lon", self.lon, 2 * pi)):
+            if abs(angle) > largest:
+                raise ValueError(
+                    f"{key} = {angle:g} rad is no place on the earth; "
+                    f'for degrees write {key} = {{ value = {angle:g}, unit = "deg" }}'
+                )
+        return self
 
 
 class AntennaTable(StrictTable):
