@@ -4,13 +4,13 @@ Noise levels and effective numbers of samples stay those of the joint fit, so th
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from seatrial.core.values import Array, Index
 from seatrial.estimation.estimate.point_estimate import PointEstimate
-from seatrial.estimation.information.covariance import jackknife_steps
+from seatrial.estimation.information.covariance import inverse, jackknife_steps
 from seatrial.numerics.optimise import levenberg_marquardt
 from seatrial.numerics.workers import map_in_threads
 
@@ -25,18 +25,46 @@ def one_step_jackknife(estimate: PointEstimate, groups: Sequence[Sequence[int]] 
 
     groups: positions of runs; None: each run by itself. Returns (groups, k).
     """
-    problem = estimate.problem
-    blocks = problem.segment_normals(estimate.common_parameters, estimate.optimum.local)
-    parts = [
-        problem.assemble(
-            blocks, estimate.common_parameters, _segments_of(estimate, group), with_prior=False
-        ).without_local()
-        for group in groups or [[r] for r in range(len(problem.data.runs))]
-    ]
+    parts = _normals_of(estimate, groups or [[r] for r in range(len(estimate.problem.data.runs))])
     hessian = estimate.optimum.normal.without_local()[1]
     return estimate.common_parameters + jackknife_steps(
         hessian, np.array([g for g, _ in parts]), np.array([h for _, h in parts])
     )
+
+
+@dataclass(frozen=True, eq=False)
+class RunEstimates:
+    """What each run by itself says of the shared unknowns: values and standard deviations, (runs, k); NaN: nothing."""
+
+    values: Array
+    deviations: Array
+
+
+def one_step_by_run(estimate: PointEstimate) -> RunEstimates:
+    """Return the shared unknowns from each run alone, by one Gauss-Newton step from the joint estimate.
+
+    theta_i - theta = -H_i^-1 g_i, with the covariance H_i^-1; priors are left out.
+    """
+    runs, size = len(estimate.problem.data.runs), len(estimate.common_parameters)
+    values, deviations = np.full((runs, size), np.nan), np.full((runs, size), np.nan)
+    for k, (gradient, hessian) in enumerate(_normals_of(estimate, [[r] for r in range(runs)])):
+        seen = np.flatnonzero(np.diag(hessian) > 0.0)
+        covariance = inverse(hessian[np.ix_(seen, seen)])
+        values[k, seen] = estimate.common_parameters[seen] - covariance @ gradient[seen]
+        deviations[k, seen] = np.sqrt(np.diag(covariance))
+    return RunEstimates(values, deviations)
+
+
+def _normals_of(estimate: PointEstimate, groups: Sequence[Sequence[int]]) -> list[tuple[Array, Array]]:
+    """Gradient and Hessian of each group of runs, local unknowns eliminated, priors left out."""
+    problem = estimate.problem
+    blocks = problem.segment_normals(estimate.common_parameters, estimate.optimum.local)
+    return [
+        problem.assemble(
+            blocks, estimate.common_parameters, _segments_of(estimate, group), with_prior=False
+        ).without_local()
+        for group in groups
+    ]
 
 
 def full_jackknife(

@@ -22,6 +22,7 @@ from seatrial.estimation.identify.roll_characteristics import one_speed_finding,
 from seatrial.estimation.identify.seakeeping import seakeeping
 from seatrial.estimation.identify.short_records import default_profiles, short_record_findings
 from seatrial.estimation.identify.thruster_craft import thruster_craft
+from seatrial.estimation.identify.varying_gain import varying_gain_finding
 from seatrial.estimation.information.frequency_response import frequency_responses
 from seatrial.estimation.predict.k_step import horizon_list, k_step_errors
 from seatrial.estimation.predict.predict_runs import RunPredictions, predict_runs
@@ -64,6 +65,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
             *task.findings, *selected.findings, *findings, *fit_result.unidentified(task.estimation),
             *unphysical_finding(estimation.model, runs.records), *fit_result.bounds_hit(estimation),
             *fit_result.unconverged(estimation), *other_optima(estimation),
+            *varying_gain_finding(estimation, runs.records),
             *short_record_findings(estimation, assessment.profiles), *closed_loop_findings(estimation),
             *(sampling_findings(posterior) if posterior else ()),
             *predicted.findings,

@@ -18,7 +18,8 @@ CHOSEN_START = "start value, chosen"
 
 
 def _speed(sheet: Sheet) -> sp.Symbol:
-    return sheet.parameter("U", 0.0, "m/s", "constant speed along the heading, 0: position not modelled", scale=1.0)
+    meaning = "constant speed along the heading, also in turns; 0: position is not modelled"
+    return sheet.parameter("U", 0.0, "m/s", meaning, scale=1.0)
 
 
 def _rudder(sheet: Sheet) -> sp.Expr:
@@ -27,7 +28,7 @@ def _rudder(sheet: Sheet) -> sp.Expr:
 
 
 def _cubic(sheet: Sheet) -> sp.Symbol:
-    meaning = "cubic manoeuvring coefficient"
+    meaning = "cubic coefficient, K delta = r + alpha r^3: the gain falls as the rudder goes farther over"
     return sheet.parameter("alpha", 0.0, "s^2/rad^2", meaning, "linear unless freed", scale=1.0)
 
 

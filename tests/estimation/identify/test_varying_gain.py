@@ -1,0 +1,63 @@
+"""A gain that falls with the rudder angle is a warning with the edit; one that does not is none."""
+
+import numpy as np
+import pytest
+
+from seatrial.core.values import Finding, Record, Ship
+from seatrial.data.trial import Trial, TrialRun, load_records
+from seatrial.estimation.estimate import EstimatorOptions
+from seatrial.estimation.estimate.fit import Estimation, estimate_model
+from seatrial.estimation.estimate.resampling import one_step_by_run
+from seatrial.estimation.estimate.runs import training_runs
+from seatrial.estimation.identify.varying_gain import varying_gain_finding
+from seatrial.physics.manoeuvres.programme import programme
+from seatrial.physics.models.nomoto import nomoto
+from seatrial.physics.simulate import manoeuvre
+
+GAIN = 1.0
+"""1/s: with alpha 2 s^2/rad^2, a boat of 6 m; the gain of large angles is then a fifth smaller."""
+
+
+def runs(alpha: float) -> list[Record]:
+    """Zigzags at 8 and 25 deg with the noise of a boat's compass and gyro."""
+    rng = np.random.default_rng(5)
+    boat = nomoto().with_values({"K": GAIN, "T": 1.0, "alpha": alpha, "U": 4.0})
+    noisy = []
+    for angle in (8, 25):
+        run = manoeuvre(boat, programme(f"zigzag:{angle}/{angle}"), duration=60.0, slew_rate=0.2).renamed(f"{angle}")
+        for name, deviation in (("psi", 0.005), ("r", 0.003)):  # rad, rad/s
+            samples = run[name] + deviation * rng.standard_normal(len(run))
+            run = run.with_channel(name, run.channel(name).with_values(samples))
+        noisy.append(run.without("x0", "y0"))
+    return noisy
+
+
+def fitted(records: list[Record], *free: str) -> Estimation:
+    model = nomoto()
+    model = model.with_parameters(model.parameters.freed(*free))
+    trial = Trial(Ship("boat", {"L": 6.0}), tuple(TrialRun(r) for r in records), model)
+    return estimate_model(model, training_runs(trial, load_records(trial)[0]), trial.estimate, EstimatorOptions())
+
+
+def finding(alpha: float, *free: str) -> tuple[Finding, ...]:
+    records = runs(alpha)
+    return varying_gain_finding(fitted(records, *free), records)
+
+
+def test_each_run_by_itself_has_its_own_gain() -> None:
+    gains = one_step_by_run(fitted(runs(2.0)).shooting).values[:, 0]
+    assert gains[0] == pytest.approx(GAIN, rel=0.06)
+    assert gains[1] < 0.9 * gains[0]
+
+
+def test_a_gain_that_falls_with_the_rudder_angle_is_a_warning() -> None:
+    (warning,) = finding(2.0)
+    assert warning.code == "gain-falls"
+    assert 'free = ["K", "T", "alpha"]' in warning.advice
+    assert "at 8 deg" in warning.evidence
+    assert "at 25 deg" in warning.evidence
+
+
+@pytest.mark.parametrize(("alpha", "free"), [(0.0, ()), (2.0, ("alpha",))])
+def test_a_constant_gain_and_a_free_cubic_are_none(alpha: float, free: tuple[str, ...]) -> None:
+    assert finding(alpha, *free) == ()
