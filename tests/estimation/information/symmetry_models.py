@@ -126,7 +126,7 @@ NONE = {
     "nomoto, heading only": (nomoto, ("psi",)),
     "nomoto2": (nomoto2, ("r", "psi")),
     "nomoto2, heading only": (nomoto2, ("psi",)),
-    "abkowitz": (lambda: abkowitz().with_values(SHIP), MOTION),
+    "abkowitz, added masses free": (lambda: freed(abkowitz().with_values(SHIP), "Y_vdot", "N_rdot"), MOTION),
     "mmg kvlcc2": (kvlcc2, MOTION),
     "mmg esso osaka": (lambda: esso_osaka().applied_to(mmg()), MOTION),
 }

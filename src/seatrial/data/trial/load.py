@@ -11,6 +11,7 @@ from seatrial.core.values import NOTATION, InputError, Ship, channel_hint, spell
 from seatrial.core.values.errors import listed
 from seatrial.core.values.tables import parse_toml, read_table_text, refuse_absurd_numbers
 from seatrial.data.check.captive_forces import force_findings
+from seatrial.data.trial.added_masses import added_mass_findings
 from seatrial.data.trial.declared_channels import declared_channels
 from seatrial.data.trial.design_request import refuse_unsuitable
 from seatrial.data.trial.earlier_result import ResultReader, earlier_results
@@ -168,7 +169,11 @@ def trial_of_tables(
         stream=stream,
         feedback=file.feedback,
         joint_priors=tuple(p for r in results.values() if (p := r.joint_prior_of(model.parameters)).names),
-        findings=(*ranges, *(finding for points in forces for finding in force_findings(points, unit))),
+        findings=(
+            *ranges,
+            *added_mass_findings(model, ship),
+            *(finding for points in forces for finding in force_findings(points, unit)),
+        ),
     )
 
 

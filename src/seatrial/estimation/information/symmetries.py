@@ -15,6 +15,7 @@ from seatrial.core.equations import Model
 from seatrial.core.equations.stored import stored
 from seatrial.core.results import Symmetry
 from seatrial.core.values import InputError
+from seatrial.data.trial.added_masses import has_held_added_masses
 from seatrial.data.trial.model_table import COMMON_PARTICULARS
 from seatrial.estimation.information.generator import Generator
 from seatrial.estimation.information.generators import SymmetrySearch, search_symmetries
@@ -22,6 +23,8 @@ from seatrial.estimation.information.invariance import invariance_conditions
 from seatrial.estimation.information.symmetry_text import NoInfluence, no_influence_text, symmetry_text
 
 _LEAST_INFLUENCE = 1e-7  # relative effect below which a coefficient has none: rounding is less
+INERTIAS = ("m", "I_z")
+"""Particulars that set the scale of all forces where no added mass does: mass and yaw inertia."""
 _PACKAGE = Path(__file__).parents[2]
 # folders of the texts that decide what is stated
 _SOURCES = tuple(_PACKAGE / folder for folder in ("estimation/information", "data/trial", "core/values"))
@@ -31,9 +34,9 @@ def structural_symmetries(model: Model, outputs: Sequence[str], forces: Sequence
     """Return what no record of these outputs can show of the free parameters, whatever the manoeuvre, in words.
 
     Beside the free parameters those count as unknown that are fixed at an assumed value other than zero; particulars
-    of the ship (length, mass, ...) are known, and a term that is fixed at zero is not there. First come parameters
-    without any influence and changes of free parameters alone, which a fit needs priors for; then those changes in
-    which an assumed value decides.
+    of the ship (length, mass, ...) are known unless they alone set the scale of the forces (`INERTIAS`), and a term
+    that is fixed at zero is not there. First come parameters without any influence and changes of free parameters
+    alone, which a fit needs priors for; then those changes in which an assumed value decides.
     forces: bindings that captive tests or CFD give at known motions, ``X_sum``; what they show is not hidden.
 
     Raises:
@@ -47,7 +50,20 @@ def _structural(model: Model, outputs: Sequence[str], forces: Sequence[str]) -> 
     free = [i for i, p in enumerate(model.parameters) if p.free]
     assumed = [i for i, p in enumerate(model.parameters) if not p.free and p.value and p.name not in COMMON_PARTICULARS]
     alone, _, together = where.independent_generators([free, assumed, sorted((*free, *assumed))])
+    if not together and has_held_added_masses(model):
+        together = _scaled_with_inertias(where, free, assumed)
     return (*_describe_symmetries(where, alone), *_describe_symmetries(where, together))
+
+
+def _scaled_with_inertias(where: SymmetrySearch, free: Sequence[int], assumed: Sequence[int]) -> list[Generator]:
+    """Changes of free parameters in which the ship's own mass and inertia decide, where no other assumed value does.
+
+    Motions show forces per mass only: where added masses are fixed, errors of mass and inertia are those of all
+    coefficients.
+    """
+    inertias = [i for i, p in enumerate(where.model.parameters) if not p.free and p.value and p.name in INERTIAS]
+    held = sorted((*assumed, *inertias))
+    return where.independent_generators([free, held, sorted((*free, *held))])[2]
 
 
 def refuse_unidentifiable(model: Model, outputs: Sequence[str], forces: Sequence[str] = ()) -> None:
