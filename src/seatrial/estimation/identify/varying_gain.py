@@ -45,7 +45,7 @@ def varying_gain_finding(estimation: Estimation, records: Sequence[Record]) -> t
     if is_chance or ends[0] <= 0.0 or 1.0 - ends[1] / ends[0] < LEAST_FALL:
         return ()
     order = np.argsort(angles)
-    each = ", ".join(f"{significant(gains[k], 3)} at {np.degrees(angles[k]):.0f} deg" for k in order)
+    each = ", ".join(f"{significant(float(gains[k]), 3)} at {np.degrees(angles[k]):.0f} deg" for k in order)
     names = ", ".join(f'"{n}"' for n in (*parameters.free_names, CUBIC))
     return (Finding(
         Severity.WARNING, "gain-falls", f"the gain {GAIN} falls with the rudder angle, by "
