@@ -148,6 +148,15 @@ def test_a_start_at_zero_is_no_knowledge() -> None:
     assert [set(s.parameters) for s in structural_symmetries(model, MOTION)] == [set(w) for w in SOME["waterjet"][2]]
 
 
+def test_mass_and_inertia_set_the_scale_where_no_added_mass_does() -> None:
+    ship = SHIP | {"Y_vdot": 0.0, "N_rdot": 0.0, "x_G": 0.0}
+    model = abkowitz(["X_u", "Y_v", "Y_r", "N_v", "N_r", "N_d"]).with_values(ship)
+    sway, yaw = structural_symmetries(model, MOTION)
+    assert set(sway.parameters) == {"m", "X_u", "Y_v", "Y_r"}
+    assert set(yaw.parameters) == {"I_z", "N_v", "N_r", "N_d"}
+    assert "its error spreads to all" in sway.text
+
+
 @pytest.mark.parametrize(
     ("model", "outputs", "message"),
     [
