@@ -9,7 +9,13 @@ from tests.estimation.estimate.test_intervals import made
 from seatrial.core.values import InputError
 from seatrial.estimation.estimate.intervals import estimate_uncertainty
 from seatrial.estimation.estimate.point_estimate import PointEstimate
-from seatrial.estimation.estimate.resampling import bootstrap_fits, full_jackknife, one_step_jackknife
+from seatrial.estimation.estimate.resampling import (
+    bootstrap_fits,
+    fits_without,
+    full_jackknife,
+    one_step_by_run,
+    one_step_jackknife,
+)
 from seatrial.estimation.estimate.settings import IntervalMethod
 from seatrial.estimation.information.covariance import jackknife
 from seatrial.physics.models.nomoto import nomoto
@@ -31,6 +37,13 @@ def test_one_step_stands_for_a_refit(one: PointEstimate) -> None:
     assert np.all(scatter > 0)
     assert np.all(np.abs(fast - full) <= 0.05 * scatter)
     np.testing.assert_allclose(jackknife(fast, "").standard_error, jackknife(full, "").standard_error, rtol=0.03)
+
+
+def test_a_run_by_itself_is_what_a_fit_to_it_alone_gives(one: PointEstimate) -> None:
+    by_run = one_step_by_run(one)
+    alone = fits_without(one, [[r for r in range(RUNS) if r != k] for k in range(RUNS)])
+    free = len(one.problem.free)
+    assert np.all(np.abs(by_run.values - alone)[:, :free] <= 0.3 * by_run.deviations[:, :free])
 
 
 def test_a_run_left_out_is_not_looked_at(one: PointEstimate) -> None:
