@@ -86,7 +86,7 @@ def test_what_the_numbers_do_not_show_stays_open_with_both_readings(tmp_path: Pa
     draft = draft_trial(write(tmp_path / "run.csv", columns), folder=tmp_path)
     assert {guess.symbol for guess in draft.open_questions} == {"psi", "n"}
     assert '# channels.psi = { column = "heading", unit = "rad" }' in draft.text and 'or unit = "deg"' in draft.text
-    assert "# not used: depth" in draft.text
+    assert "# not used, names not recognised: depth" in draft.text
 
 
 def test_the_drafted_file_is_read_and_checked_without_model_and_ship(tmp_path: Path) -> None:

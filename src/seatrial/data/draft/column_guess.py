@@ -16,6 +16,7 @@ class ColumnGuess:
         evidence: why.
         other_reading: what it may be instead; empty: it is assigned outright.
         is_used: whether it is the one chosen for its symbol.
+        unused_because: why it is not; empty: it is used.
     """
 
     source: str | int
@@ -30,6 +31,7 @@ class ColumnGuess:
     evidence: tuple[str, ...] = ()
     other_reading: str = ""
     is_used: bool = True
+    unused_because: str = ""
 
     @property
     def is_open(self) -> bool:

@@ -158,20 +158,24 @@ def _channel_lines(survey: LogSurvey, guesses: Sequence[ColumnGuess]) -> list[st
         else:
             lines.append(f"{line}    # {why}")
     lines += [f"# left out: column {_comment(fault)}" for topic in survey.topics for fault in topic.faults]
+    return [*lines, *_unused_lines(survey, guesses)]
+
+
+def _unused_lines(survey: LogSurvey, guesses: Sequence[ColumnGuess]) -> list[str]:
+    """Columns that are not used: those that are recognised with the reason, the others by name."""
     named = {str(guess.source) for guess in guesses if guess.is_used}
-    unused = [
+    columns = [
         f"{topic.topic}/{column.name}" if topic.topic else column.name
         for topic in survey.topics
         for column in topic.columns
     ]
-    rest = [name for name in unused if name not in named]
-    shown = rest[:_UNUSED_SHOWN]
-    more = (
-        f", and {len(rest) - len(shown)} more ('seatrial check {survey.path.name}' lists them)"
-        if len(rest) > len(shown)
-        else ""
-    )
-    return [*lines, f"# not used: {_comment(', '.join(shown))}{more}"] if rest else lines
+    reasons = {str(g.source): f"{g.symbol}, {g.unused_because}" for g in guesses if g.unused_because}
+    recognised = [f"{name} ({reasons[name]})" for name in columns if name in reasons and name not in named]
+    rest = [name for name in columns if name not in named and name not in reasons]
+    more = f", and {len(rest) - _UNUSED_SHOWN} more ('seatrial check {survey.path.name}' lists them)"
+    shown = ", ".join(rest[:_UNUSED_SHOWN]) + (more if len(rest) > _UNUSED_SHOWN else "")
+    lines = [f"# not used: {_comment(', '.join(recognised))}"] if recognised else []
+    return [*lines, f"# not used, names not recognised: {_comment(shown)}"] if rest else lines
 
 
 def _channel_table(guess: ColumnGuess) -> str:

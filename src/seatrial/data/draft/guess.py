@@ -142,13 +142,25 @@ def without_conflicts(parts: Sequence[Sequence[ColumnGuess]]) -> list[tuple[Colu
     used: set[str] = set()
     first = []
     for part in parts:
-        first.append([replace(g, is_used=g.is_used and g.symbol not in used) for g in part])
+        first.append([_unused(g, f"another source has {g.symbol}") if g.symbol in used else g for g in part])
         used |= {g.symbol for g in first[-1] if g.is_used}
+    reasons = _superfluous(used)
+    return [tuple(_unused(g, reasons[g.symbol]) if g.symbol in reasons else g for g in part) for part in first]
+
+
+def _unused(guess: ColumnGuess, reason: str) -> ColumnGuess:
+    return replace(guess, is_used=False, unused_because=guess.unused_because or reason)
+
+
+def _superfluous(used: set[str]) -> dict[str, str]:
+    """Symbol -> why it is of no use beside those that are used, or without another."""
     follows = {"stw": {"u", "sog"}, "psi_magnetic": {"psi"}, "lat": {"x0"}, "lon": {"y0"}, "sog": {"u"}, "cog": {"v"}}
-    unused = {symbol for symbol, sources in follows.items() if sources & used}
-    unused |= {
-        one for one, mate in (("sog", "cog"), ("cog", "sog"), ("lat", "lon"), ("lon", "lat")) if mate not in used
-    }
-    if not {"q_w", "q_x", "q_y", "q_z"} <= used or {"psi", "phi", "theta"} <= used:
-        unused |= {"q_w", "q_x", "q_y", "q_z"}
-    return [tuple(replace(g, is_used=g.is_used and g.symbol not in unused) for g in part) for part in first]
+    mates = (("sog", "cog"), ("cog", "sog"), ("lat", "lon"), ("lon", "lat"))
+    reasons = {one: f"needs {mate}, which no column is" for one, mate in mates if mate not in used}
+    reasons |= {one: f"{min(better & used)} is there" for one, better in follows.items() if better & used}
+    quaternion = {"q_w", "q_x", "q_y", "q_z"}
+    if {"psi", "phi", "theta"} <= used:
+        reasons |= dict.fromkeys(quaternion, "psi, phi and theta are there")
+    elif not quaternion <= used:
+        reasons |= dict.fromkeys(quaternion, "needs the other three of the quaternion")
+    return reasons

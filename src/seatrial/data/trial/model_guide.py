@@ -132,7 +132,7 @@ def _trial_tables(model: Model, sources: tuple[str, ...], needed: Mapping[str, s
 
 def _particular(name: str, text: str) -> str:
     """A line to fill in; the length, which every trial needs, is no comment, and zero is refused until it is stated."""
-    return f"{'' if name == 'L' else '# '}{name} = 0.0    # {text}"
+    return f"{name} = 0.0    # {text}" if name == "L" else f"# {name} = 0.0    # {text}; required"
 
 
 def _quoted_list(names: tuple[str, ...]) -> str:
