@@ -17,10 +17,12 @@ def test_an_extrapolation_is_inside_at_the_edge_or_beyond(index: float, where: s
 def test_an_extrapolation_in_words() -> None:
     ratios = {"yaw_rate": 1.9, "drift": 1.3, "rudder": 0.9}
     assert extrapolation_text(Extrapolation(1.9, ratios)) == (
-        "1.9: the run turns 1.9 times as fast as any training run, with 1.3 times the drift angle. "
+        "1.9: the run turns 1.9 times as fast as any training run, with 1.3 times the modelled drift angle. "
         "Read its intervals as lower limits."
     )
-    assert extrapolation_text(Extrapolation(math.inf, {"drift": math.inf})).startswith("∞: the run drifts at ∞ times")
+    assert extrapolation_text(Extrapolation(math.inf, {"drift": math.inf})).startswith(
+        "∞: the run drifts, as the model has it, at ∞ times"
+    )
     assert "stays inside" in extrapolation_text(Extrapolation(0.8, {"fastest": 0.8}))
 
 

@@ -185,7 +185,8 @@ def _print_extrapolation(e: "Extrapolation") -> None:
     from seatrial.core.text.numbers import fixed
 
     note = EXTRAPOLATION_NOTE if e.index > EXTRAPOLATION_LIMIT else ""
-    print_lines([f"extrapolation index {fixed(e.index, 2)}{note}"], "  ")
+    source = " (by the drift angle that the model has)" if note and e.ratios.get("drift") == e.index else ""
+    print_lines([f"extrapolation index {fixed(e.index, 2)}{source}{note}"], "  ")
 
 
 def _print_details(fit: "Fit") -> None:

@@ -80,7 +80,7 @@ INSIDE_INDEX, EDGE_INDEX = 1.05, 1.2
 _COMMAND = "command "  # what names of a thruster's ranges begin with (`estimation.information.extrapolation`)
 _EXTRAPOLATION_CLAUSES = {
     "yaw_rate": ("turns {} times as fast as", "{} times the yaw rate"),
-    "drift": ("drifts at {} times the angle of", "{} times the drift angle"),
+    "drift": ("drifts, as the model has it, at {} times the angle of", "{} times the modelled drift angle"),
     "rudder": ("uses {} times the rudder of", "{} times the rudder"),
     "fastest": ("goes {} times as fast as", "{} times the highest speed"),
     "slowest": ("slows to 1/{} of the lowest speed of", "1/{} of the lowest speed"),

@@ -7,10 +7,11 @@ from dataclasses import dataclass, replace
 from markupsafe import Markup
 
 from seatrial.core.results import Divergence, Extrapolation, Measure, Prediction
-from seatrial.core.results.fit_charts import has_band, prediction_view
+from seatrial.core.results.fit_charts import has_band, has_modelled_position, prediction_view
 from seatrial.core.text.numbers import DASH, column_texts, duration, fixed, interval, ratio_text, significant
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import InputError, Record
+from seatrial.core.values.record_chart import has_track
 from seatrial.physics.manoeuvres import ImoCriterion, imo_criteria
 from seatrial.reporting.measures import (
     extrapolation_text,
@@ -240,6 +241,8 @@ def _notes(p: Prediction) -> list[str]:
         notes.append(
             f"Process noise alone would leave {enumeration(_error_texts(p.noise_floor))} with a perfect model."
         )
+    if has_track(p.measured) and "x0" in p.simulated and not has_modelled_position(p):
+        notes.append("The model does not predict the position: its speed U is 0.")
     if _error_texts(p.tied_spread):
         notes.append(
             f"Models that the records do not distinguish differ by "

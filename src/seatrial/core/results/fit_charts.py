@@ -128,10 +128,18 @@ def has_band(prediction: Prediction) -> bool:
     return any(np.isfinite(half).any() for half in prediction.half_width.values())
 
 
+def has_modelled_position(prediction: Prediction) -> bool:
+    """Return whether the simulated position moves: that of a steering model without a speed stays where it is."""
+    simulated = prediction.simulated
+    return has_track(simulated) and not (is_constant(simulated, "x0") and is_constant(simulated, "y0"))
+
+
 def _tracks(prediction: Prediction) -> list:
     measured, simulated = prediction.measured, prediction.simulated
     if not (has_track(measured) and has_track(simulated)):
         return []
+    if not has_modelled_position(prediction):
+        return [record_track(measured, MEASURED, "#d4d4d4")]
     half = prediction.half_width
     band_track = replace(record_track(simulated, SIMULATED), half_north=half.get("x0"), half_east=half.get("y0"))
     return [record_track(measured, MEASURED, "#d4d4d4"), band_track]

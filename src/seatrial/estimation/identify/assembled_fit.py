@@ -13,6 +13,7 @@ from seatrial.estimation.identify import fit_result
 from seatrial.estimation.identify.closed_loop_findings import closed_loop_findings
 from seatrial.estimation.identify.identifiability import identifiability
 from seatrial.estimation.identify.identification import Identification
+from seatrial.estimation.identify.misfit_disturbance import misfit_disturbance
 from seatrial.estimation.identify.model_selection import SelectedModel, with_model_spread
 from seatrial.estimation.identify.other_optima import other_optima
 from seatrial.estimation.identify.physical_limits import unphysical_finding
@@ -66,6 +67,10 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
             *unphysical_finding(estimation.model, runs.records), *fit_result.bounds_hit(estimation),
             *fit_result.unconverged(estimation), *other_optima(estimation),
             *varying_gain_finding(estimation, runs.records),
+            *misfit_disturbance(
+                estimation.noise_model.process,
+                [p.simulated for p in predicted.predictions if p.role == "training"], task.characteristic_time,
+            ),
             *short_record_findings(estimation, assessment.profiles), *closed_loop_findings(estimation),
             *(sampling_findings(posterior) if posterior else ()),
             *predicted.findings,

@@ -12,6 +12,10 @@ FEWEST_MEMORIES = 40.0
 """Memories of a disturbance that records last at least, for intervals of the information to hold; chosen: in fewer too
 few intervals of simulated craft hold the truth (`python benchmarks/gusts.py --short`)."""
 
+LONGEST_ADVICE = 10.0
+"""Times the duration of the runs that a record is advised to last at most: a memory that calls for more is a quarter of
+the runs or longer, and not distinguishable from a slow error of the model; chosen."""
+
 FEWEST_REFERENCE_STEPS = 4
 """Changes of the reference that records of a closed loop contain at least, for the same reason; chosen."""
 
@@ -32,9 +36,15 @@ def short_record_findings(estimation: Estimation, profiles: tuple[Profile, ...])
     findings, seconds, steps = [], _seconds(estimation), _reference_steps(estimation)
     if _has_few_memories(estimation):
         memory = _longest_memory(estimation)
+        advice = f"record at least {FEWEST_MEMORIES * memory:.0f} s"
+        if FEWEST_MEMORIES * memory > LONGEST_ADVICE * seconds:
+            advice = (
+                "a disturbance with a memory as long as the runs is the model's misfit rather than the sea: free more "
+                "coefficients or take a richer model"
+            )
         findings.append(Finding(Severity.WARNING, "few-memories", "the records last few memories of the disturbance: "
                                 f"{consequence}", f"{seconds:.0f} s, memory {memory:.3g} s",
-                                f"record at least {FEWEST_MEMORIES * memory:.0f} s"))  # fmt: skip
+                                advice))  # fmt: skip
     if steps is not None and steps < FEWEST_REFERENCE_STEPS:
         findings.append(Finding(Severity.WARNING, "few-reference-steps", f"the reference changes seldom: {consequence}",
                                 f"{steps} times in all runs",

@@ -302,6 +302,6 @@ def process_noise_floor(
     floor = {}
     if "psi" in mean:
         floor["psi_deg"] = float(np.degrees(np.sqrt(mean["psi"])))
-    if {"x0", "y0"} <= set(mean):
+    if {"x0", "y0"} <= set(mean) and mean["x0"] + mean["y0"] > 0.0:  # no position is modelled at speed 0
         floor["position_m"] = float(np.sqrt(mean["x0"] + mean["y0"]))
     return floor | {s: float(np.sqrt(mean[s])) for s in ("u", "v", "r") if s in mean}
