@@ -67,6 +67,8 @@ python_use_unqualified_type_names = True
 html_theme = "pydata_sphinx_theme"
 html_title = "seatrial"
 html_show_sourcelink = False
+# a page without pages below it needs no navigation at its side
+html_sidebars = {"ten-minutes": []}
 html_static_path = ["static"]
 html_css_files = ["pages.css"]
 # a browser that reads the pages from disk may not fetch them for excerpts; titles and links are found without

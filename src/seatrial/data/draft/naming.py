@@ -105,6 +105,7 @@ _MESSAGES = [
         (r".*twist\.angular\.z", "r", "rad/s", "", "port"),
     ),
 ]  # fmt: skip
+_FORWARD, _ACROSS = "(forward|fwd|ahead|longitudinal)", "(stbd|starboard|lateral|transverse)"
 _WORDS = [
     *_rules(
         "",
@@ -118,11 +119,13 @@ _WORDS = [
         (r"y_ned|y_?east|east(ing)?|east_y|y0|pos(ition)?_e(ast)?", "y0", ""),
         (r"x_position(_mid)?|x", "x0", ""), (r"y_position(_mid)?|y", "y0", ""),
         (r"surge(_speed|_velocity)?|u_velo", "u", "", "body"), (r"sway(_speed|_velocity)?|vm?_velo", "v", "", "body"),
+        (rf"{_FORWARD}_(speed|velocity)|(speed|velocity)_{_FORWARD}", "u", "", "body"),
+        (rf"{_ACROSS}_(speed|velocity)|(speed|velocity)_{_ACROSS}", "v", "", "body"),
         (r"v(el)?_?n(orth)?|vel_north", "u", "", "earth"), (r"v(el)?_?e(ast)?|vel_east", "v", "", "earth"),
         (r"u", "u", ""), (r"v", "v", ""), (r"surge_(dot|acc(eleration)?)", "u_dot", "", "body"),
         (r"sway_(dot|acc(eleration)?)", "v_dot", "", "body"),
         (r"rudder(_angle)?|rud|delta(_rudder)?|rsa|helm|nozzle(_angle)?", "delta", ""),
-        (r"n_prop|(prop(eller)?|shaft)_(rate|rpm|rps|speed)|rpm|rps|n", "n", ""),
+        (r"n_prop|(prop(eller)?|shaft)_(rate|rpm|rps|speed)|shaft|rpm|rps|n", "n", ""),
         (r"roll(_angle)?|phi|heel", "phi", ""), (r"pitch(_angle)?|theta|trim_angle", "theta", ""),
         (r"roll_rate|p", "p", ""), (r"heave|z", "z", ""), (r"(battery_)?voltage", "voltage", ""),
         (r"thr(ottle|uster)?_?(left|port)(_pwm)?", "command_1", ""),
