@@ -44,7 +44,7 @@ runs = (
 
 # %%
 fit = st.identify(st.Trial(st.Ship("craft", particulars), runs, model))
-pd.DataFrame({"truth": truth, **fit.to_dataframe()[["estimate", "standard_error"]]}).round(5)
+pd.DataFrame({"truth": truth, **fit.to_dataframe().loc[first, ["estimate", "standard_error"]]}).round(5)
 
 # %%
-print({name: round(error, 3) for name, error in fit.validation[0].rms.items()})
+print({name: round(float(error), 3) for name, error in fit.validation[0].rms.items()})
