@@ -18,6 +18,9 @@ REPOSITORY = Path(__file__).parents[1]
 settings.register_profile("untimed", deadline=None)
 settings.load_profile("untimed")
 
+# texts are as in a pipe, uncut, though workers of a parallel run are given a terminal's width
+os.environ.pop("COLUMNS", None)
+
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
 

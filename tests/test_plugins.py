@@ -129,6 +129,6 @@ def test_a_broken_study_is_one_sentence(monkeypatch: pytest.MonkeyPatch, tmp_pat
     lines: list[str] = []
     with pytest.raises(InputError, match=r"'paper' .* fails: ModuleNotFoundError"):
         reproduce("paper", report_progress=lines.append)
-    assert lines == ["study paper: loading and compiling"]
+    assert lines == ["study paper, loading and compiling"]
     with pytest.raises(InputError, match="unknown study 'papre'; did you mean 'paper'"):
         reproduce("papre")

@@ -114,7 +114,7 @@ def test_the_command_writes_the_page(fit: st.Fit, tmp_path: Path) -> None:
         app, ["poster", str(tmp_path / "result"), "--out", str(out), "--rudder", "30", "--json", str(table)]
     )
     assert done.exit_code == 0, done.output
-    assert "turning-circle:30:port" in done.output
+    assert "turning circle with 30 deg to port" in done.output
     assert "measured" in done.output
     assert out.read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
     assert json.loads(table.read_text(encoding="utf-8"))["rudder_deg"] == 30.0
