@@ -83,7 +83,8 @@ def test_tuning_by_the_method_keeps_the_own_choice_beside_it() -> None:
     assert [front.name for front in made.extended_fronts] == ["the genetic algorithm"]
     assert made.solution.evaluations == made.search.evaluations == 200
     assert any("genetic algorithm of Yu et al. 2014" in reason for reason in made.reasons)
-    assert any("compared with 'own front' (the package's choice from its own front)" in reason for reason in made.reasons)
+    named = "compared with 'own front' (the package's choice from its own front)"
+    assert any(named in reason for reason in made.reasons)
     for finding in made.findings:
         if finding.code in ("breaks-limits", "lost-to-limits"):
             assert "run without --method" in finding.advice
