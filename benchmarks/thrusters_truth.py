@@ -19,74 +19,14 @@ from seatrial.core.values import Array, InputError, Record
 from seatrial.data.trial import EstimateSettings, FitCriterion
 from seatrial.estimation.estimate import EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.estimate.assemble import output_error_problem
-from seatrial.physics.models.thruster_layout import (
-    AngleInput,
-    CommandInput,
-    Damping,
-    Rudder,
-    ThrustCurve,
-    Thruster,
-    ThrusterLayout,
-)
 from seatrial.physics.models.thrusters import thrusters
-from seatrial.problems.thruster_craft import NOISE, TWO_FIXED, KnownThrusterCraft, noisy, simulated_runs
+from seatrial.problems.thruster_craft import CRAFTS, NOISE, KnownThrusterCraft, noisy, simulated_runs
 
 SETTINGS = EstimateSettings(method=FitCriterion.OUTPUT_ERROR)
 FAR = 8.0
 """Bounds by which no coefficient errs in the right optimum: no draw of a normal law goes that far."""
 LINE = 10
 """Draws after which a line is printed; after five times as many the table."""
-
-
-def _azimuths() -> ThrusterLayout:
-    places = ((1.8, -0.8), (1.8, 0.8), (-1.8, 0.8), (-1.8, -0.8))  # m, four corners of a small ferry
-    return ThrusterLayout(
-        tuple(
-            Thruster(
-                f"pod_{k}", x, y, CommandInput(f"command_{k}"), AngleInput(f"alpha_{k}", 0.4),
-                curve=ThrustCurve.QUADRATIC, same_as="" if k == 1 else "pod_1",
-            )
-            for k, (x, y) in enumerate(places, start=1)
-        ),
-        Damping.CROSS_FLOW, 5.0,
-    )  # fmt: skip
-
-
-def _twin_screw() -> ThrusterLayout:
-    rudder = Rudder("delta", -2.2, 0.03, 0.25)
-    return ThrusterLayout(
-        tuple(
-            Thruster(
-                name, -2.0, y, CommandInput(f"rpm_{k}"), curve=ThrustCurve.OPEN_WATER, diameter=0.2, lag=0.4,
-                same_as=leader, rudder=rudder,
-            )
-            for k, (name, y, leader) in enumerate((("port", -0.3, "starboard"), ("starboard", 0.3, "")), start=1)
-        ),
-        Damping.DIAGONAL, 4.4, 400.0,
-    )  # fmt: skip
-
-
-CRAFTS = {
-    "two-fixed": TWO_FIXED,
-    "azimuths": KnownThrusterCraft(
-        _azimuths(),
-        {
-            "tau": 0.35, "tau_down": 0.2, "tau_a": 0.5, "k_f": 0.25, "k_b": 0.2, "k_J": 0.05, "k_4": 0.1,
-            "X_u": -0.03, "X_uu": -0.08, "Y_v": -0.05, "N_r": -0.2, "D_c": 0.03, "M_v": 1.5, "M_r": 2.2,
-        },
-        {f"command_{k}": (-1.0, 1.0) for k in (1, 2, 3, 4)} | {f"alpha_{k}": (-3.0, 3.0) for k in (1, 2, 3, 4)},
-    ),
-    "twin-screw": KnownThrusterCraft(
-        _twin_screw(),
-        {
-            "tau": 0.5, "tau_down": 0.3, "k_0": 0.45, "k_1": -0.35, "k_0_astern": -0.3, "f_alpha": 3.0, "gamma_R": 0.4,
-            "X_u": -20.0, "X_uu": -25.0, "Y_v": -120.0, "Y_vv": -250.0, "N_r": -150.0, "N_rr": -300.0, "M_v": 600.0,
-            "M_r": 700.0,
-        },
-        {"rpm_1": (-4.0, 10.0), "rpm_2": (-4.0, 10.0), "delta": (-0.5, 0.5)},
-    ),
-}  # fmt: skip
-"""Craft by name; values chosen: a catamaran of 1 m, a ferry of 5 m by mass, a model ship of 4.4 m and 400 kg."""
 
 
 def bound(craft: KnownThrusterCraft, runs: list[Record]) -> Array:

@@ -13,7 +13,7 @@ import numpy as np
 
 from seatrial.core.values import Array, Record
 from seatrial.physics.simulate.replay import replay
-from seatrial.problems.thruster_craft import DT, NOISE, TWO_FIXED, noisy
+from seatrial.problems.thruster_craft import CRAFTS, DT, NOISE, noisy
 
 LOGS = {
     "afternoon_1": [(0.0, 0.0, 5), (0.4, 0.4, 12), (0.9, 0.9, 12), (-0.6, -0.6, 8), (0.0, 0.0, 4), (0.6, -0.6, 12),
@@ -37,7 +37,7 @@ def commands(steps: list[tuple[float, float, int]]) -> Array:
 
 def log(name: str, rng: np.random.Generator) -> Array:
     """Return the rows of a log in the units of its columns."""
-    model, orders = TWO_FIXED.truth.with_values(STEADIER), commands(LOGS[name])
+    model, orders = CRAFTS["two-fixed"].truth.with_values(STEADIER), commands(LOGS[name])
     inputs = {"command_1": orders[:, 0], "command_2": orders[:, 1]}
     planned = Record.from_arrays(name, DT * np.arange(len(orders)), inputs)
     simulated = replay(model, planned, dict.fromkeys(model.states, 0.0))

@@ -46,7 +46,9 @@ def test_a_draw_repeats_itself_and_its_truth_is_near_the_published_one(problem: 
     assert np.allclose([at_start[name] for name in draw.unknowns], draw.start)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("name", ["song2025-zigzags", "thrusters-two-fixed"])
+@pytest.mark.parametrize(
+    "name", ["song2025-zigzags", "thrusters-two-fixed", "thrusters-twin-screw", "thrusters-azimuths"]
+)
 def test_the_own_estimator_succeeds_under_white_noise(name: str) -> None:
     problem = PROBLEMS[name]
     answer = attempt(built_in_methods()["output-error"], problem, 1)

@@ -98,7 +98,7 @@ def fabricated_autopilot() -> Tuning:
                   40_000)  # fmt: skip
     return replace(
         fin, question="", name="heading autopilot", plant="Nomoto model of a tanker, 7 m/s", output="psi",
-        actuator="delta", seas=("unrest of 2 deg of the actuator, 0.05 rad/s",),
+        actuator="delta", seas=("slow disturbance of 2 deg of the actuator, 0.05 rad/s",),
         objectives={"heading variance": "rad^2", "rudder variance": "rad^2"},
         constraints=replace(LIMITS, Ms=1.7, limit=math.radians(35.0), rate=math.radians(2.3), stall=math.inf),
         chosen=chosen, baselines=(given,), front=front, extended_fronts=(),

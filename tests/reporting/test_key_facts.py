@@ -3,7 +3,7 @@
 import math
 from dataclasses import replace
 
-from seatrial.core.results import ChannelScore, Fit, Measure, WindowBaseline, WindowScore
+from seatrial.core.results import ChannelScore, Divergence, Fit, Measure, WindowBaseline, WindowScore
 from seatrial.core.results.identifiability import Collinearity
 from seatrial.core.values import Severity
 from seatrial.numerics.optimise import Status
@@ -84,3 +84,19 @@ def test_windows_that_diverge_have_no_better_baseline(fit: Fit) -> None:
     assert windows[0].better_baselines == {}
     text = baseline_sentence(lost.validation, {"psi_deg": ("heading", "deg")})
     assert "diverges in 3 of 4 windows" in text and "without this fit" not in text
+
+
+def test_what_disturbances_leave_is_a_floor_only_below_the_error(fit: Fit) -> None:
+    (run, *_) = fit.validation
+    low, high = (
+        rows(replace(fit, predictions=(replace(run, noise_floor={"psi_deg": share * run.rms["psi_deg"]}),)))
+        for share in (0.5, 5.0)
+    )
+    assert "disturbances alone would leave" in low["Error, held out (rms)"].text
+    assert "disturbances" not in high["Error, held out (rms)"].text
+
+
+def test_one_run_diverges(fit: Fit) -> None:
+    (run, *_) = fit.validation
+    lost = replace(run, divergence=Divergence(70.0, 65.0, "r"))
+    assert rows(replace(fit, predictions=(lost,)))["Error, held out (rms)"].text == "1 run diverges"

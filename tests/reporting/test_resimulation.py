@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
 ZERO = 0.02  # rad: of the rudder in the run
+PATIENCE = 300_000  # ms: of a loaded machine; only a page that stands still takes as long
 
 
 def simulated_fit() -> Fit:
@@ -96,14 +97,14 @@ def page_with(browser: "Browser", fit: Fit, folder: Path, width: int = 1100):
     page.on("console", lambda message: said.append(message.text))
     page.on("pageerror", lambda error: said.append(str(error)))
     page.goto(path.as_uri())
-    page.locator(".resimulation > summary").click()
+    page.locator(".resimulation > summary").press("Enter")
     return page, said
 
 
 def move(page, k: int, place: int) -> None:
     script = f"n => {{ n.value = {place}; n.dispatchEvent(new Event('input')); }}"
     page.locator(".slider input").nth(k).evaluate(script)
-    page.wait_for_timeout(200)
+    page.evaluate("() => new Promise(drawn => requestAnimationFrame(() => requestAnimationFrame(drawn)))")
 
 
 def heading_error(p: Prediction) -> float:
@@ -114,7 +115,7 @@ def test_a_browser_simulates_the_run_and_a_moved_slider_changes_it(
     browser: "Browser", fit: Fit, tmp_path: Path
 ) -> None:
     page, said = page_with(browser, fit, tmp_path)
-    page.wait_for_selector(".resimulation[data-examined]")
+    page.wait_for_selector(".resimulation[data-examined]", state="attached", timeout=PATIENCE)
     state = page.locator(".resimulation .state")
     before = re.search(r"heading ([\d.]+) \(([\d.]+)\) deg", state.inner_text())
     assert before is not None
@@ -133,7 +134,7 @@ def test_a_coefficient_that_makes_the_run_diverge_is_reported(browser: "Browser"
     wide = tuple(replace(c, lower=c.estimate - 3.0, upper=c.estimate + 3.0) if c.name == "Y_v" else c
                  for c in fit.coefficients)  # fmt: skip
     page, said = page_with(browser, replace(fit, coefficients=wide), tmp_path, 390)
-    page.wait_for_selector(".resimulation[data-examined]")
+    page.wait_for_selector(".resimulation[data-examined]", state="attached", timeout=PATIENCE)
     k = [c.name for c in wide if not c.fixed].index("Y_v")
     assert "the run diverges above" in page.locator(".slider .range").nth(k).inner_text()
     move(page, k, 1000)

@@ -70,6 +70,10 @@ def test_without_a_held_out_run_nothing_is_claimed_of_predictions(fit: Fit) -> N
     assert "no run was held out to test its predictions" in text
 
 
+def test_a_fit_of_spectra_alone_claims_nothing_of_runs(fit: Fit) -> None:
+    assert verdict(replace(fit, predictions=())).startswith("Nothing is said of predictions: no run was simulated")
+
+
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_the_side_of_a_turn_is_that_of_the_ship(fit: Fit, sign: float) -> None:
     record = turning_circle(sign * ANGLE)

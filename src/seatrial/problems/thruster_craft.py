@@ -1,14 +1,24 @@
-"""A craft with two thrusters whose coefficients are known, under steps of both commands and a small craft's sensors."""
+"""Craft with thrusters whose coefficients are known, under steps of all commands and a small craft's sensors."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Record, Ship
 from seatrial.data.trial import EstimateMethod, EstimateSettings
-from seatrial.physics.models.thruster_layout import CATAMARAN, ThrusterLayout
+from seatrial.physics.models.thruster_layout import (
+    CATAMARAN,
+    AngleInput,
+    CommandInput,
+    Damping,
+    Rudder,
+    ThrustCurve,
+    Thruster,
+    ThrusterLayout,
+)
 from seatrial.physics.models.thrusters import thrusters
 from seatrial.physics.simulate.actuators import actuator_motion
 from seatrial.physics.simulate.replay import replay
@@ -40,23 +50,83 @@ class KnownThrusterCraft:
         return thrusters(self.layout).with_values(dict(self.values))
 
 
-# SI; a catamaran of 1 m, values chosen
-TWO_FIXED = KnownThrusterCraft(
-    CATAMARAN,
-    {
-        "tau": 0.3, "tau_down": 0.15, "k_f": 1.6, "k_b": 1.1, "p_f": 1.6, "p_b": 1.4, "k_J": 0.15, "k_4": 0.05,
-        "X_u": -0.1, "X_uu": -0.3, "Y_v": -0.6, "Y_vv": -1.5, "N_r": -0.1, "N_rr": -0.2, "N_ur": -0.2,
-        "Y_uv": -0.5, "Y_NT": 0.1, "M_v": 1.6, "M_r": 0.15,
-    },
-    {"command_1": (-1.0, 1.0), "command_2": (-1.0, 1.0)},
-)  # fmt: skip
+def _azimuths() -> ThrusterLayout:
+    """Return a small ferry with four equal pods at the corners of a rectangle; values chosen."""
+    # forward and to starboard of the origin [m]
+    places = ((1.8, -0.8), (1.8, 0.8), (-1.8, 0.8), (-1.8, -0.8))
+    # time constant of turning a pod [s], length of the hull [m]
+    azimuth_lag, length = 0.4, 5.0
+    pods = tuple(
+        Thruster(
+            f"pod_{k}", x, y, CommandInput(f"command_{k}"), AngleInput(f"alpha_{k}", azimuth_lag),
+            curve=ThrustCurve.QUADRATIC, same_as="" if k == 1 else "pod_1",
+        )
+        for k, (x, y) in enumerate(places, start=1)
+    )  # fmt: skip
+    return ThrusterLayout(pods, Damping.CROSS_FLOW, length)
+
+
+def _twin_screw() -> ThrusterLayout:
+    """Return a model ship with two equal screws and a rudder behind each; values chosen."""
+    # length of the hull [m] and its mass [kg]
+    length, mass = 4.4, 400.0
+    # place forward of the origin [m], movable area [m^2], height [m]
+    rudder = Rudder("delta", -2.2, 0.03, 0.25)
+    # forward and to starboard of the origin [m], diameter [m], time constant of spinning up [s]
+    x, side, diameter, lag = -2.0, 0.3, 0.2, 0.4
+    screws = tuple(
+        Thruster(name, x, y, CommandInput(f"rpm_{k}"), curve=ThrustCurve.OPEN_WATER, diameter=diameter, lag=lag,
+                 same_as=leader, rudder=rudder)
+        for k, (name, y, leader) in enumerate((("port", -side, "starboard"), ("starboard", side, "")), start=1)
+    )  # fmt: skip
+    return ThrusterLayout(screws, Damping.DIAGONAL, length, mass)
+
+
+CRAFTS: Mapping[str, KnownThrusterCraft] = {
+    "two-fixed": KnownThrusterCraft(
+        CATAMARAN,
+        {
+            "tau": 0.3, "tau_down": 0.15, "k_f": 1.6, "k_b": 1.1, "p_f": 1.6, "p_b": 1.4, "k_J": 0.15, "k_4": 0.05,
+            "X_u": -0.1, "X_uu": -0.3, "Y_v": -0.6, "Y_vv": -1.5, "N_r": -0.1, "N_rr": -0.2, "N_ur": -0.2,
+            "Y_uv": -0.5, "Y_NT": 0.1, "M_v": 1.6, "M_r": 0.15,
+        },
+        {"command_1": (-1.0, 1.0), "command_2": (-1.0, 1.0)},
+    ),
+    "azimuths": KnownThrusterCraft(
+        _azimuths(),
+        {
+            "tau": 0.35, "tau_down": 0.2, "tau_a": 0.5, "k_f": 0.25, "k_b": 0.2, "k_J": 0.05, "k_4": 0.1,
+            "X_u": -0.03, "X_uu": -0.08, "Y_v": -0.05, "N_r": -0.2, "D_c": 0.03, "M_v": 1.5, "M_r": 2.2,
+        },
+        {f"command_{k}": (-1.0, 1.0) for k in (1, 2, 3, 4)} | {f"alpha_{k}": (-3.0, 3.0) for k in (1, 2, 3, 4)},
+    ),
+    "twin-screw": KnownThrusterCraft(
+        _twin_screw(),
+        {
+            "tau": 0.5, "tau_down": 0.3, "k_0": 0.45, "k_1": -0.35, "k_0_astern": -0.3, "f_alpha": 3.0, "gamma_R": 0.4,
+            "X_u": -20.0, "X_uu": -25.0, "Y_v": -120.0, "Y_vv": -250.0, "N_r": -150.0, "N_rr": -300.0, "M_v": 600.0,
+            "M_r": 700.0,
+        },
+        {"rpm_1": (-4.0, 10.0), "rpm_2": (-4.0, 10.0), "delta": (-0.5, 0.5)},
+    ),
+}  # fmt: skip
+"""Craft by name, SI; values chosen: a catamaran of 1 m, a ferry of 5 m by mass, a model ship of 4.4 m and 400 kg."""
+
+
+_WORDS = {"two-fixed": "two fixed thrusters", "azimuths": "four azimuths", "twin-screw": "two screws and rudders"}
 
 
 def problems() -> tuple[BenchmarkProblem, ...]:
-    """Return the problem."""
+    """Return a problem for each craft."""
     noise = "u, v 0.03 m/s, r 0.01 rad/s, psi 0.01 rad, x0, y0 0.1 m, white"
-    title = "a craft with two thrusters, three runs of 60 s of steps of both commands, box ±50 % off centre"
-    return (BenchmarkProblem("thrusters-two-fixed", 1, title, "ours", noise, _BUDGET, _draw),)
+    return tuple(
+        BenchmarkProblem(
+            f"thrusters-{name}", 1,
+            f"a craft with {_WORDS[name]}, three runs of 60 s of steps of all commands, box ±50 % off centre",
+            "ours", noise, _BUDGET, partial(_draw, craft),
+        )
+        for name, craft in CRAFTS.items()
+    )  # fmt: skip
 
 
 def simulated_runs(craft: KnownThrusterCraft, rng: np.random.Generator, count: int = 3) -> list[Record]:
@@ -82,15 +152,15 @@ def noisy(run: Record, rng: np.random.Generator) -> Record:
     return replace(run, channels=channels)
 
 
-def _draw(rng: np.random.Generator, placement: Placement) -> ProblemDraw:
-    names = TWO_FIXED.truth.parameters.free_names
-    truth = np.array([TWO_FIXED.values[name] for name in names])
+def _draw(craft: KnownThrusterCraft, rng: np.random.Generator, placement: Placement) -> ProblemDraw:
+    names = craft.truth.parameters.free_names
+    truth = np.array([craft.values[name] for name in names])
     if placement is Placement.SHIFTED:
         truth = scaled_values(truth, _SCALE, rng)
-    craft = replace(TWO_FIXED, values={**TWO_FIXED.values, **dict(zip(names, truth.tolist(), strict=True))})
+    craft = replace(craft, values={**craft.values, **dict(zip(names, truth.tolist(), strict=True))})
     records = [noisy(run, rng) for run in simulated_runs(craft, rng)]
     box = off_centre_box(truth, _HALF_WIDTH, rng)
-    ship = Ship("catamaran with two thrusters", {"L": craft.layout.length})
+    ship = Ship("craft with thrusters", {"L": craft.layout.length})
     settings = EstimateSettings(method=EstimateMethod.OUTPUT_ERROR)
     known = KnownCraft(ship, craft.truth, records, NOISE, dict.fromkeys(craft.truth.states, 0.0), settings)
     return craft_draw(known, box, 0.5 * (box.lower + box.upper))

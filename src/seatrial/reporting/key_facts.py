@@ -1,6 +1,7 @@
 """The five rows at the top of a fit's page: score, baseline, coverage, identifiability, warnings."""
 
 import math
+from collections.abc import Sequence
 
 from seatrial.core.results import Fit, Prediction, WindowScore
 from seatrial.core.results.fit_charts import headline_view
@@ -47,12 +48,21 @@ def _score(fit: Fit) -> KeyFact:
     if not held:
         return KeyFact("Error, held out", "no run was held out: name one under validate in the trial file", "", False)
     name = "Error, held out (rms)"
-    if any(p.divergence for p in held):
-        return KeyFact(name, f"{counted(sum(bool(p.divergence) for p in held), 'run')} diverge", "prediction", False)
-    floors = [error_text(key, max(p.noise_floor[key] for p in held if key in p.noise_floor))
-              for key in ("psi_deg", "position_m") if any(key in p.noise_floor for p in held)]  # fmt: skip
+    diverged = sum(bool(p.divergence) for p in held)
+    if diverged:
+        return KeyFact(
+            name, f"{counted(diverged, 'run')} {'diverges' if diverged == 1 else 'diverge'}", "prediction", False
+        )
+    floors = [error_text(key, floor) for key in ("psi_deg", "position_m") if (floor := _floor(held, key)) is not None]
     floor = f"; disturbances alone would leave {enumeration(floors)}" if floors else ""
     return KeyFact(name, f"{worst_errors(held)}{floor}", "prediction")
+
+
+def _floor(held: Sequence[Prediction], key: str) -> float | None:
+    """What disturbances alone would leave at worst; None where that is unknown, or more than the error, so no floor."""
+    floors = [p.noise_floor[key] for p in held if key in p.noise_floor]
+    errors = [p.rms[key] for p in held if key in p.rms]
+    return max(floors) if floors and errors and max(floors) <= max(errors) else None
 
 
 def _longest_windows(p: Prediction) -> WindowScore | None:

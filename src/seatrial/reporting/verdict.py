@@ -44,6 +44,8 @@ def has_converged(fit: Fit) -> bool:
 
 def _score_clause(fit: Fit) -> str:
     held = fit.validation
+    if not held and not fit.predictions:
+        return "Nothing is said of predictions: no run was simulated with this fit"
     if not held:
         to_errors = f", to {worst_errors(fit.predictions)}" if worst_errors(fit.predictions) else ""
         fitted = counted(len(fit.predictions), "run")

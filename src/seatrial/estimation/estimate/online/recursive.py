@@ -220,11 +220,6 @@ class RecursiveFilter:
         return self._filter_state.z[len(self.names) :].copy()
 
     @property
-    def waiting_samples(self) -> int:
-        """Samples that wait for those after them."""
-        return len(self._buffer.inputs) - self._buffer.processed
-
-    @property
     def innovations(self) -> InnovationStatistics:
         """Statistics of the innovations so far."""
         h = self._filter_state
