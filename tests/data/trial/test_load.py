@@ -127,6 +127,7 @@ REFUSALS = [
     ("an expression", '"day"', '"(a+)+$"', r"'\(a\+\)\+\$' is no template; give one such as '\*_{day}_\*'"),
     ("no session", '"day"', '"x{day}"', "'x{day}' does not fit the file name"),
     ("not a number", "L = 9.8", "L = nan", "finite number"),
+    ("negative size", "L = 9.8", "L = 9.8\nm = -300", "ship.m = -300: a size is never negative"),
     ("no TOML", "[ship]", "[ship", "no valid TOML"),
     ("no size", "L = 9.8", 'L = { value = 1e308, unit = "km" }', "ship.L.value = 1e.308 is no size"),
     ("a long name", '"*.csv"', f'"{"x" * 300}.csv"', "there is no file"),

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from seatrial.core.values import Ship
+from seatrial.core.values import InputError, Ship
 from seatrial.physics.models import model_named
 from seatrial.physics.models.heave_pitch_coefficients import (
     START_DAMPING_RATIO,
@@ -39,3 +39,10 @@ def test_every_built_in_model_is_summarised_with_states_inputs_and_source() -> N
     summaries = {summary.name: summary for summary in model_summaries()}
     assert summaries["waterjet"].states == model_named("waterjet").states
     assert all(s.states and s.inputs and s.source for s in summaries.values() if not s.package)
+
+
+@pytest.mark.parametrize("name", ["m", "I5", "c33", "c55"])
+def test_mass_and_stiffness_that_are_not_positive_are_refused_by_name(name: str) -> None:
+    absurd = dict(SHIP.particulars) | {name: -SHIP.particulars[name]}
+    with pytest.raises(InputError, match=f"^{name} = -.* is not positive"):
+        with_start_values(model_named("heave_pitch").with_values(absurd), Ship("ship", absurd))

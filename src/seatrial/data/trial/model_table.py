@@ -22,12 +22,19 @@ COMMON_PARTICULARS = (
 )  # fmt: skip
 
 
+_SIZES = frozenset((*COMMON_PARTICULARS, "I5", "c33", "c55")) - {"x_G", "x_P", "x_R"}
+"""Particulars that are lengths, areas, masses, ratios or stiffnesses of a craft that floats: never negative."""
+
+
 def ship_of(table: ShipTable) -> Ship:
     """Name, source, scale and particulars in SI units.
 
     Raises:
-        InputError: the length is missing or not positive.
+        InputError: the length is missing or not positive, or a size is negative.
     """
+    for name, value in table.particulars.items():
+        if name in _SIZES and value < 0.0:
+            raise InputError(f"ship.{name} = {value:g}: a size is never negative; correct its sign")
     if not table.particulars.get("L", 0.0) > 0.0:
         raise InputError("key 'ship.L' is missing or not positive; give the length between perpendiculars in m")
     return Ship(table.name, table.particulars, table.source, table.scale)
