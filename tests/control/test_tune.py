@@ -8,7 +8,10 @@ import pytest
 from tests.control.fin_tasks import KNOT, LIMITS, PUBLISHED, QUICK, fin_task
 
 from seatrial.control import tune as module
-from seatrial.control.front import Effort
+from seatrial.control.controller import describe_controller
+from seatrial.control.findings import Checks, findings
+from seatrial.control.front import Effort, pareto_front
+from seatrial.control.gain_evaluation import gain_evaluator
 from seatrial.control.task import ScheduleGrid, SimulationSettings
 from seatrial.control.tune import tune
 from seatrial.core.results.tuning import ControllerConstraints
@@ -84,10 +87,14 @@ def test_restrictions_that_nothing_keeps_are_refused():
 
 
 def test_gains_on_their_bounds_are_found():
+    """Of the gains themselves: whether a small search ends exactly on a bound is chance."""
     task = fin_task()
     narrow = task.loop.gains.bounded("KP", 0.0, 2.0).bounded("KD", 0.0, 1.0)
-    found = tune(replace(task, loop=replace(task.loop, gains=narrow), simulation=SHORT), effort=TINY)
-    assert "gain-on-bound" in {finding.code for finding in found.findings}
+    evaluator = gain_evaluator(replace(task, loop=replace(task.loop, gains=narrow)))
+    front = pareto_front(evaluator, "narrow", 0, lambda _: None, TINY)
+    on_bound, inside = (describe_controller(evaluator, "chosen", np.array([KP, 1.0, 0.5])) for KP in (2.0, 1.9))
+    assert "gain-on-bound" in {one.code for one in findings(evaluator, on_bound, (), front, Checks())}
+    assert "gain-on-bound" not in {one.code for one in findings(evaluator, inside, (), front, Checks())}
 
 
 def test_an_interruption_keeps_what_is_finished(monkeypatch):

@@ -22,7 +22,8 @@ from seatrial.physics.loops import (
 from seatrial.physics.loops.encounter_spectrum import disturbance_spectrum
 from seatrial.physics.sea.spectrum import Spectrum
 
-_UNDAMPED = 1e-9  # real part over size of a pole, below which it counts as undamped: rounding
+# damping ratio below which a swing counts as undamped: a tenth of the least of bare hulls (0.01: Lloyd 1989); chosen
+_UNDAMPED = 1e-3
 _SLOWEST, _FASTEST = 1e-3, 1e2  # frequencies of a slow disturbance over its bandwidth; chosen
 
 
@@ -205,9 +206,11 @@ def refuse_unstable(loop: TransferLoop) -> None:
     for block in (loop.plant, loop.disturbance):
         undamped = block.poles[(np.abs(block.poles.real) <= _UNDAMPED * np.abs(block.poles)) & (block.poles.imag > 0.0)]
         if undamped.size:
+            omega = float(undamped[0].imag)
             raise InputError(
-                f"block '{block.name}' swings undamped at {undamped[0].imag:.4g} rad/s: without control its motion has "
-                "no variance; give its denominator the damping that every real one has"
+                f"block '{block.name}' swings undamped at {omega:.4g} rad/s (a period of {2.0 * math.pi / omega:.3g} s "
+                f"with a damping ratio of {-undamped[0].real / abs(undamped[0]):.1g}): without control its motion has "
+                "no bound; give its denominator the damping that every real one has, 0.01 and more"
             )
     for block in (loop.plant, loop.disturbance, *loop.sensor, *loop.servo, *loop.filters):
         poles = block.poles

@@ -301,6 +301,19 @@ KIND = 'kind = "yu2014"'
         ([("[[seas]]", "[seas]")], "seas is one table where a list of them belongs; write it as [[seas]]"),
         ([('{ value = 25, unit = "deg/s" }', "25")], "actuator.rate = 25 is half a turn a second or more"),
         ([(ROLL, "den = [1.43242, 0.0, 1.0]")], "'fins to roll' swings undamped at 0.8355 rad/s"),
+        (
+            [(ROLL, "den = [1.43242, 1e-6, 1.0]")],
+            "swings undamped at 0.8355 rad/s (a period of 7.52 s with a damping ratio of 4e-07)",
+        ),
+        (
+            [(ROLL, "den = [0.0143242, 0.003796, 0.01]")],
+            "without control phi would reach 721 deg rms (ITTC one-parameter 3.3 m, long-crested, 90 deg, 9.26 m/s)",
+        ),
+        ([("num = [1.0]", "num = [-1.0]")], "plant.roll: a positive alpha_f rolls the ship to starboard by convention"),
+        (
+            [("[actuator]", "[actuator]\nservo = [{ num = [-2.0], den = [0.1, 1.0] }]")],
+            "actuator.servo[1] answers an order of 1 with -2",
+        ),
         ([("num = [1.0]", "num = [0.0]")], "plant.roll.num is zero"),
         ([("[actuator]", "[simulation]\nduration = 1e12\n[actuator]")], "simulation: 20 seas of 1e+12 s"),
         ([("[plant]", 'minimise = ["yaw"]\n[plant]')], "minimise[1].name = 'yaw'"),
@@ -360,6 +373,16 @@ def test_what_is_wrong_with_a_fin_file_is_said(changes: list[tuple[str, str]], s
         ([('parts = ["KP", "KD"]', "derivative_filter = -1")], "controller.derivative_filter = -1 is not positive"),
         ([("[demand]", "[demand]\novershoot = 2")], "demand.overshoot = 2"),
         ([("[demand]", "[simulation]\n[demand]")], "simulation: there is no block [[seas]]"),
+        (
+            [
+                (
+                    'model = "model.toml"',
+                    "response = { num = [-0.08], den = [10.0, 1.0, 0.0] }\nspeed = 7\n"
+                    'output = "psi"\nactuator = "delta"',
+                )
+            ],
+            "plant.response: a positive delta turns the ship to starboard by convention, here it first does the",
+        ),
         (
             [("[demand]", "[schedule]\nspeeds = [7]\nheadings = [1]\nheights = [2]\n[demand]")],
             "schedule: there is no block [[seas]]",

@@ -11,8 +11,16 @@ from seatrial.control.loopfile.extended_structures import extended_structure
 from seatrial.control.loopfile.loop import loop_from_tables
 from seatrial.control.loopfile.objectives import objective
 from seatrial.control.loopfile.plant import LoopPlant, hull_factor, plant_from_table
+from seatrial.control.loopfile.plausibility import refuse_reversed_plant, refuse_reversed_servo, refuse_wild_motion
 from seatrial.control.loopfile.quantities import angle_value, positive_value, rate_value, si_value, symbol_unit
-from seatrial.control.loopfile.schema import ActuatorTable, DemandTable, LoopFile, ObjectiveTable, SimulationTable
+from seatrial.control.loopfile.schema import (
+    ActuatorTable,
+    DemandTable,
+    LoopFile,
+    ObjectiveTable,
+    PlantTable,
+    SimulationTable,
+)
 from seatrial.control.task import Demand, SimulationSettings, TuningTask, refuse_unstable
 from seatrial.core.equations import Model
 from seatrial.core.results.tuning import ControllerConstraints
@@ -60,6 +68,8 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant) -> TuningTask:
     loop = loop_from_tables(
         file.controller, file.actuator.servo, plant, file.name or f"{plant.actuator} on {plant.output}"
     )
+    refuse_reversed_plant(plant, _plant_key(file.plant))
+    refuse_reversed_servo(loop.servo)
     demand = None if file.demand is None else _demand(file.demand, plant)
     if demand is None:
         refuse_unstable(loop)
@@ -67,6 +77,8 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant) -> TuningTask:
     met = loop_disturbances(file, plant, hull_factor(file.hull, plant.ship))
     plan = None if file.schedule is None else schedule_grid(file.schedule)
     refuse_calm(met, loop, plan)
+    if demand is None:
+        refuse_wild_motion(met, loop, plant)
     objectives = tuple(objective(aim, plant, restriction, f"minimise[{i}]") for i, aim in enumerate(file.minimise, 1))
     _refuse_duplicates(file.minimise, objectives)
     return TuningTask(
@@ -94,6 +106,11 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant) -> TuningTask:
         if file.controller.sample_s is None
         else positive_value(file.controller.sample_s, "s", "controller.sample_s"),
     )
+
+
+def _plant_key(table: PlantTable) -> str:
+    """Return the key that says what the plant is."""
+    return next(f"plant.{key}" for key in ("roll", "response", "model") if getattr(table, key) is not None)
 
 
 def _refuse_duplicates(tables: Sequence[ObjectiveTable], objectives: Sequence[Objective]) -> None:
