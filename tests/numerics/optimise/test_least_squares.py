@@ -8,7 +8,14 @@ import pytest
 from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
-from seatrial.numerics.optimise import NormalEquations, Optimum, Status, levenberg_marquardt
+from seatrial.numerics.optimise import (
+    NormalEquations,
+    Optimum,
+    Status,
+    bounded_step,
+    levenberg_marquardt,
+    predicted_decrease,
+)
 
 Array = NDArray[np.float64]
 NONE = np.zeros((0, 0))
@@ -216,6 +223,18 @@ def test_status_says_what_to_do() -> None:
     assert solved(broken, [1.0]).solution.status is Status.FAILED
     assert "start values" in Status.FAILED
     assert [s for s in Status if s.is_success] == [Status.CONVERGED]
+
+
+def test_a_step_within_bounds_promises_what_the_residuals_show(rng: np.random.Generator) -> None:
+    """SciPy's solver of bounded linear least squares as the other code."""
+    j, e = rng.standard_normal((30, 5)), rng.standard_normal(30)
+    low, high = -np.array([0.01, 1.0, 0.0, 1.0, 0.02]), np.array([1.0, 0.01, 1.0, 0.0, 1.0])
+    normal = Curve(lambda _: e, lambda _: j).normal(np.zeros(5), NONE)
+    step = bounded_step(normal, low, high)
+    np.testing.assert_allclose(step, lsq_linear(j, -e, (low - 1e-300, high + 1e-300), tol=1e-14).x, atol=1e-9)
+    assert np.sum((step == low) | (step == high)) >= 2
+    gained = 0.5 * (e @ e - np.sum((e + j @ step) ** 2))
+    assert predicted_decrease(normal, step, NONE) == pytest.approx(gained, rel=1e-12)
 
 
 def test_a_wrong_jacobian_stalls() -> None:

@@ -23,7 +23,15 @@ from seatrial.estimation.estimate.point_estimate import PointEstimate, rounding_
 from seatrial.estimation.information.covariance import Interval, from_information, jackknife_steps
 from seatrial.estimation.problem.output_error import OutputError, SegmentNormals
 from seatrial.estimation.problem.prediction_error import PredictionError, join_segments
-from seatrial.numerics.optimise import NormalEquations, Optimum, Solution, Status, levenberg_marquardt
+from seatrial.numerics.optimise import (
+    NormalEquations,
+    Optimum,
+    Solution,
+    Status,
+    bounded_step,
+    levenberg_marquardt,
+    predicted_decrease,
+)
 
 KINEMATIC_STATES = ("psi", "phi", "theta", "x0", "y0", "z0", "z")
 # standard deviation of a measured initial state over its channel's noise, ours
@@ -32,8 +40,9 @@ _DIFFUSE_FACTOR = 10.0
 _SCAN_SHARES = 10.0 ** np.arange(-3.0, 0.5, 0.5)
 # promised decreases of the cost at which searches end: first, later; Newton decrement of an optimum, ours
 _ROUGH, _NEGLIGIBLE, _MAX_DECREMENT = 1.0, 1e-3, 1e-3
-# most steps by the exact gradient, ours
-_NEWTON_STEPS = 6
+# most steps by the exact gradient, and shares of one of which the best is taken, ours: intensity and memory of a weak
+# disturbance are far from quadratic, so that whole steps overshoot, and each costs as much as fifty evaluations
+_NEWTON_STEPS, _STEP_SHARES = 30, (1.0, 0.5, 0.25, 0.125)
 # promised decrease of the cost at which the search without process noise ends, ours
 _ROUGHLY_NEGLIGIBLE = 1e-2
 # how far a state moves at least, SI, where nothing measures it; chosen
@@ -369,16 +378,14 @@ def _refine(problem: PredictionError, optimum: Optimum) -> tuple[PredictionError
     normal = exact.normal(point, _NO_INITIAL_STATES)
     for _ in range(_NEWTON_STEPS):
         step, slope = _newton_step(exact, point, normal)
-        # shares of a step that are tried; chosen
-        trials = (np.clip(point + share * step, exact.lower, exact.upper) for share in (1.0, 0.5, 0.25, 0.125))
-        better = (
-            next((p for p in trials if exact.cost(p, _NO_INITIAL_STATES) < normal.cost), None)
-            if slope > _MAX_DECREMENT
-            else None
-        )
-        if better is None:
+        if slope <= _MAX_DECREMENT:
             break
-        point, normal, count = (better, exact.normal(better, _NO_INITIAL_STATES), count + 1)
+        trials = [np.clip(point + share * step, exact.lower, exact.upper) for share in _STEP_SHARES]
+        costs = [exact.cost(trial, _NO_INITIAL_STATES) for trial in trials]
+        best = int(np.argmin(costs))
+        if not costs[best] < normal.cost:
+            break
+        point, normal, count = (trials[best], exact.normal(trials[best], _NO_INITIAL_STATES), count + 1)
     slope = _newton_step(exact, point, normal)[1]
     status = Status.CONVERGED if slope <= _MAX_DECREMENT else Status.STALLED
     history = (*optimum.solution.history, normal.cost)
@@ -418,7 +425,10 @@ def newton_step(problem: PredictionError, point: Array) -> Array:
 
 
 def _newton_step(problem: PredictionError, point: Array, normal: NormalEquations) -> tuple[Array, float]:
-    """Newton step of the unknowns that no bound holds, and half the squared gradient in the information's metric."""
+    """Newton step within the bounds, and the decrease of the cost that it promises.
+
+    Where no bound is in the way that is half the squared gradient in the information's metric.
+    """
     low, high, slope = problem.lower, problem.upper, normal.gradient
     free = (low < high) & ~((point <= low) & (slope > 0)) & ~((point >= high) & (slope < 0))
     gradient, hessian = slope[free], normal.hessian[np.ix_(free, free)]
@@ -427,7 +437,10 @@ def _newton_step(problem: PredictionError, point: Array, normal: NormalEquations
     solved = scale * np.linalg.lstsq(hessian * scale[:, None] * scale, scale * gradient, rcond=1e-12)[0]
     step = np.zeros_like(point)
     step[free] = -solved
-    return step, float(0.5 * gradient @ solved)
+    if np.all((point + step >= low) & (point + step <= high)):
+        return step, float(0.5 * gradient @ solved)
+    step = bounded_step(normal, low - point, high - point)
+    return step, predicted_decrease(normal, step, _NO_INITIAL_STATES)
 
 
 def _cost_without_process_noise(

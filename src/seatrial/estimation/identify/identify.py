@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 from seatrial.core.results import Fit
 from seatrial.core.values import InputError, ProgressReporter
-from seatrial.data.trial import EstimateMethod, FitCriterion, Trial, checked_records
+from seatrial.data.trial import EstimateMethod, FitCriterion, Role, Trial, checked_records
 from seatrial.estimation.estimate import EstimatorOptions, IntervalMethod
 from seatrial.estimation.estimate.settings import WEAK_FORM_SHIP_LENGTHS
 from seatrial.estimation.identify.baselines import with_baselines, with_search_baselines
@@ -22,6 +22,7 @@ from seatrial.estimation.identify.strategies.search import estimate_by_search
 from seatrial.estimation.identify.strategies.steered import identify_steered, identify_with_static_forces
 from seatrial.estimation.identify.strategies.unknown_waves import identify_in_unknown_waves
 from seatrial.estimation.identify.strategies.wave_spectrum import identify_by_wave_spectrum
+from seatrial.estimation.identify.unexcited_thrust import with_unexcited_thrust_held
 from seatrial.estimation.predict.k_step import horizon_list
 from seatrial.estimation.predict.window_scores import window_lengths
 
@@ -75,7 +76,10 @@ def identify(
     horizon_list(horizons)
     options = EstimatorOptions(intervals, seed, windows=windows, horizons=horizons)
     own_progress = own_estimate_progress(report_progress) if method.is_published else report_progress
-    task = Identification(trial, checked.records, checked.findings, options, choose, began, own_progress)
+    train = [r.record for r in checked.records if r.role is Role.TRAIN]
+    model, held = with_unexcited_thrust_held(trial.model, train)
+    trial, findings = replace(trial, model=model), (*checked.findings, *held)
+    task = Identification(trial, checked.records, findings, options, choose, began, own_progress)
     situation = identification_situation(task)
     _refuse_sampling(intervals, situation, method)
     if method.is_published:

@@ -13,7 +13,9 @@ from seatrial.numerics.optimise.wild_horse import ImprovedHerdSettings as Improv
 from seatrial.numerics.optimise.wild_horse import ImprovedWildHorse as ImprovedWildHorse
 from seatrial.numerics.optimise.least_squares import LeastSquaresProblem as LeastSquaresProblem
 from seatrial.numerics.optimise.least_squares import NormalEquations as NormalEquations, Optimum as Optimum
+from seatrial.numerics.optimise.least_squares import bounded_step as bounded_step
 from seatrial.numerics.optimise.least_squares import levenberg_marquardt as levenberg_marquardt
+from seatrial.numerics.optimise.least_squares import predicted_decrease as predicted_decrease
 from seatrial.numerics.optimise.multistart import Multistart as Multistart, RestartSettings as RestartSettings
 from seatrial.numerics.optimise.multistart import multistart as multistart
 from seatrial.numerics.optimise.named import OPTIMISERS as OPTIMISERS, OptimiserFactory as OptimiserFactory

@@ -148,7 +148,12 @@ def _solve(matrix: Array, right: Array) -> Array:
     return scale * (np.linalg.lstsq(scaled, scale * right, rcond=1e-13)[0] if failed else found)
 
 
-def _predicted_decrease(normal: NormalEquations, step: Array, local_step: Array) -> float:
+def bounded_step(normal: NormalEquations, low: Array, high: Array) -> Array:
+    """Return the shared step to the minimum of the quadratic model with low <= step <= high, without local unknowns."""
+    return _solve_bounded(normal.hessian, normal.gradient, low, high)
+
+
+def predicted_decrease(normal: NormalEquations, step: Array, local_step: Array) -> float:
     """Return the decrease of the quadratic model along a step."""
     linear = normal.gradient @ step
     curved = step @ normal.hessian @ step
@@ -200,11 +205,11 @@ def levenberg_marquardt(
         step, local_step = _step(normal, damping, low, high)
         trial = _clip_to_bounds(shared + step, problem)
         trial_local = local + local_step
-        predicted = _predicted_decrease(normal, trial - shared, local_step)
+        predicted = predicted_decrease(normal, trial - shared, local_step)
         enough = max(tolerance * normal.cost, negligible)
         if predicted <= enough:  # else the undamped step, the model's minimum, promises more than enough too
             newton, local_newton = _step(normal, 0.0, low, high)
-            if _predicted_decrease(normal, newton, local_newton) <= enough:
+            if predicted_decrease(normal, newton, local_newton) <= enough:
                 trial = _clip_to_bounds(shared + newton, problem)
                 last = problem.normal(trial, local + local_newton)
                 count += 1
@@ -229,7 +234,7 @@ def levenberg_marquardt(
             # promised decrease that is rounding; rejected steps in a row; chosen
             if predicted <= 1e-14 * normal.cost or rejected > 25:
                 rounding = max(_ROUNDING * normal.cost, _EXHAUSTED * history[0])
-                promised = _predicted_decrease(normal, *_step(normal, 0.0, low, high))
+                promised = predicted_decrease(normal, *_step(normal, 0.0, low, high))
                 status = Status.CONVERGED if promised <= rounding else Status.STALLED
                 break
         history.append(normal.cost)
@@ -237,5 +242,5 @@ def levenberg_marquardt(
             report_progress(count, normal.cost)
     if status is Status.EXHAUSTED and sufficient > 0.0:
         newton = _step(normal, 0.0, problem.lower - shared, problem.upper - shared)
-        status = Status.CONVERGED if _predicted_decrease(normal, *newton) <= sufficient else status
+        status = Status.CONVERGED if predicted_decrease(normal, *newton) <= sufficient else status
     return Optimum(Solution(shared, normal.cost, status, count, tuple(history)), local, normal)
