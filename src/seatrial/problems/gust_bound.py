@@ -9,8 +9,9 @@ from seatrial.core.values import Array, Record
 from seatrial.data.trial import EstimateSettings
 from seatrial.estimation.estimate.assemble import output_error_problem
 from seatrial.estimation.estimate.input_offsets import with_input_offsets
+from seatrial.estimation.estimate.newton_refinement import newton_step
 from seatrial.estimation.estimate.point_estimate import PointEstimate
-from seatrial.estimation.estimate.process_noise import ProcessNoise, initial_problem, newton_step
+from seatrial.estimation.estimate.process_noise import ProcessNoise, initial_problem
 from seatrial.estimation.estimate.runs import Runs
 from seatrial.numerics.optimise import Optimum, Solution, Status
 from seatrial.problems.disturbed_craft import SAMPLE_S, Disturbance, DisturbedCraft

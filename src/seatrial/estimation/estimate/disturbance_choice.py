@@ -16,7 +16,8 @@ from seatrial.core.results import DisturbanceCandidate
 from seatrial.core.values import Array, ProgressReporter
 from seatrial.estimation.estimate.disturbance_models import DisturbanceModel, gusts, sensor_models, waves
 from seatrial.estimation.estimate.likelihood_ratio import CONFIDENCE_LEVEL, likelihood_ratio_test
-from seatrial.estimation.estimate.process_noise import ProcessNoise, newton_step, search_prediction_error
+from seatrial.estimation.estimate.newton_refinement import newton_step
+from seatrial.estimation.estimate.process_noise import ProcessNoise, search_prediction_error
 from seatrial.numerics.optimise import levenberg_marquardt
 
 _NO_INITIAL_STATES = np.zeros((0, 0))

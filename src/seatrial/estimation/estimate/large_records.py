@@ -14,8 +14,9 @@ from seatrial.estimation.estimate.criterion_choice import (
     output_error_choice,
     prediction_error_choice,
 )
+from seatrial.estimation.estimate.newton_refinement import newton_optimum
 from seatrial.estimation.estimate.point_estimate import fit_output_error
-from seatrial.estimation.estimate.process_noise import ProcessNoise, newton_optimum
+from seatrial.estimation.estimate.process_noise import ProcessNoise
 from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.information.whiteness import whiteness_test
 from seatrial.estimation.problem.output_error import OutputError
