@@ -13,7 +13,7 @@ from seatrial.core.figures.marks import ACCENT, SECOND, Stroke
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.figures.tracks import track_panel
 from seatrial.core.results.poster import Basis, Poster, PosterManoeuvre, PosterQuantity
-from seatrial.core.text.numbers import DASH, fixed, significant
+from seatrial.core.text.numbers import DASH, exponent, fixed, significant
 from seatrial.core.values.record_chart import has_track, record_track
 from seatrial.reporting.document import environment
 from seatrial.reporting.measures import measure_label
@@ -30,6 +30,7 @@ _KNOT = 1852.0 / 3600.0  # m/s of a nautical mile an hour
 _BOX = Region(56.0, 8.0, 400.0, 235.0)  # px, chosen
 _STROKES = (Stroke(SECOND, 1.8), Stroke(ACCENT, 1.8))  # port, starboard; px, chosen
 _CHART_WIDTH = 470.0  # px, chosen
+_MORE_DECIMALS = 2  # than usual, for an interval narrower than these show; chosen: finer than instruments read
 
 
 @dataclass(frozen=True)
@@ -115,10 +116,20 @@ def _cell(q: PosterQuantity | None, poster: Poster) -> tuple[str, str]:
     if not q.is_determined:
         return "not determined", q.basis.value
     factor, decimals = _display(q.name, poster)
-    text = fixed(factor * q.value, decimals)
-    if q.lower is not None and q.upper is not None:
-        text += f" [{fixed(factor * q.lower, decimals)}, {fixed(factor * q.upper, decimals)}]"
-    return text, q.basis.value
+    if q.lower is None or q.upper is None:
+        return fixed(factor * q.value, decimals), q.basis.value
+    value, lower, upper = factor * q.value, factor * q.lower, factor * q.upper
+    decimals = _decimals_of(0.5 * (upper - lower), decimals)
+    ends = (fixed(lower, decimals), fixed(upper, decimals))
+    within = f"within {10.0**-decimals:g}" if ends[0] == ends[1] else "{}, {}".format(*ends)
+    return f"{fixed(value, decimals)} [{within}]", q.basis.value
+
+
+def _decimals_of(half_width: float, usual: int) -> int:
+    """Decimals that show an interval: the usual ones, or as many more as its first digit needs, up to a limit."""
+    if half_width <= 0.0:
+        return usual
+    return min(max(usual, -exponent(half_width, 1)), usual + _MORE_DECIMALS)
 
 
 def _display(name: str, poster: Poster) -> tuple[float, int]:
