@@ -11,7 +11,7 @@ from seatrial.core.values import InputError, Record
 from seatrial.estimation.estimate.likelihood_ratio import boundary_quantile
 from seatrial.estimation.estimate.point_estimate import PointEstimate, fit_output_error
 from seatrial.estimation.estimate.process_noise import ProcessNoise, fit_prediction_error, has_noise
-from seatrial.estimation.predict.draws import PredictionUncertainty, draw_runs
+from seatrial.estimation.predict.draws import PredictionUncertainty, StartStates, draw_runs
 from seatrial.estimation.predict.predict_runs import process_noise_floor
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import cut_segments
@@ -160,7 +160,9 @@ def test_floor_is_the_scatter_of_simulated_runs(model: Model) -> None:
     made = process_noise_floor(template, moving, record, start, own, {"r": INTENSITY})
     nothing = PredictionUncertainty(np.zeros((2, 2)), np.zeros((0, 0)), np.array([INTENSITY, 0.0, 0.0, 0.0]), np.inf)
     inputs, rng = inputs_of(moving, record)[None], np.random.default_rng(1)
-    runs = draw_runs(template, moving, record.dt, inputs, start[None], own[None], nothing, rng, 400)[0]
+    runs = draw_runs(
+        template, moving, record.dt, inputs, StartStates.given(start[None], 0), own[None], nothing, rng, 400
+    )[0]
     spread = np.sqrt(np.mean(np.var(runs, axis=0), axis=0))
     assert made["r"] == pytest.approx(spread[0], rel=0.05)
     assert made["psi_deg"] == pytest.approx(np.degrees(spread[1]), rel=0.1)

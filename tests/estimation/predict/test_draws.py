@@ -5,7 +5,13 @@ import pytest
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Prior, Record
-from seatrial.estimation.predict.draws import PredictionUncertainty, draw_runs, simulate_points, square_root
+from seatrial.estimation.predict.draws import (
+    PredictionUncertainty,
+    StartStates,
+    draw_runs,
+    simulate_points,
+    square_root,
+)
 from seatrial.estimation.problem.output_error import Nuisance, OutputError
 from seatrial.estimation.problem.segments import cut_segments
 from seatrial.physics.models.nomoto import nomoto
@@ -52,7 +58,17 @@ def drawn(
     """Runs of the template's model along a record from rest, (count, rows, observables)."""
     model, rng = template.model, np.random.default_rng(seed)
     inputs = inputs_of(model, record)[None]
-    return draw_runs(template, model, record.dt, inputs, REST[None], nuisances[None], about, rng, count)[0]
+    return draw_runs(
+        template,
+        model,
+        record.dt,
+        inputs,
+        StartStates.given(REST[None], len(nuisances)),
+        nuisances[None],
+        about,
+        rng,
+        count,
+    )[0]
 
 
 def test_scatter_of_the_outputs_is_that_of_the_coefficients(model: Model, record: Record) -> None:
@@ -118,7 +134,7 @@ def test_the_root_of_a_singular_covariance() -> None:
 def test_windows_are_drawn_as_each_alone_would_be(model: Model, record: Record) -> None:
     """Without uncertainty; with it each window has draws of its own."""
     template, inputs = problem(model, record), inputs_of(model, record)
-    both, start = np.stack([inputs, -inputs]), np.tile(REST, (2, 1))
+    both, start = np.stack([inputs, -inputs]), StartStates.given(np.tile(REST, (2, 1)), 0)
     none, rng = np.empty((2, 0)), np.random.default_rng(5)
     exact = scatter(model, np.zeros((2, 2)), np.zeros((0, 0)), (0.0, 0.0))
     runs = draw_runs(template, model, record.dt, both, start, none, exact, rng, 2)
@@ -127,3 +143,11 @@ def test_windows_are_drawn_as_each_alone_would_be(model: Model, record: Record) 
     pushed = scatter(model, np.zeros((2, 2)), np.zeros((0, 0)), (1e-3, 0.0))
     runs = draw_runs(template, model, record.dt, both, start, none, pushed, rng, 2)
     assert len(np.unique(runs[:, :, -1, 0])) == 4
+
+
+def test_a_draw_begins_as_its_offset_says() -> None:
+    starts = StartStates(np.array([[1.0, 2.0], [3.0, 4.0]]), np.array([[[0.5], [0.0]], [[0.0], [-1.0]]]))
+    offsets = np.array([[[0.0], [2.0]], [[1.0], [3.0]]])
+    np.testing.assert_array_equal(starts.drawn(offsets), [[[1.0, 2.0], [2.0, 2.0]], [[3.0, 3.0], [3.0, 1.0]]])
+    again = StartStates.joined([starts[:1], starts[1:]])
+    np.testing.assert_array_equal(again.drawn(offsets), starts.drawn(offsets))

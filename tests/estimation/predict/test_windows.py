@@ -3,14 +3,16 @@
 import numpy as np
 import pytest
 
-from seatrial.core.values import Record
+from seatrial.core.values import Prior, Record
 from seatrial.data.trial import EstimateSettings
 from seatrial.estimation.estimate import Runs
 from seatrial.estimation.estimate.assemble import output_error_problem
 from seatrial.estimation.predict.open_loop import open_loop_runs
-from seatrial.estimation.predict.windows import MIN_STEPS, Windows, initial_states, simulate_windows
-from seatrial.estimation.problem.output_error import OutputError
+from seatrial.estimation.predict.windows import MIN_STEPS, Windows, simulate_windows, start_states
+from seatrial.estimation.problem.output_error import Nuisance, OutputError
+from seatrial.estimation.problem.segments import cut_segments
 from seatrial.physics.models import model_named
+from seatrial.physics.simulate.batch import InputCorrection
 from seatrial.physics.simulate.replay import replay
 
 SECONDS = 1.0  # of a window, from which its initial state is estimated
@@ -68,17 +70,17 @@ def test_the_truth_predicts_its_own_windows_with_thrusters_as_the_whole_run_left
 
 def test_all_windows_at_once_are_each_alone(records: list[Record], problem: OutputError) -> None:
     model, windows = model_named("thrusters").with_values({"k_f": 1.1}), Windows.cut(records, 10.0)
-    states = initial_states(problem, model, windows, nothing(records), SECONDS)
+    states = start_states(problem, model, windows, nothing(records), SECONDS)
     for i in range(len(windows)):
-        alone = initial_states(problem, model, windows.selected(slice(i, i + 1)), nothing(records), SECONDS)
-        np.testing.assert_allclose(alone[0], states[i], atol=1e-6)
+        alone = start_states(problem, model, windows.selected(slice(i, i + 1)), nothing(records), SECONDS)
+        np.testing.assert_allclose(alone.values[0], states.values[i], atol=1e-6)
 
 
 def test_as_measured_where_no_seconds_are_used(records: list[Record], problem: OutputError) -> None:
     windows = Windows.cut(records, 10.0)
-    states = initial_states(problem, model_named("thrusters"), windows, nothing(records), 0.0)
+    states = start_states(problem, model_named("thrusters"), windows, nothing(records), 0.0)
     u = model_named("thrusters").states.index("u")
-    assert states[:, u].tolist() == [piece["u"][0] for piece in windows.pieces]
+    assert states.values[:, u].tolist() == [piece["u"][0] for piece in windows.pieces]
 
 
 def test_a_window_that_diverges_harms_no_other(records: list[Record], problem: OutputError) -> None:
@@ -86,7 +88,23 @@ def test_a_window_that_diverges_harms_no_other(records: list[Record], problem: O
         "u", records[0].channel("u").with_values(np.where(records[0].time < 1.1, 1e9, 0.5))
     )
     model, windows = model_named("thrusters"), Windows.cut([broken, records[1]], 10.0)
-    states = initial_states(problem, model, windows, nothing(records), SECONDS)
-    sound = initial_states(problem, model, Windows.cut([records[1]], 10.0), nothing(records[1:]), SECONDS)
-    np.testing.assert_allclose(states[2], sound[0], atol=1e-6)
-    assert np.isfinite(simulate_windows(problem, model, windows, nothing(records), states)[2]).all()
+    states = start_states(problem, model, windows, nothing(records), SECONDS)
+    sound = start_states(problem, model, Windows.cut([records[1]], 10.0), nothing(records[1:]), SECONDS)
+    np.testing.assert_allclose(states.values[2], sound.values[0], atol=1e-6)
+    assert np.isfinite(simulate_windows(problem, model, windows, nothing(records), states.values)[2]).all()
+
+
+def test_states_follow_the_assumed_rudder_zero_as_estimating_them_again_does() -> None:
+    time = 0.5 * np.arange(121)
+    planned = Record.from_arrays("run", time, {"delta": 0.3 * np.sign(np.sin(0.12 * time + 0.3))})
+    model = model_named("nomoto").with_values({"K": 0.15, "T": 8.0})
+    record = replay(model, planned, {"r": 0.01})
+    zero = Nuisance(InputCorrection("delta", "zero"), Prior(0.0, 0.02, ""), "rad")
+    data = cut_segments(model, [record], ("r", "psi"), None)
+    problem, windows = OutputError(model, data, np.array([0.01, 0.1]), (zero,)), Windows.cut([record], 15.0)
+    step = 0.01
+    expected, shifted = (start_states(problem, model, windows, np.array([[x]]), 4.0) for x in (0.0, step))
+    np.testing.assert_allclose(expected.by_offsets[:, :, 0] * step, shifted.values - expected.values, atol=1e-7)
+    assert np.abs(expected.by_offsets[:, model.states.index("r"), 0]).min() > 0.01
+    as_measured = start_states(problem, model, windows, np.array([[0.0]]), 0.0)
+    assert not as_measured.by_offsets.any()

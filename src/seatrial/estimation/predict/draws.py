@@ -3,6 +3,7 @@
 How far the draws scatter about a prediction is the part of its error that can be foreseen.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,6 +32,38 @@ class PredictionUncertainty:
     offsets: Array
     process: Array
     degrees_of_freedom: float
+
+
+@dataclass(frozen=True, eq=False)
+class StartStates:
+    """Initial states of w simulations, and how they follow what a run is assumed to have of its own.
+
+    Attributes:
+        values: (w, nx), SI.
+        by_offsets: derivatives by a session's own unknowns, (w, nx, k): with another rudder zero the same first seconds
+            of a run are explained by another state.
+    """
+
+    values: Array
+    by_offsets: Array
+
+    @classmethod
+    def given(cls, values: Array, kinds: int) -> "StartStates":
+        """Return states that are known whatever a session has of its own, of so many kinds."""
+        return cls(values, np.zeros((*values.shape, kinds)))
+
+    @classmethod
+    def joined(cls, parts: Sequence["StartStates"]) -> "StartStates":
+        """Return those of several simulations together."""
+        return cls(np.concatenate([p.values for p in parts]), np.concatenate([p.by_offsets for p in parts]))
+
+    def __getitem__(self, indices: slice) -> "StartStates":
+        """Return those of the chosen simulations."""
+        return StartStates(self.values[indices], self.by_offsets[indices])
+
+    def drawn(self, offsets: Array) -> Array:
+        """Return states, (w, count, nx), where offsets differ from the expected ones by `offsets`, (w, count, k)."""
+        return self.values[:, None] + np.einsum("wxk,wck->wcx", self.by_offsets, offsets)
 
 
 def simulate_points(
@@ -69,7 +102,7 @@ def draw_runs(
     model: Model,
     dt: float,
     inputs: Array,
-    start: Array,
+    starts: StartStates,
     nuisances: Array,
     uncertainty: PredictionUncertainty,
     rng: np.random.Generator,
@@ -81,7 +114,7 @@ def draw_runs(
 
     Args:
         inputs: in the model's signs, (w, rows, nu), every `dt` seconds.
-        start: initial states, (w, nx), the same for all draws; nuisances: a session's own unknowns, (w, k).
+        starts: of a run with the expected `nuisances` (a session's own unknowns, (w, k)).
     """
     width, total = len(inputs), len(inputs) * count
     free = [model.parameters[n] for n in template.free]
@@ -90,7 +123,8 @@ def draw_runs(
     points = np.clip(points, [p.lower for p in free], [p.upper for p in free])
     offsets = rng.standard_normal((total, nuisances.shape[1])) @ square_root(uncertainty.offsets).T
     owns = np.repeat(nuisances, count, axis=0) + offsets
-    along, state = (np.repeat(a, count, axis=0) for a in (inputs, start))
+    along = np.repeat(inputs, count, axis=0)
+    state = starts.drawn(offsets.reshape(width, count, -1)).reshape(total, -1)
     shape = (width, count, inputs.shape[1], -1)
     if not np.any(uncertainty.process):
         return simulate_points(template, model, dt, along, state, points, owns).reshape(shape)

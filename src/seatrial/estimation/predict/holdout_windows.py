@@ -7,7 +7,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError, Record
-from seatrial.estimation.predict.windows import Windows, initial_states, simulate_windows
+from seatrial.estimation.predict.windows import Windows, simulate_windows, start_states
 from seatrial.estimation.problem.output_error import OutputError
 
 _TRACK = ("x0", "y0", "psi")
@@ -66,7 +66,7 @@ def window_errors(
     windows, of_runs = Windows.cut(records, protocol.window_s, protocol.max_windows), np.stack(nuisances)
     if not len(windows):
         raise InputError(f"no run is as long as a window of {protocol.window_s:g} s; give shorter windows")
-    states = initial_states(template, model, windows, of_runs, protocol.initial_s)
+    states = start_states(template, model, windows, of_runs, protocol.initial_s).values
     place = [model.observables.index(model.observable_of(channel)) for channel in _TRACK]
     simulated = simulate_windows(template, model, windows, of_runs, states)[:, :, place]
     errors = []

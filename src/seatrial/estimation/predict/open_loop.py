@@ -8,7 +8,8 @@ from seatrial.core.equations import Model
 from seatrial.core.results import Divergence, Measure, Prediction
 from seatrial.core.values import Array, InputError, Record
 from seatrial.estimation.predict.divergence import divergence_of, without_diverged_rows
-from seatrial.estimation.predict.windows import Windows, initial_states, simulate_windows
+from seatrial.estimation.predict.draws import StartStates
+from seatrial.estimation.predict.windows import Windows, simulate_windows, start_states
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.physics.manoeuvres import ObservedManoeuvre, measures
 from seatrial.physics.manoeuvres.measures import ORDERED_MEASURE
@@ -22,18 +23,18 @@ def estimate_initial_state(
     template: OutputError, model: Model, record: Record, nuisances: Array, seconds: float
 ) -> Array:
     """Output-error estimate of the initial state from the first `seconds` of a record, model held, shape (nx,)."""
-    return initial_states(template, model, Windows.of_record(record), nuisances[None], seconds)[0]
+    return start_states(template, model, Windows.of_record(record), nuisances[None], seconds).values[0]
 
 
 @dataclass(frozen=True, eq=False)
 class OpenLoopRun:
-    """One run simulated: all observables of the model as channels, and the initial state it began with, (nx,).
+    """One run simulated: all observables of the model as channels, and the state it began with.
 
     Where it diverges (`divergence`), its channels are NaN from there on.
     """
 
     record: Record
-    initial_state: Array
+    start: StartStates
     divergence: Divergence | None = None
 
 
@@ -45,8 +46,9 @@ def simulate_open_loop(
     Raises:
         InputError: the simulation diverges (which run, which channel, when).
     """
-    start = estimate_initial_state(template, model, record, nuisances, seconds)
-    y = simulate_windows(template, model, Windows.of_record(record), nuisances[None], start[None])[0]
+    windows = Windows.of_record(record)
+    start = start_states(template, model, windows, nuisances[None], seconds)
+    y = simulate_windows(template, model, windows, nuisances[None], start.values)[0]
     require_bounded(model, record.time, y[:, : len(model.states)], f"run '{record.name}'")
     return OpenLoopRun(observables_record(model, record, y), start)
 
@@ -72,12 +74,13 @@ def open_loop_runs(
     Raises:
         InputError: as `simulate_while_bounded`.
     """
-    states = initial_states(template, model, windows, nuisances, seconds)
-    simulated = simulate_windows(template, model, windows, nuisances, states)
-    return [_while_bounded(model, *one) for one in zip(windows.pieces, simulated, states, strict=True)]
+    starts = start_states(template, model, windows, nuisances, seconds)
+    simulated = simulate_windows(template, model, windows, nuisances, starts.values)
+    pairs = zip(windows.pieces, simulated, strict=True)
+    return [_while_bounded(model, *pair, starts[i : i + 1]) for i, pair in enumerate(pairs)]
 
 
-def _while_bounded(model: Model, measured: Record, y: Array, start: Array) -> OpenLoopRun:
+def _while_bounded(model: Model, measured: Record, y: Array, start: StartStates) -> OpenLoopRun:
     divergence = divergence_of(model, measured, y[:, : len(model.states)])
     record = without_diverged_rows(observables_record(model, measured, y), model.input_names, divergence)
     return OpenLoopRun(record, start, divergence)

@@ -195,7 +195,7 @@ def predict_runs(
             spread = prediction_spread(
                 problem, estimation.model, item.record, run, own.expected, length, uncertainty, rng, DRAWS
             )
-            alone = _process_noise_floor(estimation, item.record, run.initial_state, own.expected)
+            alone = _process_noise_floor(estimation, item.record, run.start.values[0], own.expected)
             one = replace(one, tied_spread=tied_model_spread(tied, one, seconds, length), noise_floor=alone)
             one = with_intervals(one, spread, calibration.discrepancy, uncertainty.degrees_of_freedom)
         if item.role is not Role.TRAIN:

@@ -11,7 +11,7 @@ from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.check.signal import sample_noise
 from seatrial.estimation.information.discrepancy import Discrepancy, HoldoutError
-from seatrial.estimation.predict.draws import PredictionUncertainty, draw_runs
+from seatrial.estimation.predict.draws import PredictionUncertainty, StartStates, draw_runs
 from seatrial.estimation.predict.open_loop import (
     OpenLoopRun,
     compare_measures,
@@ -72,21 +72,21 @@ def window_spreads(
     model: Model,
     windows: Windows,
     simulated: Sequence[Record],
-    states: Array,
+    starts: StartStates,
     nuisances: Array,
     uncertainty: PredictionUncertainty,
     rng: np.random.Generator,
 ) -> list[dict[str, Array]]:
     """Return of each window the scatter of heading and position of drawn runs: channel -> (steps + 1,), SI.
 
-    simulated: the windows open loop from their initial `states` (windows, nx); nuisances: of each run, (runs, k).
+    simulated: the windows open loop from `starts`; nuisances: of each run, (runs, k).
     """
     size = max(1, _ROWS_AT_ONCE // (HOLDOUT_DRAWS * (windows.steps + 1)))
     spreads = []
     for chosen in (slice(i, i + size) for i in range(0, len(windows), size)):
         part = windows.selected(chosen)
         drawn = draw_runs(
-            template, model, part.dt, part.inputs(model), states[chosen], nuisances[part.run], uncertainty, rng,
+            template, model, part.dt, part.inputs(model), starts[chosen], nuisances[part.run], uncertainty, rng,
             HOLDOUT_DRAWS,
         )  # fmt: skip
         spreads += [_track_spread(model, s, _finite_draws(y)) for s, y in zip(simulated[chosen], drawn, strict=True)]
@@ -104,8 +104,8 @@ def _drawn_about(
     count: int,
 ) -> Array:
     """Runs drawn from what is left open, those that last, (at most `count`, rows, observables)."""
-    inputs, start = inputs_of(model, record)[None], simulation.initial_state[None]
-    runs = draw_runs(template, model, record.dt, inputs, start, nuisances[None], uncertainty, rng, count)
+    inputs = inputs_of(model, record)[None]
+    runs = draw_runs(template, model, record.dt, inputs, simulation.start, nuisances[None], uncertainty, rng, count)
     return _finite_draws(runs[0])
 
 

@@ -13,7 +13,7 @@ from seatrial.core.values import Array, InputError, Record
 from seatrial.data.check.signal import sample_noise
 from seatrial.estimation.estimate.time_scale import characteristic_time
 from seatrial.estimation.information.discrepancy import Discrepancy
-from seatrial.estimation.predict.draws import PredictionUncertainty
+from seatrial.estimation.predict.draws import PredictionUncertainty, StartStates
 from seatrial.estimation.predict.open_loop import has_moving_track, open_loop_runs
 from seatrial.estimation.predict.prediction_intervals import window_spreads
 from seatrial.estimation.predict.windows import Windows
@@ -119,8 +119,8 @@ def _score(
 ) -> WindowScore:
     initial, nuisances, pieces = min(p.seconds, _INITIAL_SHARE * seconds), p.nuisances[None], windows.pieces
     runs = open_loop_runs(p.template, p.model, windows, nuisances, initial)
-    simulated, states = [run.record for run in runs], np.stack([run.initial_state for run in runs])
-    spreads = window_spreads(p.template, p.model, windows, simulated, states, nuisances, p.uncertainty, rng)
+    simulated, starts = [run.record for run in runs], StartStates.joined([run.start for run in runs])
+    spreads = window_spreads(p.template, p.model, windows, simulated, starts, nuisances, p.uncertainty, rng)
     t = two_sided_quantile(STORED_LEVEL, p.uncertainty.degrees_of_freedom)
     halves = []
     for piece, run, spread in zip(pieces, runs, spreads, strict=True):

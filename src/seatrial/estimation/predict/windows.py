@@ -12,7 +12,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index, Record, RecordKind
-from seatrial.estimation.predict.draws import simulate_points
+from seatrial.estimation.predict.draws import StartStates, simulate_points
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import compared_outputs, segments_between
 from seatrial.numerics.optimise import levenberg_marquardt
@@ -100,8 +100,10 @@ class Windows:
         return np.stack([inputs_of(model, piece) for piece in self.pieces])
 
 
-def initial_states(template: OutputError, model: Model, windows: Windows, nuisances: Array, seconds: float) -> Array:
-    """Return the state at the start of each window, (windows, nx), SI, the model held.
+def start_states(
+    template: OutputError, model: Model, windows: Windows, nuisances: Array, seconds: float
+) -> StartStates:
+    """Return the state at the start of each window, the model held.
 
     By output error from the first `seconds`; as measured where they are 0, and in windows that the model leaves from
     there within them. What follows the commands alone (thrusters) follows those of the whole run.
@@ -120,20 +122,28 @@ def initial_states(template: OutputError, model: Model, windows: Windows, nuisan
     data = segments_between(held, windows.records, outputs, beginnings.bounds, sessions)
     problem = replace(template, model=held, data=data, pinned=nuisances.ravel(), inflation=None)
     local = problem.measured_initial_states()
+    slopes = np.zeros((len(local), len(problem.starts), nuisances.shape[1]))
     if seconds > 0.0:
-        local = _estimated(problem, local)
-    return problem.unpack(nuisances.ravel(), local)[0]
+        y = problem.simulated_outputs(nuisances.ravel(), local)
+        lasting = np.flatnonzero([np.isfinite(y[a:b]).all() for a, b in pairwise(data.offsets)])
+        if len(lasting):
+            part = replace(problem, data=data.selected(lasting)) if len(lasting) < len(local) else problem
+            local[lasting], slopes[lasting] = _estimated(part, local[lasting])
+    by_offsets = np.zeros((len(local), len(model.states), nuisances.shape[1]))
+    by_offsets[:, [model.states.index(s) for s in problem.starts]] = slopes
+    return StartStates(problem.unpack(nuisances.ravel(), local)[0], by_offsets)
 
 
-def _estimated(problem: OutputError, measured: Array) -> Array:
-    """Initial states (segments, m) estimated from the measured ones, which stay where those diverge."""
+def _estimated(problem: OutputError, measured: Array) -> tuple[Array, Array]:
+    """Initial states estimated from the measured ones, (segments, m), and their derivatives by offsets, (..., k).
+
+    At the optimum the gradient by the initial state stays zero: dx/do = -H_xx^-1 H_xo.
+    """
     assert problem.pinned is not None
-    y, local = problem.simulated_outputs(problem.pinned, measured), measured.copy()
-    lasting = np.flatnonzero([np.isfinite(y[a:b]).all() for a, b in pairwise(problem.data.offsets)])
-    if len(lasting):
-        part = replace(problem, data=problem.data.selected(lasting)) if len(lasting) < len(local) else problem
-        local[lasting] = levenberg_marquardt(part, problem.pinned, local[lasting], evaluations=_EVALUATIONS).local
-    return local
+    local = levenberg_marquardt(problem, problem.pinned, measured, evaluations=_EVALUATIONS).local
+    blocks = problem.segment_normals(problem.pinned, local)
+    n = blocks.shared
+    return local, -np.linalg.pinv(blocks.hessians[:, n:, n:], hermitian=True) @ blocks.hessians[:, n:, :n]
 
 
 def simulate_windows(template: OutputError, model: Model, windows: Windows, nuisances: Array, states: Array) -> Array:
