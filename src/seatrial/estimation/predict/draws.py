@@ -36,34 +36,43 @@ class PredictionUncertainty:
 
 @dataclass(frozen=True, eq=False)
 class StartStates:
-    """Initial states of w simulations, and how they follow what a run is assumed to have of its own.
+    """Initial states of w simulations, and what they may be instead.
 
     Attributes:
         values: (w, nx), SI.
         by_offsets: derivatives by a session's own unknowns, (w, nx, k): with another rudder zero the same first seconds
             of a run are explained by another state.
+        covariance: (w, nx, nx), of the error that the sensors' noise leaves.
     """
 
     values: Array
     by_offsets: Array
+    covariance: Array
 
     @classmethod
     def given(cls, values: Array, kinds: int) -> "StartStates":
-        """Return states that are known whatever a session has of its own, of so many kinds."""
-        return cls(values, np.zeros((*values.shape, kinds)))
+        """Return states that are known, whatever a session has of its own, of so many kinds."""
+        return cls(values, np.zeros((*values.shape, kinds)), np.zeros((*values.shape, values.shape[1])))
 
     @classmethod
     def joined(cls, parts: Sequence["StartStates"]) -> "StartStates":
         """Return those of several simulations together."""
-        return cls(np.concatenate([p.values for p in parts]), np.concatenate([p.by_offsets for p in parts]))
+        return cls(
+            np.concatenate([p.values for p in parts]),
+            np.concatenate([p.by_offsets for p in parts]),
+            np.concatenate([p.covariance for p in parts]),
+        )
 
     def __getitem__(self, indices: slice) -> "StartStates":
         """Return those of the chosen simulations."""
-        return StartStates(self.values[indices], self.by_offsets[indices])
+        return StartStates(self.values[indices], self.by_offsets[indices], self.covariance[indices])
 
-    def drawn(self, offsets: Array) -> Array:
+    def drawn(self, offsets: Array, rng: np.random.Generator) -> Array:
         """Return states, (w, count, nx), where offsets differ from the expected ones by `offsets`, (w, count, k)."""
-        return self.values[:, None] + np.einsum("wxk,wck->wcx", self.by_offsets, offsets)
+        states = self.values[:, None] + np.einsum("wxk,wck->wcx", self.by_offsets, offsets)
+        if np.any(self.covariance):
+            states += np.einsum("wxz,wcz->wcx", square_root(self.covariance), rng.standard_normal(states.shape))
+        return states
 
 
 def simulate_points(
@@ -124,7 +133,7 @@ def draw_runs(
     offsets = rng.standard_normal((total, nuisances.shape[1])) @ square_root(uncertainty.offsets).T
     owns = np.repeat(nuisances, count, axis=0) + offsets
     along = np.repeat(inputs, count, axis=0)
-    state = starts.drawn(offsets.reshape(width, count, -1)).reshape(total, -1)
+    state = starts.drawn(offsets.reshape(width, count, -1), rng).reshape(total, -1)
     shape = (width, count, inputs.shape[1], -1)
     if not np.any(uncertainty.process):
         return simulate_points(template, model, dt, along, state, points, owns).reshape(shape)
@@ -139,8 +148,8 @@ def draw_runs(
 
 
 def square_root(covariance: Array) -> Array:
-    """Return a square root of a covariance that may be singular, shape (n, n)."""
+    """Return a square root of covariances that may be singular, shape (..., n, n)."""
     if covariance.size == 0:
         return covariance
     values, vectors = np.linalg.eigh(covariance)
-    return vectors * np.sqrt(np.maximum(values, 0.0))
+    return vectors * np.sqrt(np.maximum(values, 0.0))[..., None, :]
