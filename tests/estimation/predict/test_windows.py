@@ -108,3 +108,30 @@ def test_states_follow_the_assumed_rudder_zero_as_estimating_them_again_does() -
     assert np.abs(expected.by_offsets[:, model.states.index("r"), 0]).min() > 0.01
     as_measured = start_states(problem, model, windows, np.array([[0.0]]), 0.0)
     assert not as_measured.by_offsets.any()
+
+
+@pytest.mark.parametrize(("memory", "error_share"), [(0.0, 0.1), (0.8, 0.25)], ids=["white", "coloured"])
+def test_errors_of_states_have_the_covariance_that_is_said(memory: float, error_share: float) -> None:
+    """300 windows with noise of its own each; `memory`: correlation from sample to sample.
+
+    Residuals of a short beginning hide a part of their colour, so that coloured noise counts for a fifth too little.
+    """
+    count, rng = 300, np.random.default_rng(4)
+    time = 0.2 * np.arange(50 * count + 1)
+    planned = Record.from_arrays("run", time, {"delta": 0.3 * np.sign(np.sin(0.12 * time + 0.3))})
+    model = model_named("nomoto").with_values({"K": 0.15, "T": 8.0})
+    clean = replay(model, planned, {"r": 0.01})
+    sizes, noise = np.array([2e-3, 2e-2]), np.zeros((len(time), 2))
+    for k, white in enumerate(rng.standard_normal((len(time), 2))):
+        noise[k] = memory * noise[k - 1] + np.sqrt(1.0 - memory**2) * white
+    record = clean
+    for channel, error in zip(("r", "psi"), (noise * sizes).T, strict=True):
+        record = record.with_channel(channel, record.channel(channel).with_values(clean[channel] + error))
+    data = cut_segments(model, [record], ("r", "psi"), None)
+    windows = Windows.cut([record], 10.0)
+    starts = start_states(OutputError(model, data, sizes), model, windows, np.zeros((1, 0)), 10.0)
+    for channel in ("r", "psi"):
+        place = model.states.index(channel)
+        error = starts.values[:, place] - clean[channel][windows.first]
+        expected = np.sqrt(np.mean(starts.covariance[:, place, place]))
+        assert expected == pytest.approx(np.sqrt(np.mean(error**2)), rel=error_share)
