@@ -7,7 +7,8 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError, Record
-from seatrial.estimation.predict.windows import Windows, simulate_windows, start_states
+from seatrial.estimation.predict.start_states import start_states
+from seatrial.estimation.predict.windows import Windows, simulate_windows
 from seatrial.estimation.problem.output_error import OutputError
 
 _TRACK = ("x0", "y0", "psi")

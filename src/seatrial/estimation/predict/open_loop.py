@@ -9,7 +9,8 @@ from seatrial.core.results import Divergence, Measure, Prediction
 from seatrial.core.values import Array, InputError, Record
 from seatrial.estimation.predict.divergence import divergence_of, without_diverged_rows
 from seatrial.estimation.predict.draws import StartStates
-from seatrial.estimation.predict.windows import Windows, simulate_windows, start_states
+from seatrial.estimation.predict.start_states import start_states
+from seatrial.estimation.predict.windows import Windows, simulate_windows
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.physics.manoeuvres import ObservedManoeuvre, measures
 from seatrial.physics.manoeuvres.measures import ORDERED_MEASURE
