@@ -1,8 +1,9 @@
 """What a session that was not fitted is given of its own, compared on whole sessions left out, each in turn.
 
 `SEATRIAL_DATA=folder python benchmarks/sessions.py kvlcc2_hsva` (runs left out) or `esso_osaka` (days left out; with
-`--runs`, runs). Five rules: the model is fitted without offsets; with them, and a new session has none; the plain mean
-of the training sessions; the mean of their population; the same with a mean that follows the helm. Beside them stand
+`--runs`, runs). Six rules: the model is fitted without offsets; with them, and a new session has none; the plain mean
+of the training sessions; the mean of their population; that mean, moved by what the first seconds of the run show; the
+population with a mean that follows the helm. Beside them stand
 the published coefficients, unfitted; where whole runs are predicted, each with the offset that suits it best; and, with
 the population, the share of samples in the 95 % bands of windows, its interval binomial with a window as one draw
 (Clopper & Pearson 1934, Biometrika 26, 404).
@@ -23,8 +24,9 @@ from seatrial.campaigns.summary import coverage_interval
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.trial import EstimateMethod, Role, Trial, TrialRecord, load_records, load_trial
 from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs
-from seatrial.estimation.predict import HoldoutProtocol, simulate_open_loop
+from seatrial.estimation.predict import HoldoutProtocol, session_offsets, simulate_open_loop
 from seatrial.estimation.predict.open_loop import rms_errors
+from seatrial.estimation.predict.session_offsets import offsets_from_start
 from seatrial_studies.alexandersson2022.window_bands import band_coverage, holdout_windows
 from seatrial_studies.cross_validation import (
     CrossValidation,
@@ -44,7 +46,7 @@ WHOLE_RUNS = ("kvlcc2_hsva",)
 SEARCHED, GRID = 4.0, 25
 """Standard deviations between sessions to each side in which a run's own offset is sought, and values tried first."""
 INITIAL_S = 6.0
-"""First seconds of a run that give its initial state: one ship length of the 7 m model at 1.18 m/s."""
+"""First seconds of a run that give its initial state where the trial states none: one ship length at 1.18 m/s."""
 
 
 def nothing(estimation: Estimation, _session: str, _record: Record) -> Array:
@@ -55,6 +57,16 @@ def nothing(estimation: Estimation, _session: str, _record: Record) -> Array:
 def training_mean(estimation: Estimation, _session: str, _record: Record) -> Array:
     """Return the plain mean over the training sessions."""
     return estimation.estimate.session_offsets.mean(axis=0)
+
+
+def from_start(seconds: float) -> OffsetRule:
+    """Return the rule by which the first seconds of a run move what its population expects."""
+
+    def rule(estimation: Estimation, session: str, record: Record) -> Array:
+        expected = session_offsets(estimation, session, record)
+        return offsets_from_start(estimation.estimate.problem, estimation.model, expected, record, seconds).expected
+
+    return rule
 
 
 def best_of_run(estimation: Estimation, session: str, record: Record) -> Array:
@@ -75,6 +87,16 @@ def best_of_run(estimation: Estimation, session: str, record: Record) -> Array:
     return expected + float(minimize_scalar(error, bounds=(near - step, near + step), method="bounded").x)
 
 
+def with_priors(trial: Trial, factor: float) -> Trial:
+    """Return the trial with the priors of its coefficients wider by a factor."""
+    wider = {
+        p.name: replace(p.prior, standard_deviation=factor * p.prior.standard_deviation)
+        for p in trial.model.parameters.free
+        if p.prior is not None
+    }
+    return replace(trial, model=trial.model.with_parameters(trial.model.parameters.with_priors(wider)))
+
+
 @dataclass(frozen=True, eq=False)
 class Candidate:
     """One way of giving a new session what it has of its own: a rule, and the fits it is applied to."""
@@ -84,7 +106,7 @@ class Candidate:
     folds: Sequence[Fold]
 
 
-def whole_run_errors(candidate: Candidate, runs: Runs) -> Array:
+def whole_run_errors(candidate: Candidate, runs: Runs, seconds: float) -> Array:
     """Heading [deg] and position [m] rms over each run left out, (runs, 2); NaN where the simulation diverges."""
     errors = np.full((len(runs), 2), math.nan)
     for fold in candidate.folds:
@@ -92,7 +114,7 @@ def whole_run_errors(candidate: Candidate, runs: Runs) -> Array:
             record, fit = runs.records[i], fold.estimation
             own = candidate.rule(fit, runs.sessions[i], record)
             try:
-                run = simulate_open_loop(fit.estimate.problem, fit.model, record, own, INITIAL_S)
+                run = simulate_open_loop(fit.estimate.problem, fit.model, record, own, seconds)
             except InputError:
                 continue
             rms = rms_errors(record, run.record)
@@ -143,12 +165,14 @@ def population_text(folds: Sequence[Fold]) -> str:
 
 def main(arguments: list[str]) -> int:
     """Print the table; 2 for bad input."""
-    parser = argparse.ArgumentParser(description="offsets of sessions that were not fitted, by five rules")
+    parser = argparse.ArgumentParser(description="offsets of sessions that were not fitted, by six rules")
     parser.add_argument("trial", choices=list(WINDOW_S))
     parser.add_argument("--runs", action="store_true", help="every run is a session")
     parser.add_argument("--method", type=EstimateMethod, help="instead of the trial's own")
+    parser.add_argument("--priors", type=float, default=1.0, help="factor on the widths of the coefficients' priors")
+    parser.add_argument("--initial", type=float, help="seconds of a run or window that give its initial state")
     given = parser.parse_args(arguments)
-    trial = load_trial(EXAMPLES / f"{given.trial}.toml")
+    trial = with_priors(load_trial(EXAMPLES / f"{given.trial}.toml"), given.priors)
     items = load_records(trial)[0]
     records = [i.record.resampled(trial.estimate.rate or 1.0 / i.record.dt) for i in items]
     sessions = tuple(r.name if given.runs else i.session for r, i in zip(records, items, strict=True))
@@ -160,6 +184,8 @@ def main(arguments: list[str]) -> int:
     print(machine())
     print(f"{given.trial}: {len(runs)} runs, {len(set(sessions))} sessions left out in turn", flush=True)
     options = EstimatorOptions(workers=1)
+    initial_s = given.initial or trial.estimate.initial_s or INITIAL_S
+    protocol = HoldoutProtocol(window_s=WINDOW_S[given.trial], initial_s=initial_s)
 
     def fits(**changes: object) -> tuple[Fold, ...]:
         return fit_sessions(trial.model, runs, replace(settings, **changes), options,
@@ -171,14 +197,13 @@ def main(arguments: list[str]) -> int:
         yield Candidate("offsets, none for a new session", nothing, common)
         yield Candidate("training mean", training_mean, common)
         yield Candidate("population", population_offsets, common)
+        yield Candidate(f"population and first {protocol.initial_s:g} s", from_start(protocol.initial_s), common)
         if given.trial in WHOLE_RUNS:
             yield Candidate("own offset, fitted to the run", best_of_run, common)
         following = fits(covariates={"delta": "delta"})
         print(f"  population that follows the helm: {population_text(following)}")
         yield Candidate("population that follows the helm", population_offsets, following)
         yield Candidate("no offsets", nothing, fits(offsets={}, current=0.0))
-
-    protocol = HoldoutProtocol(window_s=WINDOW_S[given.trial], initial_s=trial.estimate.initial_s or INITIAL_S)
 
     def show(name: str, scored: CrossValidation) -> None:
         pooled = [scored.pooled(label) for label in scored.labels]
@@ -193,7 +218,7 @@ def main(arguments: list[str]) -> int:
                 for line in band_lines(candidate.folds, runs, labels, protocol):
                     print(f"  {'':<34} inside the bands: {line}", flush=True)
             if given.trial in WHOLE_RUNS:
-                errors = whole_run_errors(candidate, runs)
+                errors = whole_run_errors(candidate, runs, protocol.initial_s)
                 diverged = int(np.isnan(errors[:, 0]).sum())
                 heading, position = np.nanmean(errors, axis=0)
                 print(f"  {'':<34} whole runs {heading:.2f} deg {position:.2f} m, {diverged} diverge", flush=True)

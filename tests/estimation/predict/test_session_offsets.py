@@ -9,7 +9,12 @@ from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Record
 from seatrial.data.trial import EstimateSettings
 from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, estimate_model
-from seatrial.estimation.predict.session_offsets import new_session_offsets, offsets_without, session_offsets
+from seatrial.estimation.predict.session_offsets import (
+    new_session_offsets,
+    offsets_from_start,
+    offsets_without,
+    session_offsets,
+)
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.simulate.steer import manoeuvre
@@ -84,3 +89,23 @@ def test_a_covariate_that_is_no_input_is_refused(truth: Model, records: list[Rec
         estimate_model(truth, runs, replace(SETTINGS, covariates={"delta": "wind"}), OPTIONS)
     with pytest.raises(InputError, match="'n' is not under offsets"):
         replace(SETTINGS, covariates={"n": "delta"})
+
+
+def test_the_first_seconds_of_a_run_move_the_expectation_towards_its_own_offset(
+    estimation: Estimation, records: list[Record]
+) -> None:
+    new = session_offsets(estimation, "another day", records[0])
+    problem, model = estimation.estimate.problem, estimation.model
+    few, many = (offsets_from_start(problem, model, new, records[0], seconds) for seconds in (5.0, 80.0))
+    before, after, last = (abs(o.expected[0] - ZEROS[0]) for o in (new, few, many))
+    assert last < 0.1 * before
+    assert last < after < before
+    assert many.covariance[0, 0] < few.covariance[0, 0] < new.covariance[0, 0]
+
+
+def test_a_start_that_says_nothing_leaves_the_population(estimation: Estimation, records: list[Record]) -> None:
+    new = session_offsets(estimation, "another day", records[0])
+    blind = replace(estimation.estimate.problem, noise=np.full(len(estimation.estimate.problem.noise), 1e6))
+    same = offsets_from_start(blind, estimation.model, new, records[0], 5.0)
+    np.testing.assert_allclose(same.expected, new.expected, rtol=1e-6)
+    np.testing.assert_allclose(same.covariance, new.covariance, rtol=1e-6)

@@ -1,14 +1,22 @@
 """What a run that was not fitted has of its own: its session's estimate, or what the population of sessions expects."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from seatrial.core.values import Array, Record
+from seatrial.core.equations import Model
+from seatrial.core.values import Array, Prior, Record
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import PointEstimate
+from seatrial.estimation.information.covariance import inverse
+from seatrial.estimation.predict.windows import Windows
 from seatrial.estimation.problem.output_error import OutputError
+from seatrial.estimation.problem.population import SessionPopulation
+from seatrial.estimation.problem.segments import segments_between
+from seatrial.numerics.optimise import levenberg_marquardt
 from seatrial.physics.simulate.channels import inputs_of
+
+_EVALUATIONS = 40  # of the search for offsets and initial state; chosen: a few are enough
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +51,35 @@ def session_offsets(estimation: Estimation, session: str, record: Record) -> Ses
     index = problem.data.sessions.index(session)
     own = problem.columns_of(index)[len(problem.free) :]
     return SessionOffsets(estimate.session_offsets[index], estimation.interval.covariance[np.ix_(own, own)])
+
+
+def offsets_from_start(
+    template: OutputError, model: Model, offsets: SessionOffsets, record: Record, seconds: float
+) -> SessionOffsets:
+    """Return offsets that the first seconds of a run make likely, with those expected before it as the prior.
+
+    Initial state and offsets are estimated together, the model held, its outputs weighted as in the fit: by the
+    residuals it left there and their effective number of samples. On board this much of a run is known when it begins.
+
+    Raises:
+        InputError: the record lacks an input.
+    """
+    held = model.with_parameters(model.parameters.fixed(*model.parameters.names))
+    bounds = Windows.of_record(record).beginnings(seconds).bounds
+    deviations = np.sqrt(np.diag(offsets.covariance))
+    declared = [Prior(float(m), float(d), "population") for m, d in zip(offsets.expected, deviations, strict=True)]
+    problem = replace(
+        template,
+        model=held,
+        data=segments_between(held, [record], template.data.outputs, bounds),
+        population=SessionPopulation.as_declared(declared, np.zeros((1, len(declared)))),
+        extra_terms=(),
+        prior_terms=(),
+    )
+    optimum = levenberg_marquardt(
+        problem, offsets.expected, problem.measured_initial_states(), evaluations=_EVALUATIONS
+    )
+    return SessionOffsets(optimum.solution.point, inverse(optimum.normal.without_local()[1]))
 
 
 def offsets_without(template: OutputError, point: Array, session: str, record: Record) -> Array:

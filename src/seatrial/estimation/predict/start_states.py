@@ -40,7 +40,7 @@ def start_states(
     data = segments_between(held, windows.records, outputs, beginnings.bounds, sessions)
     problem = replace(template, model=held, data=data, pinned=nuisances.ravel(), inflation=None)
     local = problem.measured_initial_states()
-    place = [model.states.index(s) for s in problem.starts]
+    place = np.array([model.states.index(s) for s in problem.starts], dtype=np.int64)
     by_offsets = np.zeros((len(local), len(model.states), nuisances.shape[1]))
     covariance = np.zeros((len(local), len(model.states), len(model.states)))
     if seconds > 0.0 and len(lasting := _lasting(problem, local)):
