@@ -8,11 +8,16 @@ two results would show. The last run is not killed: nothing that a killed one le
 
 `--command save` kills what writes folders and does nothing else, so that every kill falls into the writing: results of
 four kinds by turns into one folder, which must be that of one of them, byte by byte.
+
+`--command benchmark` kills a benchmark of methods and starts it again until all kills are spent; runs that were noted
+are not made again, and the last table must be that of an undisturbed benchmark.
 """
 
 import argparse
+import json
 import os
 import random
+import shutil
 import signal
 import subprocess
 import sys
@@ -38,6 +43,7 @@ COMMANDS = {
     "reproduce": ["reproduce", "meng2014", "--quick"],
     "follow": ["follow", f"{EXAMPLES}/waterjet_follow.toml", "--once"],
 }
+BENCHMARK = ["benchmark", "qi2025-135-whole", "--against", "iwho", "--against", "pso", "--runs", "8"]
 SAVE = "save"
 _SAVING_S = 0.2  # s at most before a kill while saving: a round of folders takes about as long; chosen
 # a kill falls anywhere in the time that the command took undisturbed, and a little beyond: dimensionless, chosen
@@ -94,17 +100,63 @@ def kills(name: str, count: int, seed: int) -> tuple[Tally, bool]:
         for kill in range(count):
             process = _started(command, kill % 2)
             share = rng.random() * (WRITING_SHARE if kill % 2 else 1.0)
-            try:
-                process.wait((LONGEST_WAIT - share) * duration)
-                tally.finished_first += 1
-            except subprocess.TimeoutExpired:
-                process.send_signal(signal.SIGKILL)
-                process.wait()
-                tally.killed += 1
+            is_killed = _kill_after(process, (LONGEST_WAIT - share) * duration)
+            tally.killed, tally.finished_first = tally.killed + is_killed, tally.finished_first + (not is_killed)
             look_at(folder, tally)
         finished = _started(command, 0).wait() == 0
         look_at(folder, tally)
         return tally, finished
+
+
+def kills_of_benchmark(count: int, seed: int) -> tuple[Tally, bool]:
+    """Kill a benchmark `count` times, each time another part of its work; as `kills`.
+
+    A table that a killed process left counts as whole where it is that of an undisturbed benchmark.
+    """
+    rng, tally = random.Random(seed), Tally()
+    with tempfile.TemporaryDirectory() as place:
+        undisturbed, folder = Path(place) / "undisturbed", Path(place) / "killed"
+        duration = _undisturbed_duration([*BENCHMARK, "--out", str(undisturbed)])
+        for _ in range(count):
+            process = _started([*BENCHMARK, "--out", str(folder)], 0)
+            if not _kill_after(process, rng.random() * LONGEST_WAIT * duration):
+                tally.finished_first += 1
+                _look_at_table(folder, undisturbed, tally)
+                shutil.rmtree(folder)
+                continue
+            tally.killed += 1
+            _look_at_table(folder, undisturbed, tally)
+        finished = _started([*BENCHMARK, "--out", str(folder)], 0).wait() == 0
+        _look_at_table(folder, undisturbed, tally)
+        return tally, finished
+
+
+def _kill_after(process: subprocess.Popen[bytes], seconds: float) -> bool:
+    """Kill a process and those it started; False if it ended before."""
+    try:
+        process.wait(seconds)
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+        return True
+    return False
+
+
+def _look_at_table(folder: Path, undisturbed: Path, tally: Tally) -> None:
+    if not (folder / "benchmark.json").exists():
+        tally.none_yet += 1
+        return
+    is_whole = _scores(folder) == _scores(undisturbed)
+    tally.whole, tally.broken = tally.whole + is_whole, tally.broken + (not is_whole)
+
+
+def _scores(folder: Path) -> object:
+    """The scores of a benchmark without times, which differ between any two runs."""
+    problems = json.loads((folder / "benchmark.json").read_text())["problems"]
+    for problem in problems:
+        for method in problem["methods"]:
+            del method["time_ratio"]
+    return problems
 
 
 def kills_while_saving(place: Path, count: int, seed: int) -> tuple[Tally, bool]:
@@ -143,6 +195,8 @@ def run(name: str = "identify", count: int = 20, seed: int = 1) -> list[Line]:
     if name == SAVE:
         with tempfile.TemporaryDirectory() as place:
             tally, finished = kills_while_saving(Path(place), count, seed)
+    elif name == BENCHMARK[0]:
+        tally, finished = kills_of_benchmark(count, seed)
     else:
         tally, finished = kills(name, count, seed)
     return [
@@ -157,7 +211,7 @@ def run(name: str = "identify", count: int = 20, seed: int = 1) -> list[Line]:
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--command", choices=[*COMMANDS, SAVE], default="identify")
+    parser.add_argument("--command", choices=[*COMMANDS, BENCHMARK[0], SAVE], default="identify")
     parser.add_argument("--kills", type=int, default=20)
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()

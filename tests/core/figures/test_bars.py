@@ -1,5 +1,6 @@
 """Grouped bars: heights to scale on both axes, what has no bar is marked."""
 
+import numpy as np
 import pytest
 
 from seatrial.core.figures.bars import SHADES, bars_chart
@@ -23,6 +24,14 @@ def test_a_logarithmic_axis_has_whole_decades_below_the_smallest_bar() -> None:
     chart = bars_chart("b", ("a", "c"), {"x": (1.0, 100.0)}, "1", is_logarithmic=True)
     assert chart is not None and chart.panels[0].y.ends == pytest.approx((0.1, 1000.0))
     assert all(bar.bottom == pytest.approx(0.1) for bar in bars(chart))
+
+
+@pytest.mark.parametrize("value", [1e308, 5e-324])
+def test_a_logarithmic_axis_holds_the_largest_and_the_smallest_number(value: float) -> None:
+    chart = bars_chart("b", ("a",), {"x": (value,)}, "1", is_logarithmic=True)
+    assert chart is not None
+    low, high = chart.panels[0].y.ends
+    assert 0.0 < low < high < float("inf") and np.isfinite(chart.panels[0].y.share(value))
 
 
 def test_series_stand_side_by_side_in_shades_of_their_own() -> None:

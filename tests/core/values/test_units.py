@@ -5,7 +5,7 @@ import math
 import pytest
 
 from seatrial.core.values import NOTATION, Finding, InputError, Severity, Ship, display_unit, quantity, si_unit
-from seatrial.core.values.units import _UNITS
+from seatrial.core.values.units import _UNITS, is_unit
 
 
 @pytest.mark.parametrize(
@@ -29,6 +29,13 @@ def test_factors(unit: str, factor: float, base: str) -> None:
 def test_every_si_unit_is_its_own(unit: str) -> None:
     base = si_unit(unit)[1]
     assert si_unit(base) == (1.0, base)
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"), [("deg", True), ("Knots", True), ("N m", True), ("", False), ("psi", False)]
+)
+def test_a_unit_is_known_by_its_symbol_and_its_usual_spellings(text: str, expected: bool) -> None:
+    assert is_unit(text) is expected
 
 
 def test_display_turns_angles_into_degrees() -> None:

@@ -35,6 +35,15 @@ def test_utf_16_that_lost_its_mark(encoding: str, tmp_path: Path) -> None:
     assert f'encoding = "{encoding}"' in draft_trial(path).text
 
 
+@pytest.mark.parametrize("below", ["", "\n", "s,deg,deg\n", "[s],[deg],[deg]\n\n"])
+def test_units_and_empty_lines_below_the_names(below: str, tmp_path: Path) -> None:
+    path = write(tmp_path / "run.csv", ROWS, f"{HEADER}\n{below}".rstrip("\n") + "\n" * below.endswith("\n\n"))
+    (topic,) = survey_log(path).topics
+    assert [one.name for one in topic.columns] == ["heading", "rudder"]
+    assert [one.unit for one in topic.columns] == (["deg", "deg"] if "deg" in below else ["", ""])
+    assert 'channels.psi = { column = "heading", unit = "deg" }' in draft_trial(path).text
+
+
 def test_a_folder_with_brackets(tmp_path: Path) -> None:
     path = write(tmp_path / "[2024] trials (a)" / "run[1].csv", ROWS)
     assert [one.path for one in draft_trial(path.parent).surveys] == [path]

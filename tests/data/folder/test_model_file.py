@@ -66,6 +66,15 @@ def test_other_equations_are_refused(tmp_path: Path) -> None:
         read_model(path)
 
 
+@pytest.mark.parametrize("place", [(0, 0), (0, 1)])
+def test_an_element_far_beyond_the_variances_is_refused_without_a_warning(place: tuple[int, int]) -> None:
+    broken = whole_file().covariance.copy()
+    broken[place] = broken[place[::-1]] = -1e308
+    text = model_text(replace(whole_file(), covariance=broken))
+    with pytest.raises(InputError, match="not positive definite"):
+        parse_model(text, "model.toml")
+
+
 def own() -> Model:
     sheet = Sheet("my yaw")
     r, psi = sheet.states("r psi")

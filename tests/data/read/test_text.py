@@ -35,6 +35,13 @@ def test_separators_are_recognised(tmp_path: Path, mark: str) -> None:
     assert record.provenance.source == "run.txt" and len(record.provenance.sha256) == 64
 
 
+@pytest.mark.parametrize(("lines", "below"), [(1, "\n\n"), (2, "s,kn,deg\n"), (2, "s,kn,deg\n\n"), (3, "s,kn,deg\n\n")])
+def test_units_and_empty_lines_below_the_names(tmp_path: Path, lines: int, below: str) -> None:
+    path = tmp_path / "run.csv"
+    path.write_text("t,speed,head\n" + below + "\n".join(",".join(map(repr, row)) for row in ROWS))
+    expect(read_record(path, Layout("text", TIME, NAMED.columns, header_lines=lines)))
+
+
 @pytest.mark.parametrize("mark", [";", "\t", " "])
 def test_decimal_comma(tmp_path: Path, mark: str) -> None:
     text = "\n".join(mark.join(repr(x).replace(".", ",") for x in row) for row in ROWS)

@@ -35,6 +35,10 @@ def bars_chart(
     return Chart(title, (Panel(box, row_axis(labels), y, (*marks, Rule(base, BASE))),), legend)
 
 
+# decades of a logarithmic axis, ours: within what numbers of 64 bits can hold, with room for one more either way
+_LEAST_POWER, _LARGEST_POWER = -300.0, 300.0
+
+
 def _linear_axis(values: Sequence[float], unit: str) -> Axis:
     low, high = min([0.0, *values]), max([0.0, *values])
     free = MARGIN * (high - low) or 1.0
@@ -43,7 +47,7 @@ def _linear_axis(values: Sequence[float], unit: str) -> Axis:
 
 def _log_axis(values: Sequence[float], unit: str) -> Axis:
     """Whole decades; a smallest bar that would have no height gets one."""
-    powers = [math.log10(v) for v in values if v > 0.0] or [0.0]
+    powers = [min(max(math.log10(v), _LEAST_POWER), _LARGEST_POWER) for v in values if v > 0.0] or [0.0]
     low, high = math.floor(min(powers) - 0.1), math.ceil(max(powers) + 0.02)  # px, chosen
     return Axis((10.0**low, 10.0 ** max(high, low + 1)), unit, is_logarithmic=True)
 

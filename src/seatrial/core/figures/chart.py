@@ -40,7 +40,7 @@ class Axis:
             return (np.asarray(values, float) - low) / (high - low)
         numbers = np.asarray(values, float)
         positive = np.where(numbers > 0.0, numbers, np.nan)
-        return np.log(positive / low) / np.log(high / low)
+        return (np.log(positive) - np.log(low)) / (np.log(high) - np.log(low))
 
     def tick_list(self) -> tuple[Tick, ...]:
         """Return the ticks as given, else round numbers."""

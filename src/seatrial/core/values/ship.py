@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
+from seatrial.core.values.errors import InputError
 from seatrial.core.values.pickled import PickledByConstructor
 
 
@@ -16,6 +17,9 @@ class Ship(PickledByConstructor):
         particulars: symbol -> value; a model takes those it knows by name.
         source: where the particulars come from.
         scale: model scale 1:scale; 1 for full scale.
+
+    Raises:
+        InputError: the scale is not positive.
     """
 
     name: str
@@ -24,6 +28,10 @@ class Ship(PickledByConstructor):
     scale: float = 1.0
 
     def __post_init__(self) -> None:
+        if not self.scale > 0.0:
+            raise InputError(
+                f"ship: scale = {self.scale:g} is not positive; give 1 for full scale, 40 for a model 1:40"
+            )
         object.__setattr__(self, "particulars", MappingProxyType(dict(self.particulars)))
 
     @property

@@ -40,6 +40,11 @@ def si_unit(unit: str) -> tuple[float, str]:
     return _UNITS[unit]
 
 
+def is_unit(text: str) -> bool:
+    """Return whether a text is a unit or one of its usual spellings."""
+    return text in _UNITS or text.lower() in UNIT_WORDS
+
+
 def _unit_hint(unit: str) -> str:
     """The end of a sentence on an unknown unit: how it is written here, else all units."""
     meant = UNIT_WORDS.get(unit.strip().lower()) or next((u for u in _UNITS if u.lower() == unit.strip().lower()), "")

@@ -6,6 +6,7 @@ from pathlib import Path
 from seatrial.core.values import InputError
 from seatrial.data.read import ColumnSpec, Layout
 from seatrial.data.read.formats.text import column_names, decoded_text, detect_separator
+from seatrial.data.read.header import table_header
 
 # lines in which the first row of numbers is sought, ours: the longest header of a towing tank's files has forty
 _HEADER_LINES = 60
@@ -80,7 +81,9 @@ def _is_data(row: list[str]) -> bool:
 def _layout(lines: list[str], first: int, separator: str, encoding: str) -> Layout:
     row = _cells(lines[first], separator)
     decimal = "," if separator != "," and any("," in cell and _DECIMAL_COMMA.fullmatch(cell) for cell in row) else "."
-    header = _cells(lines[first - 1], separator) if first else []
+    while first and not lines[first - 1].strip():  # the reader passes over empty lines between header and data
+        first -= 1
+    header = table_header([_cells(line, separator) for line in lines[:first]]).names
     named = len(header) == len(row) and any(cell and not _CELL.fullmatch(cell) for cell in header)
     source: str | int = next(cell for cell in header if cell) if named else 1
     return Layout("text", ColumnSpec("time", source, "s"), (), first, encoding, decimal=decimal)

@@ -96,7 +96,9 @@ def covariance_matrix(rows: Sequence[Sequence[float]], where: str) -> Array:
             f"model file '{where} is not a symmetric matrix of finite numbers; "
             "write the file again with 'seatrial identify'"
         )
-    smallest = float(np.min(np.linalg.eigvalsh(matrix / size))) if len(rows) else 0.0
+    with np.errstate(over="ignore"):  # beyond 2, however far, it is no correlation
+        correlation = np.clip(matrix / size, -2.0, 2.0)
+    smallest = float(np.min(np.linalg.eigvalsh(correlation))) if len(rows) else 0.0
     if not smallest > -ROUNDING:
         raise InputError(
             f"model file '{where} is not positive definite (smallest eigenvalue {smallest:.3g} of its correlation "

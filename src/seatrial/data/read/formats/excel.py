@@ -7,6 +7,7 @@ from typing import Any
 
 from seatrial.core.values import InputError
 from seatrial.data.read.extras import fault_text, require_library
+from seatrial.data.read.header import table_header
 from seatrial.data.read.layout import Layout
 from seatrial.data.read.log import Log
 from seatrial.data.read.raw_table import RawTable
@@ -51,30 +52,15 @@ def _table(file: str, title: str, rows: list[tuple]) -> RawTable | None:
     first = next((k for k, row in enumerate(rows[: _HEADER_ROWS + 1]) if any(map(_is_number, row))), None)
     if first is None or len(rows) < first + 2:
         return None
-    header = [_text(cell) for cell in rows[first - 1]] if first else []
-    units: tuple[str, ...] = ()
-    if first > 1 and header and all(_is_unit(cell) for cell in header if cell):
-        units = tuple(cell.strip("[]() ") for cell in header)
-        header = [_text(cell) for cell in rows[first - 2]]
+    header = table_header([[_text(cell) for cell in row] for row in rows[:first]])
     width = max(len(row) for row in rows[first:])
     body = [row for row in rows[first:] if any(cell is not None for cell in row)]
     cells = tuple([_cell(row[k]) if k < len(row) else None for row in body] for k in range(width))
-    names = tuple(header[k] if k < len(header) else "" for k in range(width))
-    return RawTable(file, names, cells, first + 1, title, units + ("",) * (width - len(units)) if units else ())
+    return RawTable(file, header.names_of(width), cells, first + 1, title, header.units_of(width))
 
 
 def _is_number(cell: Any) -> bool:
     return isinstance(cell, int | float | datetime.datetime | datetime.time) and not isinstance(cell, bool)
-
-
-def _is_unit(text: str) -> bool:
-    from seatrial.core.values.units import si_unit
-
-    try:
-        si_unit(text.strip("[]() "))
-    except InputError:
-        return text.startswith(("[", "("))
-    return True
 
 
 def _text(cell: Any) -> str:

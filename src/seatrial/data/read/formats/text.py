@@ -8,11 +8,12 @@ import re
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 import numpy as np
 
 from seatrial.core.values import InputError
+from seatrial.data.read.header import table_header
 from seatrial.data.read.layout import Layout
 from seatrial.data.read.log import Log
 from seatrial.data.read.raw_table import EMPTY_CELLS, RawTable
@@ -133,11 +134,11 @@ def read_text(path: Path, layout: Layout) -> Log:
     if b"\n" not in data:
         data = data.replace(b"\r", b"\n")
     first = int(data.startswith(RECORD_MARK.encode()))
-    start = first + (max(layout.header_lines, 1) if layout.has_named_columns else layout.header_lines)
-    header, sample_line = _leading_lines(data, start)
+    header_lines = max(layout.header_lines, 1) if layout.has_named_columns else layout.header_lines
+    header, sample_line, start = _beginning(data, first + header_lines)
     if sample_line is None:
         lines = data.count(b"\n") + 1
-        raise InputError(f"{path.name} has no data lines: {lines} lines, {start} of them header")
+        raise InputError(f"{path.name} has no data lines: {lines} lines, {first + header_lines} of them header")
     separator = detect_separator(sample_line, layout)
     if b'"' in data:
         _refuse_open_quotes(data, start, path.name)
@@ -145,11 +146,11 @@ def read_text(path: Path, layout: Layout) -> Log:
     del data
     has_spaces = f"{separator} " in sample_line
     frame = _data_frame(source, start, separator, layout.decimal, path.name, has_spaces=has_spaces)
-    names = column_names(header[-1], separator) if layout.has_named_columns else []
-    width = frame.shape[1]
-    padded = (*names[:width], *[""] * (width - len(names)))
+    above = [column_names(line, separator) for line in header] if layout.has_named_columns else []
+    columns = table_header(above)
     cells = tuple(_cells(frame.pop(column), layout.decimal) for column in tuple(frame.columns))
-    return Log.of_table(RawTable(path.name, padded, cells, start + 1))
+    width = len(cells)
+    return Log.of_table(RawTable(path.name, columns.names_of(width), cells, start + 1, "", columns.units_of(width)))
 
 
 def _plain_head(path: Path, layout: Layout) -> bytes | None:
@@ -172,11 +173,20 @@ def _plain_head(path: Path, layout: Layout) -> bytes | None:
     return head if holds_a_row and b"\n" in head and not end.isspace() else None
 
 
-def _leading_lines(data: bytes, start: int) -> tuple[list[str], str | None]:
-    """The header lines and the first line of data; None where there is none."""
-    lines = (line.decode() for line in io.BytesIO(data))
-    header = [line.rstrip("\r\n") for _, line in zip(range(start), lines, strict=False)]
-    return header, next((line for line in lines if line.strip()), None)
+class _Beginning(NamedTuple):
+    """The header lines, the first line of data (None without any), and how many lines stand before that one."""
+
+    header: list[str]
+    sample_line: str | None
+    start: int
+
+
+def _beginning(data: bytes, header_lines: int) -> _Beginning:
+    """What stands before the data; empty lines after the header belong to it."""
+    lines = enumerate(line.decode() for line in io.BytesIO(data))
+    header = [line.rstrip("\r\n") for _, (_, line) in zip(range(header_lines), lines, strict=False)]
+    start, sample_line = next(((number, line) for number, line in lines if line.strip()), (header_lines, None))
+    return _Beginning(header, sample_line, start)
 
 
 def _after_lines(data: bytes, count: int) -> io.BytesIO:
