@@ -2,6 +2,8 @@
 
 Both fit the same rows: each decay from its release, from half a second later, and from its next two extremes on.
 R2 is that of the simulated angle over all of these rows. One decay also predicts the other without being refitted.
+The half of the larger swings of each predicts its other half and the halves of the other decay: how far a single decay
+can be judged by itself, and how far two decays of the same release differ.
 """
 
 import json
@@ -16,13 +18,16 @@ from against_shipmmg import HERE, peers_python
 from measure import Line, at_least, at_most, fastest
 
 from seatrial.core.values import Record
+from seatrial.data.check.signal import sample_noise
 from seatrial.data.trial import Trial, load_records, load_trial
 from seatrial.estimation.estimate import Estimation, Runs, estimate_model
-from seatrial.estimation.predict.open_loop import simulate_open_loop
+from seatrial.estimation.identify.roll_model_selection import halves, roll_structures
+from seatrial.estimation.predict.open_loop import rms_errors, simulate_open_loop
 
 TRIAL = HERE.parent / "examples" / "kvlcc2_rolldecay.toml"
 TARGETS = {"model_test_21337": 0.99998, "model_test_21338": 0.9999}
 CROSS, SECONDS = 0.998, 0.5
+CHOSEN, HALF_START_S = "quadratic damping, cubic restoring", 10.0  # structure and s of a half that give its start
 
 
 def r_squared(measured: np.ndarray, simulated: np.ndarray) -> float:
@@ -53,6 +58,29 @@ def _unexplained(quantity: str, score: float, target: float | None = None) -> Li
     return Line(said, left, "ppm") if target is None else at_most(said, left, "ppm", round(1e6 * (1.0 - target), 6))
 
 
+def halves_lines(trial: Trial, records: dict[str, Record]) -> list[Line]:
+    """Errors of both halves of both decays by the half of the larger swings of one, rms [deg]."""
+    model, lines = roll_structures(trial.model, None)[CHOSEN], []
+    runs = {name: Runs((r,), ("decay",), trial.ship.length, trial.noise, trial.forces) for name, r in records.items()}
+    splits = {name: halves(one) for name, one in runs.items()}
+
+    def missed(estimation: Estimation, record: Record) -> float:
+        made = simulate_open_loop(estimation.estimate.problem, estimation.model, record, np.zeros(0), HALF_START_S)
+        return rms_errors(record, made.record)["phi_deg"]
+
+    for name, split in splits.items():
+        (other,) = [s for n, s in splits.items() if n != name]
+        fit = estimate_model(model, split.fitted, trial.estimate)
+        lines += [
+            Line(f"{name}: noise from sample to sample", float(np.degrees(sample_noise(records[name]["phi"]))), "deg"),
+            Line(f"{name}: left of its half of larger swings", float(np.degrees(np.std(fit.residuals))), "deg"),
+            Line(f"{name}: its other half", missed(fit, split.judged), "deg"),
+            Line(f"{name}: the other decay, larger swings", missed(fit, other.fitted.records[0]), "deg"),
+            Line(f"{name}: the other decay, smaller swings", missed(fit, other.judged), "deg"),
+        ]
+    return lines
+
+
 def start_rows(record: Record) -> list[int]:
     """Rows: the release, half a second later, and the next two extremes."""
     rising = np.diff(record["phi"]) > 0.0
@@ -76,7 +104,7 @@ def run() -> list[Line]:
             _unexplained(f"{name} from {other}", predicted_r_squared(found[other], record, 10.0), CROSS),
             at_most(f"{name}: fit", fastest(lambda r=record: fit_decay(trial, r), 3), "s", SECONDS),
         ]
-    return [*lines, *_compare_with_peer(trial, records, found)]
+    return [*lines, *halves_lines(trial, records), *_compare_with_peer(trial, records, found)]
 
 
 def _compare_with_peer(trial: Trial, records: dict[str, Record], estimations: dict[str, Estimation]) -> list[Line]:

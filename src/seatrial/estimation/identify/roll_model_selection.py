@@ -13,6 +13,7 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.results import CandidateModel
 from seatrial.core.values import Array, Finding, InputError, ProgressReporter, Record, Severity
+from seatrial.data.check.signal import sample_noise
 from seatrial.data.trial import EstimateSettings, ModelFamily
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
 from seatrial.estimation.estimate.runs import Runs
@@ -81,7 +82,7 @@ def select_roll_model(
     """
     members = roll_structures(model, family)
     quiet = replace(options, workers=1, intervals=IntervalMethod.AUTO)
-    splits = _runs_left_out(train) if len(train) > 1 else (_halves(train),)
+    splits = _runs_left_out(train) if len(train) > 1 else (halves(train),)
 
     def scored(item: tuple[str, Model]) -> _Scored:
         if report_progress:
@@ -128,39 +129,42 @@ class _Scored:
 
 
 @dataclass(frozen=True, eq=False)
-class _Split:
+class Split:
     """Runs that are fitted, and the one that is predicted then."""
 
     fitted: Runs
     judged: Record
 
 
-def _runs_left_out(train: Runs) -> tuple[_Split, ...]:
+def _runs_left_out(train: Runs) -> tuple[Split, ...]:
     """Each run in turn, predicted by the others."""
     indices = range(len(train))
-    return tuple(_Split(train.selected([j for j in indices if j != i]), train.records[i]) for i in indices)
+    return tuple(Split(train.selected([j for j in indices if j != i]), train.records[i]) for i in indices)
 
 
-def _halves(train: Runs) -> _Split:
+def halves(train: Runs) -> Split:
     """Of the only run, the half of the larger swings is fitted and predicts the other."""
     (record,) = train.records
     middle = len(record.time) // 2
     halves = [record.rows(slice(0, middle)).renamed(f"{record.name}, first half"),
               record.rows(slice(middle, None)).renamed(f"{record.name}, second half")]  # fmt: skip
     smaller, larger = sorted(halves, key=lambda half: float(np.nanstd(half["phi"])))
-    return _Split(replace(train, records=(larger,)), smaller)
+    return Split(replace(train, records=(larger,)), smaller)
 
 
 def _halves_finding(train: Runs, name: str, scored: _Scored) -> tuple[Finding, ...]:
     """Return that the model of a single decay does not explain its other half."""
     if len(train) > 1 or scored.error <= NOISE_FACTOR * scored.noise:
         return ()
+    sensor = float(np.degrees(sample_noise(train.records[0]["phi"])))
     what = (
         f"fitted to the half of the larger swings, '{name}' misses the other half by {scored.error:.2g} deg, "
-        f"{scored.error / scored.noise:.2g} times what it leaves of the first"
+        f"{scored.error / scored.noise:.2g} times what it leaves of the first; that is "
+        f"{scored.noise / max(sensor, np.finfo(float).tiny):.2g} times the noise from sample to sample"
     )
     advice = (
-        "take its damping as a mean over the amplitudes recorded; record a second decay, so that each judges the other"
+        "take its damping as a mean over the amplitudes recorded; record a second decay, so that each judges "
+        "the other; two decays may differ more than the halves of one"
     )
     return (Finding(Severity.INFO, "half-missed", what, f"'{train.records[0].name}'", advice),)
 
