@@ -8,6 +8,7 @@ from seatrial.problems.method import EnteredMethod as EnteredMethod, built_in_me
 from seatrial.problems.method import entered_method as entered_method, method_named as method_named
 from seatrial.problems.boxes import centred_box as centred_box, off_centre_box as off_centre_box
 from seatrial.problems.boxes import scaled_values as scaled_values
+from seatrial.problems.boxes import standard_errors_within as standard_errors_within, start_within as start_within
 from seatrial.problems.posed import BudgetSpent as BudgetSpent, PosedProblem as PosedProblem
 from seatrial.problems.problem import BenchmarkProblem as BenchmarkProblem, PaperClaim as PaperClaim
 from seatrial.problems.problem import Placement as Placement

@@ -41,7 +41,7 @@ def problems() -> tuple[BenchmarkProblem, ...]:
     noise = "gusts of 0.3 times the rudder's effect with a memory of 5 s; psi 0.05 deg, r 0.02 deg/s, white"
     return tuple(
         BenchmarkProblem(
-            f"nomoto-gusts-{name}", 1, f"K and T of a steering model under gusts, {text}, 600 s", _SOURCE, noise,
+            f"nomoto-gusts-{name}", 2, f"K and T of a steering model under gusts, {text}, 600 s", _SOURCE, noise,
             _BUDGET, partial(_draw, is_closed=name == "closed"),
         )
         for name, text in words.items()

@@ -121,7 +121,7 @@ def problems() -> tuple[BenchmarkProblem, ...]:
     noise = "u, v 0.03 m/s, r 0.01 rad/s, psi 0.01 rad, x0, y0 0.1 m, white"
     return tuple(
         BenchmarkProblem(
-            f"thrusters-{name}", 1,
+            f"thrusters-{name}", 2,
             f"a craft with {_WORDS[name]}, three runs of 60 s of steps of all commands, box ±50 % off centre",
             "ours", noise, _BUDGET, partial(_draw, craft),
         )

@@ -8,9 +8,9 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Record, Ship
 from seatrial.data.trial import EstimateSettings, Trial, TrialRun
-from seatrial.estimation.information.covariance import from_information
 from seatrial.estimation.problem import OutputError, cut_segments
 from seatrial.numerics.optimise import Box, NormalEquations
+from seatrial.problems.boxes import standard_errors_within, start_within
 from seatrial.problems.problem import ProblemDraw
 from seatrial.problems.yardstick import KnownTruth
 
@@ -64,20 +64,19 @@ def craft_draw(craft: KnownCraft, box: Box, start: Array) -> ProblemDraw:
     """Return the draw of a craft: bounds, start values (d,), truth and Cramer-Rao bound."""
     names = craft.model.parameters.free_names
     truth = np.array([craft.model.parameters[name].value for name in names])
-    values = dict(zip(names, start.tolist(), strict=True))
     problem = _output_error(craft)
     states = np.tile([craft.initial_state.get(s, 0.0) for s in problem.starts], (len(craft.records), 1))
     held = HeldInitialStates(problem, states.astype(np.float64), box.lower, box.upper)
     bound = craft.disturbance_bound
     if bound is None:
-        bound = from_information(held.normal(truth).hessian).standard_error
+        bound = standard_errors_within(held.normal(truth).hessian, box)
 
     def fitness(points: Array, _: int) -> Array:
         return np.array([held.cost(point) for point in points])
 
     trial = Trial(
-        craft.ship, tuple(map(TrialRun, craft.records)), craft.model.with_values(values), craft.settings,
-        dict(craft.noise),
+        craft.ship, tuple(map(TrialRun, craft.records)), start_within(craft.model, names, start, box),
+        craft.settings, dict(craft.noise),
     )  # fmt: skip
     units = tuple(craft.model.parameters[name].unit for name in names)
     return ProblemDraw(names, units, box, fitness, KnownTruth(truth, bound), start, held, trial)

@@ -26,7 +26,7 @@ def problems() -> tuple[BenchmarkProblem, ...]:
     """Return the problem."""
     title = "waterjet craft in zigzags of 415 s, box ±50 % off centre"
     noise = "; ".join(f"{channel} {deviation:.3g}" for channel, deviation in SENSOR_NOISE.items()) + ", SI, white"
-    return (BenchmarkProblem("song2025-zigzags", 1, title, _SOURCE, noise, _BUDGET, _draw),)
+    return (BenchmarkProblem("song2025-zigzags", 2, title, _SOURCE, noise, _BUDGET, _draw),)
 
 
 def _draw(rng: np.random.Generator, placement: Placement) -> ProblemDraw:

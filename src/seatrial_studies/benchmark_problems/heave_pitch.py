@@ -6,6 +6,7 @@ from enum import Enum
 
 import numpy as np
 
+from seatrial.core.equations import Model
 from seatrial.core.values import Array, Record, RecordKind
 from seatrial.data.trial import Trial, TrialRun
 from seatrial.estimation.problem import LinearOutputError
@@ -20,6 +21,8 @@ from seatrial.problems import (
     ProblemDraw,
     centred_box,
     off_centre_box,
+    standard_errors_within,
+    start_within,
 )
 from seatrial_studies.output_error_fit import MOTION_NOISE, output_error_problem
 from seatrial_studies.published_ship import SHIP
@@ -35,6 +38,8 @@ from seatrial_studies.swarm_search import (
 _SCALE = 0.1
 """Half range of the factor by which a draw scales each true coefficient, 1; chosen, the ship stays a ship."""
 _NO_LOCAL = np.zeros((0, 0))
+_VERSION = 2
+"""Of the problems: since 2 the trial states the box as bounds, and the bound counts the box."""
 NOISE_TEXT = "heave 0.01 m, pitch 0.02 deg, white"
 
 
@@ -81,11 +86,11 @@ class HeavePitchSetting:
             noise=(MOTION_NOISE[0], MOTION_NOISE[1]) if self.has_noise else (0.0, 0.0), ship=ship,
         )  # fmt: skip
         problem = output_error_problem(data, data.measured)
-        bound = self._bound(problem, truth) if self.has_noise else None
+        bound = standard_errors_within(problem.normal(truth, _NO_LOCAL).hessian, box) if self.has_noise else None
         start = self._start(problem, box)
         return ProblemDraw(
             names, tuple(ship.parameters[name].unit for name in names), box, self._fitness(data, names),
-            KnownTruth(truth, bound), start, problem, _trial(data, problem, start, self.has_noise),
+            KnownTruth(truth, bound), start, problem, _trial(data, problem.model, start, box, self.has_noise),
         )  # fmt: skip
 
     @property
@@ -117,13 +122,8 @@ class HeavePitchSetting:
             start = np.where(is_stiffness, 0.5 * (box.lower + box.upper), start)
         return start
 
-    @staticmethod
-    def _bound(problem: LinearOutputError, truth: Array) -> Array:
-        """Standard errors of the Cramer-Rao bound at the truth, initial state known, (d,)."""
-        return np.sqrt(np.diag(np.linalg.inv(problem.normal(truth, _NO_LOCAL).hessian)))
 
-
-def _trial(data: SearchData, problem: LinearOutputError, start: Array, has_noise: bool) -> Trial:
+def _trial(data: SearchData, model: Model, start: Array, box: Box, has_noise: bool) -> Trial:
     """Records and model as `identify` takes them; forces positive up, and bow down, as records have them."""
     time = np.arange(len(data.measured), dtype=np.float64) * STEP
     channels = {
@@ -131,8 +131,7 @@ def _trial(data: SearchData, problem: LinearOutputError, start: Array, has_noise
     }  # fmt: skip
     record = Record.from_arrays("run", time, channels, RecordKind.SIMULATED)
     noise = {"z": float(MOTION_NOISE[0]), "theta": float(MOTION_NOISE[1])} if has_noise else {}
-    model = problem.model.with_values(dict(zip(problem.model.parameters.free_names, start.tolist(), strict=True)))
-    return Trial(SHIP, (TrialRun(record),), model, noise=noise)
+    return Trial(SHIP, (TrialRun(record),), start_within(model, model.parameters.free_names, start, box), noise=noise)
 
 
 def heave_pitch_problem(
@@ -140,4 +139,6 @@ def heave_pitch_problem(
 ) -> BenchmarkProblem:  # fmt: skip
     """Return the benchmark problem of a setting."""
     is_changing = setting.judged is Judged.ONE_SAMPLE
-    return BenchmarkProblem(name, 1, title, source, setting.noise_text, budget, setting.draw, is_changing, claims)
+    return BenchmarkProblem(
+        name, _VERSION, title, source, setting.noise_text, budget, setting.draw, is_changing, claims
+    )

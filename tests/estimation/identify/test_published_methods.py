@@ -129,8 +129,10 @@ def test_a_search_of_a_nonlinear_model_minimises_the_rms_over_the_record(reposit
     assert fit.search.history[-1] == pytest.approx(np.sqrt(np.nanmean(residuals**2)), rel=1e-9)
 
 
-def test_a_regression_gives_the_values_of_its_estimator(repository: Path) -> None:
+def test_a_regression_gives_the_values_of_its_estimator_and_names_those_beyond_bounds(repository: Path) -> None:
     fit = identify(example(repository, "waterjet", EstimateMethod.OLS, None))
+    beyond = {p.name for p in fit.model.parameters.free if not p.lower <= p.value <= p.upper}
+    assert beyond == {f.message.split()[4] for f in fit.findings if f.code == "outside-bounds"}
     training = [p.measured for p in fit.predictions if p.role == "training"]
     named = estimator_named("central differences, least squares", 1.0).estimate(fit.model, training)
     np.testing.assert_allclose(list(fit.params.values()), named.values, rtol=1e-9)

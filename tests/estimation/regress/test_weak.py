@@ -131,3 +131,20 @@ def test_several_runs_count_together(weak: WeakForm) -> None:
     double = replace(weak, states=weak.states * 2, inputs=weak.inputs * 2)
     point, none = np.zeros(3), np.zeros((0, 0))
     assert double.cost(point, none) == pytest.approx(2 * weak.cost(point, none))
+
+
+def test_a_held_input_is_integrated_as_it_acts(rng: np.random.Generator) -> None:
+    """The state of x' = -a x + u, u constant between samples, in closed form; straight lines would put u half a
+    sample early."""
+    sheet = Sheet("held")
+    x = sheet.states("x")[0]
+    force = sheet.input("force", is_held=True)
+    a, b = (sheet.parameter(n, 1.0, free=True) for n in ("a", "b"))
+    sheet.rate(x, -a * x + b * force)
+    force_values, decay = rng.standard_normal(2000), np.exp(-0.3 * DT)
+    states = np.zeros(2000)
+    for k in range(1999):
+        states[k + 1] = decay * states[k] + 2.0 * (1.0 - decay) / 0.3 * force_values[k]
+    weak = WeakForm(sheet.model(), (states[:, None],), (force_values[:, None],), DT, 5.0, np.ones(1))
+    solution = levenberg_marquardt(weak, np.ones(2), np.zeros((0, 0))).solution
+    np.testing.assert_allclose(solution.point, [0.3, 2.0], rtol=2e-3)

@@ -1,17 +1,23 @@
 """A filter that nothing corrects is a simulation: the same inputs with the same corrections, derivatives included."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from seatrial.physics.models.heave_pitch import heave_pitch_zoh
 from seatrial.physics.models.waterjet import waterjet
 from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch
 from seatrial.physics.simulate.filtering import FilterPoint, KalmanFilter, corrected_inputs
+from seatrial.physics.simulate.linear import LinearBatch
 
 Array = NDArray[np.float64]
 OUTPUTS = ("u", "v", "r", "psi", "x0", "y0")
 DT, ROWS = 0.25, 80
 CORRECTIONS = tuple(InputCorrection("delta", kind) for kind in ("zero", "gain", "delay"))
+# kg, kg m^2 and SI of a ship of 440 t that heaves and pitches at 1.9 and 1.6 rad/s; chosen
+HULL = {"m": 4.4e5, "I5": 1e8, "a33": 4e5, "a55": 1e8, "b33": 1e6, "b55": 2e8, "c33": 3e6, "c55": 5e8}
 START = np.array([[0.9, 0.0, 0.0, 0.2, 0.0, 0.0], [1.0, 0.1, 0.0, 0.0, 5.0, 0.0]])
 
 
@@ -38,6 +44,23 @@ def test_without_gain_it_simulates(inputs: Array, substeps: int, delay: float) -
         np.testing.assert_allclose(e, -y[rows], rtol=1e-12, atol=1e-12)
         np.testing.assert_array_equal(v, np.ones((ROWS, 6)))
         np.testing.assert_allclose(de[:, :, :5], -s[rows], rtol=1e-9, atol=1e-11)
+
+
+def test_of_a_linear_model_inputs_that_are_held_stay_constant_between_samples(rng: np.random.Generator) -> None:
+    """Samples half a second apart, as of a ship in waves: the exact propagation of the linear engine."""
+    zero = dict.fromkeys((n for n in heave_pitch_zoh().parameters.names if n[0] in "abc"), 0.0)
+    model, offsets = heave_pitch_zoh().with_values(zero | HULL), np.array([0, ROWS])
+    force = np.zeros((ROWS, 4))
+    force[:, :2] = rng.standard_normal((ROWS, 2)) * [1e6, 1e7]
+    values, none = model.parameters.values[None], np.zeros((1, 0))
+    y, _ = LinearBatch(model, force, offsets, 0.5, ("z", "theta")).simulate(0, 1, np.zeros((1, 4)), values, none)
+    run = KalmanFilter(model, force, offsets, 0.5, ("z", "theta"))
+    at = FilterPoint(np.zeros((1, 4)), np.zeros((1, 4)), values, none, np.zeros(0), np.ones(2))
+    e, _, failed = run.innovations(0, np.zeros((ROWS, 2)), at)
+    assert not failed
+    np.testing.assert_allclose(e, -y, atol=1e-4 * np.abs(y).max())
+    ahead = run.predict_ahead(0, y, replace(at, deviation=np.full(2, 1e3)), np.array([10, 40]), 20)
+    np.testing.assert_allclose(ahead[1], y[40:61], atol=1e-3 * np.abs(y).max())
 
 
 def test_corrections_have_their_derivatives(inputs: Array) -> None:

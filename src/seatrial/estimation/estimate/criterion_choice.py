@@ -81,8 +81,11 @@ class CriterionChoice:
 
     @property
     def is_nearly_white(self) -> bool:
-        """Whether residuals are correlated so weakly that each sample counts as one."""
-        return bool(np.max(self.inflation) <= WHITE_INFLATION)
+        """Whether residuals are white, or correlated so weakly that each sample counts as one.
+
+        Of a few hundred white samples the inflation exceeds its limit by chance in one fit of five.
+        """
+        return self.whiteness.is_white or bool(np.max(self.inflation) <= WHITE_INFLATION)
 
     @property
     def hints_at_disturbance(self) -> bool:

@@ -67,12 +67,21 @@ class WeakForm:
     def _half(self) -> int:
         return max(2, round(self.half_width / self.dt))
 
+    @cached_property
+    def _mean_inputs(self) -> list[Array]:
+        """Inputs by which the trapezoidal rule is exact: where one is held, the mean of its values on both sides."""
+        if not self.model.is_affine:  # other models take all inputs as straight between samples
+            return list(self.inputs)
+        is_held = np.array([i.is_held for i in self.model.inputs])
+        before = [np.concatenate([u[:1], u[:-1]]) for u in self.inputs]
+        return [np.where(is_held, 0.5 * (u + b), u) for u, b in zip(self.inputs, before, strict=True)]
+
     def linearised(self, point: Array) -> tuple[Array, Array]:
         """Windowed residuals (windows, nx) and their derivatives (windows, nx, free)."""
         values = self.model.parameters.with_free_values(point).values
         nx, nu = len(self.model.states), len(self.model.inputs)
         residuals, jacobians = [], []
-        for x, u in zip(self.states, self.inputs, strict=True):
+        for x, u in zip(self.states, self._mean_inputs, strict=True):
             out, jac = np.empty((len(x), nx)), np.zeros((len(x), nx, nx + nu + len(values)))
             evaluate_tangent(self.model.compiled.rates_tangent, x, u, np.tile(values, (len(x), 1)), self.dt, out, jac)
             jac = jac[:, :, [nx + nu + i for i in self._free]]

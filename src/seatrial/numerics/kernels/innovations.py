@@ -53,7 +53,7 @@ def propagate_covariance(transition, covariance, process, noisy_states, dt, work
 
 @kernel(
     I8(
-        *(TANGENT, TANGENT, MATRIX, MATRIX, F8, I8, VECTOR, VECTOR, VECTOR),
+        *(TANGENT, TANGENT, MATRIX, MATRIX, VECTOR, F8, I8, VECTOR, VECTOR, VECTOR),
         *(TABLE, TABLE, TABLE, TABLE, TABLE, INDEX, INDEX, VECTOR, VECTOR, MATRIX),
         *(MATRIX, MATRIX, CUBE, CUBE, MATRIX, MATRIX),
         *(MATRIX, CUBE, MATRIX, MATRIX, MATRIX, MATRIX, VECTOR, CUBE, MATRIX, MATRIX),
@@ -61,7 +61,7 @@ def propagate_covariance(transition, covariance, process, noisy_states, dt, work
     **LEAN,
 )
 def _filter_innovations(
-    f, g, inputs, weights, dt, substeps, x0, variance0, p,
+    f, g, inputs, weights, rise, dt, substeps, x0, variance0, p,
     chain, link_p, link_u, g_link_p, g_link_u, select, noisy_states, process, measurement, measured,
     e_out, v_out, de_out, dv_out, variance_out, state_out,
     work_x, work_s, work_u, work_w, jac, g_jac, g_value, covariance, work, covariance_times_h,
@@ -159,9 +159,10 @@ def _filter_innovations(
             for place in range(3):
                 part = (m + 0.5 * place) / substeps
                 for j in range(inputs.shape[1]):
-                    work_u[place, j] = inputs[row, j] + part * (inputs[row + 1, j] - inputs[row, j])
+                    work_u[place, j] = inputs[row, j] + rise[j] * part * (inputs[row + 1, j] - inputs[row, j])
                 for j in range(weights.shape[1]):
-                    work_w[place, j] = weights[row, j] + part * (weights[row + 1, j] - weights[row, j])
+                    going = rise[j // 3] * part  # three weights an input
+                    work_w[place, j] = weights[row, j] + going * (weights[row + 1, j] - weights[row, j])
             for i in range(nx):
                 y[i], acc[i] = x[i], 0.0
                 for c in range(nx + width):
@@ -190,7 +191,7 @@ def _filter_innovations(
 
 
 def filter_innovations(
-    f, g, inputs, weights, dt, substeps, x0, variance0, p,
+    f, g, inputs, weights, rise, dt, substeps, x0, variance0, p,
     chain, link_p, link_u, g_link_p, g_link_u, select, ng, noisy_states, process, measurement, measured,
     e_out, v_out, de_out, dv_out, variance_out, state_out,
 ):  # fmt: skip
@@ -199,8 +200,9 @@ def filter_innovations(
     Return the sample before which the solution left all bounds, the rest being unwritten, or -1.
 
     inputs (rows, nu), corrected; weights (rows, 3 nu), their derivatives by offset, gain and delay, or (rows, 0) where
-    no column needs them; x0, variance0 (nx,): mean and variance of the initial state. process: variance a second of
-    each state's white noise, (nx,); measurement: variance of each channel, (ny,). de_out (rows, ny, columns):
+    no column needs them; rise (nu,): 1 for inputs that run straight from sample to sample, 0 for those that are held;
+    x0, variance0 (nx,): mean and variance of the initial state. process: variance a second of each state's white
+    noise, (nx,); measurement: variance of each channel, (ny,). de_out (rows, ny, columns):
     sensitivities of e, columns as the links say (counted from nx, the first nx being the transition matrix), the last
     ones by process of `noisy_states` and by measurement; dv_out (rows, ny, noise columns) those of v; without columns
     the likelihood alone. variance_out (rows or 0, nx): of the states before each sample; state_out (rows or 0,
@@ -209,7 +211,7 @@ def filter_innovations(
     nx, nu, width = x0.size, inputs.shape[1], de_out.shape[2]
     whole, covs = nx + nu + p.size, 1 + dv_out.shape[2]
     outputs = ng if np.any(select >= nx) else 0
-    return _filter_innovations(f, g, inputs, weights, dt, substeps, x0, variance0, p,
+    return _filter_innovations(f, g, inputs, weights, rise, dt, substeps, x0, variance0, p,
                      chain, link_p, link_u, g_link_p, g_link_u, select, noisy_states, process, measurement, measured,
                      e_out, v_out, de_out, dv_out, variance_out, state_out,
                      np.empty((7, nx)),  # 7 vectors of states, taken apart at the kernel's head

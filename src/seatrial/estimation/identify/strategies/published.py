@@ -61,7 +61,7 @@ def published_fit(reference: Fit, estimate: PublishedEstimate, cpu_s: float) -> 
         channel_noise=(),
         residuals=(),
         predictions=predictions,
-        findings=(*reference.findings, *estimate.findings, *findings),
+        findings=(*reference.findings, *estimate.findings, *_outside_bounds(model), *findings),
         identifiability=None,
         noise_model=None,
         candidate_models=(),
@@ -80,6 +80,18 @@ def _without_interval(c: Coefficient, values: dict[str, float]) -> Coefficient:
         return c
     return replace(c, estimate=values[c.name], standard_error=None, lower=None, upper=None, prior_mean=None,
                    prior_standard_deviation=None)  # fmt: skip
+
+
+def _outside_bounds(model: Model) -> list[Finding]:
+    """A warning for every coefficient that a method which knows no bounds puts beyond them."""
+    return [
+        Finding(
+            Severity.WARNING, "outside-bounds", f"the method puts coefficient {p.name} outside its bounds",
+            f"{p.value:g}, bounds {p.lower:g} to {p.upper:g}", "take the package's own estimate, which stays within",
+        )
+        for p in model.parameters.free
+        if not p.lower <= p.value <= p.upper
+    ]  # fmt: skip
 
 
 def _predictions(reference: Fit, model: Model) -> tuple[tuple[Prediction, ...], list[Finding]]:
