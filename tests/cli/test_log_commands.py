@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from tests.data.draft.test_draft import BASE, TRUTH, write
 from tests.data.read.samples import SAMPLES
@@ -54,14 +55,25 @@ def test_sources_without_a_time_column_are_drafted_with_their_columns(tmp_path: 
     assert "OPEN: no input" in text and "text: note" in output("check", logs[0])
 
 
-def test_a_draft_with_manoeuvres_offers_their_parts_and_a_model_of_its_inputs(tmp_path: Path) -> None:
+def test_a_draft_of_runs_takes_them_whole_and_a_model_of_its_inputs(tmp_path: Path) -> None:
     columns = BASE | {"thr_left": 1500.0 + 300.0 * TRUTH["delta"], "thr_right": 1500.0 - 300.0 * TRUTH["delta"]}
     write(tmp_path / "a.csv", columns)
     write(tmp_path / "b.csv", columns)
     text = output("init", str(tmp_path), "--out", str(tmp_path / "trial.toml"))
-    assert "uncomment the parts you want of 6 manoeuvres" in text
+    assert "a.csv: 3 manoeuvres: zigzag, straight, circle to starboard" in text
+    assert "fill in [ship], then seatrial check" in text
     draft = (tmp_path / "trial.toml").read_text(encoding="utf-8")
-    assert draft.count("# parts = [") == 2 and "zigzag2" in draft and '# name = "thrusters"' in draft
+    assert "parts" not in draft
+    assert '\nname = "thrusters"' in draft
+    assert 'validate = "a"' in draft
+
+
+def test_a_single_log_offers_its_manoeuvres_as_parts(tmp_path: Path) -> None:
+    write(tmp_path / "a.csv", BASE | {"rudder": TRUTH["delta"] * 180.0 / np.pi})
+    text = output("init", str(tmp_path), "--out", str(tmp_path / "trial.toml"))
+    assert "uncomment the parts you want of 3 manoeuvres" in text
+    draft = (tmp_path / "trial.toml").read_text(encoding="utf-8")
+    assert draft.count("# parts = [") == 1 and '# validate = "circle_starboard_1"' in draft
 
 
 def test_a_model_without_its_input_in_the_records_cannot_start_yet(tmp_path: Path) -> None:

@@ -32,6 +32,7 @@ def init(
     from seatrial.core.text.words import counted
     from seatrial.core.values import InputError
     from seatrial.core.values.files import write_atomically
+    from seatrial.data.draft import run_text
     from seatrial.reporting.draft import html as draft_page
 
     if out.exists():
@@ -43,9 +44,10 @@ def init(
     write_atomically(out, draft.text.encode())
     write_atomically(page, draft_page(draft, out.name).encode())
     _print_guesses([g for part in draft.guesses for g in part if g.is_used])
-    for run, stretches in zip(draft.runs, draft.stretches, strict=True):
+    for run, stretches, parts in zip(draft.runs, draft.stretches, draft.parts, strict=True):
         name = run.name or run.sources[0].path.name
-        print_lines(f"{name}: {one.name}, {one.start:.4g} to {one.stop:.4g} s: {one.evidence}" for one in stretches)
+        print_lines(f"{name}: {one.name}, {one.start:.4g} to {one.stop:.4g} s: {one.evidence}" for one in parts)
+        print_lines([f"{name}: {run_text(stretches)}"] if stretches and not parts else [])
     questions = draft.open_questions
     if questions:
         print_lines([f"{counted(len(questions), 'column')} to decide, marked OPEN in the file"])
@@ -67,8 +69,9 @@ def _after_draft(draft: "DraftTrial", out: Path) -> str:
     if not any(g.is_used for part in draft.guesses for g in part):
         log = draft.surveys[0].path
         return f"no column is recognised; seatrial check {in_shell(log)} lists them, name channels in {out}"
-    count = sum(map(len, draft.stretches))
+    count = sum(map(len, draft.parts))
     steps = ["decide what is OPEN in it"] if draft.open_questions else []
+    steps += ["fill in [ship]"]
     steps += [f"uncomment the parts you want of {counted(count, 'manoeuvre')} in it"] if count else []
     return f"{', '.join([f'read {out}', *steps])}, then seatrial check {in_shell(out)}"
 

@@ -99,7 +99,7 @@ def test_the_drafted_file_is_read_and_checked_without_model_and_ship(tmp_path: P
     assert [run.name for run in runs] == ["a", "b"]
     np.testing.assert_allclose(runs[0].raw_record()["delta"], TRUTH["delta"], atol=1e-6)
     findings = check(tmp_path / "trial.toml")
-    assert findings[-1].code == "model" and "[ship], with name and L, is missing" in findings[-1].advice
+    assert findings[-1].code == "model" and "key 'ship.L' is missing" in findings[-1].advice
     assert not [one for one in findings if one.severity.value == "error"]
 
 

@@ -21,6 +21,30 @@ def test_speeds_along_and_across_and_the_rate_of_the_shaft_are_recognised(name: 
     assert (guess.symbol, guess.unit) == (symbol, unit)
 
 
+@pytest.mark.parametrize(
+    ("name", "symbol"),
+    [
+        ("pwm_port", "command_1"),
+        ("stbd_thruster", "command_2"),
+        ("left motor pwm", "command_1"),
+        ("servo3_raw", "command_3"),
+        ("battery_v", "voltage"),
+        ("battery voltage [V]", "voltage"),
+    ],
+)
+def test_commands_and_batteries_are_recognised(name: str, symbol: str) -> None:
+    guess = guess_by_name("", name, "")
+    assert guess is not None
+    assert guess.symbol == symbol
+
+
+def test_the_rate_of_an_engine_is_recognised_and_not_taken_for_that_of_the_propeller() -> None:
+    guess = guess_by_name("", "Engine rpm", "")
+    assert guess is not None
+    assert (guess.symbol, guess.unit) == ("n", "rpm")
+    assert "propeller turns over engine turns" in guess.rule.unused_because
+
+
 def test_a_speed_of_the_wind_is_no_speed_of_the_craft() -> None:
     guess = guess_by_name("", "Wind speed fwd", "")
     assert guess is None

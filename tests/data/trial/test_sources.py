@@ -83,6 +83,25 @@ parts = [
         np.testing.assert_allclose(record["u"], np.interp(record.time, TIME, SPEED), atol=1e-6)
 
 
+def test_a_part_of_one_of_several_files_leaves_the_others_whole(tmp_path: Path) -> None:
+    for name in ("a.csv", "b.csv"):
+        SAMPLES["run.csv"].write(tmp_path / name)
+    text = """
+[[records]]
+files = ["a.csv", "b.csv"]
+validate = "late"
+time = { column = "t" }
+channels.u = { column = "speed", unit = "m/s" }
+parts = [{ file = "b", name = "late", from = "5 s" }]
+"""
+    whole, late = load(tmp_path, text).runs
+    assert (whole.name, late.name, late.role) == ("a", "late", Role.VALIDATE)
+    assert len(whole.raw_record()) == len(TIME)
+    assert late.raw_record().time[0] == pytest.approx(5.0)
+    with pytest.raises(InputError, match=r"records\[1\].parts: 'late' is of file 'c', which is not among files"):
+        load(tmp_path, text.replace('file = "b"', 'file = "c"'))
+
+
 def test_a_clock_since_1970_is_set_back_to_the_start(tmp_path: Path) -> None:
     SAMPLES["run.mcap"].write(tmp_path / "run.mcap")
     text = """

@@ -120,6 +120,13 @@ def test_what_is_wrong_is_said_in_one_sentence(tmp_path: Path, parts: dict[str, 
     assert len(str(refusal.value)) < 500
 
 
+def test_thrusters_that_cannot_turn_the_craft_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "trial.toml"
+    path.write_text(FILE.format(**PARTS).replace("y = -0.3", "y = 0.0").replace("value = 30.0", "value = 0.0"))
+    with pytest.raises(InputError, match=r"'port', 'starboard' all push through the origin .* state x and y of each"):
+        load_trial(path)
+
+
 def test_thrusters_belong_to_their_model(tmp_path: Path) -> None:
     path = tmp_path / "trial.toml"
     path.write_text(FILE.format(**PARTS).replace('name = "thrusters"', 'name = "nomoto"'))

@@ -1,6 +1,7 @@
 from seatrial.data.draft.behaviour import checked_by_behaviour
 from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.draft import DraftTrial, draft_trial
+from seatrial.data.draft.draft_text import run_text
 from seatrial.data.draft.guess import guess_columns
 from seatrial.data.draft.manoeuvres import find_stretches
 from seatrial.data.draft.runs_of_logs import LogRun, runs_of_logs
@@ -19,6 +20,7 @@ __all__ = [
     "draft_trial",
     "find_stretches",
     "guess_columns",
+    "run_text",
     "runs_of_logs",
     "survey_log",
 ]

@@ -24,7 +24,7 @@ from seatrial.data.check.timestamps import rebuild_time_base
 from seatrial.data.check.velocity_conventions import ACCEPTABLE_MISFIT
 from seatrial.data.draft.axes import with_axes_by_fixes
 from seatrial.data.draft.column_guess import Changes, ColumnGuess
-from seatrial.data.draft.commands import command_directions
+from seatrial.data.draft.commands import command_directions, rest_of_commands
 from seatrial.data.draft.survey import LogSurvey
 from seatrial.data.read.assemble import LogSource, assemble_record, record_of_sources
 
@@ -40,7 +40,14 @@ def checked_by_behaviour(
 ) -> list[list[ColumnGuess]]:
     """Return the guesses of the sources of one run with units, frames and signs as the motion shows them."""
     result = with_axes_by_fixes([list(one) for one in guesses], partial(run_record, surveys))
-    for decide in (_yaw_rate_unit, _velocity_convention, _ground_speed_unit, _rudder_sign, command_directions):
+    for decide in (
+        _yaw_rate_unit,
+        _velocity_convention,
+        _ground_speed_unit,
+        _rudder_sign,
+        rest_of_commands,
+        command_directions,
+    ):
         record = run_record(surveys, result)
         if record is not None:
             changes = decide(record)

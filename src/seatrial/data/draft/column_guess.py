@@ -15,6 +15,7 @@ class ColumnGuess:
         symbol, unit, frame, positive, zero, span, scale, kind: as in a channel of the trial file.
         evidence: why.
         other_reading: what it may be instead; empty: it is assigned outright.
+        side: of the craft on which the motion shows a thruster, port or starboard; empty: not shown.
         is_used: whether it is the one chosen for its symbol.
         unused_because: why it is not; empty: it is used.
     """
@@ -30,6 +31,7 @@ class ColumnGuess:
     kind: str = ""
     evidence: tuple[str, ...] = ()
     other_reading: str = ""
+    side: str = ""
     is_used: bool = True
     unused_because: str = ""
 

@@ -3,17 +3,23 @@
 from dataclasses import replace
 from functools import partial
 
+import numpy as np
+
 from seatrial.core.values import InputError, Record
 from seatrial.data.check import canonical_record
 from seatrial.data.check.thrusters import SURE_EFFECT, ThrusterEffect, thruster_effects
 from seatrial.data.draft.column_guess import Changes, ColumnGuess
 from seatrial.data.draft.stored_parameters import OutputSetting, is_disabled, output_setting
+from seatrial.data.draft.stretch import smooth_speed
 from seatrial.data.draft.survey import ColumnSummary, LogSurvey
 from seatrial.physics.models.thruster_layout import CommandInput, Thruster, ThrusterLayout
 
 _RANGE, _REST, _SPAN = (700.0, 2300.0), 1500.0, 400.0  # us, of servo pulses (ArduPilot, SERVOn_MIN, MAX)
 _REST_TOLERANCE = 60.0  # us; chosen: trims of motors that stand still
 _FULL_RUDDER = 35.0  # deg, of most ships' rudders (SOLAS II-1/29): what a draft proposes
+# share of the largest speed below which a craft stands still, s of it at least, share of full command that is no more
+# than rest; chosen
+_STILL, _STILL_S, _REST_SHARE = 0.05, 1.0, 0.05
 _ONLY_SIGN = 'positive = "astern", and which side it drives: the log does not say'
 
 
@@ -60,6 +66,27 @@ def _as_rudder(guess: ColumnGuess, setting: OutputSetting) -> ColumnGuess:
     return replace(rudder, positive=side, other_reading=other).with_evidence(setting.evidence)
 
 
+def rest_of_commands(record: Record) -> Changes:
+    """Return the commands whose pulse at rest is the middle one, as the craft stands still with it at the start."""
+    names = [name for name in record.channels if name.startswith("command_")]
+    flow = smooth_speed(record)
+    if not names or flow is None:
+        return {}
+    moving = np.flatnonzero(flow > _STILL * np.max(flow))
+    rows = int(moving[0]) if moving.size else 0
+    if rows * record.dt < _STILL_S:
+        return {}
+    resting = [name for name in names if np.max(np.abs(record[name][:rows])) < _REST_SHARE]
+    return dict.fromkeys(resting, _with_rest_in_the_middle)
+
+
+def _with_rest_in_the_middle(guess: ColumnGuess) -> ColumnGuess:
+    if guess.unit != "us" or not guess.is_open:
+        return guess
+    text = f"the craft stands still with {guess.zero:g} us at the start"
+    return replace(guess, other_reading=_ONLY_SIGN).with_evidence(text)
+
+
 def command_directions(record: Record) -> Changes:
     """Return what shows which way each command drives the craft and to which side it turns it."""
     names = [name for name in record.channels if name.startswith("command_")]
@@ -88,6 +115,7 @@ def _with_direction(effect: ThrusterEffect, guess: ColumnGuess) -> ColumnGuess:
     text = f"more drives {word} (effect over standard error {abs(effect.surge):.0f})"
     if abs(effect.yaw) > SURE_EFFECT:
         side = "port" if effect.yaw * effect.surge > 0.0 else "starboard"
+        guess = replace(guess, side=side)
         text += f"; it turns the craft as a thruster on the {side} side does ({abs(effect.yaw):.0f})"
     if not guess.is_open and is_astern != (guess.positive == "astern"):
         return replace(guess, other_reading=f'positive = "{word}": {text}')

@@ -1,7 +1,7 @@
 """A trial file drafted from logs: every guess with its evidence, what is unsure as a commented line."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from seatrial.core.values import InputError, Record
@@ -11,8 +11,9 @@ from seatrial.data.draft.behaviour import checked_by_behaviour, run_record
 from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.draft_text import RecordsBlock, trial_text
 from seatrial.data.draft.guess import guess_columns, without_conflicts
-from seatrial.data.draft.manoeuvres import find_stretches, numbered
+from seatrial.data.draft.manoeuvres import find_stretches, is_decay, numbered, offered_parts
 from seatrial.data.draft.runs_of_logs import LogRun, runs_of_logs
+from seatrial.data.draft.starting_model import StartingModel, held_out_run, starting_model
 from seatrial.data.draft.stretch import LogStretch
 from seatrial.data.draft.survey import LogSurvey, survey_log
 from seatrial.data.read import FORMATS
@@ -30,7 +31,7 @@ class DraftTrial:
         runs: which of them belong together.
         guesses: of the columns of each source of the longest run.
         records: of each run, even and complete; None where its columns make none.
-        stretches: manoeuvres found, of each run.
+        stretches: manoeuvres found, of each run; parts: those of them that are offered as runs of their own.
     """
 
     text: str
@@ -39,6 +40,7 @@ class DraftTrial:
     guesses: tuple[tuple[ColumnGuess, ...], ...]
     records: tuple[Record | None, ...] = ()
     stretches: tuple[tuple[LogStretch, ...], ...] = ()
+    parts: tuple[tuple[LogStretch, ...], ...] = ()
 
     @property
     def open_questions(self) -> tuple[ColumnGuess, ...]:
@@ -66,24 +68,46 @@ def draft_trial(*logs: str | Path, folder: str | Path = ".") -> DraftTrial:
     guesses = [agreed_guesses(parts, examined) for parts in named]
     records = [run_record(run.sources, parts) for run, parts in zip(runs, guesses, strict=True)]
     stretches = numbered([find_stretches(run.sources, one) for run, one in zip(runs, records, strict=True)])
-    text = trial_text(_blocks(runs, guesses, stretches, longest[0]), reasons | left_out, Path(folder).resolve())
-    return DraftTrial(text, tuple(surveys), tuple(runs), guesses[longest[0]], tuple(records), stretches)
+    parts = offered_parts(records, stretches)
+    model = starting_model({g.symbol for one in guesses[longest[0]] for g in one if g.is_used}, records)
+    blocks = _blocks(runs, guesses, stretches, parts, longest[0])
+    blocks = _with_roles(blocks, model, runs, records)
+    text = trial_text(blocks, model, reasons | left_out, Path(folder).resolve())
+    return DraftTrial(text, tuple(surveys), tuple(runs), guesses[longest[0]], tuple(records), stretches, parts)
 
 
 def _blocks(
     runs: Sequence[LogRun],
     guesses: Sequence[tuple[tuple[ColumnGuess, ...], ...]],
     stretches: Sequence[tuple[LogStretch, ...]],
+    parts: Sequence[tuple[LogStretch, ...]],
     longest: int,
 ) -> list[RecordsBlock]:
     """One block for files of one kind, else one for each run."""
     if runs[0].name:
         return [
-            RecordsBlock(run.name, tuple(zip(run.sources, parts, strict=True)), (), (found,))
-            for run, parts, found in zip(runs, guesses, stretches, strict=True)
+            RecordsBlock(run.name, tuple(zip(run.sources, columns, strict=True)), (), (found,), (offered,))
+            for run, columns, found, offered in zip(runs, guesses, stretches, parts, strict=True)
         ]
     files = tuple(run.sources[0] for run in runs)
-    return [RecordsBlock("", ((files[longest], guesses[longest][0]),), files, tuple(stretches))]
+    return [RecordsBlock("", ((files[longest], guesses[longest][0]),), files, tuple(stretches), tuple(parts))]
+
+
+def _with_roles(
+    blocks: Sequence[RecordsBlock], model: StartingModel, runs: Sequence[LogRun], records: Sequence[Record | None]
+) -> list[RecordsBlock]:
+    """The blocks with the run that judges the model, and roll decays from their release on."""
+    names = [run.name or run.sources[0].path.stem for run in runs]
+    whole = {name: one for name, one in zip(names, records, strict=True) if one is not None}
+    held_out = held_out_run(model, whole) if len(whole) == len(names) else ""
+    return [
+        replace(
+            block,
+            validate=held_out if not block.name or block.name == held_out else "",
+            is_released=model.name == "roll" and all(any(map(is_decay, one)) for one in block.stretches),
+        )
+        for block in blocks
+    ]
 
 
 def _surveys(logs: Sequence[Path]) -> tuple[list[LogSurvey], dict[Path, str]]:

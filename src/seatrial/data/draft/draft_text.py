@@ -1,11 +1,13 @@
 """The text of a drafted trial file: every line with its evidence, what is unsure as a comment."""
 
 import json
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from seatrial.core.text.words import counted
 from seatrial.data.draft.column_guess import ColumnGuess
+from seatrial.data.draft.starting_model import StartingModel, thruster_tables
 from seatrial.data.draft.stored_parameters import antenna_place
 from seatrial.data.draft.stretch import LogStretch
 from seatrial.data.draft.survey import LogSurvey
@@ -24,24 +26,30 @@ class RecordsBlock:
         sources: each log with its guesses; of files of one kind the longest.
         files: those of one kind; empty for a run with a name.
         stretches: manoeuvres in the run, or in each of the files.
+        parts: those of them that are offered as runs of their own.
+        validate: the run to keep out of the estimation; empty: none of this block.
+        is_released: whether each run is a roll decay, to be used from its release on.
     """
 
     name: str
     sources: tuple[tuple[LogSurvey, tuple[ColumnGuess, ...]], ...]
     files: tuple[LogSurvey, ...]
     stretches: tuple[tuple[LogStretch, ...], ...]
+    parts: tuple[tuple[LogStretch, ...], ...]
+    validate: str = ""
+    is_released: bool = False
 
 
-def trial_text(blocks: Sequence[RecordsBlock], left_out: Mapping[Path, str], folder: Path) -> str:
+def trial_text(blocks: Sequence[RecordsBlock], model: StartingModel, left_out: Mapping[Path, str], folder: Path) -> str:
     """Return the TOML file; only its first block gives the evidence.
 
-    left_out: files that are no source of a run, with the reason. folder: where the file will lie; the paths in it count
-    from there.
+    model: with which it begins. left_out: files that are no source of a run, with the reason. folder: where the file
+    will lie; the paths in it count from there.
     """
     lines = [
         "# Drafted by seatrial init. Every line says why; lines with OPEN are for you to choose.",
         "",
-        *_particulars({g.symbol for _, guesses in blocks[0].sources for g in guesses if g.is_used}),
+        *_particulars(model, [g for _, guesses in blocks[0].sources for g in guesses]),
         *(f"# left out: {_comment(_relative(path, folder))}: {_comment(why)}" for path, why in left_out.items()),
     ]
     for number, block in enumerate(blocks):
@@ -54,20 +62,23 @@ def _block_lines(block: RecordsBlock, folder: Path) -> list[str]:
     lines = ["[[records]]"]
     if block.files:
         files = ", ".join(_quoted(_relative(survey.path, folder)) for survey in block.files)
-        lines += [f"files = [{files}]", *_antenna_lines(block.sources)]
+        lines += [f"files = [{files}]", *_role_lines(block), *_antenna_lines(block.sources)]
         for survey, guesses in block.sources:
             lines += [*_layout_lines(survey), *_channel_lines(survey, guesses)]
-        alone = len(block.files) == 1
-        parts = zip(block.files, block.stretches, strict=True)
-        return [*lines, *(line for one, found in parts for line in _part_lines(found, "" if alone else one.path.name))]
+        names = ["" if len(block.files) == 1 else survey.path.stem for survey in block.files]
+        return [*lines, *_part_lines(dict(zip(names, block.stretches, strict=True)), block.parts)]
     lines += [
         f"name = {_quoted(block.name)}",
+        *_role_lines(block),
         *_antenna_lines(block.sources),
-        *(line for one in block.stretches for line in _part_lines(one, "")),
+        *_part_lines({"": block.stretches[0]}, block.parts),
     ]
     nothing_used = not any(g.is_used for _, guesses in block.sources for g in guesses)
     for survey, guesses in block.sources:
-        if nothing_used or any(g.is_used for g in guesses):
+        if not nothing_used and not any(g.is_used for g in guesses):
+            name = _comment(survey.path.name)
+            lines += [f"# {name}: {line.removeprefix('# ')}" for line in _unused_lines(survey, guesses)]
+        else:
             lines += ["", "[[records.sources]]", f"file = {_quoted(_relative(survey.path, folder))}"]
             lines += [*_layout_lines(survey), *_channel_lines(survey, guesses)]
     return lines
@@ -78,28 +89,33 @@ def _without_evidence(line: str) -> str:
     return line if line.startswith("#") else line.partition("    # ")[0]
 
 
-def _particulars(symbols: Set[str]) -> list[str]:
-    """What a person must give before a model can be estimated; `check` does not need it."""
-    lines = ["# 'seatrial check' needs neither ship nor model, 'seatrial identify' both: 'seatrial models' lists them."]
-    if "delta" in symbols:
-        name, why = "nomoto", "The simplest, of rudder and yaw rate"
-    elif any(one.startswith(("command_", "rpm_")) for one in symbols):
-        name, why = "thrusters", "That of a craft with thrusters"
-    else:
-        no_input = (
-            "# OPEN: no input (rudder, propeller, thruster) was found, and a model needs one: name its column below."
-        )
-        return [*lines, no_input, ""]
+def _particulars(model: StartingModel, guesses: Sequence[ColumnGuess]) -> list[str]:
+    """Ship and model, with what a person must state; `check` needs neither."""
+    if not model.name:
+        return [
+            "# 'seatrial check' needs neither ship nor model, 'seatrial identify' both: 'seatrial models' lists them.",
+            "# OPEN: no input (rudder, propeller, thruster) was found, and a model needs one: name its column below.",
+            "",
+        ]
+    names = ", ".join(map(_quoted, model.free))
     return [
-        *lines,
-        f"# {why}; 'seatrial models {name}' prints all that it needs:",
-        "# [ship]",
-        '# name = "..."',
-        "# L = 0.0    # m, between perpendiculars",
-        "# [model]",
-        f'# name = "{name}"',
+        "[ship]",
+        'name = "..."',
+        "L = 0.0    # m, between perpendiculars: state it; 'seatrial check' works without it",
+        "",
+        "[model]",
+        f"name = {_quoted(model.name)}    # {model.why}",
+        *([f"free = [{names}]    # {model.free_reason}"] if model.free else []),
+        *(thruster_tables(guesses) if model.name == "thrusters" else []),
         "",
     ]
+
+
+def _role_lines(block: RecordsBlock) -> list[str]:
+    """Which run judges the model, and from where on a decay counts."""
+    why = "kept out of the estimation, to judge the model by; choose another one if you like"
+    lines = [f"validate = {_quoted(block.validate)}    # {why}"] if block.validate else []
+    return [*lines, "from_release = true    # drops what lies before the release"] if block.is_released else lines
 
 
 def _antenna_lines(sources: Sequence[tuple[LogSurvey, tuple[ColumnGuess, ...]]]) -> list[str]:
@@ -108,7 +124,7 @@ def _antenna_lines(sources: Sequence[tuple[LogSurvey, tuple[ColumnGuess, ...]]])
         return []
     places = [place for survey, _ in sources if (place := antenna_place(survey.log.parameters)) is not None]
     if not places:
-        return []
+        return ["# antenna = { x = 0.0, y = 0.0 }    # m forward of midship, to starboard: state it where it is not 0"]
     why = f"{places[0].evidence}; add the place of the autopilot where that is not midship"
     return [f"antenna = {{ x = {places[0].x:g}, y = {places[0].y:g} }}    # {why}"]
 
@@ -187,17 +203,45 @@ def _channel_table(guess: ColumnGuess) -> str:
     return f"{{ {', '.join(parts)} }}"
 
 
-def _part_lines(stretches: Sequence[LogStretch], file: str) -> list[str]:
-    """The manoeuvres as commented parts; file: that in which they are, empty where the block has no other."""
-    if not stretches:
-        return []
-    where = f" in {_comment(file)}; give it a [[records]] of its own, and" if file else ";"
-    lines = [f"# Manoeuvres found{where} remove the # of those you want as runs of their own.", "# parts = ["]
-    lines += [
-        f'#     {{ name = "{one.name}", from = "{one.start:.6g} s", to = "{one.stop:.6g} s" }},    # {one.evidence}'
-        for one in stretches
+def _part_lines(stretches: Mapping[str, Sequence[LogStretch]], parts: Sequence[Sequence[LogStretch]]) -> list[str]:
+    """What each run is, and the manoeuvres that are offered as commented parts.
+
+    stretches: of each run, by the name of its file, which is empty where there is no other.
+    """
+    offered = {name: part for name, part in zip(stretches, parts, strict=True) if part}
+    lines = [
+        f"# {_comment(name)}{': ' if name else ''}{run_text(found)}"
+        for name, found in stretches.items()
+        if found and name not in offered
     ]
-    return [*lines, "# ]"]
+    if not offered:
+        return lines
+    lines += [
+        "# Manoeuvres found; remove the # of those you want as runs of their own, and of the brackets.",
+        "# parts = [",
+    ]
+    for name, part in offered.items():
+        file = f"file = {_quoted(name)}, " if name else ""
+        lines += [
+            f'#     {{ {file}name = {_quoted(one.name)}, from = "{one.start:.6g} s", to = "{one.stop:.6g} s" }},'
+            f"    # {one.evidence}"
+            for one in part
+        ]
+    names = [one.name for part in offered.values() for one in part]
+    keep = (
+        [f"# validate = {_quoted(names[-1])}    # keeps one of them out, to judge the model by"]
+        if len(names) > 1
+        else []
+    )
+    return [*lines, "# ]", *keep]
+
+
+def run_text(stretches: Sequence[LogStretch]) -> str:
+    """Return what a run that stays whole is: its manoeuvre, or the kinds of several."""
+    if len(stretches) == 1:
+        return f"{stretches[0].name}: {stretches[0].evidence}"
+    kinds = list(dict.fromkeys(one.name.rstrip("0123456789").rstrip("_").replace("_", " to ") for one in stretches))
+    return f"{counted(len(stretches), 'manoeuvre')}: {', '.join(kinds)}"
 
 
 def _quoted(value: str | int) -> str:

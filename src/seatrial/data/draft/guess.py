@@ -45,9 +45,9 @@ def guess_columns(survey: LogSurvey) -> tuple[ColumnGuess, ...]:
                 guesses += [] if guess is None else [(rank, guess)]
     best: dict[str, tuple[tuple[float, ...], ColumnGuess]] = {}
     for rank, guess in guesses:
-        if guess.symbol not in best or rank < best[guess.symbol][0]:
+        if not guess.unused_because and (guess.symbol not in best or rank < best[guess.symbol][0]):
             best[guess.symbol] = (rank, guess)
-    chosen = [replace(guess, is_used=best[guess.symbol][1] is guess) for _, guess in guesses]
+    chosen = [replace(guess, is_used=guess.symbol in best and best[guess.symbol][1] is guess) for _, guess in guesses]
     return without_conflicts([chosen])[0]
 
 
@@ -95,6 +95,7 @@ def _first_guess(survey: LogSurvey, topic: TopicSummary, column: ColumnSummary, 
         rule.positive,
         scale=rule.scale,
         evidence=(f"by {named.evidence}",),
+        unused_because=rule.unused_because,
     )
     if named.symbol.startswith("command_"):
         return command_guess(guess, column, survey)

@@ -6,11 +6,12 @@ from itertools import pairwise
 
 from seatrial.core.values import InputError, Record
 from seatrial.data.check.approach_phase import approach_fault
-from seatrial.data.draft.motion_stretches import SHORTEST_STRAIGHT_S, decays, spirals, stops, straight_runs
+from seatrial.data.draft.motion_stretches import DECAY, SHORTEST_STRAIGHT_S, decays, spirals, stops, straight_runs
 from seatrial.data.draft.stretch import MIN_SAMPLES, LogStretch
 from seatrial.data.draft.survey import LogSurvey
 from seatrial.data.draft.turns import turning_stretches
 
+_FILLED = 0.7  # share of a run that its manoeuvres cover, from which on it is taken whole; chosen
 _MOST_STRETCHES = 12  # offered of one run; the longest
 # of a manoeuvre's time, and s at least, that its part shows of the approach: measures need the execute; chosen
 _APPROACH_SHARE, _APPROACH_S = 0.1, 10.0
@@ -62,6 +63,38 @@ def numbered(runs: Sequence[Sequence[LogStretch]]) -> tuple[tuple[LogStretch, ..
             named.append(replace(one, name=f"{one.name}{counts[one.name]}"))
         result.append(tuple(named))
     return tuple(result)
+
+
+def offered_parts(
+    records: Sequence[Record | None], stretches: Sequence[Sequence[LogStretch]]
+) -> tuple[tuple[LogStretch, ...], ...]:
+    """Return the stretches of each run that are offered as runs of their own; empty where the run stays whole.
+
+    It stays whole where it is one roll decay, or manoeuvres fill it and it is one of several runs or holds but one.
+    """
+    return tuple(
+        () if record is not None and _is_whole(record, run, len(records)) else tuple(run)
+        for record, run in zip(records, stretches, strict=True)
+    )
+
+
+def _is_whole(record: Record, stretches: Sequence[LogStretch], count: int) -> bool:
+    if len(stretches) == 1 and is_decay(stretches[0]):
+        return True
+    return _fills(record, stretches) and (count > 1 or len(stretches) == 1)
+
+
+def _fills(record: Record, stretches: Sequence[LogStretch]) -> bool:
+    covered, end = 0.0, 0.0
+    for one in sorted(stretches, key=lambda each: each.start):
+        covered += max(0.0, one.stop - max(one.start, end))
+        end = max(end, one.stop)
+    return covered >= _FILLED * record.duration
+
+
+def is_decay(stretch: LogStretch) -> bool:
+    """Return whether a stretch is a roll decay."""
+    return stretch.name.startswith(DECAY)
 
 
 def _manoeuvres_of(record: Record) -> list[LogStretch]:

@@ -5,9 +5,11 @@ from itertools import pairwise
 import numpy as np
 
 from seatrial.core.values import Array, Record
+from seatrial.data.check.roll_release import release_row
 from seatrial.data.check.signal import Mask, mask_intervals
 from seatrial.data.draft.stretch import LogStretch, elapsed, padded, smooth_speed
 
+DECAY = "decay"  # kind of a stretch
 SHORTEST_STRAIGHT_S = 20.0  # s, of the shortest straight run; chosen
 _STRAIGHT_HEADING = np.radians(5.0)  # rad, range of headings of a straight run; chosen
 _MOVES = 0.2  # of the largest speed, above which a craft moves; chosen
@@ -130,10 +132,19 @@ def decays(record: Record) -> list[LogStretch]:
         if chain and swing[2] > _GROWTH * chain[-1][2]:
             if _dies_out(chain):
                 text = f"roll swings {len(chain)} half periods from {np.degrees(chain[0][2]):.1f} deg down"
-                stretches.append(LogStretch("decay", float(time[chain[0][0]]), float(time[chain[-1][1] - 1]), text))
+                stretches.append(
+                    LogStretch(DECAY, float(time[_release(phi, chain[0][0])]), float(time[chain[-1][1] - 1]), text)
+                )
             chain = []
         chain.append(swing)
     return stretches
+
+
+def _release(phi: Array, first: int) -> int:
+    """The row of the release before the first swing to the other side, or that swing's where nothing shows one."""
+    sides = np.flatnonzero(np.diff(phi[: first + 1] >= 0.0))[:-1]
+    start = int(sides[-1]) + 1 if sides.size else 0
+    return start + release_row(phi[start:first]) if first > start else first
 
 
 def _dies_out(chain: list[tuple[int, int, float]]) -> bool:

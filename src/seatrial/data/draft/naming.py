@@ -15,7 +15,10 @@ _AUXILIARY = "command_{} of AUX"  # the outputs of PX4's second bank, which are 
 
 @dataclass(frozen=True)
 class NameRule:
-    """A pattern of ``topic/field`` (small letters) and what it names; an empty unit is to be found by behaviour."""
+    """A pattern of ``topic/field`` (small letters) and what it names; an empty unit is to be found by behaviour.
+
+    unused_because: why a column of this name is not taken by itself.
+    """
 
     pattern: str
     symbol: str
@@ -23,6 +26,7 @@ class NameRule:
     frame: str = ""
     positive: str = ""
     scale: float = 1.0
+    unused_because: str = ""
     logger: str = ""
 
 
@@ -106,6 +110,9 @@ _MESSAGES = [
     ),
 ]  # fmt: skip
 _FORWARD, _ACROSS = "(forward|fwd|ahead|longitudinal)", "(stbd|starboard|lateral|transverse)"
+_ENGINE = "rate of the engine: to use it, write it as channels.n with scale = propeller turns over engine turns"
+_PORT, _STARBOARD = "(left|port)", "(right|starboard|stbd)"
+_THRUSTER, _PULSE = "(thr(ottle|uster)?|motor|esc|pwm|command|cmd)", "(_(pwm|us|out|output|raw|cmd))?"
 _WORDS = [
     *_rules(
         "",
@@ -125,12 +132,14 @@ _WORDS = [
         (r"u", "u", ""), (r"v", "v", ""), (r"surge_(dot|acc(eleration)?)", "u_dot", "", "body"),
         (r"sway_(dot|acc(eleration)?)", "v_dot", "", "body"),
         (r"rudder(_angle)?|rud|delta(_rudder)?|rsa|helm|nozzle(_angle)?", "delta", ""),
+        (r"(main_|port_|stbd_)?eng(ine)?(_(rate|speed|revs?))?", "n", "", "", "", 1.0, _ENGINE),
         (r"n_prop|(prop(eller)?|shaft)_(rate|rpm|rps|speed)|shaft|rpm|rps|n", "n", ""),
         (r"roll(_angle)?|phi|heel", "phi", ""), (r"pitch(_angle)?|theta|trim_angle", "theta", ""),
-        (r"roll_rate|p", "p", ""), (r"heave|z", "z", ""), (r"(battery_)?voltage", "voltage", ""),
-        (r"thr(ottle|uster)?_?(left|port)(_pwm)?", "command_1", ""),
-        (r"thr(ottle|uster)?_?(right|starboard|stbd)(_pwm)?", "command_2", ""),
-        (r"(thruster|motor|throttle|pwm|command|cmd)_?(\d+)", "command_{}", ""),
+        (r"roll_rate|p", "p", ""), (r"heave|z", "z", ""),
+        (r"(batt?(ery)?_?)?volt(s|age)?|batt?(ery)?_v|v_?batt?(ery)?", "voltage", ""),
+        (rf"{_THRUSTER}_?{_PORT}{_PULSE}|{_PORT}_?{_THRUSTER}{_PULSE}", "command_1", ""),
+        (rf"{_THRUSTER}_?{_STARBOARD}{_PULSE}|{_STARBOARD}_?{_THRUSTER}{_PULSE}", "command_2", ""),
+        (rf"({_THRUSTER}|servo)_?(\d+){_PULSE}", "command_{}", ""),
         (r"wind_velo_true|true_wind_speed|tws", "wind_speed", ""),
         (r"wind_dir_true|true_wind_dir(ection)?|twd", "wind_direction", ""),
         (r"wind_velo_relative(_mid)?|apparent_wind_speed|aws", "wind_speed_relative", ""),

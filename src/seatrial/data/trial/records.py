@@ -8,7 +8,9 @@ import numpy as np
 from seatrial.core.values import Finding, InputError, Record, Severity
 from seatrial.data.check import canonical_record, examined_record
 from seatrial.data.check.approach_phase import first_execution
+from seatrial.data.check.consequences import completed
 from seatrial.data.check.copies import copies
+from seatrial.data.check.roll_release import release_findings
 from seatrial.data.check.thrusters import thruster_findings
 from seatrial.data.trial.roll_decay_start import trim_to_decay_start
 from seatrial.data.trial.trial import Role, Trial, TrialRun, Trimming
@@ -165,7 +167,9 @@ def load_run(run: TrialRun, reference_point: float) -> TrialRecord:
     record = canonical_record(examined.record, reference_point)
     if run.waves is not None and run.waves.spectrum is None:
         record = with_wave_forces(record, run.waves.excitation, run.waves.U, run.waves.beta)
-    return TrialRecord(apply_trimming(record, run.trimming), run.role, run.session, run.waves, examined.findings)
+    kept = apply_trimming(record, run.trimming)
+    findings = (*examined.findings, *completed(release_findings(kept), kept))
+    return TrialRecord(kept, run.role, run.session, run.waves, findings)
 
 
 def apply_trimming(record: Record, trimming: Trimming) -> Record:

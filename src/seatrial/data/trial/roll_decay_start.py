@@ -3,6 +3,8 @@
 import numpy as np
 
 from seatrial.core.values import Array, InputError, Record
+from seatrial.data.check.roll_release import release_row
+from seatrial.data.check.signal import sample_noise
 
 # first angle over noise; largest angle of the last third over that of the first, ours
 _MIN_SIGNAL_TO_NOISE, _MAX_AMPLITUDE_RATIO = 5.0, 0.9
@@ -15,7 +17,7 @@ _MAX_ROLL_ANGLE = np.pi / 2.0
 
 
 def trim_to_decay_start(record: Record) -> Record:
-    """The record from its largest roll angle (about the angle it ends at) on.
+    """The record from its release on: the last time that its roll angle, about that it ends at, is the largest.
 
     Raises:
         InputError: no roll angle, a start that is not above the noise or beyond 90 deg of heel, a motion that does
@@ -26,8 +28,8 @@ def trim_to_decay_start(record: Record) -> Record:
     if len(record) < _MIN_ROWS:
         raise InputError(f"record '{record.name}': {len(record)} rows are no decay; give a longer record")
     swing = record["phi"] - np.median(record["phi"][-max(1, len(record) // 4) :])
-    first = int(np.argmax(np.abs(swing)))
-    largest, noise = abs(float(swing[first])), _noise_deviation(swing)
+    first = release_row(swing)
+    largest, noise = abs(float(swing[first])), sample_noise(swing)
     if not largest > _MIN_SIGNAL_TO_NOISE * noise:
         raise InputError(
             f"record '{record.name}': the decay starts at {np.degrees(largest):.2g} deg, within the noise of "
@@ -78,8 +80,3 @@ def _swing_count(values: Array, size: float) -> int:
     """How often the motion changes between one side and the other, both beyond `size`."""
     sides = np.sign(values[np.abs(values) > size])
     return int(np.sum(sides[1:] != sides[:-1]))
-
-
-def _noise_deviation(values: Array) -> float:
-    """Standard deviation of white noise by third differences, whose variance is 20 times that of the noise."""
-    return float(np.std(np.diff(values, 3)) / np.sqrt(20.0))  # 1 + 9 + 9 + 1, squared binomial coefficients

@@ -94,6 +94,7 @@ def _block_runs(
 ) -> list[TrialRun]:
     located = _sources_of if block.sources else _files_of
     whole = located(block, data_folder, where, declared)
+    _require_files_of_parts(block, [one.name for one in whole], where)
     data = [replace(one, part=part) for one in whole for part in _parts(block, one.name, len(whole))]
     trimming = Trimming(block.from_s, block.to_s, block.skip_acceleration, block.rate, block.from_release)
     roles = _roles(block, [one.name for one in data], where)
@@ -139,11 +140,20 @@ def _joined(layout: Layout, block: RecordsTable, clock_offset: float = 0.0) -> L
 
 
 def _parts(block: RecordsTable, name: str, count: int) -> list[RunPart | None]:
-    """The parts into which a record is cut, called after its file where there are several; None: it stays whole."""
-    if not block.parts:
-        return [None]
+    """The parts into which a record is cut, called after its file where several are cut alike; None: whole."""
+    parts = [part for part in block.parts if part.file in ("", name)]
     prefix = f"{name}-" if count > 1 else ""
-    return [RunPart(prefix + part.name, part.start, part.stop) for part in block.parts]
+    return [RunPart(part.name if part.file else prefix + part.name, part.start, part.stop) for part in parts] or [None]
+
+
+def _require_files_of_parts(block: RecordsTable, names: Sequence[str], where: str) -> None:
+    """Raises:
+    InputError: a part of a file that the block does not have.
+    """
+    for part in block.parts:
+        if part.file and part.file not in names:
+            hint = spelling_hint(part.file, list(names))
+            raise InputError(f"{where}.parts: '{part.name}' is of file '{part.file}', which is not among files{hint}")
 
 
 def _session_path(data: RecordFile | RecordSources) -> Path:

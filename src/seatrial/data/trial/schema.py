@@ -154,9 +154,14 @@ class SourceTable(ColumnsTable):
 
 
 class PartTable(StrictTable):
-    """A run cut out of a log: from and to are times after its first sample (``"120 s"``), or names of events."""
+    """A run cut out of a log: from and to are times after its first sample (``"120 s"``), or names of events.
+
+    `file`: that of several files out of which it is cut, by its name without the ending; a file of which no part is
+    named stays whole. Without it the part is cut out of each.
+    """
 
     name: str
+    file: str = ""
     start: str = Field("", alias="from")
     stop: str = Field("", alias="to")
 

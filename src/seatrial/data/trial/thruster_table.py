@@ -27,6 +27,7 @@ _ZERO_AND_SPAN: dict[CommandUnit, tuple[float, float | None]] = {
 """Reading at rest and from there to full ahead where the file does not say: RC servo pulses 1100 to 1900 us; shares."""
 
 _RPM = 1.0 / 60.0  # rps, by definition
+_SMALLEST_ARM = 1e-9  # m; rounding
 _AREAS = frozenset({"A_T", "A_L"})
 _ADDED_SHARE = 1.05  # M_u over the mass, start: a slender hull adds some 5 % in surge; chosen
 
@@ -105,12 +106,29 @@ def thruster_layout(tables: tuple[ThrusterTable, ...], ship: Ship, damping: Damp
         InputError: no thruster; a channel, a curve or a sharing that cannot be; the mass missing where it is needed.
     """
     thrusters = tuple(_thruster(table) for table in tables)
+    _require_turning(thrusters)
     has_wind = bool(_AREAS & set(ship.particulars))
     reason = _needs_newtons(thrusters, has_wind=has_wind)
     if reason and "m" not in ship.particulars:
         raise InputError(f"{reason}; give the craft's mass, ship.m [kg]")
     mass = _ADDED_SHARE * ship.particulars["m"] if reason else 1.0
     return ThrusterLayout(thrusters, damping, ship.length, mass, has_wind, "V_0" in ship.particulars)
+
+
+def _require_turning(thrusters: Sequence[Thruster]) -> None:
+    """Raises:
+    InputError: several fixed thrusters all push through the origin, so that none turns the craft.
+    """
+    if len(thrusters) < 2 or any(t.rudder or isinstance(t.angle, AngleInput) or _arm(t) for t in thrusters):
+        return
+    names = ", ".join(f"'{t.name}'" for t in thrusters)
+    raise InputError(f"thrusters {names} all push through the origin and none turns the craft; state x and y of each")
+
+
+def _arm(thruster: Thruster) -> bool:
+    """Whether a fixed thruster pushes beside the origin, x sin a - y cos a (Fossen 2021, section 9.2)."""
+    angle = thruster.angle if isinstance(thruster.angle, float) else 0.0
+    return abs(thruster.x * math.sin(angle) - thruster.y * math.cos(angle)) > _SMALLEST_ARM
 
 
 def _needs_newtons(thrusters: Sequence[Thruster], *, has_wind: bool) -> str:

@@ -1,0 +1,50 @@
+"""The release of a roll decay: what lies before it was held by hand, and is no motion of the ship alone."""
+
+import numpy as np
+
+from seatrial.core.values import Array, Finding, Record, Severity
+from seatrial.data.check.signal import sample_noise
+
+_HELD_NOISE = 3.0  # standard deviations of noise by which an angle that is held differs from the largest; chosen
+# share of the largest angle that a swing loses in a fourteenth of its period, acos(0.9) / (2 pi), and shares of the
+# time from there to amidships that are a hold; chosen
+_NEAR, _HOLD_SHARE = 0.9, 1.5
+_SHRINKS = 2.0  # largest swing over the largest of the last third of a decay; chosen
+_FEWEST_ROWS = 30  # of a decay; chosen
+_DRIVEN = ("delta", "alpha_w", "alpha_f", "u", "psi", "r")  # channels of records that are no free decays
+
+
+def release_row(swing: Array) -> int:
+    """Return the last row at which an angle, about its rest, is the largest to within noise, shape (n,).
+
+    swing: up to the first time that it crosses its rest, or beyond.
+    """
+    size = np.abs(swing)
+    first = int(np.argmax(size))
+    crossing = np.flatnonzero(np.sign(swing[first:]) != np.sign(swing[first]))
+    stop = first + int(crossing[0]) if crossing.size else len(swing)
+    limit = size[first] - _HELD_NOISE * (sample_noise(swing) if len(swing) > _FEWEST_ROWS else 0.0)
+    return first + int(np.flatnonzero(size[first:stop] >= limit)[-1])
+
+
+def release_findings(record: Record) -> tuple[Finding, ...]:
+    """Return a warning where a free roll decay begins with an angle that is held."""
+    if "phi" not in record or any(name in record for name in _DRIVEN) or len(record) < _FEWEST_ROWS:
+        return ()
+    swing = record["phi"] - np.median(record["phi"][-max(1, len(record) // 4) :])
+    size, release = np.abs(swing), release_row(swing)
+    if size[release] < _SHRINKS * np.max(size[-len(size) // 3 :]):
+        return ()
+    start = int(np.flatnonzero(size >= _NEAR * size[release])[0])
+    after = np.flatnonzero(np.sign(swing[release:]) != np.sign(swing[release]))
+    held, fall = release - start, int(after[0]) if after.size else 0
+    if not fall or held <= _HOLD_SHARE * fall:
+        return ()
+    angle, seconds = np.degrees(abs(swing[release])), held * record.dt
+    return (
+        Finding(
+            Severity.WARNING, "held-roll", f"record '{record.name}': the roll angle is held before it is released",
+            f"within {100 * (1 - _NEAR):.0f} % of {angle:.1f} deg for {seconds:.1f} s, then a decay",
+            "from_release = true under [[records]] drops what lies before the release",
+        ),
+    )  # fmt: skip
