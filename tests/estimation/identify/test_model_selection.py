@@ -68,6 +68,16 @@ def fitted(found: Estimation, name: str, heading: list[float] | None) -> FittedV
     return FittedVariant(ModelVariant(name), found.model, made, scores, "" if heading else "it diverges")
 
 
+def test_runs_whose_segments_differ_in_length_are_compared(model: Model, records: list[Record]) -> None:
+    """Segments of 20 s cut five runs of 70 s into 17.5 s each and leave one of 27.5 s whole; 17.5 s would halve it."""
+    runs = Runs.one_session_each([*(r.rows(slice(0, 141)) for r in records[:5]), records[5].rows(slice(0, 56))], LENGTH)
+    settings = replace(SETTINGS, method=EstimateMethod.MULTIPLE_SHOOTING)
+    estimation = estimate_model(model, runs, settings, OPTIONS)
+    family = ModelFamily({"with current": ("current_north",)})
+    members = fit_variants(estimation, model, runs, 20.0, settings, OPTIONS, family)
+    assert [m.estimate is not None for m in members[:2]] == [True, True]
+
+
 def test_members_are_tied_where_runs_cannot_tell_them_apart(found: Estimation) -> None:
     rows = rank_candidates(
         [

@@ -242,7 +242,10 @@ class _Fitter:
                 problem, noise=old.noise, inflation=old.inflation, huber=old.huber, population=old.population
             )
             shared = _warm_start(base, problem.free, problem.start())
-            local = base.optimum.local if variant.segment_factor == 1.0 else problem.measured_initial_states()
+            if variant.segment_factor == 1.0:  # segments of several lengths cannot be cut again by one length
+                problem, local = replace(problem, data=old.data), base.optimum.local
+            else:
+                local = problem.measured_initial_states()
             estimate = fit_output_error(problem, shared, local, runs.noise, evaluations=self.options.evaluations)
             scores = holdout_scores(estimate, varied, runs.records, self.window_s)
         except InputError as error:
