@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.equations import Model
-from seatrial.core.values import InputError, Prior, Record
+from seatrial.core.values import InputError, Prior, Record, Severity
 from seatrial.data.trial import EstimateMethod, EstimateSettings, ModelFamily
 from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.estimate.resampling import fits_without, one_step_jackknife
@@ -15,6 +15,7 @@ from seatrial.estimation.identify.model_selection import (
     FittedVariant,
     ModelVariant,
     _better_candidate_warning,
+    _choice_findings,
     apply_variant,
     fit_variants,
     rank_candidates,
@@ -116,6 +117,17 @@ def test_what_no_craft_has_is_not_chosen(found: Estimation) -> None:
     rows = rank_candidates([fitted(found, "own", [2.0, 3.0, 4.0]), odd], choose=True)
     assert [r.is_chosen for r in rows] == [True, False]
     assert rows[1].note == "m_x -3 is negative"
+
+
+def test_the_trials_own_model_stays_where_none_is_a_crafts(found: Estimation) -> None:
+    why = ("m_x -3 is negative",)
+    members = [
+        replace(fitted(found, "own", [2.0, 3.0, 4.0]), objections=why),
+        replace(fitted(found, "better", [1.0, 2.0, 3.0]), objections=why),
+    ]
+    rows = rank_candidates(members, choose=True)
+    assert [r.is_chosen for r in rows] == [True, False]
+    assert [f.severity for f in _choice_findings(members, rows) if f.code == "unphysical-models"] == [Severity.WARNING]
 
 
 def test_structures_that_gain_are_joined_and_the_gain_is_reported(

@@ -122,8 +122,14 @@ def _choice_findings(fitted: Sequence[FittedVariant], rows: Sequence[CandidateMo
     refused = [f"'{f.variant.name}': {', '.join(f.objections)}" for f in fitted if f.objections]
     if refused:
         advice = "fix these parameters or narrow their priors under [model.priors], and choose again"
-        findings.append(Finding(Severity.INFO, "unphysical-models", "models whose values no craft has were not taken",
-                                "; ".join(refused), advice))  # fmt: skip
+        is_every = len(refused) == sum(f.estimate is not None for f in fitted)
+        severity = Severity.WARNING if is_every else Severity.INFO
+        what = (
+            "every model of the family has values that no craft has, so that none was preferred to the trial's own"
+            if is_every
+            else "models whose values no craft has were not taken"
+        )
+        findings.append(Finding(severity, "unphysical-models", what, "; ".join(refused), advice))
     return tuple(findings)
 
 
@@ -301,8 +307,13 @@ def _errors(fitted: Sequence[FittedVariant]) -> dict[int, Array]:
 
 
 def _chosen(fitted: Sequence[FittedVariant], errors: Mapping[int, Array]) -> int:
-    """Position of the member of fewest free coefficients within one standard error of the best that is a craft's."""
-    allowed = {i: error for i, error in errors.items() if not fitted[i].objections} or dict(errors)
+    """Position of the member of fewest free coefficients within one standard error of the best that is a craft's.
+
+    Where none is a craft's, the trial's own stays, if it could be fitted.
+    """
+    allowed = {i: error for i, error in errors.items() if not fitted[i].objections}
+    if not allowed:
+        allowed = {0: errors[0]} if 0 in errors else dict(errors)
     best = min(allowed.values(), key=lambda error: float(error.mean()))
     close = [i for i, error in allowed.items() if (error - best).mean() <= _standard_error(error - best)]
     return min(close, key=lambda i: (len(fitted[i].model.parameters.free), float(allowed[i].mean())))
