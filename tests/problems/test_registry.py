@@ -6,7 +6,7 @@ import pytest
 from tests.installed_package import install
 
 from seatrial.core.values import InputError
-from seatrial.problems import list_problems, problem_named, problems_matching
+from seatrial.problems import absent_families, list_problems, problem_named, problems_matching
 
 CODE = """
 from seatrial.problems import BenchmarkProblem
@@ -34,3 +34,20 @@ def test_what_there_is_not_is_refused_with_the_nearest() -> None:
         problem_named("toy-4")
     with pytest.raises(InputError, match=r"no problem matches 'x\*'"):
         problems_matching(("x*",))
+
+
+def test_a_family_whose_records_are_absent_is_left_out_and_says_why(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    code = """
+from seatrial.core.values import InputError
+
+def problems():
+    raise InputError("the records of 'dry' are not here; fetch them")
+"""
+    install(monkeypatch, tmp_path, "seatrial.problems", "dry", code, "problems")
+    assert "toy-2" in {p.name for p in list_problems()}
+    assert absent_families()["dry"] == "the records of 'dry' are not here; fetch them"
+    for name in ("dry-2", "dry"):
+        with pytest.raises(InputError, match="fetch them"):
+            problems_matching((name,))

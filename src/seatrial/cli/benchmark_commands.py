@@ -62,10 +62,11 @@ def benchmark(
 
 
 def _print_list() -> None:
-    from seatrial.problems import built_in_methods, list_problems
+    from seatrial.problems import absent_families, built_in_methods, list_problems
 
     rows = [(p.name, str(p.budget), p.title) for p in list_problems()]
     print_table([("problem", "budget", ""), *rows], flush_left=(0, 2))
+    print_lines([f"{name} is not here: {reason}" for name, reason in absent_families().items()])
     print_table([("method", ""), *((m.name, m.source) for m in built_in_methods().values())], flush_left=(0, 1))
 
 

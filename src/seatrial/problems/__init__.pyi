@@ -9,10 +9,12 @@ from seatrial.problems.method import entered_method as entered_method, method_na
 from seatrial.problems.boxes import centred_box as centred_box, off_centre_box as off_centre_box
 from seatrial.problems.boxes import scaled_values as scaled_values
 from seatrial.problems.boxes import standard_errors_within as standard_errors_within, start_within as start_within
+from seatrial.problems.fold_problem import fold_draw as fold_draw
 from seatrial.problems.posed import BudgetSpent as BudgetSpent, PosedProblem as PosedProblem
 from seatrial.problems.problem import BenchmarkProblem as BenchmarkProblem, PaperClaim as PaperClaim
 from seatrial.problems.problem import Placement as Placement
 from seatrial.problems.problem import ProblemDraw as ProblemDraw
+from seatrial.problems.registry import absent_families as absent_families
 from seatrial.problems.registry import list_problems as list_problems, problem_named as problem_named
 from seatrial.problems.registry import problems_matching as problems_matching
 from seatrial.problems.yardstick import KnownOptimum as KnownOptimum, KnownTruth as KnownTruth
