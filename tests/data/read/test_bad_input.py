@@ -6,6 +6,7 @@ import pytest
 
 from seatrial.core.values import InputError
 from seatrial.data.read import ColumnSpec, Layout, format_of, read_record
+from seatrial.data.read.registry import HEAD_BYTES, first_bytes
 
 TIME = ColumnSpec("time", "t", "s")
 LAYOUT = Layout("text", TIME, (ColumnSpec("u", "speed", "m/s"),))
@@ -49,6 +50,23 @@ def test_binary_rubbish_in_other_formats(tmp_path: Path, format: str, name: str)
 
 def test_not_really_packed(tmp_path: Path) -> None:
     assert "not a gzip file" in message(tmp_path, "t,speed\n0,1\n1,1\n", name="run.csv.gz")
+
+
+@pytest.mark.parametrize("name", ["run.csv", "run.csv.gz", "run.mat", "run.bin", "run.tlog", "run.bag", "run.n2k"])
+def test_a_huge_file_of_nothing_is_refused_at_once(tmp_path: Path, name: str) -> None:
+    """A sparse file: 5 GB long, without a byte on the disk."""
+    path = tmp_path / name
+    with path.open("wb") as file:
+        file.truncate(5 * 10**9)
+    with pytest.raises(InputError, match=rf"^{name} begins with 4096 zero bytes"):
+        read_record(path, Layout(format_of(path), TIME, LAYOUT.columns))
+
+
+def test_what_cannot_be_read_has_no_first_bytes(tmp_path: Path) -> None:
+    path = tmp_path / "run.csv"
+    path.write_bytes(b"ab" * HEAD_BYTES)
+    assert first_bytes(path) == b"ab" * (HEAD_BYTES // 2)
+    assert first_bytes(tmp_path) == first_bytes(tmp_path / "none.csv") == b""
 
 
 def test_wrong_encoding(tmp_path: Path) -> None:

@@ -92,16 +92,18 @@ def decoded_text(path: Path, encoding: str) -> str:
 def _unpacked(path: Path) -> bytes:
     size = path.stat().st_size
     limit = max(_ALWAYS_ALLOWED, _LARGEST_EXPANSION * size)
+    data = bytearray()
     try:
         with gzip.open(path) as file:
-            data = file.read(limit + 1)
+            while len(data) <= limit and (chunk := file.read(_CHUNK_BYTES)):
+                data += chunk
     except (OSError, EOFError, gzip.zlib.error) as error:  # type: ignore[attr-defined]
         if size == 0:
             return b""
         raise InputError(f"{path.name} is not a gzip file ({error}); rename or repack it") from None
     if len(data) > limit:
         raise InputError(f"{path.name} unpacks to more than {limit / 1e6:.0f} MB, which no table does; repack it")
-    return data
+    return bytes(data)
 
 
 def detect_separator(sample_line: str, layout: Layout) -> str:
