@@ -26,7 +26,7 @@ from seatrial.data.trial import EstimateMethod, Role, Trial, TrialRecord, load_r
 from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs
 from seatrial.estimation.predict import HoldoutProtocol, session_offsets, simulate_open_loop
 from seatrial.estimation.predict.open_loop import rms_errors
-from seatrial.estimation.predict.session_offsets import offsets_from_start
+from seatrial.estimation.predict.session_offsets import updated_by_start
 from seatrial_studies.alexandersson2022.window_bands import band_coverage, holdout_windows
 from seatrial_studies.cross_validation import (
     CrossValidation,
@@ -64,7 +64,7 @@ def from_start(seconds: float) -> OffsetRule:
 
     def rule(estimation: Estimation, session: str, record: Record) -> Array:
         expected = session_offsets(estimation, session, record)
-        return offsets_from_start(estimation.estimate.problem, estimation.model, expected, record, seconds).expected
+        return updated_by_start(estimation.estimate.problem, estimation.model, expected, record, seconds).expected
 
     return rule
 

@@ -70,6 +70,20 @@ def test_the_same_seed_gives_the_same_intervals(model: Model) -> None:
     np.testing.assert_array_equal(one.half_width["psi"], other.half_width["psi"])
 
 
+def test_the_first_seconds_of_a_run_move_its_offsets_where_required(model: Model) -> None:
+    rng, settings = np.random.default_rng(8), EstimateSettings(segment_s=20.0, offsets={"delta": 0.02})
+    runs = [sailed(model, f"run {i}", ANGLES[i], rng) for i in range(RUNS)]
+    items = [TrialRecord(r, Role.VALIDATE if i == RUNS - 1 else Role.TRAIN, r.name) for i, r in enumerate(runs)]
+    found = estimate_model(model, Runs.one_session_each(runs[:-1], 8.0), settings, EstimatorOptions(workers=1))
+    expected, moved = (
+        predict_runs(found, items, 40.0, 8.0, offsets_from_start=use).predictions[-1] for use in (False, True)
+    )
+    assert moved.offsets["delta zero"] != expected.offsets["delta zero"]
+    assert moved.rms["psi_deg"] < 0.6 * expected.rms["psi_deg"]
+    assert moved.half_width["psi"][-1] < 0.8 * expected.half_width["psi"][-1]
+    assert np.mean(np.abs(moved.simulated["psi"] - moved.measured["psi"]) <= moved.half_width["psi"]) > 0.9
+
+
 def test_the_margin_says_what_intervals_are_made_of(model: Model) -> None:
     margin = predicted_runs(model, 1).interval_basis
     assert margin.covariance.shape == (2, 2) and margin.degrees_of_freedom == RUNS - 2

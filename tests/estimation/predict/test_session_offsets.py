@@ -11,9 +11,9 @@ from seatrial.data.trial import EstimateSettings
 from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.predict.session_offsets import (
     new_session_offsets,
-    offsets_from_start,
     offsets_without,
     session_offsets,
+    updated_by_start,
 )
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto
@@ -96,7 +96,7 @@ def test_the_first_seconds_of_a_run_move_the_expectation_towards_its_own_offset(
 ) -> None:
     new = session_offsets(estimation, "another day", records[0])
     problem, model = estimation.estimate.problem, estimation.model
-    few, many = (offsets_from_start(problem, model, new, records[0], seconds) for seconds in (5.0, 80.0))
+    few, many = (updated_by_start(problem, model, new, records[0], seconds) for seconds in (5.0, 80.0))
     before, after, last = (abs(o.expected[0] - ZEROS[0]) for o in (new, few, many))
     assert last < 0.1 * before
     assert last < after < before
@@ -106,6 +106,6 @@ def test_the_first_seconds_of_a_run_move_the_expectation_towards_its_own_offset(
 def test_a_start_that_says_nothing_leaves_the_population(estimation: Estimation, records: list[Record]) -> None:
     new = session_offsets(estimation, "another day", records[0])
     blind = replace(estimation.estimate.problem, noise=np.full(len(estimation.estimate.problem.noise), 1e6))
-    same = offsets_from_start(blind, estimation.model, new, records[0], 5.0)
+    same = updated_by_start(blind, estimation.model, new, records[0], 5.0)
     np.testing.assert_allclose(same.expected, new.expected, rtol=1e-6)
     np.testing.assert_allclose(same.covariance, new.covariance, rtol=1e-6)

@@ -43,6 +43,7 @@ class EstimateSettings:
         current: prior standard deviation of a uniform current in each run [m/s]; 0: none is estimated.
         starts: points from which to search; None: 6 for craft with thrusters, else one.
         initial_s: s of a validation run from which its initial state is estimated; None: L/U.
+        offsets_from_start: whether these seconds of a run of a new session move what is expected of its offsets, too.
     """
 
     method: Method = EstimateMethod.AUTO
@@ -59,6 +60,7 @@ class EstimateSettings:
     current: Annotated[float, Field(ge=0)] = 0.0
     starts: Annotated[int, Field(ge=1, le=100)] | None = None
     initial_s: Positive | None = None
+    offsets_from_start: bool = False
 
     @property
     def criterion(self) -> FitCriterion:

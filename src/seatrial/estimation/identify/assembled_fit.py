@@ -121,6 +121,7 @@ def _predictions(task: Identification, selected: SelectedModel) -> RunPrediction
         return predict_runs(
             estimation, task.records, task.initial_seconds, task.runs.length, task.options.seed, task.report_progress,
             selected.tied, window_lengths(task.options.windows),
+            offsets_from_start=task.trial.estimate.offsets_from_start,
         )  # fmt: skip
     except DivergedError as error:
         raise InputError(fit_result.divergence_message(estimation, error)) from None

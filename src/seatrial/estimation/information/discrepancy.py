@@ -120,7 +120,9 @@ def _elapsed_excess_sd(holdout_errors: Sequence[HoldoutError], channel: str) -> 
     grown = np.array([[discrepancy_growth(miss.index)] for miss in holdout_errors])
     from scipy.optimize import isotonic_regression
 
-    return np.sqrt(np.maximum(isotonic_regression(excess_sd(error, expected, grown) ** 2, weights=count).x, 0.0))
+    known = np.isfinite(error)
+    excess = np.where(known, error**2 - expected**2, 0.0).sum(axis=0) / np.maximum((known * grown**2).sum(axis=0), 1e-9)
+    return np.sqrt(np.maximum(isotonic_regression(excess, weights=count).x, 0.0))
 
 
 def excess_sd(errors: Array, predicted_sd: Array, growth_factors: Array) -> Array:

@@ -36,7 +36,12 @@ from seatrial.estimation.predict.prediction_intervals import (
     track_holdout_error,
     with_intervals,
 )
-from seatrial.estimation.predict.session_offsets import new_session_offsets, session_offsets
+from seatrial.estimation.predict.session_offsets import (
+    SessionOffsets,
+    new_session_offsets,
+    session_offsets,
+    updated_by_start,
+)
 from seatrial.estimation.predict.window_baselines import window_baselines
 from seatrial.estimation.predict.window_scores import WindowLength, WindowPredictor, window_scores
 from seatrial.estimation.predict.windows import Windows
@@ -89,6 +94,8 @@ def calibrate_intervals(
     seconds: float,
     length: float,
     seed: int,
+    *,
+    offsets_from_start: bool = False,
 ) -> IntervalCalibration:
     """Return what intervals of a fit's predictions rest on: every training run is predicted by the estimate without it.
 
@@ -106,10 +113,14 @@ def calibrate_intervals(
 
     def one(i: int) -> list[HoldoutError]:
         record, rng = train[i].record, np.random.default_rng(streams[i])
-        by = holdout_model(problem, left_out[i], train[i].session, record)
-        missed = [holdout_error(problem, by, record, seconds, length, scatter, rng, holdout_draws(len(train)))]
+        by, own = holdout_model(problem, left_out[i], train[i].session, record), scatter
+        if offsets_from_start:
+            expected = SessionOffsets(by.nuisances, scatter.offsets)
+            moved_offsets = updated_by_start(problem, by.model, expected, record, seconds)
+            by, own = replace(by, nuisances=moved_offsets.expected), replace(scatter, offsets=moved_offsets.covariance)
+        missed = [holdout_error(problem, by, record, seconds, length, own, rng, holdout_draws(len(train)))]
         pieces = Windows.cut([record], PIECE_S).pieces[1:] if layout else []
-        missed += [track_holdout_error(problem, by, piece, seconds, scatter, rng) for piece in pieces]
+        missed += [track_holdout_error(problem, by, piece, seconds, own, rng) for piece in pieces]
         index = extrapolation_index(moved[i], [*moved[:i], *moved[i + 1 :]], layout)
         return [replace(miss, index=index) for miss in missed if miss is not None]
 
@@ -135,8 +146,12 @@ def predict_runs(
     report_progress: ProgressReporter | None = None,
     tied: Sequence[TiedModel] = (),
     windows: Sequence[WindowLength] = (),
+    *,
+    offsets_from_start: bool = False,
 ) -> RunPredictions:
     """Return every run open loop, with its session's offsets where the session was fitted, else as of a new session.
+
+    offsets_from_start: whether the first `seconds` of a run of a new session move what is expected of its offsets.
 
     Runs that were not fitted get intervals, for which `tied` models are asked as well; all are compared with the ground
     the training runs cover. seconds: of a run's beginning, from which its initial state is taken.
@@ -159,6 +174,8 @@ def predict_runs(
         else:
             try:
                 own = session_offsets(estimation, item.session, item.record)
+                if offsets_from_start and item.session not in problem.data.sessions:
+                    own = updated_by_start(problem, estimation.model, own, item.record, seconds)
                 run = simulate_while_bounded(problem, estimation.model, item.record, own.expected, seconds)
             except InputError as error:
                 findings.append(not_predicted_finding(item.record, error))
@@ -175,7 +192,9 @@ def predict_runs(
     ]
     covered = motion_envelope(moved, layout)
     report("intervals of predictions: runs left out")
-    calibration = calibrate_intervals(estimation, train, moved, seconds, length, seed)
+    calibration = calibrate_intervals(
+        estimation, train, moved, seconds, length, seed, offsets_from_start=offsets_from_start
+    )
     streams = np.random.SeedSequence((seed, 1)).spawn(len(items))
     held_out = [item for item in items if item.role is not Role.TRAIN]
     baselines = window_baselines(problem, estimation.model, [i.record for i in train], seconds) if held_out else {}

@@ -53,7 +53,7 @@ def session_offsets(estimation: Estimation, session: str, record: Record) -> Ses
     return SessionOffsets(estimate.session_offsets[index], estimation.interval.covariance[np.ix_(own, own)])
 
 
-def offsets_from_start(
+def updated_by_start(
     template: OutputError, model: Model, offsets: SessionOffsets, record: Record, seconds: float
 ) -> SessionOffsets:
     """Return offsets that the first seconds of a run make likely, with those expected before it as the prior.
