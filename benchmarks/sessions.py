@@ -69,22 +69,28 @@ def from_start(seconds: float) -> OffsetRule:
     return rule
 
 
-def best_of_run(estimation: Estimation, session: str, record: Record) -> Array:
-    """Return the one offset with which the whole run is predicted best, which nobody knows before it is made."""
-    expected = population_offsets(estimation, session, record)
-    spread = float(estimation.estimate.population.deviation[0])
+def best_of_run(seconds: float) -> OffsetRule:
+    """Return the rule of the one offset with which a whole run is predicted best, which nobody knows before it."""
 
-    def error(away: float) -> float:
-        try:
-            run = simulate_open_loop(estimation.estimate.problem, estimation.model, record, expected + away, INITIAL_S)
-        except InputError:
-            return math.inf
-        return rms_errors(record, run.record)["psi_deg"]
+    def rule(estimation: Estimation, session: str, record: Record) -> Array:
+        expected = population_offsets(estimation, session, record)
+        spread = float(estimation.estimate.population.deviation[0])
 
-    grid = spread * np.linspace(-SEARCHED, SEARCHED, GRID)
-    near = grid[int(np.argmin([error(away) for away in grid]))]
-    step = grid[1] - grid[0]
-    return expected + float(minimize_scalar(error, bounds=(near - step, near + step), method="bounded").x)
+        def error(away: float) -> float:
+            try:
+                run = simulate_open_loop(
+                    estimation.estimate.problem, estimation.model, record, expected + away, seconds
+                )
+            except InputError:
+                return math.inf
+            return rms_errors(record, run.record)["psi_deg"]
+
+        grid = spread * np.linspace(-SEARCHED, SEARCHED, GRID)
+        near = grid[int(np.argmin([error(away) for away in grid]))]
+        step = grid[1] - grid[0]
+        return expected + float(minimize_scalar(error, bounds=(near - step, near + step), method="bounded").x)
+
+    return rule
 
 
 def with_priors(trial: Trial, factor: float) -> Trial:
@@ -169,6 +175,7 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("trial", choices=list(WINDOW_S))
     parser.add_argument("--runs", action="store_true", help="every run is a session")
     parser.add_argument("--method", type=EstimateMethod, help="instead of the trial's own")
+    parser.add_argument("--population", action="store_true", help="without the rules that need fits of their own")
     parser.add_argument("--priors", type=float, default=1.0, help="factor on the widths of the coefficients' priors")
     parser.add_argument("--initial", type=float, help="seconds of a run or window that give its initial state")
     given = parser.parse_args(arguments)
@@ -199,7 +206,9 @@ def main(arguments: list[str]) -> int:
         yield Candidate("population", population_offsets, common)
         yield Candidate(f"population and first {protocol.initial_s:g} s", from_start(protocol.initial_s), common)
         if given.trial in WHOLE_RUNS:
-            yield Candidate("own offset, fitted to the run", best_of_run, common)
+            yield Candidate("own offset, fitted to the run", best_of_run(protocol.initial_s), common)
+        if given.population:
+            return
         following = fits(covariates={"delta": "delta"})
         print(f"  population that follows the helm: {population_text(following)}")
         yield Candidate("population that follows the helm", population_offsets, following)
