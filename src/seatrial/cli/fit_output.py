@@ -185,7 +185,10 @@ def _print_extrapolation(e: "Extrapolation") -> None:
     from seatrial.core.text.numbers import fixed
 
     note = EXTRAPOLATION_NOTE if e.index > EXTRAPOLATION_LIMIT else ""
-    source = " (by the drift angle that the model has)" if note and e.ratios.get("drift") == e.index else ""
+    largest = next((name for name, ratio in e.ratios.items() if ratio == e.index), "")
+    side = largest if largest.startswith("rudder to ") else ""
+    reason = "by the drift angle that the model has" if largest == "drift" else f"no run trained so much {side}"
+    source = f" ({reason})" if note and (side or largest == "drift") else ""
     print_lines([f"extrapolation index {fixed(e.index, 2)}{source}{note}"], "  ")
 
 

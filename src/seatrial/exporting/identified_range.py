@@ -3,7 +3,7 @@
 The largest of the ratios that `estimation.information.extrapolation` takes of a whole run, here of one instant: yaw
 rate, drift and rudder angle over the largest of the training runs, speed over their fastest, their slowest over speed,
 and for commands of thrusters 1 and how far they exceed those of the training runs, as shares of full command.
-Combinations of command and speed (quadrants) are left out.
+Combinations of command and speed (quadrants) and sides of the rudder are left out.
 """
 
 from typing import TYPE_CHECKING

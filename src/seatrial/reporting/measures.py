@@ -82,6 +82,8 @@ _EXTRAPOLATION_CLAUSES = {
     "yaw_rate": ("turns {} times as fast as", "{} times the yaw rate"),
     "drift": ("drifts, as the model has it, at {} times the angle of", "{} times the modelled drift angle"),
     "rudder": ("uses {} times the rudder of", "{} times the rudder"),
+    "rudder to port": ("uses more rudder to port than", "more rudder to port"),
+    "rudder to starboard": ("uses more rudder to starboard than", "more rudder to starboard"),
     "fastest": ("goes {} times as fast as", "{} times the highest speed"),
     "slowest": ("slows to 1/{} of the lowest speed of", "1/{} of the lowest speed"),
 }

@@ -34,6 +34,23 @@ def test_ratios_are_those_of_the_largest_values() -> None:
     assert found.index == pytest.approx(1.5)
 
 
+@pytest.mark.parametrize(("delta", "index"), [(-0.3, 2.0), (-0.15, 1.5), (-0.6, 2.0), (0.3, 1.0)])
+def test_a_side_that_was_not_trained_is_outside(delta: float, index: float) -> None:
+    """All training runs have their rudder to starboard; to port the same angle is as far away again."""
+    train = [run("a", 0.02, 0.1, 0.2, 5.0), run("b", 0.04, 0.1, 0.3, 5.0)]
+    found = extrapolation(run("c", 0.03, 0.1, delta, 5.0), motion_envelope(train))
+    assert found is not None
+    assert found.index == pytest.approx(index)
+    assert ("rudder to port" in found.ratios) == (delta < 0.0)
+
+
+def test_a_file_without_sides_knows_none() -> None:
+    envelope = {n: v for n, v in motion_envelope([run("a", 0.02, 0.1, 0.2, 5.0)]).items() if " to " not in n}
+    found = extrapolation(run("c", -0.02, 0.1, -0.2, 5.0), envelope)
+    assert found is not None
+    assert found.index == pytest.approx(1.0)
+
+
 @pytest.mark.parametrize(
     ("speed", "name", "ratio"), [(3.0, "slowest", 5.0 / 3.0), (9.0, "fastest", 1.5), (5.5, "fastest", 5.5 / 6.0)]
 )

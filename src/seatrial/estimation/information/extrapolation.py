@@ -9,6 +9,8 @@ from seatrial.core.values import Array, Record
 from seatrial.estimation.information.thruster_conditions import thruster_conditions
 from seatrial.physics.simulate.rudder_rate import RUDDER_RATE, sustained_rudder_rate
 
+SIDES = ("port", "starboard")
+"""Of the rudder: to which it turns the ship; ranges are called ``rudder to port`` and ``rudder to starboard``."""
 _PERCENTILE = 99.5  # per cent of the samples within the envelope; chosen
 # rad/s, rad, rad, m/s, m/s, below which a range counts as none; chosen
 NEGLIGIBLE = {"yaw_rate": 1e-4, "drift": 1e-3, "rudder": 1e-3, "fastest": 1e-3, "slowest": 1e-3}
@@ -22,6 +24,8 @@ COMMAND_GAIN = 1.0
 
 def motion_envelope(records: Sequence[Record], layout: str = "") -> dict[str, float]:
     """What the records cover, SI: largest yaw rate, drift and rudder angle, fastest and slowest speed, commands.
+
+    Of the rudder also the largest angle to each side.
 
     Also the rate of the fastest move of the rudder (`sustained_rudder_rate`), which is no limit of a prediction.
 
@@ -38,6 +42,10 @@ def motion_envelope(records: Sequence[Record], layout: str = "") -> dict[str, fl
     ):
         if samples:
             made[name] = float(np.nanpercentile(np.concatenate(samples), _PERCENTILE))
+    steered = [_to_starboard(r) for r in records if "delta" in r]
+    for side, sign in zip(SIDES, (-1.0, 1.0), strict=True) if steered else ():
+        angles = np.maximum(sign * np.concatenate(steered), 0.0)
+        made[f"rudder to {side}"] = float(np.nanpercentile(angles, _PERCENTILE))
     speeds = [_speed(r) for r in records if "u" in r]
     if speeds:
         flow = np.concatenate(speeds)
@@ -51,6 +59,11 @@ def motion_envelope(records: Sequence[Record], layout: str = "") -> dict[str, fl
         for kind, samples in ranges.items():
             made[f"{COMMAND}{name} {kind}"] = float(np.percentile(np.maximum(samples, 0.0), _PERCENTILE))
     return made
+
+
+def _to_starboard(record: Record) -> Array:
+    """The rudder angle, positive where it turns the ship to starboard."""
+    return -record["delta"] if record.channel("delta").positive == "port" else record["delta"]
 
 
 def _speed(record: Record) -> Array:
@@ -70,11 +83,17 @@ def extrapolation(predicted: Record, training_envelope: Mapping[str, float], lay
     That of the slowest speed is turned round, so that a run that goes half as fast as any training run has 2; the last
     tenth of the speed down to rest adds nothing, or a run from rest would be infinitely far away. Commands and the
     quadrants of thrusters may not have been trained at all: theirs is 1 and `COMMAND_GAIN` times the distance beyond
-    the training runs, as a share of full command, of quadrants also of their fastest speed.
+    the training runs, as a share of full command, of quadrants also of their fastest speed. So may be a side of the
+    rudder: a run that goes there as far as the training runs went to the other side has 2 where they never went there.
     """
     own = motion_envelope([predicted], layout)
     both = {n: (own[n], training_envelope[n]) for n in own if training_envelope.get(n, 0.0) > NEGLIGIBLE.get(n, 0.0)}
     ratios = {n: both[n][0] / both[n][1] for n in ("yaw_rate", "drift", "rudder") if n in both}
+    for name in (f"rudder to {side}" for side in SIDES) if "rudder" in both else ():
+        reach = both["rudder"][1]
+        beyond = min(own[name], reach) - training_envelope.get(name, reach)
+        if beyond > NEGLIGIBLE["rudder"]:
+            ratios[name] = 1.0 + beyond / reach
     if {"fastest", "slowest"} <= set(both):
         ratios["fastest"] = both["fastest"][0] / both["fastest"][1]
         rest = max(REST_SHARE * both["fastest"][1], NEGLIGIBLE["slowest"])
