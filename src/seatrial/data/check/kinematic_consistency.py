@@ -10,6 +10,8 @@ from seatrial.data.check.consequences import REVERSED
 from seatrial.data.check.motion import ComplexArray, RecordedMotion
 from seatrial.data.check.signal import cumulative_integral, least_squares, sample_noise
 
+ESTIMATE_CURRENT = "if the speed is through water, estimate a current for the run: [estimate] current = 0.3"
+"""What to do where a current explains how far velocities and positions are apart; 0.3 m/s: an example."""
 # factors by which another reading must reduce the residual to be certain, or possible, ours
 CERTAIN_GAIN, DOUBTFUL_GAIN = 4.0, 2.0
 # ratio of residuals up to which two causes explain an error alike, and both are named; chosen
@@ -174,7 +176,7 @@ def _cause_text(
         case "current":
             speed = np.hypot(coefficients[0], coefficients[1])
             text = f"a current or velocity bias of {speed:.3g} m/s"
-            return text, "if the speed is through water, estimate a current for the run", ()
+            return text, ESTIMATE_CURRENT, ()
         case "bias of u" | "bias of v":
             edits = (TrialEdit(f"channels.{name[-1]}.offset", f"{-size:.4g}", "m/s"),)
             return f"a {name} by {size:+.3g} m/s", "correct the zero of the log", edits

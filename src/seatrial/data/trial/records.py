@@ -10,6 +10,7 @@ from seatrial.data.check import canonical_record, examined_record
 from seatrial.data.check.approach_phase import first_execution
 from seatrial.data.check.consequences import completed
 from seatrial.data.check.copies import copies
+from seatrial.data.check.kinematic_consistency import ESTIMATE_CURRENT
 from seatrial.data.check.roll_release import release_findings
 from seatrial.data.check.thrusters import thruster_findings
 from seatrial.data.trial.roll_decay_start import trim_to_decay_start
@@ -102,8 +103,16 @@ def load_records(trial: Trial) -> tuple[tuple[TrialRecord, ...], tuple[Finding, 
     for channel, deviation in trial.noise.items():
         _refuse_absurd_noise(channel, deviation, [r.record for r in records])
     records, repeated = _without_copies(records)
-    of_runs = (finding for record in records for finding in record.findings)
+    of_runs = (_answered(finding, trial) for record in records for finding in record.findings)
     return records, (*trial.findings, *unread, *repeated, *of_runs, *_craft_findings(trial, records))
+
+
+def _answered(finding: Finding, trial: Trial) -> Finding:
+    """The finding; one that a current explains is a note where the trial estimates one."""
+    if finding.advice != ESTIMATE_CURRENT or not trial.estimate.current:
+        return finding
+    advice = "no action needed: [estimate] current estimates one for each run"
+    return replace(finding, severity=Severity.NOTE, advice=advice, consequence="")
 
 
 def _load_unless_bad(run: TrialRun, reference_point: float) -> TrialRecord | Finding:

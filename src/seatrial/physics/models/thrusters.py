@@ -9,6 +9,7 @@ until it is given, and forces are then those on each kg of it.
 """
 
 import math
+from dataclasses import dataclass
 
 import sympy as sp
 
@@ -25,18 +26,41 @@ HULL = f"{FOSSEN}, section 6.5, damping"
 STRIPS = f"{FOSSEN}, section 6.4.3, cross-flow drag by strips (Faltinsen 1990)"
 MASSES = f"{FOSSEN}, eqs. (6.14) and (6.40), M and C(M) in surge, sway and yaw"
 
-# coefficient -> start value on each kg of M_u for a hull of 1 m, unit, power of the length it grows with, whether it is
-# free unless the trial says otherwise; starts: a craft that loses its speed within some lengths; chosen
+
+@dataclass(frozen=True)
+class _HullTerm:
+    """A coefficient of the hull: its start on each kg of M_u for a hull of 1 m, and the power of the length with it.
+
+    is_free: unless the trial says otherwise. Starts: a craft that loses its speed within some lengths; chosen.
+    """
+
+    start: float
+    unit: str
+    power: int
+    meaning: str
+    is_free: bool = True
+
+
 _DIAGONAL = {
-    "X_u": (0.0, "kg/s", -1, True), "X_uu": (-0.3, "kg/m", -1, True), "Y_v": (-1.0, "kg/s", -1, True),
-    "Y_vv": (-1.0, "kg/m", -1, True), "N_r": (-0.2, "kg m^2/s", 1, True), "N_rr": (-0.2, "kg m^2", 2, True),
-}  # fmt: skip
+    "X_u": _HullTerm(0.0, "kg/s", -1, "surge damping, linear"),
+    "X_uu": _HullTerm(-0.3, "kg/m", -1, "surge damping, quadratic"),
+    "Y_v": _HullTerm(-1.0, "kg/s", -1, "sway damping, linear"),
+    "Y_vv": _HullTerm(-1.0, "kg/m", -1, "sway damping, quadratic"),
+    "N_r": _HullTerm(-0.2, "kg m^2/s", 1, "yaw damping, linear"),
+    "N_rr": _HullTerm(-0.2, "kg m^2", 2, "yaw damping, quadratic"),
+}
 _COUPLED = {
-    "N_ur": (0.0, "kg m", 1, True), "N_uv": (0.0, "kg", 0, False), "Y_ur": (0.0, "kg", 0, False),
-    "Y_uv": (0.0, "kg/m", -1, True), "N_v": (0.0, "kg m/s", 0, False), "Y_r": (0.0, "kg m/s", 0, False),
-    "N_u": (0.0, "kg m/s", 0, False), "N_uu": (0.0, "kg", 0, False), "Y_T": (0.0, "1", 0, False),
-    "Y_NT": (0.0, "1/m", -1, True),
-}  # fmt: skip
+    "N_ur": _HullTerm(0.0, "kg m", 1, "yaw damping that grows with speed, |u| r"),
+    "N_uv": _HullTerm(0.0, "kg", 0, "yaw moment of u v", is_free=False),
+    "Y_ur": _HullTerm(0.0, "kg", 0, "side force of u r", is_free=False),
+    "Y_uv": _HullTerm(0.0, "kg/m", -1, "sway damping that grows with speed, |u| v"),
+    "N_v": _HullTerm(0.0, "kg m/s", 0, "yaw moment of v", is_free=False),
+    "Y_r": _HullTerm(0.0, "kg m/s", 0, "side force of r", is_free=False),
+    "N_u": _HullTerm(0.0, "kg m/s", 0, "yaw moment of u: a craft that pulls to one side", is_free=False),
+    "N_uu": _HullTerm(0.0, "kg", 0, "yaw moment of |u| u", is_free=False),
+    "Y_T": _HullTerm(0.0, "1", 0, "side force over the sum of thrusts", is_free=False),
+    "Y_NT": _HullTerm(0.0, "1/m", -1, "side force over the thrusters' moment"),
+}
 _STATIONS = (-0.9602898564975363, -0.7966664774136267, -0.5255324099163290, -0.1834346424956498)
 _WEIGHTS = (0.1012285362903763, 0.2223810344533745, 0.3137066458778873, 0.3626837833783620)
 """Gauss-Legendre rule of eight points, its negative half (Abramowitz & Stegun 1964, table 25.4)."""
@@ -99,12 +123,13 @@ def _voltage_factor(sheet: Sheet) -> sp.Symbol:
     return sheet.bind("V_factor", share**k_V, "thrust changes with a power of the voltage")
 
 
-def _coefficient(sheet: Sheet, layout: ThrusterLayout, name: str, entry: tuple[float, str, int, bool]) -> sp.Symbol:
-    value, unit, power, free = entry
-    free = free and (name in _DIAGONAL or layout.damping is Damping.FULL)
-    size = layout.length**power * (layout.mass if "kg" in unit else 1.0)
+def _coefficient(sheet: Sheet, layout: ThrusterLayout, name: str, term: _HullTerm) -> sp.Symbol:
+    free = term.is_free and (name in _DIAGONAL or layout.damping is Damping.FULL)
+    size = layout.length**term.power * (layout.mass if "kg" in term.unit else 1.0)
     upper = 0.0 if name in _DIAGONAL else math.inf  # a hull at rest in water takes energy out of every motion
-    return sheet.parameter(name, value * size, unit, "hull damping", HULL, free=free, upper=upper, scale=_SCALE * size)
+    return sheet.parameter(
+        name, term.start * size, term.unit, term.meaning, HULL, free=free, upper=upper, scale=_SCALE * size
+    )
 
 
 def _hull(sheet: Sheet, layout: ThrusterLayout, water: Water, thrust: PlanarForce) -> PlanarForce:
