@@ -112,7 +112,7 @@ def _answered(finding: Finding, trial: Trial) -> Finding:
     if finding.advice != ESTIMATE_CURRENT or not trial.estimate.current:
         return finding
     advice = "no action needed: [estimate] current estimates one for each run"
-    return replace(finding, severity=Severity.NOTE, advice=advice, consequence="")
+    return replace(finding, severity=Severity.INFO, advice=advice, consequence="")
 
 
 def _load_unless_bad(run: TrialRun, reference_point: float) -> TrialRecord | Finding:
