@@ -92,6 +92,17 @@ def test_the_curve_never_falls_and_follows_the_errors(rng: np.random.Generator) 
     np.testing.assert_allclose(found.channel_sd("psi", np.zeros(200), 0.2, 2.0), 2.0**GROWTH_POWER * curve)
 
 
+def test_chance_adds_next_to_nothing_to_what_was_foreseen() -> None:
+    """Nine runs whose errors are as large as foreseen, many times over: what excess there is averages out."""
+    rng, time = np.random.default_rng(6), np.arange(1.0, 101.0)
+    excess = []
+    for _ in range(60):
+        walks = np.cumsum(rng.standard_normal((9, len(time))), axis=1)
+        errors = [HoldoutError(f"run {k}", 0.2, {"psi": w}, {"psi": np.sqrt(time)}) for k, w in enumerate(walks)]
+        excess.append(discrepancy(errors).sd_by_time["psi"] ** 2 / time)
+    assert np.mean(excess) < 0.14  # of the variance foreseen; set to zero at every sample where negative: 0.154
+
+
 def test_kinds_nobody_saw_get_the_factor(rng: np.random.Generator) -> None:
     """Overshoots miss ten times what was foreseen."""
     found = discrepancy([missed(k, rng) for k in range(400)])

@@ -110,7 +110,10 @@ def discrepancy(holdout_errors: Sequence[HoldoutError]) -> Discrepancy:
 
 
 def _elapsed_excess_sd(holdout_errors: Sequence[HoldoutError], channel: str) -> Array:
-    """Excess standard deviation by elapsed time; it grows, so isotonic regression of the excess variance."""
+    """Excess standard deviation by elapsed time; it grows, so isotonic regression of the excess variance.
+
+    That of each sample is taken with its sign: set to zero where it is negative, chance alone would add to it.
+    """
     longest = max(len(m.errors[channel]) for m in holdout_errors)
     error, expected = np.full((2, len(holdout_errors), longest), np.nan)
     for row, miss in enumerate(holdout_errors):
@@ -120,8 +123,8 @@ def _elapsed_excess_sd(holdout_errors: Sequence[HoldoutError], channel: str) -> 
     grown = np.array([[discrepancy_growth(miss.index)] for miss in holdout_errors])
     from scipy.optimize import isotonic_regression
 
-    known = np.isfinite(error)
-    excess = np.where(known, error**2 - expected**2, 0.0).sum(axis=0) / np.maximum((known * grown**2).sum(axis=0), 1e-9)
+    weight = np.maximum(np.sum(np.isfinite(error) * grown**2, axis=0), 1e-9)  # above zero, for a division
+    excess = np.nansum(error**2 - expected**2, axis=0) / weight
     return np.sqrt(np.maximum(isotonic_regression(excess, weights=count).x, 0.0))
 
 
