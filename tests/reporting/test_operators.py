@@ -12,8 +12,10 @@ from seatrial.reporting.operators import operators_sentence
 def test_a_roll_model_gives_period_and_damping(fit: Fit) -> None:
     text = operators_sentence(replace(fit, roll=KNOWN))
     assert text.startswith("The natural period at small angles is 2.5512 s (2.5475 to 2.5550 s), the linear damping ")
-    assert " of critical; GM would be " in text
-    assert operators_sentence(replace(fit, roll=replace(KNOWN, metacentric_height=None))).endswith(" of critical.")
+    assert " of critical, the equivalent damping at " in text
+    assert "11° 0.81 % (0.70 to 0.91 %): damping is not shown to change with it" in text
+    assert "; GM would be " in text
+    assert operators_sentence(replace(fit, roll=replace(KNOWN, metacentric_height=None))).endswith("to change with it.")
 
 
 def test_a_craft_with_thrusters_makes_turns_and_stops(fit: Fit) -> None:

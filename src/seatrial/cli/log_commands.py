@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 COLUMNS_SHOWN = 12  # columns of a topic that `check` lists without --all; ours, one screen for a log of a few topics
 DIGITS = 5  # significant ones of a range; chosen
+_NAMES = (0, 2)  # the column that holds names of the log, in the table of a topic and in that of guesses
 _TEXT_COLUMNS = (0, 1, 5)  # of the table of a topic: name, unit and channel
 TOPICS_SHOWN = 15  # topics, the same way
 
@@ -83,7 +84,7 @@ def _print_guesses(guesses: "Sequence[ColumnGuess]") -> None:
     ]
     if rows:
         header = ["", "channel", "column", "unit", "frame", "positive", "because"]
-        print_table([header, *rows], flush_left=range(len(header)))
+        print_table([header, *rows], flush_left=range(len(header)), verbatim=_NAMES[1:])
 
 
 def print_survey(survey: "LogSurvey", *, show_all: bool) -> None:
@@ -114,7 +115,12 @@ def _print_topic(topic: "TopicSummary", *, show_all: bool, symbols: dict[str, st
     by = f" (time: {topic.time.source}, {topic.time_note})" if topic.time is not None and topic.time.source else ""
     print_lines([f"{topic.topic or 'columns'}: {topic.rows} rows, {clock}{by}"])
     columns = topic.columns if show_all else topic.columns[:COLUMNS_SHOWN]
-    print_table([_column_cells(topic, column, symbols) for column in columns], flush_left=_TEXT_COLUMNS, indent="  ")
+    print_table(
+        [_column_cells(topic, column, symbols) for column in columns],
+        flush_left=_TEXT_COLUMNS,
+        indent="  ",
+        verbatim=_NAMES[:1],
+    )
     if topic.text_columns:
         print_lines([f"  text: {', '.join(topic.text_columns)}"])
     print_lines(f"  column {fault}" for fault in topic.faults)

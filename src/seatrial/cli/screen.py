@@ -82,13 +82,16 @@ def print_heading(text: str) -> None:
         typer.echo(f"\n{typer.style(ascii_text(text), bold=True)}")
 
 
-def print_table(rows: Sequence[Sequence[str]], flush_left: Sequence[int] = (0,), indent: str = "") -> None:
-    """Print rows whose columns line up; those of `flush_left` are flush left."""
+def print_table(
+    rows: Sequence[Sequence[str]], flush_left: Sequence[int] = (0,), indent: str = "", verbatim: Sequence[int] = ()
+) -> None:
+    """Print rows whose columns line up; those of `flush_left` are flush left, those of `verbatim` to be copied."""
     from seatrial.core.text.plain import aligned, ascii_text
 
     width = line_width()
     room = None if width is None else width - len(indent)
-    lines = aligned([[ascii_text(cell) for cell in row] for row in rows], flush_left, room)
+    texts = [[cell if k in verbatim else ascii_text(cell) for k, cell in enumerate(row)] for row in rows]
+    lines = aligned(texts, flush_left, room)
     print_verbatim(indent + line for line in lines)
 
 

@@ -1,5 +1,7 @@
 """What a fit means to those who operate the craft, in a sentence: roll, thrusters, motions in waves."""
 
+import math
+
 from seatrial.core.results import Fit, RollCharacteristics, Seakeeping
 from seatrial.core.results.ship_motions import IntervalEstimate
 from seatrial.core.results.thruster_craft import CraftMeasure, ThrusterCraft
@@ -26,10 +28,25 @@ def operators_sentence(fit: Fit) -> str:
 def _roll(roll: RollCharacteristics) -> str:
     period, ratio = _estimate(roll.natural_period, " s"), _estimate(roll.damping_ratio.scaled(100.0), " %")
     text = f"The natural period at small angles is {period}, the linear damping {ratio} of critical"
+    if roll.amplitude:
+        text += f", {_equivalent_damping(roll)}"
     if roll.metacentric_height is None:
         return f"{text}."
     height = _estimate(roll.metacentric_height, " m")
     return f"{text}; GM would be {height} with {roll.gyradius_source.partition(',')[0]}."
+
+
+def _equivalent_damping(roll: RollCharacteristics) -> str:
+    """What a swing of the largest recorded angle is damped by, b T / (4 pi) of critical, and whether it is more."""
+    share, low, high = (
+        100.0 * b[-1] * roll.period[-1] / (4.0 * math.pi)
+        for b in (roll.damping, roll.damping_lower, roll.damping_upper)
+    )
+    value = _estimate(IntervalEstimate(share, low, high), " %")
+    linear = roll.damping_ratio.scaled(100.0)
+    grows, falls = low > linear.upper, high < linear.lower
+    kind = "grows with the angle" if grows else "falls with the angle" if falls else "is not shown to change with it"
+    return f"the equivalent damping at {math.degrees(roll.amplitude[-1]):.0f}° {value}: damping {kind}"
 
 
 def _estimate(e: IntervalEstimate, unit: str) -> str:

@@ -30,7 +30,8 @@ def tables(roll: RollCharacteristics, scale: float) -> list[TextTable]:
     quantities = tuple(
         _quantity_row(name, value, factor, has_scale=has_scale) for name, value, factor in rows if value is not None
     )
-    note = f"Radius of gyration: {roll.gyradius_source}. The range of GM has the whole range of that radius in it."
+    note = f"Radius of gyration: {roll.gyradius_source}."
+    note += " The range of GM has the whole range of that radius in it." if roll.metacentric_height is not None else ""
     first = TextTable("What the coefficients mean", header, _numeric_columns(header), quantities, note)
     return [first, _amplitude_table(roll)] if roll.amplitude else [first]
 

@@ -112,8 +112,8 @@ def extrapolation_limit(fit: Fit) -> str:
     if rudder:
         return _beyond(_rudder_reach(np.concatenate(rudder)))
     if "phi" in fit.model.states and any("phi" in r for r in training):
-        roll = np.concatenate([np.abs(r["phi"]) for r in training if "phi" in r])
-        return _beyond(f"{math.degrees(float(np.nanpercentile(roll, PERCENTILE))):.0f}° of roll")
+        largest = max(float(np.nanmax(np.abs(r["phi"]))) for r in training if "phi" in r)  # a decay has it once
+        return _beyond(f"{math.degrees(largest):.0f}° of roll")
     if "u" in fit.model.states and any("u" in r for r in training):
         speed = np.concatenate([np.abs(r["u"]) for r in training if "u" in r])
         return _beyond(f"{significant(float(np.nanpercentile(speed, PERCENTILE)), 2)} m/s")

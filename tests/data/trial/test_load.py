@@ -152,3 +152,15 @@ def test_a_missing_trial_file_is_named(tmp_path: Path) -> None:
 def test_dots_in_a_file_name_belong_to_the_run(trial_file: Path) -> None:
     (trial_file.parent / "a_2024-05-01.csv").rename(trial_file.parent / "a_2.5deg_2024-05-01.csv")
     assert load_trial(trial_file).runs[0].name == "a_2.5deg_2024-05-01"
+
+
+@pytest.mark.parametrize("key", ["k_xx", "k_xx_prime", "B"])
+def test_what_gives_the_metacentric_height_is_a_particular(tmp_path: Path, key: str) -> None:
+    path = tmp_path / "trial.toml"
+    path.write_text(
+        f'[ship]\nname = "ship"\nL = 24.0\n{key} = 2.1\n[model]\nname = "roll"\n[[records]]\nfiles = ["run.csv"]\n'
+        'time = { column = "t" }\nchannels.phi = { column = "roll", unit = "deg" }\n',
+        encoding="utf-8",
+    )
+    (tmp_path / "run.csv").write_text("t,roll\n0,1\n1,2\n", encoding="utf-8")
+    assert load_trial(path).ship.particulars[key] == 2.1

@@ -17,8 +17,8 @@ from seatrial.physics.sensors import Sensors, with_sensors
 Bounds = Mapping[str, tuple[float, float]]
 # particulars that people state although not every model asks for them
 COMMON_PARTICULARS = (
-    "L", "B", "d", "m", "I_z", "x_G", "C_b", "volume", "D_P", "x_P", "A_R", "H_R", "x_R", "A_T", "A_L", "rho",
-    "pitch_ratio", "area_ratio", "blades",
+    "L", "B", "d", "m", "I_z", "k_xx", "k_xx_prime", "x_G", "C_b", "volume", "D_P", "x_P", "A_R", "H_R", "x_R", "A_T",
+    "A_L", "rho", "pitch_ratio", "area_ratio", "blades",
 )  # fmt: skip
 
 

@@ -63,7 +63,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         residuals=fit_result.residuals(estimation),
         predictions=predicted.predictions,
         findings=(
-            *task.findings, *selected.findings, *findings, *fit_result.unidentified(task.estimation),
+            *task.findings, *selected.findings, *findings, *fit_result.unidentified(selected.estimation),
             *unphysical_finding(estimation.model, runs.records), *fit_result.bounds_hit(estimation),
             *fit_result.unconverged(estimation), *other_optima(estimation),
             *varying_gain_finding(estimation, runs.records),
