@@ -47,6 +47,17 @@ def test_one_run_is_named_by_its_manoeuvre_with_errors_and_limit(fit: Fit) -> No
     assert text.endswith("; beyond 30° rudder the model extrapolates.")
 
 
+def test_a_run_that_is_lost_before_its_end_is_not_called_predicted(fit: Fit) -> None:
+    p = held(fit)
+    spread = math.degrees(float(np.nanstd(p.measured["psi"])))
+    lost, kept = (replace(p, rms=p.rms | {"psi_deg": share * spread}) for share in (0.51, 0.49))
+    text = verdict(with_runs(fit, lost))
+    assert text.startswith("Does not follow a 25° zigzag that was not used, to its end: ")
+    assert f"{error_text('psi_deg', 0.51 * spread)} in heading" in text
+    assert "over 4 min 00 s" in text
+    assert verdict(with_runs(fit, kept)).startswith("Predicts a 25° zigzag")
+
+
 def test_of_several_runs_the_worst_counts(fit: Fit) -> None:
     p = held(fit)
     worse = replace(p, record="other", rms=p.rms | {"psi_deg": 9.87, "position_m": 0.01})

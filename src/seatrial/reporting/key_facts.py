@@ -16,7 +16,7 @@ from seatrial.reporting.measures import is_inside
 from seatrial.reporting.operators import operators_sentence
 from seatrial.reporting.runs import ERROR_LABELS, badness
 from seatrial.reporting.time_figures import run_figure
-from seatrial.reporting.verdict import error_text, has_converged, verdict, worst_errors
+from seatrial.reporting.verdict import error_text, has_converged, is_lost, verdict, worst_errors
 
 # share of values inside their 95 % intervals that counts as kept; chosen between 0.95 and the scatter of few values
 LEAST_COVERAGE = 0.9
@@ -55,7 +55,7 @@ def _score(fit: Fit) -> KeyFact:
         )
     floors = [error_text(key, floor) for key in ("psi_deg", "position_m") if (floor := _floor(held, key)) is not None]
     floor = f"; disturbances alone would leave {enumeration(floors)}" if floors else ""
-    return KeyFact(name, f"{worst_errors(held)}{floor}", "prediction")
+    return KeyFact(name, f"{worst_errors(held)}{floor}", "prediction", False if any(map(is_lost, held)) else None)
 
 
 def _floor(held: Sequence[Prediction], key: str) -> float | None:

@@ -21,6 +21,9 @@ ONE_SIDED = 1.25
 # rad below which the rudder is not over
 LEAST_RUDDER = math.radians(0.5)
 _DEGREES = math.degrees(1.0)
+# share of the spread of a motion, a standard deviation, from which on an error over the whole run has lost it; chosen
+LOST_SHARE = 0.5
+_MOTIONS = {"psi_deg": ("psi",), "position_m": ("x0", "y0"), "z": ("z",), "theta_deg": ("theta",), "phi_deg": ("phi",)}
 _MAIN_ERRORS = ("psi_deg", "position_m", "z", "theta_deg", "phi_deg")
 
 
@@ -60,6 +63,9 @@ def _score_clause(fit: Fit) -> str:
                 f"Does not predict {run_name(p)} that was not used: the simulation diverges after "
                 f"{duration(p.divergence.seconds)} of {duration(p.measured.duration)}"
             )
+        if is_lost(p):
+            over = f"{errors} {_over_time(p)}"
+            return f"Does not follow {run_name(p)} that was not used, to its end: {over}"
         return f"Predicts {run_name(p)} that was not used, {duration(p.measured.duration)},{to_errors}"
     if diverged:
         return (
@@ -70,6 +76,27 @@ def _score_clause(fit: Fit) -> str:
     lasting = duration(shortest) if duration(shortest) == duration(longest) else (
         f"{duration(shortest)} to {duration(longest)}")  # fmt: skip
     return f"Predicts {len(held)} runs that were not used, {lasting} each,{to_errors}"
+
+
+def is_lost(p: Prediction) -> bool:
+    """Return whether an error over the whole run is as large as half of the motion itself."""
+    for name, channels in _MOTIONS.items():
+        if name in p.rms and all(c in p.measured for c in channels):
+            spread = math.sqrt(sum(float(np.nanvar(p.measured[c])) for c in channels))
+            if p.rms[name] > LOST_SHARE * spread * (_DEGREES if name.endswith("_deg") else 1.0):
+                return True
+    return False
+
+
+def _over_time(p: Prediction) -> str:
+    """The length of the run, and the errors over its shortest windows."""
+    whole = f"over {duration(p.measured.duration)}"
+    window = min(p.windows, key=lambda w: w.seconds, default=None)
+    if window is None:
+        return whole
+    names = [n for n in _MAIN_ERRORS if n in window.scores and math.isfinite(window.scores[n].rms)][:MAX_ERRORS]
+    errors = enumeration([f"{error_text(n, window.scores[n].rms)} in {ERROR_LABELS[n][0]}" for n in names])
+    return f"{whole}, {errors} over {window.window}" if errors else whole
 
 
 def worst_errors(predictions: Sequence[Prediction]) -> str:

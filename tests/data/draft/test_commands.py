@@ -89,3 +89,14 @@ def test_a_rest_that_is_not_1500_is_open_with_both_readings(common: float, other
     guess = command_guess(ColumnGuess("left", "command_1", ""), pulses, survey)
     assert guess is not None and guess.other_reading.startswith(other)
     assert guess.zero == (common if abs(common - 1500.0) < 60.0 else 1500.0)
+
+
+@pytest.mark.parametrize(("unit", "is_open"), [("%", False), ("", True)])
+def test_commands_in_per_cent(tmp_path: Path, unit: str, is_open: bool) -> None:
+    header = {"thr_left": f"thr_left [{unit}]" if unit else "thr_left"}
+    columns = {header.get(key, key): values for key, values in _log(1.0, 1.0).items()}
+    left = next(key for key in columns if key.startswith("thr_left"))
+    columns[left] = (columns[left] - 1500.0) / 4.0
+    guess = guesses(write(tmp_path / "run.csv", columns))["command_1"]
+    assert (guess.unit, guess.zero, guess.span) == ("percent", 0.0, 1.0)
+    assert guess.is_open == is_open

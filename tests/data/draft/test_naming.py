@@ -29,6 +29,8 @@ def test_speeds_along_and_across_and_the_rate_of_the_shaft_are_recognised(name: 
         ("left motor pwm", "command_1"),
         ("servo3_raw", "command_3"),
         ("battery_v", "voltage"),
+        ("batt", "voltage"),
+        ("compass", "psi"),
         ("battery voltage [V]", "voltage"),
     ],
 )

@@ -28,7 +28,7 @@ def found(share: dict[str, float], held: str = "") -> Any:
     errors = np.abs(shared) * np.array([share.get(n, 0.1) for n in COEFFICIENTS])
     problem = SimpleNamespace(
         free=COEFFICIENTS,
-        model=SimpleNamespace(parameters=parameters),
+        model=SimpleNamespace(parameters=parameters, states=("u",), input_names=()),
         data=SimpleNamespace(outputs=("u", "r")),
         noise=np.array([1.0, 0.09]),
     )
@@ -48,7 +48,7 @@ def test_those_not_stated_are_named() -> None:
     """Not the one a prior holds."""
     (finding,) = unidentified(found({"X_rr": 1.5, "Y_vr": 2.0, "X_vv": 3.0}, held="X_vv"))
     assert finding.code == "not-identifiable"
-    assert "do not determine X_rr, Y_vr:" in finding.text
+    assert "do not show whether X_rr and Y_vr differ from 0:" in finding.text
 
 
 def test_nothing_stated_is_refused_with_names_and_noise() -> None:

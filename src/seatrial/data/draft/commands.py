@@ -16,6 +16,7 @@ from seatrial.physics.models.thruster_layout import CommandInput, Thruster, Thru
 
 _RANGE, _REST, _SPAN = (700.0, 2300.0), 1500.0, 400.0  # us, of servo pulses (ArduPilot, SERVOn_MIN, MAX)
 _REST_TOLERANCE = 60.0  # us; chosen: trims of motors that stand still
+_SURELY_PERCENT = 20.0  # largest size of a command from which on up to 100 is per cent, not volts or amperes; chosen
 _FULL_RUDDER = 35.0  # deg, of most ships' rudders (SOLAS II-1/29): what a draft proposes
 # share of the largest speed below which a craft stands still, s of it at least, share of full command that is no more
 # than rest; chosen
@@ -30,8 +31,14 @@ def command_guess(guess: ColumnGuess, column: ColumnSummary, survey: LogSurvey) 
     """
     parameters = survey.log.parameters
     number = int(guess.symbol.removeprefix("command_"))
+    if guess.unit == "percent":
+        return guess.with_evidence("in per cent, as the log says")
     if column.low >= -1.0 and column.high <= 1.0:
         return replace(guess, unit="1").with_evidence("between -1 and 1")
+    if column.low >= -100.0 and column.high <= 100.0 and max(-column.low, column.high) > _SURELY_PERCENT:
+        other = "set zero and span: command = (cell - zero) / span"
+        text = f"from {column.low:g} to {column.high:g}: per cent of full command"
+        return replace(guess, unit="percent", other_reading=other).with_evidence(text)
     if not (_RANGE[0] <= column.low and column.high <= _RANGE[1]):
         return replace(guess, unit="1", other_reading="set zero and span: command = (cell - zero) / span")
     if is_disabled(parameters, number):

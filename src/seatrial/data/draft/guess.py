@@ -94,7 +94,7 @@ def _first_guess(survey: LogSurvey, topic: TopicSummary, column: ColumnSummary, 
         rule.frame,
         rule.positive,
         scale=rule.scale,
-        evidence=(f"by {named.evidence}",),
+        evidence=(f"by {named.evidence}{': ' if rule.note else ''}{rule.note}",),
         unused_because=rule.unused_because,
     )
     if named.symbol.startswith("command_"):

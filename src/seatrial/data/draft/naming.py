@@ -17,7 +17,7 @@ _AUXILIARY = "command_{} of AUX"  # the outputs of PX4's second bank, which are 
 class NameRule:
     """A pattern of ``topic/field`` (small letters) and what it names; an empty unit is to be found by behaviour.
 
-    unused_because: why a column of this name is not taken by itself.
+    unused_because: why a column of this name is not taken by itself. note: what else is to be known of one.
     """
 
     pattern: str
@@ -27,6 +27,7 @@ class NameRule:
     positive: str = ""
     scale: float = 1.0
     unused_because: str = ""
+    note: str = ""
     logger: str = ""
 
 
@@ -110,6 +111,7 @@ _MESSAGES = [
     ),
 ]  # fmt: skip
 _FORWARD, _ACROSS = "(forward|fwd|ahead|longitudinal)", "(stbd|starboard|lateral|transverse)"
+_COMPASS = "a magnetic one is psi_magnetic, with variation"
 _ENGINE = "rate of the engine: to use it, write it as channels.n with scale = propeller turns over engine turns"
 _PORT, _STARBOARD = "(left|port)", "(right|starboard|stbd)"
 _THRUSTER, _PULSE = "(thr(ottle|uster)?|motor|esc|pwm|command|cmd)", "(_(pwm|us|out|output|raw|cmd))?"
@@ -120,6 +122,7 @@ _WORDS = [
         (r"sog|speed_over_ground|ground_?speed", "sog", ""),
         (r"cog|course(_over_ground)?", "cog", ""), (r"stw|speed_through_water|log_speed", "stw", ""),
         (r"hdm|mag(netic)?_heading|heading_mag(netic)?", "psi_magnetic", ""),
+        (r"compass(_heading)?|gyro_?compass", "psi", "", "", "", 1.0, "", _COMPASS),
         (r"(true_)?heading|hdg|hdt|psi|psi_hat|yaw|yaw_angle", "psi", ""),
         (r"yaw_?rate|yaw_?speed|rot|rate_of_turn|r|r_angvelo|gyro_?z|angular_velocity_z", "r", ""),
         (r"x_ned|x_?north|north(ing)?|north_x|x0|pos(ition)?_n(orth)?", "x0", ""),
@@ -136,7 +139,7 @@ _WORDS = [
         (r"n_prop|(prop(eller)?|shaft)_(rate|rpm|rps|speed)|shaft|rpm|rps|n", "n", ""),
         (r"roll(_angle)?|phi|heel", "phi", ""), (r"pitch(_angle)?|theta|trim_angle", "theta", ""),
         (r"roll_rate|p", "p", ""), (r"heave|z", "z", ""),
-        (r"(batt?(ery)?_?)?volt(s|age)?|batt?(ery)?_v|v_?batt?(ery)?", "voltage", ""),
+        (r"(batt?(ery)?_?)?volt(s|age)?|batt?(ery)?(_v)?|v_?batt?(ery)?", "voltage", ""),
         (rf"{_THRUSTER}_?{_PORT}{_PULSE}|{_PORT}_?{_THRUSTER}{_PULSE}", "command_1", ""),
         (rf"{_THRUSTER}_?{_STARBOARD}{_PULSE}|{_STARBOARD}_?{_THRUSTER}{_PULSE}", "command_2", ""),
         (rf"({_THRUSTER}|servo)_?(\d+){_PULSE}", "command_{}", ""),

@@ -7,9 +7,11 @@ import numpy as np
 
 from seatrial.core.results import Coefficient, Method, Noise, Offset, OffsetPopulation, Residuals
 from seatrial.core.results.identifiability import NOT_CONVERGED, NOT_IDENTIFIABLE
+from seatrial.core.text.words import enumeration
 from seatrial.core.values import NOTATION, Array, DivergedError, Finding, InputError, Parameter, Parameters, Severity
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import split_segments
+from seatrial.estimation.estimate.time_scale import is_pure_roll
 from seatrial.estimation.information.covariance import Interval
 
 Limits = Mapping[str, tuple[float | None, float | None]]
@@ -186,9 +188,12 @@ def unidentified(estimation: Estimation) -> list[Finding]:
     names = _unidentified_names(estimation)
     if not names:
         return []
-    return [Finding(Severity.WARNING, NOT_IDENTIFIABLE, f"the records do not determine {', '.join(names)}: the "
-                    "standard error exceeds the value", "", "do not use them alone; seatrial design finds a manoeuvre "
-                    "that identifies them, or give a prior")]  # fmt: skip
+    advice = "do not use them alone; fix them at 0 if the others predict as well, or give a prior"
+    if not is_pure_roll(estimation.estimate.problem.model):
+        advice += "; a manoeuvre that identifies them: seatrial design TRIAL.toml --out plan, with a table [design]"
+    return [Finding(Severity.WARNING, NOT_IDENTIFIABLE, f"the records do not show whether {enumeration(names)} "
+                    f"{'differ' if len(names) > 1 else 'differs'} from 0: the standard error exceeds the value", "",
+                    advice)]  # fmt: skip
 
 
 def _unidentified_names(estimation: Estimation) -> list[str]:
