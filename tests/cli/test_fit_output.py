@@ -7,9 +7,11 @@ from tests.reporting.complete_fit import baselines, complete_fit
 from tests.reporting.fabricated import fabricated_fit
 from tests.reporting.fabricated_study import fabricated_study
 
+from seatrial.cli.finding_output import print_warnings
 from seatrial.cli.fit_output import print_fit
 from seatrial.cli.screen import Detail, printing
 from seatrial.cli.study_output import print_study
+from seatrial.core.values import Finding, Severity
 
 
 def printed(capsys: pytest.CaptureFixture[str]) -> str:
@@ -27,6 +29,18 @@ def test_estimates_carry_unit_meaning_and_where_the_known_value_lies(capsys: pyt
         "inside", "OUTSIDE", "no interval", "sign open",
     ]  # fmt: skip
     assert all(" kg " in row for row in rows)
+
+
+def test_notes_are_counted_and_shown_when_required(capsys: pytest.CaptureFixture[str]) -> None:
+    findings = [Finding(Severity.WARNING, "one", "a warning"), Finding(Severity.INFO, "two", "a note")]
+    print_warnings(findings)
+    text = printed(capsys)
+    assert "no errors, 1 warning, 1 note; --verbose shows notes" in text and "a note" not in text
+    with printing(Detail.VERBOSE):
+        print_warnings(findings)
+    assert "note    [two] a note" in printed(capsys)
+    print_warnings(findings[1:])
+    assert printed(capsys) == ""
 
 
 def test_a_held_out_run_shows_errors_noise_and_measures_with_their_marks(capsys: pytest.CaptureFixture[str]) -> None:

@@ -5,7 +5,7 @@ from dataclasses import replace
 from tests.reporting.test_roll_chapter import KNOWN
 from tests.reporting.test_thruster_chapter import CRAFT
 
-from seatrial.core.results import CraftMeasure, Fit, PointMotion, Seakeeping
+from seatrial.core.results import CraftMeasure, Fit, IntervalEstimate, PointMotion, Seakeeping
 from seatrial.reporting.operators import operators_sentence
 
 
@@ -16,6 +16,8 @@ def test_a_roll_model_gives_period_and_damping(fit: Fit) -> None:
     assert "11° 0.81 % (0.70 to 0.91 %): damping is not shown to change with it" in text
     assert "; GM would be " in text
     assert operators_sentence(replace(fit, roll=replace(KNOWN, metacentric_height=None))).endswith("to change with it.")
+    given = replace(KNOWN, metacentric_height=IntervalEstimate(0.07, 0.07, 0.07))
+    assert "GM" not in operators_sentence(replace(fit, roll=given))
 
 
 def test_a_craft_with_thrusters_makes_turns_and_stops(fit: Fit) -> None:

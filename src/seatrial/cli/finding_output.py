@@ -16,8 +16,13 @@ _COLOURS = {"error": typer.colors.RED, "warning": typer.colors.YELLOW}
 _INDENT = " " * 8  # below the text of a finding
 
 
-def print_findings(findings: "Sequence[Finding]", per_code: int, rest: str = "--all shows them") -> None:
-    """Print findings by kind, errors first; of each kind the first few (all with --verbose), and where the rest is."""
+def print_findings(
+    findings: "Sequence[Finding]", per_code: int, rest: str = "--all shows them", *, has_notes: bool = True
+) -> None:
+    """Print findings by kind, errors first; of each kind the first few (all with --verbose), and where the rest is.
+
+    Without notes, which --verbose shows all the same, these are only counted.
+    """
     if is_quiet():
         _print_errors(findings)
         return
@@ -26,6 +31,8 @@ def print_findings(findings: "Sequence[Finding]", per_code: int, rest: str = "--
     for finding in findings:
         kinds.setdefault((finding.severity.value, finding.code), []).append(finding)
     for (severity, _), alike in sorted(kinds.items(), key=lambda item: order.index(item[0][0])):
+        if severity == "info" and not has_notes:
+            continue
         shown = alike if is_verbose() else alike[:per_code]
         for finding in shown:
             print_finding(severity, f"[{finding.code}] {finding.text}")
@@ -35,15 +42,15 @@ def print_findings(findings: "Sequence[Finding]", per_code: int, rest: str = "--
             print_lines([f"consequence: {alike[0].consequence}"], _INDENT)
         if alike[0].advice:
             print_lines([f"advice: {alike[0].advice}"], _INDENT)
-    print_lines([count_sentence(findings)])
+    hidden = "; --verbose shows notes" if not has_notes and any(severity == "info" for severity, _ in kinds) else ""
+    print_lines([f"{count_sentence(findings)}{hidden}"])
 
 
 def print_warnings(findings: "Sequence[Finding]", rest: str = "the report lists them") -> None:
     """Print errors and warnings of a result, the latest first, under a heading; with --verbose notes, too."""
-    chosen = [f for f in findings if is_verbose() or f.severity.value != "info"]
-    if chosen:
+    if is_verbose() or any(f.severity.value != "info" for f in findings):
         print_heading("Findings")
-        print_findings(chosen[::-1], 1, rest)
+        print_findings(findings[::-1], 1, rest, has_notes=is_verbose())
 
 
 def print_finding(severity: str, text: str) -> None:

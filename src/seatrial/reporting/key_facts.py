@@ -116,7 +116,7 @@ def _coverage(fit: Fit) -> KeyFact:
             texts.append(f"{fixed(100.0 * share, 0)} % of the samples of {ERROR_LABELS[key][0]}")
             shares.append(share)
     if not texts:
-        why = "only heading, track and manoeuvring values have intervals" if fit.validation else "no run was held out"
+        why = "nothing that was recorded has one" if fit.validation else "no run was held out"
         return KeyFact("Inside 95 % intervals", f"none judged: {why}")
     return KeyFact("Inside 95 % intervals", enumeration(texts), "prediction", min(shares) >= LEAST_COVERAGE)
 

@@ -7,6 +7,7 @@ from seatrial.core.results.ship_motions import IntervalEstimate
 from seatrial.core.results.thruster_craft import CraftMeasure, ThrusterCraft
 from seatrial.core.text.numbers import estimate_text, significant
 from seatrial.core.text.words import enumeration
+from seatrial.reporting.roll_chapter import share_of_critical
 
 # measures of a craft with thrusters that a sentence names: key -> text before the value, unit after it
 _CRAFT_MEASURES = {
@@ -30,16 +31,16 @@ def _roll(roll: RollCharacteristics) -> str:
     text = f"The natural period at small angles is {period}, the linear damping {ratio} of critical"
     if roll.amplitude:
         text += f", {_equivalent_damping(roll)}"
-    if roll.metacentric_height is None:
+    height = roll.metacentric_height
+    if height is None or height.lower == height.upper:  # unknown, or given
         return f"{text}."
-    height = _estimate(roll.metacentric_height, " m")
-    return f"{text}; GM would be {height} with {roll.gyradius_source.partition(',')[0]}."
+    return f"{text}; GM would be {_estimate(height, ' m')} with {roll.gyradius_source.partition(',')[0]}."
 
 
 def _equivalent_damping(roll: RollCharacteristics) -> str:
-    """What a swing of the largest recorded angle is damped by, b T / (4 pi) of critical, and whether it is more."""
+    """What a swing of the largest recorded angle is damped by, and whether it is more than small ones."""
     share, low, high = (
-        100.0 * b[-1] * roll.period[-1] / (4.0 * math.pi)
+        100.0 * share_of_critical(b[-1], roll.period[-1])
         for b in (roll.damping, roll.damping_lower, roll.damping_upper)
     )
     value = _estimate(IntervalEstimate(share, low, high), " %")

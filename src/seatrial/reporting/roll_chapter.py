@@ -15,6 +15,7 @@ from seatrial.reporting.text_tables import TextTable
 
 # amplitudes in the table; degrees of a radian
 _AMPLITUDES, _DEGREES = 5, math.degrees(1.0)
+_WHOLE_RANGE = " The range of GM has the whole range of the radius in it."
 
 
 def tables(roll: RollCharacteristics, scale: float) -> list[TextTable]:
@@ -30,8 +31,9 @@ def tables(roll: RollCharacteristics, scale: float) -> list[TextTable]:
     quantities = tuple(
         _quantity_row(name, value, factor, has_scale=has_scale) for name, value, factor in rows if value is not None
     )
-    note = f"Radius of gyration: {roll.gyradius_source}."
-    note += " The range of GM has the whole range of that radius in it." if roll.metacentric_height is not None else ""
+    height, radius = roll.metacentric_height, roll.gyradius
+    ranges = height is not None and radius is not None and height.lower < height.upper and radius.lower < radius.upper
+    note = f"Inertia: {roll.gyradius_source}.{_WHOLE_RANGE if ranges else ''}"
     first = TextTable("What the coefficients mean", header, _numeric_columns(header), quantities, note)
     return [first, _amplitude_table(roll)] if roll.amplitude else [first]
 
@@ -56,7 +58,7 @@ def _amplitude_table(roll: RollCharacteristics) -> TextTable:
             fixed(math.degrees(roll.amplitude[i]), 1),
             significant(roll.period[i], 4),
             *(significant(b[i], 3) for b in (roll.damping, roll.damping_lower, roll.damping_upper)),
-            significant(100.0 * roll.damping[i] * roll.period[i] / (4.0 * math.pi), 2),
+            significant(100.0 * share_of_critical(roll.damping[i], roll.period[i]), 2),
         )
         for i in places
     )
@@ -66,6 +68,11 @@ def _amplitude_table(roll: RollCharacteristics) -> TextTable:
         "1981; ITTC 7.5-02-07-04.5)."
     )
     return TextTable("Swings of some amplitudes", header, (True, *_numeric_columns(header)[1:]), rows, note)
+
+
+def share_of_critical(damping: float, period: float) -> float:
+    """Return the equivalent damping b_e [1/s] of swings of a period T [s] over the critical, b_e / (2 w)."""
+    return damping * period / (4.0 * math.pi)
 
 
 def figures(roll: RollCharacteristics) -> list[tuple[Markup, Figure]]:

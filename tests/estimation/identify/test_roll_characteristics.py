@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Record, Ship
-from seatrial.estimation.identify.roll_characteristics import assumed_gyradius, one_speed_finding, roll_characteristics
+from seatrial.estimation.identify.roll_characteristics import one_speed_finding, roll_characteristics
 from seatrial.estimation.information.covariance import Interval
 from seatrial.physics.hydro.free_roll import equivalent_damping, swing_period
 from seatrial.physics.models.nomoto import nomoto
@@ -66,31 +66,12 @@ def test_recorded_swings_lie_on_the_curve_and_only_decays_have_them(decay: Recor
     assert driven.swings == ()
 
 
-@pytest.mark.parametrize(
-    ("particulars", "value", "width", "said"),
-    [
-        ({"k_xx_prime": 2.1, "k_xx": 1.0}, 2.1, 0.0, "taken as exact"),
-        ({"k_xx": 1.9, "B": 5.0}, 1.9 * np.sqrt(1.18), 0.219, "added inertia of 18 (5 to 30) %"),
-        ({"B": 5.0}, 2.0, 0.5, "0.4 (0.35 to 0.45) of the breadth"),
-    ],
-)
-def test_the_radius_of_gyration_is_given_or_said_to_be_assumed(
-    particulars: dict[str, float], value: float, width: float, said: str
-) -> None:
-    """What is known of the ship comes first."""
-    gyradius, words = assumed_gyradius(Ship("s", particulars))
-    assert gyradius is not None
-    assert gyradius.value == pytest.approx(value)
-    assert gyradius.upper - gyradius.lower == pytest.approx(width, abs=1e-3)
-    assert said in words
-
-
 def test_without_any_size_there_is_no_metacentric_height(decay: Record) -> None:
     """And the way out is named; models that do not roll have no such chapter."""
     known = roll_characteristics(roll().with_values(TRUE), correlated(), FREE, [decay], Ship("s", {"L": 3.0}))
     assert known is not None
     assert known.metacentric_height is None
-    assert "give k_xx_prime, k_xx or B" in known.gyradius_source
+    assert "give GM, k_xx_prime, k_xx or B" in known.gyradius_source
     assert roll_characteristics(nomoto(), correlated(), FREE, [decay], SHIP) is None
 
 

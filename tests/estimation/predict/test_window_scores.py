@@ -49,18 +49,21 @@ def test_windows_of_both_units_are_scored_with_baselines(fit: Fit) -> None:
     assert straight.scores["r"].rms == pytest.approx(np.sqrt(np.mean(fit.validation[0].measured["r"] ** 2)), rel=0.25)
 
 
-def test_a_ship_that_rolls_about_its_rest_has_windows_in_seconds() -> None:
+def test_a_ship_that_rolls_about_its_rest_has_windows_in_seconds_and_a_band_that_holds_its_roll() -> None:
     """Of 0.4 periods and multiples: it travels no ship lengths."""
     ship, rng = roll().with_values({"b_1": 0.05, "c_1": 6.0, "b_2": 0.2}), np.random.default_rng(0)
-    decays = []
+    decays, truth = [], np.zeros(600)
     for name, angle in (("a", 0.3), ("b", 0.25)):
         states, _ = trajectory(ship, np.zeros((600, 2)), 0.05, np.array([angle, 0.0]))
         noise = 3e-4 * rng.standard_normal(600)
         decays.append(Record.from_arrays(name, 0.05 * np.arange(600.0), {"phi": states[:, 0] + noise}))
+        truth = states[:, 0]
     roles = (Role.TRAIN, Role.VALIDATE)
     runs = tuple(TrialRun(d, role) for d, role in zip(decays, roles, strict=True))
     (prediction,) = identify(Trial(Ship("hull", {"L": 5.0}), runs, roll())).validation
     assert [w.window for w in prediction.windows] == ["1 s", "5.1 s"]  # 0.4 periods of 2 pi / sqrt(6) s
+    inside = np.abs(prediction.simulated["phi"] - truth) <= prediction.half_width["phi"]
+    assert np.mean(inside) > 0.9
 
 
 def test_a_baseline_that_errs_less_is_named(fit: Fit) -> None:

@@ -75,7 +75,7 @@ class Prediction:
     extrapolation: Annotated[Extrapolation | None, Field(description="null: not known")] = None
     half_width: Annotated[
         dict[str, StoredArray],
-        Field(description="psi, x0, y0 -> half width of its 95 % band at every sample, shape (n,), SI"),
+        Field(description="psi, x0, y0, phi, z, theta -> half width of its 95 % band at every sample, (n,), SI"),
     ] = field(default_factory=dict)
     noise_floor: Annotated[
         dict[str, Number],

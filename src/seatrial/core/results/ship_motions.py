@@ -30,12 +30,13 @@ class RollCharacteristics:
         IntervalEstimate, Field(description="linear damping over critical damping, b_1 / (2 sqrt(c_1))")
     ]
     gyradius: Annotated[
-        IntervalEstimate | None, Field(description="m, in roll with added inertia, given or assumed; null: not known")
+        IntervalEstimate | None,
+        Field(description="m, in roll with added inertia, given, assumed or by GM; null: not known"),
     ]
-    gyradius_source: Annotated[str, Field(description="where the gyradius comes from")]
+    gyradius_source: Annotated[str, Field(description="what was given or assumed of gyradius and GM")]
     metacentric_height: Annotated[
         IntervalEstimate | None,
-        Field(description="m; its range is the coefficients' interval and the full range of the gyradius"),
+        Field(description="m; given, or the coefficients' interval and the full range of the gyradius"),
     ]
     amplitude: Annotated[tuple[Number, ...], Field(description="rad, up to the largest recorded")]
     damping: Annotated[tuple[Number, ...], Field(description="1/s, equivalent linear damping b_e over amplitude")]

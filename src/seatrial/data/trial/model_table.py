@@ -17,12 +17,12 @@ from seatrial.physics.sensors import Sensors, with_sensors
 Bounds = Mapping[str, tuple[float, float]]
 # particulars that people state although not every model asks for them
 COMMON_PARTICULARS = (
-    "L", "B", "d", "m", "I_z", "k_xx", "k_xx_prime", "x_G", "C_b", "volume", "D_P", "x_P", "A_R", "H_R", "x_R", "A_T",
-    "A_L", "rho", "pitch_ratio", "area_ratio", "blades",
+    "L", "B", "d", "m", "I_z", "k_xx", "k_xx_prime", "GM", "x_G", "C_b", "volume", "D_P", "x_P", "A_R", "H_R", "x_R",
+    "A_T", "A_L", "rho", "pitch_ratio", "area_ratio", "blades",
 )  # fmt: skip
 
 
-_SIZES = frozenset((*COMMON_PARTICULARS, "I5", "c33", "c55")) - {"x_G", "x_P", "x_R"}
+_SIZES = frozenset((*COMMON_PARTICULARS, "I5", "c33", "c55")) - {"x_G", "x_P", "x_R", "GM"}
 """Particulars that are lengths, areas, masses, ratios or stiffnesses of a craft that floats: never negative."""
 
 

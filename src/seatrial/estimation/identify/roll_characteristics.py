@@ -8,14 +8,12 @@ from seatrial.core.equations import Model
 from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
 from seatrial.core.results.ship_motions import IntervalEstimate, RollCharacteristics
 from seatrial.core.values import Array, Finding, Record, Severity, Ship
+from seatrial.estimation.identify.roll_inertia import roll_inertia
 from seatrial.estimation.information.covariance import Interval
-from seatrial.physics.hydro.free_roll import equivalent_damping, metacentric_height, observed_swings, swing_period
+from seatrial.physics.hydro.free_roll import equivalent_damping, observed_swings, swing_period
 
 DAMPING_NAMES, RESTORING_NAMES = ("b_1", "b_2", "b_3"), ("c_1", "c_3", "c_5")
-GYRADIUS_WITH_ADDED_INERTIA, DRY_GYRADIUS = "k_xx_prime", "k_xx"
 
-# share of the moment of inertia that the water adds in roll, and the radius of gyration with it over the breadth
-ADDED_INERTIA_SHARE, GYRADIUS_OVER_BREADTH = (0.05, 0.18, 0.30), (0.35, 0.40, 0.45)
 # means of speed that differ by less are one speed: m/s, and share of the largest; ours
 _ONE_SPEED, _ONE_SPEED_SHARE = 0.05, 0.05
 # amplitudes of the curves; least swing over the largest that is shown, ours
@@ -57,7 +55,9 @@ def roll_characteristics(
     spread = _HalfWidths(interval, tuple(free))
     root = float(np.sqrt(c[0]))
     ratio = 0.5 * b[0] / root
-    gyradius, assumed = assumed_gyradius(ship)
+    inertia = roll_inertia(
+        ship, _symmetric_interval(float(c[0]), float(spread.half_width(np.ones((1, 1)), ("c_1",))[0]))
+    )
     reach = max(float(np.nanmax(np.abs(r["phi"] - rest))) for r in records)
     amplitude = reach * np.arange(1, _POINTS + 1) / _POINTS
     periods, by_c = swing_period(c, amplitude)
@@ -75,11 +75,9 @@ def roll_characteristics(
         damping_ratio=_symmetric_interval(
             ratio, spread.half_width(np.array([[0.5 / root, -0.5 * ratio / c[0]]]), ("b_1", "c_1"))[0]
         ),
-        gyradius=gyradius,
-        gyradius_source=assumed,
-        metacentric_height=_metacentric_height_interval(
-            float(c[0]), float(spread.half_width(np.ones((1, 1)), ("c_1",))[0]), gyradius
-        ),
+        gyradius=inertia.gyradius,
+        gyradius_source=inertia.source,
+        metacentric_height=inertia.metacentric_height,
         amplitude=_floats(amplitude),
         damping=_floats(damping),
         damping_lower=_floats(damping - wider),
@@ -89,32 +87,6 @@ def roll_characteristics(
         period_upper=_floats(periods + wide),
         swings=() if _is_excited(model, records) else _swings(records, rest, reach),
     )
-
-
-def assumed_gyradius(ship: Ship) -> tuple[IntervalEstimate | None, str]:
-    """Radius of gyration in roll with added inertia [m]: the ship's `k_xx_prime`, else by `k_xx`, else by breadth."""
-    particulars = ship.particulars
-    if GYRADIUS_WITH_ADDED_INERTIA in particulars:
-        k = particulars[GYRADIUS_WITH_ADDED_INERTIA]
-        return IntervalEstimate(k, k, k), f"{GYRADIUS_WITH_ADDED_INERTIA} of the ship, {k:.4g} m, taken as exact"
-    if DRY_GYRADIUS in particulars:
-        low, middle, high = (particulars[DRY_GYRADIUS] * float(np.sqrt(1.0 + share)) for share in ADDED_INERTIA_SHARE)
-        assumption = (
-            f"{DRY_GYRADIUS} of the ship, {particulars[DRY_GYRADIUS]:.4g} m, and an added inertia of "
-            f"{_range_text(ADDED_INERTIA_SHARE, 100.0)} % of it"
-        )
-        return IntervalEstimate(
-            middle, low, high
-        ), f"{assumption}, chosen; {GYRADIUS_WITH_ADDED_INERTIA} under [ship] would replace this"
-    if "B" in particulars:
-        low, middle, high = (share * particulars["B"] for share in GYRADIUS_OVER_BREADTH)
-        assumption = (
-            f"a radius of gyration with added inertia of {_range_text(GYRADIUS_OVER_BREADTH, 1.0)} of the breadth"
-        )
-        return IntervalEstimate(
-            middle, low, high
-        ), f"{assumption}, chosen; {GYRADIUS_WITH_ADDED_INERTIA} or {DRY_GYRADIUS} under [ship] would replace this"
-    return None, f"not known; give {GYRADIUS_WITH_ADDED_INERTIA}, {DRY_GYRADIUS} or B under [ship]"
 
 
 class _HalfWidths:
@@ -137,16 +109,6 @@ def _symmetric_interval(value: float, half: float) -> IntervalEstimate:
     return IntervalEstimate(float(value), float(value - half), float(value + half))
 
 
-def _metacentric_height_interval(c_1: float, half: float, gyradius: IntervalEstimate | None) -> IntervalEstimate | None:
-    if gyradius is None:
-        return None
-    return IntervalEstimate(
-        metacentric_height(c_1, gyradius.value),
-        metacentric_height(c_1 - half, gyradius.lower),
-        metacentric_height(c_1 + half, gyradius.upper),
-    )
-
-
 def _is_excited(model: Model, records: Sequence[Record]) -> bool:
     return any(n in r and np.ptp(r[n]) > 0.0 for n in model.input_names for r in records)
 
@@ -159,11 +121,6 @@ def _swings(records: Sequence[Record], rest: float, reach: float) -> tuple[tuple
         swings += [s for s in zip(*map(_floats, observed_swings(phi, record.dt)), strict=True)
                   if s[0] > _MIN_SWING_SHARE * reach]  # fmt: skip
     return tuple(swings)
-
-
-def _range_text(values: tuple[float, float, float], factor: float) -> str:
-    low, middle, high = (f"{factor * value:.3g}" for value in values)
-    return f"{middle} ({low} to {high})"
 
 
 def _floats(values: Array) -> tuple[float, ...]:

@@ -15,7 +15,9 @@ import numpy as np
 from seatrial.core.values import Array
 
 _FEWEST_VALUES, _FEWEST_RUNS = 4, 3
-_TRACK_CHANNELS = ("psi", "x0", "y0")
+
+BAND_CHANNELS = ("psi", "x0", "y0", "phi", "z", "theta")
+"""Channels of a prediction that have a band: where a craft is and how it lies, not how fast it moves."""
 
 GROWTH_POWER = 2.0
 """Power of the extrapolation index with which the discrepancy grows (benchmarks/extrapolation.py)."""
@@ -27,7 +29,7 @@ class HoldoutError:
 
     Attributes:
         run: its name; dt: s.
-        errors, predicted_sd: channel (psi, x0, y0) -> error and predicted standard deviation at every sample, (n,), SI.
+        errors, predicted_sd: channel of `BAND_CHANNELS` -> error and predicted standard deviation at every sample, SI.
         measures: measure -> (error, foreseen standard deviation), in the measure's unit.
         index: extrapolation index of the run against the others.
     """
@@ -101,7 +103,7 @@ def discrepancy(holdout_errors: Sequence[HoldoutError]) -> Discrepancy:
     ratios = [np.mean((v[:, 0] / np.maximum(v[:, 1], 1e-300)) ** 2) for v in known.values()]
     factor = float(np.sqrt(max(np.median(ratios), 1.0))) if ratios else 1.0
     elapsed = {
-        c: _elapsed_excess_sd(holdout_errors, c) for c in _TRACK_CHANNELS if all(c in m.errors for m in holdout_errors)
+        c: _elapsed_excess_sd(holdout_errors, c) for c in BAND_CHANNELS if all(c in m.errors for m in holdout_errors)
     }
     if {"x0", "y0"} <= set(elapsed):
         both = np.sqrt(0.5 * (elapsed["x0"] ** 2 + elapsed["y0"] ** 2))

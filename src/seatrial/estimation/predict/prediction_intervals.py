@@ -10,7 +10,7 @@ from seatrial.core.results import Measure, Prediction
 from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.check.signal import sample_noise
-from seatrial.estimation.information.discrepancy import Discrepancy, HoldoutError
+from seatrial.estimation.information.discrepancy import BAND_CHANNELS, Discrepancy, HoldoutError
 from seatrial.estimation.predict.draws import PredictionUncertainty, StartStates, draw_runs
 from seatrial.estimation.predict.open_loop import (
     OpenLoopRun,
@@ -27,7 +27,6 @@ from seatrial.physics.manoeuvres import bounded_interval, measures
 from seatrial.physics.manoeuvres.recognition import ObservedManoeuvre
 from seatrial.physics.simulate.channels import inputs_of
 
-_TRACK_CHANNELS = ("psi", "x0", "y0")
 # ships drawn for the interval of a prediction, and for that of a run left out, ours
 DRAWS, HOLDOUT_DRAWS = 100, 32
 _POOLED_DRAWS, _FEWEST_DRAWS = 1600, 8  # of all runs left out together, and of each where they are many; chosen
@@ -39,7 +38,7 @@ class PredictionSpread:
     """How far runs drawn from what is left open scatter about a prediction.
 
     Attributes:
-        channels: psi, x0, y0 -> standard deviation at every sample, shape (n,), SI.
+        channels: of `BAND_CHANNELS` -> standard deviation at every sample, shape (n,), SI.
         measures: measure -> standard deviation in its unit.
     """
 
@@ -64,7 +63,7 @@ def prediction_spread(
     """
     runs = _drawn_about(template, model, record, simulation, nuisances, uncertainty, rng, count)
     spreads = _measure_spread(model, record, simulation, runs, length, rng) if is_steered(record, model) else {}
-    return PredictionSpread(_track_spread(model, simulation.record, runs), spreads)
+    return PredictionSpread(_channel_spread(model, simulation.record, runs), spreads)
 
 
 def window_spreads(
@@ -89,7 +88,7 @@ def window_spreads(
             template, model, part.dt, part.inputs(model), starts[chosen], nuisances[part.run], uncertainty, rng,
             HOLDOUT_DRAWS,
         )  # fmt: skip
-        spreads += [_track_spread(model, s, _finite_draws(y)) for s, y in zip(simulated[chosen], drawn, strict=True)]
+        spreads += [_channel_spread(model, s, _finite_draws(y)) for s, y in zip(simulated[chosen], drawn, strict=True)]
     return spreads
 
 
@@ -115,11 +114,11 @@ def _finite_draws(runs: Array) -> Array:
     return kept if 2 * len(kept) > len(runs) else kept[:0]
 
 
-def _track_spread(model: Model, simulated: Record, runs: Array) -> dict[str, Array]:
+def _channel_spread(model: Model, simulated: Record, runs: Array) -> dict[str, Array]:
     place = {c: model.observables.index(model.observable_of(c)) for c in model.channels}
     return {
         c: np.sqrt(np.mean((runs[:, :, place[c]] - simulated[c]) ** 2, axis=0))
-        for c in _TRACK_CHANNELS
+        for c in BAND_CHANNELS
         if c in place and len(runs)
     }
 
@@ -203,7 +202,7 @@ def track_holdout_error(
     except InputError:
         return None
     runs = _drawn_about(template, holdout.model, piece, run, holdout.nuisances, uncertainty, rng, HOLDOUT_DRAWS)
-    return _channel_errors(piece, run, _track_spread(holdout.model, run.record, runs)) if len(runs) else None
+    return _channel_errors(piece, run, _channel_spread(holdout.model, run.record, runs)) if len(runs) else None
 
 
 def _channel_errors(record: Record, simulation: OpenLoopRun, channels: dict[str, Array]) -> HoldoutError:

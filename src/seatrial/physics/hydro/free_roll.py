@@ -49,6 +49,11 @@ def metacentric_height(c_1: float, gyradius: float) -> float:
     return c_1 * gyradius**2 / G
 
 
+def gyradius_of(c_1: float, metacentric_height: float) -> float:
+    """Return the radius of gyration [m] in roll with added inertia, k = sqrt(g GM / c_1), GM [m]."""
+    return float(np.sqrt(G * metacentric_height / c_1))
+
+
 def observed_swings(roll: Array, dt: float) -> tuple[Array, Array, Array]:
     """Amplitude [rad], logarithmic damping 2 ln(a_i / a_i+2) / T [1/s] and period T [s] of each swing of a decay.
 
