@@ -1,6 +1,6 @@
 """Feed every parser, and `identify` itself, with damaged inputs: each must give a result or one clear sentence.
 
-    python benchmarks/fuzz.py --inputs 100000 --seed 1 [--target trial] [--finds FOLDER]
+    python benchmarks/fuzz.py --inputs 2000000 --seed 1 [--target trial] [--finds FOLDER]
 
 Inputs are well-formed samples and those of `fuzz_corpus` after random changes; the same seed gives the same ones. They
 run in a child process without the net that `seatrial` spreads below unexpected exceptions, so that each of them counts:
@@ -43,6 +43,8 @@ CPU_LIMIT_S = 20.0  # of one input: the inputs are tiny; an aim of this benchmar
 WAIT_LIMIT_S = 600.0  # between two inputs: a child that waits for something and computes nothing; chosen
 MESSAGE_LENGTH = 600  # letters: eight lines of a terminal; the command line cuts longer ones
 INTERVAL_S = 0.2  # between two looks at a child; chosen
+LEAST_SHARE = 1e-4  # of all inputs that the dearest target gets: 200 of two million; chosen
+KINDS_OF_FIND = ("traceback", "hang", "death", "silent number", "warning", "message")
 _COUNTER = struct.Struct("<q")
 
 
@@ -190,23 +192,26 @@ def _wait(process: subprocess.Popen[bytes], counter: Path) -> None:
 
 
 def shares(inputs: int, names: list[str]) -> dict[str, int]:
-    """Return how many inputs each target gets: the cheaper, the more."""
+    """Return how many inputs each target gets: the cheaper, the more, and none less than a share of all."""
     weights = {name: 1.0 / TARGETS[name].cost for name in names}
-    return {name: max(1, round(inputs * weight / sum(weights.values()))) for name, weight in weights.items()}
+    fewest = max(1, round(LEAST_SHARE * inputs))
+    return {name: max(fewest, round(inputs * weight / sum(weights.values()))) for name, weight in weights.items()}
 
 
 def run(inputs: int = 2000, seed: int = 1, names: list[str] | None = None, finds: Path | None = None) -> list[Line]:
     """The tally of all targets as a table; every find is printed."""
-    lines = []
+    lines, all_finds, all_inputs = [], Counter[str](), 0
     for name, count in shares(inputs, names or list(TARGETS)).items():
         tally = fuzz(name, count, seed, finds or Path(tempfile.gettempdir()) / "seatrial-fuzz")
         total = sum(sum(counted.values()) for counted in tally.finds.values())
         lines.append(at_most(f"{name}: finds in {tally.inputs} inputs", total, "", 0))
+        all_inputs += tally.inputs
+        all_finds.update({kind: counted.total() for kind, counted in tally.finds.items()})
         print(f"{name}: {tally.inputs} inputs, {total} finds", flush=True)
         for kind, counted in tally.finds.items():
             for text, number in counted.most_common():
                 print(f"    {kind} {number} times: {text}", flush=True)
-    return lines
+    return [*lines, *(at_most(f"{kind} in all {all_inputs} inputs", all_finds[kind], "", 0) for kind in KINDS_OF_FIND)]
 
 
 if __name__ == "__main__":

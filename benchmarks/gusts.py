@@ -4,7 +4,8 @@ Every cell has a size a and a memory of the disturbance, open loop (random binar
 square wave of heading), 600 s at 10 Hz. Every run is identified from scratch by the default of `identify`; errors are
 compared with the Cramer-Rao bound of the true disturbance on the same record, and with the error that the record itself
 has: of one scoring step from the true coefficients with the true disturbance, which no estimator can undo.
-`python benchmarks/gusts.py --craft nomoto --generator independent --runs 80`.
+`python benchmarks/gusts.py --craft nomoto --generator independent --runs 80`. No campaign: a cell is one map over its
+draws, and what it compares with is the likelihood of the true disturbance, which no table of a campaign has.
 """
 
 import argparse

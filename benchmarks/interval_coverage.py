@@ -2,7 +2,8 @@
 
 `python benchmarks/interval_coverage.py --series 100` fits every series of `disturbed_trials.py` from published
 coefficients with priors of 10 % and predicts a zigzag and both 35 deg turns that were kept out. The shares of the
-release before sessions were a population stand beside those of the same seeds.
+release before sessions were a population stand beside those of the same seeds. No campaign: its rows are measures of
+manoeuvres, and one map over the series is all that a store would replace.
 """
 
 import argparse
