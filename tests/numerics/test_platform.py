@@ -206,6 +206,15 @@ def test_a_process_with_little_memory_cannot_take_more() -> None:
     assert (ended.returncode == 1 and "MemoryError" in ended.stderr) or os.name == "nt"
 
 
+def test_no_more_is_written_of_a_file_than_it_has(tmp_path: Path) -> None:
+    path = tmp_path / "file"
+    path.write_bytes(b"x" * 100)
+    assert platform.written_size(path.stat()) == 100
+    with path.open("r+b") as file:
+        file.truncate(2**30)
+    assert 0 < platform.written_size(path.stat()) <= 2**30
+
+
 def test_the_names_of_this_system_suit_a_library_of_it() -> None:
     assert (platform.system_name(), platform.library_suffix()) in {
         ("linux", ".so"), ("darwin", ".dylib"), ("win", ".dll"),

@@ -29,6 +29,10 @@ _LOCKED_BYTE = 2**31 - 2
 _AT_WORKING_DIRECTORY, _EXCHANGE = -100, 2
 
 
+_BLOCK = 512
+"""Bytes in the unit of st_blocks (POSIX, sys/stat.h on all systems that Python supports)."""
+
+
 def system_name() -> str:
     """Return the system as FMI 2.0 names it (section 2.3): linux, darwin, win; elsewhere as Python does."""
     return {"win32": "win"}.get(sys.platform, sys.platform)
@@ -168,6 +172,15 @@ def open_regular(path: Path) -> int:
     """
     flags = ("O_NOFOLLOW", "O_NONBLOCK", "O_BINARY")
     return os.open(path, sum((getattr(os, flag, 0) for flag in flags), os.O_RDONLY))
+
+
+def written_size(facts: os.stat_result) -> int:
+    """Return how many bytes of a file were ever written; its size where the system does not say.
+
+    A copy that was broken off, or a file made longer by one call, has holes, which read as zeros and take no space.
+    """
+    blocks = getattr(facts, "st_blocks", None)
+    return facts.st_size if blocks is None else min(facts.st_size, blocks * _BLOCK)
 
 
 def distrust(facts: os.stat_result) -> str:
