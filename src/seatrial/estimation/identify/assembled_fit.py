@@ -11,6 +11,7 @@ from seatrial.data.trial.approach import approach_condition
 from seatrial.estimation.estimate import Estimation, IntervalMethod
 from seatrial.estimation.identify import fit_result
 from seatrial.estimation.identify.closed_loop_findings import closed_loop_findings
+from seatrial.estimation.identify.held_couplings import held_couplings
 from seatrial.estimation.identify.identifiability import identifiability
 from seatrial.estimation.identify.identification import Identification
 from seatrial.estimation.identify.misfit_disturbance import misfit_disturbance
@@ -66,6 +67,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
             *task.findings, *selected.findings, *findings, *fit_result.unidentified(selected.estimation),
             *unphysical_finding(estimation.model, runs.records), *fit_result.bounds_hit(estimation),
             *fit_result.unconverged(estimation), *other_optima(estimation),
+            *held_couplings(selected.estimation),
             *varying_gain_finding(estimation, runs.records),
             *misfit_disturbance(
                 estimation.noise_model.process,

@@ -61,6 +61,8 @@ _COUPLED = {
     "Y_T": _HullTerm(0.0, "1", 0, "side force over the sum of thrusts", is_free=False),
     "Y_NT": _HullTerm(0.0, "1/m", -1, "side force over the thrusters' moment"),
 }
+COUPLINGS = tuple(_COUPLED)
+"""Coefficients by which one motion acts on another, and thrusts on sway."""
 _STATIONS = (-0.9602898564975363, -0.7966664774136267, -0.5255324099163290, -0.1834346424956498)
 _WEIGHTS = (0.1012285362903763, 0.2223810344533745, 0.3137066458778873, 0.3626837833783620)
 """Gauss-Legendre rule of eight points, its negative half (Abramowitz & Stegun 1964, table 25.4)."""

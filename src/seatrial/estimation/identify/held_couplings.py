@@ -1,0 +1,94 @@
+"""Couplings of a hull that are held at zero although the training runs speak against it: a score test of each.
+
+One Newton step from the optimum with one more coefficient free says how far it would move, over its standard error, and
+what it would move with it (Rao 1948, Proc. Cambridge Phil. Soc. 44, 50-57: the score statistic is the square of the
+first).
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from seatrial.core.text.words import enumeration
+from seatrial.core.values import Array, Finding, Severity
+from seatrial.estimation.estimate import Estimation
+from seatrial.estimation.problem.output_error import OutputError
+from seatrial.physics.models.thrusters import COUPLINGS
+
+_STANDARD_ERRORS = 5.0  # of a coupling, from which on it is named; chosen: beyond what is left of model error
+_MOVES = 2.0  # standard errors of a free coefficient by which it would move, from which on it is named; chosen
+_MOST_NAMED = 3  # coefficients that a message names; chosen
+
+
+@dataclass(frozen=True, eq=False)
+class _Score:
+    """Gradient and Hessian of the cost with the couplings free, and the names of the unknowns that are coefficients."""
+
+    names: tuple[str, ...]
+    gradient: Array
+    hessian: Array
+
+    def step(self, name: str, couplings: tuple[str, ...]) -> tuple[float, dict[str, float]]:
+        """Return the step of one coupling over its standard error, and the steps of the free coefficients with it."""
+        rest = [self.names.index(one) for one in couplings if one != name]
+        kept = np.setdiff1d(np.arange(len(self.gradient)), rest)
+        inverse = np.linalg.pinv(self.hessian[np.ix_(kept, kept)], hermitian=True)
+        step = dict(zip(kept.tolist(), (-inverse @ self.gradient[kept]).tolist(), strict=True))
+        place = self.names.index(name)
+        error = float(np.sqrt(max(np.diag(inverse)[np.flatnonzero(kept == place)[0]], 0.0)))
+        own = {one: step[k] for k, one in enumerate(self.names) if one not in couplings}
+        return step[place] / error if error > 0.0 else 0.0, own
+
+
+def held_couplings(estimation: Estimation) -> tuple[Finding, ...]:
+    """Return a warning for each coupling of a craft with thrusters that is held at 0 and should not be."""
+    parameters = estimation.model.parameters
+    candidates = tuple(p.name for p in parameters if p.name in COUPLINGS and not p.free and p.value == 0.0)
+    if not candidates:
+        return ()
+    score = _score(estimation, candidates)
+    errors = dict(zip(estimation.estimate.problem.free, estimation.interval.standard_error, strict=False))
+    findings = list[tuple[float, Finding]]()
+    for name in candidates:
+        size, steps = score.step(name, candidates)
+        if not abs(size) > _STANDARD_ERRORS:
+            continue
+        moved = {n: abs(step) / errors[n] for n, step in steps.items() if errors.get(n, 0.0) > 0.0}
+        largest = sorted((n for n in moved if moved[n] > _MOVES), key=lambda n: -moved[n])[:_MOST_NAMED]
+        text = enumeration([f"{n} by {moved[n]:.0f} standard errors" for n in largest])
+        free = ", ".join(f'"{n}"' for n in (*estimation.estimate.problem.free, name))
+        finding = Finding(
+            Severity.WARNING, "held-coupling", f"{name} is held at 0 and the training runs speak against it, by "
+            f"{abs(size):.0f} standard errors", f"in one step it would move {text}" if text else "",
+            f"free it and compare the held-out runs: under [model] write free = [{free}]",
+            "intervals of the coefficients that stand in for it do not hold their true values",
+        )  # fmt: skip
+        findings.append((abs(size), finding))
+    return tuple(finding for _, finding in sorted(findings, key=lambda one: -one[0]))
+
+
+def _score(estimation: Estimation, couplings: tuple[str, ...]) -> _Score:
+    noise = estimation.process_noise
+    if noise is None or not estimation.has_process_noise:
+        problem, solution = estimation.estimate.problem, estimation.estimate.optimum.solution
+        freed = _freed(problem, couplings)
+        normal = freed.normal(_point(problem, freed, solution.point), estimation.estimate.optimum.local)
+        return _Score(freed.free, *normal.without_local())
+    problem, point = noise.problem, noise.optimum.solution.point
+    runs = _freed(problem.runs, couplings)
+    wider, start = replace(problem, runs=runs, steps=None), _point(problem.runs, runs, point)
+    nothing_local = np.zeros((0, 0))  # the filter eliminates initial states
+    steps = wider.difference_steps(start, wider.normal(start, nothing_local).hessian)
+    normal = replace(wider, steps=steps).normal(start, nothing_local)
+    return _Score(runs.free, normal.gradient, normal.hessian)
+
+
+def _freed(runs: OutputError, couplings: tuple[str, ...]) -> OutputError:
+    model = runs.model
+    return replace(runs, model=model.with_parameters(model.parameters.freed(*couplings)))
+
+
+def _point(runs: OutputError, freed: OutputError, point: Array) -> Array:
+    """The optimum as an unknown of the wider problem, the couplings at zero."""
+    values = dict(zip(runs.free, point, strict=False))
+    return np.concatenate([[values.get(name, 0.0) for name in freed.free], point[len(runs.free) :]])
