@@ -23,11 +23,16 @@ COMMAND_GAIN = 1.0
 
 
 def motion_envelope(records: Sequence[Record], layout: str = "") -> dict[str, float]:
-    """What the records cover, SI: largest yaw rate, drift and rudder angle, fastest and slowest speed, commands.
+    """What the records cover, SI: ranges of motion, rudder and commands, and the rate of the rudder's fastest move.
 
-    Of the rudder also the largest angle to each side.
+    That rate (`sustained_rudder_rate`) is no limit of a prediction. What no record holds is absent.
+    """
+    rates = [rate for r in records if (rate := sustained_rudder_rate(r)) is not None]
+    return _ranges(records, layout) | ({RUDDER_RATE: max(rates)} if rates else {})
 
-    Also the rate of the fastest move of the rudder (`sustained_rudder_rate`), which is no limit of a prediction.
+
+def _ranges(records: Sequence[Record], layout: str) -> dict[str, float]:
+    """Largest yaw rate, drift and rudder angle, also to each side, fastest and slowest speed, commands.
 
     The largest is the 99.5th percentile of all samples, so that a single bad one does not count. What no record holds
     is absent. Drift is atan2(-v, u). Of every thruster of a `layout` (its text): ``command NAME ahead`` and ``astern``,
@@ -51,9 +56,6 @@ def motion_envelope(records: Sequence[Record], layout: str = "") -> dict[str, fl
         flow = np.concatenate(speeds)
         made["fastest"] = float(np.nanpercentile(flow, _PERCENTILE))
         made["slowest"] = float(np.nanpercentile(flow, 100.0 - _PERCENTILE))
-    rates = [rate for r in records if (rate := sustained_rudder_rate(r)) is not None]
-    if rates:
-        made[RUDDER_RATE] = max(rates)
     for name, conditions in thruster_conditions(layout, records).items():
         ranges = {"ahead": conditions.order, "astern": -conditions.order} | conditions.quadrants()
         for kind, samples in ranges.items():
@@ -86,7 +88,7 @@ def extrapolation(predicted: Record, training_envelope: Mapping[str, float], lay
     the training runs, as a share of full command, of quadrants also of their fastest speed. So may be a side of the
     rudder: a run that goes there as far as the training runs went to the other side has 2 where they never went there.
     """
-    own = motion_envelope([predicted], layout)
+    own = _ranges([predicted], layout)
     both = {n: (own[n], training_envelope[n]) for n in own if training_envelope.get(n, 0.0) > NEGLIGIBLE.get(n, 0.0)}
     ratios = {n: both[n][0] / both[n][1] for n in ("yaw_rate", "drift", "rudder") if n in both}
     for name in (f"rudder to {side}" for side in SIDES) if "rudder" in both else ():
@@ -107,5 +109,5 @@ def extrapolation(predicted: Record, training_envelope: Mapping[str, float], lay
 
 def extrapolation_index(predicted: Record, training: Sequence[Record], layout: str = "") -> float:
     """Extrapolation index of a run against others; 1 where nothing can be compared."""
-    found = extrapolation(predicted, motion_envelope(training, layout), layout)
+    found = extrapolation(predicted, _ranges(training, layout), layout)
     return found.index if found else 1.0

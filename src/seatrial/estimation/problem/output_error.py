@@ -176,6 +176,8 @@ class OutputError:
     @cached_property
     def session_covariates(self) -> Array:
         """Covariates of each session, (sessions, k)."""
+        if not any(n.covariate for n in self.nuisances):
+            return np.zeros((len(self.data.sessions), self.unknowns_per_session))
         of_row = np.repeat(self.data.session, np.diff(self.data.offsets))
         inputs = [self.data.inputs[of_row == session] for session in range(len(self.data.sessions))]
         return np.array([self.covariates_of(one) for one in inputs]).reshape(len(inputs), self.unknowns_per_session)

@@ -130,7 +130,7 @@ class SessionPopulation:
         covariance = np.linalg.inv(precision)
         right = np.concatenate([pull, prior_mean / prior_deviation**2, np.zeros(k)]) + about.T @ (weight * centre)
         point = covariance @ right
-        squares = (about @ point - centre) ** 2 + np.einsum("ij,jk,ik->i", about, covariance, about)
+        squares = (about @ point - centre) ** 2 + np.sum((about @ covariance) * about, axis=1)
         deviation = np.array([
             _likeliest_deviation(float(s), sessions - 1 - int(v), float(d))
             for s, v, d in zip(squares.reshape(sessions, k).sum(axis=0), varies, prior_deviation, strict=True)

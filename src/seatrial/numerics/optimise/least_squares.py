@@ -43,7 +43,7 @@ class NormalEquations:
         if self.local_gradient.size == 0:
             return self.gradient, self.hessian
         solved = self.solve_local(np.swapaxes(self.cross, 1, 2))
-        hessian = self.hessian - np.einsum("sij,sjk->ik", self.cross, solved)
+        hessian = self.hessian - _sum_of_products(self.cross, solved)
         gradient = self.gradient - np.einsum("sj,sjk->k", self.local_gradient, solved)
         return gradient, hessian
 
@@ -79,6 +79,12 @@ class Optimum:
     normal: NormalEquations
 
 
+def _sum_of_products(left: Array, right: Array) -> Array:
+    """Return the sum of left_s right_s over all s, (i, k), of (s, i, j) and (s, j, k), as one matrix product."""
+    blocks, rows, inner = left.shape
+    return np.swapaxes(left, 0, 1).reshape(rows, blocks * inner) @ right.reshape(blocks * inner, -1)
+
+
 def _with_ridge(blocks: Array) -> Array:
     """Return blocks with a relative rounding-size ridge, so that an unobservable local direction stays put."""
     diagonal = np.einsum("sii->si", blocks)
@@ -98,7 +104,7 @@ def _step(normal: NormalEquations, damping: float, low: Array, high: Array) -> t
     local = local + damping * np.einsum("sii,ij->sij", local, np.eye(local.shape[1]))
     right = np.concatenate([np.swapaxes(normal.cross, 1, 2), normal.local_gradient[:, :, None]], axis=2)
     solved = np.linalg.solve(local, right)
-    hessian = hessian - np.einsum("sij,sjk->ik", normal.cross, solved[:, :, :-1])
+    hessian = hessian - _sum_of_products(normal.cross, solved[:, :, :-1])
     gradient = normal.gradient - np.einsum("sij,sj->i", normal.cross, solved[:, :, -1])
     step = _solve_bounded(hessian, gradient, low, high)
     return step, -solved[:, :, -1] - solved[:, :, :-1] @ step

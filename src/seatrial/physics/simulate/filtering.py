@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from seatrial.core.values import Array, Index
+from seatrial.numerics.kernels.compiled_function import TangentPointer
 from seatrial.numerics.kernels.sensitivity import DELAY, GAIN, OFFSET
 from seatrial.physics.simulate.batch import SegmentBatch
 from seatrial.physics.simulate.linear import batch_class
@@ -63,6 +64,11 @@ class KalmanFilter(SegmentBatch):
     @cached_property
     def _driven(self) -> Index:
         return np.array([self.model.states.index(s) for s in self.driven], dtype=np.int64)
+
+    @cached_property
+    def _functions(self) -> tuple[TangentPointer, TangentPointer]:
+        """Rates and outputs with their Jacobians, their addresses looked up once for all segments."""
+        return TangentPointer(self.model.compiled.rates_tangent), TangentPointer(self.model.compiled.outputs_tangent)
 
     @cached_property
     def _rise(self) -> Array:
@@ -174,9 +180,8 @@ class KalmanFilter(SegmentBatch):
         e, v = np.empty((b - a, ny)), np.empty((b - a, ny))
         de, dv = np.empty((b - a, ny, width)), np.empty((b - a, ny, noise_count))
         variance, states = (np.empty((b - a if with_states else 0, nx)) for _ in range(2))
-        compiled = self.model.compiled
         failed = filter_innovations(
-            compiled.rates_tangent, compiled.outputs_tangent, inputs, weights, self._rise, self.dt,
+            *self._functions, inputs, weights, self._rise, self.dt,
             self._steps_per_sample, point.start[segment], point.start_variance[segment], point.parameters[segment],
             chain, link_p, link_u, g_link_p, g_link_u, self._output_columns, len(self.model.outputs), self._driven,
             process, point.deviation**2, np.ascontiguousarray(measured[a:b]), e, v, de, dv, variance, states,
