@@ -34,6 +34,8 @@ PREDICTION_ERROR, WHOLE_RUNS = "prediction error", "output error over whole runs
 _CORRELATED = "coloured residuals mean model error or process noise"
 _SEGMENTED = "segments keep it from accumulating"
 _COARSE_SAMPLES = "samples too far apart for prediction error, which takes inputs as straight between them"
+SET_BY_TRIAL = "the criterion is set by the trial"
+"""Reason of an estimate whose criterion nothing else decided."""
 _FREE_DECAY = (
     "a free decay, which its initial state explains: whole runs show what one decay has in common with the next"
 )
@@ -122,7 +124,7 @@ def choose_criterion(
     shot = output_error_choice(shooting, _output_error_name(seconds))
     match settings.criterion:
         case FitCriterion.OUTPUT_ERROR | FitCriterion.MULTIPLE_SHOOTING:
-            return _required_choice(shot, settings, noise, "the criterion is set by the trial")
+            return _required_choice(shot, settings, noise, SET_BY_TRIAL)
         case FitCriterion.PREDICTION_ERROR:
             white = fit_prediction_error(first, noise, other=other, thorough=True, report_progress=report_progress)
             disturbances = choose_disturbance(white, report_progress=report_progress)

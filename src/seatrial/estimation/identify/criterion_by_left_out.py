@@ -16,7 +16,7 @@ from seatrial.core.text.numbers import significant
 from seatrial.core.values import InputError, ProgressReporter
 from seatrial.data.trial import EstimateMethod, EstimateSettings, FitCriterion
 from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, estimate_model
-from seatrial.estimation.estimate.criterion_choice import WHOLE_RUNS
+from seatrial.estimation.estimate.criterion_choice import SET_BY_TRIAL, WHOLE_RUNS
 from seatrial.estimation.estimate.intervals import RUNS_FOR_JACKKNIFE
 from seatrial.estimation.predict.open_loop import rms_errors, simulate_open_loop
 from seatrial.estimation.predict.prediction_intervals import holdout_model
@@ -71,7 +71,8 @@ def preferred_estimation(
         text=f"{estimation.noise_model.text}; {reason}",
         candidates=tuple(replace(c, is_chosen=False) for c in estimation.noise_model.candidates),
     )
-    return replace(other, reasons=(reason, *other.reasons), noise_model=noise_model)
+    why = (reason, *(r for r in other.reasons if r != SET_BY_TRIAL))
+    return replace(other, reasons=why, noise_model=noise_model)
 
 
 def left_out_errors(estimation: Estimation, runs: Runs, seconds: float) -> list[dict[str, float]]:
