@@ -40,7 +40,8 @@ def test_a_baseline_that_is_better_is_a_warning(fit: Fit) -> None:
 
 def test_coverage_counts_values_and_samples(fit: Fit) -> None:
     fact = rows(with_windows(fit, 1.0, 3.0, inside=0.82))["Inside 95 % intervals"]
-    assert "82 % of the samples of heading" in fact.text and fact.is_good is False
+    assert "82 % of the samples of heading, in windows of 5 L" in fact.text
+    assert fact.is_good is False
     p = next(p for p in fit.predictions if p.role == "validation")
     one = replace(p, measures={"overshoot_1_deg": Measure(8.0, 8.1, 7.5, 8.6)})
     alone = replace(fit, predictions=(one,))

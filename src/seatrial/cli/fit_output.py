@@ -76,6 +76,11 @@ def _print_coefficients(fit: "Fit") -> None:
     words = [i for i, k in enumerate(used) if header[k] in ("unit", "", "meaning")]
     print_heading("Coefficients, 95 % intervals")
     print_table([[row[k] for k in used] for row in (header, *rows)], flush_left=words)
+    if fit.thruster_craft is not None and fit.thruster_craft.force_unit == "N/kg":
+        print_lines([
+            "  Forces and masses are those on each kg of m + m_x, as no thrust is known in newtons: state bollard, the "
+            "thrust at full command, of a thruster, and ship.m for newtons and kilograms."
+        ])  # fmt: skip
 
 
 def _coefficient_cells(c: "Coefficient") -> tuple[str, ...]:

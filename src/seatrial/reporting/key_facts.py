@@ -118,7 +118,9 @@ def _coverage(fit: Fit) -> KeyFact:
     if not texts:
         why = "nothing that was recorded has one" if fit.validation else "no run was held out"
         return KeyFact("Inside 95 % intervals", f"none judged: {why}")
-    return KeyFact("Inside 95 % intervals", enumeration(texts), "prediction", min(shares) >= LEAST_COVERAGE)
+    lengths = {w.window for w in windows}
+    over = f", in windows of {lengths.pop()}" if len(lengths) == 1 and len(texts) > len(inside[:1]) else ""
+    return KeyFact("Inside 95 % intervals", f"{enumeration(texts)}{over}", "prediction", min(shares) >= LEAST_COVERAGE)
 
 
 def _identifiability(fit: Fit) -> KeyFact:
