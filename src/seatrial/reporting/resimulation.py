@@ -30,6 +30,7 @@ _CHANNELS = ("psi", "theta", "phi", "z", "u")  # of which the first that the run
 _POSITION = ("y0", "x0")  # east, north
 # deviation from the prediction of the fit, as a share of its range, from which on the page does not draw the run
 AGREEMENT = 1e-6
+_MOST_REPEATED = 0.5  # distinct values over samples up to which a table is shorter; chosen
 COMPARED = 60  # samples of each channel that are compared; chosen
 
 
@@ -99,7 +100,7 @@ def _document(p: Prediction, fit: Fit, sliders: list[Slider]) -> dict[str, Any]:
     return {
         "dt": p.measured.dt, "count": len(p.measured), "limits": state_limits(model).tolist(),
         "start": [float(p.simulated[s][0]) for s in model.states],
-        "inputs": [_packed(column, np.float64) for column in corrected_inputs(p, fit).T],
+        "inputs": [_coded(column) for column in corrected_inputs(p, fit).T],
         "parameters": values,
         "sliders": [{"place": s.place, "value": s.value, "low": s.low, "high": s.high} for s in sliders],
         "reference": p.reference_word, "agreement": AGREEMENT,
@@ -146,6 +147,19 @@ def _stride(p: Prediction) -> int:
 def _without_wrap(record: Record, name: str, unit: str) -> Array:
     """Values in SI, headings without wrap."""
     return display_values(name, record[name], unit) / display_unit(unit)[0]
+
+
+def _coded(values: Array) -> str | float | dict[str, str | float | bool]:
+    """Numbers of double precision: as places in a table of those that occur, where that is shorter.
+
+    Loggers write few digits, so that an input of thousands of samples has some hundred values.
+    """
+    table, index = np.unique(values, return_inverse=True)
+    is_wide = len(table) > np.iinfo(np.uint8).max + 1
+    if len(table) == 1 or len(table) > np.iinfo(np.uint16).max or len(table) > _MOST_REPEATED * len(values):
+        return _packed(values, np.float64)
+    places = index.astype("<u2" if is_wide else "<u1")
+    return {"table": _packed(table, np.float64), "index": base64.b64encode(places.tobytes()).decode(), "wide": is_wide}
 
 
 def _packed(values: Array, kind: type) -> str | float:

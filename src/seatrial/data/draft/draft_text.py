@@ -100,7 +100,7 @@ def _particulars(model: StartingModel, guesses: Sequence[ColumnGuess]) -> list[s
     names = ", ".join(map(_quoted, model.free))
     return [
         "[ship]",
-        'name = "..."',
+        'name = "craft"',
         "L = 0.0    # m, between perpendiculars: state it; 'seatrial check' works without it",
         "",
         "[model]",

@@ -7,6 +7,10 @@
 
   function unpacked(data, Kind, count) {
     if (typeof data === "number") return new Kind(count).fill(data);
+    if (data.index !== undefined) {
+      const table = unpacked(data.table, Kind, 1), places = unpacked(data.index, data.wide ? Uint16Array : Uint8Array, count);
+      return Kind.from(places, place => table[place]);
+    }
     return new Kind(Uint8Array.from(atob(data), letter => letter.charCodeAt(0)).buffer);
   }
   const node = (name, attributes, parent, text) => {
