@@ -26,7 +26,7 @@ from seatrial.physics.loops import (
     Performance,
     TransferLoop,
     WeightedVariance,
-    wave_slope_spectrum,
+    sea_disturbance,
 )
 from seatrial.physics.loops.fin import ROLL, fin_loop
 from seatrial.physics.loops.structures import band_pass, five_gain_loop, low_pass
@@ -48,9 +48,9 @@ def seas() -> dict[str, EncounterSpectrum]:
     """By name."""
     peak = 2.0 * math.pi / ittc(HEIGHT).modal_frequency
     return {
-        "ITTC": wave_slope_spectrum(ittc(HEIGHT), U, BEAM, ROLL, HULL),
-        "JONSWAP": wave_slope_spectrum(jonswap(HEIGHT, peak), U, BEAM, ROLL, HULL),
-        "ITTC short-crested": wave_slope_spectrum(ittc(HEIGHT), U, BEAM, ROLL, HULL, spreading=1.0),
+        "ITTC": sea_disturbance(ittc(HEIGHT), U, BEAM, ROLL, HULL),
+        "JONSWAP": sea_disturbance(jonswap(HEIGHT, peak), U, BEAM, ROLL, HULL),
+        "ITTC short-crested": sea_disturbance(ittc(HEIGHT), U, BEAM, ROLL, HULL, spreading=1.0),
     }
 
 

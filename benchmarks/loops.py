@@ -25,7 +25,7 @@ from seatrial.physics.loops import (
     LoopSignal,
     Performance,
     TransferLoop,
-    wave_slope_spectrum,
+    sea_disturbance,
 )
 from seatrial.physics.loops.encounter_spectrum import disturbance_spectrum
 from seatrial.physics.loops.fin import BOUNDS, ROLL, Preamplifier, fin_loop
@@ -51,7 +51,7 @@ SHAPED = Block("sea", (1.0, 0.0), (1.0, 0.54, 0.81))
 def sea() -> EncounterSpectrum:
     """Beam sea of 3.3 m at 18 kn."""
     hull = HullFactor(100.0, 10.5, 3.4)
-    return wave_slope_spectrum(ittc(3.3), 18.0 * 1852.0 / 3600.0, math.pi / 2.0, ROLL, hull)
+    return sea_disturbance(ittc(3.3), 18.0 * 1852.0 / 3600.0, math.pi / 2.0, ROLL, hull)
 
 
 def record(slope_spectrum: EncounterSpectrum, rng: np.random.Generator) -> np.ndarray:

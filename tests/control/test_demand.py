@@ -11,6 +11,7 @@ from seatrial.control.demand import (
     reference_model,
     relative_overshoot,
     settling_time,
+    shortfall,
     simulate_manoeuvres,
     simulate_tracking,
 )
@@ -22,7 +23,7 @@ from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import Array, InputError
 from seatrial.data.folder.model_file import ModelFile
 from seatrial.physics.loops import Block, LoopSignal, TransferLoop
-from seatrial.physics.loops.autopilot import heading_loop, pitch_loop, speed_loop
+from seatrial.physics.loops.autopilot import acceleration_feed_forward, heading_loop, pitch_loop, speed_loop
 from seatrial.physics.loops.objective import variance
 from seatrial.physics.loops.python_control import controller_transfer_function, transfer_function
 from seatrial.physics.models import model_named
@@ -65,13 +66,13 @@ def autopilot(ship: TrimmedShip, *parts: str) -> TransferLoop:
 def test_the_reference_model_is_critically_damped() -> None:
     dt, T = 0.05, 6.0
     time = dt * np.arange(2000)
-    made = reference_model(np.ones(2000), dt, T)
+    made = reference_model(np.ones(2000), dt, T).level
     assert made == pytest.approx(1.0 - (1.0 + time / T) * np.exp(-time / T), abs=1e-12)
 
 
 def test_the_reference_keeps_its_rate_and_arrives() -> None:
     dt, T, rate = 0.05, 2.0, 0.02
-    made = reference_model(np.full(2000, 0.5), dt, T, rate)
+    made = reference_model(np.full(2000, 0.5), dt, T, rate).level
     assert np.diff(made).max() == pytest.approx(rate * dt, rel=1e-9)
     assert np.diff(made).min() >= 0.0
     assert made[-1] == pytest.approx(0.5, abs=1e-9)
@@ -100,13 +101,52 @@ def test_without_limits_a_linear_ship_follows_as_python_control_says(*, known: b
     if not known:
         ship = plant_as_model(loop)
     dt = 0.05
-    reference = reference_model(np.full(1200, 0.3), dt, 5.0)
+    reference = reference_model(np.full(1200, 0.3), dt, 5.0).level
     output, rudder = simulate_tracking(ship, loop, loop.gain_values, ActuatorLimits(), dt, reference)
     controller, plant = controller_transfer_function(loop), transfer_function(loop.plant)
     n_k, d_k, n_p, d_p = (c[0][0] for c in (controller.num, controller.den, plant.num, plant.den))
     den = np.polyadd(np.polymul(d_k, d_p), np.polymul(n_k, n_p))
     assert output == pytest.approx(answer(np.polymul(n_k, n_p), den, reference, dt), abs=1e-5)
     assert rudder == pytest.approx(answer(np.polymul(n_k, d_p), den, reference, dt), abs=1e-5)
+
+
+def test_the_reference_has_the_velocity_and_acceleration_of_its_level() -> None:
+    dt, T = 0.01, 6.0
+    motion = reference_model(np.full(4000, 0.3), dt, T, rate=0.012)
+    assert np.gradient(motion.level, dt)[5:-5] == pytest.approx(motion.velocity[5:-5], abs=2e-5)
+    swift = reference_model(np.full(4000, 0.3), dt, T)
+    assert np.gradient(swift.velocity, dt)[5:-5] == pytest.approx(swift.acceleration[5:-5], abs=2e-5)
+
+
+def test_fed_forward_a_nomoto_ship_follows_without_error_whatever_the_gains() -> None:
+    """(T r' + r) / K is the inverse of the ship: what is left is the steering gear's lag and the step's."""
+    ship, dt = nomoto(), 0.01
+    loop = heading_loop(*plant_and_disturbance(ship), ())
+    motion = reference_model(np.full(6000, 0.3), dt, 12.0)
+    law = acceleration_feed_forward(loop.plant, 1.0 / 12.0)
+    assert (law.level, law.velocity, law.acceleration) == pytest.approx((0.0, 5.0, 40.0), rel=1e-9)
+    for share in (1.0, 0.1):
+        fed, alone = (
+            simulate_tracking(ship, loop, share * loop.gain_values, ActuatorLimits(), dt, motion.level, forward)[0]
+            for forward in (motion.fed_forward(law), None)
+        )
+        assert np.abs(fed - motion.level).max() < 4e-4
+        assert np.abs(alone - motion.level).max() > 0.01
+
+
+def test_a_speed_is_fed_forward_by_its_level() -> None:
+    plant = Block("speed", (0.5,), (20.0, 1.0))
+    law = acceleration_feed_forward(plant, 0.1)
+    assert (law.level, law.velocity, law.acceleration) == pytest.approx((2.0, 40.0, 0.0), rel=1e-9)
+
+
+def test_settling_counts() -> None:
+    ship = nomoto()
+    task = task_of(autopilot(ship), ship, Demand(20.0 * DEGREE, 0.5, 10.0, 300.0), ControllerConstraints())
+    assert shortfall(task, task.loop, task.loop.gain_values) == (0.0, "")
+    hasty = replace(task, demand=Demand(20.0 * DEGREE, 0.5, 10.0, 300.0, settling=20.0))
+    far, why = shortfall(hasty, hasty.loop, hasty.loop.gain_values)
+    assert far >= 1.0 and "s to settle within 5 %" in why
 
 
 def test_a_step_is_followed_within_the_actuators_limits() -> None:

@@ -28,6 +28,7 @@ def bounds(task: TuningTask, loop: TransferLoop, gains: Array) -> tuple[Performa
     sea = next((met for met in task.disturbances if isinstance(met, Seaway)), None)
     if sea is None or task.demand is not None:
         return ()
+    loop = sea.disturbed(loop)
     waves, peak = sea.exposure(loop), task.constraints.Ms
 
     def with_tails() -> PerformanceBound:

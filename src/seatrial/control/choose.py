@@ -1,6 +1,8 @@
 """One controller out of the fronts, with reasons: by simulation where there is one, else the compromise."""
 
+import math
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -9,13 +11,23 @@ from seatrial.control.demand import shortfall
 from seatrial.control.front import spread_points
 from seatrial.control.gain_choice import GainChoice, non_dominated_gains, output_and_rate_variances
 from seatrial.control.gain_evaluation import GainEvaluator
-from seatrial.control.task import TuningTask
+from seatrial.control.task import Demand, TuningTask
 from seatrial.core.results.tuning import ParetoFront
 from seatrial.core.values import Array
 
 CANDIDATE_COUNT = 16  # gains of a front that follow the demand; chosen
 # rms whose logarithm is still taken, and range that counts as one: guards against zero
 _LEAST_RMS, _LEAST_RANGE = 1e-150, 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class _Candidate:
+    """Gains (g,) of a front; variances: of output and actuator rate, (2,)."""
+
+    evaluator: GainEvaluator
+    front_name: str
+    gains: Array
+    variances: Array
 
 
 def choose(
@@ -27,13 +39,18 @@ def choose(
     """Return the recommendation, from fronts that are not empty."""
     filled = tuple((judge, front) for judge, front in fronts if len(front.gains))
     if task.demand is not None:
-        return _choose_by_demand(task, filled[0], report_progress)
+        return _choose_by_demand(task, task.demand, filled, report_progress)
     if task.simulation is not None:
         return choose_by_simulation(task, filled, seed, report_progress)
-    judge, front = filled[0]
+    best = _compromise(task, _candidates(*filled[0]))
+    return GainChoice(best.evaluator, best.gains, best.front_name, (_compromise_reason(task, "the front"),))
+
+
+def _candidates(judge: GainEvaluator, front: ParetoFront) -> list[_Candidate]:
+    """Return gains of a front of which none leaves less of the output at a lower actuator rate."""
     some = non_dominated_gains(judge, front)
-    reasons = (_compromise_reason(task, "the front"),)
-    return GainChoice(judge, some[_compromise_order(judge, some)[0]], front.name, reasons)
+    variances = output_and_rate_variances(judge, some)
+    return [_Candidate(judge, front.name, gains, both) for gains, both in zip(some, variances, strict=True)]
 
 
 def _compromise_reason(task: TuningTask, candidates: str) -> str:
@@ -44,39 +61,44 @@ def _compromise_reason(task: TuningTask, candidates: str) -> str:
     )
 
 
-def _compromise_order(evaluator: GainEvaluator, gains: Array) -> list[int]:
-    """Order of some gains by their largest distance from the best, rms of output against rms of actuator rate.
+def _compromise(task: TuningTask, candidates: list[_Candidate]) -> _Candidate:
+    """Return the one of least largest distance from the best, rms of output against rms of actuator rate.
 
     In decades; the rate as it is where no demand is followed: there gains of zero are on the front, decades from any.
     """
-    both = np.sqrt(output_and_rate_variances(evaluator, gains))
-    decades = slice(0, 1 if evaluator.task.demand is None else 2)
+    both = np.sqrt([one.variances for one in candidates])
+    decades = slice(0, 1 if task.demand is None else 2)
     both[:, decades] = np.log(np.maximum(both[:, decades], _LEAST_RMS))
     far = (both - both.min(axis=0)) / np.maximum(np.ptp(both, axis=0), _LEAST_RANGE)
-    return np.argsort(far.max(axis=1), kind="stable").tolist()
+    return candidates[int(np.argmin(far.max(axis=1)))]
 
 
 def _choose_by_demand(
-    task: TuningTask, fronts: tuple[GainEvaluator, ParetoFront], report_progress: Callable[[str], None]
+    task: TuningTask,
+    demand: Demand,
+    fronts: tuple[tuple[GainEvaluator, ParetoFront], ...],
+    report_progress: Callable[[str], None],
 ) -> GainChoice:
-    """Return the compromise among those that follow the demand without overshooting, in simulation."""
-    assert task.demand is not None
-    judge, front = fronts
-    some = non_dominated_gains(judge, front)
-    some = some[spread_points(output_and_rate_variances(judge, some), CANDIDATE_COUNT)]
+    """Return the compromise among those of all fronts that follow the demand in time, without overshooting."""
+    tried: list[_Candidate] = []
+    for judge, front in fronts:
+        along = _candidates(judge, front)
+        tried += [along[i] for i in spread_points(np.array([one.variances for one in along]), CANDIDATE_COUNT)]
     short = []
-    for gains in some:
-        short.append(shortfall(task, judge.loop, gains))
-        report_progress(f"choice of gains: {len(short)} of {len(some)} candidates tried on the demand")
-    keeping = some[np.array([far == 0.0 for far, _ in short])]
-    if not len(keeping):
-        least = min(range(len(some)), key=lambda i: short[i][0])
+    for one in tried:
+        short.append(shortfall(task, one.evaluator.loop, one.gains))
+        report_progress(f"choice of gains: {len(short)} of {len(tried)} candidates tried on the demand")
+    keeping = [one for one, (far, _) in zip(tried, short, strict=True) if far == 0.0]
+    if not keeping:
+        least = min(range(len(tried)), key=lambda i: short[i][0])
         why = (f"No candidate follows the demand as asked; this one comes nearest, but {short[least][1]}.",)
-        return GainChoice(judge, some[least], front.name, why)
+        return GainChoice(tried[least].evaluator, tried[least].gains, tried[least].front_name, why)
+    best = _compromise(task, keeping)
+    in_time = f", settled within {demand.settling:.3g} s" if math.isfinite(demand.settling) else ""
     why = (
-        f"{len(keeping)} of {len(some)} controllers along the front follow the demand in the nonlinear model, with no "
-        f"more than {100.0 * task.demand.overshoot:.3g} % of overshoot, and keep every ship stable that the fit "
+        f"{len(keeping)} of {len(tried)} controllers along the fronts follow the demand in the nonlinear model, with "
+        f"no more than {100.0 * demand.overshoot:.3g} % of overshoot{in_time}, and keep every ship stable that the fit "
         "allows.",
         _compromise_reason(task, "those"),
     )
-    return GainChoice(judge, keeping[_compromise_order(judge, keeping)[0]], front.name, why)
+    return GainChoice(best.evaluator, best.gains, best.front_name, why)

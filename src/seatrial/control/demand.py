@@ -22,7 +22,7 @@ from seatrial.core.values import (
     frozen,
 )
 from seatrial.physics.loops import TransferLoop
-from seatrial.physics.loops.autopilot import mean_pole
+from seatrial.physics.loops.autopilot import FeedForward, acceleration_feed_forward, mean_pole
 from seatrial.physics.simulate.closed_loop import REFERENCE, ActuatorLimits, ClosedLoop
 
 DEMAND = "demand"
@@ -37,12 +37,16 @@ _CHANGE_NAMES = {"psi": "course change", "u": "speed change"}
 
 @dataclass(frozen=True, eq=False)
 class _Programme:
-    """A demand (n,) and what the loop follows (n,), about the trim, every dt; its steps at `step_samples`."""
+    """A demand (n,) and what the loop follows (n,), about the trim, every dt; its steps at `step_samples`.
+
+    fed_forward: (n,), what the reference alone orders of the actuator.
+    """
 
     name: str
     dt: float
     demand: Array
     reference: Array
+    fed_forward: Array
     step_samples: tuple[int, ...]
 
 
@@ -78,41 +82,71 @@ def shortfall(task: TuningTask, loop: TransferLoop, gains: Array, *, draws: int 
     except DivergedError:
         return 100.0 + lost, "the identified ship runs away"
     beyond = max(change.overshoot - asked.overshoot, 0.0)
-    is_slow = math.isnan(change.settling)
+    is_slow = not change.settling <= asked.settling
     why = [f"{lost} of {drawn} ships that the fit allows are not stable"] if lost else []
-    why += ["the change does not settle within 5 %"] if is_slow else []
+    why += [_slowness_text(change.settling)] if is_slow else []
     why += [f"it overshoots by {100.0 * change.overshoot:.1f} %"] if beyond else []
     return lost + float(is_slow) + beyond, " and ".join(why)
 
 
+def _slowness_text(settling: float) -> str:
+    if math.isnan(settling):
+        return "the change does not settle within 5 %"
+    return f"the change takes {settling:.3g} s to settle within 5 %"
+
+
 def simulate_tracking(
-    ship: TrimmedShip, loop: TransferLoop, gains: Array, limits: ActuatorLimits, dt: float, reference: Array
+    ship: TrimmedShip,
+    loop: TransferLoop,
+    gains: Array,
+    limits: ActuatorLimits,
+    dt: float,
+    reference: Array,
+    fed_forward: Array | None = None,
 ) -> tuple[Array, Array]:
-    """Return output and actuator (n,), notation's signs, of a ship that follows a reference (n,) about its trim."""
+    """Return output and actuator (n,), notation's signs, of a ship that follows a reference (n,) about its trim.
+
+    fed_forward: (n,), added to the actuator's order.
+    """
     model = ship.model
     place, rudder = model.states.index(ship.output), model.input_names.index(ship.actuator)
     sign = -1.0 if model.inputs[rudder].is_reversed else 1.0
     closed = ClosedLoop(model, loop, gains, dt, ship.actuator, "", ship.output, ship.state, ship.inputs)
-    states, moved = closed.run(np.zeros(len(reference)), limits, ship.state[place] + reference)
+    states, moved = closed.run(np.zeros(len(reference)), limits, ship.state[place] + reference, fed_forward)
     return states[:, place], sign * ship.inputs[rudder] + moved
 
 
-def reference_model(demand: Array, dt: float, time_constant: float, rate: float = math.inf) -> Array:
-    """What a loop follows in place of steps: x'' + 2 w x' + w^2 x = w^2 r, w = 1 / time_constant, |x'| <= rate; (n,).
+@dataclass(frozen=True, eq=False)
+class ReferenceMotion:
+    """What a loop follows in place of steps: level, velocity and acceleration, each (n,)."""
+
+    level: Array
+    velocity: Array
+    acceleration: Array
+
+    def fed_forward(self, law: FeedForward) -> Array:
+        """Return what the law orders of the actuator, (n,)."""
+        return law.level * self.level + law.velocity * self.velocity + law.acceleration * self.acceleration
+
+
+def reference_model(demand: Array, dt: float, time_constant: float, rate: float = math.inf) -> ReferenceMotion:
+    """Follow steps (n,) by x'' + 2 w x' + w^2 x = w^2 r, w = 1 / time_constant, |x'| <= rate.
 
     Critically damped, with saturating rate (Fossen 2021, Handbook, section 12.1, reference models).
     """
-    w, made = 1.0 / time_constant, np.empty(len(demand))
+    w, rows = 1.0 / time_constant, np.empty((3, len(demand)))
     (stay, carry), (pull, damp) = expm(np.array([[0.0, 1.0], [-(w**2), -2.0 * w]]) * dt).tolist()
     x, v = 0.0, 0.0
     for k, r in enumerate(demand.tolist()):
-        made[k] = x
         away, speed = stay * (x - r) + carry * v, pull * (x - r) + damp * v
+        acceleration = -(w**2) * (x - r) - 2.0 * w * v
         if abs(speed) > rate:
             speed = math.copysign(rate, speed)
             away = x - r + 0.5 * (v + speed) * dt
+            acceleration = (speed - v) / dt
+        rows[:, k] = x, v, acceleration
         x, v = r + away, speed
-    return made
+    return ReferenceMotion(*rows)
 
 
 def relative_overshoot(output: Array, demand: Array, step_samples: tuple[int, ...]) -> float:
@@ -152,11 +186,16 @@ def _programmes(task: TuningTask, loop: TransferLoop, gains: Array, demand: Dema
     zigzag[0] = 0.0
     for leg, first in enumerate(begun):
         zigzag[first:] = 0.5 * demand.change * (-1.0) ** leg
-    made = ((_CHANGE_NAMES.get(loop.output, f"change of {loop.output}"), change, (1,)), ("zigzag", zigzag, begun))
-    return tuple(
-        _Programme(name, dt, steps, reference_model(steps, dt, demand.time_constant, rate), legs)
-        for name, steps, legs in made
-    )
+    law = FeedForward(0.0, 0.0, 0.0)
+    if demand.feeds_forward:
+        law = acceleration_feed_forward(loop.plant, 1.0 / demand.time_constant)
+
+    def programme(name: str, steps: Array, legs: tuple[int, ...]) -> _Programme:
+        motion = reference_model(steps, dt, demand.time_constant, rate)
+        return _Programme(name, dt, steps, motion.level, motion.fed_forward(law), legs)
+
+    changed = _CHANGE_NAMES.get(loop.output, f"change of {loop.output}")
+    return programme(changed, change, (1,)), programme("zigzag", zigzag, begun)
 
 
 def _reference_rate(task: TuningTask, loop: TransferLoop, demand: Demand) -> float:
@@ -172,7 +211,9 @@ def _simulate_manoeuvre(
     drawn_ships: tuple[TrimmedShip, ...], stable_and_drawn: tuple[int, int],
 ) -> ManoeuvreResponse:  # fmt: skip
     trim = _trim(ship)
-    output, moved = simulate_tracking(ship, loop, gains, limits, programme.dt, programme.reference)
+    output, moved = simulate_tracking(
+        ship, loop, gains, limits, programme.dt, programme.reference, programme.fed_forward
+    )
     answers = [_output_about_trim(one, loop, gains, limits, programme) for one in drawn_ships]
     is_lost = stable_and_drawn[0] < stable_and_drawn[1] or any(a is None for a in answers)
     worst = max(
@@ -211,7 +252,8 @@ def _output_about_trim(
 ) -> Array | None:
     """Return the output about the trim (n,); None where the ship runs away."""
     try:
-        return simulate_tracking(ship, loop, gains, limits, programme.dt, programme.reference)[0] - _trim(ship)
+        answer = simulate_tracking(ship, loop, gains, limits, programme.dt, programme.reference, programme.fed_forward)
+        return answer[0] - _trim(ship)
     except InputError:
         return None
 

@@ -124,6 +124,9 @@ def _demand_findings(demand: Demand | None, manoeuvres: tuple[ManoeuvreResponse,
     if not first.overshoot <= demand.overshoot:
         found.append(_warning("overshoot", f"the demand is overshot by {100.0 * first.overshoot:.1f} % where "
                               f"{100.0 * demand.overshoot:.1f} % are allowed", "slow the reference down"))  # fmt: skip
+    if first.settling > demand.settling:
+        found.append(_warning("slow", f"the demand takes {first.settling:.3g} s to settle, {demand.settling:.3g} s are "
+                              "allowed", "shorten demand.time_constant, or allow more actuator"))  # fmt: skip
     if first.stable_draws < first.draws:
         lost = first.draws - first.stable_draws
         found.append(_warning("unstable-draws", f"{lost} of {first.draws} ships that the fit allows are not stable "

@@ -59,10 +59,8 @@ class GainEvaluator:
     def performances(self) -> tuple[Performance, ...]:
         """One for each thing that disturbs the loop."""
         rows = distinct_variances((*self.objectives, OUTPUT, ACTUATOR, ACTUATOR_RATE))[0]
-        loops = [self.task.loop_at(met.U, self.loop) for met in self.task.disturbances]
-        return tuple(
-            Performance(lp, met.exposure(lp), rows) for lp, met in zip(loops, self.task.disturbances, strict=True)
-        )
+        loops = [(met, met.disturbed(self.task.loop_at(met.U, self.loop))) for met in self.task.disturbances]
+        return tuple(Performance(loop, met.exposure(loop), rows) for met, loop in loops)
 
     @cached_property
     def uncontrolled_variance(self) -> float:

@@ -46,7 +46,7 @@ class ShapingFilter:
 
 def rational_spectrum(exposure: EncounterSpectrum, response: Block) -> tuple[EncounterSpectrum, ShapingFilter]:
     """The sea of a rational spectrum fitted to the exposure, and its filter; `response`: from there to the output."""
-    shaping, mean = fit_shaping_filter(exposure, response), _mean_frequency(exposure, response)
+    shaping, mean = fit_shaping_filter(exposure, response), exposure.mean_frequency(response)
     said = f"{exposure.description}, rational fit with tails ({100.0 * shaping.misfit:.1f} % of the energy misplaced)"
     return disturbance_spectrum(shaping.density, mean / _TAIL_FACTOR, mean * _TAIL_FACTOR, response, said), shaping
 
@@ -74,7 +74,7 @@ def quadratic_bound(loop: TransferLoop, exposure: EncounterSpectrum, gains: Arra
 def fit_shaping_filter(exposure: EncounterSpectrum, response: Block) -> ShapingFilter:
     """Return g s^2 / two sections of second order, by the cumulated energies of the response and of its rate."""
     exposure = without_negative_energy(exposure)
-    mean = _mean_frequency(exposure, response)
+    mean = exposure.mean_frequency(response)
     omega = np.geomspace(mean / _SPAN, mean * _SPAN, _FIT)
     true = np.concatenate([_cumulative_energy(exposure, response, omega, power) for power in (0, 2)])
     through = np.abs(response.frequency_response(omega)) ** 2
@@ -100,11 +100,6 @@ def _shaping_block(point: Array, size: float) -> Block:
     a, za, b, zb = (float(v) for v in np.exp(point))
     one = Block("", (1.0, 0.0), (1.0, 2.0 * za * a, a**2))
     return in_series("waves", (one, Block("", (size, 0.0), (1.0, 2.0 * zb * b, b**2))))
-
-
-def _mean_frequency(exposure: EncounterSpectrum, response: Block) -> float:
-    weight = exposure.energy * np.abs(response.frequency_response(exposure.omega_e)) ** 2
-    return float(np.sum(weight * exposure.omega_e) / np.sum(weight))
 
 
 def _cumulative_energy(exposure: EncounterSpectrum, response: Block, omega: Array, power: int) -> Array:

@@ -1,7 +1,7 @@
 """A stabiliser at sea, with what its fins cannot do: every controller meets the same seas, so that pairs are compared.
 
-A sea is a sum of harmonics; the effective wave slope of each line is k |sin(beta)| F a, in quadrature with its
-elevation, met at its own signed frequency of encounter.
+A sea is a sum of harmonics; what each does to the loop (its effective slope, its yaw moment) is met at its own signed
+frequency of encounter.
 """
 
 import math
@@ -15,7 +15,6 @@ from seatrial.control.task import Seaway, SimulationSettings, TuningTask
 from seatrial.core.results.tuning import PairedDifference, SeawaySimulation
 from seatrial.core.values import Array, InputError, Record, frozen
 from seatrial.numerics.workers import map_in_threads
-from seatrial.physics.hydro.dispersion import G
 from seatrial.physics.hydro.excitation import Complex
 from seatrial.physics.loops import TransferLoop
 from seatrial.physics.loops.state_space import plant_model
@@ -27,6 +26,8 @@ RUN_IN_SECONDS = 100.0  # before what is counted: several swings of any ship; ch
 UNCONTROLLED = "uncontrolled"
 _ENERGY_SHARE = 1e-4  # share of the energy cut at either end of the spectrum; chosen
 _REACH, _FREQUENCIES = 12.0, 4001  # highest frequency over the modal one that is looked at, and how many; chosen
+# rad: an effect is felt most from abeam, or where it is not felt there, on the quarter
+_FELT_HEADINGS = (0.5 * math.pi, 0.25 * math.pi)
 _KEPT_SEAS = 8  # sets of seas kept in memory: one for each setting in use; chosen
 _CONFIDENCE = 0.95  # level of the intervals of means over seeds
 
@@ -50,7 +51,7 @@ def simulate_in_seaway(task: TuningTask, loop: TransferLoop, name: str, gains: A
     still = replace(steered, gains=np.zeros(len(gains)))
     r = task.constraints
     everything = ActuatorLimits(r.limit, r.rate, r.stall)
-    met = wave_slope_series(seaway, trials, seed)
+    met = disturbance_series(seaway, trials, seed)
     first = round(RUN_IN_SECONDS / trials.dt)
 
     def size(run: ClosedLoop, sea: Array, limits: ActuatorLimits) -> float:
@@ -112,14 +113,14 @@ def closed_loop(task: TuningTask, loop: TransferLoop, gains: Array, U: float, dt
 
 
 @lru_cache(maxsize=_KEPT_SEAS)
-def wave_slope_series(seaway: Seaway, trials: SimulationSettings, seed: int) -> tuple[Array, ...]:
-    """Return the effective wave slope [rad] of each seed, a run-in of `RUN_IN_SECONDS` first; each (n,), read-only."""
+def disturbance_series(seaway: Seaway, trials: SimulationSettings, seed: int) -> tuple[Array, ...]:
+    """Return the disturbance of each seed, a run-in of `RUN_IN_SECONDS` first; each (n,), read-only."""
     count = round((RUN_IN_SECONDS + trials.duration) / trials.dt) + 1
     band = frequency_band(seaway)
 
     def of_one(number: int) -> Array:
         lines = wave_components(seaway, np.random.default_rng(number), band)
-        return frozen(sum_harmonics(lines.omega_e, effective_wave_slopes(lines, seaway), trials.dt, count))
+        return frozen(sum_harmonics(lines.omega_e, effect_amplitudes(lines, seaway), trials.dt, count))
 
     return tuple(map_in_threads(of_one, [seed + k for k in range(trials.seeds)]))
 
@@ -131,14 +132,11 @@ def wave_components(seaway: Seaway, rng: np.random.Generator, band: tuple[float,
     return lines if seaway.spreading is None else short_crested(lines, rng, seaway.spreading)
 
 
-def effective_wave_slopes(lines: WaveComponents, seaway: Seaway) -> Complex:
-    """Return complex amplitudes of the effective wave slope [rad], (n,); the hull's factor at each heading."""
-    k = lines.omega**2 / G
-    factor: Array = np.ones(len(k))
-    if seaway.hull is not None:
-        hull, met = seaway.hull, zip(lines.omega, lines.direction, strict=True)
-        factor = np.array([float(hull.slope_factor(omega, float(beta))) for omega, beta in met])
-    return 1j * k * np.abs(np.sin(lines.direction)) * factor * lines.amplitude
+def effect_amplitudes(lines: WaveComponents, seaway: Seaway) -> Complex:
+    """Return complex amplitudes of what each wave does to the loop, (n,), each at its own heading."""
+    met = zip(lines.omega, lines.direction, strict=True)
+    effect = [seaway.effect.amplitude(np.array([omega]), seaway.U, float(beta))[0] for omega, beta in met]
+    return np.array(effect) * lines.amplitude
 
 
 def sum_harmonics(omega: Array, amplitude: Complex, dt: float, count: int) -> Array:
@@ -152,11 +150,11 @@ def sum_harmonics(omega: Array, amplitude: Complex, dt: float, count: int) -> Ar
 
 
 def frequency_band(seaway: Seaway) -> tuple[float, float]:
-    """Return frequencies [rad/s] of all waves with a slope to speak of, up to twelve times the modal one."""
+    """Return frequencies [rad/s] of all waves that do much to the loop, up to twelve times the modal one."""
     peak = seaway.spectrum.modal_frequency
     omega = np.linspace(0.0, _REACH * peak, _FREQUENCIES)[1:]
-    factor = np.ones(len(omega)) if seaway.hull is None else seaway.hull.slope_factor(omega, 0.5 * math.pi)
-    share = np.cumsum(omega**4 * factor**2 * seaway.spectrum.density(omega))
+    sizes = (np.abs(seaway.effect.amplitude(omega, seaway.U, beta)) ** 2 for beta in _FELT_HEADINGS)
+    share = np.cumsum(next(size for size in sizes if size.any()) * seaway.spectrum.density(omega))
     share /= share[-1]
     ends = np.searchsorted(share, [_ENERGY_SHARE, 1.0 - _ENERGY_SHARE])
     return float(omega[ends[0]]), float(omega[ends[1]])

@@ -12,12 +12,14 @@ from seatrial.core.equations import Model
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import Array, InputError, display_unit
 from seatrial.physics.loops import (
+    WAVE_SLOPE,
     ActuatorDrive,
+    Block,
     EncounterSpectrum,
-    HullFactor,
     Objective,
     TransferLoop,
-    wave_slope_spectrum,
+    WaveEffect,
+    sea_disturbance,
 )
 from seatrial.physics.loops.encounter_spectrum import disturbance_spectrum
 from seatrial.physics.sea.spectrum import Spectrum
@@ -29,19 +31,28 @@ _SLOWEST, _FASTEST = 1e-3, 1e2  # frequencies of a slow disturbance over its ban
 
 @dataclass(frozen=True)
 class Seaway:
-    """A sea met at a speed and heading: U [m/s], beta [rad, 0 following]; spreading: exponent s, None long-crested."""
+    """A sea met at a speed and heading: U [m/s], beta [rad, 0 following]; spreading: exponent s, None long-crested.
+
+    effect: what its waves do to the loop; path: from there to the output, where it is not the loop's own disturbance.
+    """
 
     spectrum: Spectrum
     U: float
     beta: float
-    hull: HullFactor | None = None
+    effect: WaveEffect = WAVE_SLOPE
     spreading: float | None = None
+    path: Block | None = None
+
+    def disturbed(self, loop: TransferLoop) -> TransferLoop:
+        """Return the loop with the path of the waves to its output."""
+        return loop if self.path is None else replace(loop, disturbance=self.path)
 
     def exposure(self, loop: TransferLoop) -> EncounterSpectrum:
-        """Return the effective wave slope [rad] that the loop meets."""
-        return wave_slope_spectrum(
-            self.spectrum, self.U, self.beta, loop.disturbance, self.hull, spreading=self.spreading
-        )
+        """Return what the waves do to the loop that `disturbed` returns."""
+        return sea_disturbance(
+            self.spectrum, self.U, self.beta, self.disturbed(loop).disturbance, self.effect,
+            spreading=self.spreading,
+        )  # fmt: skip
 
     @property
     def description(self) -> str:
@@ -66,6 +77,10 @@ class SlowDisturbance:
     U: float
     unit: str = "rad"
     acting_like: str = "of the actuator"
+
+    def disturbed(self, loop: TransferLoop) -> TransferLoop:
+        """Return the loop as it is: its own disturbance is this one."""
+        return loop
 
     def exposure(self, loop: TransferLoop) -> EncounterSpectrum:
         """Return the disturbance over five decades about its bandwidth."""
@@ -119,12 +134,17 @@ class Demand:
     Attributes:
         change: of the output, its unit; overshoot: largest share of it allowed; time_constant: s, of the second-order
             reference filter, critically damped; duration: s.
+        settling: s, the longest allowed until the output stays within 5 % of the change.
+        feeds_forward: whether the actuator is also moved by what the reference needs, so that the gains serve to keep
+            the output and the reference alone shapes its changes.
     """
 
     change: float
     overshoot: float
     time_constant: float
     duration: float
+    settling: float = math.inf
+    feeds_forward: bool = False
 
 
 @dataclass(frozen=True, eq=False)

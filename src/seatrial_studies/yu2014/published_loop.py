@@ -20,9 +20,9 @@ from seatrial.physics.loops import (
     TransferLoop,
     distinct_variances,
     fin_loop,
+    sea_disturbance,
     squared_deviation,
     variance,
-    wave_slope_spectrum,
 )
 from seatrial.physics.sea import Spectrum, ittc
 from seatrial_studies.yu2014.published import DESIGN_ROW, HEIGHT, PUBLISHED_LOOP, PUBLISHED_VALUES, TARGET
@@ -84,7 +84,7 @@ DESIGN_SEA = SeaCondition()
 def effective_slope(sea: SeaCondition) -> EncounterSpectrum:
     """Return the effective wave slope."""
     spectrum = sea.spectrum or ittc(HEIGHT)
-    return wave_slope_spectrum(
+    return sea_disturbance(
         spectrum,
         sea.speed * KNOT,
         math.radians(sea.heading),

@@ -13,7 +13,7 @@ from seatrial.control.loopfile.load import tuning_task
 from seatrial.control.loopfile.schema import loop_schema
 from seatrial.control.task import Effectiveness, Seaway, SimulationSettings, SlowDisturbance
 from seatrial.core.values import InputError
-from seatrial.physics.loops import LoopSignal
+from seatrial.physics.loops import HullFactor, LoopSignal, YawAcceleration
 from seatrial.physics.loops.fin import GYRO, SERVO, Preamplifier, fin_loop
 from seatrial.physics.sea.sea_state import sea_state
 
@@ -51,6 +51,60 @@ def test_an_autopilot_in_a_dozen_lines_follows_a_demand(tmp_path: Path) -> None:
     assert isinstance(met, SlowDisturbance) and (met.rms, met.bandwidth, met.U) == (math.radians(1.0), 0.05, 7.0)
 
 
+WAVES = """
+[[seas]]
+height = 2
+heading = { value = 45, unit = "deg" }
+"""
+
+
+def test_waves_yaw_a_ship_through_its_own_model(tmp_path: Path) -> None:
+    """r' = a of the model r' = (K delta - r) / T gives psi = a / (s (s + 1 / T)), by model and by transfer function."""
+    model_file(tmp_path, nomoto())
+    by_model = tuning_task(write_loop_file(tmp_path, AUTOPILOT + WAVES))
+    given = 'response = { num = [0.08], den = [10.0, 1.0, 0.0] }\nspeed = 7\noutput = "psi"\nactuator = "delta"'
+    hull = "[hull]\nL = 100\nB = 10.5\nT = 3.4\n[controller]"
+    time_constant = ("[demand]", "[demand]\ntime_constant = 14")
+    changes = ('model = "model.toml"', given), ("[controller]", hull), time_constant
+    by_response = tuning_task(write_loop_file(tmp_path, AUTOPILOT + WAVES, *changes))
+    w = np.geomspace(0.01, 2.0, 20)
+    for task in (by_model, by_response):
+        sea = task.disturbances[0]
+        assert isinstance(sea, Seaway) and sea.effect == YawAcceleration(100.0, 3.4)
+        path = sea.disturbed(task.loop).disturbance
+        assert np.allclose(path.frequency_response(w), 1.0 / (1j * w * (1j * w + 0.1)), rtol=1e-9)
+        slow = task.disturbances[1]
+        assert slow.disturbed(task.loop) is task.loop
+
+
+@pytest.mark.parametrize(
+    ("changes", "says"),
+    [
+        (
+            [(
+                'model = "model.toml"',
+                'response = { num = [0.08], den = [10.0, 1.0, 0.0] }\nspeed = 7\noutput = "psi"\nactuator = "delta"',
+            ), ("[demand]", "[demand]\ntime_constant = 14")],
+            "seas: the yaw moment of waves needs the hull; add [hull] with L, B and T in m",
+        ),
+        (
+            [(
+                'model = "model.toml"',
+                'response = { num = [0.08], den = [5.0, 10.0, 1.0, 0.0] }\nspeed = 7\noutput = "psi"\n'
+                'actuator = "delta"\n[hull]\nL = 100\nB = 10\nT = 3',
+            ), ("[demand]", "[demand]\ntime_constant = 14")],
+            "plant.response: waves act as a yaw acceleration",
+        ),
+        ([('[demand]\nchange = { value = 20, unit = "deg" }', "")], "key 'demand' is missing: an autopilot"),
+    ],
+)  # fmt: skip
+def test_what_an_autopilot_in_waves_lacks_is_said(changes: list[tuple[str, str]], says: str, tmp_path: Path) -> None:
+    model_file(tmp_path, nomoto())
+    with pytest.raises(InputError) as refused:
+        tuning_task(write_loop_file(tmp_path, AUTOPILOT + WAVES, *changes))
+    assert says in str(refused.value)
+
+
 def test_fins_of_a_ship_known_by_a_decay(tmp_path: Path) -> None:
     """K_alpha of the loop file becomes the model's, dimensions make the hull factor, amplitude adds damping."""
     known = model_file(tmp_path, roll())
@@ -59,7 +113,7 @@ def test_fins_of_a_ship_known_by_a_decay(tmp_path: Path) -> None:
     assert task.trimmed_ship is not None and task.trimmed_ship.model.parameters["K_alpha"].value == 0.256
     assert task.loop.plant.gain == pytest.approx(0.256) and task.loop.disturbance.gain == pytest.approx(1.0)
     sea = task.disturbances[0]
-    assert isinstance(sea, Seaway) and sea.hull is not None and (sea.hull.L, sea.hull.T) == (100.0, 3.4)
+    assert isinstance(sea, Seaway) and sea.effect == HullFactor(100.0, 10.5, 3.4) and sea.path is None
     swung = tuning_task(write_loop_file(tmp_path, FIN, (plant[0], plant[1] + "\namplitude = 0.1")))
     added = np.array(swung.loop.disturbance.den) - np.array(task.loop.disturbance.den)
     # 8 / (3 pi) omega a b_2: equivalent linear damping of the quadratic part
@@ -361,7 +415,7 @@ def test_what_is_wrong_with_a_fin_file_is_said(changes: list[tuple[str, str]], s
         ),
         (
             [("[[slow_disturbances]]", f"[[seas]]\nheight = 2\n{SEA}\n[[slow_disturbances]]")],
-            "seas: a sea acts through its slope",
+            "seas[1]: the sea has no yaw moment of the waves at a heading of 90 deg",
         ),
         ([("[demand]", 'minimise = ["roll"]\n[demand]')], "unknown key 'slow_disturbances[1].minimise'"),
         ([("[plant]", 'minimise = ["roll"]\n[plant]')], "minimise[1]: 'roll' is a word of roll stabilisers"),

@@ -10,7 +10,7 @@ from scipy.integrate import quad
 
 from seatrial.core.values import Array, InputError
 from seatrial.physics.hydro.dispersion import G
-from seatrial.physics.loops import Block, EncounterSpectrum, HullFactor, wave_slope_spectrum
+from seatrial.physics.loops import WAVE_SLOPE, Block, EncounterSpectrum, HullFactor, sea_disturbance
 from seatrial.physics.loops.encounter_spectrum import disturbance_spectrum
 from seatrial.physics.loops.fin import ROLL
 from seatrial.physics.sea.spectrum import Spectrum, ittc, jonswap
@@ -53,14 +53,14 @@ def variances(made: EncounterSpectrum) -> Array:
 @pytest.mark.parametrize("heading", [2, 40, 90, 150, 178])
 def test_a_long_crested_sea_equals_brute_integration(heading: int, U: float, hull: HullFactor | None) -> None:
     beta = math.radians(heading)
-    made = wave_slope_spectrum(SEA, U, beta, ROLL, hull)
+    made = sea_disturbance(SEA, U, beta, ROLL, hull or WAVE_SLOPE)
     assert np.all(np.isfinite(made.energy))
     np.testing.assert_allclose(variances(made), brute(SEA, U, beta, hull), rtol=1e-7)
 
 
 def test_a_raised_peak_equals_brute_integration_on_few_nodes() -> None:
     spectrum = jonswap(3.3, 9.1)
-    made = wave_slope_spectrum(spectrum, 9.0, math.radians(60.0), ROLL, HULL)
+    made = sea_disturbance(spectrum, 9.0, math.radians(60.0), ROLL, HULL)
     np.testing.assert_allclose(variances(made), brute(spectrum, 9.0, math.radians(60.0), HULL), rtol=1e-7)
     assert len(made.omega_e) == 512
 
@@ -73,7 +73,7 @@ def test_a_following_sea_converges_without_a_jacobian(heading: int, monkeypatch:
     monkeypatch.setattr(MODULE, "_REDUCED_NODES", 2000)
     for count in (48, 96, 192, 384, 768, 1536):
         monkeypatch.setattr(MODULE, "_MIN_NODES", count)
-        made = wave_slope_spectrum(SEA, 9.26, beta, ROLL, HULL)
+        made = sea_disturbance(SEA, 9.26, beta, ROLL, HULL)
         assert len(made.omega_e) == count
         errors.append(np.abs(variances(made) / truth - 1.0).max())
     assert all(after < before or after < 1e-8 for before, after in pairwise(errors))
@@ -81,7 +81,7 @@ def test_a_following_sea_converges_without_a_jacobian(heading: int, monkeypatch:
 
 
 def test_a_beam_sea_is_the_slope_spectrum_whatever_the_speed() -> None:
-    still, fast = (wave_slope_spectrum(SEA, U, math.pi / 2.0, ROLL, HULL) for U in (0.0, 15.0))
+    still, fast = (sea_disturbance(SEA, U, math.pi / 2.0, ROLL, HULL) for U in (0.0, 15.0))
     # cos(pi / 2) is a rounding error
     np.testing.assert_allclose(still.omega_e, fast.omega_e, rtol=1e-14)
     np.testing.assert_allclose(still.energy, fast.energy, rtol=1e-14)
@@ -104,7 +104,7 @@ def test_a_beam_sea_is_the_slope_spectrum_whatever_the_speed() -> None:
 )
 def test_a_short_crested_sea_equals_the_double_integral(heading: int, exponent: float, hull: HullFactor | None) -> None:
     U, beta = 9.26, math.radians(heading)
-    made = wave_slope_spectrum(SEA, U, beta, ROLL, hull, spreading=exponent)
+    made = sea_disturbance(SEA, U, beta, ROLL, hull or WAVE_SLOPE, spreading=exponent)
     nodes, weights = np.polynomial.legendre.leggauss(800)
     away = 0.5 * math.pi * nodes
     shares = weights * np.cos(away) ** (2.0 * exponent)
@@ -122,7 +122,7 @@ def test_a_short_crested_sea_equals_the_double_integral(heading: int, exponent: 
 def test_a_sea_of_little_spreading_is_nearly_long_crested() -> None:
     beta = math.radians(100.0)
     long, short = (
-        wave_slope_spectrum(SEA, 9.26, beta, ROLL, HULL, spreading=s).response_variance(ROLL) for s in (None, 2000.0)
+        sea_disturbance(SEA, 9.26, beta, ROLL, HULL, spreading=s).response_variance(ROLL) for s in (None, 2000.0)
     )
     assert short == pytest.approx(long, rel=2e-3)
 
@@ -130,8 +130,8 @@ def test_a_sea_of_little_spreading_is_nearly_long_crested() -> None:
 @pytest.mark.parametrize("heading", [0, 180])
 def test_a_long_crested_sea_along_the_ship_has_no_slope_and_is_refused(heading: int) -> None:
     with pytest.raises(InputError, match=f"no wave slope across the ship at a heading of {heading} deg; take another"):
-        wave_slope_spectrum(SEA, 9.26, math.radians(heading), ROLL, HULL)
-    assert wave_slope_spectrum(SEA, 9.26, math.radians(heading), ROLL, HULL, spreading=1.0).variance > 0.0
+        sea_disturbance(SEA, 9.26, math.radians(heading), ROLL, HULL)
+    assert sea_disturbance(SEA, 9.26, math.radians(heading), ROLL, HULL, spreading=1.0).variance > 0.0
 
 
 @pytest.mark.parametrize(
@@ -147,13 +147,13 @@ def test_a_long_crested_sea_along_the_ship_has_no_slope_and_is_refused(heading: 
 )
 def test_what_is_no_sea_is_refused(U: float, beta: float, spreading: float | None, said: str) -> None:
     with pytest.raises(InputError, match=said):
-        wave_slope_spectrum(SEA, U, beta, ROLL, HULL, spreading=spreading)
+        sea_disturbance(SEA, U, beta, ROLL, HULL, spreading=spreading)
 
 
 def test_the_sea_is_named_as_the_reader_knows_it() -> None:
-    assert wave_slope_spectrum(SEA, 9.0, math.pi / 2.0, ROLL, HULL).description == "ITTC one-parameter, 90 deg"
+    assert sea_disturbance(SEA, 9.0, math.pi / 2.0, ROLL, HULL).description == "ITTC one-parameter, 90 deg"
     assert (
-        wave_slope_spectrum(SEA, 9.0, 0.0, ROLL, HULL, spreading=1.0).description
+        sea_disturbance(SEA, 9.0, 0.0, ROLL, HULL, spreading=1.0).description
         == "ITTC one-parameter, 0 deg, short-crested"
     )
 

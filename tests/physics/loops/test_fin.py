@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import brentq
 from tests.physics.loops.example_loops import ROWS
 
-from seatrial.physics.loops import HullFactor, Performance, TransferLoop, margins, wave_slope_spectrum
+from seatrial.physics.loops import HullFactor, Performance, TransferLoop, margins, sea_disturbance
 from seatrial.physics.loops.fin import (
     DERIVATIVE,
     GYRO,
@@ -29,7 +29,7 @@ KNOT = 1852.0 / 3600.0
 
 def reduction(loop: TransferLoop) -> float:
     """Of the rms roll at 18 kn in beam seas of 3.3 m, per cent."""
-    sea = wave_slope_spectrum(ittc(3.3), 18.0 * KNOT, math.pi / 2.0, ROLL, HullFactor(100.0, 10.5, 3.4))
+    sea = sea_disturbance(ittc(3.3), 18.0 * KNOT, math.pi / 2.0, ROLL, HullFactor(100.0, 10.5, 3.4))
     made = Performance(loop, sea, ROWS)
     return 100.0 * (1.0 - math.sqrt(made.evaluate(loop.gain_values).variances[0, 0] / made.uncontrolled_variances[0]))
 

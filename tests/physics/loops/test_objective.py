@@ -7,7 +7,7 @@ import pytest
 
 from seatrial.core.values import Array
 from seatrial.physics.hydro.dispersion import G
-from seatrial.physics.loops import HullFactor, LoopSignal, Objective, Performance, wave_slope_spectrum
+from seatrial.physics.loops import HullFactor, LoopSignal, Objective, Performance, sea_disturbance
 from seatrial.physics.loops.fin import ROLL, fin_loop
 from seatrial.physics.loops.objective import motion_interruptions, motion_sickness, squared_deviation, variance
 from seatrial.physics.loops.performance import distinct_variances
@@ -29,7 +29,7 @@ GAINS = np.array([11.053, 0.428, 32.736])
 
 def performance(objective: Objective, height: float = 3.3) -> tuple[Performance, list[int]]:
     rows, places = distinct_variances((objective,))
-    sea = wave_slope_spectrum(ittc(height), 9.26, math.pi / 2.0, ROLL, HullFactor(100.0, 10.5, 3.4))
+    sea = sea_disturbance(ittc(height), 9.26, math.pi / 2.0, ROLL, HullFactor(100.0, 10.5, 3.4))
     return Performance(fin_loop(), sea, rows), places[0]
 
 

@@ -17,7 +17,7 @@ from seatrial.physics.loops import (
     TransferLoop,
     WeightedVariance,
     margins,
-    wave_slope_spectrum,
+    sea_disturbance,
 )
 from seatrial.physics.loops.encounter_spectrum import disturbance_spectrum
 from seatrial.physics.loops.fin import ROLL as ROLLING
@@ -37,7 +37,7 @@ def shaped(loop: TransferLoop) -> EncounterSpectrum:
 
 
 def beam() -> EncounterSpectrum:
-    return wave_slope_spectrum(ittc(3.3), 9.26, math.pi / 2.0, ROLLING, HULL)
+    return sea_disturbance(ittc(3.3), 9.26, math.pi / 2.0, ROLLING, HULL)
 
 
 @pytest.fixture(params=READINGS, ids=lambda reading: reading.name.lower())

@@ -17,7 +17,7 @@ from seatrial.physics.loops import (
     Term,
     WeightedVariance,
     margins,
-    wave_slope_spectrum,
+    sea_disturbance,
 )
 from seatrial.physics.loops.fin import ROLL, Preamplifier, fin_loop
 from seatrial.physics.loops.structures import (
@@ -85,9 +85,9 @@ def test_a_common_notch_multiplies_the_open_loop() -> None:
 def seas() -> dict[str, EncounterSpectrum]:
     beam, peak = math.pi / 2.0, 2.0 * math.pi / ittc(3.3).modal_frequency
     return {
-        "ITTC": wave_slope_spectrum(ittc(3.3), U, beam, ROLL, HULL),
-        "JONSWAP": wave_slope_spectrum(jonswap(3.3, peak), U, beam, ROLL, HULL),
-        "short-crested": wave_slope_spectrum(ittc(3.3), U, beam, ROLL, HULL, spreading=1.0),
+        "ITTC": sea_disturbance(ittc(3.3), U, beam, ROLL, HULL),
+        "JONSWAP": sea_disturbance(jonswap(3.3, peak), U, beam, ROLL, HULL),
+        "short-crested": sea_disturbance(ittc(3.3), U, beam, ROLL, HULL, spreading=1.0),
     }
 
 

@@ -2,12 +2,12 @@
 
 import math
 
-from seatrial.control.loopfile.plant import LoopPlant
+from seatrial.control.loopfile.plant import LoopPlant, yaw_acceleration_path
 from seatrial.control.loopfile.quantities import heading_value, positive_value, symbol_unit
 from seatrial.control.loopfile.schema import LoopFile, ScheduleTable, SeawayTable, SlowDisturbanceTable
 from seatrial.control.task import ScheduleGrid, Seaway, SlowDisturbance
 from seatrial.core.values import InputError
-from seatrial.physics.loops import HullFactor, TransferLoop
+from seatrial.physics.loops import WAVE_SLOPE, Block, HullFactor, TransferLoop, WaveEffect, YawAcceleration
 
 _NO_SLOPE = 1e-6  # |sin(heading)| below which long-crested waves have no slope across the ship: rounding
 
@@ -20,17 +20,27 @@ def loop_disturbances(
         raise InputError(
             "nothing disturbs the loop: add a block [[seas]], or [[slow_disturbances]] for what acts like the actuator"
         )
-    if file.seas and plant.disturbed_by != "alpha_w":
-        raise InputError(
-            f"seas: a sea acts through its slope alpha_w on roll, not on '{plant.output}'; describe what disturbs it "
-            "under [[slow_disturbances]]"
-        )
-    seas = (seaway(table, plant.U, hull, f"seas[{i}]") for i, table in enumerate(file.seas, start=1))
+    effect, path = _wave_effect(plant, hull) if file.seas else (WAVE_SLOPE, None)
+    seas = (seaway(table, plant.U, effect, path, f"seas[{i}]") for i, table in enumerate(file.seas, start=1))
     slow = (
         _slow_disturbance(table, plant, f"slow_disturbances[{i}]")
         for i, table in enumerate(file.slow_disturbances, start=1)
     )
     return (*seas, *slow)
+
+
+def _wave_effect(plant: LoopPlant, hull: HullFactor | None) -> tuple[WaveEffect, Block | None]:
+    """Return what waves do to the loop and its path to the output: their slope to roll, their yaw moment to heading."""
+    if plant.disturbed_by == "alpha_w":
+        return hull or WAVE_SLOPE, None
+    if plant.output != "psi":
+        raise InputError(
+            f"seas: a sea acts on roll or heading, not on '{plant.output}'; describe what disturbs it under "
+            "[[slow_disturbances]]"
+        )
+    if hull is None:
+        raise InputError("seas: the yaw moment of waves needs the hull; add [hull] with L, B and T in m")
+    return YawAcceleration(hull.L, hull.T), yaw_acceleration_path(plant)
 
 
 def refuse_calm(
@@ -56,11 +66,11 @@ def refuse_calm(
                 )
 
 
-def seaway(table: SeawayTable, U: float, hull: HullFactor | None, where: str) -> Seaway:
+def seaway(table: SeawayTable, U: float, effect: WaveEffect, path: Block | None, where: str) -> Seaway:
     """Return one sea; at the plant's speed U [m/s] where it names none."""
     speed = U if table.speed is None else positive_value(table.speed, "m/s", f"{where}.speed")
     beta = heading_value(table.heading, f"{where}.heading")
-    return Seaway(table.to_spectrum(where), speed, beta, hull, table.spreading)
+    return Seaway(table.to_spectrum(where), speed, beta, effect, table.spreading, path)
 
 
 def schedule_grid(table: ScheduleTable) -> ScheduleGrid:

@@ -25,15 +25,18 @@ _NOTCH_DEFAULTS = 0.5, 0.1  # damping ratio and depth of a notch, as in `NotchTa
 _ROUNDING = 1e-9  # imaginary part over size of a pole, below which it does not swing
 
 
-def extended_structure(loop: TransferLoop, table: ExtendedStructureTable, where: str) -> TransferLoop:
+def extended_structure(
+    loop: TransferLoop, table: ExtendedStructureTable, where: str, wave_frequency: float | None = None
+) -> TransferLoop:
     """Return the loop with the filters of the table; band-pass and low-pass have gains of their own, KB and KL.
 
     Where the file does not set them they stand at the multiples of the plant's own frequency that were found for the
-    published fins. Without bounds the new gains may lie within the largest bound of the loop's own, to either side.
+    published fins; a notch at the frequency [rad/s] at which waves move a ship that does not swing by itself. Without
+    bounds the new gains may lie within the largest bound of the loop's own, to either side.
     """
     made = _with_terms(loop, table, where)
     if "notch" in table.add:
-        made = with_filters(made, _notch(loop, table, where))
+        made = with_filters(made, _notch(loop, table, where, wave_frequency))
     return replace(made, name=table.name or f"{loop.name} with {' and '.join(table.add)}")
 
 
@@ -75,7 +78,9 @@ def _part(loop: TransferLoop, kind: str, shape: PassTable | None, default: tuple
     return make(positive_value(shape.omega, "rad/s", f"{where}.{kind.replace('-', '_')}.omega"), shape.damping)
 
 
-def _notch(loop: TransferLoop, table: ExtendedStructureTable, where: str) -> Block:
+def _notch(loop: TransferLoop, table: ExtendedStructureTable, where: str, wave_frequency: float | None) -> Block:
+    if table.notch is None and wave_frequency is not None:
+        return notch(wave_frequency, *_NOTCH_DEFAULTS)
     if table.notch is None:
         return notch(_natural_frequency(loop, f"{where}.notch"), *_NOTCH_DEFAULTS)
     omega = positive_value(table.notch.omega, "rad/s", f"{where}.notch.omega")

@@ -21,7 +21,7 @@ from seatrial.control.loopfile.schema import (
     PlantTable,
     SimulationTable,
 )
-from seatrial.control.task import Demand, SimulationSettings, TuningTask, refuse_unstable
+from seatrial.control.task import Demand, Seaway, SimulationSettings, SlowDisturbance, TuningTask, refuse_unstable
 from seatrial.core.equations import Model
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import InputError, spelling_hint
@@ -71,6 +71,8 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant) -> TuningTask:
     refuse_reversed_plant(plant, _plant_key(file.plant))
     refuse_reversed_servo(loop.servo)
     demand = None if file.demand is None else _demand(file.demand, plant)
+    if demand is None and file.seas and plant.output == "psi":
+        raise InputError("key 'demand' is missing: an autopilot also changes course; add [demand] with its change")
     if demand is None:
         refuse_unstable(loop)
     restriction = _constraints(file, plant)
@@ -93,7 +95,7 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant) -> TuningTask:
         effectiveness=plant.effectiveness,
         baselines=_baselines(file.baselines, loop),
         extended_structures=tuple(
-            extended_structure(loop, table, f"extended_structures[{i}]")
+            extended_structure(loop, table, f"extended_structures[{i}]", _wave_frequency(met, loop))
             for i, table in enumerate(file.extended_structures, start=1)
         ),
         schedule_grid=plan,
@@ -106,6 +108,12 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant) -> TuningTask:
         if file.controller.sample_s is None
         else positive_value(file.controller.sample_s, "s", "controller.sample_s"),
     )
+
+
+def _wave_frequency(disturbances: Sequence[Seaway | SlowDisturbance], loop: TransferLoop) -> float | None:
+    """Return the mean frequency [rad/s] at which the first sea moves the output by a path of its own; None without."""
+    sea = next((one for one in disturbances if isinstance(one, Seaway) and one.path is not None), None)
+    return None if sea is None else sea.exposure(loop).mean_frequency(sea.disturbed(loop).disturbance)
 
 
 def _plant_key(table: PlantTable) -> str:
@@ -212,4 +220,5 @@ def _demand(table: DemandTable, plant: LoopPlant) -> Demand:
             f"demand.duration = {duration:g} s is no time to follow a demand of time constant {T:.4g} s; give one to "
             f"{_MOST_TIME_CONSTANTS:g} time constants"
         )
-    return Demand(change, table.overshoot, T, duration)
+    settling = math.inf if table.settling is None else positive_value(table.settling, "s", "demand.settling")
+    return Demand(change, table.overshoot, T, duration, settling, table.feed_forward)

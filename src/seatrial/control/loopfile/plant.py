@@ -7,7 +7,7 @@ from pathlib import Path
 from seatrial.control.loopfile.blocks import block, block_text
 from seatrial.control.loopfile.quantities import angle_value, positive_value, si_value, symbol_unit
 from seatrial.control.loopfile.schema import BlockTable, FinTable, HullTable, PlantTable
-from seatrial.control.ship.trimmed_ship import plant_and_disturbance, plant_text, trim_ship
+from seatrial.control.ship.trimmed_ship import plant_and_disturbance, plant_text, rate_response, trim_ship
 from seatrial.control.task import Effectiveness, TrimmedShip
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Ship, spelling_hint
@@ -69,6 +69,23 @@ def plant_from_table(
         Effectiveness.CONSTANT,
         f"{table.actuator} to {table.output} as given: {block_text(response)}",
     )  # fmt: skip
+
+
+def yaw_acceleration_path(plant: LoopPlant) -> Block:
+    """Return the transfer function from a yaw acceleration [rad/s^2] to the heading.
+
+    By the model behind the plant; of a transfer function from the rudder, that over its leading coefficient b: what
+    the rudder does first is the yaw acceleration b delta.
+    """
+    if plant.trimmed_ship is not None:
+        return rate_response(plant.trimmed_ship, "r")
+    response = plant.response
+    if len(response.den) - len(response.num) != 2:
+        raise InputError(
+            "plant.response: waves act as a yaw acceleration, so that the denominator must be two degrees higher than "
+            "the numerator; leave the actuator's lag to actuator.servo"
+        )
+    return replace(response.scaled(response.den[0] / response.num[0]), name="yaw acceleration to psi")
 
 
 def hull_factor(table: HullTable | None, ship: Ship | None) -> HullFactor | None:

@@ -288,10 +288,16 @@ class SimulationTable(StrictTable):
 
 
 class DemandTable(StrictTable):
-    """`[demand]`: a change of the output that the loop has to follow, and the largest overshoot as a share of it."""
+    """`[demand]`: a change of the output that the loop has to follow, and the largest overshoot as a share of it.
+
+    `settling`: the longest time until the output stays within 5 % of it; `feed_forward`: the reference moves the
+    actuator, too.
+    """
 
     change: SiAmount
     overshoot: Annotated[float, Field(ge=0, lt=1)] = 0.02  # share of the change; chosen
+    settling: SiAmount | None = None
+    feed_forward: bool = False
     time_constant: SiAmount | None = None
     duration: SiAmount | None = None
 

@@ -160,11 +160,28 @@ def _roll_equivalent_matrix(model: Model, A: Array, amplitude: float) -> Array:
     return made
 
 
+def rate_response(ship: TrimmedShip, state: str) -> Block:
+    """Return the transfer function from something added to the rate of a state to the output.
+
+    Of the yaw rate ``r``: from a yaw acceleration [rad/s^2] to the output.
+
+    Raises:
+        InputError: the model has no such state, or it does not move the output.
+    """
+    names, linear = ship.model.states, linearise(ship)
+    if state not in names:
+        raise InputError(f"model '{ship.model.name}' has no state '{state}' that waves could accelerate")
+    return _response(ship, linear, np.eye(len(names))[names.index(state)], 0.0, f"acceleration of {state}")
+
+
 def _transfer_function(ship: TrimmedShip, linear: LinearisedShip, name: str) -> Block:
     """Return C (s I - A)^-1 B + D of one input, controllable and observable states only, in the notation's signs."""
     column = ship.model.input_names.index(name)
     sign = -1.0 if ship.model.inputs[column].is_reversed else 1.0
-    b, feed = sign * linear.B[:, column], sign * float(linear.D[column])
+    return _response(ship, linear, sign * linear.B[:, column], sign * float(linear.D[column]), name)
+
+
+def _response(ship: TrimmedShip, linear: LinearisedShip, b: Array, feed: float, name: str) -> Block:
     kept = _linked_states(linear.A, _is_significant(b)) & _linked_states(linear.A.T, _is_significant(linear.C))
     A, b, c = linear.A[np.ix_(kept, kept)], b[kept], linear.C[kept]
     den = _characteristic_polynomial(A)

@@ -7,8 +7,8 @@ controller, is extrapolated by a parabola and put right at the next call. The in
 what the straight line and the hold take off.
 
 Memory: the head below, then `laws` twice (free, and with the slow states held), the slow order's rate, the controller's
-states and as many places of scratch, the reference (count + 1), the disturbance held over each step (count), and room
-for the actuator's angles (count + 1).
+states and as many places of scratch, the reference (count + 1), the disturbance held over each step (count), what is
+fed forward to the order (count + 1), and room for the actuator's angles (count + 1).
 """
 
 import numpy as np
@@ -100,7 +100,8 @@ def linear_controller(_, x, memory, u):
     states = slow + n + 1
     reference = states + 2 * n
     disturbance = reference + count + 1
-    angles = disturbance + count
+    fed_forward = disturbance + count
+    angles = fed_forward + count + 1
     y = x[int(memory[OUTPUT])]
     error = memory[reference + k] - y
     ahead = y
@@ -116,8 +117,10 @@ def linear_controller(_, x, memory, u):
     row = law + n * n + 2 * n
     coming = memory[reference + k + 1] - ahead
     order = _row_times_states(memory, row, states, n) + memory[row + n] * error + memory[row + n + 1] * coming
+    order += memory[fed_forward + k + 1]
     angle = memory[ANGLE]
-    new = angle + clamp(clamp(order, memory[LIMIT]) - angle, memory[SLEW])
+    # clamped once more: the sum may round beyond the limit
+    new = clamp(angle + clamp(clamp(order, memory[LIMIT]) - angle, memory[SLEW]), memory[LIMIT])
     is_free = abs(order) <= memory[LIMIT] and abs(order - angle) <= memory[SLEW]
     memory[SATURATION_EXCESS] = 0.0 if is_free else order - new
     stall, loss = memory[STALL], memory[LOSS]

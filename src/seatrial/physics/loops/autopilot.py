@@ -6,6 +6,7 @@ they hold for any plant and are the textbook's own for a Nomoto ship. Bounds are
 """
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -125,6 +126,29 @@ def pitch_loop(
     gains = {gain: (0.0, start[gain], most[gain]) for gain in start}
     names = (output, actuator, disturbance_input)
     return _pid_loop(name, plant, disturbance, servo, sign, gains, parts, tau, math.inf, names)
+
+
+@dataclass(frozen=True)
+class FeedForward:
+    """What the actuator needs to move the output as a reference does, without waiting for an error.
+
+    a = level y + velocity y' + acceleration y'', of the reference y about the trim.
+    """
+
+    level: float
+    velocity: float
+    acceleration: float
+
+
+def acceleration_feed_forward(plant: Block, omega: float) -> FeedForward:
+    """Return the inverse of the lag K / (T s + 1) that the plant is at omega [rad/s], behind its integrator if any.
+
+    Of a Nomoto ship (T r' + r) / K (Fossen 2021, section 15.3, reference feed-forward); of any plant that of the ship
+    with the same frequency response at omega, which is to be that of the reference.
+    """
+    integrates = bool(np.any(np.abs(plant.poles) <= _NEGLIGIBLE_POLE * np.abs(plant.poles).max(initial=0.0)))
+    inverse, slope = _equivalent_lag(plant, omega, integrators=int(integrates))
+    return FeedForward(0.0, inverse, slope) if integrates else FeedForward(inverse, slope, 0.0)
 
 
 def mean_pole(plant: Block) -> float:

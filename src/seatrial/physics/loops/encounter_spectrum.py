@@ -1,8 +1,8 @@
 """What a sea does to a ship without control: energy of the output over the frequencies at which waves are met.
 
 Integrals run over the wave frequency with responses taken at |omega_e(omega)|: the Jacobian d omega / d omega_e, which
-is singular in following seas, never appears. Without a hull that averages them, waves beyond twelve times the peak's
-frequency are left out; their slopes would add up without end.
+is singular in following seas, never appears. Waves beyond twelve times the peak's frequency are left out; where no hull
+averages them, their slopes would add up without end.
 """
 
 import math
@@ -12,10 +12,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from seatrial.core.values import Array, InputError
-from seatrial.physics.hydro.dispersion import G
 from seatrial.physics.hydro.excitation import encounter_frequency
 from seatrial.physics.loops import quadrature
 from seatrial.physics.loops.block import Block
+from seatrial.physics.loops.wave_effect import WaveEffect, WaveSlope
 from seatrial.physics.sea.encounter import speed_factor
 from seatrial.physics.sea.spectrum import Spectrum
 
@@ -26,29 +26,12 @@ _ACCURACY, _ACCURACY_OF_REDUCED = 1e-10, 1e-9  # relative, of variances on all n
 _ACCURACY_OF_DIRECTIONS, _ACCURACY_OF_ONE = 1e-6, 1e-8
 _NEGLIGIBLE_EXPONENT = 36.0  # exp(-36) is 2e-16, rounding
 _DAMPING_DIVISOR = 2.0  # of the sharpened response: feedback may leave half of the damping; chosen
+_HELD_POLE = 0.01  # rad/s: an integrator that feedback holds is taken to be no faster; chosen
 _LOWEST_FREQUENCY = 1e-9  # rad/s: a wave that keeps up with the ship
-_ACROSS, _NO_SLOPE = 1e-9, 1e-12  # |sin(heading)| and share of the sea's variance that count as none: rounding
+_NO_EFFECT = 1e-12  # share of the sea's variance that counts as none: rounding
 _REACH = 12.0  # highest wave frequency over the modal one, as said above
+WAVE_SLOPE = WaveSlope()
 _FIRST_STRIDE = 8  # directions left out between those of the first grid; chosen
-
-
-@dataclass(frozen=True)
-class HullFactor:
-    """How a hull averages the slope of waves shorter than itself; by a box of length L, breadth B, draught T [m].
-
-    F = exp(-k T / 2) sinc(k B sin(beta) / 2) sinc(k L cos(beta) / 2), sinc(x) = sin(x) / x: the mean over half the
-    draught, the breadth and the length, Froude-Krylov, of a box (Lloyd 1989, Seakeeping, effective wave slope).
-    """
-
-    L: float
-    B: float
-    T: float
-
-    def slope_factor(self, omega: Array, beta: float) -> Array:
-        """Return F [-] at wave frequencies omega [rad/s] and heading beta [rad, 0 following]."""
-        k = omega**2 / G
-        across, along = k * self.B * math.sin(beta) / (2.0 * math.pi), k * self.L * math.cos(beta) / (2.0 * math.pi)
-        return np.exp(-k * self.T / 2.0) * np.sinc(across) * np.sinc(along)
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,37 +57,42 @@ class EncounterSpectrum:
         """Return the variance of what the block makes of the disturbance."""
         return float(np.sum(np.abs(block.frequency_response(self.omega_e)) ** 2 * self.energy))
 
+    def mean_frequency(self, block: Block) -> float:
+        """Return the mean of omega_e [rad/s] over the energy of what the block makes of the disturbance."""
+        energy = np.abs(block.frequency_response(self.omega_e)) ** 2 * self.energy
+        return float(np.sum(self.omega_e * energy) / np.sum(energy))
 
-def wave_slope_spectrum(
+
+def sea_disturbance(
     spectrum: Spectrum,
     U: float,
     beta: float,
     response: Block,
-    hull: HullFactor | None = None,
+    effect: WaveEffect = WAVE_SLOPE,
     *,
     spreading: float | None = None,
 ) -> EncounterSpectrum:
-    """Return effective wave slope [rad] that a ship meets; its spectrum is (omega^2 / g)^2 sin^2(beta) F^2 S(omega).
+    """Return what the waves of a sea do to a loop, |effect|^2 S(omega): by default their slope across the ship [rad].
 
     Args:
         U: m/s; beta: rad, 0 following, pi / 2 beam, pi head.
-        response: from the slope to the motion; nodes suffice for variances of its angle and rate with half of its
+        response: from the disturbance to the motion; nodes suffice for variances of its angle and rate with half of its
             damping. A loop much nearer to instability, or slower, is resolved by its own closed-loop response D S.
         spreading: exponent s of a short-crested sea, cos^2s over +- 90 deg; None: long-crested.
 
     Raises:
-        InputError: speed, heading or spreading out of sense, or a sea without any slope across the ship.
+        InputError: speed, heading or spreading out of sense, or a sea without any effect on the loop.
     """
     said = f"{spectrum.name}, {math.degrees(beta):.0f} deg"
     if spreading is None:
-        nodes = _long_crested_nodes(spectrum, U, beta, response, hull, _ACCURACY)
+        nodes = _long_crested_nodes(spectrum, U, beta, response, effect, _ACCURACY)
         made = EncounterSpectrum(*_reduced_nodes(*nodes, response, _ACCURACY_OF_REDUCED), said)
     else:
-        nodes = _ShortCrestedNodes(spectrum, U, beta, response, hull, spreading).converged_nodes()
+        nodes = _ShortCrestedNodes(spectrum, U, beta, response, effect, spreading).converged_nodes()
         made = EncounterSpectrum(*_reduced_nodes(*nodes, response, _ACCURACY_OF_DIRECTIONS), f"{said}, short-crested")
-    if not made.variance > _NO_SLOPE * spectrum.moment(0):
+    if not made.variance > _NO_EFFECT * spectrum.moment(0):
         raise InputError(
-            f"the sea has no wave slope across the ship at a heading of {math.degrees(beta):.0f} deg; "
+            f"the sea has no {effect.name} at a heading of {math.degrees(beta):.0f} deg; "
             "take another heading, or a short-crested sea"
         )
     return made
@@ -121,14 +109,14 @@ class _ShortCrestedNodes:
     """A short-crested sea: trapezoids over its directions, doubled until variances of angle and rate stand still."""
 
     def __init__(
-        self, spectrum: Spectrum, U: float, beta: float, response: Block, hull: HullFactor | None, exponent: float
+        self, spectrum: Spectrum, U: float, beta: float, response: Block, effect: WaveEffect, exponent: float
     ) -> None:
         if not exponent > 0.0:
             raise InputError(f"the spreading exponent s of a short-crested sea must be positive, not {exponent:g}")
         speed_factor(U, beta)
         self._nodes_by_direction: dict[int, tuple[Array, Array]] = {}
         self._one_direction = lambda away: _long_crested_nodes(
-            spectrum, U, math.acos(math.cos(beta + away)), response, hull, _ACCURACY_OF_ONE
+            spectrum, U, math.acos(math.cos(beta + away)), response, effect, _ACCURACY_OF_ONE
         )
         self._response, self._exponent = response, exponent
         # cos^2s is below 1e-13 beyond
@@ -159,22 +147,18 @@ class _ShortCrestedNodes:
 
 
 def _long_crested_nodes(
-    spectrum: Spectrum, U: float, beta: float, response: Block, hull: HullFactor | None, accuracy: float
+    spectrum: Spectrum, U: float, beta: float, response: Block, effect: WaveEffect, accuracy: float
 ) -> tuple[Array, Array]:
     speed_factor(U, beta)
-    across = math.sin(beta) ** 2 if abs(math.sin(beta)) > _ACROSS else 0.0
 
     def density(omega: Array) -> Array:
-        factor = 1.0 if hull is None else hull.slope_factor(omega, beta) ** 2
-        return across * (omega**2 / G) ** 2 * factor * spectrum.density(omega)
+        return np.abs(effect.amplitude(omega, U, beta)) ** 2 * spectrum.density(omega)
 
     def encounter(omega: Array) -> Array:
         return np.abs(encounter_frequency(omega, U, beta))
 
     lower = (spectrum.B / _NEGLIGIBLE_EXPONENT) ** 0.25
-    upper = _REACH * spectrum.modal_frequency
-    if hull is not None:
-        upper = min(upper, math.sqrt(0.5 * _NEGLIGIBLE_EXPONENT * G / hull.T))
+    upper = min(_REACH * spectrum.modal_frequency, effect.highest_frequency)
     peak = spectrum.modal_frequency
     # a raised peak is sharp and has a kink
     inner = () if spectrum.gamma == 1.0 else (0.65 * peak, peak, 1.45 * peak)
@@ -212,9 +196,11 @@ def _reduced_nodes(omega_e: Array, energy: Array, response: Block, accuracy: flo
 
 
 def _with_less_damping(response: Block) -> Block:
-    """Return the block with half of its damping, as feedback may leave it."""
+    """Return the block with half of its damping, as feedback may leave it; what runs away or integrates as if held."""
     poles = response.poles
-    return replace(response, den=tuple(response.den[0] * np.poly(poles.real / _DAMPING_DIVISOR + 1j * poles.imag).real))
+    slowest = np.min(np.abs(poles[poles != 0.0]), initial=_HELD_POLE)
+    damped = np.where(poles == 0.0, -slowest, -np.abs(poles.real) / _DAMPING_DIVISOR)
+    return replace(response, den=tuple(response.den[0] * np.poly(damped + 1j * poles.imag).real))
 
 
 def _variances(omega_e: Array, energy: Array, response: Block) -> Array:

@@ -102,11 +102,17 @@ class ClosedLoop:
             raise InputError(f"{where} needs {len(self.loop.terms)} finite gains: {', '.join(self.loop.gains.names)}")
 
     def run(
-        self, disturbance: Array, limits: ActuatorLimits = UNLIMITED, reference: Array | None = None
+        self,
+        disturbance: Array,
+        limits: ActuatorLimits = UNLIMITED,
+        reference: Array | None = None,
+        fed_forward: Array | None = None,
     ) -> tuple[Array, Array]:
         """Return states (n, nx) and the actuator's angle from its trim (n,) at the samples of the disturbance (n,).
 
-        reference: (n,), absolute, as the output; by default the output's trim.
+        Args:
+            reference: (n,), absolute, as the output; by default the output's trim.
+            fed_forward: (n,), added to the order of the actuator before its limits; by default nothing.
 
         Raises:
             InputError: series of other lengths or with gaps.
@@ -115,11 +121,14 @@ class ClosedLoop:
         count = len(disturbance)
         place = self.model.states.index(self.output)
         wanted = np.full(count, self.start[place]) if reference is None else np.asarray(reference, dtype=np.float64)
-        if count < 2 or len(wanted) != count or not np.all(np.isfinite([disturbance, wanted])):
+        added = np.zeros(count) if fed_forward is None else np.asarray(fed_forward, dtype=np.float64)
+        lengths = {count, len(wanted), len(added)}
+        if count < 2 or len(lengths) > 1 or not np.all(np.isfinite([disturbance, wanted, added])):
             raise InputError(
-                "disturbance and reference of a closed loop need the same number of samples, two or more, without gaps"
+                "disturbance, reference and feed-forward of a closed loop need the same number of samples, two or "
+                "more, without gaps"
             )
-        memory = self._controller_memory(disturbance, limits, wanted)
+        memory = self._controller_memory(disturbance, limits, wanted, added)
         states, inputs = np.empty((count, len(self.start))), np.empty((count, len(self.inputs)))
         diverged = steer(
             self.model.compiled.rates, kernel.linear_controller, self.start.copy(), self.inputs.copy(),
@@ -132,7 +141,9 @@ class ClosedLoop:
             raise DivergedError(f"loop '{self.loop.name}' before model '{self.model.name}' runs away at {time[-1]:g} s")
         return states, memory[len(memory) - count - 1 : -1]
 
-    def _controller_memory(self, disturbance: Array, limits: ActuatorLimits, reference: Array) -> Array:
+    def _controller_memory(
+        self, disturbance: Array, limits: ActuatorLimits, reference: Array, fed_forward: Array
+    ) -> Array:
         made, count = controller_state_space(self.loop, self.gains), len(disturbance)
         n, place, disturbed = len(made.b), self._input_index(self.actuator), self._input_index(self.disturbance_input)
         values = {
@@ -153,7 +164,7 @@ class ClosedLoop:
         trim = self.inputs[disturbed] if disturbed not in (-1, place) else 0.0
         met = trim + self._sign(disturbed) * hold_equivalent(np.asarray(disturbance, dtype=np.float64))
         laws = (made.discretised(self.dt, is_holding=False), made.discretised(self.dt, is_holding=True))
-        series = (reference, reference[-1:], met, np.zeros(count + 1))
+        series = (reference, reference[-1:], met, fed_forward, fed_forward[-1:], np.zeros(count + 1))
         return np.concatenate([head, *laws, made.slow_rate, np.zeros(2 * n), *series])
 
     def _input_index(self, name: str) -> int:
