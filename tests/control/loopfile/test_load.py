@@ -77,6 +77,19 @@ def test_waves_yaw_a_ship_through_its_own_model(tmp_path: Path) -> None:
         assert slow.disturbed(task.loop) is task.loop
 
 
+def test_a_notch_stands_where_the_first_sea_yaws_the_ship(tmp_path: Path) -> None:
+    model_file(tmp_path, nomoto())
+    added = '[[extended_structures]]\nadd = ["notch"]\n'
+    task = tuning_task(write_loop_file(tmp_path, AUTOPILOT + WAVES + added))
+    (notch,) = task.extended_structures[0].filters
+    sea = task.disturbances[0]
+    exposure = sea.exposure(task.loop)
+    wanted = float(np.average(exposure.omega_e, weights=exposure.energy))
+    assert np.sqrt(notch.den[-1]) == pytest.approx(wanted, rel=1e-9)
+    # ITTC waves of 2 m peak at 0.88 rad/s; from the quarter at 7 m/s the ship meets them more slowly
+    assert 0.2 < wanted < 0.6
+
+
 @pytest.mark.parametrize(
     ("changes", "says"),
     [

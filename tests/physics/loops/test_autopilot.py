@@ -49,7 +49,7 @@ def test_an_unstable_ship_is_held_within_its_bounds() -> None:
         made = margins(loop)
         assert made.is_stable
         assert made.Ms < 1.3
-        assert all(0.0 < p.lower < p.value < p.upper < np.inf for p in loop.gains)
+        assert all(0.0 <= p.lower < p.value < p.upper < np.inf for p in loop.gains)
 
 
 def test_pi_places_the_poles_of_a_speed() -> None:

@@ -27,7 +27,7 @@ from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import InputError, spelling_hint
 from seatrial.core.values.tables import parse_toml, read_table_text, refuse_absurd_numbers
 from seatrial.data.trial.schema_errors import schema_error
-from seatrial.physics.loops import ActuatorDrive, Objective, TransferLoop
+from seatrial.physics.loops import ActuatorDrive, Block, Objective, TransferLoop
 
 _TIME_CONSTANTS = 30.0  # duration of a demand where none is given, in its time constants; chosen
 _DELAY_OVER_DEAD_TIME = 2.0  # least delay margin over the declared dead time; chosen
@@ -111,9 +111,12 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant) -> TuningTask:
 
 
 def _wave_frequency(disturbances: Sequence[Seaway | SlowDisturbance], loop: TransferLoop) -> float | None:
-    """Return the mean frequency [rad/s] at which the first sea moves the output by a path of its own; None without."""
+    """Return the mean frequency [rad/s] at which the first sea acts that has a path of its own; None without.
+
+    Of the action, not of the motion: waves that keep up with the ship move its heading as far as they like.
+    """
     sea = next((one for one in disturbances if isinstance(one, Seaway) and one.path is not None), None)
-    return None if sea is None else sea.exposure(loop).mean_frequency(sea.disturbed(loop).disturbance)
+    return None if sea is None else sea.exposure(loop).mean_frequency(Block("action"))
 
 
 def _plant_key(table: PlantTable) -> str:

@@ -168,14 +168,17 @@ def _equivalent_lag(plant: Block, omega: float, *, integrators: int) -> tuple[fl
 
 
 def _gain_ranges(placements: list[Gains], leading: str) -> tuple[dict[str, GainRange], float]:
-    """Lower bound, value and upper bound of each gain, none negative, and the sign of the plant."""
+    """Lower bound, value and upper bound of each gain, none negative, and the sign of the plant.
+
+    Only the leading gain has a lower bound: without it nothing holds the output.
+    """
     low, start, most = placements
     sign = math.copysign(1.0, most[leading])
     made = {}
     for gain, value in most.items():
         upper = max(sign * value, 0.0) or abs(value)
         lower, begun = (min(max(sign * one[gain], 0.0), upper) for one in (low, start))
-        made[gain] = (min(lower, begun), begun, upper)
+        made[gain] = (min(lower, begun) if gain == leading else 0.0, begun, upper)
     return made, sign
 
 
