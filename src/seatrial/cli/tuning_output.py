@@ -29,6 +29,7 @@ def print_tuning(tuning: "Tuning") -> None:
     _print_schedule(tuning)
     print_lines(f"bound {b.name}: output variance {exact(b.ratio, 3)} of the chosen gains', {b.conditions}"
                 for b in tuning.bounds)  # fmt: skip
+    _print_robustness(tuning)
     _print_manoeuvres(tuning)
     print_warnings(tuning.findings)
     print_lines([_effort_text(tuning)])
@@ -140,6 +141,14 @@ def _print_schedule(tuning: "Tuning") -> None:
     trades = ", ".join(f"{step_text(trade.largest_step)} {fixed(trade.cost, 3)}" for trade in tuning.schedule_trades)
     if trades:
         print_lines([f"mean cost by the largest step of a gain between neighbours: {trades}"], "  ")
+
+
+def _print_robustness(tuning: "Tuning") -> None:
+    from seatrial.reporting.tuning_rows import robustness_rows
+
+    if tuning.robustness:
+        header = ("ships that differ", "stable draws", "largest Ms", "stable corners", "largest Ms", "at")
+        print_table([header, *robustness_rows(tuning)], flush_left=(0, 5))
 
 
 def _print_manoeuvres(tuning: "Tuning") -> None:

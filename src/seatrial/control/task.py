@@ -147,6 +147,16 @@ class Demand:
     feeds_forward: bool = False
 
 
+@dataclass(frozen=True)
+class Uncertainty:
+    """How far a ship may differ from the model: shares of the plant's gain and time constants, dead time [s], draws."""
+
+    gain: float = 0.2  # chosen
+    time: float = 0.1  # chosen
+    dead_time: float = 0.0
+    draws: int = 1000  # ships from the covariance of the fit; chosen
+
+
 @dataclass(frozen=True, eq=False)
 class TrimmedShip:
     """The model behind the plant, for simulation and for draws.
@@ -179,6 +189,7 @@ class TuningTask:
         genetic: settings of the published search, used where that method is chosen.
         sample_s: sample time of the controller on board [s]; None: as the loop allows.
         drive: of the actuator, for its energy; None where no inertia is known.
+        uncertainty: of the ships that the controllers are tried on.
 
     Raises:
         InputError: nothing disturbs the loop, a plant with poles right of the axis, gains of other names.
@@ -202,6 +213,7 @@ class TuningTask:
     genetic: GeneticTuning = field(default_factory=GeneticTuning)
     drive: ActuatorDrive | None = None
     sample_s: float | None = None
+    uncertainty: Uncertainty = Uncertainty()
 
     def __post_init__(self) -> None:
         if not self.disturbances or not self.objectives:

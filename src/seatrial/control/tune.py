@@ -1,7 +1,7 @@
 """A task in, a tuning out: fronts, choice, simulation, schedule, bounds."""
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -12,9 +12,10 @@ from seatrial.control.controller import components, describe_controller, discret
 from seatrial.control.demand import simulate_manoeuvres
 from seatrial.control.findings import Checks, findings
 from seatrial.control.front import Effort, grid_front, pareto_front, refuse_idle, refuse_infeasible, thin_front
-from seatrial.control.gain_choice import GainChoice
+from seatrial.control.gain_choice import GainChoice, NamedGains
 from seatrial.control.gain_evaluation import GainEvaluator, gain_evaluator
 from seatrial.control.published_search import OWN_CHOICE, published_search
+from seatrial.control.robustness import robustness
 from seatrial.control.schedule import schedule
 from seatrial.control.seaway_simulation import compare_pairwise, simulate_in_seaway
 from seatrial.control.task import TuningTask
@@ -22,12 +23,14 @@ from seatrial.core.results.tuning import (
     Controller,
     PairedDifference,
     ParetoFront,
+    Robustness,
     SeawaySimulation,
     Tuning,
     TuningMethod,
 )
 from seatrial.core.values.versions import versions
 from seatrial.numerics.optimise import Solution, Status, hypervolume
+from seatrial.physics.loops import margins
 
 FRONT_POINTS = 300  # points of a front that are kept in the result; chosen
 PARAMETER_DRAWS = 100  # ships drawn from the fit that follow a demand; chosen
@@ -107,7 +110,21 @@ def tune(
         reference=reference,
         designs=designs,
         gain_units={gain.name: gain.unit for gain in choice.evaluator.loop.gains},
+        robustness=_robustness(task, choice, own.designs, rivals),
         discrete=discrete_controller(choice.evaluator.loop.with_gains(choice.gains), task.sample_s),
+    )
+
+
+def _robustness(
+    task: TuningTask, choice: GainChoice, designs: Sequence[NamedGains], rivals: Mapping[str, GainChoice]
+) -> tuple[Robustness, ...]:
+    """Return how the chosen gains, the designs and the given ones hold ships that differ from the model."""
+    named = (("chosen", choice), *((one.name, one) for one in designs), *rivals.items())
+    loops = [(name, one, task.loop_at(task.U, one.evaluator.loop)) for name, one in named]
+    return tuple(
+        robustness(task, loop, name, one.gains)
+        for name, one, loop in loops
+        if margins(loop.with_gains(one.gains)).is_stable
     )
 
 

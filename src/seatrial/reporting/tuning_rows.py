@@ -111,6 +111,17 @@ def schedule_table(operating_points: tuple[OperatingPoint, ...]) -> TextTable:
     return TextTable("Gains of the schedule", header, tuple([True] * (len(header) - 1) + [False]), tuple(rows), "")
 
 
+def robustness_rows(tuning: Tuning) -> list[tuple[str, ...]]:
+    """Return of each controller: stable draws, their largest Ms, stable corners, their largest Ms, the worst corner."""
+    return [
+        (
+            r.controller, f"{r.stable_draws} of {r.draws}" if r.draws else DASH, _ratio_text(r.draws_Ms, 2),
+            f"{r.stable_corners} of {r.corners}", _ratio_text(r.corners_Ms, 2), r.worst_corner,
+        )
+        for r in tuning.robustness
+    ]  # fmt: skip
+
+
 def bound_row(b: PerformanceBound) -> tuple[str, str, str, str, str]:
     """Return name, variance ratio, rms ratio, what is held equal, note."""
     rms = fixed(math.sqrt(b.ratio), 2) if b.ratio >= 0.0 else DASH

@@ -30,6 +30,7 @@ def key_facts(tuning: Tuning) -> tuple[KeyFact, ...]:
     warned = list(dict.fromkeys(f.code for f in tuning.findings if f.severity is not Severity.INFO))
     rows = (
         KeyFact("Margins", _margins(tuning), "margins", math.isfinite(c.Ms) and not c.violated),
+        KeyFact("Other ships", _other_ships(tuning), "robustness", _holds_other_ships(tuning)),
         KeyFact("Constraints", _violations(c), "controllers", not c.violated),
         KeyFact("Actuator", _saturation(tuning), "controllers"),
         KeyFact("Simulated", _simulation(tuning), "simulation"),
@@ -105,6 +106,22 @@ def _margins(tuning: Tuning) -> str:
     peak = f"Sensitivity peak Ms {fixed(c.Ms, 2)}{allowed}"
     damping = f", least damping ratio {fixed(c.damping, 2)}" if math.isfinite(c.damping) else ""
     return f"{sentence(enumeration(margin_texts(c)))} {peak}{damping}."
+
+
+def _other_ships(tuning: Tuning) -> str:
+    """Return how the chosen controller holds ships that differ from the model; nothing where it was not tried."""
+    if not tuning.robustness:
+        return ""
+    r = tuning.robustness[0]
+    draws = [f"{r.stable_draws} of {r.draws} ships drawn from the fit"] if r.draws else []
+    text = f"Stable: {enumeration([*draws, f'{r.stable_corners} of {r.corners} corners of the uncertainty'])}"
+    return (
+        f"{text}; Ms up to {fixed(r.corners_Ms, 2)} at {r.worst_corner}." if math.isfinite(r.corners_Ms) else f"{text}."
+    )
+
+
+def _holds_other_ships(tuning: Tuning) -> bool:
+    return all(r.stable_draws == r.draws and r.stable_corners == r.corners for r in tuning.robustness[:1])
 
 
 def margin_texts(c: Controller) -> list[str]:

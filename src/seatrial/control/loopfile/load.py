@@ -21,7 +21,15 @@ from seatrial.control.loopfile.schema import (
     PlantTable,
     SimulationTable,
 )
-from seatrial.control.task import Demand, Seaway, SimulationSettings, SlowDisturbance, TuningTask, refuse_unstable
+from seatrial.control.task import (
+    Demand,
+    Seaway,
+    SimulationSettings,
+    SlowDisturbance,
+    TuningTask,
+    Uncertainty,
+    refuse_unstable,
+)
 from seatrial.core.equations import Model
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import InputError, spelling_hint
@@ -104,6 +112,7 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant) -> TuningTask:
         demand=demand,
         genetic=file.genetic,
         drive=_drive(file.actuator),
+        uncertainty=_uncertainty(file),
         sample_s=None
         if file.controller.sample_s is None
         else positive_value(file.controller.sample_s, "s", "controller.sample_s"),
@@ -157,6 +166,15 @@ def _constraints(file: LoopFile, plant: LoopPlant) -> ControllerConstraints:
 def _dead_time(table: ActuatorTable) -> float:
     """Return the declared dead time [s]; zero without one."""
     return 0.0 if table.dead_time is None else positive_value(table.dead_time, "s", "actuator.dead_time")
+
+
+def _uncertainty(file: LoopFile) -> Uncertainty:
+    """Return the box; without a dead time of its own up to that which the actuator declares."""
+    table = file.uncertainty
+    dead_time = _dead_time(file.actuator)
+    if table.dead_time is not None:
+        dead_time = positive_value(table.dead_time, "s", "uncertainty.dead_time")
+    return Uncertainty(table.gain, table.time, dead_time, table.draws)
 
 
 def _drive(table: ActuatorTable) -> ActuatorDrive | None:

@@ -302,6 +302,15 @@ class DemandTable(StrictTable):
     duration: SiAmount | None = None
 
 
+class UncertaintyTable(StrictTable):
+    """`[uncertainty]`: shares by which the plant's gain and time constants may differ, dead time, ships to draw."""
+
+    gain: Annotated[float, Field(ge=0, lt=1)] = 0.2  # as in `Uncertainty`
+    time: Annotated[float, Field(ge=0, lt=1)] = 0.1  # as in `Uncertainty`
+    dead_time: SiAmount | None = None
+    draws: Annotated[int, Field(ge=0, le=100_000)] = 1000  # as in `Uncertainty`
+
+
 class LoopFile(StrictTable):
     """The whole file."""
 
@@ -323,6 +332,7 @@ class LoopFile(StrictTable):
     schedule: ScheduleTable | None = None
     simulation: SimulationTable | None = None
     demand: DemandTable | None = None
+    uncertainty: UncertaintyTable = UncertaintyTable()
     genetic: GeneticTuning = GeneticTuning()
 
 

@@ -235,6 +235,20 @@ class ManoeuvreResponse:
     ]
 
 
+@dataclass(frozen=True)
+class Robustness:
+    """One controller on ships that differ from the model, by linear theory."""
+
+    controller: Annotated[str, Field(description="name of the controller")]
+    draws: Annotated[int, Field(description="ships drawn from the fit's covariance; 0: it has none")]
+    stable_draws: int
+    draws_Ms: Annotated[Number, Field(description="the largest Ms of them; null: unstable, or none drawn")]
+    corners: Annotated[int, Field(description="corners of the box of gain, time constants and dead time")]
+    stable_corners: int
+    corners_Ms: Annotated[Number, Field(description="the largest Ms of them; null: unstable")]
+    worst_corner: Annotated[str, Field(description="the corner of the largest Ms, in words")]
+
+
 class TuningMethod(StrEnum):
     """Where the chosen gains come from: the package's own front, or a published search."""
 
@@ -287,6 +301,10 @@ class Tuning(Summarised):
     schedule_check: Annotated[ScheduleCheck | None, Field(description="between conditions; null: no schedule")] = None
     designs: Annotated[
         tuple[Controller, ...], Field(description="a more robust and a harder working design beside the chosen one")
+    ] = ()
+
+    robustness: Annotated[
+        tuple[Robustness, ...], Field(description="of the stable controllers compared, the chosen one first")
     ] = ()
 
     @property

@@ -1,0 +1,98 @@
+"""A controller on ships that differ from the model: those drawn from the fit, and the corners of a box about it."""
+
+import math
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+
+from seatrial.control.ship.parameter_draws import SEED, draw_parameters
+from seatrial.control.task import TuningTask, Uncertainty
+from seatrial.core.results.tuning import Robustness
+from seatrial.core.values import Array
+from seatrial.physics.hydro.excitation import Complex
+from seatrial.physics.loops import Block, TransferLoop, margins
+from seatrial.physics.loops.margins import frequency_band
+
+_POINTS = 1000  # frequencies, evenly in the logarithm, on which the largest |S| of each ship is sought; chosen
+
+
+@dataclass(frozen=True)
+class _Corner:
+    """Factors of the plant's gain and time constants, and a dead time [s]."""
+
+    gain: float
+    time: float
+    dead_time: float
+
+    @property
+    def text(self) -> str:
+        return f"gain {self.gain:.3g}, time constants {self.time:.3g}, dead time {self.dead_time:.3g} s"
+
+
+def robustness(task: TuningTask, loop: TransferLoop, name: str, gains: Array) -> Robustness:
+    """Return how the gains (g,) of a loop hold ships drawn from the fit, and the corners of the task's uncertainty.
+
+    A corner has the plant's gain, its time constants and its dead time at one end each; a ship drawn counts as stable
+    on the straight course and starting either turn.
+    """
+    own = loop.with_gains(gains)
+    omega = np.geomspace(*frequency_band(own), _POINTS)
+    controller = np.asarray(gains @ own.controller_terms(omega), dtype=np.complex128)
+    drawn_Ms, stable = _of_draws(task, loop, gains, omega, controller)
+    corners = _corners(task.uncertainty)
+    peaks = [_corner_Ms(own, corner, omega, controller) for corner in corners]
+    worst = int(np.argmax(peaks))
+    return Robustness(
+        name, len(stable), sum(stable), drawn_Ms, len(corners), sum(map(math.isfinite, peaks)), peaks[worst],
+        corners[worst].text,
+    )  # fmt: skip
+
+
+def _of_draws(
+    task: TuningTask, loop: TransferLoop, gains: Array, omega: Array, controller: Complex
+) -> tuple[float, tuple[bool, ...]]:
+    """Return the largest Ms of the ships drawn and whether each is stable; infinite where one is not."""
+    if task.trimmed_ship is None:
+        return math.nan, ()
+    samples = draw_parameters(task.trimmed_ship, task.uncertainty.draws, SEED)
+    without_trim = samples.draws - len(samples.ships)
+    stable = (*samples.stable_ships(loop, gains), *[False] * without_trim)
+    if not stable:
+        return math.nan, ()
+    if not all(stable):
+        return math.inf, stable
+    plants = [plant for sides in samples.plants for plant in sides]
+    return max(_peak(plant.frequency_response(omega) * controller) for plant in plants), stable
+
+
+def _corners(box: Uncertainty) -> list[_Corner]:
+    gains, times = ({1.0 - share, 1.0 + share} for share in (box.gain, box.time))
+    return [_Corner(*one) for one in product(sorted(gains), sorted(times), sorted({0.0, box.dead_time}))]
+
+
+def _corner_Ms(loop: TransferLoop, corner: _Corner, omega: Array, controller: Complex) -> float:
+    """Return Ms of one corner; infinite where it is unstable: a dead time is held up to the delay margin."""
+    plant = slowed_plant(loop.plant, corner.time).scaled(corner.gain)
+    bare = margins(replace(loop, plant=plant))
+    if not bare.is_stable or bare.delay <= corner.dead_time:
+        return math.inf
+    return _peak(plant.frequency_response(omega) * controller * np.exp(-1j * omega * corner.dead_time))
+
+
+def slowed_plant(plant: Block, factor: float) -> Block:
+    """Return the plant with all its time constants times `factor`, and the same answer to slow inputs.
+
+    P(factor s), times the factor for each integrator: K / (s (T s + 1)) becomes K / (s (factor T s + 1)).
+    """
+    integrators = next(i for i, c in enumerate(reversed(plant.den)) if c)
+
+    def stretched(coefficients: tuple[float, ...]) -> tuple[float, ...]:
+        top = len(coefficients) - 1
+        return tuple(c * factor ** (top - i) for i, c in enumerate(coefficients))
+
+    return replace(plant, num=stretched(plant.num), den=stretched(plant.den)).scaled(factor**integrators)
+
+
+def _peak(open_loop: Complex) -> float:
+    return max(float(np.max(1.0 / np.abs(1.0 + open_loop))), 1.0)
