@@ -15,6 +15,7 @@ from pathlib import Path
 
 import against_optimisers
 import against_shipmmg
+import autopilots
 import campaign
 import checking
 import design
@@ -54,6 +55,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "long_record": long_record.run,
     "loops": loops.run,
     "tune": tune.run,
+    "autopilots": autopilots.run,
     "roll_decay": roll_decay.run,
     "follow": follow.run,
     "campaign": campaign.run,

@@ -148,7 +148,7 @@ def _print_robustness(tuning: "Tuning") -> None:
 
     if tuning.robustness:
         header = ("ships that differ", "stable draws", "largest Ms", "stable corners", "largest Ms", "at")
-        print_table([header, *robustness_rows(tuning)], flush_left=(0, 5))
+        print_table([header, *robustness_rows(tuning)], flush_left=(0, len(header) - 1))
 
 
 def _print_manoeuvres(tuning: "Tuning") -> None:

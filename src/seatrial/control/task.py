@@ -151,8 +151,8 @@ class Demand:
 class Uncertainty:
     """How far a ship may differ from the model: shares of the plant's gain and time constants, dead time [s], draws."""
 
-    gain: float = 0.2  # chosen
-    time: float = 0.1  # chosen
+    gain: float = 0.2  # share of the plant's gain; chosen
+    time: float = 0.1  # share of its time constants; chosen
     dead_time: float = 0.0
     draws: int = 1000  # ships from the covariance of the fit; chosen
 

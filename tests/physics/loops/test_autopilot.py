@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from seatrial.core.values import InputError
 from seatrial.physics.loops import Block, margins
-from seatrial.physics.loops.autopilot import DAMPING_RATIO, heading_loop, pitch_loop, speed_loop
+from seatrial.physics.loops.autopilot import DAMPING_RATIO, heading_gains_at, heading_loop, pitch_loop, speed_loop
 from seatrial.physics.loops.margins import sensitivity_magnitude
 
 GEAR = (Block("steering gear", (1.0,), (0.5, 1.0)),)
@@ -41,6 +41,12 @@ def test_the_integral_is_a_tenth_of_the_frequency_and_may_leak() -> None:
     assert leaking.terms[1].block.gain == 200.0
     omega = np.geomspace(0.1, 10.0, 20)
     assert leaking.open_loop(omega) == pytest.approx(loop.open_loop(omega), rel=0.01)
+
+
+def test_placed_gains_are_the_textbook_s_of_a_nomoto_ship() -> None:
+    """Fossen 2021, section 15.3, for K = 0.08 1/s, T = 10 s, omega = 0.2 rad/s and a damping ratio of one."""
+    placed = heading_gains_at(Block("psi", (0.08,), (10.0, 1.0, 0.0)), 0.2, 1.0)
+    assert placed == pytest.approx({"KP": 0.04 * 125.0, "KI": 0.02 * 5.0, "KD": (2.0 * 0.2 * 10.0 - 1.0) / 0.08})
 
 
 def test_an_unstable_ship_is_held_within_its_bounds() -> None:

@@ -37,6 +37,17 @@ def speed_gains_at(plant: Block, omega: float) -> Gains:
     return {"KP": 2.0 * DAMPING_RATIO * omega * slope - inverse, "KI": omega**2 * slope}
 
 
+def heading_gains_at(plant: Block, omega: float, damping: float = DAMPING_RATIO) -> Gains:
+    """Return KP, KI, KD on the heading error that place the poles at omega [rad/s] with that damping ratio.
+
+    KP = omega^2 T / K, KD = (2 zeta omega T - 1) / K, KI = omega KP / 10 of the Nomoto ship K / (s (T s + 1)) that the
+    plant, from the rudder to the heading, is at omega; negative where it is reversed.
+    """
+    inverse, slope = _equivalent_lag(plant, omega, integrators=1)
+    KP = omega**2 * slope
+    return {"KP": KP, "KI": _INTEGRAL_RATIO * omega * KP, "KD": 2.0 * damping * omega * slope - inverse}
+
+
 def heading_loop(
     plant: Block,
     disturbance: Block,
@@ -62,13 +73,7 @@ def heading_loop(
     if plant.order < 2:
         raise InputError(f"block '{plant.name}' is no heading: its denominator needs the integrator s from yaw rate")
     scale = mean_pole(plant)
-
-    def placed(omega: float) -> Gains:
-        inverse, slope = _equivalent_lag(plant, omega, integrators=1)
-        KP = omega**2 * slope
-        return {"KP": KP, "KI": _INTEGRAL_RATIO * omega * KP, "KD": 2.0 * DAMPING_RATIO * omega * slope - inverse}
-
-    gains, sign = _gain_ranges([placed(c * scale) for c in (SLOWEST, _START, FASTEST)], "KP")
+    gains, sign = _gain_ranges([heading_gains_at(plant, c * scale) for c in (SLOWEST, _START, FASTEST)], "KP")
     tau = _FILTER_RATIO / (FASTEST * scale) if derivative_filter is None else derivative_filter
     names = ("psi", actuator, disturbance_input)
     return _pid_loop(name, plant, disturbance, servo, sign, gains, parts, tau, integral_lag, names)
