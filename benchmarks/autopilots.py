@@ -74,7 +74,11 @@ def _craft(name: str, task: TuningTask) -> list[Line]:
         lines += _controller(name, rival)
         if math.isfinite(rival.Ms):
             what = f"{name}: larger of heading and rudder-rate rms over those of {rival.name}, best of the fronts"
-            lines.append(at_most(what, _best_ratio(task, made, rival), "x", 1.0))
+            ratio = _best_ratio(task, made, rival)
+            # the front keeps limits of angle, rate and margin; who breaks them is no rival on it
+            lines.append(
+                Line(f"{what} (it breaks limits)", ratio, "x") if rival.violated else at_most(what, ratio, "x", 1.0)
+            )
     return [
         *lines,
         at_least(f"{name}: ships of the fit that are stable", own.stable_draws, f"of {own.draws}", own.draws),

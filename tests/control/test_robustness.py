@@ -10,7 +10,7 @@ from tests.control.fin_tasks import PUBLISHED, fin_task
 from seatrial.control.robustness import robustness, slowed_plant
 from seatrial.control.ship.parameter_draws import draw_parameters, stable_draws
 from seatrial.control.ship.trimmed_ship import plant_and_disturbance, trim_ship
-from seatrial.control.task import SlowDisturbance, TuningTask, Uncertainty
+from seatrial.control.task import PlantUncertainty, SlowDisturbance, TuningTask
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import Parameter, Parameters
 from seatrial.data.folder.model_file import ModelFile
@@ -22,7 +22,7 @@ from seatrial.physics.models import model_named
 OBJECTIVES = (variance("output", "rad^2", LoopSignal.OUTPUT),)
 
 
-def integrator_task(k: float, box: Uncertainty) -> TuningTask:
+def integrator_task(k: float, box: PlantUncertainty) -> TuningTask:
     """L = k / s: with a dead time tau it is stable below k tau = pi / 2."""
     plant = Block("integrator", (1.0,), (1.0, 0.0))
     gains = Parameters((Parameter("KP", k, "1", 0.0, 10.0, free=True),))
@@ -34,7 +34,7 @@ def integrator_task(k: float, box: Uncertainty) -> TuningTask:
 @pytest.mark.parametrize(("share", "stable"), [(0.99, 4), (1.01, 3)])
 def test_a_corner_holds_up_to_the_dead_time_of_the_closed_form(share: float, stable: int) -> None:
     """Only the corner of most gain and dead time fails: k = 1.2 x 0.5, tau = share x pi / 2 / k."""
-    task = integrator_task(0.5, Uncertainty(0.2, 0.0, share * 0.5 * math.pi / 0.6))
+    task = integrator_task(0.5, PlantUncertainty(0.2, 0.0, share * 0.5 * math.pi / 0.6))
     judged = robustness(task, task.loop, "one", np.array([0.5]))
     assert (judged.corners, judged.stable_corners) == (4, stable)
     assert math.isfinite(judged.corners_Ms) == (stable == 4)
@@ -51,7 +51,7 @@ def test_a_slower_plant_answers_later_and_as_much() -> None:
 
 
 def test_corners_of_fins_are_loops_of_their_own() -> None:
-    task = replace(fin_task(), uncertainty=Uncertainty(0.25, 0.15, 0.0))
+    task = replace(fin_task(), uncertainty=PlantUncertainty(0.25, 0.15, 0.0))
     loop = task.loop
     judged = robustness(task, loop, "published", PUBLISHED)
     corners = [
@@ -71,7 +71,7 @@ def test_ships_of_the_fit_are_counted(sd: float, *, share_lost: bool) -> None:
     ship = trim_ship(ModelFile(model, np.diag([sd**2, 1e-4])), output="psi", actuator="delta")
     plant, disturbance = plant_and_disturbance(ship)
     loop = heading_loop(plant, disturbance, (), parts=("KP", "KD"))
-    box, met = Uncertainty(draws=100), (SlowDisturbance(0.03, 0.05, 1.0),)
+    box, met = PlantUncertainty(draws=100), (SlowDisturbance(0.03, 0.05, 1.0),)
     task = TuningTask(
         "", "autopilot", "", loop, met, OBJECTIVES, ControllerConstraints(), 1.0, trimmed_ship=ship, uncertainty=box
     )

@@ -15,6 +15,7 @@ from seatrial.core.results.tuning import (
     PairedDifference,
     ParetoFront,
     PerformanceBound,
+    Robustness,
     SeawaySimulation,
     Tuning,
 )
@@ -72,6 +73,7 @@ def fabricated_fin() -> Tuning:
             ),
         ),
         manoeuvres=(),
+        robustness=(Robustness("chosen", 1000, 998, math.inf, 8, 8, 1.62, "gain 1.2, time constants 0.9"),),
         findings=(
             Finding(Severity.WARNING, "gain-bound", "KI ends on its lower bound", "0", "Widen the bound, or drop it"),
             Finding(Severity.INFO, "schedule", "The schedule gains most in following seas", "45 deg: .61 to .2"),
@@ -103,6 +105,7 @@ def fabricated_autopilot() -> Tuning:
         constraints=replace(LIMITS, Ms=1.7, limit=math.radians(35.0), rate=math.radians(2.3), stall=math.inf),
         chosen=chosen, baselines=(given,), front=front, extended_fronts=(),
         components=components(loop), seaway_simulations=(), paired_differences=(), schedule=(), bounds=(),
+        robustness=(),
         manoeuvres=(_course_change(rng, "course change of 20 deg", "chosen", 1.7, 60.0),
                     replace(_course_change(rng, "course change of 20 deg", "given", 1.0, 12.0), draws=0, stable_draws=0,
                             worst_overshoot=math.nan, sampled_outputs=np.empty((0, 0)), settling=math.nan)),
@@ -138,6 +141,7 @@ def fabricated_bare() -> Tuning:
         paired_differences=(),
         schedule=(),
         bounds=(),
+        robustness=(),
         findings=(),
         versions={},
         constraints=ControllerConstraints(),

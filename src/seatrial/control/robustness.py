@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 
 from seatrial.control.ship.parameter_draws import SEED, draw_parameters
-from seatrial.control.task import TuningTask, Uncertainty
+from seatrial.control.task import PlantUncertainty, TuningTask
 from seatrial.core.results.tuning import Robustness
 from seatrial.core.values import Array
 from seatrial.physics.hydro.excitation import Complex
@@ -66,7 +66,7 @@ def _of_draws(
     return max(_peak(plant.frequency_response(omega) * controller) for plant in plants), stable
 
 
-def _corners(box: Uncertainty) -> list[_Corner]:
+def _corners(box: PlantUncertainty) -> list[_Corner]:
     gains, times = ({1.0 - share, 1.0 + share} for share in (box.gain, box.time))
     return [_Corner(*one) for one in product(sorted(gains), sorted(times), sorted({0.0, box.dead_time}))]
 

@@ -148,7 +148,7 @@ class Demand:
 
 
 @dataclass(frozen=True)
-class Uncertainty:
+class PlantUncertainty:
     """How far a ship may differ from the model: shares of the plant's gain and time constants, dead time [s], draws."""
 
     gain: float = 0.2  # share of the plant's gain; chosen
@@ -213,7 +213,7 @@ class TuningTask:
     genetic: GeneticTuning = field(default_factory=GeneticTuning)
     drive: ActuatorDrive | None = None
     sample_s: float | None = None
-    uncertainty: Uncertainty = Uncertainty()
+    uncertainty: PlantUncertainty = PlantUncertainty()
 
     def __post_init__(self) -> None:
         if not self.disturbances or not self.objectives:

@@ -12,6 +12,7 @@ from seatrial.control.ship.trimmed_ship import (
     one_sided_plants,
     plant_and_disturbance,
     plant_text,
+    rate_response,
     trim_ship,
     with_parameters,
 )
@@ -205,3 +206,14 @@ def test_a_model_of_one_speed_refuses_another() -> None:
         trim_ship(file, output="psi", actuator="delta", speed=8.0)
     silent = replace(file, model=file.model.with_values({"U": 0.0}))
     assert trim_ship(silent, output="psi", actuator="delta", speed=8.0).model.parameters["U"].value == 8.0
+
+
+def test_a_yaw_acceleration_reaches_the_heading_through_the_ship() -> None:
+    """r' = a - r / T of a Nomoto ship: psi = a / (s (s + 1 / T)); a state that is not there is refused."""
+    model = model_named("nomoto").with_values({"K": 0.2, "T": 8.0})
+    ship = trim_ship(ModelFile(model), output="psi", actuator="delta")
+    w = np.geomspace(0.01, 1.0, 10)
+    path = rate_response(ship, "r")
+    np.testing.assert_allclose(path.frequency_response(w), 1.0 / (1j * w * (1j * w + 0.125)), rtol=1e-9)
+    with pytest.raises(InputError, match="has no state 'q'"):
+        rate_response(ship, "q")

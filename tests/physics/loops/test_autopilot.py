@@ -7,7 +7,14 @@ from hypothesis import strategies as st
 
 from seatrial.core.values import InputError
 from seatrial.physics.loops import Block, margins
-from seatrial.physics.loops.autopilot import DAMPING_RATIO, heading_gains_at, heading_loop, pitch_loop, speed_loop
+from seatrial.physics.loops.autopilot import (
+    DAMPING_RATIO,
+    acceleration_feed_forward,
+    heading_gains_at,
+    heading_loop,
+    pitch_loop,
+    speed_loop,
+)
 from seatrial.physics.loops.margins import sensitivity_magnitude
 
 GEAR = (Block("steering gear", (1.0,), (0.5, 1.0)),)
@@ -41,6 +48,14 @@ def test_the_integral_is_a_tenth_of_the_frequency_and_may_leak() -> None:
     assert leaking.terms[1].block.gain == 200.0
     omega = np.geomspace(0.1, 10.0, 20)
     assert leaking.open_loop(omega) == pytest.approx(loop.open_loop(omega), rel=0.01)
+
+
+def test_what_is_fed_forward_is_the_inverse_of_the_lag() -> None:
+    """(T r' + r) / K of a Nomoto ship; (T u' + u) / K of a speed."""
+    turn = acceleration_feed_forward(Block("psi", (0.08,), (10.0, 1.0, 0.0)), 0.1)
+    assert (turn.level, turn.velocity, turn.acceleration) == pytest.approx((0.0, 12.5, 125.0))
+    speed = acceleration_feed_forward(Block("u", (0.5,), (20.0, 1.0)), 0.1)
+    assert (speed.level, speed.velocity, speed.acceleration) == pytest.approx((2.0, 40.0, 0.0))
 
 
 def test_placed_gains_are_the_textbook_s_of_a_nomoto_ship() -> None:

@@ -23,11 +23,11 @@ from seatrial.control.loopfile.schema import (
 )
 from seatrial.control.task import (
     Demand,
+    PlantUncertainty,
     Seaway,
     SimulationSettings,
     SlowDisturbance,
     TuningTask,
-    Uncertainty,
     refuse_unstable,
 )
 from seatrial.core.equations import Model
@@ -168,13 +168,13 @@ def _dead_time(table: ActuatorTable) -> float:
     return 0.0 if table.dead_time is None else positive_value(table.dead_time, "s", "actuator.dead_time")
 
 
-def _uncertainty(file: LoopFile) -> Uncertainty:
+def _uncertainty(file: LoopFile) -> PlantUncertainty:
     """Return the box; without a dead time of its own up to that which the actuator declares."""
     table = file.uncertainty
     dead_time = _dead_time(file.actuator)
     if table.dead_time is not None:
         dead_time = positive_value(table.dead_time, "s", "uncertainty.dead_time")
-    return Uncertainty(table.gain, table.time, dead_time, table.draws)
+    return PlantUncertainty(table.gain, table.time, dead_time, table.draws)
 
 
 def _drive(table: ActuatorTable) -> ActuatorDrive | None:

@@ -305,10 +305,10 @@ class DemandTable(StrictTable):
 class UncertaintyTable(StrictTable):
     """`[uncertainty]`: shares by which the plant's gain and time constants may differ, dead time, ships to draw."""
 
-    gain: Annotated[float, Field(ge=0, lt=1)] = 0.2  # as in `Uncertainty`
-    time: Annotated[float, Field(ge=0, lt=1)] = 0.1  # as in `Uncertainty`
+    gain: Annotated[float, Field(ge=0, lt=1)] = 0.2  # as in `PlantUncertainty`
+    time: Annotated[float, Field(ge=0, lt=1)] = 0.1  # as in `PlantUncertainty`
     dead_time: SiAmount | None = None
-    draws: Annotated[int, Field(ge=0, le=100_000)] = 1000  # as in `Uncertainty`
+    draws: Annotated[int, Field(ge=0, le=100_000)] = 1000  # as in `PlantUncertainty`
 
 
 class LoopFile(StrictTable):
