@@ -58,9 +58,10 @@ class Seaway:
     def description(self) -> str:
         """In words."""
         crests = "long-crested" if self.spreading is None else "short-crested"
+        by = "" if self.path is None else f", by the {self.effect.name}"
         return (
             f"{self.spectrum.name} {self.spectrum.significant_height:.3g} m, {crests}, "
-            f"{math.degrees(self.beta):.0f} deg, {self.U:.3g} m/s"
+            f"{math.degrees(self.beta):.0f} deg, {self.U:.3g} m/s{by}"
         )
 
 

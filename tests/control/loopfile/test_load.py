@@ -71,6 +71,7 @@ def test_waves_yaw_a_ship_through_its_own_model(tmp_path: Path) -> None:
     for task in (by_model, by_response):
         sea = task.disturbances[0]
         assert isinstance(sea, Seaway) and sea.effect == YawAcceleration(100.0, 3.4)
+        assert sea.description.endswith("45 deg, 7 m/s, by the yaw moment of the waves")
         path = sea.disturbed(task.loop).disturbance
         assert np.allclose(path.frequency_response(w), 1.0 / (1j * w * (1j * w + 0.1)), rtol=1e-9)
         slow = task.disturbances[1]
