@@ -149,14 +149,14 @@ def test_a_draw_begins_as_its_offset_says() -> None:
     by_offsets = np.array([[[0.5], [0.0]], [[0.0], [-1.0]]])
     starts = StartStates(np.array([[1.0, 2.0], [3.0, 4.0]]), by_offsets, np.zeros((2, 2, 2)))
     offsets, rng = np.array([[[0.0], [2.0]], [[1.0], [3.0]]]), np.random.default_rng(1)
-    np.testing.assert_array_equal(starts.drawn(offsets, rng), [[[1.0, 2.0], [2.0, 2.0]], [[3.0, 3.0], [3.0, 1.0]]])
+    np.testing.assert_array_equal(starts.draws(offsets, rng), [[[1.0, 2.0], [2.0, 2.0]], [[3.0, 3.0], [3.0, 1.0]]])
     again = StartStates.joined([starts[:1], starts[1:]])
-    np.testing.assert_array_equal(again.drawn(offsets, rng), starts.drawn(offsets, rng))
+    np.testing.assert_array_equal(again.draws(offsets, rng), starts.draws(offsets, rng))
 
 
 def test_draws_begin_with_the_covariance_of_the_start() -> None:
     covariance = np.array([[[4.0, 1.0], [1.0, 0.5]], [[0.0, 0.0], [0.0, 1.0]]])
     starts = StartStates(np.ones((2, 2)), np.zeros((2, 2, 1)), covariance)
-    states = starts.drawn(np.zeros((2, 40000, 1)), np.random.default_rng(2))
+    states = starts.draws(np.zeros((2, 40000, 1)), np.random.default_rng(2))
     for drawn_states, expected in zip(states, covariance, strict=True):
         np.testing.assert_allclose(np.cov(drawn_states.T), expected, atol=0.08)

@@ -67,7 +67,7 @@ class StartStates:
         """Return those of the chosen simulations."""
         return StartStates(self.values[indices], self.by_offsets[indices], self.covariance[indices])
 
-    def drawn(self, offsets: Array, rng: np.random.Generator) -> Array:
+    def draws(self, offsets: Array, rng: np.random.Generator) -> Array:
         """Return states, (w, count, nx), where offsets differ from the expected ones by `offsets`, (w, count, k)."""
         states = self.values[:, None] + np.einsum("wxk,wck->wcx", self.by_offsets, offsets)
         if np.any(self.covariance):
@@ -133,7 +133,7 @@ def draw_runs(
     offsets = rng.standard_normal((total, nuisances.shape[1])) @ square_root(uncertainty.offsets).T
     owns = np.repeat(nuisances, count, axis=0) + offsets
     along = np.repeat(inputs, count, axis=0)
-    state = starts.drawn(offsets.reshape(width, count, -1), rng).reshape(total, -1)
+    state = starts.draws(offsets.reshape(width, count, -1), rng).reshape(total, -1)
     shape = (width, count, inputs.shape[1], -1)
     if not np.any(uncertainty.process):
         return simulate_points(template, model, dt, along, state, points, owns).reshape(shape)

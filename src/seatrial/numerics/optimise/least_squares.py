@@ -79,10 +79,10 @@ class Optimum:
     normal: NormalEquations
 
 
-def _sum_of_products(left: Array, right: Array) -> Array:
-    """Return the sum of left_s right_s over all s, (i, k), of (s, i, j) and (s, j, k), as one matrix product."""
-    blocks, rows, inner = left.shape
-    return np.swapaxes(left, 0, 1).reshape(rows, blocks * inner) @ right.reshape(blocks * inner, -1)
+def _sum_of_products(cross: Array, solved: Array) -> Array:
+    """Return the sum of cross_s solved_s over all s, (n, k), of (s, n, m) and (s, m, k), as one matrix product."""
+    blocks, rows, inner = cross.shape
+    return np.swapaxes(cross, 0, 1).reshape(rows, blocks * inner) @ solved.reshape(blocks * inner, -1)
 
 
 def _with_ridge(blocks: Array) -> Array:
