@@ -48,7 +48,8 @@ def _initial_state(model: "Model", record: "Record", length: float) -> "tuple[di
     from seatrial.data.check import sample_noise
     from seatrial.estimation.estimate.settings import INITIAL_STATE_SHIP_LENGTHS
     from seatrial.estimation.estimate.time_scale import characteristic_time
-    from seatrial.estimation.predict.open_loop import estimate_initial_state
+    from seatrial.estimation.predict.start_states import start_states
+    from seatrial.estimation.predict.windows import Windows
     from seatrial.estimation.problem.output_error import OutputError
     from seatrial.estimation.problem.segments import compared_outputs, cut_segments
 
@@ -62,7 +63,7 @@ def _initial_state(model: "Model", record: "Record", length: float) -> "tuple[di
     except InputError:  # neither speed nor positions were recorded
         seconds = 0.0
     seconds = seconds or 0.1 * record.duration  # where the ship's length is not known; chosen
-    state = estimate_initial_state(template, held, record, np.zeros(0), seconds)
+    state = start_states(template, held, Windows.of_record(record), np.zeros((1, 0)), seconds).values[0]
     return dict(zip(model.states, state.tolist(), strict=True)), seconds
 
 

@@ -20,13 +20,6 @@ from seatrial.physics.simulate.divergence import require_bounded
 _ERROR_ORDER = ("psi_deg", "position_m", "theta_deg", "phi_deg", "z", "u", "v", "r")
 
 
-def estimate_initial_state(
-    template: OutputError, model: Model, record: Record, nuisances: Array, seconds: float
-) -> Array:
-    """Output-error estimate of the initial state from the first `seconds` of a record, model held, shape (nx,)."""
-    return start_states(template, model, Windows.of_record(record), nuisances[None], seconds).values[0]
-
-
 @dataclass(frozen=True, eq=False)
 class OpenLoopRun:
     """One run simulated: all observables of the model as channels, and the state it began with.
