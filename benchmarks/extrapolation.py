@@ -19,7 +19,7 @@ from seatrial.estimation.estimate import estimate_model
 from seatrial.estimation.estimate.runs import training_runs
 from seatrial.estimation.information.discrepancy import GROWTH_POWER, HoldoutError
 from seatrial.estimation.predict.holdout_windows import HoldoutProtocol
-from seatrial_studies.alexandersson2022.window_bands import HoldoutWindows, band_coverage, holdout_windows
+from seatrial_studies.alexandersson2022.window_bands import MissedWindows, band_coverage, holdout_windows
 
 TRIAL = Path(__file__).parents[1] / "examples" / "kvlcc2_hsva.toml"
 LIMITS, POWERS, WINDOW_S = (10, 15, 20, 25), (0.0, 1.0, 2.0, 3.0), 30.0
@@ -47,7 +47,7 @@ def shares(trial: Trial, train: Sequence[TrialRecord], limit: int) -> dict[float
     }
 
 
-def to_the_power(missed: HoldoutWindows, power: float) -> HoldoutWindows:
+def to_the_power(missed: MissedWindows, power: float) -> MissedWindows:
     """The same misses with indices so changed that their growth is the given power of the true ones."""
 
     def changed(runs: tuple[tuple[HoldoutError, ...], ...]) -> tuple[tuple[HoldoutError, ...], ...]:

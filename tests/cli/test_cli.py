@@ -152,4 +152,5 @@ def test_a_voyage_in_waves_is_replayed_beside_its_record(
     replayed = ("--trial", trial, "--inputs", "voyage_held_out", "--out", tmp_path / "run.csv")
     assert run_command("simulate", model, *replayed, "--json", tmp_path / "run.json") == 0
     assert "against voyage_held_out: rms pitch" in capsys.readouterr().out
-    assert json.loads((tmp_path / "run.json").read_text())["rms"]["z"] < 0.015
+    predicted = json.loads((tmp_path / "fit" / "result.json").read_text())["predictions"][-1]["rms"]
+    assert json.loads((tmp_path / "run.json").read_text())["rms"]["z"] == pytest.approx(predicted["z"], rel=0.1)

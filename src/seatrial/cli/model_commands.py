@@ -3,7 +3,7 @@
 import math
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -13,6 +13,10 @@ from seatrial.cli.progress import progress_reporter
 from seatrial.cli.run_errors import errors_text
 from seatrial.cli.screen import print_file, print_lines
 from seatrial.cli.tuning_output import print_tuning
+
+if TYPE_CHECKING:
+    from seatrial.core.values import Record
+    from seatrial.data.folder.model_file import ModelFile
 
 
 @app.command()
@@ -118,7 +122,7 @@ def simulate(
     measured, rate, intervals = None, None, dict[str, tuple[float, float] | None]()
     if inputs is not None:
         measured = read_record_csv(Path(inputs)) if trial is None else api.prepared_run(trial, inputs)
-        record = api.replay(file, measured, speed)
+        record = _replayed(file, measured, speed)
     else:
         given_rate = None if rudder_rate is None else math.radians(rudder_rate)
         rate = None if file.model.equations.layout else api.rudder_rate_of(file, given_rate)
@@ -138,7 +142,7 @@ def simulate(
         except InputError as error:
             print(f"seatrial: {error}", file=sys.stderr)
     write_record_csv(record, out)
-    reference = measured if measured is not None and "psi" in measured else None
+    reference = measured if measured is not None and {"psi", "delta"} <= set(measured.channels) else None
     measures = api.measures(file, record, reference) if "psi" in record else {}
     leaving = api.extrapolation(file, record)
     print_measures(measures, intervals, leaving)
@@ -187,6 +191,16 @@ def models(
     summaries = api.list_models()
     print_models(summaries)
     write_json(json, lambda: {"models": [asdict(summary) for summary in summaries]})
+
+
+def _replayed(file: "ModelFile", inputs: "Record", speed: float | None) -> "Record":
+    """The run by its inputs; a measured one as `identify` predicts it, from the state that its first seconds show."""
+    from seatrial import api
+    from seatrial.core.values import RecordKind
+
+    if inputs.kind is RecordKind.MEASURED and set(file.model.states) & set(inputs.channels):
+        return api.predict(file, inputs).simulated
+    return api.replay(file, inputs, speed)
 
 
 def _print_rms(name: str, rms: dict[str, float]) -> None:

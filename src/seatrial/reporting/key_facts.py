@@ -1,7 +1,6 @@
 """The five rows at the top of a fit's page: score, baseline, coverage, identifiability, warnings."""
 
 import math
-from collections.abc import Sequence
 
 from seatrial.core.results import Fit, Prediction, WindowScore
 from seatrial.core.results.fit_charts import headline_view
@@ -53,16 +52,10 @@ def _score(fit: Fit) -> KeyFact:
         return KeyFact(
             name, f"{counted(diverged, 'run')} {'diverges' if diverged == 1 else 'diverge'}", "prediction", False
         )
-    floors = [error_text(key, floor) for key in ("psi_deg", "position_m") if (floor := _floor(held, key)) is not None]
+    floors = [error_text(key, max(p.noise_floor[key] for p in held if key in p.noise_floor))
+              for key in ("psi_deg", "position_m") if any(key in p.noise_floor for p in held)]  # fmt: skip
     floor = f"; disturbances alone would leave {enumeration(floors)}" if floors else ""
     return KeyFact(name, f"{worst_errors(held)}{floor}", "prediction", False if any(map(is_lost, held)) else None)
-
-
-def _floor(held: Sequence[Prediction], key: str) -> float | None:
-    """What disturbances alone would leave at worst; None where that is unknown, or more than the error, so no floor."""
-    floors = [p.noise_floor[key] for p in held if key in p.noise_floor]
-    errors = [p.rms[key] for p in held if key in p.rms]
-    return max(floors) if floors and errors and max(floors) <= max(errors) else None
 
 
 def _longest_windows(p: Prediction) -> WindowScore | None:

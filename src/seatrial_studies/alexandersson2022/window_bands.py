@@ -29,7 +29,7 @@ class BandCoverage:
 
 
 @dataclass(frozen=True, eq=False)
-class HoldoutWindows:
+class MissedWindows:
     """How windows were missed, for each training run by the estimate without it, and for each run held out."""
 
     training: tuple[tuple[HoldoutError, ...], ...]
@@ -43,7 +43,7 @@ def holdout_windows(
     held_out: Sequence[TrialRecord],
     protocol: HoldoutProtocol,
     seed: int = 0,
-) -> HoldoutWindows:
+) -> MissedWindows:
     """Every window of the training runs predicted without its run, and of the runs held out with all.
 
     Raises:
@@ -66,14 +66,14 @@ def holdout_windows(
     trained = tuple(
         predict_windows_of(item, left_out[i], [*train[:i], *train[i + 1 :]]) for i, item in enumerate(train)
     )
-    return HoldoutWindows(
+    return MissedWindows(
         trained,
         tuple(predict_windows_of(item, estimation.estimate.common_parameters, train) for item in held_out),
         scatter.degrees_of_freedom,
     )
 
 
-def band_coverage(holdout: HoldoutWindows) -> tuple[tuple[BandCoverage, ...], tuple[BandCoverage, ...]]:
+def band_coverage(holdout: MissedWindows) -> tuple[tuple[BandCoverage, ...], tuple[BandCoverage, ...]]:
     """How much of the training runs and of the runs held out lies within their bands.
 
     The discrepancy of a training run is that of the other training runs.

@@ -1,12 +1,12 @@
 """Bad files: one clear sentence each, naming file, row and column."""
 
+import sys
 from pathlib import Path
 
 import pytest
 
 from seatrial.core.values import InputError
 from seatrial.data.read import ColumnSpec, Layout, format_of, read_record
-from seatrial.data.read.registry import HEAD_BYTES, first_bytes
 
 TIME = ColumnSpec("time", "t", "s")
 LAYOUT = Layout("text", TIME, (ColumnSpec("u", "speed", "m/s"),))
@@ -52,21 +52,19 @@ def test_not_really_packed(tmp_path: Path) -> None:
     assert "not a gzip file" in message(tmp_path, "t,speed\n0,1\n1,1\n", name="run.csv.gz")
 
 
-@pytest.mark.parametrize("name", ["run.csv", "run.csv.gz", "run.mat", "run.bin", "run.tlog", "run.bag", "run.n2k"])
-def test_a_huge_file_of_nothing_is_refused_at_once(tmp_path: Path, name: str) -> None:
-    """A sparse file: 5 GB long, without a byte on the disk."""
+@pytest.mark.skipif(sys.platform == "win32", reason="holes are not counted there")
+@pytest.mark.parametrize(
+    "name", ["run.csv", "run.csv.gz", "run.mat", "run.bin", "run.tlog", "run.bag", "run.n2k", "run.ulg"]
+)
+def test_a_large_file_of_holes_is_refused_before_it_is_read(tmp_path: Path, name: str) -> None:
     path = tmp_path / name
     with path.open("wb") as file:
+        file.write(b"ULog" + bytes(100))
         file.truncate(5 * 10**9)
-    with pytest.raises(InputError, match=rf"^{name} begins with 4096 zero bytes"):
+    if path.stat().st_blocks * 512 > 2**20:
+        pytest.skip("this file system has no holes")
+    with pytest.raises(InputError, match=rf"^{name} is damaged: of its 5,000 MB only 0\.0 MB were ever written"):
         read_record(path, Layout(format_of(path), TIME, LAYOUT.columns))
-
-
-def test_what_cannot_be_read_has_no_first_bytes(tmp_path: Path) -> None:
-    path = tmp_path / "run.csv"
-    path.write_bytes(b"ab" * HEAD_BYTES)
-    assert first_bytes(path) == b"ab" * (HEAD_BYTES // 2)
-    assert first_bytes(tmp_path) == first_bytes(tmp_path / "none.csv") == b""
 
 
 def test_wrong_encoding(tmp_path: Path) -> None:

@@ -48,15 +48,3 @@ def test_what_a_library_says_is_cut() -> None:
     text = fault_text(ValueError("a long story " * 40 + "\nand its second line"))
     assert text.startswith("ValueError: a long story") and len(text) < 140 and "second" not in text
     assert fault_text(KeyError()) == "KeyError: "
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="holes are not counted there")
-def test_a_large_file_of_holes_is_refused_before_it_is_read(tmp_path: Path) -> None:
-    path = tmp_path / "run.ulg"
-    with path.open("wb") as file:
-        file.write(b"ULog" + bytes(100))
-        file.truncate(5 * 2**30)
-    if path.stat().st_blocks * 512 > 2**20:
-        pytest.skip("this file system has no holes")
-    with pytest.raises(InputError, match=r"run\.ulg is damaged: of its 5,369 MB only 0\.0 MB were ever written"):
-        read_in_process("ulog", path, LAYOUT)

@@ -8,12 +8,14 @@ import pytest
 
 from seatrial.core.values import DivergedError, InputError, Parameters, Prior
 from seatrial.estimation.identify.fit_result import (
+    bounds_hit,
     divergence_message,
     refuse_unidentified,
     unconverged,
     unidentified,
 )
 from seatrial.numerics.optimise import Status
+from seatrial.physics.models import model_named
 from seatrial.physics.models.waterjet import WATERJET_COEFFICIENTS as COEFFICIENTS
 from seatrial.physics.models.waterjet import waterjet
 
@@ -79,3 +81,17 @@ def test_a_search_at_its_limit_and_noise_that_changes_are_warned_of(
     optimum = SimpleNamespace(solution=SimpleNamespace(status=status))
     estimation: Any = SimpleNamespace(estimate=SimpleNamespace(optimum=optimum, is_settled=is_settled))
     assert [f.code for f in unconverged(estimation)] == codes
+
+
+@pytest.mark.parametrize(("bound", "says"), [(-1e9, "widen the bound under"), (0.0, "the bound is the model's own")])
+def test_a_bound_of_the_model_is_not_to_be_widened(bound: float, says: str) -> None:
+    """The first is a bound of the trial, the second one that the model has by itself."""
+    model = model_named("thrusters")
+    (name, *_) = (p.name for p in model.parameters.free if p.lower == 0.0)
+    problem = SimpleNamespace(model=model, free=(name,), lower=np.array([bound]), upper=np.array([np.inf]))
+    normal = SimpleNamespace(without_local=lambda: (np.array([3.0]), np.array([[1.0]])))
+    estimate = SimpleNamespace(
+        problem=problem, common_parameters=np.array([bound]), optimum=SimpleNamespace(normal=normal)
+    )
+    (finding,) = bounds_hit(SimpleNamespace(estimate=estimate))  # type: ignore[arg-type]
+    assert says in finding.advice

@@ -7,7 +7,13 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from seatrial.core.values import Array
-from seatrial.physics.hydro.free_roll import equivalent_damping, metacentric_height, observed_swings, swing_period
+from seatrial.physics.hydro.free_roll import (
+    equivalent_damping,
+    gyradius_of,
+    metacentric_height,
+    observed_swings,
+    swing_period,
+)
 
 
 def motion(b: Array, c: Array, start: float, time: Array) -> Array:
@@ -75,3 +81,4 @@ def test_metacentric_height_is_that_of_the_natural_period() -> None:
     """T = 2 pi k / sqrt(g GM)."""
     height = metacentric_height((2.0 * np.pi / 10.0) ** 2, 8.0)
     assert 2.0 * np.pi * 8.0 / np.sqrt(9.80665 * height) == pytest.approx(10.0, rel=1e-3)
+    assert gyradius_of((2.0 * np.pi / 10.0) ** 2, height) == pytest.approx(8.0)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seatrial.estimation.information.discrepancy import HoldoutError
-from seatrial_studies.alexandersson2022.window_bands import HoldoutWindows, band_coverage
+from seatrial_studies.alexandersson2022.window_bands import MissedWindows, band_coverage
 
 T = 1.96
 ROWS = 100
@@ -20,7 +20,7 @@ def miss(run: str, inside: int, size: float = 3.0) -> HoldoutError:
 
 def held(*misses: HoldoutError) -> float:
     """Share of one run's windows, against training runs too few to show a discrepancy."""
-    return band_coverage(HoldoutWindows(((miss("a", ROWS),),), (misses,), np.inf))[1][0].shares["psi"]
+    return band_coverage(MissedWindows(((miss("a", ROWS),),), (misses,), np.inf))[1][0].shares["psi"]
 
 
 def test_shares_are_those_of_samples() -> None:
@@ -44,5 +44,5 @@ def test_samples_that_were_not_measured_count_neither_way() -> None:
 def test_a_run_is_judged_by_what_other_runs_missed() -> None:
     """One of many runs is far off: the bands of the others know of it, its own do not."""
     runs = tuple((miss(f"{i}", 0, 0.1),) for i in range(9))
-    within, _ = band_coverage(HoldoutWindows((*runs, (miss("far", 0, 8.0),)), (), np.inf))
+    within, _ = band_coverage(MissedWindows((*runs, (miss("far", 0, 8.0),)), (), np.inf))
     assert [c.shares["psi"] for c in within] == [1.0] * 9 + [0.0]

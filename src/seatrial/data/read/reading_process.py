@@ -10,14 +10,12 @@ from pathlib import Path
 from seatrial.core.values import InputError
 from seatrial.data.read.layout import Layout
 from seatrial.data.read.log import Log
-from seatrial.numerics.platform import limit_resources, written_size
+from seatrial.numerics.platform import limit_resources
 
 # bytes of memory that a reader may use: at least so many, and so many for each byte of the file; ours
 _LEAST_MEMORY, _MEMORY_PER_BYTE = 4 * 2**30, 64
 # CPU seconds: at least so many, and so many for each byte (two minutes for 10 MB); ours
 _LEAST_CPU_S, _CPU_S_PER_BYTE = 120, 12e-6
-# bytes of a file from which holes count, and share of it that must have been written at least; ours
-_LARGE, _LEAST_WRITTEN = 64 * 2**20, 0.01
 _TOO_LARGE = "its reader needs more memory than such a file can fill"
 _OUT_OF_TIME = (getattr(signal, "SIGXCPU", None), getattr(signal, "SIGKILL", None))
 
@@ -26,10 +24,8 @@ def read_in_process(name: str, path: Path, layout: Layout) -> Log:
     """Read a file by the built-in reader of a format, in a process with limits of memory and of CPU time.
 
     Raises:
-        InputError: what the reader raises; the reader crashed, or exceeded a limit; hardly anything of a large file was
-            ever written.
+        InputError: what the reader raises; the reader crashed, or exceeded a limit.
     """
-    _refuse_hollow(path)
     command = [sys.executable, "-c", "from seatrial.data.read.reading_process import serve; serve()"]
     request = pickle.dumps((name, path, layout, [place for place in sys.path if place]))
     done = subprocess.run(command, input=request, capture_output=True, check=False)
@@ -40,18 +36,6 @@ def read_in_process(name: str, path: Path, layout: Layout) -> Log:
     if isinstance(answer, Log):
         return answer
     raise InputError(str(answer))
-
-
-def _refuse_hollow(path: Path) -> None:
-    """Raises:
-    InputError: a large file is all but holes, through which some readers would go byte by byte.
-    """
-    facts = path.stat()
-    if facts.st_size > _LARGE and (written := written_size(facts)) < _LEAST_WRITTEN * facts.st_size:
-        raise InputError(
-            f"{path.name} is damaged: of its {facts.st_size / 1e6:,.0f} MB only {written / 1e6:,.1f} MB were ever "
-            "written; copy it again"
-        )
 
 
 def _end_text(done: subprocess.CompletedProcess) -> str:

@@ -8,7 +8,11 @@ from seatrial.core.values.files import is_file, is_folder, is_present
 from seatrial.data.read.assemble import assemble_record
 from seatrial.data.read.layout import Layout
 from seatrial.data.read.log import Log
-from seatrial.data.read.registry import HEAD_BYTES, first_bytes, reader_of
+from seatrial.data.read.registry import reader_of
+from seatrial.numerics.platform import written_size
+
+# bytes of a file from which holes count, and share of it that must have been written at least; ours
+_LARGE, _LEAST_WRITTEN = 64 * 2**20, 0.01
 
 
 def read_record(path: Path, layout: Layout) -> Record:
@@ -37,7 +41,7 @@ def read_log(path: Path, layout: Layout) -> Log:
 
 def require_file(path: Path) -> None:
     """Raises:
-    InputError: the path is missing, a folder, a device or a pipe, or a file that is empty or begins with zeros.
+    InputError: the path is missing, a folder, a device or a pipe, or a file that is empty or all but holes.
     """
     if is_folder(path):
         raise InputError(f"{path} is a folder; name a file in it")
@@ -47,9 +51,19 @@ def require_file(path: Path) -> None:
         raise InputError(f"{path} is a device or a pipe; records are read from files, streams by 'seatrial follow'")
     if path.stat().st_size == 0:
         raise InputError(f"{path.name} is empty; leave it out or replace it")
-    head = first_bytes(path)
-    if not any(head) and len(head) == HEAD_BYTES:
-        raise InputError(f"{path.name} begins with {HEAD_BYTES} zero bytes, as no log does; copy it again")
+    _refuse_hollow(path)
+
+
+def _refuse_hollow(path: Path) -> None:
+    """Raises:
+    InputError: a large file is all but holes, through which some readers would go byte by byte.
+    """
+    facts = path.stat()
+    if facts.st_size > _LARGE and (written := written_size(facts)) < _LEAST_WRITTEN * facts.st_size:
+        raise InputError(
+            f"{path.name} is damaged: of its {facts.st_size / 1e6:,.0f} MB only {written / 1e6:,.1f} MB were ever "
+            "written; copy it again"
+        )
 
 
 def file_digest(path: Path) -> str:

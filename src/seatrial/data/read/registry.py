@@ -15,8 +15,8 @@ from seatrial.data.read.reading_process import read_in_process
 ENTRY_POINT_GROUP = "seatrial.readers"
 
 _TEXT_SUFFIXES = (".csv", ".tsv", ".txt", ".dat", ".asc", ".log", ".raw")
-HEAD_BYTES = 4096
-"""Bytes of a file that are looked at to know its format."""
+# bytes of a file that are looked at to know its format
+_HEAD_BYTES = 4096
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ def format_of(path: Path) -> str:
     Raises:
         InputError: neither is known.
     """
-    head = first_bytes(path)
+    head = _first_bytes(path)
     for name, known in FORMATS.items():
         if known.signature and head.startswith(known.signature):
             return name
@@ -113,13 +113,12 @@ def reader_of(name: str) -> Reader:
     return FORMATS[name].reader() if FORMATS[name].is_text else partial(read_in_process, name)
 
 
-def first_bytes(path: Path) -> bytes:
-    """Return the first bytes of a file, at most `HEAD_BYTES`; none of what cannot be read."""
+def _first_bytes(path: Path) -> bytes:
     if not is_file(path):
         return b""
     try:
         with path.open("rb") as file:
-            return file.read(HEAD_BYTES)
+            return file.read(_HEAD_BYTES)
     except OSError:
         return b""
 

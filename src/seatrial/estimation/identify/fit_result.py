@@ -5,6 +5,7 @@ from types import MappingProxyType
 
 import numpy as np
 
+from seatrial.core.equations import Model
 from seatrial.core.results import Coefficient, Method, Noise, Offset, OffsetPopulation, Residuals
 from seatrial.core.results.identifiability import NOT_CONVERGED, NOT_IDENTIFIABLE
 from seatrial.core.text.words import enumeration
@@ -13,6 +14,7 @@ from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import split_segments
 from seatrial.estimation.estimate.time_scale import is_pure_roll
 from seatrial.estimation.information.covariance import Interval
+from seatrial.physics.models import MODELS, model_named
 
 Limits = Mapping[str, tuple[float | None, float | None]]
 _SLIGHT_GAIN = 0.5
@@ -156,14 +158,27 @@ def bounds_hit(estimation: Estimation) -> list[Finding]:
         findings.append(Finding(
             Severity.WARNING, "bound-hit", f"coefficient {problem.free[i]} ends on its {side} bound",
             f"{shared[i]:g}; beyond it, this coefficient alone would lower the negative log-likelihood by {gain:.2g}",
-            _advice_at_bound(gain),
+            _advice_at_bound(gain, is_own=_is_models_own(problem.model, problem.free[i], float(shared[i]))),
         ))  # fmt: skip
     return findings
 
 
-def _advice_at_bound(gain: float) -> str:
+def _is_models_own(model: Model, name: str, bound: float) -> bool:
+    """Whether a bound is that of the model as it is built in, and not one of the trial file."""
+    if model.name not in MODELS:
+        return False
+    own = model_named(model.name, model.equations.layout).parameters
+    return name in own and bound in (own[name].lower, own[name].upper)
+
+
+def _advice_at_bound(gain: float, *, is_own: bool) -> str:
     if gain < _SLIGHT_GAIN:
         return "the records hardly show where beyond the bound it is; fix it there, or give a prior"
+    if is_own:
+        return (
+            "the bound is the model's own: beyond it the term no longer is what it stands for; leave it, and look for "
+            "a term that the model lacks or a coefficient that is fixed at 0"
+        )
     return "widen the bound under [model.bounds] if physics allows it, else look for what the model lacks"
 
 

@@ -214,7 +214,7 @@ def predict_runs(
             spread = prediction_spread(
                 problem, estimation.model, item.record, run, own.expected, length, uncertainty, rng, DRAWS
             )
-            alone = _process_noise_floor(estimation, item.record, run.start.values[0], own.expected)
+            alone = _process_noise_floor(estimation, item.record, run.start.values[0], own.expected, one.rms)
             one = replace(one, tied_spread=tied_model_spread(tied, one, seconds, length), noise_floor=alone)
             one = with_intervals(one, spread, calibration.discrepancy, uncertainty.degrees_of_freedom)
         if item.role is not Role.TRAIN:
@@ -236,13 +236,19 @@ def predict_runs(
     return RunPredictions(tuple(predictions), basis, tuple(findings))
 
 
-def _process_noise_floor(estimation: Estimation, record: Record, start: Array, nuisances: Array) -> dict[str, float]:
-    """Return what process noise alone would leave of the errors, as far as its intensities are known."""
+def _process_noise_floor(
+    estimation: Estimation, record: Record, start: Array, nuisances: Array, errors: Mapping[str, float]
+) -> dict[str, float]:
+    """Return what process noise alone would leave of the errors, as far as its intensities are known.
+
+    Where that is more than the error, the intensities hold what the model misses, and it is no floor.
+    """
     if not any(estimation.noise_model.process.values()):
         return {}
-    return process_noise_floor(
+    floors = process_noise_floor(
         estimation.estimate.problem, estimation.model, record, start, nuisances, estimation.noise_model.process
     )
+    return {name: floor for name, floor in floors.items() if floor <= errors.get(name, 0.0)}
 
 
 def _interval_basis(

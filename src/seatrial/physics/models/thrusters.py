@@ -63,9 +63,10 @@ _COUPLED = {
 }
 COUPLINGS = tuple(_COUPLED)
 """Coefficients by which one motion acts on another, and thrusts on sway."""
+# nodes of the Gauss-Legendre rule of eight points, its negative half (Abramowitz & Stegun 1964, table 25.4)
 _STATIONS = (-0.9602898564975363, -0.7966664774136267, -0.5255324099163290, -0.1834346424956498)
+# weights of these nodes (the same table)
 _WEIGHTS = (0.1012285362903763, 0.2223810344533745, 0.3137066458778873, 0.3626837833783620)
-"""Gauss-Legendre rule of eight points, its negative half (Abramowitz & Stegun 1964, table 25.4)."""
 _GYRATION = 0.1  # I_z + J_z over M_u L^2, start: a radius of gyration of about 0.3 L, water included; chosen
 _BOUNDS = (0.05, 30.0)  # of masses and inertia over where they start: beyond, no craft; chosen
 _LEAST_SWAY = 0.7

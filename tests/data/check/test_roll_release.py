@@ -1,0 +1,23 @@
+"""A heel that is held before the release is found, with how long it lasts."""
+
+import numpy as np
+
+from seatrial.core.values import Record
+from seatrial.data.check.roll_release import release_findings, release_row
+
+TIME = np.arange(0.0, 60.0, 0.05)
+
+
+def held_heel(rng: np.random.Generator, seconds: float) -> Record:
+    swing = np.where(seconds > TIME, 1.0, np.exp(-0.03 * (TIME - seconds)) * np.cos(2.5 * (TIME - seconds)))
+    return Record.from_arrays("decay", TIME, {"phi": 0.2 * swing + 1e-3 * rng.standard_normal(len(TIME))})
+
+
+def test_a_held_heel_is_named_with_its_seconds(rng: np.random.Generator) -> None:
+    (finding,) = release_findings(held_heel(rng, 5.0))
+    assert finding.code == "held-roll" and "for 5.0 s" in finding.evidence
+
+
+def test_a_record_from_the_release_on_has_nothing_to_name(rng: np.random.Generator) -> None:
+    assert release_findings(held_heel(rng, 0.0)) == ()
+    assert release_row(np.cos(TIME)) == 0
