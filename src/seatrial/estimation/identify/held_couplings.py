@@ -13,7 +13,6 @@ from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, Finding, Severity
 from seatrial.estimation.estimate import Estimation
 from seatrial.estimation.problem.output_error import OutputError
-from seatrial.physics.models.thrusters import COUPLINGS
 
 _STANDARD_ERRORS = 5.0  # of a coupling, from which on it is named; chosen: beyond what is left of model error
 _MOVES = 2.0  # standard errors of a free coefficient by which it would move, from which on it is named; chosen
@@ -42,6 +41,10 @@ class _Score:
 
 def held_couplings(estimation: Estimation) -> tuple[Finding, ...]:
     """Return a warning for each coupling of a craft with thrusters that is held at 0 and should not be."""
+    if not estimation.model.equations.layout:
+        return ()
+    from seatrial.physics.models.thrusters import COUPLINGS
+
     parameters = estimation.model.parameters
     candidates = tuple(p.name for p in parameters if p.name in COUPLINGS and not p.free and p.value == 0.0)
     if not candidates:
