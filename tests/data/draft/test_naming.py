@@ -31,6 +31,8 @@ def test_speeds_along_and_across_and_the_rate_of_the_shaft_are_recognised(name: 
         ("battery_v", "voltage"),
         ("batt", "voltage"),
         ("compass", "psi"),
+        ("Rudder position", "delta"),
+        ("rudder feedback", "delta"),
         ("battery voltage [V]", "voltage"),
     ],
 )

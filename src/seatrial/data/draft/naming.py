@@ -134,7 +134,7 @@ _WORDS = [
         (r"v(el)?_?n(orth)?|vel_north", "u", "", "earth"), (r"v(el)?_?e(ast)?|vel_east", "v", "", "earth"),
         (r"u", "u", ""), (r"v", "v", ""), (r"surge_(dot|acc(eleration)?)", "u_dot", "", "body"),
         (r"sway_(dot|acc(eleration)?)", "v_dot", "", "body"),
-        (r"rudder(_angle)?|rud|delta(_rudder)?|rsa|helm|nozzle(_angle)?", "delta", ""),
+        (r"rudder(_(angle|pos(ition)?|feedback|act(ual)?))?|rud|delta(_rudder)?|rsa|helm|nozzle(_angle)?", "delta", ""),
         (r"(main_|port_|stbd_)?eng(ine)?(_(rate|speed|revs?))?", "n", "", "", "", 1.0, _ENGINE),
         (r"n_prop|(prop(eller)?|shaft)_(rate|rpm|rps|speed)|shaft|rpm|rps|n", "n", ""),
         (r"roll(_angle)?|phi|heel", "phi", ""), (r"pitch(_angle)?|theta|trim_angle", "theta", ""),
