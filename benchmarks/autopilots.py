@@ -77,7 +77,9 @@ def _craft(name: str, task: TuningTask) -> list[Line]:
             ratio = _best_ratio(task, made, rival)
             # the front keeps limits of angle, rate and margin; who breaks them is no rival on it
             lines.append(
-                Line(f"{what} (it breaks limits)", ratio, "x") if rival.violated else at_most(what, ratio, "x", 1.0)
+                Line(f"{what} (not kept: {'; '.join(rival.violated)})", ratio, "x")
+                if rival.violated
+                else at_most(what, ratio, "x", 1.0)
             )
     return [
         *lines,

@@ -9,11 +9,9 @@ from seatrial.core.results import Fit, Prediction
 from seatrial.core.text.numbers import duration, significant
 from seatrial.core.text.words import counted, enumeration
 from seatrial.core.values import InputError
-from seatrial.physics.manoeuvres import ManoeuvreKind, ObservedManoeuvre
+from seatrial.physics.manoeuvres import REACH_PERCENTILE, ManoeuvreKind, ObservedManoeuvre, to_starboard
 from seatrial.reporting.runs import ERROR_LABELS
 
-# share of the samples that a stated range covers, per cent; as in `estimation.information.motion_envelope`
-PERCENTILE = 99.5
 # errors that a sentence names, the first ones that the runs have
 MAX_ERRORS = 2
 # factor of the reach of the rudder to one side from which on both sides are named
@@ -135,7 +133,7 @@ def run_name(p: Prediction) -> str:
 def extrapolation_limit(fit: Fit) -> str:
     """Return beyond which rudder, roll or speed the model leaves its training runs; empty where none of them shows."""
     training = [p.measured for p in fit.predictions if p.role == "training"]
-    rudder = [r["delta"] * (-1.0 if r.channel("delta").positive == "port" else 1.0) for r in training if "delta" in r]
+    rudder = [to_starboard(r, "delta") for r in training if "delta" in r]
     if rudder:
         return _beyond(_rudder_reach(np.concatenate(rudder)))
     if "phi" in fit.model.states and any("phi" in r for r in training):
@@ -143,7 +141,7 @@ def extrapolation_limit(fit: Fit) -> str:
         return _beyond(f"{math.degrees(largest):.0f}° of roll")
     if "u" in fit.model.states and any("u" in r for r in training):
         speed = np.concatenate([np.abs(r["u"]) for r in training if "u" in r])
-        return _beyond(f"{significant(float(np.nanpercentile(speed, PERCENTILE)), 2)} m/s")
+        return _beyond(f"{significant(float(np.nanpercentile(speed, REACH_PERCENTILE)), 2)} m/s")
     return ""
 
 
@@ -151,10 +149,10 @@ def _beyond(reach: str) -> str:
     return f"beyond {reach} the model extrapolates" if reach else ""
 
 
-def _rudder_reach(to_starboard: np.ndarray) -> str:
+def _rudder_reach(angles: np.ndarray) -> str:
     """How far the rudder went, with the side where it went farther to one; empty where it was not moved."""
-    port, starboard = (float(np.nanpercentile(np.maximum(side, 0.0), PERCENTILE))
-                       for side in (-to_starboard, to_starboard))  # fmt: skip
+    port, starboard = (float(np.nanpercentile(np.maximum(side, 0.0), REACH_PERCENTILE))
+                       for side in (-angles, angles))  # fmt: skip
     if max(port, starboard) < LEAST_RUDDER:
         return ""
     if max(port, starboard) <= ONE_SIDED * min(port, starboard):

@@ -26,7 +26,7 @@ def model() -> Model:
     return nomoto().with_values({"K": K, "T": T})
 
 
-def sailed(model: Model, name: str, angle: int, rng: np.random.Generator) -> Record:
+def simulated_run(model: Model, name: str, angle: int, rng: np.random.Generator) -> Record:
     """A zigzag whose rudder has a zero of its own, which the record does not show."""
     plan = manoeuvre(model, programme(f"zigzag:{angle}/{angle}"), dt=0.5, speed=2.0, approach=5.0, duration=100.0)
     delta, zero = plan["delta"], ZERO * rng.standard_normal()
@@ -38,7 +38,7 @@ def sailed(model: Model, name: str, angle: int, rng: np.random.Generator) -> Rec
 
 def fitted(model: Model, number: int) -> tuple[Estimation, list[TrialRecord]]:
     rng = np.random.default_rng(number)
-    runs = [sailed(model, f"run {i}", ANGLES[i], rng) for i in range(RUNS)]
+    runs = [simulated_run(model, f"run {i}", ANGLES[i], rng) for i in range(RUNS)]
     records = [TrialRecord(r, Role.VALIDATE if i == RUNS - 1 else Role.TRAIN, r.name) for i, r in enumerate(runs)]
     train = runs[:-1]
     return estimate_model(model, Runs.one_session_each(train, 8.0), SETTINGS, EstimatorOptions(workers=1)), records
@@ -72,7 +72,7 @@ def test_the_same_seed_gives_the_same_intervals(model: Model) -> None:
 
 def test_the_first_seconds_of_a_run_move_its_offsets_where_required(model: Model) -> None:
     rng, settings = np.random.default_rng(8), EstimateSettings(segment_s=20.0, offsets={"delta": 0.02})
-    runs = [sailed(model, f"run {i}", ANGLES[i], rng) for i in range(RUNS)]
+    runs = [simulated_run(model, f"run {i}", ANGLES[i], rng) for i in range(RUNS)]
     items = [TrialRecord(r, Role.VALIDATE if i == RUNS - 1 else Role.TRAIN, r.name) for i, r in enumerate(runs)]
     found = estimate_model(model, Runs.one_session_each(runs[:-1], 8.0), settings, EstimatorOptions(workers=1))
     expected, moved = (
@@ -109,7 +109,7 @@ def test_windows_of_runs_left_out_lie_in_their_bands(model: Model) -> None:
 
 def test_bands_cannot_be_judged_with_few_runs(model: Model) -> None:
     rng = np.random.default_rng(0)
-    runs = [sailed(model, f"run {i}", ANGLES[i], rng) for i in range(2)]
+    runs = [simulated_run(model, f"run {i}", ANGLES[i], rng) for i in range(2)]
     found = estimate_model(model, Runs.one_session_each(runs, 8.0), SETTINGS, EstimatorOptions(workers=1))
     with pytest.raises(InputError, match="too few training runs"):
         holdout_windows(found, [TrialRecord(r, Role.TRAIN, r.name) for r in runs], [], HoldoutProtocol(window_s=25.0))

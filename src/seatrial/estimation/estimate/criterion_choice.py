@@ -85,7 +85,7 @@ class CriterionChoice:
     def is_nearly_white(self) -> bool:
         """Whether residuals are white, or correlated so weakly that each sample counts as one.
 
-        Of a few hundred white samples the inflation exceeds its limit by chance in one fit of five.
+        By chance alone the inflation of a few hundred white samples may exceed its limit.
         """
         return self.whiteness.is_white or bool(np.max(self.inflation) <= WHITE_INFLATION)
 

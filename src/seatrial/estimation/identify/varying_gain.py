@@ -11,12 +11,12 @@ from seatrial.core.text.numbers import significant
 from seatrial.core.values import Array, Finding, Record, Severity
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.resampling import one_step_by_run
+from seatrial.physics.manoeuvres import REACH_PERCENTILE
 
 GAIN, CUBIC = "K", "alpha"
 """Of the steering models of Nomoto; Norrbin's cubic coefficient lets the gain fall with the yaw rate."""
 LEAST_FALL = 0.05
 """Share of the gain from which a fall matters: turning circles then differ by as much; chosen."""
-_PERCENTILE = 99.5  # per cent of the samples within the rudder angle of a run, as `motion_envelope` has it
 
 
 def varying_gain_finding(estimation: Estimation, records: Sequence[Record]) -> tuple[Finding, ...]:
@@ -30,7 +30,7 @@ def varying_gain_finding(estimation: Estimation, records: Sequence[Record]) -> t
         return ()
     if parameters[CUBIC].free or parameters[CUBIC].value or not all("delta" in r for r in records):
         return ()
-    angles = np.array([float(np.nanpercentile(np.abs(r["delta"]), _PERCENTILE)) for r in records])
+    angles = np.array([float(np.nanpercentile(np.abs(r["delta"]), REACH_PERCENTILE)) for r in records])
     if len(records) < 2 or np.ptp(angles) == 0.0:
         return ()
     by_run = one_step_by_run(estimation.shooting)

@@ -7,11 +7,11 @@ import numpy as np
 from seatrial.core.results import Extrapolation
 from seatrial.core.values import Array, Record
 from seatrial.estimation.information.thruster_conditions import thruster_conditions
+from seatrial.physics.manoeuvres import REACH_PERCENTILE, to_starboard
 from seatrial.physics.simulate.rudder_rate import RUDDER_RATE, sustained_rudder_rate
 
 SIDES = ("port", "starboard")
 """Of the rudder: to which it turns the ship; ranges are called ``rudder to port`` and ``rudder to starboard``."""
-_PERCENTILE = 99.5  # per cent of the samples within the envelope; chosen
 # rad/s, rad, rad, m/s, m/s, below which a range counts as none; chosen
 NEGLIGIBLE = {"yaw_rate": 1e-4, "drift": 1e-3, "rudder": 1e-3, "fastest": 1e-3, "slowest": 1e-3}
 REST_SHARE = 0.1
@@ -46,26 +46,21 @@ def _ranges(records: Sequence[Record], layout: str) -> dict[str, float]:
         ("rudder", [np.abs(r["delta"]) for r in records if "delta" in r]),
     ):
         if samples:
-            made[name] = float(np.nanpercentile(np.concatenate(samples), _PERCENTILE))
-    steered = [_to_starboard(r) for r in records if "delta" in r]
+            made[name] = float(np.nanpercentile(np.concatenate(samples), REACH_PERCENTILE))
+    steered = [to_starboard(r, "delta") for r in records if "delta" in r]
     for side, sign in zip(SIDES, (-1.0, 1.0), strict=True) if steered else ():
         angles = np.maximum(sign * np.concatenate(steered), 0.0)
-        made[f"rudder to {side}"] = float(np.nanpercentile(angles, _PERCENTILE))
+        made[f"rudder to {side}"] = float(np.nanpercentile(angles, REACH_PERCENTILE))
     speeds = [_speed(r) for r in records if "u" in r]
     if speeds:
         flow = np.concatenate(speeds)
-        made["fastest"] = float(np.nanpercentile(flow, _PERCENTILE))
-        made["slowest"] = float(np.nanpercentile(flow, 100.0 - _PERCENTILE))
+        made["fastest"] = float(np.nanpercentile(flow, REACH_PERCENTILE))
+        made["slowest"] = float(np.nanpercentile(flow, 100.0 - REACH_PERCENTILE))
     for name, conditions in thruster_conditions(layout, records).items():
         ranges = {"ahead": conditions.order, "astern": -conditions.order} | conditions.quadrants()
         for kind, samples in ranges.items():
-            made[f"{COMMAND}{name} {kind}"] = float(np.percentile(np.maximum(samples, 0.0), _PERCENTILE))
+            made[f"{COMMAND}{name} {kind}"] = float(np.percentile(np.maximum(samples, 0.0), REACH_PERCENTILE))
     return made
-
-
-def _to_starboard(record: Record) -> Array:
-    """The rudder angle, positive where it turns the ship to starboard."""
-    return -record["delta"] if record.channel("delta").positive == "port" else record["delta"]
 
 
 def _speed(record: Record) -> Array:

@@ -9,14 +9,13 @@ from seatrial.core.values import Array, Prior, Record
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.information.covariance import inverse
+from seatrial.estimation.predict.start_states import EVALUATIONS
 from seatrial.estimation.predict.windows import Windows
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.population import SessionPopulation
 from seatrial.estimation.problem.segments import segments_between
 from seatrial.numerics.optimise import levenberg_marquardt
 from seatrial.physics.simulate.channels import inputs_of
-
-_EVALUATIONS = 40  # of the search for offsets and initial state; chosen: a few are enough
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,9 +75,7 @@ def updated_by_start(
         extra_terms=(),
         prior_terms=(),
     )
-    optimum = levenberg_marquardt(
-        problem, offsets.expected, problem.measured_initial_states(), evaluations=_EVALUATIONS
-    )
+    optimum = levenberg_marquardt(problem, offsets.expected, problem.measured_initial_states(), evaluations=EVALUATIONS)
     return SessionOffsets(optimum.solution.point, inverse(optimum.normal.without_local()[1]))
 
 

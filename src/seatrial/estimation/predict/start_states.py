@@ -14,7 +14,8 @@ from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import compared_outputs, segments_between
 from seatrial.numerics.optimise import levenberg_marquardt
 
-_EVALUATIONS = 40  # of the search for initial states; chosen: a few are enough
+EVALUATIONS = 40
+"""Of the search for what a run's first seconds show; chosen: a few are enough."""
 _LEAST_FREEDOM = 0.5  # share of effective samples that initial states leave free, at least; chosen
 
 
@@ -45,7 +46,7 @@ def start_states(
     covariance = np.zeros((len(local), len(model.states), len(model.states)))
     if seconds > 0.0 and len(lasting := _lasting(problem, local)):
         part = replace(problem, data=data.selected(lasting)) if len(lasting) < len(local) else problem
-        estimated = levenberg_marquardt(part, nuisances.ravel(), local[lasting], evaluations=_EVALUATIONS).local
+        estimated = levenberg_marquardt(part, nuisances.ravel(), local[lasting], evaluations=EVALUATIONS).local
         local[lasting] = estimated
         by_offsets[np.ix_(lasting, place)], covariance[np.ix_(lasting, place, place)] = _alternatives(part, estimated)
     return StartStates(problem.unpack(nuisances.ravel(), local)[0], by_offsets, covariance)

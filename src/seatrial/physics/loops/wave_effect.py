@@ -11,7 +11,7 @@ from seatrial.physics.hydro.dispersion import G
 from seatrial.physics.hydro.excitation import Complex
 
 _ACROSS = 1e-9  # |sin(heading)| and |cos(heading)| that count as none: rounding
-_NEGLIGIBLE_EXPONENT = 36.0  # exp(-36) is 2e-16, rounding
+_DEEPEST = 18.0  # k T beyond which the energy exp(-k T) that reaches half the draught is below 2e-8; chosen
 
 
 class WaveEffect(Protocol):
@@ -59,11 +59,11 @@ class HullFactor:
     B: float
     T: float
 
-    name = "wave slope across the ship"
+    name = WaveSlope.name
 
     @property
     def highest_frequency(self) -> float:
-        """Wave frequency [rad/s] whose energy exp(-k T) is rounding."""
+        """Wave frequency [rad/s] whose energy exp(-k T) is below 2e-8."""
         return _deepest_frequency(self.T)
 
     def slope_factor(self, omega: Array, beta: float) -> Array:
@@ -95,7 +95,7 @@ class YawAcceleration:
 
     @property
     def highest_frequency(self) -> float:
-        """Wave frequency [rad/s] whose energy exp(-k T) is rounding."""
+        """Wave frequency [rad/s] whose energy exp(-k T) is below 2e-8."""
         return _deepest_frequency(self.T)
 
     def amplitude(self, omega: Array, U: float, beta: float) -> Complex:  # noqa: ARG002
@@ -118,4 +118,4 @@ def _sine_across(beta: float) -> float:
 
 
 def _deepest_frequency(T: float) -> float:
-    return math.sqrt(0.5 * _NEGLIGIBLE_EXPONENT * G / T)
+    return math.sqrt(_DEEPEST * G / T)

@@ -5,7 +5,9 @@ from seatrial.physics.manoeuvres.measures import measures as measures
 from seatrial.physics.manoeuvres.programme import programme as programme
 from seatrial.physics.manoeuvres.ranges import bounded_interval as bounded_interval
 from seatrial.physics.manoeuvres.recognition import (
+    REACH_PERCENTILE as REACH_PERCENTILE,
     ManoeuvreKind as ManoeuvreKind,
     ObservedManoeuvre as ObservedManoeuvre,
     recognise_manoeuvre as recognise_manoeuvre,
+    to_starboard as to_starboard,
 )

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from seatrial.core.values import Array, Record
+from seatrial.physics.manoeuvres import REACH_PERCENTILE
 from seatrial.physics.simulate.steer import SOLAS_SLEW_RATE
 
 RUDDER_RATE = "rudder_rate"
@@ -15,7 +16,6 @@ MOVE_SHARE = 0.5
 """Share of the range of rudder angles that a sustained move covers: noise and small corrections do not; chosen."""
 CLEARLY_FASTER = 1.2
 """Times the rate that SOLAS requires from which recorded moves are faster: slopes are read to some 10 %; chosen."""
-_PERCENTILE = 99.5  # per cent of the samples that a range of angles holds, as `motion_envelope` has it
 _SPIKE = 3  # samples of the running median: a single bad reading is no move; the least a median can have
 
 
@@ -56,7 +56,7 @@ def sustained_rudder_rate(record: Record) -> float | None:
     angles = np.median(sliding_window_view(record["delta"], _SPIKE), axis=1)
     if not np.isfinite(angles).any():
         return None
-    least, most = np.nanpercentile(angles, (100.0 - _PERCENTILE, _PERCENTILE))
+    least, most = np.nanpercentile(angles, (100.0 - REACH_PERCENTILE, REACH_PERCENTILE))
     threshold = MOVE_SHARE * float(most - least)
     slowest = math.ceil(threshold / (SOLAS_SLEW_RATE * record.dt))
     for steps in range(1, min(slowest, len(angles) - 1) + 1):
