@@ -104,7 +104,7 @@ def _with_roles(
         replace(
             block,
             validate=held_out if not block.name or block.name == held_out else "",
-            is_released=model.name == "roll" and all(any(map(is_decay, one)) for one in block.stretches),
+            is_released=model.swings and all(any(map(is_decay, one)) for one in block.stretches),
         )
         for block in blocks
     ]

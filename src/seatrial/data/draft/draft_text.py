@@ -106,7 +106,7 @@ def _particulars(model: StartingModel, guesses: Sequence[ColumnGuess]) -> list[s
         "[model]",
         f"name = {_quoted(model.name)}    # {model.why}",
         *([f"free = [{names}]    # {model.free_reason}"] if model.free else []),
-        *(thruster_tables(guesses) if model.name == "thrusters" else []),
+        *(thruster_tables(guesses) if model.has_thrusters else []),
         "",
         *_sensor_lines(model, guesses),
     ]
@@ -116,7 +116,7 @@ def _sensor_lines(model: StartingModel, guesses: Sequence[ColumnGuess]) -> list[
     """That velocities are those of a receiver: fitted as if through the water, a current would end in coefficients."""
     if not any(g.is_used and (g.symbol == "sog" or (g.symbol == "u" and g.frame == "earth")) for g in guesses):
         return []
-    if model.name != "thrusters":  # the one of the starting models with u and v
+    if not model.has_thrusters:
         why = "u, v of the log are over ground: remove both # with a model that has them"
         return ["# [sensors]", f'# velocity = "ground"    # {why}', ""]
     return ["[sensors]", 'velocity = "ground"    # of a receiver, over ground: a current is in them', ""]

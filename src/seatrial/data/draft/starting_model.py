@@ -8,6 +8,7 @@ import numpy as np
 from seatrial.core.values import Record
 from seatrial.data.draft.column_guess import ColumnGuess
 
+_THRUSTERS, _ROLL = "thrusters", "roll"
 _ROLL_MOTION = frozenset({"phi", "p"})
 _STEERED_MOTION = frozenset({"psi", "psi_magnetic", "r", "u", "v", "x0", "y0", "lat", "lon"})
 # largest rudder angle of one run over that of another, from which on the fall of the gain with it shows; chosen
@@ -34,6 +35,16 @@ class StartingModel:
     free_reason: str = ""
     inputs: tuple[str, ...] = ()
 
+    @property
+    def has_thrusters(self) -> bool:
+        """Whether it is the model of a craft with thrusters, the one of these with speeds ahead and across."""
+        return self.name == _THRUSTERS
+
+    @property
+    def swings(self) -> bool:
+        """Whether its input is an angle that swings to both sides of its rest."""
+        return self.name == _ROLL
+
 
 def starting_model(symbols: Set[str], records: Sequence[Record | None]) -> StartingModel:
     """Return the simplest model for the channels that are used, its free coefficients as the runs can show them."""
@@ -45,11 +56,11 @@ def starting_model(symbols: Set[str], records: Sequence[Record | None]) -> Start
         reason = "gain, time constant, and the fall of the gain with the rudder angle, which differs between the runs"
         return StartingModel("nomoto", why, ("K", "T", "alpha") if falls else (), reason, ("delta",))
     if commands:
-        return StartingModel("thrusters", "of a craft that steers by its thrusters", (), "", commands)
+        return StartingModel(_THRUSTERS, "of a craft that steers by its thrusters", (), "", commands)
     if symbols & _ROLL_MOTION and not symbols & _STEERED_MOTION:
         reason = "linear and quadratic damping, restoring, its cubic term, angle of rest"
         free = ("b_1", "b_2", "c_1", "c_3", "phi_0")
-        return StartingModel("roll", "of a ship that rolls out from a release", free, reason, ("phi",))
+        return StartingModel(_ROLL, "of a ship that rolls out from a release", free, reason, ("phi",))
     return StartingModel("")
 
 
@@ -105,7 +116,7 @@ def _lies_within(model: StartingModel, name: str, records: Mapping[str, Record])
 
 def _range(model: StartingModel, values: np.ndarray) -> tuple[float, float]:
     """Of a roll decay the size of its angles: it swings to both sides, whichever it starts from."""
-    used = np.abs(values - np.median(values)) if model.name == "roll" else values
+    used = np.abs(values - np.median(values)) if model.swings else values
     return float(np.min(used)), float(np.max(used))
 
 
