@@ -1,10 +1,12 @@
 """Simulated truth: errors of every coefficient over the Cramer-Rao bound, and coverage, for three craft with thrusters.
 
     python benchmarks/thrusters_truth.py [--craft two-fixed | azimuths | twin-screw] [--runs 400] [--write DIR]
+    python benchmarks/thrusters_truth.py --coupling 0.4 [--hold-coupling]
 
 Three runs of steps of all commands (60 s at 10 Hz); each draw adds white noise to all six channels, estimates all free
 coefficients without a guess and without priors, from several starts, and notes whether the 95 % intervals hold. --write
-keeps the records of the first draw as CSV files, those of examples/thrusters.
+keeps the records of the first draw as CSV files, those of examples/thrusters. --coupling is the true N_uv; with
+--hold-coupling the estimate holds it at 0, and coverage shows what that does to the coefficients that stand in for it.
 """
 
 import argparse
@@ -15,12 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import stdtrit
 
+from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.trial import EstimateSettings, FitCriterion
 from seatrial.estimation.estimate import EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.estimate.assemble import output_error_problem
 from seatrial.physics.models.thrusters import thrusters
-from seatrial.problems.thruster_craft import CRAFTS, NOISE, KnownThrusterCraft, noisy, simulated_runs
+from seatrial.problems.thruster_craft import CRAFTS, NOISE, noisy, simulated_runs
 
 SETTINGS = EstimateSettings(method=FitCriterion.OUTPUT_ERROR)
 FAR = 8.0
@@ -29,10 +32,10 @@ LINE = 10
 """Draws after which a line is printed; after five times as many the table."""
 
 
-def bound(craft: KnownThrusterCraft, runs: list[Record]) -> Array:
+def bound(truth: Model, length: float, runs: list[Record]) -> Array:
     """Return the Cramer-Rao bound of each free coefficient at the truth: standard deviations, (free,)."""
-    sessions = Runs.one_session_each(runs, craft.layout.length)
-    problem = output_error_problem(craft.truth, sessions, np.inf, SETTINGS)
+    sessions = Runs.one_session_each(runs, length)
+    problem = output_error_problem(truth, sessions, np.inf, SETTINGS)
     problem = replace(problem, noise=np.array([NOISE[c] for c in problem.data.outputs]))
     information = problem.normal(problem.start(), problem.measured_initial_states()).without_local()[1]
     return np.sqrt(np.diag(np.linalg.inv(information)))
@@ -86,13 +89,20 @@ def main() -> None:
     parser.add_argument("--starts", type=int, help="points from which to search")
     parser.add_argument("--runs", type=int, default=400)
     parser.add_argument("--write", type=Path)
+    parser.add_argument("--coupling", type=float, default=0.0, help="true N_uv over M_u")
+    parser.add_argument("--hold-coupling", action="store_true", help="hold N_uv at 0 in the estimate")
     arguments = parser.parse_args()
     craft = CRAFTS[arguments.craft]
-    model, settings = craft.truth, replace(SETTINGS, starts=arguments.starts)
+    if arguments.coupling:
+        craft = replace(craft, values={**craft.values, "N_uv": arguments.coupling})
+    fitted, settings = thrusters(craft.layout), replace(SETTINGS, starts=arguments.starts)
+    if arguments.hold_coupling:
+        fitted = fitted.with_parameters(fitted.parameters.fixed("N_uv"))
+    model = craft.truth.with_parameters(craft.truth.parameters.only_free(fitted.parameters.free_names))
     clean = simulated_runs(craft, np.random.default_rng(1))
     names = model.parameters.free_names
     true = np.array([model.parameters[n].value for n in names])
-    draws, failures = Draws(names, true, bound(craft, clean), [], []), 0
+    draws, failures = Draws(names, true, bound(model, craft.layout.length, clean), [], []), 0
     for k in range(arguments.runs):
         rng = np.random.default_rng([1, k])
         records = [noisy(run, rng) for run in clean]
@@ -102,7 +112,7 @@ def main() -> None:
                 write_table(record, arguments.write / f"{record.name}.csv")
         try:
             estimation = estimate_model(
-                thrusters(craft.layout), Runs.one_session_each(records, craft.layout.length), settings,
+                fitted, Runs.one_session_each(records, craft.layout.length), settings,
                 EstimatorOptions(),
             )  # fmt: skip
         except InputError as error:

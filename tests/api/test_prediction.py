@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 import seatrial as st
+from seatrial.api import course_findings, replay
 from seatrial.core.values import RecordKind
 from seatrial.data.folder.model_file import ModelFile
+from seatrial.physics.models import model_named
 
 JET = {"v_j": 1.866}  # jet velocity of the example's trials, m/s
 
@@ -55,8 +57,9 @@ def test_a_noisy_run_starts_at_an_estimated_state_not_at_its_first_sample(craft:
     prediction = st.predict(craft, noisy)
     assert prediction.initial_seconds > 0.0
     error = np.degrees(np.abs(prediction.simulated["psi"] - zigzag["psi"]).max())
-    at_first_sample = np.degrees(np.abs(st.simulate(craft, noisy)["psi"] - zigzag["psi"]).max())
+    at_first_sample = np.degrees(np.abs(replay(craft, noisy)["psi"] - zigzag["psi"]).max())
     assert error < 0.5 * at_first_sample
+    assert st.simulate(craft, noisy)["psi"].tobytes() == prediction.simulated["psi"].tobytes()
     assert st.predict(craft.model, noisy).initial_seconds == pytest.approx(0.1 * noisy.duration), "length not known"
 
 
@@ -76,3 +79,15 @@ def test_a_file_of_another_program_is_read_by_its_layout(tmp_path: Path) -> None
     columns = (st.ColumnSpec("u", "kn", "kn"),)
     layout = st.Layout("text", st.ColumnSpec("time", "t", "s"), columns, separator=";", decimal=",")
     np.testing.assert_allclose(st.read_record(tmp_path / "log.txt", layout)["u"], 10.0 * 1852.0 / 3600.0)
+
+
+def test_a_straight_run_that_is_not_held_is_said_to_be_so() -> None:
+    craft = model_named("thrusters").with_values({"M_v": 2.5})
+    unstable = ModelFile(craft, interval_basis=None)
+    (finding,) = course_findings(unstable, "straight:90")
+    assert finding.code == "course-unstable"
+    assert "the craft is course unstable at " in finding.message
+    assert "at equal orders it ends in a turn of " in finding.evidence
+    assert course_findings(unstable, "spin:90") == ()
+    stable = ModelFile(craft.with_values({"M_v": 1.5, "N_r": -5.0}))
+    assert course_findings(stable, "straight:90") == ()

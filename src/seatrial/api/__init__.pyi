@@ -12,7 +12,14 @@ from seatrial.api.files import (
     write_record,
 )
 from seatrial.api.poster import poster, write_poster
-from seatrial.api.prediction import extrapolation, measure_intervals, measures, predict, rms_differences
+from seatrial.api.prediction import (
+    course_findings,
+    extrapolation,
+    measure_intervals,
+    measures,
+    predict,
+    rms_differences,
+)
 from seatrial.api.simulation import replay, rudder_rate_of, simulate, steering
 from seatrial.api.studies import demo, list_models, model_guide, reproduce
 from seatrial.api.trials import (
@@ -29,10 +36,10 @@ from seatrial.api.trials import (
 from seatrial.api.tuning import load_loop, tune
 
 __all__ = [
-    "benchmark", "campaign", "campaign_status", "check", "compare", "correct_trial", "demo", "design", "draft_trial",
-    "export", "export_targets", "extrapolation", "follow", "gather_campaign", "identify", "list_models", "load",
-    "load_fit", "load_loop", "load_model", "load_trial", "measure_intervals", "measures", "model_guide", "poster",
-    "predict", "prepared_run", "read_record", "replay", "replay_fmu", "report", "reproduce", "retry_campaign",
-    "rms_differences", "rudder_rate_of", "save", "simulate", "steering", "survey_log", "tune", "write_poster",
-    "write_record",
+    "benchmark", "campaign", "campaign_status", "check", "compare", "correct_trial", "course_findings", "demo",
+    "design", "draft_trial", "export", "export_targets", "extrapolation", "follow", "gather_campaign", "identify",
+    "list_models", "load", "load_fit", "load_loop", "load_model", "load_trial", "measure_intervals", "measures",
+    "model_guide", "poster", "predict", "prepared_run", "read_record", "replay", "replay_fmu", "report", "reproduce",
+    "retry_campaign", "rms_differences", "rudder_rate_of", "save", "simulate", "steering", "survey_log", "tune",
+    "write_poster", "write_record",
 ]  # fmt: skip

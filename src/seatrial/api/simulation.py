@@ -117,7 +117,8 @@ def simulate(
     Args:
         model: a model; or a fit or model file, with their ship and approach condition.
         manoeuvre: e.g. ``zigzag:20/20``, ``turning-circle:35``, or a record whose inputs drive the model: a measured
-            one from its first sample, a planned one from a straight run.
+            one from the state that its first seconds show, as `identify` predicts it, a simulated one from its first
+            sample, a planned one from a straight run.
         speed: approach speed, m/s; without it the speed at which surge balances.
         inputs, duration, rudder_rate, seed: of a manoeuvre, as in `steering`.
 
@@ -127,9 +128,19 @@ def simulate(
     """
     file = as_model_file(model)
     if not isinstance(manoeuvre, str):
-        return replay(file, manoeuvre, speed)
+        return _replayed(file, manoeuvre, speed)
     steer = steering(file, manoeuvre, speed=speed, inputs=inputs, duration=duration, rudder_rate=rudder_rate, seed=seed)
     return steer(file.model)
+
+
+def _replayed(model: "ModelFile", record: "Record", speed: float | None) -> "Record":
+    """The run by its inputs; a measured motion is noisy, so that its start is estimated."""
+    from seatrial.api.prediction import predict
+    from seatrial.core.values import RecordKind
+
+    if record.kind is RecordKind.MEASURED and set(model.model.states) & set(record.channels):
+        return predict(model, record).simulated
+    return replay(model, record, speed)
 
 
 def replay(model: "ModelFile", record: "Record", speed: float | None = None) -> "Record":

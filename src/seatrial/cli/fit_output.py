@@ -45,6 +45,7 @@ def print_fit(fit: "Fit") -> None:
         print_heading("Offsets of a new session")
         print_lines((population.sentence for population in fit.offset_populations), "  ")
     _print_thruster_craft(fit)
+    _print_course_stability(fit)
     print_model_selection(fit)
     print_baselines(fit)
     if fit.posterior is not None:
@@ -184,6 +185,18 @@ def _print_thruster_craft(fit: "Fit") -> None:
         ends = ("" if x is None else exact(x, ERROR_DIGITS) for x in (m.lower, m.upper))
         rows.append([MEASURE_LABELS.get(name, quantity_label(name)), exact(m.value, ERROR_DIGITS), *ends])
     print_table(rows, indent="  ")
+
+
+def _print_course_stability(fit: "Fit") -> None:
+    """Whether the craft holds a straight course, and how fast it leaves one."""
+    from seatrial.core.results.identifiability import COURSE_UNSTABLE
+    from seatrial.core.text.words import sentence
+
+    if fit.identifiability is None or fit.identifiability.stability is None:
+        return
+    turns = [f.evidence.partition("; ")[2] for f in fit.findings if f.code == COURSE_UNSTABLE]
+    print_heading("Straight course")
+    print_lines([sentence(text) for text in (fit.identifiability.stability.text, *turns) if text], "  ")
 
 
 def _print_extrapolation(e: "Extrapolation") -> None:

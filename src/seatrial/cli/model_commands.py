@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from seatrial.cli.application import Json, OwnModelPath, Seed, app, own_model, result_document, write_json
+from seatrial.cli.finding_output import print_finding
 from seatrial.cli.fit_output import print_measures
 from seatrial.cli.progress import progress_reporter
 from seatrial.cli.run_errors import errors_text
@@ -15,8 +16,7 @@ from seatrial.cli.screen import print_file, print_lines
 from seatrial.cli.tuning_output import print_tuning
 
 if TYPE_CHECKING:
-    from seatrial.core.values import Record
-    from seatrial.data.folder.model_file import ModelFile
+    pass
 
 
 @app.command()
@@ -120,13 +120,13 @@ def simulate(
         return
     file = api.load_model(model_file, own_model(model))
     measured, rate, intervals = None, None, dict[str, tuple[float, float] | None]()
+    constant = dict(_name_and_value(text) for text in constant_inputs or [])
     if inputs is not None:
         measured = read_record_csv(Path(inputs)) if trial is None else api.prepared_run(trial, inputs)
-        record = _replayed(file, measured, speed)
+        record = api.simulate(file, measured, speed=speed)
     else:
         given_rate = None if rudder_rate is None else math.radians(rudder_rate)
         rate = None if file.model.equations.layout else api.rudder_rate_of(file, given_rate)
-        constant = dict(_name_and_value(text) for text in constant_inputs or [])
         steer = api.steering(
             file,
             manoeuvre or "",
@@ -151,6 +151,8 @@ def simulate(
         print_lines([f"against {measured.name}: rms {errors_text(rms)}"])
     if rate is not None:
         print_lines([rate.text])
+    for finding in api.course_findings(file, manoeuvre or "", constant):
+        print_finding("warning", f"[{finding.code}] {finding.text}: a straight run is one that it does not hold")
     write_json(
         json,
         lambda: {
@@ -191,16 +193,6 @@ def models(
     summaries = api.list_models()
     print_models(summaries)
     write_json(json, lambda: {"models": [asdict(summary) for summary in summaries]})
-
-
-def _replayed(file: "ModelFile", inputs: "Record", speed: float | None) -> "Record":
-    """The run by its inputs; a measured one as `identify` predicts it, from the state that its first seconds show."""
-    from seatrial import api
-    from seatrial.core.values import RecordKind
-
-    if inputs.kind is RecordKind.MEASURED and set(file.model.states) & set(inputs.channels):
-        return api.predict(file, inputs).simulated
-    return api.replay(file, inputs, speed)
 
 
 def _print_rms(name: str, rms: dict[str, float]) -> None:

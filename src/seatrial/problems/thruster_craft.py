@@ -46,8 +46,9 @@ class KnownThrusterCraft:
 
     @property
     def truth(self) -> Model:
-        """The model with the true coefficients."""
-        return thrusters(self.layout).with_values(dict(self.values))
+        """The model with the true coefficients; those that are not listed are known to be what the model has."""
+        model = thrusters(self.layout).with_values(dict(self.values))
+        return model.with_parameters(model.parameters.only_free(tuple(self.values)))
 
 
 def _azimuths() -> ThrusterLayout:

@@ -6,11 +6,9 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import InputError, Record, Ship
-from seatrial.data.trial import EstimateSettings, FitCriterion, Trial, TrialRun
-from seatrial.estimation.estimate import Runs, estimate_model
+from seatrial.data.trial import Trial, TrialRun
 from seatrial.estimation.estimate.fit import refuse_without_excitation
 from seatrial.estimation.identify import identify
-from seatrial.estimation.identify.identifiability import identifiability
 from seatrial.estimation.information.symmetries import refuse_unidentifiable, structural_symmetries
 from seatrial.physics.models import model_named
 from seatrial.physics.models.thruster_layout import CommandInput, Damping, ThrustCurve, Thruster, ThrusterLayout
@@ -63,15 +61,3 @@ def test_commands_that_never_move_are_no_excitation() -> None:
     channels = {"u": np.ones(100), "command_1": np.full(100, 0.5), "command_2": np.full(100, 0.5)}
     with pytest.raises(InputError, match="none of command_1, command_2 moves in still; record spins"):
         refuse_without_excitation(model_named("thrusters"), [Record.from_arrays("still", time, channels)])
-
-
-def test_course_stability_in_ship_lengths_is_left_out() -> None:
-    model, rng, time = model_named("thrusters"), np.random.default_rng(2), 0.1 * np.arange(200)
-    model = model.with_parameters(model.parameters.only_free(("k_f", "X_uu")))
-    orders = {f"command_{k}": np.repeat(rng.uniform(0.2, 1.0, 10), 20) for k in (1, 2)}
-    clean = replay(model, Record.from_arrays("run", time, orders), dict.fromkeys(model.states, 0.0))
-    noisy = {c: clean.channel(c).with_values(clean[c] + 0.01 * rng.standard_normal(200)) for c in OUTPUTS}
-    run = replace(clean, channels={n: clean.channel(n) for n in orders} | noisy)
-    settings = EstimateSettings(method=FitCriterion.OUTPUT_ERROR, starts=1)
-    estimation = estimate_model(model, Runs.one_session_each([run], 1.0), settings)
-    assert identifiability(estimation, (), {"u": 1.0}, 1.0).stability is None

@@ -134,4 +134,4 @@ def test_a_model_of_yaw_alone_is_stable_where_its_time_constant_is_positive() ->
     found = stability(model, np.zeros((len(model.parameters.free),) * 2), np.inf, 2.0, np.zeros(1), 16.0)
     assert found is not None
     assert found.index == pytest.approx(1.0)
-    assert "dies out by a factor e in 1 ship lengths" in found.text
+    assert "dies out by a factor e in 8.0 s, 1.0 ship lengths" in found.text

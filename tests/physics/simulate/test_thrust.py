@@ -11,7 +11,12 @@ from seatrial.physics.manoeuvres.measures import measures
 from seatrial.physics.manoeuvres.thrust_programme import thrust_programme
 from seatrial.physics.models.thruster_layout import CATAMARAN, AngleInput, CommandInput, Thruster, ThrusterLayout
 from seatrial.physics.models.thrusters import thrusters
-from seatrial.physics.simulate.thrust import refuse_rudder_options, thrust_manoeuvre
+from seatrial.physics.simulate.thrust import (
+    refuse_rudder_options,
+    settled_yaw_rate,
+    straight_by_thrusters,
+    thrust_manoeuvre,
+)
 
 SURGE_DRAG, YAW_DRAG, THRUST, ARM = 0.3, 0.8, 1.2, 0.3
 """X_uu and N_rr with their sign turned, thrust of one at half command, all on each kg of M_u; arm [m]; chosen."""
@@ -114,3 +119,12 @@ def test_options_of_ships_are_refused(craft: Model) -> None:
 def test_a_craft_without_thrust_is_refused(craft: Model) -> None:
     with pytest.raises(InputError, match="'stop:50' ends where it begins"):
         thrust_manoeuvre(craft.with_values({"k_f": 0.0, "k_b": 0.0}), thrust_programme("stop:50"))
+
+
+def test_a_straight_run_balances_surge_and_a_nudge_shows_whether_it_is_held(craft: Model) -> None:
+    """The speed of the closed form above; v' = -u r / M_v, r' = (M_u - M_v) u v / M_r: unstable without damping."""
+    run = straight_by_thrusters(craft, 0.5)
+    assert run.speed == pytest.approx(np.sqrt(2.0 * THRUST / SURGE_DRAG), rel=1e-9)
+    assert settled_yaw_rate(craft, run) > 0.1
+    held = craft.with_values({"N_r": -3.0, "Y_v": -3.0})
+    assert settled_yaw_rate(held, straight_by_thrusters(held)) == pytest.approx(0.0, abs=1e-9)

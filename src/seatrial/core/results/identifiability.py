@@ -9,6 +9,8 @@ from seatrial.core.results.fields import Number
 
 NOT_CONVERGED, NOT_IDENTIFIABLE = "not-converged", "not-identifiable"
 """Codes of the findings that coefficients must not be used, or not alone."""
+COURSE_UNSTABLE = "course-unstable"
+"""Code of the finding that a craft does not hold a straight course by itself."""
 
 
 @dataclass(frozen=True)
@@ -70,12 +72,24 @@ class Consequence:
 
 @dataclass(frozen=True)
 class Stability:
-    """Course stability on a straight course; the interval is at 95 %."""
+    """Course stability on a straight course; intervals are at 95 %."""
 
     index: Annotated[Number, Field(description="stability index C, positive: stable")]
     lower: Number
     upper: Number
     text: str
+    speed: Annotated[Number | None, Field(description="ahead, m/s; null: not stated")] = None
+    growth_rate: Annotated[
+        Number | None,
+        Field(description="largest real part of the eigenvalues of sway and yaw, 1/s; positive: a deviation grows"),
+    ] = None
+    growth_lower: Annotated[Number | None, Field(description="end of its interval, 1/s")] = None
+    growth_upper: Annotated[Number | None, Field(description="end of its interval, 1/s")] = None
+
+    @property
+    def is_unstable(self) -> bool:
+        """Whether the whole interval of the index lies below zero."""
+        return self.upper < 0.0
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """A fit from an estimate: predictions of all runs, identifiability, findings, and what a report shows."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from seatrial.core.results import Fit, Identifiability, Posterior, Profile
@@ -11,6 +11,7 @@ from seatrial.data.trial.approach import approach_condition
 from seatrial.estimation.estimate import Estimation, IntervalMethod
 from seatrial.estimation.identify import fit_result
 from seatrial.estimation.identify.closed_loop_findings import closed_loop_findings
+from seatrial.estimation.identify.course_stability import course_finding
 from seatrial.estimation.identify.held_couplings import held_couplings
 from seatrial.estimation.identify.identifiability import identifiability
 from seatrial.estimation.identify.identification import Identification
@@ -44,7 +45,8 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
     selected, posterior = _with_sampling(task, selected)
     predicted = _predictions(task, selected)
     estimation = with_model_spread(selected.estimation, selected.tied)
-    assessment = _identifiability(task, estimation)
+    approach = approach_condition(runs.records, trial.model)
+    assessment = _identifiability(task, estimation, approach)
     free = estimation.estimate.problem.free
     predicted_runs = {p.record for p in predicted.predictions}
     scored = [r for r in task.records if r.record.name in predicted_runs]
@@ -68,6 +70,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
             *unphysical_finding(estimation.model, runs.records), *fit_result.bounds_hit(estimation),
             *fit_result.unconverged(estimation), *other_optima(estimation),
             *held_couplings(selected.estimation),
+            *course_finding(estimation.model, assessment.stability, approach),
             *varying_gain_finding(estimation, runs.records),
             *misfit_disturbance(
                 estimation.noise_model.process,
@@ -129,9 +132,8 @@ def _predictions(task: Identification, selected: SelectedModel) -> RunPrediction
         raise InputError(fit_result.divergence_message(estimation, error)) from None
 
 
-def _identifiability(task: Identification, estimation: Estimation) -> Identifiability:
+def _identifiability(task: Identification, estimation: Estimation, approach: Mapping[str, float]) -> Identifiability:
     """Return what the records determine, with profile likelihoods where these are required."""
-    approach = approach_condition(task.runs.records, estimation.model)
     assessment = identifiability(estimation, task.symmetries, approach, task.runs.length)
     return replace(assessment, profiles=_profiles(task, estimation))
 

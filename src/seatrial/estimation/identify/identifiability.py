@@ -6,15 +6,15 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.results import Consequence, Identifiability, Sensitivity, Stability, Symmetry
+from seatrial.core.results import Consequence, Identifiability, Sensitivity, Symmetry
 from seatrial.core.values import Array, Prior
 from seatrial.data.trial.model_table import COMMON_PARTICULARS
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import PointEstimate
+from seatrial.estimation.identify.course_stability import course_stability
 from seatrial.estimation.information.collinearity import collinearity, condition_number
 from seatrial.estimation.information.consequences import consequence_text, estimate_shifts
 from seatrial.estimation.information.directions import directions, effective_parameters, relative_information
-from seatrial.estimation.information.stability import stability
 from seatrial.estimation.problem.output_error import OutputError
 
 # change of a value whose consequences are shown, ours
@@ -47,8 +47,11 @@ def identifiability(
         collinearity=collinearity(data, names),
         sensitivities=sensitivities(estimation),
         consequences=consequences(estimation),
-        stability=_stability(estimation, approach, length),
-    )
+        stability=course_stability(
+            estimation.model, estimation.interval.covariance[: len(names), : len(names)],
+            estimation.interval.degrees_of_freedom, approach, length,
+        ),
+    )  # fmt: skip
 
 
 def _signed_scales(estimation: Estimation) -> Array:
@@ -144,18 +147,3 @@ def _consequence(
     return Consequence(
         name, RELATIVE_CHANGE, ranked, misfit, consequence_text(name, RELATIVE_CHANGE, ranked, misfit, chi_squared)
     )
-
-
-def _stability(estimation: Estimation, approach: Mapping[str, float], length: float) -> Stability | None:
-    model, count = estimation.model, len(estimation.estimate.problem.free)
-    speed = approach.get("u", 0.0)
-    if speed <= 0.0 or model.equations.layout:  # in ship lengths, rudder amidships: nothing that thrusters have
-        return None
-    inputs = np.array(
-        [
-            0.0 if i.name == "delta" else (-1.0 if i.is_reversed else 1.0) * approach.get(i.name, 0.0)
-            for i in model.inputs
-        ]
-    )
-    covariance = estimation.interval.covariance[:count, :count]
-    return stability(model, covariance, estimation.interval.degrees_of_freedom, speed, inputs, length)

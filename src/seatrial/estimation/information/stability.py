@@ -12,8 +12,10 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.results import Stability
 from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
+from seatrial.core.text.numbers import significant
 from seatrial.core.values import Array
 from seatrial.numerics.kernels.sensitivity import evaluate_tangent
+from seatrial.physics.simulate.actuators import settled_actuators
 
 _STEP = 1e-4  # of a coefficient's characteristic size, for central differences
 # of the speed, for one-sided slopes; relative difference of equal sides; chosen
@@ -29,17 +31,21 @@ def straight_course_rates(model: Model, speed: float, inputs: Array) -> Array:
 
 
 def one_sided_rates(model: Model, speed: float, inputs: Array) -> Array:
-    """The same for a turn just begun to starboard (r > 0 > v) and one to port, shape (2, n, n).
+    """The same for a turn just begun to starboard (r > 0 > v) and one to port, shape (2, n, n); thrusters have settled.
 
     They differ where a coefficient does (gamma_R): such a model has a kink on the straight course itself.
     """
-    aside = {s: _LATERAL_OFFSET * speed * (-1.0 if s == "v" else 1.0) for s in lateral_states(model)}
-    states = np.array([[speed if s == "u" else side * aside.get(s, 0.0) for s in model.states] for side in (1.0, -1.0)])
+    straight = settled_actuators(model, inputs)
+    if "u" in model.states:
+        straight[model.states.index("u")] = speed
+    place = [model.states.index(s) for s in lateral_states(model)]
+    aside = np.zeros(len(model.states))
+    aside[place] = [_LATERAL_OFFSET * speed * (-1.0 if model.states[k] == "v" else 1.0) for k in place]
+    states = np.array([straight + aside, straight - aside])
     nx, width = len(model.states), len(model.states) + len(model.inputs) + len(model.parameters)
     out, jacobian = np.empty((2, nx)), np.zeros((2, nx, width))
     both = np.tile(inputs, (2, 1)), np.tile(model.parameters.values, (2, 1))
     evaluate_tangent(model.compiled.rates_tangent, states, *both, 1.0, out, jacobian)
-    place = [model.states.index(s) for s in lateral_states(model)]
     return jacobian[np.ix_([0, 1], place, place)]
 
 
@@ -53,9 +59,13 @@ def lateral_states(model: Model) -> tuple[str, ...]:
 def stability(
     model: Model, covariance: Array, degrees_of_freedom: float, speed: float, inputs: Array, length: float
 ) -> Stability | None:
-    """Index and 95 % interval by the delta method over the free coefficients; None where the model has no yaw rate.
+    """Return index and growth rate with 95 % intervals, by the delta method over the free coefficients.
 
-    covariance: of the free coefficients, (n, n); length in m.
+    The growth rate is the largest real part of the eigenvalues of sway and yaw. None where the model has no yaw rate.
+
+    Args:
+        covariance: of the free coefficients, (n, n). speed: straight ahead, m/s. inputs: (nu,), the model's signs.
+        length: m.
     """
     if not lateral_states(model):
         return None
@@ -64,36 +74,54 @@ def stability(
     def index_of(one: Model) -> float:
         return _index(straight_course_rates(one, speed, inputs), unit)
 
-    centre = index_of(model)
-    slope = _gradient(model, index_of)
-    half = two_sided_quantile(STORED_LEVEL, degrees_of_freedom) * float(np.sqrt(max(slope @ covariance @ slope, 0.0)))
-    slowest = float(np.max(np.linalg.eigvals(straight_course_rates(model, speed, inputs)).real)) * unit
+    def growth_of(one: Model) -> float:
+        return float(np.max(np.linalg.eigvals(straight_course_rates(one, speed, inputs)).real))
+
+    t = two_sided_quantile(STORED_LEVEL, degrees_of_freedom)
+    (index, wide), (growth, open_by) = (
+        (value_of(model), t * _deviation(model, value_of, covariance)) for value_of in (index_of, growth_of)
+    )
     starboard, port = (_index(rates, unit) for rates in one_sided_rates(model, speed, inputs))
-    text = _stability_text(centre, half, slowest) + _asymmetry_text(starboard, port)
-    return Stability(centre, centre - half, centre + half, text)
+    noun = "craft" if model.equations.layout else "ship"
+    text = _stability_text(noun, speed, index, wide) + _growth_text(growth, open_by, unit)
+    return Stability(
+        index, index - wide, index + wide, text + _asymmetry_text(starboard, port), speed, growth, growth - open_by,
+        growth + open_by,
+    )  # fmt: skip
 
 
 def _index(rates: Array, unit: float) -> float:
     return float(np.linalg.det(-rates) * unit ** len(rates))
 
 
-def _gradient(model: Model, stability_index: Callable[[Model], float]) -> Array:
-    made = []
+def _deviation(model: Model, value_of: Callable[[Model], float], covariance: Array) -> float:
+    """Standard deviation of a value of the model, by central differences in its free coefficients."""
+    slope = list[float]()
     for p in model.parameters.free:
         step = _STEP * p.characteristic_scale
-        up, down = (stability_index(model.with_values({p.name: p.value + s})) for s in (step, -step))
-        made.append((up - down) / (2.0 * step))
-    return np.array(made)
+        up, down = (value_of(model.with_values({p.name: p.value + s})) for s in (step, -step))
+        slope.append((up - down) / (2.0 * step))
+    return float(np.sqrt(max(np.array(slope) @ covariance @ np.array(slope), 0.0)))
 
 
-def _stability_text(index: float, half: float, slowest: float) -> str:
-    text = "whether the ship is course stable cannot be determined"
+def _stability_text(noun: str, speed: float, index: float, half: float) -> str:
     if abs(index) > half:
-        text = f"the ship is course {'stable' if index > 0 else 'unstable'}"
-    if slowest == 0.0:
-        return text
-    grown = "dies out" if slowest < 0 else "grows"
-    return f"{text}: at the estimate a disturbance {grown} by a factor e in {abs(1.0 / slowest):.2g} ship lengths"
+        return f"the {noun} is course {'stable' if index > 0 else 'unstable'} at {significant(speed, 2)} m/s"
+    return f"whether the {noun} is course stable at {significant(speed, 2)} m/s cannot be determined"
+
+
+def _growth_text(growth: float, half: float, unit: float) -> str:
+    """Return how fast a deviation dies out or grows; with the interval of that time where the rate has one sign."""
+    if growth == 0.0:
+        return ""
+    seconds = significant(abs(1.0 / growth), 2)
+    if 0.0 < half < abs(growth):
+        seconds += f" s [{significant(1.0 / (abs(growth) + half), 2)}, {significant(1.0 / (abs(growth) - half), 2)}]"
+    else:
+        seconds += " s"
+    verb = "dies out" if growth < 0 else "grows"
+    lengths = significant(abs(1.0 / growth) / unit, 2)
+    return f": at the estimate a deviation {verb} by a factor e in {seconds}, {lengths} ship lengths"
 
 
 def _asymmetry_text(starboard: float, port: float) -> str:

@@ -51,7 +51,7 @@ _DIAGONAL = {
 }
 _COUPLED = {
     "N_ur": _HullTerm(0.0, "kg m", 1, "yaw damping that grows with speed, |u| r"),
-    "N_uv": _HullTerm(0.0, "kg", 0, "yaw moment of u v", is_free=False),
+    "N_uv": _HullTerm(0.0, "kg", 0, "yaw moment of u v"),
     "Y_ur": _HullTerm(0.0, "kg", 0, "side force of u r", is_free=False),
     "Y_uv": _HullTerm(0.0, "kg/m", -1, "sway damping that grows with speed, |u| v"),
     "N_v": _HullTerm(0.0, "kg m/s", 0, "yaw moment of v", is_free=False),

@@ -1,7 +1,7 @@
 """Craft that are steered by thrusters taken through a programme: who works how much, and the run that follows."""
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,7 +19,8 @@ from seatrial.physics.manoeuvres.thrust_programme import (
 )
 from seatrial.physics.models.thrust_orders import work_shares
 from seatrial.physics.models.thruster_layout import AngleInput, ThrusterLayout
-from seatrial.physics.simulate.approach import held_inputs
+from seatrial.physics.simulate.actuators import settled_actuators
+from seatrial.physics.simulate.approach import approach_speed, held_inputs
 from seatrial.physics.simulate.channels import record_of
 from seatrial.physics.simulate.divergence import require_bounded
 from seatrial.physics.simulate.replay import trajectory
@@ -30,6 +31,50 @@ DEFAULT_AHEAD = 0.5
 """Order ahead of a zigzag, share of full command; chosen."""
 STEP_S = 0.05
 """Step of the simulation [s]: a quarter of a small thruster's time constant; chosen."""
+_NUDGE = 1e-3  # rad/s, with which a straight run is disturbed: below any gyro's noise; chosen
+_LAST_SHARE = 0.1  # of a run, over which its yaw rate is averaged; chosen
+
+
+@dataclass(frozen=True, eq=False)
+class StraightRun:
+    """A steady straight run of a craft with thrusters: speed ahead [m/s] and inputs (nu,), the model's signs."""
+
+    speed: float
+    inputs: Array
+
+
+def straight_by_thrusters(
+    model: Model, ahead: float = DEFAULT_AHEAD, inputs: Mapping[str, float] | None = None
+) -> StraightRun:
+    """Return the run in which surge balances at an order ahead, a share of full command; no yaw, no drift.
+
+    Args:
+        inputs: other inputs by name, SI, as ``voltage``; names that the model does not have are left out.
+
+    Raises:
+        InputError: an input is missing, or the craft has no steady speed ahead.
+    """
+    layout = ThrusterLayout.from_text(model.equations.layout)
+    rest = _at_rest(layout)
+    further = {name: value for name, value in (inputs or {}).items() if name in model.input_names and name not in rest}
+    held = held_inputs(model, rest | further, "")
+    for row in _allocation(model, layout):
+        held[int(row[0])] = row[1] + row[2] * row[3] * ahead
+    return StraightRun(approach_speed(model, held), held)
+
+
+def settled_yaw_rate(model: Model, run: StraightRun) -> float:
+    """Return the yaw rate [rad/s, positive to starboard] in which a straight run ends after a nudge to starboard.
+
+    Raises:
+        InputError: the simulation diverges.
+    """
+    start = settled_actuators(model, run.inputs)
+    start[model.states.index("u")], start[model.states.index("r")] = run.speed, _NUDGE
+    steps = round(LONGEST_S / STEP_S)
+    states, _ = trajectory(model, np.tile(run.inputs, (steps + 1, 1)), STEP_S, start)
+    require_bounded(model, frozen(STEP_S * np.arange(steps + 1)), states, "a straight run")
+    return float(np.mean(states[-round(_LAST_SHARE * steps) :, model.states.index("r")]))
 
 
 def thrust_manoeuvre(

@@ -1,0 +1,69 @@
+"""Whether a craft holds a straight course: against eigenvalues written by hand, and against its own motion."""
+
+import math
+
+import numpy as np
+import pytest
+
+from seatrial.estimation.identify.course_stability import course_finding, course_stability
+from seatrial.physics.models import model_named
+from seatrial.physics.simulate.thrust import settled_yaw_rate, straight_by_thrusters
+
+LENGTH = 1.8  # m, chosen
+LINEAR = {
+    "M_v": 2.0, "M_r": 0.4, "X_u": 0.0, "X_uu": -0.4, "Y_v": -0.5, "Y_uv": -0.2, "N_ur": -0.1, "Y_NT": 0.0, "k_J": 0.0,
+    "k_4": 0.0,
+}  # fmt: skip
+NOTHING = np.zeros((20, 20))
+
+
+def by_hand(u: float, N_uv: float, N_r: float) -> np.ndarray:
+    """Sway and yaw of Fossen 2021, eqs. (6.14), (6.40), linearised at v = r = 0 with M_u = 1, per kg of it."""
+    p = LINEAR
+    return np.array(
+        [
+            [(p["Y_v"] + p["Y_uv"] * u) / p["M_v"], -u / p["M_v"]],
+            [(1.0 - p["M_v"] + N_uv) * u / p["M_r"], (N_r + p["N_ur"] * u) / p["M_r"]],
+        ]
+    )
+
+
+@pytest.mark.parametrize(("N_uv", "N_r", "is_unstable"), [(0.0, -0.4, True), (0.9, -0.8, False)])
+def test_eigenvalues_are_those_written_by_hand(N_uv: float, N_r: float, is_unstable: bool) -> None:
+    craft = model_named("thrusters").with_values({**LINEAR, "N_uv": N_uv, "N_r": N_r})
+    covariance = NOTHING[: len(craft.parameters.free), : len(craft.parameters.free)]
+    course = course_stability(craft, covariance, math.inf, {}, LENGTH)
+    assert course is not None
+    assert course.speed is not None
+    matrix = by_hand(course.speed, N_uv, N_r)
+    assert course.growth_rate == pytest.approx(np.linalg.eigvals(matrix).real.max(), rel=1e-6)
+    assert course.index == pytest.approx(np.linalg.det(matrix) * (LENGTH / course.speed) ** 2, rel=1e-6)
+    assert course.is_unstable == is_unstable
+    findings = course_finding(craft, course, {})
+    assert bool(findings) == is_unstable
+    verb = "grows" if is_unstable else "dies out"
+    assert f"the craft is course {'unstable' if is_unstable else 'stable'} at " in course.text
+    assert f"a deviation {verb} by a factor e in " in course.text
+    rate = settled_yaw_rate(craft, straight_by_thrusters(craft))
+    assert rate > 0.01 if is_unstable else rate == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_nudge_grows_as_the_growth_rate_says() -> None:
+    """The interval of the growth rate is that of ships drawn with the same spread of one coefficient."""
+    craft = model_named("thrusters").with_values({**LINEAR, "N_r": -0.4})
+    names = craft.parameters.free_names
+    covariance, k = np.zeros((len(names), len(names))), names.index("N_r")
+    covariance[k, k] = 0.01**2
+    course = course_stability(craft, covariance, math.inf, {}, LENGTH)
+    assert course is not None
+    assert course.growth_upper is not None
+    assert course.growth_rate is not None
+    assert course.speed is not None
+    ends = [np.linalg.eigvals(by_hand(course.speed, 0.0, -0.4 + d)).real.max() for d in (-0.0196, 0.0196)]
+    assert course.growth_upper - course.growth_rate == pytest.approx(0.5 * (ends[1] - ends[0]), rel=0.01)
+    assert "s [" in course.text
+
+
+def test_a_craft_that_cannot_go_ahead_has_no_straight_course() -> None:
+    craft = model_named("thrusters").with_values({"k_f": 0.0})
+    assert course_stability(craft, NOTHING, math.inf, {}, LENGTH) is None
