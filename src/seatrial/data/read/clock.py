@@ -18,6 +18,7 @@ _EXCEL_EPOCH_DAYS = 25569.0  # days from 1899-12-30, where Excel counts from, to
 _DATE_TIME = re.compile(
     r"\d{4}[-/.]\d{1,2}[-/.]\d{1,2}([T ]\d{1,2}:\d{2}(:\d{2}([.,]\d*)?)?)?\s*(Z|UTC|[+-]\d{2}:?\d{2})?"
 )
+_DAY_FIRST = re.compile(r"^(\d{1,2})\.(\d{1,2})\.(\d{4})(?!\d)")  # 14.8.2026: with dots the day comes first
 _TIME_OF_DAY = re.compile(r"\d{1,2}:\d{2}:\d{2}([.,]\d*)?")
 _FRACTION = re.compile(r"(?<=:\d\d)[.,](\d+)")
 
@@ -65,7 +66,7 @@ def _column_stamps(table: RawTable, time: ColumnSpec) -> Stamps:
     if isinstance(cells, np.ndarray) and cells.dtype.kind == "M":
         return Stamps(np.asarray(cells.astype("datetime64[ns]").astype(np.int64) * _NANO, dtype=np.float64))
     first = next((text for cell in cells if (text := _text(cell))), "") if not _is_numeric(cells) else ""
-    if _DATE_TIME.fullmatch(first):
+    if _is_date(first):
         alike = _parsed_alike(cells, first)
         return Stamps(alike) if alike is not None else _parsed([_text(cell) for cell in cells], table, time)
     if _TIME_OF_DAY.fullmatch(first):
@@ -113,7 +114,8 @@ def _parsed(texts: list[str], table: RawTable, time: ColumnSpec) -> Stamps:
     """Dates with their time of day as seconds since 1970, fractions padded as the order of the stamps demands."""
     import pandas as pd
 
-    plain = [text.replace("/", "-").replace(",", ".").removesuffix("UTC") for text in texts]
+    ordered = (_DAY_FIRST.sub(_year_first, text) for text in texts)
+    plain = [text.replace("/", "-").replace(",", ".").removesuffix("UTC") for text in ordered]
     whole = [_FRACTION.sub("", text) for text in plain]
     try:
         parsed = pd.to_datetime(pd.Series(whole).replace("", None), format="ISO8601", utc=True)
@@ -133,8 +135,12 @@ def _parsed(texts: list[str], table: RawTable, time: ColumnSpec) -> Stamps:
     return Stamps(_without_midnights(seconds) if is_clock_only else seconds, note)
 
 
+def _year_first(date: re.Match[str]) -> str:
+    return f"{date[3]}-{date[2]:0>2}-{date[1]:0>2}"
+
+
 def _is_date(text: str) -> bool:
-    return _DATE_TIME.fullmatch(text.strip()) is not None
+    return _DATE_TIME.fullmatch(_DAY_FIRST.sub(_year_first, text.strip())) is not None
 
 
 def _fractions(digits: Sequence[str], seconds: Array) -> tuple[Array, str]:

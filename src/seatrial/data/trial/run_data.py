@@ -58,13 +58,26 @@ class RecordFile:
         """The part's name, or the file's without its ending."""
         return self.part.name if self.part else run_name(self.path)
 
+    @property
+    def files(self) -> tuple[SourceFile, ...]:
+        """The file alone."""
+        return (SourceFile(self.path, self.layout),)
+
     def read(self) -> Record:
         """Read the record, named as the run.
 
         Raises:
             InputError: the file cannot be read as its layout says, or has no such part.
         """
-        return _run_record((SourceFile(self.path, self.layout),), self.name, self.part)
+        return _run_record(self.files, self.name, self.part)
+
+    def first_day(self) -> str:
+        """Return the day of the first time stamp, 2026-05-14; empty where the clock does not count from a date.
+
+        Raises:
+            InputError: as `read`.
+        """
+        return _assembled(*_with_states(self.files)).day
 
 
 @dataclass(frozen=True)
@@ -91,10 +104,36 @@ class RecordSources:
         """
         return _run_record(self.files, self.name, self.part)
 
+    def first_day(self) -> str:
+        """Return the day of the first time stamp, 2026-05-14; empty where the clock does not count from a date.
+
+        Raises:
+            InputError: as `read`.
+        """
+        return _assembled(*_with_states(self.files)).day
+
+
+@dataclass(frozen=True, eq=False)
+class _Assembled:
+    """The record of some files on a clock that starts near zero, the events of their logs, and its first day."""
+
+    record: Record
+    events: tuple[LogEvent, ...]
+    day: str = ""
+
+
+_States = tuple[tuple[int, int], ...]
+
+
+def _with_states(files: tuple[SourceFile, ...]) -> tuple[tuple[SourceFile, ...], _States]:
+    """The files with their times and sizes: a changed file is read again."""
+    states = (file.path.stat() for file in files if is_file(file.path))
+    return files, tuple((state.st_mtime_ns, state.st_size) for state in states)
+
 
 def _run_record(files: tuple[SourceFile, ...], name: str, part: RunPart | None) -> Record:
-    states = tuple(file.path.stat() for file in files if is_file(file.path))
-    record, events = _assembled(files, tuple((state.st_mtime_ns, state.st_size) for state in states))
+    assembled = _assembled(*_with_states(files))
+    record, events = assembled.record, assembled.events
     if part is not None:
         first, last = float(record.time[0]), float(record.time[-1])
         start = _time_of(part.start, part.name, events, first, first) if part.start else first
@@ -109,11 +148,7 @@ def _run_record(files: tuple[SourceFile, ...], name: str, part: RunPart | None) 
 
 
 @lru_cache(maxsize=_LOGS_KEPT)
-def _assembled(
-    files: tuple[SourceFile, ...],
-    states: tuple[tuple[int, int], ...],  # noqa: ARG001  times and sizes of the files: a changed file is read again
-) -> tuple[Record, tuple[LogEvent, ...]]:
-    """The record of the files and the events of their logs, on a clock that starts near zero."""
+def _assembled(files: tuple[SourceFile, ...], states: _States) -> _Assembled:  # noqa: ARG001  states: a part of the key
     sources = [LogSource(read_log(file.path, file.layout), file.layout, file_digest(file.path)) for file in files]
     if len(sources) == 1:
         record = assemble_record(sources[0].log, sources[0].layout, sources[0].sha256)
@@ -122,11 +157,13 @@ def _assembled(
     events = sorted((event for source in sources for event in source.log.events), key=lambda event: event.time)
     first = float(np.nanmin(record.time))
     if first < _EPOCH_CLOCK_S:
-        return record, tuple(events)
+        return _Assembled(record, tuple(events))
     start = float(np.floor(first))
-    step = f"time counted from {datetime.fromtimestamp(start, UTC):%Y-%m-%dT%H:%M:%SZ}"
+    moment = datetime.fromtimestamp(start, UTC)
+    step = f"time counted from {moment:%Y-%m-%dT%H:%M:%SZ}"
     record = replace(record, time=record.time - start, provenance=record.provenance.with_step(step))
-    return record, tuple(replace(event, time=event.time - start) for event in events)
+    shifted = tuple(replace(event, time=event.time - start) for event in events)
+    return _Assembled(record, shifted, f"{moment:%Y-%m-%d}")
 
 
 def _time_of(text: str, part: str, events: tuple[LogEvent, ...], first: float, after: float) -> float:

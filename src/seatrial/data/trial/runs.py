@@ -101,7 +101,7 @@ def _block_runs(
     met = None if length is None else wave_encounter(block.waves, excitation, length, where)
     kind = None if block.kind is None else RecordKind(block.kind)
     return [
-        TrialRun(one, role, session_of(_session_path(one), block.session), trimming, block.source, met, kind)
+        TrialRun(one, role, session_of(_session_path(one), block.session, one.first_day), trimming, block.source, met, kind)
         for one, role in zip(data, roles, strict=True)
     ]
 
