@@ -100,12 +100,13 @@ def correct_trial(trial: "str | Path") -> "Correction":
     return corrected_trial(trial)
 
 
-def draft_trial(*logs: "str | Path", folder: "str | Path" = ".") -> "DraftTrial":
+def draft_trial(*logs: "str | Path", folder: "str | Path" = ".", length: float = 0.0) -> "DraftTrial":
     """Draft a trial file from logs: channels, units, frames and signs by name and behaviour, each with its evidence.
 
     Args:
         logs: files of any format, or folders; files of one kind are runs, of several kinds sources of one run.
         folder: where the trial file will lie; the paths in it count from there.
+        length: of the craft between perpendiculars [m]; 0: it is not stated, and the file asks for it.
 
     Returns:
         The text of the file; what is unsure stands in it as a commented line with both readings.
@@ -115,7 +116,7 @@ def draft_trial(*logs: "str | Path", folder: "str | Path" = ".") -> "DraftTrial"
     """
     from seatrial.data.draft import draft_trial
 
-    return draft_trial(*logs, folder=folder)
+    return draft_trial(*logs, folder=folder, length=length)
 
 
 def survey_log(path: "str | Path") -> "LogSurvey":

@@ -24,21 +24,24 @@ TOPICS_SHOWN = 15  # topics, the same way
 def init(
     logs: Annotated[list[Path], typer.Argument(metavar="LOG...", help="Logs of any format, or folders with logs.")],
     out: Annotated[Path, typer.Option("--out", metavar="TRIAL.toml", help="The trial file to write; a new one.")],
+    length: Annotated[
+        float, typer.Option("--length", metavar="METRES", help="Length of the craft; without it the file asks for it.")
+    ] = 0.0,
 ) -> None:
     """Draft a trial file from logs: what each column is, with the evidence, and the manoeuvres found.
 
-    Example: seatrial init 00000042.BIN --out trial.toml
+    Example: seatrial init 00000042.BIN --length 2.6 --out trial.toml
     """
     from seatrial import api
     from seatrial.core.text.words import counted
     from seatrial.core.values import InputError
     from seatrial.core.values.files import write_atomically
-    from seatrial.data.draft import run_text
+    from seatrial.data.draft import name_contradiction, run_text
     from seatrial.reporting.draft import html as draft_page
 
     if out.exists():
         raise InputError(f"--out '{out}' exists and is not overwritten; name another file, or remove it")
-    draft = api.draft_trial(*logs, folder=out.resolve().parent)
+    draft = api.draft_trial(*logs, folder=out.resolve().parent, length=length)
     page = out.with_suffix(".html")
     if page.exists():
         raise InputError(f"'{page}', the drawing beside --out, exists and is not overwritten; name another file")
@@ -49,6 +52,10 @@ def init(
         name = run.name or run.sources[0].path.name
         print_lines(f"{name}: {one.name}, {one.start:.4g} to {one.stop:.4g} s: {one.evidence}" for one in parts)
         print_lines([f"{name}: {run_text(stretches)}"] if stretches and not parts else [])
+        contradiction = name_contradiction(name, stretches)
+        print_lines([f"NOTE {name}: {contradiction}"] if contradiction else [])
+    print_lines([f"kept out of the estimation, to judge the model by: {draft.held_out}"] if draft.held_out else [])
+    print_lines([draft.session.replace("    # ", ": ")] if draft.session else [])
     questions = draft.open_questions
     if questions:
         print_lines([f"{counted(len(questions), 'column')} to decide, marked OPEN in the file"])
@@ -59,7 +66,6 @@ def init(
 
 def _after_draft(draft: "DraftTrial", out: Path) -> str:
     """What to do next: name columns where none is recognised, decide what is open, else check."""
-    from seatrial.core.text.words import counted
 
     log = next((one.path for one in draft.surveys if all(topic.time is None for topic in one.topics)), None)
     if log is not None:
@@ -70,11 +76,10 @@ def _after_draft(draft: "DraftTrial", out: Path) -> str:
     if not any(g.is_used for part in draft.guesses for g in part):
         log = draft.surveys[0].path
         return f"no column is recognised; seatrial check {in_shell(log)} lists them, name channels in {out}"
-    count = sum(map(len, draft.parts))
     steps = ["decide what is OPEN in it"] if draft.open_questions else []
-    steps += ["fill in [ship]"]
-    steps += [f"uncomment the parts you want of {counted(count, 'manoeuvre')} in it"] if count else []
-    return f"{', '.join([f'read {out}', *steps])}, then seatrial check {in_shell(out)}"
+    steps += ["put the length of the craft after 'L ='"] if draft.lacks_length else []
+    check = f"seatrial check {in_shell(out)}"
+    return f"read {out}, {', '.join(steps)}, then {check}" if steps else check
 
 
 def _print_guesses(guesses: "Sequence[ColumnGuess]") -> None:

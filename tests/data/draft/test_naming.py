@@ -52,3 +52,11 @@ def test_the_rate_of_an_engine_is_recognised_and_not_taken_for_that_of_the_prope
 def test_a_speed_of_the_wind_is_no_speed_of_the_craft() -> None:
     guess = guess_by_name("", "Wind speed fwd", "")
     assert guess is None
+
+
+@pytest.mark.parametrize(
+    ("name", "side"), [("thr_port", "port"), ("stbd_thruster", "starboard"), ("left motor pwm", "port"), ("motor1", "")]
+)
+def test_the_side_of_a_thruster_is_that_of_its_name(name: str, side: str) -> None:
+    guess = guess_by_name("", name, "")
+    assert guess is not None and guess.side == side

@@ -53,7 +53,8 @@ def test_what_one_run_shows_holds_for_all(tmp_path: Path) -> None:
     used = {g.symbol: g for part in draft_trial(tmp_path).guesses for g in part if g.is_used}
     assert (used["sog"].unit, used["sog"].is_open) == ("kn", False)
     assert (used["delta"].positive, used["delta"].is_open) == ("", False)
-    assert '# velocity = "ground"' in draft_trial(tmp_path).text
+    assert "[sensors]" not in draft_trial(tmp_path).text  # the first model has no velocities
+    assert '\nvelocity = "ground"' in draft_trial(tmp_path, length=100.0).text
 
 
 def test_a_circle_alone_does_not_turn_a_rudder_round(tmp_path: Path) -> None:

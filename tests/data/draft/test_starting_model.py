@@ -1,12 +1,17 @@
 """The model and the held-out run of a draft follow from its channels and runs."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from seatrial.core.values import Record
 from seatrial.data.draft.column_guess import ColumnGuess
-from seatrial.data.draft.starting_model import held_out_run, starting_model, thruster_tables
+from seatrial.data.draft.starting_model import held_out_run, starting_model
+from seatrial.data.draft.tables_text import tables_text, thruster_tables
+from seatrial.data.trial.load import load_trial
 
+SHIP = {"delta", "u", "v", "r", "psi", "lat", "lon"}
 TIME = np.arange(400) * 0.5
 
 
@@ -62,8 +67,36 @@ def test_the_smaller_of_two_decays_is_held_out_to_whichever_side_it_starts() -> 
 
 def test_thrusters_are_named_by_the_side_that_the_motion_shows() -> None:
     left, right = (ColumnGuess(s, f"command_{k}", "1", side=s) for k, s in ((1, "port"), (2, "starboard")))
-    text = "\n".join(thruster_tables([left, right]))
-    assert 'name = "port"\nx = 0.0' in text and "y = -0.0" in text
+    text = "\n".join(thruster_tables([left, right], 2.0))
+    assert 'name = "port"\nx = 0.0' in text and "y = -0.30    # ESTIMATED" in text
     assert text.count("same_as") == 1
-    unknown = thruster_tables([ColumnGuess("a", "command_1", "1"), ColumnGuess("b", "alpha_1", "rad")])
+    unknown = thruster_tables([ColumnGuess("a", "command_1", "1"), ColumnGuess("b", "alpha_1", "rad")], 2.0)
     assert 'name = "thruster_1"' in unknown and 'angle = { channel = "alpha_1" }' in unknown
+
+
+def trial_run(rudder_deg: float, rate: float = 1.5) -> Record:
+    delta = np.radians(rudder_deg) * np.sign(np.sin(0.2 * TIME))
+    same = np.ones(400)
+    return Record.from_arrays("run", TIME, {"delta": delta, "u": 6.0 * same, "v": 0.0 * same, "n": rate * same})
+
+
+def test_a_ship_of_stated_length_whose_drift_is_recorded_has_a_model_of_forces() -> None:
+    runs = [trial_run(10.0), trial_run(20.0)]
+    model = starting_model(SHIP, runs, 35.0)
+    assert (model.name, model.speed, model.free[-1]) == ("abkowitz", 6.0, "N_rrr")
+    assert starting_model(SHIP, runs).name == "nomoto"  # no length
+    assert starting_model(SHIP - {"v"}, runs, 35.0).name == "nomoto"
+    assert starting_model(SHIP, [trial_run(10.0), trial_run(20.0, 2.0)], 35.0).name == "nomoto"  # its engine varies
+
+
+def test_the_tables_of_a_ship_are_a_trial_that_runs(tmp_path: Path) -> None:
+    model = starting_model(SHIP, [trial_run(10.0)], 35.0)
+    lines = tables_text(model, [ColumnGuess("a", "sog", "kn"), ColumnGuess("b", "cog", "deg")], 35.0)
+    (tmp_path / "log.csv").write_text("".join(f"{t},{t % 7}\n" for t in range(40)))
+    records = '[[records]]\nfiles = ["log.csv"]\ntime = { column = 1 }\nchannels.delta = { column = 2, unit = "deg" }\n'
+    (tmp_path / "trial.toml").write_text("\n".join([*lines, records]))
+    trial = load_trial(tmp_path / "trial.toml")
+    value = {p.name: p.value for p in trial.model.parameters}
+    assert value["I_z"] == pytest.approx(value["m"] * (35.0 / 4.0) ** 2, 1e-3)
+    assert value["Y_vdot"] < 0.0 and trial.estimate.current and 'velocity = "ground"' in "".join(lines)
+    assert any("ESTIMATED" in line and line.startswith("m = ") for line in lines)

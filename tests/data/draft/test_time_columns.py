@@ -39,6 +39,13 @@ def test_each_form_of_a_clock_is_recognised_with_its_unit(header: str, tmp_path:
     assert [column.name for column in topic.columns] == ["surge"]
 
 
+def test_a_unit_in_the_line_of_units_is_that_of_the_time(tmp_path: Path) -> None:
+    rows = "\n".join(f"{100 * k},{np.sin(0.1 * k):.6f}" for k in range(400))
+    (tmp_path / "run.csv").write_text(f"t,surge\nms,m/s\n{rows}\n", encoding="utf-8")
+    (topic,) = survey_log(tmp_path / "run.csv").topics
+    assert (topic.rate, topic.time_note) == (pytest.approx(10.0, rel=1e-3), "named 't', with its unit")
+
+
 @pytest.mark.parametrize(("step", "unit"), [(10.0, "s"), (0.02, "s")])
 def test_seconds_from_the_start_are_no_clock_of_digits_and_no_days(step: float, unit: str, tmp_path: Path) -> None:
     rows = "\n".join(f"{20000.0 + step * k:.2f},{k % 7}" for k in range(900))

@@ -4,6 +4,7 @@ from seatrial.data.draft.draft import DraftTrial, draft_trial
 from seatrial.data.draft.draft_text import run_text
 from seatrial.data.draft.guess import guess_columns
 from seatrial.data.draft.manoeuvres import find_stretches
+from seatrial.data.draft.named_manoeuvre import name_contradiction
 from seatrial.data.draft.runs_of_logs import LogRun, runs_of_logs
 from seatrial.data.draft.stretch import LogStretch
 from seatrial.data.draft.survey import ColumnSummary, LogSurvey, TopicSummary, survey_log
@@ -20,6 +21,7 @@ __all__ = [
     "draft_trial",
     "find_stretches",
     "guess_columns",
+    "name_contradiction",
     "run_text",
     "runs_of_logs",
     "survey_log",

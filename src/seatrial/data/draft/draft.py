@@ -1,5 +1,6 @@
 """A trial file drafted from logs: every guess with its evidence, what is unsure as a commented line."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,10 +14,13 @@ from seatrial.data.draft.draft_text import RecordsBlock, trial_text
 from seatrial.data.draft.guess import guess_columns, without_conflicts
 from seatrial.data.draft.manoeuvres import find_stretches, is_decay, numbered, offered_parts
 from seatrial.data.draft.runs_of_logs import LogRun, runs_of_logs
+from seatrial.data.draft.session_text import session_line
 from seatrial.data.draft.starting_model import StartingModel, held_out_run, starting_model
 from seatrial.data.draft.stretch import LogStretch
 from seatrial.data.draft.survey import LogSurvey, survey_log
+from seatrial.data.draft.tables_text import tables_text
 from seatrial.data.read import FORMATS
+from seatrial.data.trial.run_data import run_name
 
 _RUNS_EXAMINED = 6  # the longest, whose motion is compared with the guesses; chosen: some show what others do not
 
@@ -31,7 +35,10 @@ class DraftTrial:
         runs: which of them belong together.
         guesses: of the columns of each source of the longest run.
         records: of each run, even and complete; None where its columns make none.
-        stretches: manoeuvres found, of each run; parts: those of them that are offered as runs of their own.
+        stretches: manoeuvres found, of each run; parts: those of them that are runs of their own.
+        held_out: the run that judges the model; empty: none can.
+        session: the line that says which runs share their offsets; empty: each has its own.
+        lacks_length: whether the length of the craft is to be stated.
     """
 
     text: str
@@ -41,6 +48,9 @@ class DraftTrial:
     records: tuple[Record | None, ...] = ()
     stretches: tuple[tuple[LogStretch, ...], ...] = ()
     parts: tuple[tuple[LogStretch, ...], ...] = ()
+    held_out: str = ""
+    session: str = ""
+    lacks_length: bool = False
 
     @property
     def open_questions(self) -> tuple[ColumnGuess, ...]:
@@ -48,16 +58,19 @@ class DraftTrial:
         return tuple(g for part in self.guesses for g in part if g.is_used and g.is_open)
 
 
-def draft_trial(*logs: str | Path, folder: str | Path = ".") -> DraftTrial:
+def draft_trial(*logs: str | Path, folder: str | Path = ".", length: float = 0.0) -> DraftTrial:
     """Draft a trial file for logs: files, or folders whose logs are taken.
 
     Args:
         logs: which of them are runs, and which are sources of one run, follows from kind, clock and name.
         folder: where the trial file will lie; the paths in it count from there.
+        length: m between perpendiculars; 0: it is not stated, and the file asks for it.
 
     Raises:
-        InputError: no logs, or one that cannot be read.
+        InputError: no logs, or one that cannot be read; a length below zero.
     """
+    if not 0.0 <= length < math.inf:
+        raise InputError(f"length = {length:g}: a length in m is positive; correct it")
     surveys, reasons = _surveys([Path(log) for log in logs])
     runs = runs_of_logs(surveys)
     used = {survey.path for run in runs for survey in run.sources}
@@ -69,11 +82,30 @@ def draft_trial(*logs: str | Path, folder: str | Path = ".") -> DraftTrial:
     records = [run_record(run.sources, parts) for run, parts in zip(runs, guesses, strict=True)]
     stretches = numbered([find_stretches(run.sources, one) for run, one in zip(runs, records, strict=True)])
     parts = offered_parts(records, stretches)
-    model = starting_model({g.symbol for one in guesses[longest[0]] for g in one if g.is_used}, records)
+    model = starting_model({g.symbol for one in guesses[longest[0]] for g in one if g.is_used}, records, length)
+    held_out, session = held_out_run(model, _pieces(runs, records, parts)), session_line(runs)
     blocks = _blocks(runs, guesses, stretches, parts, longest[0])
-    blocks = _with_roles(blocks, model, runs, records)
-    text = trial_text(blocks, model, reasons | left_out, Path(folder).resolve())
-    return DraftTrial(text, tuple(surveys), tuple(runs), guesses[longest[0]], tuple(records), stretches, parts)
+    blocks = [_with_roles(block, model, held_out, session) for block in blocks]
+    tables = tables_text(model, [g for _, columns in blocks[0].sources for g in columns], length)
+    text = trial_text(blocks, tables, reasons | left_out, Path(folder).resolve())
+    return DraftTrial(
+        text, tuple(surveys), tuple(runs), guesses[longest[0]], tuple(records), stretches, parts, held_out, session,
+        bool(model.name) and not length,
+    )  # fmt: skip
+
+
+def _pieces(
+    runs: Sequence[LogRun], records: Sequence[Record | None], parts: Sequence[Sequence[LogStretch]]
+) -> dict[str, Record]:
+    """The record of each run of the trial, whole or cut out of its log; empty where one of them cannot be read."""
+    pieces = dict[str, Record]()
+    for run, record, offered in zip(runs, records, parts, strict=True):
+        if record is None:
+            return {}
+        origin = float(record.time[0])
+        cut = {one.name: record.between(origin + one.start, origin + one.stop) for one in offered}
+        pieces |= cut or {run.name or run_name(run.sources[0].path): record}
+    return pieces
 
 
 def _blocks(
@@ -93,21 +125,16 @@ def _blocks(
     return [RecordsBlock("", ((files[longest], guesses[longest][0]),), files, tuple(stretches), tuple(parts))]
 
 
-def _with_roles(
-    blocks: Sequence[RecordsBlock], model: StartingModel, runs: Sequence[LogRun], records: Sequence[Record | None]
-) -> list[RecordsBlock]:
-    """The blocks with the run that judges the model, and roll decays from their release on."""
-    names = [run.name or run.sources[0].path.stem for run in runs]
-    whole = {name: one for name, one in zip(names, records, strict=True) if one is not None}
-    held_out = held_out_run(model, whole) if len(whole) == len(names) else ""
-    return [
-        replace(
-            block,
-            validate=held_out if not block.name or block.name == held_out else "",
-            is_released=model.swings and all(any(map(is_decay, one)) for one in block.stretches),
-        )
-        for block in blocks
-    ]
+def _with_roles(block: RecordsBlock, model: StartingModel, held_out: str, session: str) -> RecordsBlock:
+    """The block with the run that judges the model, its session, and roll decays from their release on."""
+    names = [block.name, *(run_name(one.path) for one in block.files)]
+    names += [one.name for offered in block.parts for one in offered]
+    return replace(
+        block,
+        validate=held_out if held_out in names else "",
+        session=session,
+        is_released=model.swings and all(any(map(is_decay, one)) for one in block.stretches),
+    )
 
 
 def _surveys(logs: Sequence[Path]) -> tuple[list[LogSurvey], dict[Path, str]]:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from seatrial.core.text.words import counted
 from seatrial.data.draft.column_guess import ColumnGuess
-from seatrial.data.draft.starting_model import StartingModel, thruster_tables
+from seatrial.data.draft.named_manoeuvre import name_contradiction
 from seatrial.data.draft.stored_parameters import antenna_place
 from seatrial.data.draft.stretch import LogStretch
 from seatrial.data.draft.survey import LogSurvey
@@ -37,19 +37,22 @@ class RecordsBlock:
     stretches: tuple[tuple[LogStretch, ...], ...]
     parts: tuple[tuple[LogStretch, ...], ...]
     validate: str = ""
+    session: str = ""
     is_released: bool = False
 
 
-def trial_text(blocks: Sequence[RecordsBlock], model: StartingModel, left_out: Mapping[Path, str], folder: Path) -> str:
+def trial_text(
+    blocks: Sequence[RecordsBlock], tables: Sequence[str], left_out: Mapping[Path, str], folder: Path
+) -> str:
     """Return the TOML file; only its first block gives the evidence.
 
-    model: with which it begins. left_out: files that are no source of a run, with the reason. folder: where the file
-    will lie; the paths in it count from there.
+    tables: the lines before the records. left_out: files that are no source of a run, with the reason. folder: where
+    the file will lie; the paths in it count from there.
     """
     lines = [
-        "# Drafted by seatrial init. Every line says why; lines with OPEN are for you to choose.",
+        "# Drafted by seatrial init. Lines say why. OPEN: choose one. ESTIMATED: write a better number if you have it.",
         "",
-        *_particulars(model, [g for _, guesses in blocks[0].sources for g in guesses]),
+        *tables,
         *(f"# left out: {_comment(_relative(path, folder))}: {_comment(why)}" for path, why in left_out.items()),
     ]
     for number, block in enumerate(blocks):
@@ -89,43 +92,11 @@ def _without_evidence(line: str) -> str:
     return line if line.startswith("#") else line.partition("    # ")[0]
 
 
-def _particulars(model: StartingModel, guesses: Sequence[ColumnGuess]) -> list[str]:
-    """Ship and model, with what a person must state; `check` needs neither."""
-    if not model.name:
-        return [
-            "# 'seatrial check' needs neither ship nor model, 'seatrial identify' both: 'seatrial models' lists them.",
-            "# OPEN: no input (rudder, propeller, thruster) was found, and a model needs one: name its column below.",
-            "",
-        ]
-    names = ", ".join(map(_quoted, model.free))
-    return [
-        "[ship]",
-        'name = "craft"',
-        "L = 0.0    # m, between perpendiculars: state it; 'seatrial check' works without it",
-        "",
-        "[model]",
-        f"name = {_quoted(model.name)}    # {model.why}",
-        *([f"free = [{names}]    # {model.free_reason}"] if model.free else []),
-        *(thruster_tables(guesses) if model.has_thrusters else []),
-        "",
-        *_sensor_lines(model, guesses),
-    ]
-
-
-def _sensor_lines(model: StartingModel, guesses: Sequence[ColumnGuess]) -> list[str]:
-    """That velocities are those of a receiver: fitted as if through the water, a current would end in coefficients."""
-    if not any(g.is_used and (g.symbol == "sog" or (g.symbol == "u" and g.frame == "earth")) for g in guesses):
-        return []
-    if not model.has_thrusters:
-        why = "u, v of the log are over ground: remove both # with a model that has them"
-        return ["# [sensors]", f'# velocity = "ground"    # {why}', ""]
-    return ["[sensors]", 'velocity = "ground"    # of a receiver, over ground: a current is in them', ""]
-
-
 def _role_lines(block: RecordsBlock) -> list[str]:
     """Which run judges the model, and from where on a decay counts."""
     why = "kept out of the estimation, to judge the model by; choose another one if you like"
     lines = [f"validate = {_quoted(block.validate)}    # {why}"] if block.validate else []
+    lines += [block.session] if block.session else []
     return [*lines, "from_release = true    # drops what lies before the release"] if block.is_released else lines
 
 
@@ -215,36 +186,29 @@ def _channel_table(guess: ColumnGuess) -> str:
 
 
 def _part_lines(stretches: Mapping[str, Sequence[LogStretch]], parts: Sequence[Sequence[LogStretch]]) -> list[str]:
-    """What each run is, and the manoeuvres that are offered as commented parts.
+    """What each run is, and the manoeuvres that are runs of their own.
 
     stretches: of each run, by the name of its file, which is empty where there is no other.
     """
     offered = {name: part for name, part in zip(stretches, parts, strict=True) if part}
-    lines = [
-        f"# {_comment(name)}{': ' if name else ''}{run_text(found)}"
-        for name, found in stretches.items()
-        if found and name not in offered
-    ]
+    lines = [_run_line(name, found) for name, found in stretches.items() if found and name not in offered]
     if not offered:
         return lines
-    lines += [
-        "# Manoeuvres found; remove the # of those you want as runs of their own, and of the brackets.",
-        "# parts = [",
-    ]
+    lines += ["# Each of these manoeuvres is a run of its own; what lies between them is not used.", "parts = ["]
     for name, part in offered.items():
         file = f"file = {_quoted(name)}, " if name else ""
         lines += [
-            f'#     {{ {file}name = {_quoted(one.name)}, from = "{one.start:.6g} s", to = "{one.stop:.6g} s" }},'
+            f'    {{ {file}name = {_quoted(one.name)}, from = "{one.start:.6g} s", to = "{one.stop:.6g} s" }},'
             f"    # {one.evidence}"
             for one in part
         ]
-    names = [one.name for part in offered.values() for one in part]
-    keep = (
-        [f"# validate = {_quoted(names[-1])}    # keeps one of them out, to judge the model by"]
-        if len(names) > 1
-        else []
-    )
-    return [*lines, "# ]", *keep]
+    return [*lines, "]"]
+
+
+def _run_line(name: str, stretches: Sequence[LogStretch]) -> str:
+    contradiction = name_contradiction(name, stretches)
+    note = f"; NOTE: {contradiction}" if contradiction else ""
+    return f"# {_comment(name)}{': ' if name else ''}{run_text(stretches)}{note}"
 
 
 def run_text(stretches: Sequence[LogStretch]) -> str:

@@ -98,7 +98,7 @@ def _first_guess(survey: LogSurvey, topic: TopicSummary, column: ColumnSummary, 
         unused_because=rule.unused_because,
     )
     if named.symbol.startswith("command_"):
-        return command_guess(guess, column, survey)
+        return command_guess(replace(guess, side=named.side), column, survey)
     if rule.frame == "enu":
         other = 'frame = "earth" (x north, y east): the log does not say'
         return replace(guess, other_reading=other).with_evidence("axes as ROS recommends (REP 103)")

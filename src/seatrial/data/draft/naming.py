@@ -114,6 +114,7 @@ _FORWARD, _ACROSS = "(forward|fwd|ahead|longitudinal)", "(stbd|starboard|lateral
 _COMPASS = "a magnetic one is psi_magnetic, with variation"
 _ENGINE = "rate of the engine: to use it, write it as channels.n with scale = propeller turns over engine turns"
 _PORT, _STARBOARD = "(left|port)", "(right|starboard|stbd)"
+_SIDES = {"port": _PORT, "starboard": _STARBOARD}
 _THRUSTER, _PULSE = "(thr(ottle|uster)?|motor|esc|pwm|command|cmd)", "(_(pwm|us|out|output|raw|cmd))?"
 _WORDS = [
     *_rules(
@@ -167,12 +168,14 @@ class NameGuess:
         symbol: with the number of a thruster filled in.
         unit: stated by the file, by the name, or by the logger's documentation; empty: not known.
         evidence: for people.
+        side: of the craft, port or starboard, that it names; empty: none.
     """
 
     rule: NameRule
     symbol: str
     unit: str
     evidence: str
+    side: str = ""
 
 
 def guess_by_name(topic: str, name: str, stated_unit: str, log_format: str = "text") -> NameGuess | None:
@@ -221,7 +224,8 @@ def _guess(rule: NameRule, match: re.Match[str], unit: str, evidence: str) -> Na
         return None
     if unit and unit != "us" and si_unit(unit)[1] != expected:
         unit = ""
-    return NameGuess(rule, symbol, unit, evidence)
+    side = next((word for word, names in _SIDES.items() if re.search(names, match.string)), "")
+    return NameGuess(rule, symbol, unit, evidence, side)
 
 
 def _known_unit(text: str) -> str:

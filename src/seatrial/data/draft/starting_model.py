@@ -1,4 +1,4 @@
-"""Ship, model and held-out run with which a drafted trial begins, by what the logs hold."""
+"""Model and held-out run with which a drafted trial begins, by what the logs hold."""
 
 from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
@@ -6,14 +6,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.values import Record
-from seatrial.data.draft.column_guess import ColumnGuess
 
-_THRUSTERS, _ROLL = "thrusters", "roll"
+_THRUSTERS, _ROLL, _SHIP = "thrusters", "roll", "abkowitz"
 _ROLL_MOTION = frozenset({"phi", "p"})
 _STEERED_MOTION = frozenset({"psi", "psi_magnetic", "r", "u", "v", "x0", "y0", "lat", "lon"})
 # largest rudder angle of one run over that of another, from which on the fall of the gain with it shows; chosen
 _AMPLITUDE_RATIO = 1.3
 _PEAK_PERCENTILE = 95.0  # of the rudder's distance from amidships: its order, not its overshoot; chosen
+_LINEAR_TERMS = ("X_u", "X_rr", "Y_v", "Y_r", "Y_d", "N_v", "N_r", "N_d")  # the smallest set that turns and slows down
+_VELOCITIES = (frozenset({"u", "v"}), frozenset({"sog", "cog", "psi"}))  # either shows how a ship drifts
+_APPROACH_S = 5.0  # s from the start of a run whose mean speed is that of the approach; chosen
+_STEADY_RATE = 0.1  # of its median, by which the rate of a propeller may vary that is steady; chosen
+_HARDLY_STEERED = 0.3  # of the largest size of the inputs of a run, below which a run judges nothing; chosen
 _BEYOND = 0.05  # of the range of an input in the other runs, by which a run may leave it and still lie within; chosen
 
 
@@ -27,6 +31,7 @@ class StartingModel:
         free: coefficients to estimate; empty: the model's default.
         free_reason: why these.
         inputs: channels by whose size and range runs are compared.
+        speed: m/s at which the runs begin; 0 where it is not recorded.
     """
 
     name: str
@@ -34,6 +39,12 @@ class StartingModel:
     free: tuple[str, ...] = ()
     free_reason: str = ""
     inputs: tuple[str, ...] = ()
+    speed: float = 0.0
+
+    @property
+    def has_forces_of_a_ship(self) -> bool:
+        """Whether it is the model of a ship's forces, the one of these that needs mass and inertia."""
+        return self.name == _SHIP
 
     @property
     def has_thrusters(self) -> bool:
@@ -46,12 +57,22 @@ class StartingModel:
         return self.name == _ROLL
 
 
-def starting_model(symbols: Set[str], records: Sequence[Record | None]) -> StartingModel:
-    """Return the simplest model for the channels that are used, its free coefficients as the runs can show them."""
+def starting_model(symbols: Set[str], records: Sequence[Record | None], length: float = 0.0) -> StartingModel:
+    """Return the simplest model for the channels that are used, its free coefficients as the runs can show them.
+
+    A ship with a rudder whose speeds ahead and across are recorded has one of forces where its length [m] is stated and
+    its propeller, if it is recorded, turns steadily.
+    """
     commands = tuple(sorted(one for one in symbols if one.startswith(("command_", "rpm_"))))
     if "delta" in symbols:
         peaks = [_peak(one["delta"]) for one in records if one is not None and "delta" in one]
         falls = len(peaks) > 1 and max(peaks) > _AMPLITUDE_RATIO * min(peaks)
+        speed = _approach_speed(records)
+        if length and speed and any(one <= symbols for one in _VELOCITIES) and _is_rate_steady(records):
+            why = "forces over drift, yaw rate and rudder; 'seatrial models' lists others"
+            reason = f"the linear terms{', and the damping of fast turns, as rudder angles differ' if falls else ''}"
+            free = (*_LINEAR_TERMS, "N_rrr") if falls else _LINEAR_TERMS
+            return StartingModel(_SHIP, why, free, reason, ("delta",), speed)
         why = "the simplest with a rudder; 'seatrial models' lists others, 'seatrial models NAME' what one needs"
         reason = "gain, time constant, and the fall of the gain with the rudder angle, which differs between the runs"
         return StartingModel("nomoto", why, ("K", "T", "alpha") if falls else (), reason, ("delta",))
@@ -67,35 +88,16 @@ def starting_model(symbols: Set[str], records: Sequence[Record | None]) -> Start
 def held_out_run(model: StartingModel, records: Mapping[str, Record]) -> str:
     """Return the run to judge the model by: the middle one by size of those whose inputs lie within the others'.
 
-    Empty where there is none: a model is not judged beyond the runs that it is fitted to.
+    Empty where there is none: a model is not judged beyond the runs that it is fitted to, nor by one that hardly
+    steers.
     """
-    inside = [name for name in records if _lies_within(model, name, records)]
-    sizes = {name: _size(model, records[name]) for name in inside}
+    if not model.inputs:
+        return ""
+    sizes = {name: _size(model, record) for name, record in records.items()}
+    steered = [name for name, size in sizes.items() if size > _HARDLY_STEERED * max(sizes.values())]
+    inside = [name for name in steered if _lies_within(model, name, records)]
     ordered = sorted(inside, key=lambda name: sizes[name])
     return ordered[(len(ordered) - 1) // 2] if ordered else ""
-
-
-def thruster_tables(guesses: Sequence[ColumnGuess]) -> list[str]:
-    """Return one table for each command, with the side on which the motion shows the thruster."""
-    used = {g.symbol: g for g in guesses if g.is_used}
-    commands = [g for symbol, g in sorted(used.items()) if symbol.startswith(("command_", "rpm_"))]
-    sides = [g.side for g in commands]
-    names = [g.side if g.side and sides.count(g.side) == 1 else f"thruster_{k}" for k, g in enumerate(commands, 1)]
-    is_pair = sorted(names) == ["port", "starboard"]
-    lines = list[str]()
-    for name, guess in zip(names, commands, strict=True):
-        sign = {"port": "-", "starboard": ""}.get(name, "")
-        angle = f"alpha_{guess.symbol.rpartition('_')[2]}"
-        is_rate = guess.symbol.startswith("rpm")
-        unit = ', unit = "rpm" }    # add span = the rpm at full ahead' if is_rate else " }"
-        lines += [
-            "", "[[thruster]]", f'name = "{name}"', "x = 0.0    # m forward of the point to which positions refer",
-            f"y = {sign}0.0    # m to starboard, negative to port: state it",
-            *([f'angle = {{ channel = "{angle}" }}'] if angle in used else []),
-            f'command = {{ channel = "{guess.symbol}"{unit}',
-            *(['same_as = "starboard"    # the same coefficients'] if is_pair and name == "port" else []),
-        ]  # fmt: skip
-    return lines
 
 
 def _lies_within(model: StartingModel, name: str, records: Mapping[str, Record]) -> bool:
@@ -121,7 +123,30 @@ def _range(model: StartingModel, values: np.ndarray) -> tuple[float, float]:
 
 
 def _size(model: StartingModel, record: Record) -> float:
-    return float(np.sqrt(sum(np.var(record[one]) for one in model.inputs if one in record)))
+    """The rms of the inputs; of a roll decay about its rest."""
+    parts = (record[one] for one in model.inputs if one in record)
+    return float(np.sqrt(sum(np.var(one) if model.swings else np.mean(one**2) for one in parts)))
+
+
+def _approach_speed(records: Sequence[Record | None]) -> float:
+    """The median over the runs of the speed at their start [m/s]; 0 where one has none."""
+    used = [one for one in records if one is not None]
+    if not used or not all({"u", "v"} <= set(one.channels) for one in used):
+        return 0.0
+    starts = (one.time - one.time[0] <= _APPROACH_S for one in used)
+    speeds = [np.mean(np.hypot(one["u"], one["v"])[rows]) for one, rows in zip(used, starts, strict=True)]
+    return float(np.median(speeds))
+
+
+def _is_rate_steady(records: Sequence[Record | None]) -> bool:
+    """Whether the propeller turns at one rate in all runs, as far as it is recorded."""
+    rates = [one["n"] for one in records if one is not None and "n" in one]
+    if not rates:
+        return True
+    medians = [float(np.median(one)) for one in rates]
+    middle = float(np.median(medians))
+    low, high = (np.percentile(np.concatenate(rates), one) for one in (100.0 - _PEAK_PERCENTILE, _PEAK_PERCENTILE))
+    return max(middle - low, high - middle) <= _STEADY_RATE * abs(middle)
 
 
 def _peak(rudder: np.ndarray) -> float:

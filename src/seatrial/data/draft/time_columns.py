@@ -51,7 +51,7 @@ def time_column(table: RawTable, layout: Layout) -> tuple[ColumnSpec | None, str
     if completed is not None:
         return completed
     fault = ""
-    for name, unit in _named_as_time(plain):
+    for name, unit in _named_as_time(plain, dict(zip(table.names, table.units, strict=False))):
         fault = fault or _backwards(table, name)
         spec, note = _with_unit(table, name, unit)
         if spec is not None:
@@ -84,16 +84,16 @@ def _of_two_columns(plain: dict[str, str]) -> tuple[TimeSpec, str] | None:
     return TimeSpec("time", tow, "s", week=week), "GNSS week and seconds of the week"
 
 
-def _named_as_time(plain: dict[str, str]) -> Iterator[tuple[str, str]]:
+def _named_as_time(plain: dict[str, str], units: dict[str, str]) -> Iterator[tuple[str, str]]:
     """Columns that are called as time is, in the order of preference, with the unit that the name or its bracket ends
-    with.
+    with, or that the line of units gives.
     """
     for wanted in _TIME_NAMES:
         for name, source in plain.items():
             head, _, last = name.rpartition("_")
             if name == wanted:
                 bracket = re.search(r"[\[(](\w+)[\])]", source)
-                yield source, _UNITS.get(bracket[1].lower(), "") if bracket else ""
+                yield source, _UNITS.get((bracket[1] if bracket else units.get(source, "")).strip().lower(), "")
             elif head == wanted and last in _UNITS:
                 yield source, _UNITS[last]
 

@@ -100,9 +100,10 @@ def _block_runs(
     roles = _roles(block, [one.name for one in data], where)
     met = None if length is None else wave_encounter(block.waves, excitation, length, where)
     kind = None if block.kind is None else RecordKind(block.kind)
+    sessions = [session_of(_session_path(one), block.session, one.first_day) for one in data]
     return [
-        TrialRun(one, role, session_of(_session_path(one), block.session, one.first_day), trimming, block.source, met, kind)
-        for one, role in zip(data, roles, strict=True)
+        TrialRun(one, role, session, trimming, block.source, met, kind)
+        for one, role, session in zip(data, roles, sessions, strict=True)
     ]
 
 

@@ -1,0 +1,34 @@
+"""The line of a draft that says which runs share their current and their zeros: those of one day."""
+
+import math
+from collections.abc import Sequence
+from datetime import UTC, datetime
+
+from seatrial.data.draft.clocks import time_span
+from seatrial.data.draft.runs_of_logs import LogRun
+from seatrial.data.trial.session import date_in
+
+_EPOCH_CLOCK_S = 1e8  # s beyond which a clock counts from 1970 or the like, three years; as in the parts of a run
+
+
+def session_line(runs: Sequence[LogRun]) -> str:
+    """Return ``session = ...`` with its reason; empty where a run has no date, or all days differ."""
+    days = [_day_of(run) for run in runs]
+    if len(runs) < 2 or not all(days):
+        return ""
+    if len(set(days)) == 1:
+        return f'session = "all"    # every run is of {days[0]}: they share the current and the zeros of that day'
+    if len(set(days)) == len(days):
+        return ""
+    return f'session = "day"    # runs of {len(set(days))} days: those of one share its current and its zeros'
+
+
+def _day_of(run: LogRun) -> str:
+    """The day in the names of its files, else of the first time stamp; empty where there is none."""
+    for survey in run.sources:
+        start = time_span(survey)[0]
+        if named := date_in(survey.path.stem):
+            return named
+        if math.isfinite(start) and start > _EPOCH_CLOCK_S:
+            return f"{datetime.fromtimestamp(start, UTC):%Y-%m-%d}"
+    return ""

@@ -1,0 +1,102 @@
+"""The tables of a drafted trial file that stand before its records: ship, model, thrusters, sensors, offsets."""
+
+from collections.abc import Sequence
+
+from seatrial.data.draft.column_guess import ColumnGuess
+from seatrial.data.draft.ship_estimates import added_masses, mass_properties
+from seatrial.data.draft.starting_model import StartingModel
+
+_LEVER_SHARE = 0.15  # of the length, from the centre line to a thruster of a pair; chosen: a catamaran's hull
+_CURRENT = 0.3  # m/s, standard deviation of an unknown current; as the advice of the checks
+
+
+def tables_text(model: StartingModel, guesses: Sequence[ColumnGuess], length: float) -> list[str]:
+    """Return the lines of ship and model, and of what else the model needs; of a model without a name what is missing.
+
+    guesses: of all sources of the longest run. length: m between perpendiculars; 0: it is not stated.
+    """
+    if not model.name:
+        return [
+            "# 'seatrial check' needs neither ship nor model, 'seatrial identify' both: 'seatrial models' lists them.",
+            "# OPEN: no input (rudder, propeller, thruster) was found, and a model needs one: name its column below.",
+            "",
+        ]
+    names = ", ".join(f'"{name}"' for name in model.free)
+    return [
+        "[ship]",
+        'name = "craft"',
+        *_ship_lines(model, length),
+        "",
+        "[model]",
+        f'name = "{model.name}"    # {model.why}',
+        *([f"free = [{names}]    # {model.free_reason}"] if model.free else []),
+        *(["", "[model.fixed]", *(one.line for one in added_masses(length))] if model.has_forces_of_a_ship else []),
+        *(thruster_tables(guesses, length) if model.has_thrusters else []),
+        "",
+        *_sensor_lines(model, guesses),
+        *_offset_lines(model, guesses),
+    ]
+
+
+def _ship_lines(model: StartingModel, length: float) -> list[str]:
+    stated = f"L = {length:g}    # m, length of the craft, as stated"
+    lines = [stated if length else "L = 0.0    # MISSING: m, length of the craft, the one number that this file lacks"]
+    if model.has_forces_of_a_ship:
+        lines += [one.line for one in mass_properties(length)]
+        lines.append(f"U_n = {model.speed:.2f}    # m/s, speed at which the runs begin, as recorded")
+    if model.swings:
+        lines.append("# B = 0.0    # m, breadth: with it GM follows from the period")
+    return lines
+
+
+def thruster_tables(guesses: Sequence[ColumnGuess], length: float) -> list[str]:
+    """Return one table for each command, on the side that the motion or its name shows; length: m, 0: not stated."""
+    used = {g.symbol: g for g in guesses if g.is_used}
+    commands = [g for symbol, g in sorted(used.items()) if symbol.startswith(("command_", "rpm_"))]
+    sides = [g.side for g in commands]
+    names = [g.side if g.side and sides.count(g.side) == 1 else f"thruster_{k}" for k, g in enumerate(commands, 1)]
+    is_pair = sorted(names) == ["port", "starboard"]
+    lines = list[str]()
+    for name, guess in zip(names, commands, strict=True):
+        sign = {"port": -1.0, "starboard": 1.0}.get(name, 0.0)
+        angle = f"alpha_{guess.symbol.rpartition('_')[2]}"
+        is_rate = guess.symbol.startswith("rpm")
+        unit = ', unit = "rpm" }    # add span = the rpm at full ahead' if is_rate else " }"
+        lines += [
+            "", "[[thruster]]", f'name = "{name}"',
+            "x = 0.0    # m forward of midship; counts where thrust can act sideways",
+            _lever_line(sign, length),
+            *([f'angle = {{ channel = "{angle}" }}'] if angle in used else []),
+            f'command = {{ channel = "{guess.symbol}"{unit}',
+            *(['same_as = "starboard"    # the same coefficients'] if is_pair and name == "port" else []),
+        ]  # fmt: skip
+    return lines
+
+
+def _lever_line(sign: float, length: float) -> str:
+    """Where a thruster lies across: of a pair an estimate, which no prediction depends on."""
+    lever = sign * _LEVER_SHARE * length
+    if not lever:
+        return "y = 0.0    # m to starboard, negative to port: measure it where it is not on the centre line"
+    return f"y = {lever:.2f}    # ESTIMATED: m to starboard, from L; measure it: yaw coefficients go with it"
+
+
+def _sensor_lines(model: StartingModel, guesses: Sequence[ColumnGuess]) -> list[str]:
+    """That velocities are those of a receiver: fitted as if through the water, a current would end in coefficients."""
+    if not _is_over_ground(guesses) or not (model.has_thrusters or model.has_forces_of_a_ship):
+        return []
+    return ["[sensors]", 'velocity = "ground"    # of a receiver, over ground: a current is in them', ""]
+
+
+def _offset_lines(model: StartingModel, guesses: Sequence[ColumnGuess]) -> list[str]:
+    """What differs from day to day: a current, where positions or velocities show it, and the zero of the rudder."""
+    if not model.has_forces_of_a_ship:
+        return []
+    shows_current = _is_over_ground(guesses) or any(g.is_used and g.symbol in ("lat", "x0") for g in guesses)
+    current = f"current = {_CURRENT:g}    # m/s, of which nothing is known but that it is of this size"
+    zero = 'offsets = ["delta"]    # the zero of the rudder\'s indicator'
+    return ["[estimate]", *([current] if shows_current else []), zero, ""]
+
+
+def _is_over_ground(guesses: Sequence[ColumnGuess]) -> bool:
+    return any(g.is_used and (g.symbol == "sog" or (g.symbol == "u" and g.frame in ("earth", "enu"))) for g in guesses)

@@ -1,0 +1,35 @@
+"""Runs of one day share a session in a draft, by their names or time stamps."""
+
+from pathlib import Path
+
+import pytest
+
+from seatrial.data.draft.runs_of_logs import LogRun
+from seatrial.data.draft.session_text import session_line
+from seatrial.data.draft.survey import survey_log
+
+
+def _run(folder: Path, name: str, first: str) -> LogRun:
+    rows = "".join(f"{first}{k:02d},{k}\n" for k in range(20))
+    (folder / f"{name}.csv").write_text(f"utc,rudder\n{rows}")
+    return LogRun("", (survey_log(folder / f"{name}.csv"),))
+
+
+@pytest.mark.parametrize(
+    ("days", "line"),
+    [
+        (("2026-08-14", "2026-08-14"), 'session = "all"    # every run is of 2026-08-14'),
+        (("2026-08-14", "2026-08-14", "2026-08-15"), 'session = "day"    # runs of 2 days'),
+        (("2026-08-14", "2026-08-15"), ""),
+        (("2026-08-14",), ""),
+    ],
+)
+def test_the_line_follows_from_the_days_of_the_stamps(tmp_path: Path, days: tuple[str, ...], line: str) -> None:
+    runs = [_run(tmp_path, f"run{k}", f"{day}T07:30:") for k, day in enumerate(days)]
+    assert session_line(runs)[: len(line)] == line and bool(session_line(runs)) == bool(line)
+
+
+def test_a_day_in_the_name_counts_and_a_time_of_day_is_none(tmp_path: Path) -> None:
+    named = [_run(tmp_path, f"2026-08-14_{k}", "07:30:") for k in "ab"]
+    assert session_line(named).startswith('session = "all"')
+    assert session_line([_run(tmp_path, k, "07:30:") for k in "ab"]) == ""
