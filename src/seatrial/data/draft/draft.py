@@ -81,8 +81,9 @@ def draft_trial(*logs: str | Path, folder: str | Path = ".", length: float = 0.0
     guesses = [agreed_guesses(parts, examined) for parts in named]
     records = [run_record(run.sources, parts) for run, parts in zip(runs, guesses, strict=True)]
     stretches = numbered([find_stretches(run.sources, one) for run, one in zip(runs, records, strict=True)])
-    parts = offered_parts(records, stretches)
     model = starting_model({g.symbol for one in guesses[longest[0]] for g in one if g.is_used}, records, length)
+    # whatever a craft with thrusters does shows them: its runs stay whole where one can judge the others
+    parts = tuple(() for _ in runs) if model.has_thrusters and len(runs) > 1 else offered_parts(records, stretches)
     held_out, session = held_out_run(model, _pieces(runs, records, parts)), session_line(runs)
     blocks = _blocks(runs, guesses, stretches, parts, longest[0])
     blocks = [_with_roles(block, model, held_out, session) for block in blocks]

@@ -18,7 +18,9 @@ _VELOCITIES = (frozenset({"u", "v"}), frozenset({"sog", "cog", "psi"}))  # eithe
 _APPROACH_S = 5.0  # s from the start of a run whose mean speed is that of the approach; chosen
 _STEADY_RATE = 0.1  # of its median, by which the rate of a propeller may vary that is steady; chosen
 _HARDLY_STEERED = 0.3  # of the largest size of the inputs of a run, below which a run judges nothing; chosen
-_BEYOND = 0.05  # of the range of an input in the other runs, by which a run may leave it and still lie within; chosen
+# of the range of an input in the other runs, by which a run may leave it and still lie within; by which one may where
+# no other run lies within; chosen
+_BEYOND, _FARTHER_BEYOND = 0.05, 0.25
 
 
 @dataclass(frozen=True)
@@ -95,12 +97,13 @@ def held_out_run(model: StartingModel, records: Mapping[str, Record]) -> str:
         return ""
     sizes = {name: _size(model, record) for name, record in records.items()}
     steered = [name for name, size in sizes.items() if size > _HARDLY_STEERED * max(sizes.values())]
-    inside = [name for name in steered if _lies_within(model, name, records)]
+    within = ([n for n in steered if _lies_within(model, n, records, share)] for share in (_BEYOND, _FARTHER_BEYOND))
+    inside = next((names for names in within if names), [])
     ordered = sorted(inside, key=lambda name: sizes[name])
     return ordered[(len(ordered) - 1) // 2] if ordered else ""
 
 
-def _lies_within(model: StartingModel, name: str, records: Mapping[str, Record]) -> bool:
+def _lies_within(model: StartingModel, name: str, records: Mapping[str, Record], beyond: float) -> bool:
     rest = [record for key, record in records.items() if key != name]
     for symbol in model.inputs:
         if symbol not in records[name]:
@@ -109,7 +112,7 @@ def _lies_within(model: StartingModel, name: str, records: Mapping[str, Record])
         if not ranges:
             return False
         low, high = min(a for a, _ in ranges), max(b for _, b in ranges)
-        slack = _BEYOND * (high - low)
+        slack = beyond * (high - low)
         first, last = _range(model, records[name][symbol])
         if first < low - slack or last > high + slack:
             return False
