@@ -2,9 +2,14 @@
 
     python benchmarks/kills.py --command identify --kills 100 --seed 1
 
+The commands work on the smallest inputs that still give every file of their folders (`kills_inputs`). Every other kill
+falls anywhere in the time of a command, the others into its last act: while the folder of its result is written.
+
 A folder of results is whole when it loads (its document names the digest of every data file) and its page is the one
 that its document gives, to the byte. Between the kills the command runs with two seeds by turns, so that a mixture of
-two results would show. The last run is not killed: nothing that a killed one left may stop it.
+two results would show. The last run is not killed: nothing that a killed one left may stop it, or stay beside the
+result. `follow` keeps a journal, reads it back after each kill, and must arrive at the coefficients of an undisturbed
+run.
 
 `--command save` kills what writes folders and does nothing else, so that every kill falls into the writing: results of
 four kinds by turns into one folder, which must be that of one of them, byte by byte.
@@ -23,8 +28,9 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NoReturn
 
@@ -35,46 +41,78 @@ from benchmarks.measure import Line, at_most
 import seatrial as st
 from seatrial.core.values.files import write_files_atomically
 
+INPUTS = Path(__file__).parent / "kills_inputs"
 EXAMPLES = Path(__file__).parents[1] / "examples"
+STUDY = "nomoto1957"
 COMMANDS = {
-    "identify": ["identify", f"{EXAMPLES}/waterjet.toml"],
-    "tune": ["tune", f"{EXAMPLES}/fin_stabiliser.toml"],
-    "design": ["design", f"{EXAMPLES}/waterjet_design.toml"],
-    "reproduce": ["reproduce", "meng2014", "--quick"],
-    "follow": ["follow", f"{EXAMPLES}/waterjet_follow.toml", "--once"],
+    "identify": ["identify", f"{EXAMPLES}/fin_decay.toml"],
+    "tune": ["tune", f"{INPUTS}/loop.toml"],
+    "design": ["design", f"{INPUTS}/design.toml"],
+    "reproduce": ["reproduce", STUDY],
+    "follow": ["follow", f"{INPUTS}/follow.toml", "--once"],
 }
-BENCHMARK = ["benchmark", "qi2025-135-whole", "--against", "iwho", "--against", "pso", "--runs", "8"]
+BENCHMARK = ["benchmark", "yu2014-3-printed", "--against", "random", "--runs", "6"]
 SAVE = "save"
 _SAVING_S = 0.2  # s at most before a kill while saving: a round of folders takes about as long; chosen
-# a kill falls anywhere in the time that the command took undisturbed, and a little beyond: dimensionless, chosen
+# s at most after its draft appeared: what a folder of a small result takes to write and flush, measured 20 to 50 ms
+_WRITING_S = 0.05
 LONGEST_WAIT = 1.1
-# every other kill falls into the last part of that time, where files are written: dimensionless, chosen
-WRITING_SHARE = 0.1
+"""Up to where in the time that a command took undisturbed a kill may fall: a little beyond its end; chosen."""
+_LOOK_S = 5e-4  # s between two looks for the draft of a folder, which stands for some ten milliseconds; chosen
+_LONGEST_RUN_S = 600.0  # s: nothing that a killed command left may keep the next one waiting; chosen
 
 
 @dataclass
 class Tally:
-    """What was found after the kills."""
+    """What was found after the kills.
+
+    Attributes:
+        killed: commands killed.
+        killed_writing: those of them of whose result a draft stood.
+        finished_first: commands that ended before their kill.
+        refused: those of them that ended without a result.
+        none_yet: kills after which there was no result.
+        whole: kills and ends after which there was one that is whole.
+        broken: those after which there was one that is not.
+        leftovers: names beside the result after the last, undisturbed run.
+    """
 
     killed: int = 0
+    killed_writing: int = 0
     finished_first: int = 0
+    refused: int = 0
     none_yet: int = 0
     whole: int = 0
     broken: int = 0
+    leftovers: list[str] = field(default_factory=list)
 
 
-def look_at(folder: Path, tally: Tally) -> None:
-    """Count the state of a result folder after a kill."""
-    if not folder.exists():
-        tally.none_yet += 1
-        return
-    try:
-        page = st.report(folder, folder.parent / "again.html").read_bytes()
-        whole = page == (folder / "report.html").read_bytes()
-    except st.InputError as error:
-        print(f"broken: {error}")
-        whole = False
-    tally.whole, tally.broken = tally.whole + whole, tally.broken + (not whole)
+@dataclass
+class Witness:
+    """Looks at the folder of a command's results after each kill; a folder that it has seen whole it knows again."""
+
+    folder: Path
+    tally: Tally
+    seen_whole: dict[str, bytes] = field(default_factory=dict)
+
+    def look(self) -> None:
+        """Count the state of the folder."""
+        if not self.folder.exists():
+            self.tally.none_yet += 1
+            return
+        files = {path.name: path.read_bytes() for path in self.folder.iterdir()}
+        is_whole = files == self.seen_whole or self._renders_its_page()
+        self.seen_whole = files if is_whole else {}
+        self.tally.whole, self.tally.broken = self.tally.whole + is_whole, self.tally.broken + (not is_whole)
+
+    def _renders_its_page(self) -> bool:
+        try:
+            with tempfile.TemporaryDirectory() as place:
+                page = st.report(self.folder, Path(place) / "again.html").read_bytes()
+        except st.InputError as error:
+            print(f"broken: {error}")
+            return False
+        return page == (self.folder / "report.html").read_bytes()
 
 
 def _started(command: list[str], seed: int) -> subprocess.Popen[bytes]:
@@ -82,36 +120,83 @@ def _started(command: list[str], seed: int) -> subprocess.Popen[bytes]:
     return subprocess.Popen(program, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
 
 
+@contextmanager
+def installed_study() -> Iterator[None]:
+    """Install the study that is an example to contributors, which takes a second, for the processes started here."""
+    path = os.environ.get("PYTHONPATH")
+    with tempfile.TemporaryDirectory() as place:
+        shutil.copy(EXAMPLES / "contributions" / "turning_study.py", place)
+        metadata = Path(place) / "turning_study-1.0.dist-info"
+        metadata.mkdir()
+        (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: turning_study\nVersion: 1.0\n")
+        (metadata / "entry_points.txt").write_text(f"[seatrial.studies]\n{STUDY} = turning_study:study\n")
+        os.environ["PYTHONPATH"] = os.pathsep.join([*([path] if path else []), place])
+        try:
+            yield
+        finally:
+            os.environ["PYTHONPATH"] = path or ""
+
+
 def _undisturbed_duration(command: list[str]) -> float:
     """Wall time [s] of a command."""
     began = time.monotonic()
-    if _started(command, 0).wait() != 0:
+    if _started(command, 0).wait(_LONGEST_RUN_S) != 0:
         raise RuntimeError(f"seatrial {' '.join(command)} fails undisturbed")
     return time.monotonic() - began
 
 
-def kills(name: str, count: int, seed: int) -> tuple[Tally, bool]:
-    """Kill a command `count` times; the tally, and whether the undisturbed run afterwards succeeds."""
+def kills(name: str, count: int, seed: int) -> Tally:
+    """Kill a command `count` times, and run it undisturbed to its end."""
     rng, tally = random.Random(seed), Tally()
-    with tempfile.TemporaryDirectory() as place:
-        folder = Path(place) / "result"
-        command = [*COMMANDS[name], "--out", str(folder)]
-        duration = min(_undisturbed_duration([*COMMANDS[name], "--out", f"{place}/timed"]) for _ in range(2))
+    with tempfile.TemporaryDirectory() as place, installed_study():
+        once = Path(place) / "once"
+        duration = min(_undisturbed_duration(_command(name, once)) for _ in range(2))
+        place_of_result = Path(place) / "results"
+        place_of_result.mkdir()
+        folder = place_of_result / "result"
+        witness, command = Witness(folder, tally), _command(name, folder)
+        journal = _journal(folder)
         for kill in range(count):
             process = _started(command, kill % 2)
-            share = rng.random() * (WRITING_SHARE if kill % 2 else 1.0)
-            is_killed = _kill_after(process, (LONGEST_WAIT - share) * duration)
-            tally.killed, tally.finished_first = tally.killed + is_killed, tally.finished_first + (not is_killed)
-            look_at(folder, tally)
-        finished = _started(command, 0).wait() == 0
-        look_at(folder, tally)
-        return tally, finished
+            if kill % 4 < 2:
+                is_killed = _kill_after(process, rng.random() * LONGEST_WAIT * duration)
+            else:
+                is_killed = _kill_while_writing(process, place_of_result, rng.random() * _WRITING_S)
+            tally.killed += is_killed
+            tally.finished_first += not is_killed
+            tally.killed_writing += is_killed and _has_draft(place_of_result)
+            tally.refused += process.returncode not in {0, -signal.SIGKILL}
+            witness.look()
+            if not is_killed:
+                journal.unlink(missing_ok=True)
+        tally.refused += _started(command, 0).wait(_LONGEST_RUN_S) != 0
+        witness.look()
+        journal.unlink(missing_ok=True)
+        tally.leftovers = [path.name for path in place_of_result.iterdir() if path != folder]
+        tally.broken += _coefficients(folder) != _coefficients(once)
+        return tally
 
 
-def kills_of_benchmark(count: int, seed: int) -> tuple[Tally, bool]:
+def _command(name: str, folder: Path) -> list[str]:
+    journal = ["--journal", str(_journal(folder))] if name == "follow" else []
+    return [*COMMANDS[name], "--out", str(folder), *journal]
+
+
+def _journal(folder: Path) -> Path:
+    return folder.with_suffix(".journal")
+
+
+def _coefficients(folder: Path) -> object:
+    """The estimates of a fit's folder; None for other results."""
+    path = folder / "result.json"
+    return json.loads(path.read_text())["coefficients"] if path.exists() else None
+
+
+def kills_of_benchmark(count: int, seed: int) -> Tally:
     """Kill a benchmark `count` times, each time another part of its work; as `kills`.
 
-    A table that a killed process left counts as whole where it is that of an undisturbed benchmark.
+    A table that a killed process left counts as whole where it is that of an undisturbed benchmark, and its page, where
+    there is one, that of the table.
     """
     rng, tally = random.Random(seed), Tally()
     with tempfile.TemporaryDirectory() as place:
@@ -119,16 +204,16 @@ def kills_of_benchmark(count: int, seed: int) -> tuple[Tally, bool]:
         duration = _undisturbed_duration([*BENCHMARK, "--out", str(undisturbed)])
         for _ in range(count):
             process = _started([*BENCHMARK, "--out", str(folder)], 0)
-            if not _kill_after(process, rng.random() * LONGEST_WAIT * duration):
-                tally.finished_first += 1
-                _look_at_table(folder, undisturbed, tally)
-                shutil.rmtree(folder)
-                continue
-            tally.killed += 1
+            is_killed = _kill_after(process, rng.random() * LONGEST_WAIT * duration)
+            tally.killed += is_killed
+            tally.finished_first += not is_killed
+            tally.refused += process.returncode not in {0, -signal.SIGKILL}
             _look_at_table(folder, undisturbed, tally)
-        finished = _started([*BENCHMARK, "--out", str(folder)], 0).wait() == 0
+            if not is_killed:
+                shutil.rmtree(folder)
+        tally.refused += _started([*BENCHMARK, "--out", str(folder)], 0).wait(_LONGEST_RUN_S) != 0
         _look_at_table(folder, undisturbed, tally)
-        return tally, finished
+        return tally
 
 
 def _kill_after(process: subprocess.Popen[bytes], seconds: float) -> bool:
@@ -140,6 +225,17 @@ def _kill_after(process: subprocess.Popen[bytes], seconds: float) -> bool:
         process.wait()
         return True
     return False
+
+
+def _kill_while_writing(process: subprocess.Popen[bytes], place: Path, seconds: float) -> bool:
+    """Kill a process while it writes a folder in `place`: so many seconds after its draft stands."""
+    while process.poll() is None and not _has_draft(place):
+        time.sleep(_LOOK_S)
+    return _kill_after(process, seconds)
+
+
+def _has_draft(place: Path) -> bool:
+    return any(".writing-" in name for name in os.listdir(place))  # noqa: PTH208  looked at two thousand times a second
 
 
 def _look_at_table(folder: Path, undisturbed: Path, tally: Tally) -> None:
@@ -159,7 +255,7 @@ def _scores(folder: Path) -> object:
     return problems
 
 
-def kills_while_saving(place: Path, count: int, seed: int) -> tuple[Tally, bool]:
+def kills_while_saving(place: Path, count: int, seed: int) -> Tally:
     """Kill a process `count` times that writes folders of results one after another; as `kills`."""
     rng, tally, folder = random.Random(seed), Tally(), place / "result"
     contents = result_folders()
@@ -171,13 +267,15 @@ def kills_while_saving(place: Path, count: int, seed: int) -> tuple[Tally, bool]
         os.kill(process, signal.SIGKILL)
         os.waitpid(process, 0)
         tally.killed += 1
+        tally.killed_writing += _has_draft(place)
         if not folder.exists():
             tally.none_yet += 1
             continue
         is_whole = {path.name: path.read_bytes() for path in folder.iterdir()} in contents
         tally.whole, tally.broken = tally.whole + is_whole, tally.broken + (not is_whole)
     _save(folder, contents[0])
-    return tally, [path.name for path in place.iterdir()] == [folder.name]
+    tally.leftovers = [path.name for path in place.iterdir() if path != folder]
+    return tally
 
 
 def _save_for_ever(folder: Path, contents: Sequence[dict[str, bytes]]) -> NoReturn:
@@ -194,18 +292,18 @@ def run(name: str = "identify", count: int = 20, seed: int = 1) -> list[Line]:
     """The tally as a table."""
     if name == SAVE:
         with tempfile.TemporaryDirectory() as place:
-            tally, finished = kills_while_saving(Path(place), count, seed)
-    elif name == BENCHMARK[0]:
-        tally, finished = kills_of_benchmark(count, seed)
+            tally = kills_while_saving(Path(place), count, seed)
     else:
-        tally, finished = kills(name, count, seed)
+        tally = kills_of_benchmark(count, seed) if name == BENCHMARK[0] else kills(name, count, seed)
     return [
         Line(f"{name}: killed", tally.killed, ""),
-        Line("finished before the kill", tally.finished_first, ""),
-        Line("no result yet", tally.none_yet, ""),
-        Line("whole results", tally.whole, ""),
-        at_most("half results", tally.broken, "", 0),
-        at_most("undisturbed runs stopped by what was left", float(not finished), "", 0),
+        Line(f"{name}: of them while a folder was written", tally.killed_writing, ""),
+        Line(f"{name}: finished before the kill", tally.finished_first, ""),
+        Line(f"{name}: no result yet", tally.none_yet, ""),
+        Line(f"{name}: whole results", tally.whole, ""),
+        at_most(f"{name}: half results", tally.broken, "", 0),
+        at_most(f"{name}: runs stopped by what was left", tally.refused, "", 0),
+        at_most(f"{name}: leftovers beside the result", len(tally.leftovers), "", 0),
     ]
 
 
@@ -216,4 +314,4 @@ if __name__ == "__main__":
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     for line in run(options.command, options.kills, options.seed):
-        print(f"  {line.quantity:<50} {line.value:>8.0f} {line.verdict}")
+        print(f"  {line.quantity:<50} {line.value:>8.0f} {line.verdict}", flush=True)

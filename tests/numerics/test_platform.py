@@ -219,3 +219,11 @@ def test_the_names_of_this_system_suit_a_library_of_it() -> None:
     assert (platform.system_name(), platform.library_suffix()) in {
         ("linux", ".so"), ("darwin", ".dylib"), ("win", ".dll"),
     }  # fmt: skip
+
+
+def test_a_device_is_written_and_a_pipe_without_a_reader_refused(tmp_path: Path) -> None:
+    platform.write_to_device(Path(os.devnull), b"content")
+    if hasattr(os, "mkfifo"):
+        os.mkfifo(tmp_path / "pipe")
+        with pytest.raises(OSError, match="No such device"):
+            platform.write_to_device(tmp_path / "pipe", b"content")

@@ -48,7 +48,7 @@ def benchmark(
     from seatrial.campaigns.run_campaign import CampaignOptions, run_campaign
     from seatrial.campaigns.store import open_store
     from seatrial.core.values import InputError
-    from seatrial.core.values.files import write_atomically
+    from seatrial.core.values.files import remove_file, write_atomically
     from seatrial.data.folder.document import document, strict_json
     from seatrial.problems import Placement, built_in_methods, method_named, problems_matching
     from seatrial.reporting.pages import report_page
@@ -64,6 +64,8 @@ def benchmark(
     work = benchmark_work(chosen, every, seeds, placement)
     run_campaign(work, folder, CampaignOptions(workers=workers), report_progress)
     result = benchmark_result(open_store(folder), chosen, every, seeds, placement)
+    page = folder / "benchmark.html"
+    remove_file(page)  # so that it never stands beside the table of another benchmark
     write_atomically(folder / "benchmark.json", strict_json(document(result)).encode())
-    write_atomically(folder / "benchmark.html", report_page(result).encode())
+    write_atomically(page, report_page(result).encode())
     return result

@@ -76,11 +76,12 @@ def _writable_json_path(path: Path | None) -> Path | None:
     """Return the path of the JSON file after checking, before any work, that it can be written."""
     if path is not None:
         from seatrial.core.values import InputError
-        from seatrial.core.values.files import is_folder, writable_folder
+        from seatrial.core.values.files import is_device_or_pipe, is_folder, writable_folder
 
         if is_folder(path):
             raise InputError(f"--json {path} is a folder; name a file")
-        writable_folder(path.parent)
+        if not is_device_or_pipe(path):
+            writable_folder(path.parent)
     return path
 
 

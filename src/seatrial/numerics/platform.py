@@ -174,6 +174,19 @@ def open_regular(path: Path) -> int:
     return os.open(path, sum((getattr(os, flag, 0) for flag in flags), os.O_RDONLY))
 
 
+def write_to_device(path: Path, content: bytes) -> None:
+    """Write to a device, or to a pipe, which must have a reader already where the system can see that.
+
+    Raises:
+        OSError: it cannot be written, or nobody reads the pipe (errno ENXIO).
+    """
+    descriptor = os.open(path, os.O_WRONLY | getattr(os, "O_NONBLOCK", 0))
+    with os.fdopen(descriptor, "wb") as file:
+        if hasattr(os, "O_NONBLOCK"):
+            os.set_blocking(descriptor, True)
+        file.write(content)
+
+
 def written_size(facts: os.stat_result) -> int:
     """Return how many bytes of a file were ever written; its size where the system does not say.
 

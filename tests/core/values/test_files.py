@@ -1,5 +1,6 @@
 """Files and folders: written whole or not at all, tried before the work without leaving a trace."""
 
+import errno
 import os
 import subprocess
 import sys
@@ -8,11 +9,13 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.core.values import InputError
+from seatrial.core.values import InputError, files
 from seatrial.core.values.files import (
+    is_device_or_pipe,
     is_file,
     is_folder,
     is_present,
+    remove_file,
     writable_folder,
     write_atomically,
     write_files_atomically,
@@ -111,6 +114,46 @@ def test_a_failure_leaves_the_old_files_and_no_empty_folders(tmp_path: Path) -> 
         write_files_atomically(tmp_path / "a" / "b", {name_no_system_takes: b"4"})
     assert (tmp_path / "fit" / "one").read_bytes() == b"1"
     assert [place.name for place in tmp_path.iterdir()] == ["fit"]
+
+
+def test_a_mount_point_is_written_from_within(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = tmp_path / "volume"
+    write_files_atomically(folder, {"one": b"1", "old": b"2"})
+    (folder / ".volume.writing-killed").mkdir()
+
+    def of_another_device(source: Path, target: Path) -> None:
+        if source.is_relative_to(folder) != target.is_relative_to(folder):
+            raise OSError(errno.EXDEV, os.strerror(errno.EXDEV))
+        source.replace(target)
+
+    monkeypatch.setattr(files, "replace_file", of_another_device)
+    monkeypatch.setattr(files, "exchange_folders", lambda _draft, _target: False)
+    write_files_atomically(folder, {"one": b"3"}, {"old"})
+    assert {file.name: file.read_text() for file in folder.iterdir()} == {"one": "3"}
+    assert [place.name for place in tmp_path.iterdir()] == ["volume"]
+
+
+def test_a_file_is_removed_or_a_sentence_says_why_not(tmp_path: Path) -> None:
+    (tmp_path / "page").touch()
+    for _ in range(2):
+        remove_file(tmp_path / "page")
+        assert list(tmp_path.iterdir()) == []
+    with pytest.raises(InputError, match="cannot be written"):
+        remove_file(tmp_path)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes")
+def test_devices_and_pipes_are_written_and_stay(tmp_path: Path) -> None:
+    write_atomically(Path(os.devnull), b"content")
+    assert Path(os.devnull).is_char_device() and is_device_or_pipe(Path(os.devnull))
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(InputError, match="cannot be written"):
+        write_atomically(tmp_path / "pipe", b"nobody reads this")
+    reader = os.open(tmp_path / "pipe", os.O_RDONLY | os.O_NONBLOCK)
+    write_atomically(tmp_path / "pipe", b"content")
+    assert os.read(reader, 100) == b"content"
+    os.close(reader)
+    assert (tmp_path / "pipe").is_fifo()
 
 
 WRITER = """

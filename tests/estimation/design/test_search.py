@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.estimation.design.conftest import BOTH, with_inputs, with_limits
+from tests.estimation.design.conftest import BOTH, NOZZLE_RANGE, with_inputs, with_limits
 
 from seatrial.core.results import Design, TrialLimits
 from seatrial.data.trial.design_request import DesignCriterion
@@ -45,6 +45,12 @@ def test_standard_manoeuvres_keep_range_rate_and_where_they_can_the_limits(craft
         if one.is_random:
             assert not leaves_limits(task, at.evaluate(one.inputs_for(at)))
             assert np.ptp(made[0], axis=0).min() > 0.0
+
+
+def test_a_trial_with_room_for_four_orders_has_its_standard_manoeuvres(craft: DesignTask) -> None:
+    quarter = replace(NOZZLE_RANGE, hold=0.25 * craft.request.duration)
+    task = with_inputs(craft, {"delta": quarter}, dict(craft.request.held))
+    assert any(standard.is_random for standard in standard_manoeuvres(bench(task)))
 
 
 def test_the_yardstick_of_a_standard_manoeuvre_is_never_below_one(craft: DesignTask) -> None:

@@ -3,13 +3,21 @@
 import os
 import secrets
 import shutil
+import tempfile
 from collections.abc import Collection, Iterator, Mapping, Set
 from contextlib import contextmanager, suppress
 from itertools import islice
 from pathlib import Path
 
 from seatrial.core.values.errors import InputError
-from seatrial.numerics.platform import exchange_folders, flush_folder_to_disk, flush_to_disk, held_lock, replace_file
+from seatrial.numerics.platform import (
+    exchange_folders,
+    flush_folder_to_disk,
+    flush_to_disk,
+    held_lock,
+    replace_file,
+    write_to_device,
+)
 
 _DRAFT = ".writing-"  # begins the names of files and folders that are being written
 _MOST_ADOPTED = 1000  # entries, folders within included, of a folder that is replaced as one: chosen
@@ -31,13 +39,21 @@ def is_present(path: Path) -> bool:
     return os.path.exists(path)  # noqa: PTH110
 
 
+def is_device_or_pipe(path: Path) -> bool:
+    """Return whether there is something that is neither file nor folder, such as /dev/stdout or a named pipe."""
+    return is_present(path) and not (is_file(path) or is_folder(path))
+
+
 def write_atomically(path: Path, content: bytes) -> None:
-    """Write a file beside the target, then rename it; a symbolic link is written through.
+    """Write a file beside the target, then rename it; a symbolic link is written through, and so is a device or pipe.
 
     Raises:
-        InputError: the place cannot be written.
+        InputError: the place cannot be written, or is a pipe that nobody reads.
     """
     with _sentence(f"'{path}'"):
+        if is_device_or_pipe(path):
+            write_to_device(path, content)
+            return
         target = path.resolve()
         draft = target.with_name(_draft_name())
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -53,8 +69,8 @@ def write_files_atomically(folder: Path, contents: Mapping[str, bytes], removed:
 
     The folder is built anew beside the old one and the two are exchanged in one step, so that a process killed at any
     moment leaves the old files or the new ones. Only where that is impossible, because the folder holds the working
-    directory or over a thousand entries, or lies on a file system without exchange or hard links, are files renamed
-    into it one by one.
+    directory or over a thousand entries, is a mount point, stands in a folder that may not be written, or lies on a
+    file system without exchange or hard links, are files renamed into it one by one.
 
     Raises:
         InputError: the folder cannot be written.
@@ -62,17 +78,37 @@ def write_files_atomically(folder: Path, contents: Mapping[str, bytes], removed:
     with _sentence(f"folder '{folder}'"):
         target = folder.resolve()
     with _sentence(f"folder '{folder}'"), _new_parents(target.parent):
-        _remove_abandoned_drafts(target)
-        draft = target.with_name(f".{target.name}{_draft_name()}")
-        draft.mkdir()
         try:
-            with held_lock(draft):
-                for name, content in contents.items():
-                    _write(draft / name, content)
-                _put_in_place(draft, target, contents, {*removed} - {*contents})
-        finally:
-            shutil.rmtree(draft, ignore_errors=True)
+            _write_by_draft(target.parent, target, contents, {*removed} - {*contents})
+        except OSError:
+            if not target.is_dir():
+                raise
+            _write_by_draft(target, target, contents, {*removed} - {*contents})
     return folder
+
+
+def _write_by_draft(place: Path, target: Path, contents: Mapping[str, bytes], removed: Set[str]) -> None:
+    """Write files to a draft of a folder in `place`, which is its parent or itself, and put them where they belong."""
+    _remove_abandoned_drafts(place, target.name)
+    draft = place / _folder_draft_name(target)
+    draft.mkdir()
+    try:
+        with held_lock(draft):
+            for name, content in contents.items():
+                _write(draft / name, content)
+            _put_in_place(draft, target, contents, removed)
+    finally:
+        shutil.rmtree(draft, ignore_errors=True)
+
+
+def remove_file(path: Path) -> None:
+    """Remove a file if it is there.
+
+    Raises:
+        InputError: it cannot be removed.
+    """
+    with _sentence(f"'{path}'"):
+        path.unlink(missing_ok=True)
 
 
 def writable_folder(folder: Path) -> Path:
@@ -82,18 +118,30 @@ def writable_folder(folder: Path) -> Path:
         InputError: it cannot be made or written.
     """
     with _sentence(f"folder '{folder}'"):
-        absent = _absent(folder)
-        folder.mkdir(parents=True, exist_ok=True)
-        draft = folder / _draft_name()
-        _write(draft, b"")
-        draft.unlink()
-        for place in absent:
-            place.rmdir()
+        target = folder.resolve()
+        if is_present(target):
+            target.mkdir(exist_ok=True)  # where it is a file, this says so
+            with tempfile.TemporaryFile(dir=target):
+                return folder
+        absent = _absent(target.parent)
+        try:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            draft = target.with_name(_folder_draft_name(target))  # not the folder itself, should this process be killed
+            draft.mkdir()
+            draft.rmdir()
+        finally:
+            for place in absent:
+                if place.is_dir():
+                    place.rmdir()
     return folder
 
 
 def _draft_name() -> str:
     return _DRAFT + secrets.token_hex(_DRAFT_BYTES)
+
+
+def _folder_draft_name(target: Path) -> str:
+    return f".{target.name}{_draft_name()}"
 
 
 def _write(path: Path, content: bytes) -> None:
@@ -107,7 +155,11 @@ def _put_in_place(draft: Path, target: Path, contents: Mapping[str, bytes], remo
     if not target.exists():
         flush_folder_to_disk(draft)
         replace_file(draft, target)
-    elif not (_adopt_others(draft, target, removed | contents.keys()) and exchange_folders(draft, target)):
+    elif not (
+        draft.parent == target.parent
+        and _adopt_others(draft, target, removed | contents.keys())
+        and exchange_folders(draft, target)
+    ):
         for name in contents:
             replace_file(draft / name, target / name)
         for name in removed:
@@ -139,9 +191,9 @@ def _holds_many(folder: Path) -> bool:
     return len(list(islice(folder.rglob("*"), _MOST_ADOPTED + 1))) > _MOST_ADOPTED
 
 
-def _remove_abandoned_drafts(target: Path) -> None:
-    """Remove drafts of a folder whose process has ended without doing so."""
-    for draft in target.parent.glob(f".{_literal(target.name)}{_DRAFT}*"):
+def _remove_abandoned_drafts(place: Path, name: str) -> None:
+    """Remove drafts of a folder of that name whose process has ended without doing so."""
+    for draft in place.glob(f".{_literal(name)}{_DRAFT}*"):
         with held_lock(draft) as locked:
             if locked:
                 shutil.rmtree(draft, ignore_errors=True)

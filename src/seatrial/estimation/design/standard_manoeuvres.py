@@ -10,7 +10,7 @@ from seatrial.core.results import Actuator
 from seatrial.core.values import Array, InputError
 from seatrial.estimation.design.manoeuvre_information import ManoeuvreEvaluator, leaves_limits
 from seatrial.estimation.design.orders import actuator_response, input_series, sample_count
-from seatrial.estimation.design.task import DesignTask
+from seatrial.estimation.design.task import FEWEST_ORDERS, DesignTask
 from seatrial.physics.manoeuvres.helmsman import binary_sequence
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.simulate.channels import inputs_of
@@ -69,6 +69,7 @@ def _largest_within_limits(evaluator: ManoeuvreEvaluator, switching: float, seed
     """Return the largest amplitude whose drift and distance keep within the limits; else the smallest tried."""
     task = evaluator.task
     hold = max(switching * task.shortest_hold, 2.0 / task.request.rate)
+    hold = min(hold, task.request.duration / FEWEST_ORDERS)
     standard = StandardManoeuvre("", _step_inputs)
     for share in AMPLITUDES:
         standard = StandardManoeuvre(

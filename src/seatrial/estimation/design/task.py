@@ -14,7 +14,7 @@ from seatrial.physics.simulate.actuators import settled_actuators
 from seatrial.physics.simulate.approach import approach_speed, held_inputs
 
 # orders of an actuator that a trial must have room for, ours
-_FEWEST_ORDERS = 4
+FEWEST_ORDERS = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,10 +94,10 @@ def _demand_movable(actuator: Actuator, model: Model, duration: float) -> None:
     if actuator.name not in model.input_names:
         known = list(model.input_names)
         raise InputError(f"{name} is no input of model '{model.name}'{spelling_hint(actuator.name, known)}")
-    if duration < _FEWEST_ORDERS * actuator.hold:
+    if duration < FEWEST_ORDERS * actuator.hold:
         raise InputError(
             f"{name} is held for {actuator.hold:g} s at least, so that {duration:g} s leave no room for "
-            f"{_FEWEST_ORDERS} orders; shorten the hold or lengthen the trial"
+            f"{FEWEST_ORDERS} orders; shorten the hold or lengthen the trial"
         )
     if actuator.rate * duration < actuator.upper - actuator.lower:
         raise InputError(
