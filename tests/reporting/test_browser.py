@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import pytest
 from tests.reporting.fabricated_comparison import fabricated_comparison
@@ -99,6 +99,7 @@ def pages_of_every_kind(fit: Fit, study: Study) -> "dict[str, str]":
     }  # fmt: skip
 
 
+RULES = (Path(__file__).parent / "page_rules.js").read_text(encoding="utf-8")
 KINDS = ("fit", "study", "fin", "autopilot", "design", "comparison", "campaign")
 
 
@@ -130,6 +131,30 @@ def test_a_page_answers_first_and_fits_desk_and_telephone(
         assert series.locator("canvas").count() == int(series.get_attribute("data-panels") or 0)
     assert window.locator("figure > svg:visible").count() == window.locator("figure > svg").count()
     assert said == []
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_every_text_stands_out_no_table_is_cut_and_all_is_named(
+    browser: "Browser", every_page: dict[str, Path], kind: str, scheme: Literal["light", "dark"]
+) -> None:
+    window = browser.new_page(viewport={"width": 1400, "height": 900}, color_scheme=scheme)
+    window.goto(every_page[kind].as_uri())
+    window.evaluate("document.querySelectorAll('details').forEach(fold => { fold.open = true; })")
+    assert window.evaluate(f"({RULES}).faint()") == []
+    assert window.evaluate(f"({RULES}).cut()") == []
+    assert window.evaluate(f"({RULES}).unnamed()") == []
+
+
+def test_what_is_wider_than_a_telephone_is_moved_by_keys(browser: "Browser", page: Path) -> None:
+    window, _ = opened(browser, page, 390)
+    table = window.locator("section:has(#prediction) .scroll").first
+    table.focus()
+    before = table.evaluate("box => box.scrollLeft")
+    window.keyboard.press("ArrowRight")
+    window.wait_for_function("([box, before]) => box.scrollLeft > before", arg=[table.element_handle(), before])
+    names = table.locator("tbody tr > :first-child").first.bounding_box()
+    assert names is not None and names["x"] >= 0.0
 
 
 def test_the_cursor_is_linked_over_channels_and_track(browser: "Browser", page: Path) -> None:

@@ -6,6 +6,11 @@ import json
 import re
 from pathlib import Path
 
+import numpy as np
+
+from seatrial.core.figures.marks import Stroke
+from seatrial.core.figures.run import RunView
+from seatrial.core.figures.tracks import Track
 from seatrial.core.results import Fit
 from seatrial.reporting.document import environment, page_text
 from seatrial.reporting.time_figures import run_figure
@@ -55,3 +60,10 @@ def test_a_run_carries_its_data_and_a_description_for_those_who_do_not_see_it(fi
     assert len(data["panels"]) == len(data["about"]) == 5 and len(data["track"]) == 2
     assert data["about"][0].startswith("ψ [deg] over 4 min 00 s: measured from −")
     assert ("<noscript>" in text and 'class="run square"' in text) or 'class="run strip"' in text
+
+
+def test_a_strip_of_the_first_screen_is_drawn_for_a_telephone_too() -> None:
+    north = np.linspace(0.0, 100.0, 50)
+    view = RunView("r", (), (Track(north, 0.1 * north, None, Stroke("#222222", 1.0)),))
+    assert run_figure(view, is_first=True).count('class="track narrow"') == 1
+    assert "narrow" not in run_figure(view)

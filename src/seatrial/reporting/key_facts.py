@@ -33,7 +33,7 @@ def first_screen(fit: Fit, length: float) -> FirstScreen:
     which = "The held-out run" if len(fit.validation) == 1 else (
         "The worst held-out run" if fit.validation else "The worst training run")  # fmt: skip
     caption = f"{which}, {p.record}: {p.reference_word} and {p.model_word}."
-    return FirstScreen(verdict(fit), key_facts(fit), run_figure(view), caption, operators_sentence(fit))
+    return FirstScreen(verdict(fit), key_facts(fit), run_figure(view, is_first=True), caption, operators_sentence(fit))
 
 
 def key_facts(fit: Fit) -> tuple[KeyFact, ...]:

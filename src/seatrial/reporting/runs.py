@@ -185,8 +185,8 @@ def reading_note(predictions: Sequence[Prediction]) -> str:
     reference = "the reference, itself simulated" if p.is_reference_simulated else "measured"
     inputs = "as in the reference" if p.is_reference_simulated else "as measured"
     band = (
-        f" Pale: 95 % band of the {p.model_word} run, along the track to its sides; it is cut off where it leaves the "
-        "picture."
+        f" Pale: 95 % band of the {p.model_word} run, along the track to its sides and up to where it is half as "
+        "wide as the track is long."
         if any(has_band(p) for p in predictions)
         else ""
     )

@@ -203,29 +203,31 @@ def _offset_text(o: Offset) -> tuple[str, str]:
 
 def fixed_parameters(items: Sequence[Coefficient], citations: Citations) -> list[dict[str, object]]:
     """Return the fixed parameters grouped by source."""
-    groups: dict[str, list[Coefficient]] = {}
-    for c in items:
-        if c.fixed:
-            groups.setdefault(c.source, []).append(c)
-    rows = {source: [(coefficient_symbol(c), c.name, exact(_display_value(c.estimate, c.unit)), unit_text(c.unit),
-                      c.meaning) for c in group] for source, group in groups.items()}  # fmt: skip
-    return [{"source": citations.mark(source or "no source given"), "rows": row} for source, row in rows.items()]
+    rows = [(c.source, (coefficient_symbol(c), c.name, exact(_display_value(c.estimate, c.unit)), unit_text(c.unit),
+                        c.meaning)) for c in items if c.fixed]  # fmt: skip
+    return _by_source(rows, citations)
+
+
+def _by_source(rows: Sequence[tuple[str, object]], citations: Citations) -> list[dict[str, object]]:
+    groups: dict[str, list[object]] = {}
+    for source, row in rows:
+        groups.setdefault(source, []).append(row)
+    return [{"source": citations.mark(source or "no source given"), "rows": group} for source, group in groups.items()]
 
 
 def priors(items: Sequence[Coefficient], model: Model, citations: Citations) -> list[dict[str, object]]:
-    """Return free coefficients with a prior: prior, estimate, source and the remaining share of the spread [%]."""
-    rows = []
+    """Return free coefficients with a prior, grouped by its source: prior, estimate, remaining share of spread [%]."""
+    rows: list[tuple[str, object]] = []
     for c in items:
         if c.fixed or c.prior_mean is None or not c.prior_standard_deviation:
             continue
         prior = model.parameters[c.name].prior if c.name in model.parameters else None
         left = None if c.standard_error is None else 100.0 * c.standard_error / c.prior_standard_deviation
-        rows.append({
+        rows.append(((prior.source if prior else "") or c.source, {
             "symbol": coefficient_symbol(c), "name": c.name, "unit": unit_text(c.unit), "prior": _prior_text(c),
             "estimate": _coefficient_row(c).estimate, "spread_percent": significant(left, 2),
-            "source": citations.mark((prior.source if prior else "") or c.source),
-        })  # fmt: skip
-    return rows
+        }))  # fmt: skip
+    return _by_source(rows, citations)
 
 
 def settings(method: Method) -> list[tuple[str, str]]:

@@ -8,7 +8,7 @@ from markupsafe import Markup
 
 from seatrial.core.figures.chart import Chart, LegendEntry
 from seatrial.core.figures.marks import text_width
-from seatrial.core.figures.run import ChannelPanel, RunView, track_chart
+from seatrial.core.figures.run import NARROW, ChannelPanel, RunView, track_chart
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.figures.ticks import thinned
 from seatrial.core.figures.time_plot import BAND_POINTS, TimeSpan, packed, plot_document
@@ -21,12 +21,13 @@ NO_SCRIPT = "Time series are drawn by this page’s own script; allow it for thi
 
 
 def run_figure(view: RunView, spans: Sequence[TimeSpan] = (), *, x_label: str = "t [s]", is_wide: bool = False,
-               track: Chart | None = None) -> Markup:  # fmt: skip
+               track: Chart | None = None, is_first: bool = False) -> Markup:  # fmt: skip
     """Return the figure of one run: legend, track with its band, and linked plots of its channels.
 
     Args:
         is_wide: whether each channel takes the whole width.
         track: a picture of the view's tracks in place of the plain one.
+        is_first: whether a strip is drawn for narrow screens, too, on which others are moved sideways.
     """
     track = track or track_chart(view)
     document = plot_document(view.channels, spans=spans, x_label=x_label) if view.channels else None
@@ -35,6 +36,8 @@ def run_figure(view: RunView, spans: Sequence[TimeSpan] = (), *, x_label: str = 
     parts = [_legend(view.legend), f'<div class="run{shape}">']
     if track is not None:
         parts.append(f'<div class="track">{svg(track)}</div>')
+        if is_first and is_slender(view.tracks):
+            parts.append(f'<div class="track narrow">{svg(track_chart(view, NARROW))}</div>')
     if document is not None:
         document["title"] = view.title
         document["about"] = [_description(channel) for channel in view.channels]

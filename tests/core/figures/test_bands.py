@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seatrial.core.figures.bands import band, track_envelope, visible_edges
+from seatrial.core.figures.bands import WIDEST_ENVELOPE, band, track_envelope, visible_edges
 
 
 def test_a_band_runs_along_one_edge_and_back_along_the_other() -> None:
@@ -25,3 +25,10 @@ def test_an_envelope_has_the_half_width_to_the_side_of_the_track() -> None:
     area = track_envelope(east, north, np.full(50, 3.0), np.full(50, 20.0))
     assert area is not None and (area.x.min(), area.x.max()) == pytest.approx((-3.0, 3.0))
     assert track_envelope(east[:2], north[:2], east[:2], east[:2]) is None
+
+
+def test_an_envelope_ends_where_it_would_hide_the_track() -> None:
+    east, north = np.zeros(50), np.linspace(0.0, 100.0, 50)
+    area = track_envelope(east, north, np.linspace(0.0, 50.0, 50), np.zeros(50))
+    assert area is not None and area.x.max() <= WIDEST_ENVELOPE * 100.0 and area.y.max() == pytest.approx(49.0, abs=2.0)
+    assert track_envelope(east, north, np.full(50, 50.0), np.zeros(50)) is None

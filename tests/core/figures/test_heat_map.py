@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
+from tests.core.figures.test_night import contrast
 
 from seatrial.core.figures.chart import Chart
-from seatrial.core.figures.heat_map import cell_text, colour, colour_key, heat_map, strength, text_colour
-from seatrial.core.figures.marks import Rectangle, Text
+from seatrial.core.figures.heat_map import cell_text, colour, colour_key, heat_map, strength
+from seatrial.core.figures.marks import INK, Rectangle, Text
+from seatrial.core.figures.night import night_colour
 
 NAMES = ("X_uu", "Y_v", "N_r")
 
@@ -22,11 +24,16 @@ def words(chart: Chart | None) -> list[str]:
 
 def test_colours_turn_at_zero_and_are_full_at_the_limit() -> None:
     assert colour(0.0, 1.0) == "#ffffff"
-    assert colour(2.0, 2.0) == colour(9.0, 2.0) == "#a33022"
-    assert colour(-2.0, 2.0) == "#1b4f72"
+    assert colour(2.0, 2.0) == colour(9.0, 2.0) == "#e49288"
+    assert colour(-2.0, 2.0) == "#94bedb"
     assert colour(float("nan"), 1.0) == "#f4f6f7"
     assert (strength(0.0, 1.0), strength(-3.0, 2.0), strength(float("nan"), 1.0)) == (0.0, 1.0, 0.0)
-    assert text_colour(1.0, 1.0) == "#ffffff" and text_colour(0.1, 1.0) == "#333333"
+
+
+@pytest.mark.parametrize("value", np.linspace(-1.0, 1.0, 41))
+def test_numbers_are_read_on_every_cell_by_day_and_by_night(value: float) -> None:
+    cell = colour(float(value), 1.0)
+    assert contrast(INK, cell) > 4.5 and contrast(night_colour(INK), night_colour(cell)) > 4.5
 
 
 @pytest.mark.parametrize(

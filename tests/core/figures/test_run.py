@@ -5,7 +5,7 @@ import numpy as np
 from seatrial.core.figures.bands import BAND
 from seatrial.core.figures.chart import Region
 from seatrial.core.figures.marks import Area, Stroke
-from seatrial.core.figures.run import ChannelPanel, RunView, TimeCurve, channel_panel, run_chart, track_chart
+from seatrial.core.figures.run import NARROW, ChannelPanel, RunView, TimeCurve, channel_panel, run_chart, track_chart
 from seatrial.core.figures.tracks import Track
 
 TIME = np.linspace(0.0, 100.0, 300)
@@ -42,3 +42,10 @@ def test_a_track_by_itself_is_no_wider_than_a_page() -> None:
         widths[name] = chart.width
     assert widths["square"] < widths["strip"] <= 864.0
     assert track_chart(RunView("r", (CHANNEL,))) is None
+
+
+def test_a_strip_is_made_for_a_telephone_with_letters_of_the_same_size() -> None:
+    view = RunView("r", (), (Track(TIME, 0.1 * TIME, None, STROKE),), 5.0)
+    wide, narrow = track_chart(view), track_chart(view, NARROW)
+    assert wide is not None and narrow is not None and narrow.width <= NARROW
+    assert narrow.panels[0].tick_size == wide.panels[0].tick_size

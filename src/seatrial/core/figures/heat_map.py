@@ -12,10 +12,11 @@ from seatrial.core.text.numbers import exact, fixed, significant
 MAX_NUMBERED_COLUMNS = 24
 # side of a cell [px]
 SMALLEST, LARGEST = 9.0, 34.0
-# colours (red, green, blue) of a value at the limit and at minus the limit, and of a cell without a value
-_RED, _BLUE, _EMPTY = np.array([163, 48, 34]), np.array([27, 79, 114]), "#f4f6f7"
-# exponent that keeps small values pale; strength from which on text is white
-GAMMA, DARK = 1.3, 0.55
+# colours (red, green, blue) of a value at the limit and at minus the limit, on which ink is read by day and night, and
+# of a cell without a value
+_RED, _BLUE, _EMPTY = np.array([228, 146, 136]), np.array([148, 190, 219]), "#f4f6f7"
+# exponent that keeps small values pale
+GAMMA = 1.3
 # side of a square of the key, and the width that the key takes [px]
 KEY_SIZE, KEY_WIDTH = 13.0, 78.0
 
@@ -69,18 +70,13 @@ def cell_text(value: float, limit: float) -> str:
     return fixed(value, 2) if limit <= 1.0 else significant(value, 2)
 
 
-def text_colour(value: float, limit: float) -> str:
-    """Return the colour of a text that is legible on a cell."""
-    return "#ffffff" if strength(value, limit) > DARK else "#333333"
-
-
 def _cell(row: int, column: int, value: float, limit: float, side: float, *, has_number: bool) -> list[Mark]:
     square = Rectangle(column - 0.5, row - 0.5, column + 0.5, row + 0.5, colour(value, limit), gap=1.0)
     if not has_number or not np.isfinite(value):
         return [square]
     words = cell_text(value, limit)
     # px, chosen
-    return [square, Text(column, row, words, Anchor.MIDDLE, 0.3 * side, text_colour(value, limit), dx=-0.5, dy=3.0)]
+    return [square, Text(column, row, words, Anchor.MIDDLE, 0.3 * side, dx=-0.5, dy=3.0)]
 
 
 def colour_key(left: float, limit: float, *, is_signed: bool, top: float = 0.0) -> Panel:

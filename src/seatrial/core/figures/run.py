@@ -14,6 +14,8 @@ HEIGHT, GAP = 96.0, 26.0
 LEFT = 56.0  # px, chosen
 # width of the track's column [px], the least height of a strip, and the side of a track that stands by itself
 TRACK_WIDTH, MIN_STRIP, TRACK_SIDE = WIDTH / 3 + 20.0, 60.0, 330.0
+# width of a strip for a telephone, and of its axis for each tick [px]; chosen
+NARROW, TICK_SPACING = 358.0, 89.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,21 +77,21 @@ def run_chart(view: RunView) -> Chart:
     return Chart(view.title, tuple(panels), view.legend)
 
 
-def track_chart(view: RunView) -> Chart | None:
-    """Return the track of one run by itself; None where it has none."""
+def track_chart(view: RunView, width: float = WIDTH) -> Chart | None:
+    """Return the track of one run by itself; None where it has none. width: of a strip [px]."""
     if not view.tracks:
         return None
-    panel = _track(view, TRACK_SIDE)
+    panel = _track(view, TRACK_SIDE, width)
     return Chart(f"{view.title}: track", (panel,), width=panel.box.right + 8.0)  # px, chosen
 
 
-def _track(view: RunView, side: float) -> Panel:
-    """The panel of the track: a square of that side [px], or a strip of the page's width."""
+def _track(view: RunView, side: float, strip_width: float = WIDTH) -> Panel:
+    """The panel of the track: a square of that side, or a strip of that width [px]."""
     if not is_slender(view.tracks):
         return track_panel(view.tracks, view.length, Region(LEFT, 6.0, side, side))  # px, chosen
-    width = WIDTH - LEFT - 8.0  # px, chosen
+    width = strip_width - LEFT - 8.0  # px, chosen
     box = Region(LEFT, 6.0, width, max(MIN_STRIP, strip_height(view.tracks, width, view.length)))  # px, chosen
-    return track_panel(view.tracks, view.length, box, x_ticks=9, y_ticks=3)  # ticks, chosen
+    return track_panel(view.tracks, view.length, box, x_ticks=round(width / TICK_SPACING), y_ticks=3)  # ticks, chosen
 
 
 # ticks, chosen

@@ -73,7 +73,7 @@ def _coefficient_marks(c: Coefficient, row: int, reach: float) -> list[Mark]:
     lower, upper = _deviation(c, c.lower), _deviation(c, c.upper)
     marks.append(_interval(lower, upper, row, _INTERVAL))
     # px, chosen
-    marks += [Text(np.sign(end) * reach, row, sign, Anchor.MIDDLE, colour=ACCENT, dx=5.0 * np.sign(end), dy=4.0)
+    marks += [Text(np.sign(end) * reach, row, sign, Anchor.MIDDLE, colour=ACCENT, dx=-3.0 * np.sign(end), dy=4.0)
               for end, sign in ((lower, "‹"), (upper, "›")) if abs(end) > reach]  # fmt: skip
     row_array = np.array([float(row)])
     marks.append(Points(np.zeros(1), row_array, _ESTIMATE))

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.core.figures.chart import WIDTH, Chart, Panel, Region, row_axis
-from seatrial.core.figures.heat_map import colour, colour_key, text_colour
+from seatrial.core.figures.heat_map import colour, colour_key
 from seatrial.core.figures.marks import INK, Anchor, Line, Mark, Rectangle, Stroke, Text
 from seatrial.core.results.tuning import OperatingPoint
 from seatrial.core.text.numbers import DASH, exact, fixed
@@ -56,7 +56,7 @@ def _cell(point: OperatingPoint, name: str, column: int, row: int) -> list[Mark]
     words = "unst." if math.isinf(cost) else DASH if math.isnan(cost) else fixed(cost, 2)
     marks: list[Mark] = [
         Rectangle(column - 0.5, row - 0.5, column + 0.5, row + 0.5, colour(cost, 1.0), gap=1.5),  # px, chosen
-        Text(column, row, words, Anchor.MIDDLE, 10.5, text_colour(cost, 1.0), dx=-1.0, dy=3.5),  # px, chosen
+        Text(column, row, words, Anchor.MIDDLE, 10.5, dx=-1.0, dy=3.5),  # px, chosen
     ]
     if name == THIS_SCHEDULE and not point.is_feasible:
         marks.append(Line(np.array([column - 0.45, column + 0.42]), np.full(2, row + 0.38), _LACKING))  # px, chosen

@@ -8,6 +8,9 @@ button.addEventListener("click", () => {
   button.setAttribute("aria-pressed", open);
   button.textContent = open ? "Fold all" : "Unfold all";
 });
+// what is wider than its box is reached and moved by the keyboard
+const boxes = document.querySelectorAll(".scroll, figure, .track, .formula");
+new ResizeObserver(() => boxes.forEach(box => box.scrollWidth > box.clientWidth + 1 ? box.tabIndex = 0 : box.removeAttribute("tabindex"))).observe(document.body);
 addEventListener("beforeprint", () => folds().forEach(fold => { fold.open = true; }));
 addEventListener("hashchange", () => { document.getElementById(decodeURIComponent(location.hash.slice(1)))?.closest("details")?.setAttribute("open", ""); });
 }
