@@ -1,14 +1,16 @@
 """BlueBoat, leave one run out: errors of windows of 10 s of the runs left out, next to baselines without physics.
 
-    python benchmarks/thrusters_blueboat.py [--window 10]
+    python benchmarks/thrusters_blueboat.py [--window 10] [--free N_uv]
 
 Model, priors and settings are those of examples/blueboat.toml; every run is left out once, all windows of it are
-predicted open loop from a state estimated in their first second, and rms errors are averaged over the runs.
+predicted open loop from a state estimated in their first second, and rms errors are averaged over the runs. --free
+estimates coefficients that the example holds.
 """
 
 import argparse
 import time
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -48,9 +50,10 @@ def scores(windows: Windows, predict: Predictor) -> dict[str, float]:
     return rms | {"position_m": pooled_rms(windows.pieces, predicted, ("x0", "y0"))}
 
 
-def leave_one_run_out(window_s: float) -> list[Row]:
-    """Return errors of the model and of each baseline on every run left out of its fit."""
+def leave_one_run_out(window_s: float, further: Sequence[str] = ()) -> list[Row]:
+    """Return errors of the model and of each baseline on every run left out of its fit; further: coefficients freed."""
     trial = load_trial(TRIAL)
+    trial = replace(trial, model=trial.model.with_parameters(trial.model.parameters.freed(*further)))
     runs = training_runs(trial, checked_records(trial).records)
     settings = with_segment_seconds(trial.estimate, trial.model, runs)
     rows = []
@@ -77,8 +80,10 @@ def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--window", type=float, default=10.0, help="s")
-    window_s = parser.parse_args().window
-    rows = leave_one_run_out(window_s)
+    parser.add_argument("--free", nargs="*", default=(), metavar="NAME", help="coefficients that the example holds")
+    arguments = parser.parse_args()
+    window_s = arguments.window
+    rows = leave_one_run_out(window_s, arguments.free)
     columns = tuple(rows[0].scores)
     print(f"\nrms over windows of {window_s:g} s, mean over {len({r.run for r in rows})} runs left out")
     print(f"{'':20}" + "".join(f"{c:>12}" for c in columns))
