@@ -119,13 +119,33 @@ def test_the_number_of_determined_coefficients_is_said_of_the_free_ones(full: Fi
     free = replace(whole, identifiability=replace(known, effective_parameters=10.9, structural=()))
     assert determined_sentence(free) == "The records determine all 11 free coefficients."
     without = tuple(replace(c, prior_mean=None) for c in full.coefficients)
-    assert determined_sentence(replace(full, coefficients=without)).endswith("the rest is not determined.")
+    assert determined_sentence(replace(full, coefficients=without)).endswith("combinations of the free coefficients.")
+
+
+def test_coefficients_that_are_determined_only_together_are_named(full: Fit) -> None:
+    first, second, *rest = full.coefficients
+    vague = (replace(first, lower=-1.0, upper=2.0), replace(second, lower=-1.0, upper=2.0), *rest)
+    known = full.identifiability
+    assert known is not None
+    whole = replace(full, coefficients=vague, identifiability=replace(known, effective_parameters=11.0, structural=()))
+    assert determined_sentence(whole) == (
+        f"The records determine all 11 free coefficients together, but 9 one by one: the 95 % intervals of "
+        f"{first.name} and {second.name} contain 0."
+    )
+    fewer = replace(whole, coefficients=(vague[0], second, *rest))
+    assert determined_sentence(fewer).endswith(f"but 10 one by one: the 95 % interval of {first.name} contains 0.")
+    part = replace(whole, identifiability=replace(known, effective_parameters=9.2, structural=()))
+    assert determined_sentence(part).startswith("The records determine about 9 of 11 combinations of the free coeffi")
+    assert ", and of the coefficients 9 one by one: " in determined_sentence(part)
 
 
 def test_a_tanker_with_many_coefficients_folds_what_is_long() -> None:
     fit = complete_fit(tanker())
     text = html(fit)
-    assert "The records determine about 23 of 43 free coefficients; the rest comes from the priors." in text
+    assert (
+        "The records determine about 23 of 43 combinations of the free coefficients; the rest comes from the priors"
+        in text
+    )
     assert "27 further combinations not drawn" in text and "23 further coefficients with smaller effects" in text
     assert len(text.encode()) < 1_500_000
 

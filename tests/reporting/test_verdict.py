@@ -9,7 +9,7 @@ from tests.reporting.fabricated import zigzag
 
 from seatrial.core.results import Divergence, Fit, Prediction
 from seatrial.core.values import Record
-from seatrial.reporting.verdict import error_text, extrapolation_limit, run_name, verdict, worst_errors
+from seatrial.reporting.verdict import error_text, extrapolation_limit, run_name, share_sentence, verdict, worst_errors
 
 ANGLE = math.radians(20.0)
 
@@ -56,6 +56,23 @@ def test_a_run_that_is_lost_before_its_end_is_not_called_predicted(fit: Fit) -> 
     assert f"{error_text('psi_deg', 0.51 * spread)} in heading" in text
     assert "over 4 min 00 s" in text
     assert verdict(with_runs(fit, kept)).startswith("Predicts a 25° zigzag")
+    assert share_sentence([kept]).startswith(
+        "in heading 0.49 of the standard deviation of the motion itself (above 0.5"
+    )
+    assert share_sentence([kept, lost]).startswith("in heading 0.51 of ")
+    assert share_sentence([]) == ""
+
+
+def test_of_several_runs_those_that_are_lost_are_named(fit: Fit) -> None:
+    p = held(fit)
+    spread = math.degrees(float(np.nanstd(p.measured["psi"])))
+    first, second = (replace(p, record=name, rms=p.rms | {"psi_deg": share * spread})
+                     for name, share in (("one", 0.6), ("two", 0.2)))  # fmt: skip
+    text = verdict(with_runs(fit, first, second))
+    assert text.startswith("Of 2 runs that were not used, 4 min 00 s each, one is not followed to its end, to ")
+    assert ", one and two are not followed to their end, to " in verdict(
+        with_runs(fit, first, replace(first, record="two"))
+    )
 
 
 def test_of_several_runs_the_worst_counts(fit: Fit) -> None:

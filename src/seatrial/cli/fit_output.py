@@ -99,7 +99,7 @@ def _coefficient_mark(c: "Coefficient") -> str:
         return "no interval"
     if c.truth is not None:
         return "inside" if c.lower <= c.truth <= c.upper else "OUTSIDE"
-    return "sign open" if c.lower < 0.0 < c.upper else ""
+    return "sign open" if c.is_sign_open else ""
 
 
 def _print_held_out(fit: "Fit") -> None:

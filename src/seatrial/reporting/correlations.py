@@ -1,9 +1,11 @@
 """What the correlations of the estimates mean, in words."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 
+from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
 from seatrial.core.text.numbers import fixed
 from seatrial.core.text.words import counted, enumeration
 from seatrial.core.values import Array
@@ -13,21 +15,44 @@ from seatrial.core.values.arrays import correlation_matrix
 STRONG_CORRELATION, MAX_PAIRS = 0.9, 4
 
 
-def correlation_text(names: Sequence[str], covariance: Array) -> str:
-    """Return which coefficients the records hardly distinguish; empty for fewer than two."""
+def correlation_text(names: Sequence[str], covariance: Array, degrees_of_freedom: float = math.inf) -> str:
+    """Return which coefficients the records hardly distinguish; empty for fewer than two.
+
+    Args:
+        degrees_of_freedom: of the covariance; finite where it comes from that many runs left out, less one. Strong is
+            then only what chance does not give in any of the pairs.
+    """
     if len(names) < 2 or covariance.shape != (len(names), len(names)):
         return ""
     below = np.nan_to_num(np.tril(correlation_matrix(covariance), k=-1))
     pairs = [(int(k // len(names)), int(k % len(names))) for k in np.argsort(-np.abs(below), axis=None)[:MAX_PAIRS]]
-    strong = [pair for pair in pairs if abs(below[pair]) >= STRONG_CORRELATION]
+    least = max(STRONG_CORRELATION, _largest_by_chance(len(names), degrees_of_freedom))
+    strong = [pair for pair in pairs if abs(below[pair]) >= least]
     if not strong:
         i, j = pairs[0]
         if i == j:
             return "None is correlated with another."
-        return f"The strongest is {fixed(below[i, j], 2)}, between {names[i]} and {names[j]}."
-    count = int(np.sum(np.abs(below) >= STRONG_CORRELATION))
+        chance = (
+            f"; with {degrees_of_freedom + 1:g} runs or segments left out that may be chance"
+            if least > STRONG_CORRELATION
+            else ""
+        )
+        return f"The strongest is {fixed(below[i, j], 2)}, between {names[i]} and {names[j]}{chance}."
+    count = int(np.sum(np.abs(below) >= least))
     strongest = enumeration([f"{names[i]} and {names[j]} ({fixed(below[i, j], 2)})" for i, j in strong])
     return (
-        f"{counted(count, 'pair').capitalize()} at {STRONG_CORRELATION} or above in size; the strongest: {strongest}. "
+        f"{counted(count, 'pair').capitalize()} at {fixed(least, 2)} or above in size; the strongest: {strongest}. "
         "The records determine such coefficients mainly together: take them as a set, not one by one."
     )
+
+
+def _largest_by_chance(count: int, degrees_of_freedom: float) -> float:
+    """Size below which 95 of 100 sets of so many unrelated estimates have all their correlations.
+
+    r = t / sqrt(t^2 + n - 2) (Fisher 1915, Biometrika 10, 507), n runs, the level shared among the pairs (Bonferroni).
+    """
+    if not 1.0 < degrees_of_freedom < math.inf:
+        return 1.0 if degrees_of_freedom <= 1.0 else 0.0
+    pairs = count * (count - 1) // 2
+    t = two_sided_quantile(1.0 - (1.0 - STORED_LEVEL) / pairs, degrees_of_freedom - 1.0)
+    return t / math.sqrt(t**2 + degrees_of_freedom - 1.0)

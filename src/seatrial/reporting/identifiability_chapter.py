@@ -170,19 +170,26 @@ def identifiability_chapter(fit: Fit) -> IdentifiabilityChapter | None:
 
 
 def determined_sentence(fit: Fit) -> str:
-    """Return how many coefficients the records determine; empty where that is not known."""
+    """Return what the records determine: combinations of coefficients, and coefficients one by one.
+
+    One by one: the 95 % interval does not contain 0. Empty where that is not known.
+    """
     identifiability = fit.identifiability
     free = [c for c in fit.coefficients if not c.fixed]
     if identifiability is None or not math.isfinite(identifiability.effective_parameters):
         return ""
-    number = round(identifiability.effective_parameters)
+    number, vague = round(identifiability.effective_parameters), [c.name for c in free if c.is_sign_open]
+    alone = f"{len(free) - len(vague)} one by one: the 95 % {'intervals' if len(vague) > 1 else 'interval'} of "
+    alone += f"{enumeration(vague)} {'contain' if len(vague) > 1 else 'contains'} 0"
     if number >= len(free):
         tied = {name for symmetry in identifiability.structural for name in symmetry.parameters}
         held = [c.name for c in fit.coefficients if c.fixed and c.name in tied]
         given = f", given the stated {enumeration(held)}, which no manoeuvre identifies apart from them" if held else ""
-        return f"The records determine all {len(free)} free coefficients{given}."
-    rest = "comes from the priors" if any(c.prior_mean is not None for c in free) else "is not determined"
-    return f"The records determine about {number} of {len(free)} free coefficients; the rest {rest}."
+        together = f" together{given}, but {alone}" if vague else given
+        return f"The records determine all {len(free)} free coefficients{together}."
+    rest = "; the rest comes from the priors" if any(c.prior_mean is not None for c in free) else ""
+    single = f", and of the coefficients {alone}" if vague else ""
+    return f"The records determine about {number} of {len(free)} combinations of the free coefficients{rest}{single}."
 
 
 def _symmetry_row(s: Symmetry, fit: Fit, names: Sequence[str]) -> SymmetryRow:

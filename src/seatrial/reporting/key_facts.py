@@ -4,7 +4,7 @@ import math
 
 from seatrial.core.results import Fit, Prediction, WindowScore
 from seatrial.core.results.fit_charts import headline_view
-from seatrial.core.results.identifiability import NOT_CONVERGED, NOT_IDENTIFIABLE
+from seatrial.core.results.identifiability import NOT_CONVERGED
 from seatrial.core.results.window_scores import ChannelScore
 from seatrial.core.text.numbers import fixed, significant
 from seatrial.core.text.words import counted, enumeration
@@ -15,7 +15,7 @@ from seatrial.reporting.measures import is_inside
 from seatrial.reporting.operators import operators_sentence
 from seatrial.reporting.runs import ERROR_LABELS, badness
 from seatrial.reporting.time_figures import run_figure
-from seatrial.reporting.verdict import error_text, has_converged, is_lost, verdict, worst_errors
+from seatrial.reporting.verdict import error_text, has_converged, is_lost, share_sentence, verdict, worst_errors
 
 # share of values inside their 95 % intervals that counts as kept; chosen between 0.95 and the scatter of few values
 LEAST_COVERAGE = 0.9
@@ -55,7 +55,10 @@ def _score(fit: Fit) -> KeyFact:
     floors = [error_text(key, max(p.noise_floor[key] for p in held if key in p.noise_floor))
               for key in ("psi_deg", "position_m") if any(key in p.noise_floor for p in held)]  # fmt: skip
     floor = f"; disturbances alone would leave {enumeration(floors)}" if floors else ""
-    return KeyFact(name, f"{worst_errors(held)}{floor}", "prediction", False if any(map(is_lost, held)) else None)
+    share = f"; {share_sentence(held)}" if share_sentence(held) else ""
+    return KeyFact(
+        name, f"{worst_errors(held)}{share}{floor}", "prediction", False if any(map(is_lost, held)) else None
+    )
 
 
 def _longest_windows(p: Prediction) -> WindowScore | None:
@@ -120,17 +123,17 @@ def _identifiability(fit: Fit) -> KeyFact:
     text = determined_sentence(fit)
     if not text:
         return KeyFact("Identifiability", "not examined", "identifiability" if fit.noise_model else "")
-    free = sum(not c.fixed for c in fit.coefficients)
-    is_complete = fit.identifiability is not None and round(fit.identifiability.effective_parameters) >= free
+    free = [c for c in fit.coefficients if not c.fixed]
+    is_complete = fit.identifiability is not None and round(fit.identifiability.effective_parameters) >= len(free)
+    is_complete = is_complete and not any(c.is_sign_open for c in free)
     limits = _determination_limits(fit)
     return KeyFact("Identifiability", "; ".join([text.removesuffix("."), *limits]), "identifiability",
                    is_complete and not limits)  # fmt: skip
 
 
 def _determination_limits(fit: Fit) -> list[str]:
-    """What keeps the coefficients from being used one by one: no optimum, wide intervals, collinearity."""
+    """What keeps the coefficients from being used one by one further: no optimum, collinearity."""
     limits = [] if has_converged(fit) else ["but the search did not converge, and this holds at no optimum"]
-    limits += [f.text for f in fit.findings if f.code == NOT_IDENTIFIABLE]
     collinear = fit.identifiability.collinearity if fit.identifiability else ()
     inflated = [c for c in collinear if c.variance_inflation >= MIN_VARIANCE_INFLATION]
     if inflated:

@@ -1,5 +1,6 @@
 """The page of a fit: one self-contained HTML file with style and figures; nothing is fetched or fitted."""
 
+import math
 from collections.abc import Mapping
 
 from markupsafe import Markup
@@ -111,7 +112,11 @@ def html(fit: Fit) -> str:
         "has_prior": any(c.prior_mean is not None for c in fit.coefficients if not c.fixed),
         "forest": Markup(svg(coefficients_chart(fit.coefficients))),
         "correlation": Markup(_correlation_figure(fit)),
-        "correlated": correlation_text(fit.model.parameters.free_names, fit.covariance),
+        "correlated": correlation_text(
+            fit.model.parameters.free_names,
+            fit.covariance,
+            math.inf if fit.interval_basis is None else fit.interval_basis.degrees_of_freedom,
+        ),
         "residual_series": residual_series(fit.residuals),
         "whiteness": Markup(svg(whiteness_chart(fit.residuals))),
         "ship_source": citations.mark(fit.ship.source),

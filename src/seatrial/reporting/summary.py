@@ -38,7 +38,7 @@ def _significance(fit: Fit) -> str:
     free = _free_coefficients(fit)
     if fit.reference is not None:
         return _published_sentence(fit, fit.reference)
-    vague = [c.name for c in free if c.lower is not None and c.upper is not None and c.lower < 0 < c.upper]
+    vague = [c.name for c in free if c.is_sign_open]
     if not vague:
         return f"All {len(free)} free coefficients differ from zero at the 95 % level."
     return (

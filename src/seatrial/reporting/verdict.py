@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -73,17 +74,57 @@ def _score_clause(fit: Fit) -> str:
     shortest, longest = (f([p.measured.duration for p in held]) for f in (min, max))
     lasting = duration(shortest) if duration(shortest) == duration(longest) else (
         f"{duration(shortest)} to {duration(longest)}")  # fmt: skip
+    lost = [p.record for p in held if is_lost(p)]
+    if lost:
+        names = enumeration(lost, 3)  # that a sentence holds, chosen
+        return f"Of {len(held)} runs that were not used, {lasting} each, {names} {_is_not_followed(lost)},{to_errors}"
     return f"Predicts {len(held)} runs that were not used, {lasting} each,{to_errors}"
 
 
-def is_lost(p: Prediction) -> bool:
-    """Return whether an error over the whole run is as large as half of the motion itself."""
+def _is_not_followed(names: Sequence[str]) -> str:
+    return f"{'is' if len(names) == 1 else 'are'} not followed to {'its' if len(names) == 1 else 'their'} end"
+
+
+@dataclass(frozen=True)
+class ErrorShare:
+    """An error over a whole run, as a share of the standard deviation of that motion; name: as in `Prediction.rms`."""
+
+    name: str
+    share: float
+
+    @property
+    def is_lost(self) -> bool:
+        """Whether the error is more than half of the motion itself."""
+        return self.share > LOST_SHARE
+
+
+def largest_error_share(p: Prediction) -> ErrorShare | None:
+    """Return the error of a run that is the largest share of its own motion; None where none can be compared."""
+    shares = []
     for name, channels in _MOTIONS.items():
         if name in p.rms and all(c in p.measured for c in channels):
             spread = math.sqrt(sum(float(np.nanvar(p.measured[c])) for c in channels))
-            if p.rms[name] > LOST_SHARE * spread * (_DEGREES if name.endswith("_deg") else 1.0):
-                return True
-    return False
+            size = spread * (_DEGREES if name.endswith("_deg") else 1.0)
+            shares.append(ErrorShare(name, p.rms[name] / size if size > 0.0 else math.inf))
+    return max(shares, key=lambda one: one.share, default=None)
+
+
+def is_lost(p: Prediction) -> bool:
+    """Return whether an error over the whole run is more than half of the motion itself."""
+    largest = largest_error_share(p)
+    return largest is not None and largest.is_lost
+
+
+def share_sentence(predictions: Sequence[Prediction]) -> str:
+    """Return the largest of all errors as a share of its motion, with the limit of the verdict; empty where unknown."""
+    shares = [share for p in predictions if (share := largest_error_share(p)) is not None]
+    if not shares:
+        return ""
+    largest = max(shares, key=lambda one: one.share)
+    return (
+        f"in {ERROR_LABELS[largest.name][0]} {significant(largest.share, 2)} of the standard deviation of the motion "
+        f"itself (above {LOST_SHARE:g}: does not follow)"
+    )
 
 
 def _over_time(p: Prediction) -> str:

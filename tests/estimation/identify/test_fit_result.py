@@ -6,13 +6,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from seatrial.core.values import DivergedError, InputError, Parameters, Prior
+from seatrial.core.results import Coefficient
+from seatrial.core.values import DivergedError, InputError, Prior
 from seatrial.estimation.identify.fit_result import (
     bounds_hit,
     divergence_message,
+    open_signs,
     refuse_unidentified,
     unconverged,
-    unidentified,
 )
 from seatrial.numerics.optimise import Status
 from seatrial.physics.models import model_named
@@ -40,17 +41,26 @@ def found(share: dict[str, float], held: str = "") -> Any:
     )
 
 
-def test_a_good_record_says_nothing() -> None:
-    """A tenth of each coefficient."""
-    assert isinstance(VALUES, Parameters)
-    assert unidentified(found({})) == []
+def table(ends: dict[str, tuple[float, float]], held: str = "") -> list[Coefficient]:
+    """Coefficients 1 with intervals from 0.9 to 1.1, or these ends; `held` has a prior."""
+    return [
+        Coefficient(n, "1", 1.0, 0.05, *ends.get(n, (0.9, 1.1)), False, prior_mean=0.0 if n == held else None)
+        for n in COEFFICIENTS
+    ]
 
 
-def test_those_not_stated_are_named() -> None:
+def test_intervals_that_exclude_zero_are_no_finding() -> None:
+    assert open_signs(waterjet(), table({})) == []
+
+
+def test_coefficients_whose_sign_is_open_are_named() -> None:
     """Not the one a prior holds."""
-    (finding,) = unidentified(found({"X_rr": 1.5, "Y_vr": 2.0, "X_vv": 3.0}, held="X_vv"))
-    assert finding.code == "not-identifiable"
-    assert "do not show whether X_rr and Y_vr differ from 0:" in finding.text
+    ends = dict.fromkeys(("X_rr", "Y_vr", "X_vv"), (-0.5, 2.5))
+    (finding,) = open_signs(waterjet(), table(ends, held="X_vv"))
+    assert finding.code == "sign-open"
+    assert finding.text == "the 95 % intervals of X_rr and Y_vr contain 0"
+    (one,) = open_signs(waterjet(), table({"X_rr": (-0.1, 3.0)}))
+    assert one.text == "the 95 % interval of X_rr contains 0"
 
 
 def test_nothing_stated_is_refused_with_names_and_noise() -> None:

@@ -63,8 +63,19 @@ def test_words_say_what_a_prior_leaves_of_an_open_direction() -> None:
 
 def test_effective_parameters_count_what_data_tell_against_a_prior() -> None:
     information, precision = np.diag([99.0, 1.0, 0.0]), np.diag([1.0, 1.0, 1.0])
-    assert effective_parameters(information, precision) == pytest.approx(0.99 + 0.5)
-    assert effective_parameters(information, np.zeros((3, 3))) == 1.0
+    along = directions(information, NAMES, np.ones(3))
+    assert effective_parameters(information, precision, along) == pytest.approx(0.99 + 0.5)
+    assert effective_parameters(information, np.zeros((3, 3)), along) == 1.0
+
+
+def test_a_combination_is_no_better_known_than_the_intervals_have_it() -> None:
+    """Runs left out scatter by 200 % along a: model error that the information does not know of."""
+    information = np.diag([0.01**-2, 0.02**-2, 0.05**-2])
+    weakest, *_ = directions(information, NAMES, np.ones(3), covariance=np.diag([4.0, 1e-6, 1e-6]))
+    assert weakest.text == "a is not determined: it may be wrong by 200 %"
+    along = directions(information, NAMES, np.ones(3), covariance=np.diag([4.0, 1e-6, 1e-6]))
+    assert [d.standard_deviation for d in along] == pytest.approx([2.0, 0.05, 0.02])
+    assert effective_parameters(information, np.zeros((3, 3)), along) == 2.0
 
 
 @given(arrays(float, 3, elements=st.floats(0.01, 100.0)))

@@ -41,6 +41,11 @@ class Coefficient:
     meaning: Annotated[str, Field(description="one phrase, as the model gives it")] = ""
     latex: Annotated[str, Field(description="symbol in LaTeX, as the model gives it")] = ""
 
+    @property
+    def is_sign_open(self) -> bool:
+        """Whether its interval contains 0, so that the records do not determine it by itself."""
+        return self.lower is not None and self.upper is not None and self.lower < 0.0 < self.upper
+
 
 @dataclass(frozen=True)
 class Offset:

@@ -7,8 +7,8 @@ from pydantic import Field
 
 from seatrial.core.results.fields import Number
 
-NOT_CONVERGED, NOT_IDENTIFIABLE = "not-converged", "not-identifiable"
-"""Codes of the findings that coefficients must not be used, or not alone."""
+NOT_CONVERGED, SIGN_OPEN = "not-converged", "sign-open"
+"""Codes of the findings that coefficients must not be used, or some of them not alone."""
 COURSE_UNSTABLE = "course-unstable"
 """Code of the finding that a craft does not hold a straight course by itself."""
 

@@ -47,6 +47,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
     estimation = with_model_spread(selected.estimation, selected.tied)
     approach = approach_condition(runs.records, trial.model)
     assessment = _identifiability(task, estimation, approach)
+    coefficients = fit_result.coefficients(estimation, trial.truth, interval_ends(assessment.profiles, posterior))
     free = estimation.estimate.problem.free
     predicted_runs = {p.record for p in predicted.predictions}
     scored = [r for r in task.records if r.record.name in predicted_runs]
@@ -56,7 +57,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         or f"Which {trial.model.name} model explains these records, and how well does it predict?",
         ship=trial.ship,
         model=estimation.model,
-        coefficients=fit_result.coefficients(estimation, trial.truth, interval_ends(assessment.profiles, posterior)),
+        coefficients=coefficients,
         covariance=estimation.interval.covariance[: len(free), : len(free)],
         solution=estimation.estimate.optimum.solution,
         method=fit_result.method(estimation, has_profiles=bool(assessment.profiles)),
@@ -66,7 +67,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         residuals=fit_result.residuals(estimation),
         predictions=predicted.predictions,
         findings=(
-            *task.findings, *selected.findings, *findings, *fit_result.unidentified(selected.estimation),
+            *task.findings, *selected.findings, *findings, *fit_result.open_signs(estimation.model, coefficients),
             *unphysical_finding(estimation.model, runs.records), *fit_result.bounds_hit(estimation),
             *fit_result.unconverged(estimation), *other_optima(estimation),
             *held_couplings(selected.estimation),

@@ -7,7 +7,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.results import Coefficient, Method, Noise, Offset, OffsetPopulation, Residuals
-from seatrial.core.results.identifiability import NOT_CONVERGED, NOT_IDENTIFIABLE
+from seatrial.core.results.identifiability import NOT_CONVERGED, SIGN_OPEN
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import NOTATION, Array, DivergedError, Finding, InputError, Parameter, Parameters, Severity
 from seatrial.estimation.estimate.fit import Estimation
@@ -198,17 +198,16 @@ def refuse_unidentified(estimation: Estimation) -> None:
         )
 
 
-def unidentified(estimation: Estimation) -> list[Finding]:
-    """Return a warning with the coefficients whose standard error exceeds their value, though no prior holds them."""
-    names = _unidentified_names(estimation)
+def open_signs(model: Model, table: Sequence[Coefficient]) -> list[Finding]:
+    """Return a warning with the free coefficients whose interval contains 0, though no prior holds them."""
+    names = [c.name for c in table if c.is_sign_open and not c.fixed and c.prior_mean is None]
     if not names:
         return []
     advice = "do not use them alone; fix them at 0 if the others predict as well, or give a prior"
-    if not is_pure_roll(estimation.estimate.problem.model):
+    if not is_pure_roll(model):
         advice += "; a manoeuvre that identifies them: seatrial design TRIAL.toml --out plan, with a table [design]"
-    return [Finding(Severity.WARNING, NOT_IDENTIFIABLE, f"the records do not show whether {enumeration(names)} "
-                    f"{'differ' if len(names) > 1 else 'differs'} from 0: the standard error exceeds the value", "",
-                    advice)]  # fmt: skip
+    return [Finding(Severity.WARNING, SIGN_OPEN, f"the 95 % {'intervals' if len(names) > 1 else 'interval'} of "
+                    f"{enumeration(names)} {'contain' if len(names) > 1 else 'contains'} 0", "", advice)]  # fmt: skip
 
 
 def _unidentified_names(estimation: Estimation) -> list[str]:

@@ -39,17 +39,18 @@ def identifiability(
     names, sizes = problem.free, _signed_scales(estimation)
     data, precision = data_information(estimation)
     scaled = relative_information(data, sizes)
+    covariance = estimation.interval.covariance[: len(names), : len(names)]
+    along = directions(data, names, sizes, precision, covariance)
     return Identifiability(
         structural=tuple(symmetries),
-        directions=directions(data, names, sizes, precision),
-        effective_parameters=effective_parameters(scaled, relative_information(precision, sizes)),
+        directions=along,
+        effective_parameters=effective_parameters(scaled, relative_information(precision, sizes), along),
         condition=condition_number(data),
         collinearity=collinearity(data, names),
         sensitivities=sensitivities(estimation),
         consequences=consequences(estimation),
         stability=course_stability(
-            estimation.model, estimation.interval.covariance[: len(names), : len(names)],
-            estimation.interval.degrees_of_freedom, approach, length,
+            estimation.model, covariance, estimation.interval.degrees_of_freedom, approach, length,
         ),
     )  # fmt: skip
 

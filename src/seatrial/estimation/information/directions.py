@@ -25,22 +25,32 @@ def relative_information(information: Array, sizes: Array) -> Array:
 
 
 def directions(
-    information: Array, names: Sequence[str], sizes: Array, precision: Array | None = None
-) -> tuple[Direction, ...]:
-    """All eigen-directions, the least determined first, each with the standard deviation along it and its words.
+    information: Array, names: Sequence[str], sizes: Array, precision: Array | None = None,
+    covariance: Array | None = None,
+) -> tuple[Direction, ...]:  # fmt: skip
+    """Return all eigen-directions, the least determined first, each with the standard deviation along it and its words.
 
-    information: of the data alone, shape (n, n), other unknowns eliminated; precision: what is known besides (priors,
-    force points), which the words mention where it narrows a direction that the data leave open.
+    Args:
+        information: of the data alone, shape (n, n), other unknowns eliminated.
+        precision: what is known besides (priors, force points), which the words mention where it narrows a direction
+            that the data leave open.
+        covariance: behind the intervals, (n, n); where it is wider along a direction than the information has it, as
+            under model error, that is its standard deviation.
     """
     scaled = relative_information(information, sizes)
     values, vectors = np.linalg.eigh(scaled)
     least = _NO_INFORMATION * max(float(values[-1]), 1e-300)  # above zero, for a division
     deviations = [float(1.0 / np.sqrt(value)) if value > least else np.inf for value in values]
+    if covariance is not None:
+        relative = covariance / np.outer(sizes, sizes)
+        wider = [float(np.sqrt(max(v @ relative @ v, 0.0))) for v in vectors.T]
+        deviations = [max(own, wide) for own, wide in zip(deviations, wider, strict=True)]
     held = deviations
     if precision is not None and np.any(precision):
         posterior = inverse(scaled + relative_information(precision, sizes))
         held = [float(np.sqrt(v @ posterior @ v)) for v in vectors.T]
-    return tuple(_direction(vectors[:, k], deviations[k], held[k], names) for k in range(len(values)))
+    order = np.argsort(-np.array(deviations), kind="stable")
+    return tuple(_direction(vectors[:, k], deviations[k], held[k], names) for k in order)
 
 
 def _direction(vector: Array, deviation: float, posterior_deviation: float, names: Sequence[str]) -> Direction:
@@ -81,12 +91,15 @@ def direction_text(combination: Mapping[str, float], deviation: float) -> str:
     return f"along {terms} (relative changes) the records determine nothing: these may be wrong together by {known}"
 
 
-def effective_parameters(information: Array, precision: Array) -> float:
-    """Number of parameters that the data determine, trace of I (I + P)^-1 (MacKay 1992, Neural Comp. 4, 415).
+def effective_parameters(information: Array, precision: Array, along: Sequence[Direction]) -> float:
+    """Return the number of parameters that the data determine: trace of I (I + P)^-1.
 
-    precision: of the priors in the same units; where there are none at all, every direction that is known better than
-    to 100 % counts one (both matrices then in relative changes).
+    MacKay 1992, Neural Comp. 4, 415. Where there are no priors, every direction known better than to 100 % counts one.
+
+    Args:
+        information, precision: of the data and of the priors, in relative changes, (n, n).
+        along: the directions of the information.
     """
     if not np.any(precision):
-        return float(np.sum(np.linalg.eigvalsh(information) > _POORLY_DETERMINED**-2))
+        return float(sum(direction.standard_deviation < _POORLY_DETERMINED for direction in along))
     return float(np.trace(np.linalg.solve(information + precision, information)))
