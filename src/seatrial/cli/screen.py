@@ -76,10 +76,11 @@ def print_verbatim(lines: Iterable[str]) -> None:
 
 def print_heading(text: str) -> None:
     """Print an empty line and a heading, bold on a terminal."""
-    from seatrial.core.text.plain import ascii_text
+    from seatrial.core.text.plain import ascii_text, wrapped
 
     if not is_quiet():
-        typer.echo(f"\n{typer.style(ascii_text(text), bold=True)}")
+        lines = wrapped(ascii_text(text), line_width())
+        typer.echo("\n" + "\n".join(typer.style(line, bold=True) for line in lines))
 
 
 def print_table(

@@ -38,6 +38,17 @@ def test_numbers_that_do_not_fit_stand_in_a_second_table() -> None:
     assert lines == ["x  123456789", "y          1", "x  987654321", "y          2"]
 
 
+def test_names_of_columns_go_on_over_further_lines_before_anything_else() -> None:
+    rows = [["controller", "reduced %", "rate sat. %"], ["chosen", "34.5", "19.9"], ["as published", "7.2", ""]]
+    assert aligned(rows, width=34) == [
+        "                         rate sat.",
+        "controller    reduced %          %",
+        "chosen             34.5       19.9",
+        "as published        7.2",
+    ]
+    assert aligned(rows, width=40)[0] == "controller    reduced %  rate sat. %"
+
+
 def test_later_lines_of_a_sentence_stand_further_in() -> None:
     assert wrapped("one two three four five", None, "  ") == ["  one two three four five"]
     assert wrapped("one two three four five", 16, "  ") == ["  one two three", "    four five"]

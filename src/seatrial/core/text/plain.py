@@ -32,18 +32,22 @@ def aligned(rows: Sequence[Sequence[str]], flush_left: Sequence[int] = (0,), wid
     Args:
         flush_left: columns that are flush left, the others are flush right.
         width: letters of a line; where the columns need more, the widest column of words goes on over further lines;
-            if there is none, the columns stand in several tables below one another. None: lines as long as they are.
+            if that is not enough, names of columns (the first row) do, too; else the columns stand in several tables
+            below one another. None: lines as long as they are.
     """
     if not rows:
         return []
     widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
-    excess = 0 if width is None else sum(widths) + GAP * (len(widths) - 1) - width
-    if width is None or excess <= 0:
+    if width is None or _excess(widths, width) <= 0:
         return [_line(row, widths, flush_left) for row in rows]
     widest = max(flush_left, key=lambda k: widths[k], default=0)
-    if widest in flush_left and widths[widest] - excess >= MIN_WORDS:
-        widths[widest] -= excess
+    if not _can_be_narrowed(widths, flush_left, widest, width):
+        rows, widths = _with_wrapped_names(rows, widths, width)
+    if _can_be_narrowed(widths, flush_left, widest, width):
+        widths[widest] -= max(0, _excess(widths, width))
         return _with_wrapped_words(rows, widths, flush_left, widest)
+    if _excess(widths, width) <= 0:
+        return [_line(row, widths, flush_left) for row in rows]
     return _split_tables(rows, widths, flush_left, width)
 
 
@@ -66,6 +70,34 @@ def _line(row: Sequence[str], widths: Sequence[int], flush_left: Sequence[int]) 
         .join(f"{cell:<{width}}" if k in flush_left else f"{cell:>{width}}" for k, (cell, width) in enumerate(cells))
         .rstrip()
     )
+
+
+def _can_be_narrowed(widths: Sequence[int], flush_left: Sequence[int], column: int, width: int) -> bool:
+    """Whether columns fit into a line where one of words is narrowed."""
+    return column in flush_left and widths[column] - _excess(widths, width) >= MIN_WORDS
+
+
+def _excess(widths: Sequence[int], width: int) -> int:
+    """Letters by which columns are wider than a line."""
+    return sum(widths) + GAP * (len(widths) - 1) - width
+
+
+def _with_wrapped_names(
+    rows: Sequence[Sequence[str]], widths: Sequence[int], width: int
+) -> tuple[Sequence[Sequence[str]], list[int]]:
+    """The rows, their first one over several lines where that saves letters, and the widths of the columns."""
+    head, *body = rows
+    if not body:
+        return rows, list(widths)
+    least = [max([*(len(row[k]) for row in body), *map(len, name.split())])
+             for k, name in enumerate(head)]  # fmt: skip
+    narrow = list(widths)
+    for k in sorted(range(len(widths)), key=lambda k: least[k] - widths[k]):
+        narrow[k] = max(least[k], widths[k] - max(0, _excess(narrow, width)))
+    parts = [textwrap.wrap(name, max(room, 1), break_long_words=False) for name, room in zip(head, narrow, strict=True)]
+    height = max(map(len, parts), default=0)
+    lines = [[""] * (height - len(part)) + part for part in parts]
+    return [*map(list, zip(*lines, strict=True)), *body], narrow
 
 
 def _with_wrapped_words(
