@@ -12,6 +12,7 @@ import pytest
 from tests.reporting.fabricated import fabricated_fit
 
 from seatrial.core.results import Fit, Prediction
+from seatrial.core.values import Record
 from seatrial.physics.models import model_named
 from seatrial.physics.simulate.channels import inputs_of
 from seatrial.physics.simulate.replay import trajectory
@@ -57,8 +58,34 @@ def test_every_free_coefficient_has_a_slider_about_its_estimate(fit: Fit) -> Non
     free = [c for c in fit.coefficients if not c.fixed]
     assert [s["value"] for s in held["sliders"]] == [c.estimate for c in free]
     assert all(s["low"] < s["value"] < s["high"] for s in held["sliders"])
-    assert [held["parameters"][s["place"]] for s in held["sliders"]] == [c.estimate for c in free]
-    assert [c["name"] for c in held["channels"]] == ["y₀", "x₀", "ψ"]
+    (run,) = held["runs"]
+    assert [run["parameters"][s["place"]] for s in held["sliders"]] == [c.estimate for c in free]
+    assert [c["name"] for c in run["channels"]] == ["y₀", "x₀", "ψ"]
+
+
+def with_two_runs(fit: Fit) -> Fit:
+    """The fit with a second, better held-out run: the first half of the first."""
+    (held,) = fit.validation
+    half = slice(0, len(held.measured) // 2)
+    measured, simulated = (
+        Record.from_arrays("shorter", r.time[half], {name: r[name][half] for name in r.channels})
+        for r in (held.measured, held.simulated)
+    )
+    better = {name: 0.5 * error for name, error in held.rms.items()}
+    second = replace(held, record="shorter", measured=measured, simulated=simulated, rms=better)
+    return replace(fit, predictions=(*fit.predictions, second))
+
+
+def test_the_worst_run_is_shown_first_and_those_that_the_page_has_no_room_for_are_named(
+    fit: Fit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (held,) = fit.validation
+    text = resimulation(with_two_runs(fit))
+    assert [len(run["start"]) for run in data(text)["runs"]] == [len(fit.model.states)] * 2
+    assert f"<option selected>{held.record}</option><option>shorter</option>" in text
+    monkeypatch.setattr("seatrial.reporting.resimulation.MAX_LETTERS", 10)
+    text = resimulation(with_two_runs(fit))
+    assert len(data(text)["runs"]) == 1 and "Left out, so that the page stays small: shorter." in text
 
 
 def test_inputs_are_those_of_the_prediction(fit: Fit) -> None:
@@ -126,6 +153,21 @@ def test_a_browser_simulates_the_run_and_a_moved_slider_changes_it(
     page.locator(".resimulation .reset").click()
     assert state.inner_text().count(before[2]) >= 2
     assert page.locator(".resimulation svg").count() == 2
+    assert said == []
+
+
+def test_another_run_is_chosen_and_the_sliders_stay(browser: "Browser", fit: Fit, tmp_path: Path) -> None:
+    page, said = page_with(browser, with_two_runs(fit), tmp_path)
+    state, choice = page.locator(".resimulation .state"), page.locator(".resimulation select")
+    move(page, 3, 900)
+    first, moved = state.inner_text(), page.locator(".slider output").nth(3).inner_text()
+    choice.select_option("shorter")
+    assert state.inner_text().startswith("Error (rms)") and state.inner_text() != first
+    assert page.locator(".slider output").nth(3).inner_text() == moved
+    assert page.locator(".resimulation svg").count() == 2
+    page.wait_for_selector(".resimulation[data-examined]", state="attached", timeout=PATIENCE)
+    choice.select_option(index=0)
+    assert state.inner_text() == first
     assert said == []
 
 

@@ -1,7 +1,8 @@
-"""A held-out run that the page simulates again with other coefficients: data, controls and script, in one piece."""
+"""Held-out runs that the page simulates again with other coefficients: data, controls and script, in one piece."""
 
 import base64
 import json
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,10 +23,12 @@ from seatrial.core.values.channel_text import (
 from seatrial.physics.simulate.channels import inputs_of
 from seatrial.physics.simulate.divergence import state_limits
 from seatrial.reporting.document import environment
+from seatrial.reporting.runs import badness
 
 # a slider reaches so many half widths of the 95 % interval to each side, and this share of the estimate; both chosen
 HALF_WIDTHS, SHARE = 3.0, 0.5
 MAX_SAMPLES = 6000  # of a run: with two inputs and three channels 250 kB of page; chosen
+MAX_LETTERS = 160_000  # of the data of all runs, with which a page of 15 runs stays below a megabyte
 _CHANNELS = ("psi", "theta", "phi", "z", "u")  # of which the first that the run has is drawn; chosen, as at the top
 _POSITION = ("y0", "x0")  # east, north
 # deviation from the prediction of the fit, as a share of its range, from which on the page does not draw the run
@@ -49,24 +52,45 @@ class Slider:
 
 
 def resimulation(fit: Fit) -> Markup:
-    """Return the part of the page that simulates the first held-out run again; empty where there is none to simulate.
+    """Return the part of the page that simulates held-out runs again; empty where there is none to simulate.
 
-    The model has to be integrated step by step (no exact propagator), the run has to have all inputs, and every state
-    needs a start. The script compares its own run with the prediction before it draws.
+    The model has to be integrated step by step (no exact propagator), a run has to have all inputs, and every state
+    needs a start. The script compares its own run with the prediction before it draws. The worst run is shown first.
     """
-    chosen = next((p for p in fit.validation if _can_be_simulated(p, fit)), None)
+    able = sorted((p for p in fit.validation if _can_be_simulated(p, fit)), key=badness, reverse=True)
     free = [c for c in fit.coefficients if not c.fixed]
-    if chosen is None or not free:
+    if not able or not free:
         return Markup()
-    sliders = [_slider(c, fit) for c in free]
-    document = json.dumps(_document(chosen, fit, sliders), separators=(",", ":"), ensure_ascii=False)
+    sliders, runs = [_slider(c, fit) for c in free], _documents(able, fit)
+    names = [p.record for p in fit.validation if p.record in runs]
+    common = {
+        "agreement": AGREEMENT,
+        "sliders": [{"place": s.place, "value": s.value, "low": s.low, "high": s.high} for s in sliders],
+    }
+    data = f'{_json(common)[:-1]},"runs":[{",".join(runs[name] for name in names)}]}}'
     values = {
-        "run": chosen.record,
+        "names": names,
+        "worst": able[0].record,
+        "left_out": [p.record for p in able if p.record not in runs],
         "sliders": sliders,
-        "data": Markup(document.replace("<", "\\u003c")),  # a closing tag inside the text would end the element
+        "data": Markup(data.replace("<", "\\u003c")),  # a closing tag inside the text would end the element
         "script": Markup(replay_script(fit.model)),
     }
     return Markup(environment().get_template("resimulation.html").render(values))
+
+
+def _documents(runs: Sequence[Prediction], fit: Fit) -> dict[str, str]:
+    """The data of each run by its name, the first always, of the others those that fit."""
+    texts = dict[str, str]()
+    for p in runs:
+        text = _json(_document(p, fit))
+        if not texts or sum(map(len, texts.values())) + len(text) <= MAX_LETTERS:
+            texts[p.record] = text
+    return texts
+
+
+def _json(document: Mapping[str, Any]) -> str:
+    return json.dumps(document, separators=(",", ":"), ensure_ascii=False)
 
 
 def replay_script(model: Model) -> str:
@@ -94,16 +118,14 @@ def _plotted_channels(p: Prediction, states: tuple[str, ...]) -> list[str]:
     return [*(_POSITION if set(_POSITION) <= set(both) else ()), *([first] if first else [])]
 
 
-def _document(p: Prediction, fit: Fit, sliders: list[Slider]) -> dict[str, Any]:
+def _document(p: Prediction, fit: Fit) -> dict[str, Any]:
     model, names = fit.model, _plotted_channels(p, fit.model.states)
     values = [p.offsets.get(q.name, float(q.value)) for q in model.parameters]
     return {
         "dt": p.measured.dt, "count": len(p.measured), "limits": state_limits(model).tolist(),
         "start": [float(p.simulated[s][0]) for s in model.states],
         "inputs": [_coded(column) for column in corrected_inputs(p, fit).T],
-        "parameters": values,
-        "sliders": [{"place": s.place, "value": s.value, "low": s.low, "high": s.high} for s in sliders],
-        "reference": p.reference_word, "agreement": AGREEMENT,
+        "parameters": values, "reference": p.reference_word,
         "channels": [_channel(p, name, model.states.index(name)) for name in names],
     }  # fmt: skip
 

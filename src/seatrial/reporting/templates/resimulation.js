@@ -84,26 +84,35 @@
     constructor(root) {
       this.root = root;
       this.state = root.querySelector(".state");
-      const data = JSON.parse(root.querySelector("script").textContent), count = data.count;
+      this.document = JSON.parse(root.querySelector("script").textContent);
+      this.values = [];
+      this.controls = [...root.querySelectorAll(".slider")].map((box, k) => new Control(this, box, this.document.sliders[k]));
+      root.querySelector(".reset").addEventListener("click", () => { this.controls.forEach(one => one.reset()); this.refresh(); });
+      this.choice = root.querySelector("select");
+      this.choice?.addEventListener("change", () => this.load(this.choice.selectedIndex));
+    }
+    open() { if (!this.data) this.load(this.choice?.selectedIndex ?? 0); }
+    // sliders stay where they are
+    load(k) {
+      const data = this.document.runs[k], { count } = data;
       this.data = data;
       this.run = { ...data, inputs: data.inputs.map(one => typeof one === "number" ? [one] : unpacked(one, Float64Array, count)) };
       this.channels = data.channels.map(one => ({ ...one, measured: unpacked(one.measured, Float32Array, count) }));
       this.time = Float64Array.from({ length: count }, (_, k) => k * data.dt);
+      this.estimate = replay(rates, this.run, data.parameters);
       this.values = [...data.parameters];
-      this.controls = [...root.querySelectorAll(".slider")].map((box, k) => new Control(this, box, data.sliders[k]));
-      root.querySelector(".reset").addEventListener("click", () => { this.controls.forEach(one => one.reset()); this.refresh(); });
-    }
-    open() {
-      if (this.estimate) return;
-      this.estimate = replay(rates, this.run, this.values);
-      const away = this.deviation();
-      if (!(away <= this.data.agreement)) {
+      this.views = null;
+      this.root.querySelectorAll(".views, .legend").forEach(place => place.replaceChildren());
+      const away = this.deviation(), isAble = away <= this.document.agreement;
+      this.controls.forEach(one => one.begin(isAble));
+      if (!isAble) {
         this.state.textContent = `This run cannot be simulated here: it would differ from the prediction above by ${digits(away, 2)} of its range.`;
-        return this.controls.forEach(one => one.disable());
+        return;
       }
       this.build();
       this.refresh();
-      this.examine(0);
+      delete this.root.dataset.examined;
+      this.examine(0, data);
     }
     // largest difference from the prediction of the fit, as a share of each channel's range
     deviation() {
@@ -132,12 +141,11 @@
         [view.xLabel, view.yLabel] = ["t [s]", channel.label];
         this.views.push(view);
       }
-      const legend = Object.assign(document.createElement("p"), { className: "legend" });
+      const legend = this.root.querySelector(".legend");
       for (const [name, words] of [["record", this.data.reference], ["estimate", "at the estimates"], ["now", "with these coefficients"]]) {
         const key = Object.assign(document.createElement("span"), { className: name, textContent: `— ${words}` });
         legend.append(key, " ");
       }
-      place.before(legend);
     }
     refresh() {
       if (!this.views) return;
@@ -165,11 +173,12 @@
       values[place] = value;
       return replay(rates, this.run, values).failed < 0;
     }
-    // one coefficient after the other, so that the page answers in between
-    examine(k) {
+    // one coefficient after the other, so that the page answers in between, until another run is chosen
+    examine(k, data) {
+      if (data !== this.data) return;
       if (k === this.controls.length) return void (this.root.dataset.examined = "yes");
       this.controls[k].examine();
-      setTimeout(() => this.examine(k + 1), 0);
+      setTimeout(() => this.examine(k + 1, data), 0);
     }
   }
 
@@ -178,7 +187,7 @@
       Object.assign(this, { owner, place, value, low, high });
       this.input = box.querySelector("input");
       this.output = box.querySelector("output");
-      this.range = box.querySelector(".range");
+      this.limits = box.querySelector(".range").appendChild(document.createElement("span"));
       this.input.addEventListener("input", () => {
         this.moveTo(this.low + (this.high - this.low) * this.input.value / STEPS);
         cancelAnimationFrame(owner.frame);
@@ -187,6 +196,7 @@
       this.reset();
     }
     moveTo(value) {
+      this.present = value;
       this.owner.values[this.place] = value;
       this.output.textContent = digits(value);
       this.input.setAttribute("aria-valuetext", digits(value));
@@ -195,7 +205,12 @@
       this.input.value = Math.round(STEPS * (this.value - this.low) / (this.high - this.low));
       this.moveTo(this.value);
     }
-    disable() { this.input.disabled = true; }
+    // of a run that was chosen
+    begin(isAble) {
+      this.input.disabled = !isAble;
+      this.limits.textContent = "";
+      this.owner.values[this.place] = this.present;
+    }
     // where between the estimate and an end of the slider the run begins to diverge
     edge(end) {
       if (this.owner.isStable(this.place, end)) return null;
@@ -210,7 +225,7 @@
       const [below, above] = [this.edge(this.low), this.edge(this.high)], texts = [];
       if (below !== null) texts.push(`below ${digits(below, 3)}`);
       if (above !== null) texts.push(`above ${digits(above, 3)}`);
-      if (texts.length) this.range.append(` · the run diverges ${texts.join(" and ")}`);
+      if (texts.length) this.limits.textContent = ` · the run diverges ${texts.join(" and ")}`;
     }
   }
 
