@@ -2,8 +2,9 @@
 
     python benchmarks/kills.py --command identify --kills 100 --seed 1
 
-The commands work on the smallest inputs that still give every file of their folders (`kills_inputs`). Every other kill
-falls anywhere in the time of a command, the others into its last act: while the folder of its result is written.
+The commands work on the smallest inputs that still give every file of their folders (`kills_inputs`), in copies of a
+process that has imported what they need, so that kills fall into their work. Half of the kills fall anywhere in the
+time of a command, the others into its last act: while the folder of its result is written.
 
 A folder of results is whole when it loads (its document names the digest of every data file) and its page is the one
 that its document gives, to the byte. Between the kills the command runs with two seeds by turns, so that a mixture of
@@ -19,17 +20,18 @@ are not made again, and the last table must be that of an undisturbed benchmark.
 """
 
 import argparse
+import importlib
+import itertools
 import json
 import os
 import random
 import shutil
 import signal
-import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NoReturn
@@ -39,6 +41,7 @@ from benchmarks.fuzz_targets import result_folders
 from benchmarks.measure import Line, at_most
 
 import seatrial as st
+from seatrial.cli import main
 from seatrial.core.values.files import write_files_atomically
 
 INPUTS = Path(__file__).parent / "kills_inputs"
@@ -51,14 +54,14 @@ COMMANDS = {
     "reproduce": ["reproduce", STUDY],
     "follow": ["follow", f"{INPUTS}/follow.toml", "--once"],
 }
-BENCHMARK = ["benchmark", "yu2014-3-printed", "--against", "random", "--runs", "6"]
+BENCHMARK = ["benchmark", "yu2014-3-printed", "--against", "random", "--runs", "6", "--workers", "1"]
 SAVE = "save"
 _SAVING_S = 0.2  # s at most before a kill while saving: a round of folders takes about as long; chosen
 # s at most after its draft appeared: what a folder of a small result takes to write and flush, measured 20 to 50 ms
 _WRITING_S = 0.05
 LONGEST_WAIT = 1.1
 """Up to where in the time that a command took undisturbed a kill may fall: a little beyond its end; chosen."""
-_LOOK_S = 5e-4  # s between two looks for the draft of a folder, which stands for some ten milliseconds; chosen
+_LOOK_S = 5e-4  # s between two looks at a command, whose draft stands for some ten milliseconds; chosen
 _LONGEST_RUN_S = 600.0  # s: nothing that a killed command left may keep the next one waiting; chosen
 
 
@@ -115,32 +118,86 @@ class Witness:
         return page == (self.folder / "report.html").read_bytes()
 
 
-def _started(command: list[str], seed: int) -> subprocess.Popen[bytes]:
-    program = [sys.executable, "-c", "from seatrial.cli import main; main()", *command, "--seed", str(seed)]
-    return subprocess.Popen(program, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+class Copy:
+    """A copy of this process that runs a command, and ends with it."""
+
+    def __init__(self, command: list[str], seed: int, modules: Path | None = None) -> None:
+        """modules: a file for the names of all modules that are imported at its end."""
+        self.exit_code: int | None = None
+        self._id = os.fork()
+        if self._id == 0:
+            _run_and_exit([*command, "--seed", str(seed)], modules)
+        with suppress(OSError):  # it has done so itself
+            os.setpgid(self._id, self._id)
+
+    def wait(self, seconds: float, until: Callable[[], bool] = lambda: False) -> bool:
+        """Wait until it ends, or `until` holds, or so long [s], and return whether it has ended."""
+        end = time.monotonic() + seconds
+        while self.exit_code is None and time.monotonic() < end and not until():
+            time.sleep(_LOOK_S)
+            ended, status = os.waitpid(self._id, os.WNOHANG)
+            self.exit_code = os.waitstatus_to_exitcode(status) if ended else None
+        return self.exit_code is not None
+
+    def kill(self) -> None:
+        """Kill it and those that it has started."""
+        os.killpg(self._id, signal.SIGKILL)
+        os.waitpid(self._id, 0)
+
+
+def _run_and_exit(command: list[str], modules: Path | None) -> NoReturn:
+    code = 1
+    try:
+        os.setpgid(0, 0)
+        nowhere = os.open(os.devnull, os.O_RDWR)
+        for descriptor in range(3):  # standard input, output and error
+            os.dup2(nowhere, descriptor)
+        sys.argv = ["seatrial", *command]
+        main()
+    except SystemExit as ending:
+        code = ending.code if isinstance(ending.code, int) else 0
+        if modules is not None:
+            modules.write_text("\n".join(sys.modules))
+    finally:
+        os._exit(code)
 
 
 @contextmanager
 def installed_study() -> Iterator[None]:
-    """Install the study that is an example to contributors, which takes a second, for the processes started here."""
-    path = os.environ.get("PYTHONPATH")
+    """Install the study that is an example to contributors, which takes a second, in this process."""
     with tempfile.TemporaryDirectory() as place:
         shutil.copy(EXAMPLES / "contributions" / "turning_study.py", place)
         metadata = Path(place) / "turning_study-1.0.dist-info"
         metadata.mkdir()
         (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: turning_study\nVersion: 1.0\n")
         (metadata / "entry_points.txt").write_text(f"[seatrial.studies]\n{STUDY} = turning_study:study\n")
-        os.environ["PYTHONPATH"] = os.pathsep.join([*([path] if path else []), place])
+        sys.path.append(place)
         try:
             yield
         finally:
-            os.environ["PYTHONPATH"] = path or ""
+            sys.path.remove(place)
 
 
-def _undisturbed_duration(command: list[str]) -> float:
-    """Wall time [s] of a command."""
+def _succeeds(command: list[str], modules: Path | None = None) -> bool:
+    copy = Copy(command, 0, modules)
+    if copy.wait(_LONGEST_RUN_S):
+        return copy.exit_code == 0
+    copy.kill()
+    return False
+
+
+def undisturbed_duration(command: list[str], place: Path) -> float:
+    """Import what a command needs and return its wall time [s] undisturbed.
+
+    Raises:
+        RuntimeError: it fails.
+    """
+    modules = place / "modules"
+    for name in ["seatrial", *(modules.read_text().split("\n") if _succeeds(command, modules) else ())]:
+        with suppress(Exception):  # names that a library gives to what is no module
+            importlib.import_module(name)
     began = time.monotonic()
-    if _started(command, 0).wait(_LONGEST_RUN_S) != 0:
+    if not _succeeds(command):
         raise RuntimeError(f"seatrial {' '.join(command)} fails undisturbed")
     return time.monotonic() - began
 
@@ -150,26 +207,24 @@ def kills(name: str, count: int, seed: int) -> Tally:
     rng, tally = random.Random(seed), Tally()
     with tempfile.TemporaryDirectory() as place, installed_study():
         once = Path(place) / "once"
-        duration = min(_undisturbed_duration(_command(name, once)) for _ in range(2))
+        duration = undisturbed_duration(_command(name, once), Path(place))
         place_of_result = Path(place) / "results"
         place_of_result.mkdir()
         folder = place_of_result / "result"
         witness, command = Witness(folder, tally), _command(name, folder)
         journal = _journal(folder)
-        for kill in range(count):
-            process = _started(command, kill % 2)
+        for kill in itertools.takewhile(lambda _: tally.killed < count, itertools.count()):
+            copy = Copy(command, kill % 2)
             if kill % 4 < 2:
-                is_killed = _kill_after(process, rng.random() * LONGEST_WAIT * duration)
+                is_killed = _kill_after(copy, rng.random() * LONGEST_WAIT * duration, tally)
             else:
-                is_killed = _kill_while_writing(process, place_of_result, rng.random() * _WRITING_S)
-            tally.killed += is_killed
-            tally.finished_first += not is_killed
+                copy.wait(_LONGEST_RUN_S, lambda: _has_draft(place_of_result))
+                is_killed = _kill_after(copy, rng.random() * _WRITING_S, tally)
             tally.killed_writing += is_killed and _has_draft(place_of_result)
-            tally.refused += process.returncode not in {0, -signal.SIGKILL}
             witness.look()
             if not is_killed:
                 journal.unlink(missing_ok=True)
-        tally.refused += _started(command, 0).wait(_LONGEST_RUN_S) != 0
+        tally.refused += not _succeeds(command)
         witness.look()
         journal.unlink(missing_ok=True)
         tally.leftovers = [path.name for path in place_of_result.iterdir() if path != folder]
@@ -201,37 +256,28 @@ def kills_of_benchmark(count: int, seed: int) -> Tally:
     rng, tally = random.Random(seed), Tally()
     with tempfile.TemporaryDirectory() as place:
         undisturbed, folder = Path(place) / "undisturbed", Path(place) / "killed"
-        duration = _undisturbed_duration([*BENCHMARK, "--out", str(undisturbed)])
-        for _ in range(count):
-            process = _started([*BENCHMARK, "--out", str(folder)], 0)
-            is_killed = _kill_after(process, rng.random() * LONGEST_WAIT * duration)
-            tally.killed += is_killed
-            tally.finished_first += not is_killed
-            tally.refused += process.returncode not in {0, -signal.SIGKILL}
+        duration = undisturbed_duration([*BENCHMARK, "--out", str(Path(place) / "timed")], Path(place))
+        _succeeds([*BENCHMARK, "--out", str(undisturbed)])
+        while tally.killed < count:
+            copy = Copy([*BENCHMARK, "--out", str(folder)], 0)
+            is_killed = _kill_after(copy, rng.random() * LONGEST_WAIT * duration, tally)
             _look_at_table(folder, undisturbed, tally)
             if not is_killed:
                 shutil.rmtree(folder)
-        tally.refused += _started([*BENCHMARK, "--out", str(folder)], 0).wait(_LONGEST_RUN_S) != 0
+        tally.refused += not _succeeds([*BENCHMARK, "--out", str(folder)])
         _look_at_table(folder, undisturbed, tally)
         return tally
 
 
-def _kill_after(process: subprocess.Popen[bytes], seconds: float) -> bool:
-    """Kill a process and those it started; False if it ended before."""
-    try:
-        process.wait(seconds)
-    except subprocess.TimeoutExpired:
-        os.killpg(process.pid, signal.SIGKILL)
-        process.wait()
-        return True
-    return False
-
-
-def _kill_while_writing(process: subprocess.Popen[bytes], place: Path, seconds: float) -> bool:
-    """Kill a process while it writes a folder in `place`: so many seconds after its draft stands."""
-    while process.poll() is None and not _has_draft(place):
-        time.sleep(_LOOK_S)
-    return _kill_after(process, seconds)
+def _kill_after(copy: Copy, seconds: float, tally: Tally) -> bool:
+    """Kill a command unless it ends before, and return whether that was done."""
+    if copy.wait(seconds):
+        tally.finished_first += 1
+        tally.refused += copy.exit_code != 0
+        return False
+    copy.kill()
+    tally.killed += 1
+    return True
 
 
 def _has_draft(place: Path) -> bool:

@@ -1,5 +1,8 @@
 """What is left when a command fails: one sentence, an exit code, and a file where the program is at fault."""
 
+import errno
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -7,6 +10,7 @@ import pytest
 
 from seatrial import InputError, api
 from seatrial.cli import INPUT_EXIT_CODE, INTERNAL_EXIT_CODE, INTERRUPT_EXIT_CODE
+from seatrial.cli.errors import is_of_input
 
 
 @pytest.fixture
@@ -67,3 +71,22 @@ def test_bad_input_and_interruption_keep_their_exit_codes(
     assert run_command("check", "any.toml") == INTERRUPT_EXIT_CODE == 130
     assert "interrupted" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_full_disk_behind_the_output_is_no_error_of_the_program(
+    failing_with: Callable[[BaseException], None], run_command: Callable[..., int], capsys: pytest.CaptureFixture[str]
+) -> None:
+    full = OSError(errno.ENOSPC, "No space left on device")
+    failing_with(full)
+    assert is_of_input(full) and not is_of_input(FileNotFoundError(errno.ENOENT, "No such file", "name"))
+    assert run_command("check", "any.toml") == INPUT_EXIT_CODE
+    assert "cannot be written (No space left on device); make room" in capsys.readouterr().err
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+@pytest.mark.parametrize(("target", "codes"), [("> /dev/full", {INPUT_EXIT_CODE}), (">&-", {0}), ("| true", {0, 1})])
+def test_output_that_cannot_go_anywhere_is_no_traceback(target: str, codes: set[int]) -> None:
+    program = f"{sys.executable} -c 'from seatrial.cli import main; main()' --version {target}; exit ${{PIPESTATUS[0]}}"
+    done = subprocess.run(["bash", "-c", program], capture_output=True, text=True, check=False)
+    assert done.returncode in codes
+    assert done.stderr.count("\n") == int(done.returncode == INPUT_EXIT_CODE)

@@ -227,3 +227,11 @@ def test_a_device_is_written_and_a_pipe_without_a_reader_refused(tmp_path: Path)
         os.mkfifo(tmp_path / "pipe")
         with pytest.raises(OSError, match="No such device"):
             platform.write_to_device(tmp_path / "pipe", b"content")
+
+
+def test_a_pipe_is_opened_without_waiting(tmp_path: Path) -> None:
+    if hasattr(os, "mkfifo"):
+        os.mkfifo(tmp_path / "pipe")
+        descriptor = platform.open_without_waiting(str(tmp_path / "pipe"), os.O_RDONLY)
+        assert os.read(descriptor, 1) == b"" and os.get_blocking(descriptor)
+        os.close(descriptor)

@@ -1,8 +1,10 @@
 """The command line: parse, call, print, exit code (0 done, 2 input, 70 internal, 130 interrupted)."""
 
 import gc
+import io
 import os
 import sys
+from pathlib import Path
 
 from seatrial.cli.commands import app
 
@@ -21,8 +23,12 @@ def main() -> None:
     gc.set_threshold(_COLLECTION_THRESHOLD)
     for variable, threads in _ALGEBRA_THREADS.items():
         os.environ.setdefault(variable, threads)
+    _prepare_streams()
     try:
-        app()
+        try:
+            app()
+        finally:
+            _flush_output()
     except SystemExit as ending:
         if ending.code == INTERRUPT_EXIT_CODE:
             print(_INTERRUPT_MESSAGE, file=sys.stderr)
@@ -31,11 +37,37 @@ def main() -> None:
         print(_INTERRUPT_MESSAGE, file=sys.stderr)
         sys.exit(INTERRUPT_EXIT_CODE)
     except Exception as error:
-        from seatrial.cli.errors import error_message
-        from seatrial.core.values import InputError
+        from seatrial.cli.errors import error_message, is_of_input
 
         print(f"seatrial: {error_message(error)}", file=sys.stderr)
-        sys.exit(INPUT_EXIT_CODE if isinstance(error, InputError) else INTERNAL_EXIT_CODE)
+        sys.exit(INPUT_EXIT_CODE if is_of_input(error) else INTERNAL_EXIT_CODE)
+
+
+def _prepare_streams() -> None:
+    """Let any name be printed, whatever the terminal's encoding; a stream that is closed takes what it is given."""
+    sys.stdout = sys.stdout or _nowhere()
+    sys.stderr = sys.stderr or _nowhere()
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
+def _nowhere() -> io.TextIOWrapper:
+    return io.TextIOWrapper(Path(os.devnull).open("wb"), encoding="utf-8")
+
+
+def _flush_output() -> None:
+    """Print what is still to be printed; nothing where nobody reads it any more.
+
+    Raises:
+        OSError: the disk that it goes to is full.
+    """
+    try:
+        sys.stdout.flush()
+    except OSError as error:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # for the flush at the end of the process
+        if not isinstance(error, BrokenPipeError):
+            raise
 
 
 __all__ = ["app", "main"]

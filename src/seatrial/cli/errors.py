@@ -1,5 +1,6 @@
 """What a command says of an exception; the traceback of one that is not the input's goes to a file."""
 
+import errno
 import hashlib
 import platform
 import sys
@@ -14,13 +15,24 @@ from seatrial.core.values import InputError
 from seatrial.core.values.files import write_atomically
 
 LIBRARIES = ("seatrial", "numpy", "scipy", "numba", "pandas", "pydantic", "typer")
+# of a stream: no space, beyond the user's quota, defective; writing a file has a sentence of its own
+_DISK_ERRORS = (errno.ENOSPC, errno.EDQUOT, errno.EIO)
 NAME_LENGTH = 12  # hexadecimal digits of a traceback's digest in its file's name: chosen, no two alike in practice
+
+
+def is_of_input(error: Exception) -> bool:
+    """Return whether what failed is the user's to correct: the input, or a full disk where the output goes."""
+    return isinstance(error, InputError) or (
+        isinstance(error, OSError) and error.filename is None and error.errno in _DISK_ERRORS
+    )
 
 
 def error_message(error: Exception) -> str:
     """Return one line: the sentence of an `InputError`; else what failed and the file to send to the developers."""
     if isinstance(error, InputError):
         return " ".join(str(error).split())
+    if is_of_input(error):
+        return f"what it prints cannot be written ({error.strerror}); make room, or print elsewhere"  # type: ignore[attr-defined]
     if isinstance(error, MemoryError):
         reason = "the memory of this computer does not suffice"
     else:
@@ -35,11 +47,11 @@ def _written_report(error: Exception) -> Path:
     text = "\n".join(
         [f"command: {sys.argv}", f"{platform.platform()}, Python {platform.python_version()}", *facts, trace]
     )
-    name = f"error-{hashlib.sha256(trace.encode()).hexdigest()[:NAME_LENGTH]}.txt"
+    name = f"error-{hashlib.sha256(trace.encode(errors='replace')).hexdigest()[:NAME_LENGTH]}.txt"
     try:
         path = platformdirs.user_log_path("seatrial") / name
-        write_atomically(path, text.encode())
+        write_atomically(path, text.encode(errors="replace"))
     except InputError:
         path = Path(tempfile.gettempdir()) / f"seatrial-{name}"
-        write_atomically(path, text.encode())
+        write_atomically(path, text.encode(errors="replace"))
     return path

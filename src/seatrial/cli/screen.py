@@ -69,9 +69,11 @@ def print_lines(lines: Iterable[str], indent: str = "") -> None:
 
 def print_verbatim(lines: Iterable[str]) -> None:
     """Print lines as they are, such as those of a file or a command to be copied."""
+    from seatrial.core.text.plain import safe_text
+
     if not is_quiet():
         for line in lines:
-            print(line)
+            print(safe_text(line))
 
 
 def print_heading(text: str) -> None:
@@ -98,7 +100,9 @@ def print_table(
 
 def print_file(meaning: str, path: Path | str) -> None:
     """Print the name of a file that was written, however little is printed otherwise."""
-    print(f"{meaning}: {path}")
+    from seatrial.core.text.plain import safe_text
+
+    print(safe_text(f"{meaning}: {path}"))
 
 
 def print_next(command: str) -> None:

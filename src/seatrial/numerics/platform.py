@@ -180,11 +180,20 @@ def write_to_device(path: Path, content: bytes) -> None:
     Raises:
         OSError: it cannot be written, or nobody reads the pipe (errno ENXIO).
     """
-    descriptor = os.open(path, os.O_WRONLY | getattr(os, "O_NONBLOCK", 0))
-    with os.fdopen(descriptor, "wb") as file:
-        if hasattr(os, "O_NONBLOCK"):
-            os.set_blocking(descriptor, True)
+    with os.fdopen(open_without_waiting(str(path), os.O_WRONLY), "wb") as file:
         file.write(content)
+
+
+def open_without_waiting(path: str, flags: int) -> int:
+    """Open a file as `open` does with `opener`, but do not wait until somebody writes to a pipe.
+
+    Raises:
+        OSError: it cannot be opened.
+    """
+    descriptor = os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
+    if hasattr(os, "O_NONBLOCK"):
+        os.set_blocking(descriptor, True)
+    return descriptor
 
 
 def written_size(facts: os.stat_result) -> int:

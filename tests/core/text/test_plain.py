@@ -3,7 +3,7 @@
 import pytest
 
 from seatrial.core.text.numbers import exact
-from seatrial.core.text.plain import aligned, ascii_text, wrapped
+from seatrial.core.text.plain import aligned, ascii_text, safe_text, wrapped
 
 
 @pytest.mark.parametrize("value", [-3.2e-7, 12345.6, 4.5e12, -0.25, 0.0])
@@ -15,6 +15,11 @@ def test_signs_have_plain_forms() -> None:
     assert ascii_text("10⁻³ kg m² ± 5 …") == "10^-3 kg m^2 ± 5 ..."
     assert ascii_text("−9.5°, ∞ – ×") == "-9.5 deg, inf - x"
     assert ascii_text("‘as it’ → “χ² ≤ 3”") == "'as it' -> \"chi^2 <= 3\""
+
+
+def test_what_steers_a_terminal_is_a_question_mark() -> None:
+    assert safe_text("a\x1b[31m\u202e\udcffb\tc\n") == "a?[31m??b\tc\n"
+    assert ascii_text("dérive \x9b ✓ 5°") == "dérive ? ✓ 5 deg"
 
 
 def test_columns_line_up() -> None:

@@ -15,6 +15,7 @@ from seatrial.core.values.files import (
     is_file,
     is_folder,
     is_present,
+    plain_name,
     remove_file,
     writable_folder,
     write_atomically,
@@ -131,6 +132,10 @@ def test_a_mount_point_is_written_from_within(tmp_path: Path, monkeypatch: pytes
     write_files_atomically(folder, {"one": b"3"}, {"old"})
     assert {file.name: file.read_text() for file in folder.iterdir()} == {"one": "3"}
     assert [place.name for place in tmp_path.iterdir()] == ["volume"]
+
+
+def test_letters_of_a_name_that_cannot_be_shown_are_replaced() -> None:
+    assert plain_name("дрейф \x1b[1m\n\udcff.csv") == "дрейф _[1m__.csv"
 
 
 def test_a_file_is_removed_or_a_sentence_says_why_not(tmp_path: Path) -> None:

@@ -31,6 +31,7 @@ def test_toml_that_no_program_writes_is_refused(text: str, reason: str) -> None:
         ("[1e400]", "1e400, which is no finite number"),
         ("[NaN]", "NaN, which is no finite number"),
         ("{", "line 1"),
+        (r'["\ud83d"]', "half of a character"),
     ],
 )
 def test_json_that_no_program_writes_is_refused(text: str, reason: str) -> None:
@@ -41,6 +42,7 @@ def test_json_that_no_program_writes_is_refused(text: str, reason: str) -> None:
 def test_what_is_well_formed_is_read() -> None:
     assert parse_toml("a = [1, 2.5, inf]\n[b]\nc = true") == {"a": [1, 2.5, float("inf")], "b": {"c": True}}
     assert parse_json('{"a": [1, 2.5, null]}') == {"a": [1, 2.5, None]}
+    assert parse_json(r'["\ud83d\udea2"]') == ["\N{SHIP}"]
 
 
 def test_a_file_beyond_the_limit_is_refused_before_it_is_read(tmp_path: Path) -> None:
@@ -64,6 +66,18 @@ def test_a_pipe_is_read_as_well() -> None:
     os.close(writer)
     assert read_bounded(Path(f"/dev/fd/{reader}")) == b"a = 1"
     os.close(reader)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes")
+def test_a_pipe_without_a_writer_is_empty(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    assert read_bounded(tmp_path / "pipe") == b""
+
+
+def test_the_mark_that_editors_put_first_is_left_out(tmp_path: Path) -> None:
+    path = tmp_path / "trial.toml"
+    path.write_bytes("a = 1".encode("utf-8-sig"))
+    assert read_table_text(path) == "a = 1"
 
 
 @pytest.mark.parametrize("number", [1e308, -1e31, 1e-320])

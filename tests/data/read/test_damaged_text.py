@@ -28,6 +28,7 @@ def read(path: Path, content: bytes, layout: Layout = LAYOUT) -> np.ndarray:
     [
         ROWS.encode("utf-8-sig"),
         ROWS.encode("utf-16"),
+        ROWS.encode("utf-32"),
         ROWS.replace("\n", "\r\n").encode(),
         ROWS.replace("-", "\u2212").encode(),
         ROWS.replace(",", " , ").encode(),
@@ -37,7 +38,19 @@ def read(path: Path, content: bytes, layout: Layout = LAYOUT) -> np.ndarray:
         ROWS.replace("speed\n", "speed," + "x" * 70_000 + "\n").encode(),
         ROWS.replace("3.5", "3.5" + "0" * 70_000).encode(),
     ],
-    ids=["BOM", "UTF-16", "CRLF", "minus sign", "spaces", "empty end", "quoted", "CR", "long header", "long cell"],
+    ids=[
+        "BOM",
+        "UTF-16",
+        "UTF-32",
+        "CRLF",
+        "minus sign",
+        "spaces",
+        "empty end",
+        "quoted",
+        "CR",
+        "long header",
+        "long cell",
+    ],
 )
 def test_what_is_clear_is_read(content: bytes, tmp_path: Path) -> None:
     np.testing.assert_array_equal(read(tmp_path / "run.csv", content), [1.5, -2.5, 3.5])

@@ -10,19 +10,27 @@ _RAISED = {raised: sign for sign, raised in SUPERSCRIPTS.items()}
 _PLAIN = str.maketrans({MINUS: "-", THIN_SPACE: "", "–": "-", "×": "x", "…": "...", "·": "?", "°": " deg", "∞": "inf",
     "‘": "'", "’": "'", "“": '"', "”": '"', "→": "->", "≤": "<=", "≥": ">=", "χ": "chi",
 })  # fmt: skip
+# what steers a terminal or cannot be encoded: control characters but tab and line feed, directions of writing, halves
+# of characters (Unicode 15, categories Cc, Cf, Cs)
+_UNSAFE = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
 _POWER = re.compile(f"{THIN_SPACE}×{THIN_SPACE}10([{''.join(_RAISED)}]+)")
 _INDEX = re.compile(f"[{''.join(_RAISED)}]+")
 # spaces between columns; letters below which a column of words is not read with ease; both chosen
 GAP, MIN_WORDS = 2, 16
 
 
+def safe_text(text: str) -> str:
+    """Return the text with a question mark for what would steer a terminal or cannot be written to one."""
+    return _UNSAFE.sub("?", text)
+
+
 def ascii_text(text: str) -> str:
-    """Return the text without typographic signs: ``-`` for a minus, ``1.2e-5``, ``kg m^2``."""
+    """Return the text without typographic signs: ``-`` for a minus, ``1.2e-5``, ``kg m^2``; safe as by `safe_text`."""
 
     def digits(raised: str) -> str:
         return "".join(_RAISED[letter] for letter in raised)
 
-    plain = _POWER.sub(lambda match: f"e{digits(match[1])}", text)
+    plain = _POWER.sub(lambda match: f"e{digits(match[1])}", safe_text(text))
     return _INDEX.sub(lambda match: f"^{digits(match[0])}", plain).translate(_PLAIN)
 
 

@@ -44,6 +44,11 @@ def is_device_or_pipe(path: Path) -> bool:
     return is_present(path) and not (is_file(path) or is_folder(path))
 
 
+def plain_name(name: str) -> str:
+    """Return the name of a file with "_" for letters that cannot be shown: control characters, bytes of no encoding."""
+    return "".join(letter if letter.isprintable() else "_" for letter in name)
+
+
 def write_atomically(path: Path, content: bytes) -> None:
     """Write a file beside the target, then rename it; a symbolic link is written through, and so is a device or pipe.
 

@@ -2,12 +2,14 @@
 
 import json
 import math
+import re
 import tomllib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 from seatrial.core.values.errors import InputError
+from seatrial.numerics.platform import open_without_waiting
 
 # bytes of a file of tables, at most: 64 times the largest that the package writes; chosen
 _LARGEST_FILE = 2**28
@@ -18,14 +20,18 @@ _SMALLEST_NUMBER, _LARGEST_NUMBER = 1e-30, 1e30
 _LARGEST_INTEGER = 2**63
 
 
+# how JSON writes halves of characters beyond 16 bits (RFC 8259, section 8.2), of which pairs are right
+_HALF_CHARACTER = re.compile(r"\\u[dD][89a-fA-F]")
+
+
 def read_bounded(path: Path, limit: int = _LARGEST_FILE) -> bytes:
-    """Return the bytes of a file.
+    """Return the bytes of a file, or of a pipe; one without a writer is empty.
 
     Raises:
         OSError: it cannot be read.
         ValueError: it holds more than `limit` bytes; no more than these are read.
     """
-    with path.open("rb") as file:
+    with open(path, "rb", opener=open_without_waiting) as file:
         size = file.seek(0, 2) if file.seekable() else 0
         file.seek(0) if size else None
         content = file.read(limit + 1) if size <= limit else b""
@@ -35,15 +41,15 @@ def read_bounded(path: Path, limit: int = _LARGEST_FILE) -> bytes:
 
 
 def read_table_text(path: Path) -> str:
-    """Return the text of a file of tables; errors as `read_bounded`.
+    """Return the text of a file of tables, without the mark that some editors put first; errors as `read_bounded`.
 
     Raises:
         ValueError: it is not UTF-8 text.
     """
     try:
-        return read_bounded(path).decode()
+        return read_bounded(path).decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise ValueError("it is not UTF-8 text") from None
+        raise ValueError("it is not UTF-8 text; save it as UTF-8") from None
 
 
 def parse_toml(text: str) -> dict[str, Any]:
@@ -65,12 +71,18 @@ def parse_json(text: str) -> Any:
     """Return the value of a JSON text.
 
     Raises:
-        ValueError: no JSON, nested too deep, NaN, infinity, or a whole number beyond 64 bits; the text says which.
+        ValueError: no JSON, nested too deep, NaN, infinity, a whole number beyond 64 bits, or half of a character; the
+            text says which.
     """
     try:
-        return json.loads(text, parse_int=_whole_number, parse_float=_finite_number, parse_constant=_finite_number)
+        value = json.loads(text, parse_int=_whole_number, parse_float=_finite_number, parse_constant=_finite_number)
+        if _HALF_CHARACTER.search(text):
+            json.dumps(value, ensure_ascii=False).encode()
     except RecursionError:
         raise ValueError("its tables are nested too deep") from None
+    except UnicodeEncodeError:
+        raise ValueError("it holds half of a character, which no text is") from None
+    return value
 
 
 def refuse_absurd_numbers(table: Mapping[str, Any], where: str) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from seatrial.core.values import Array, Channel, InputError, Provenance, Record, frozen
+from seatrial.core.values.files import plain_name
 from seatrial.core.values.froude import froude_scaled
 from seatrial.data.read.clock import stamps
 from seatrial.data.read.derive import Measured, derived_channels
@@ -43,7 +44,7 @@ def assemble_record(log: Log, layout: Layout, sha256: str) -> Record:
     measured = {column.symbol: _measured(column, table) for column in layout.columns}
     measured, emptied = without_fixes_at_zero(measured, read.seconds)
     channels = derived_channels(measured, layout.geometry, log.file)
-    provenance = Provenance(log.file, sha256, _notes(f"read as {layout.format}", read.note, emptied))
+    provenance = Provenance(plain_name(log.file), sha256, _notes(f"read as {layout.format}", read.note, emptied))
     return _record(record_name(log.file), read.seconds, channels, layout.scale, provenance)
 
 
@@ -68,7 +69,7 @@ def record_of_sources(name: str, sources: Sequence[LogSource]) -> Record:
         one.column.symbol: Measured(one.column, values_at(one, time, layout.longest_gap), one.label) for one in series
     }
     channels = derived_channels(measured, layout.geometry, name)
-    files = ", ".join(dict.fromkeys(source.log.file for source in sources))
+    files = ", ".join(dict.fromkeys(plain_name(source.log.file) for source in sources))
     topics = len({one.topic for one in series})
     step = f"{topics} topics of {len(files.split(', '))} files joined every {time[1] - time[0]:.6g} s"
     digest = sources[0].sha256 if len(sources) == 1 else " ".join(source.sha256 for source in sources)
@@ -163,9 +164,8 @@ def record_from_values(
 
 
 def record_name(file: str) -> str:
-    """The record's name: the file name without its suffixes."""
-    path = Path(file.removesuffix(".gz"))
-    return path.stem if path.suffix else path.name
+    """The record's name: the file's without its ending, ``.gz`` included."""
+    return plain_name(Path(file.removesuffix(".gz")).stem)
 
 
 def _require_increasing_time(time: Array, table: RawTable, layout: Layout) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from seatrial.core.values import Array, Channel, InputError, Provenance, Record, RecordKind, frozen, quantity
-from seatrial.core.values.files import is_file, write_atomically
+from seatrial.core.values.files import is_file, plain_name, write_atomically
 from seatrial.core.values.tables import parse_json
 from seatrial.data.read.formats.text import RECORD_MARK, decoded_text, read_text
 from seatrial.data.read.layout import ColumnSpec, Layout
@@ -54,8 +54,8 @@ def read_record_csv(path: Path) -> Record:
     time, *columns = [sheet.numbers(ColumnSpec("time", number + 1, "s")) for number in range(len(header))]
     if not marked:
         plain = {s: _plain_channel(s, unit, values) for (s, unit), values in zip(header[1:], columns, strict=True)}
-        source = Provenance(path.name, hashlib.sha256(path.read_bytes()).hexdigest())
-        return Record(path.stem, time, plain, provenance=source)
+        source = Provenance(plain_name(path.name), hashlib.sha256(path.read_bytes()).hexdigest())
+        return Record(plain_name(path.stem), time, plain, provenance=source)
     try:
         metadata = parse_json(lines[0].removeprefix(RECORD_MARK))
         described = metadata["channels"]

@@ -11,7 +11,7 @@ import numpy as np
 from seatrial.core.values import InputError, Record, spelling_hint
 from seatrial.core.values.files import is_file
 from seatrial.data.read import Layout, LogEvent, read_log
-from seatrial.data.read.assemble import LogSource, assemble_record, record_of_sources
+from seatrial.data.read.assemble import LogSource, assemble_record, record_name, record_of_sources
 from seatrial.data.read.record_file import file_digest
 
 _SECONDS = re.compile(r"\s*(\d+\.?\d*)\s*(s|min|h)?\s*")
@@ -22,7 +22,7 @@ _EPOCH_CLOCK_S = 1e8  # s beyond which a clock counts from 1970 or the like, thr
 
 def run_name(path: Path) -> str:
     """The name of a run's file without its ending, ``.gz`` included."""
-    return Path(path.name.removesuffix(".gz")).stem
+    return record_name(path.name)
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from seatrial.core.values import InputError, RecordKind, si_unit, spelling_hint
-from seatrial.core.values.files import is_file, is_folder
+from seatrial.core.values.files import is_file, is_folder, is_present
 from seatrial.data.read import ColumnSpec, Layout, format_of
 from seatrial.data.read.layout import Geometry, TimeSpec
 from seatrial.data.read.quantities import log_quantity
@@ -166,6 +166,8 @@ def _matching_files(text: str, data_folder: Path, where: str) -> list[Path]:
     full = data_folder / expand_variables(text)
     if is_file(full):
         return [full]
+    if is_present(full):
+        raise InputError(f"{where}.files: '{full}' is a folder, a device or a pipe; name a file")
     if not any(c in text for c in "*?["):
         raise InputError(f"{where}.files: there is no file '{full}'; check the name and [data] folder")
     # brackets in the names of folders that are not part of the pattern are brackets

@@ -25,7 +25,12 @@ RECORD_MARK = "# seatrial record"
 _HEAD_BYTES = 65536  # of a file that are looked at for zero bytes; chosen
 _CHUNK_BYTES = 2**20  # of a file that are looked at together: they stay in the processor's cache; chosen
 _SEPARATORS = {",": ",", ";": ";", "tab": "\t", "whitespace": r"\s+"}
-_BYTE_ORDER_MARKS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16", b"\xef\xbb\xbf": "utf-8-sig"}
+_BYTE_ORDER_MARKS = {
+    b"\xff\xfe\0\0": "utf-32",
+    b"\xff\xfe": "utf-16",
+    b"\xfe\xff": "utf-16",
+    b"\xef\xbb\xbf": "utf-8-sig",
+}
 _ASCII_COMPATIBLE = ("utf-8", "cp1252", "iso8859-1", "ascii")
 # unpacked over packed bytes of a .gz, and bytes that any may unpack to; ours: tables of numbers reach 30
 _LARGEST_EXPANSION, _ALWAYS_ALLOWED = 200, 2**26
