@@ -48,6 +48,31 @@ def test_coverage_counts_values_and_samples(fit: Fit) -> None:
     assert rows(alone)["Inside 95 % intervals"].text == "1 of 1 measured manoeuvring values"
 
 
+def test_an_interval_that_cannot_fail_is_no_tick(fit: Fit) -> None:
+    (p,) = fit.validation
+    wide = {"overshoot_1_deg": Measure(8.0, 8.1, -30.0, 40.0)}
+    one = replace(fit, predictions=(replace(p, measures=wide, windows=()),))
+    fact = rows(one)["Inside 95 % intervals"]
+    assert fact.text == "too wide to test anything: 1 manoeuvring value"
+    assert fact.is_good is False
+    both = replace(p, windows=(), measures=wide | {"overshoot_2_deg": Measure(8.0, 8.1, 7.0, 9.0)})
+    fact = rows(replace(fit, predictions=(both,)))["Inside 95 % intervals"]
+    assert fact.text == "1 of 1 measured manoeuvring values; too wide to test anything: 1 manoeuvring value"
+    assert fact.is_good is True
+    missed = replace(p, windows=(), measures={"overshoot_1_deg": Measure(50.0, 8.1, -30.0, 40.0)})
+    assert rows(replace(fit, predictions=(missed,)))["Inside 95 % intervals"].is_good is False
+
+
+def test_a_band_wider_than_the_motion_is_no_tick(fit: Fit) -> None:
+    scored = with_windows(fit, 1.0, 3.0, inside=1.0)
+    (p,) = scored.validation
+    scores = {key: replace(score, band_share=1.2) for key, score in p.windows[0].scores.items()}
+    wide = replace(p, measures={}, windows=(replace(p.windows[0], scores=scores),))
+    fact = rows(replace(scored, predictions=(wide,)))["Inside 95 % intervals"]
+    assert fact.text.startswith("too wide to test anything: the band of heading")
+    assert fact.is_good is False
+
+
 def test_warnings_name_findings_and_a_search_that_did_not_converge(fit: Fit) -> None:
     codes = [f.code for f in fit.findings if f.severity is not Severity.INFO]
     assert rows(fit)["Warnings"].text == ", ".join(codes) and not rows(fit)["Warnings"].is_good

@@ -3,7 +3,7 @@
 import pytest
 
 from seatrial.core.results import Measure
-from seatrial.reporting.measures import is_inside, manoeuvre_name, measure_decimals, measure_label
+from seatrial.reporting.measures import interval_verdict, manoeuvre_name, measure_decimals, measure_label
 
 
 def test_names_and_units() -> None:
@@ -21,8 +21,25 @@ def test_a_value_outside_is_seen_to_be_outside() -> None:
 
 
 def test_a_value_is_inside_outside_or_neither() -> None:
-    assert is_inside(Measure(3.0, 3.1, 2.9, 3.2)) is True and is_inside(Measure(9.0, 3.1, 2.9, 3.2)) is False
-    assert is_inside(Measure(3.0, 3.1)) is None
+    assert interval_verdict("advance_L", Measure(3.0, 3.1, 2.9, 3.2)) == "inside"
+    assert interval_verdict("advance_L", Measure(9.0, 3.1, 2.9, 3.2)) == "outside"
+    assert interval_verdict("advance_L", Measure(3.0, 3.1)) == ""
+    assert interval_verdict("advance_L", Measure(3.0, 3.1, 2.9, 3.2, is_determined=False)) == ""
+
+
+@pytest.mark.parametrize(("name", "measure", "verdict"), [
+    ("initial_turning_time_s", Measure(46.0, 75.0, 20.0, 131.0), "too wide to test"),
+    ("initial_turning_time_s", Measure(46.0, 50.0, 30.0, 70.0), "inside"),
+    ("initial_turning_time_s", Measure(146.0, 75.0, 20.0, 131.0), "outside"),
+    ("speed_loss", Measure(-0.2, -0.3, -1.476, 0.817), "too wide to test"),
+    ("speed_loss", Measure(0.3, 0.35, 0.1, 0.6), "inside"),
+    ("overshoot_1_deg", Measure(2.0, 3.0, -1.0, 7.0), "inside"),
+    ("overshoot_1_deg", Measure(2.0, 3.0, -9.0, 15.0), "too wide to test"),
+    ("tactical_diameter_L", Measure(8.7, 9.2, 6.4, 12.1), "inside"),
+    ("tactical_diameter_L", Measure(3.0, 3.5, 1.0, 6.0), "too wide to test"),
+])  # fmt: skip
+def test_an_interval_that_holds_whatever_a_ship_may_do_is_no_test(name: str, measure: Measure, verdict: str) -> None:
+    assert interval_verdict(name, measure) == verdict
 
 
 @pytest.mark.parametrize(("text", "name"), [

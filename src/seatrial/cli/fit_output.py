@@ -159,17 +159,18 @@ def _print_measures(p: "Prediction") -> None:
             simulated = exact(m.simulated, 4) if m.is_determined else NOT_DETERMINED
             ends = ("" if x is None or not m.is_determined else exact(x, 4) for x in (m.lower, m.upper))
             measured = "" if m.measured is None else exact(m.measured, 4)
-            rows.append([quantity_label(name), measured, simulated, *ends, _measure_mark(m)])
+            rows.append([quantity_label(name), measured, simulated, *ends, _measure_mark(name, m)])
     if len(rows) > 1:
         print_table(rows, flush_left=words, indent="  ")
     if len(p.measures) > len(chosen):
         print_lines([f"... and {len(p.measures) - len(chosen)} more; --verbose and the report show them"], "  ")
 
 
-def _measure_mark(m: "Measure") -> str:
-    from seatrial.reporting.measures import is_inside
+def _measure_mark(name: str, m: "Measure") -> str:
+    from seatrial.reporting.measures import IntervalVerdict, interval_verdict
 
-    return {True: "inside", False: "OUTSIDE", None: ""}[is_inside(m) if m.is_determined else None]
+    verdict = interval_verdict(name, m)
+    return verdict.upper() if verdict is IntervalVerdict.OUTSIDE else verdict.value
 
 
 def _print_thruster_craft(fit: "Fit") -> None:

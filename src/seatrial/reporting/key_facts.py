@@ -11,7 +11,7 @@ from seatrial.core.text.words import counted, enumeration
 from seatrial.core.values import Severity
 from seatrial.reporting.first_screen import FirstScreen, KeyFact
 from seatrial.reporting.identifiability_chapter import MIN_VARIANCE_INFLATION, determined_sentence
-from seatrial.reporting.measures import is_inside
+from seatrial.reporting.measures import IntervalVerdict, interval_verdict
 from seatrial.reporting.operators import operators_sentence
 from seatrial.reporting.runs import ERROR_LABELS, badness
 from seatrial.reporting.time_figures import run_figure
@@ -96,27 +96,36 @@ def _ratio(key: str, w: WindowScore, score: ChannelScore) -> float:
 
 
 def _coverage(fit: Fit) -> KeyFact:
-    """How many manoeuvring values lie inside their intervals, and samples inside their bands."""
-    judged = [is_inside(m) for p in fit.validation for m in p.measures.values() if m.lower != m.upper]
-    inside = [verdict for verdict in judged if verdict is not None]
-    texts, shares = [], []
-    if inside:
-        texts.append(f"{sum(inside)} of {len(inside)} {fit.validation[0].reference_word} manoeuvring values")
-        shares.append(sum(inside) / len(inside))
+    """How many values lie inside their intervals, and samples inside their bands; what is too wide to test."""
+    name = "Inside 95 % intervals"
+    verdicts = [interval_verdict(key, m) for p in fit.validation for key, m in p.measures.items() if m.lower != m.upper]
+    inside, outside, wide = (
+        sum(v is which for v in verdicts)
+        for which in (IntervalVerdict.INSIDE, IntervalVerdict.OUTSIDE, IntervalVerdict.TOO_WIDE)
+    )
+    texts, shares, untested = [], [], [counted(wide, "manoeuvring value")] if wide else []
+    if inside + outside:
+        texts.append(f"{inside} of {inside + outside} {fit.validation[0].reference_word} manoeuvring values")
+        shares.append(inside / (inside + outside))
     windows = [w for p in fit.validation if (w := _longest_windows(p))]
     for key in dict.fromkeys(key for w in windows for key in w.scores):
-        bands = [(share, w.count) for w in windows if key in w.scores
-                 and (share := w.scores[key].inside_band) is not None]  # fmt: skip
-        if bands:
+        scores = [(w.scores[key], w.count) for w in windows if key in w.scores]
+        bands = [(score.inside_band, count) for score, count in scores if score.inside_band is not None]
+        if bands and all(score.is_band_too_wide for score, _ in scores if score.inside_band is not None):
+            untested.append(f"the band of {ERROR_LABELS[key][0]}")
+        elif bands:
             share = sum(share * count for share, count in bands) / sum(count for _, count in bands)
             texts.append(f"{fixed(100.0 * share, 0)} % of the samples of {ERROR_LABELS[key][0]}")
             shares.append(share)
-    if not texts:
+    if not texts and not untested:
         why = "nothing that was recorded has one" if fit.validation else "no run was held out"
-        return KeyFact("Inside 95 % intervals", f"none judged: {why}")
+        return KeyFact(name, f"none judged: {why}")
     lengths = {w.window for w in windows}
-    over = f", in windows of {lengths.pop()}" if len(lengths) == 1 and len(texts) > len(inside[:1]) else ""
-    return KeyFact("Inside 95 % intervals", f"{enumeration(texts)}{over}", "prediction", min(shares) >= LEAST_COVERAGE)
+    has_bands = len(texts) > bool(inside + outside)
+    over = f", in windows of {lengths.pop()}" if len(lengths) == 1 and has_bands else ""
+    too_wide = [f"too wide to test anything: {enumeration(untested)}"] if untested else []
+    text = "; ".join([*([f"{enumeration(texts)}{over}"] if texts else []), *too_wide])
+    return KeyFact(name, text, "prediction", bool(shares) and min(shares) >= LEAST_COVERAGE)
 
 
 def _identifiability(fit: Fit) -> KeyFact:

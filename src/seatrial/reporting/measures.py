@@ -3,6 +3,7 @@
 import math
 import re
 from collections.abc import Sequence
+from enum import StrEnum
 
 from seatrial.core.results import Extrapolation, Measure
 from seatrial.core.text.numbers import ratio_text
@@ -68,11 +69,34 @@ def measure_decimals(unit: str, m: Measure) -> int:
     return min(usual + EXTRA_DECIMALS, max(usual, 1 - math.floor(math.log10(width))))
 
 
-def is_inside(m: Measure) -> bool | None:
-    """Return whether the measured value lies in the interval; None where one of them is not known."""
-    if m.measured is None or m.lower is None or m.upper is None:
-        return None
-    return m.lower <= m.measured <= m.upper
+class IntervalVerdict(StrEnum):
+    """Where a measured value lies; an interval that holds whatever a ship may do is not tested by it."""
+
+    INSIDE = "inside"
+    OUTSIDE = "outside"
+    TOO_WIDE = "too wide to test"
+    UNKNOWN = ""
+
+
+# half width of an interval over the value from which on it tests nothing; chosen
+TOO_WIDE_SHARE = 0.5
+# unit -> least size of the value for that: of first overshoots, diameters and lost speeds of ships; chosen
+_USUAL_SIZE = {"deg": 10.0, "L": 2.0, "": 1.0}
+
+
+def interval_verdict(name: str, m: Measure) -> IntervalVerdict:
+    """Return where the measured value lies in the interval, and whether that says anything.
+
+    Too wide to test is an interval whose half width is more than half of the value: of the larger one, measured or
+    predicted, and for angles, ship lengths and shares of at least 10 degrees, 2 L and 1.
+    """
+    if not m.is_determined or m.measured is None or m.lower is None or m.upper is None:
+        return IntervalVerdict.UNKNOWN
+    if not m.lower <= m.measured <= m.upper:
+        return IntervalVerdict.OUTSIDE
+    size = max(abs(m.measured), abs(m.simulated or 0.0), _USUAL_SIZE.get(measure_label(name)[1], 0.0))
+    is_wide = 0.5 * (m.upper - m.lower) > TOO_WIDE_SHARE * size
+    return IntervalVerdict.TOO_WIDE if is_wide else IntervalVerdict.INSIDE
 
 
 # index up to which a run lies inside the training runs, and up to which at their edge

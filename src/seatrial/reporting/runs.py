@@ -14,9 +14,10 @@ from seatrial.core.values import InputError, Record
 from seatrial.core.values.record_chart import has_track
 from seatrial.physics.manoeuvres import ImoCriterion, imo_criteria
 from seatrial.reporting.measures import (
+    IntervalVerdict,
     extrapolation_text,
     extrapolation_zone,
-    is_inside,
+    interval_verdict,
     measure_decimals,
     measure_label,
 )
@@ -45,7 +46,7 @@ class MeasureRow:
     simulated: str
     difference: str
     interval: str = ""
-    is_inside: bool | None = None
+    verdict: str = IntervalVerdict.UNKNOWN
     spread: str = ""
 
 
@@ -270,7 +271,8 @@ def _measure_row(name: str, m: Measure, spread: float | None) -> MeasureRow:
     difference = _signed(m.simulated - m.measured, digits) if both else DASH  # type: ignore[operator]
     return MeasureRow(
         label, unit, fixed(m.measured, digits), fixed(m.simulated, digits), difference,
-        interval(m.lower, m.upper, digits) if m.is_determined else "not determined", is_inside(m), _two_digits(spread),
+        interval(m.lower, m.upper, digits) if m.is_determined else "not determined",
+        interval_verdict(name, m), _two_digits(spread),
     )  # fmt: skip
 
 

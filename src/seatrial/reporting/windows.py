@@ -39,6 +39,7 @@ def _errors(
     for name, own in w.scores.items():
         texts = [DASH if s is None else significant(s.rms * factors.get(name, 1.0), 3) for s in _scores(w, name)]
         share = DASH if own.inside_band is None else f"{fixed(100.0 * own.inside_band, 0)} %"
+        share += " (too wide to test)" if own.is_band_too_wide else ""
         rows.append((f"{labels[name][0]}, {labels[name][1]}", *texts, share))
     columns = ("", *header, "inside 95 % band")
     lost = f"; {w.divergence_text}" if w.diverged else ""

@@ -46,6 +46,10 @@ def test_windows_of_both_units_are_scored_with_baselines(fit: Fit) -> None:
     assert 1.0 - score.r_squared == pytest.approx((1.0 - score.fit_percent / 100.0) ** 2)
     (straight,) = [b for b in in_seconds.baselines if b.name == CONSTANT_COURSE]
     assert score.rms < straight.scores["r"].rms
+    heading = in_seconds.scores["psi_deg"]
+    assert heading.band_share is not None
+    # half the band is about two errors wide, where the error is that share of the motion: 1 - R^2, its root
+    assert heading.band_share == pytest.approx(2.0 * np.sqrt(1.0 - heading.r_squared), rel=0.6)
     assert straight.scores["r"].rms == pytest.approx(np.sqrt(np.mean(fit.validation[0].measured["r"] ** 2)), rel=0.25)
 
 

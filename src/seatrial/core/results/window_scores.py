@@ -22,6 +22,15 @@ class ChannelScore:
         Number | None,
         Field(description="share of samples inside their 95 % band (sensor noise included); null: no band"),
     ] = None
+    band_share: Annotated[
+        Number | None,
+        Field(description="rms half width of the band over the standard deviation of the motion; null: no band"),
+    ] = None
+
+    @property
+    def is_band_too_wide(self) -> bool:
+        """Whether the band is wider than the motion itself, so that the mean of the motion would lie inside it, too."""
+        return self.band_share is not None and self.band_share > 1.0
 
 
 @dataclass(frozen=True)

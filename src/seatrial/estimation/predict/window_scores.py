@@ -165,7 +165,7 @@ def _channel_score(
 
     The share inside the band is that of windows with one, where most have one.
     """
-    squares, about_mean, inside = 0.0, 0.0, []
+    squares, about_mean, inside, widths = 0.0, 0.0, [], []
     for channel in channels:
         errors = _errors(windows, simulated, channel)
         measured = np.concatenate([w[channel][np.isfinite(w[channel])] for w in windows])
@@ -179,6 +179,7 @@ def _channel_score(
             ]
             judged = np.isfinite(np.concatenate(half))
             inside.append((np.abs(errors) <= np.concatenate(half))[judged])
+            widths.append(float(np.mean(np.square(np.concatenate(half)[judged]))))
     count = sum(int(np.isfinite(w[channels[0]]).sum()) for w in windows)
     share = squares / about_mean if about_mean > 0.0 else np.inf
     return ChannelScore(
@@ -186,6 +187,7 @@ def _channel_score(
         100.0 * (1.0 - float(np.sqrt(share))),  # MathWorks, System Identification Toolbox, compare: NRMSE
         1.0 - share,
         float(np.mean(np.concatenate(inside))) if inside else None,
+        float(np.sqrt(sum(widths) / (about_mean / count))) if widths and about_mean > 0.0 else None,
     )
 
 
