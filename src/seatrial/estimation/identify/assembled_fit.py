@@ -17,6 +17,7 @@ from seatrial.estimation.identify.identifiability import identifiability
 from seatrial.estimation.identify.identification import Identification
 from seatrial.estimation.identify.misfit_disturbance import misfit_disturbance
 from seatrial.estimation.identify.model_selection import SelectedModel, with_model_spread
+from seatrial.estimation.identify.needless_terms import needless_term_findings
 from seatrial.estimation.identify.other_optima import other_optima
 from seatrial.estimation.identify.physical_limits import unphysical_finding
 from seatrial.estimation.identify.posterior import sample_posterior, sampling_findings
@@ -79,6 +80,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
             ),
             *short_record_findings(estimation, assessment.profiles), *closed_loop_findings(estimation),
             *(sampling_findings(posterior) if posterior else ()),
+            *needless_term_findings(estimation, predicted.predictions),
             *predicted.findings,
             *one_speed_finding(roll, runs.records),
         ),

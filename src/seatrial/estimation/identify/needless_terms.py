@@ -1,0 +1,91 @@
+"""Terms of a fitted model without which the runs that were held out would be predicted better."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from seatrial.core.equations import Model
+from seatrial.core.results import Prediction
+from seatrial.core.text.numbers import significant
+from seatrial.core.text.words import enumeration
+from seatrial.core.values import Finding, InputError, Severity
+from seatrial.estimation.estimate.fit import Estimation
+from seatrial.estimation.information.covariance import inverse
+from seatrial.estimation.predict.open_loop import rms_errors, simulate_open_loop
+
+_ERRORS = {"psi_deg": ("heading", " deg"), "position_m": ("position", " m")}
+"""Errors that are compared -> their name and unit; where a run has neither, nothing is."""
+LEAST_GAIN = 0.7
+"""Mean error without a term over that with it, from which on it is named: 30 % are beyond what one run scatters by
+chance between models that predict alike; chosen."""
+
+
+def needless_term_findings(estimation: Estimation, predictions: Sequence[Prediction]) -> tuple[Finding, ...]:
+    """Return a warning `term-worsens-prediction` for the term whose removal helps the held-out runs most; else nothing.
+
+    A term is removed by setting its coefficient to 0 and moving the others with it, as the information has them at
+    the least cost (Seber & Wild 1989, Nonlinear Regression, section 5.4: to first order, not fitted again). Terms with
+    a prior, and those whose bounds exclude 0, stay.
+    """
+    held = [p for p in predictions if p.role == "validation" and p.divergence is None and set(_ERRORS) & set(p.rms)]
+    if not held:
+        return ()
+    names, parameters = estimation.estimate.problem.free, estimation.model.parameters
+    removable = [n for n in names if parameters[n].prior is None and parameters[n].lower <= 0.0 <= parameters[n].upper]
+    ratios = {name: _error_ratio(estimation, _without(estimation, name), held) for name in removable}
+    best = min(ratios, key=lambda name: ratios[name], default="")
+    if not best or ratios[best] > LEAST_GAIN:
+        return ()
+    without = _errors(estimation, _without(estimation, best), held)
+    texts = [
+        f"{label} {significant(max(p.rms[key] for p in held if key in p.rms), 2)}{unit} with it, "
+        f"{significant(max(errors[key] for errors in without if key in errors), 2)}{unit} without"
+        for key, (label, unit) in _ERRORS.items()
+        if any(key in p.rms for p in held) and any(key in errors for errors in without)
+    ]
+    runs = enumeration([p.record for p in held], 3)  # names that a message holds, chosen
+    return (Finding(
+        Severity.WARNING, "term-worsens-prediction", f"{runs} would be predicted better with {best} at 0",
+        f"{'; '.join(texts)}; the other coefficients moved with it to first order",
+        "fix it at 0 and compare; so that the held-out runs stay a test, let training runs left out decide: "
+        "seatrial identify TRIAL.toml --choose",
+        "it follows the training runs and leads away from others",
+    ),)  # fmt: skip
+
+
+def _without(estimation: Estimation, name: str) -> Model:
+    """The model with a coefficient at 0 and the others where the cost is then least, to second order of the cost."""
+    free = estimation.estimate.problem.free
+    covariance = inverse(estimation.information)[: len(free), : len(free)]
+    place = free.index(name)
+    values = estimation.estimate.common_parameters[: len(free)]
+    moved = values - covariance[:, place] / covariance[place, place] * values[place]
+    parameters = estimation.model.parameters
+    limits = [(parameters[n].lower, parameters[n].upper) for n in free]
+    kept = [float(np.clip(value, *ends)) for value, ends in zip(moved, limits, strict=True)]
+    return estimation.model.with_values(dict(zip(free, kept, strict=True)) | {name: 0.0})
+
+
+def _errors(estimation: Estimation, model: Model, held: Sequence[Prediction]) -> list[dict[str, float]]:
+    """Errors of each held-out run as the fit predicts it, by another model; infinite where it diverges."""
+    problem, errors = estimation.estimate.problem, list[dict[str, float]]()
+    for p in held:
+        offsets = np.array([p.offsets[name] for name in problem.session_unknowns])
+        try:
+            run = simulate_open_loop(problem, model, p.measured, offsets, p.initial_seconds)
+        except InputError:
+            errors.append(dict.fromkeys(p.rms, np.inf))
+        else:
+            errors.append(rms_errors(p.measured, run.record))
+    return errors
+
+
+def _error_ratio(estimation: Estimation, model: Model, held: Sequence[Prediction]) -> float:
+    """Geometric mean over runs and quantities of the error by another model over that by the fit."""
+    ratios = [
+        errors.get(key, np.inf) / p.rms[key]
+        for p, errors in zip(held, _errors(estimation, model, held), strict=True)
+        for key in _ERRORS
+        if p.rms.get(key, 0.0) > 0.0
+    ]
+    return float(np.exp(np.mean(np.log(ratios)))) if ratios else np.inf
