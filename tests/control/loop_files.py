@@ -6,6 +6,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Ship
 from seatrial.data.folder.model_file import ModelFile, write_model
 from seatrial.physics.models import model_named
+from seatrial.physics.models.published import theoretical_coefficients
 
 FIN = """
 [plant]
@@ -40,6 +41,29 @@ bandwidth = 0.05
 change = { value = 20, unit = "deg" }
 """
 
+RIDE_CONTROL = """
+minimise = [{ name = "vertical_acceleration", x = 20 }, "actuator_rate"]
+[plant]
+model = "model.toml"
+output = "theta"
+actuator = "delta_f1"
+speed = { value = 18, unit = "kn" }
+[controller]
+kind = "pid"
+parts = ["KP", "KD"]
+derivative_filter = 0.1
+[actuator]
+limit = { value = 20, unit = "deg" }
+rate = { value = 30, unit = "deg/s" }
+servo = [{ num = [225.0], den = [1.0, 21.0, 225.0] }]
+[excitation]
+source = "box"
+[[seas]]
+spectrum = "ittc"
+height = 1.5
+heading = { value = 135, unit = "deg" }
+"""
+
 
 def write_loop_file(folder: Path, text: str, *changes: tuple[str, str]) -> Path:
     """The file with some of its text changed; what is to be changed must be there."""
@@ -59,6 +83,19 @@ def nomoto() -> Model:
 def roll() -> Model:
     """A ship that rolls in 7.5 s, damped more the more it rolls, without fins."""
     return model_named("roll").with_values({"b_1": 0.06, "b_2": 0.35, "c_1": 0.698})
+
+
+def heave_and_pitch() -> Model:
+    """The ship of Qi et al. 2025 at 135 degrees to the waves, with a fin aft."""
+    ship = theoretical_coefficients(135).applied_to(model_named("heave_pitch"))
+    return ship.with_values({"lift_1": 791060.0, "x_f1": -25.0})
+
+
+def heave_pitch_file(folder: Path) -> Path:
+    """The model of `heave_and_pitch` as `identify` writes it."""
+    path = folder / "model.toml"
+    write_model(ModelFile(heave_and_pitch(), ship=Ship("a ship", {"L": 60.0, "B": 7.137, "d": 2.27})), path)
+    return path
 
 
 def model_file(folder: Path, model: Model, name: str = "model.toml") -> Path:

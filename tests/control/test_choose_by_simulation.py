@@ -16,7 +16,7 @@ SEAS = np.array([0.70, 0.72, 0.69, 0.71])
 def candidate(gain: float, Ms: float, *, is_on_bound: bool = False, is_delay_kept: bool = True) -> _Candidate:
     judge = gain_evaluator(fin_task())
     scatter = 1e-3 * np.arange(len(SEAS))
-    return _Candidate(judge, np.zeros(3), "front", SEAS + gain + scatter, 0.0, 1.0, Ms, is_on_bound, is_delay_kept)
+    return _Candidate(judge, np.full(3, Ms), "front", SEAS + gain + scatter, 0.0, 1.0, Ms, is_on_bound, is_delay_kept)
 
 
 def test_margin_is_preferred_where_the_benefit_is_not_sure() -> None:

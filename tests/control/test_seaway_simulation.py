@@ -50,20 +50,22 @@ def test_the_lines_have_the_slope_of_the_exposure(seaway: Seaway) -> None:
     wanted = seaway.exposure(fin_loop()).variance
     for seed in range(5):
         lines = wave_components(seaway, np.random.default_rng(seed), frequency_band(seaway))
-        assert 0.5 * np.sum(np.abs(effect_amplitudes(lines, seaway)) ** 2) == pytest.approx(wanted, rel=5e-3)
+        assert 0.5 * np.sum(np.abs(effect_amplitudes(lines, seaway.effect)) ** 2) == pytest.approx(wanted, rel=5e-3)
 
 
 def test_the_lines_of_short_crested_seas_have_it_on_average() -> None:
     wanted = QUARTERING.exposure(fin_loop()).variance
     drawn = [wave_components(QUARTERING, np.random.default_rng(seed), frequency_band(QUARTERING)) for seed in range(20)]
-    ratio = np.array([0.5 * np.sum(np.abs(effect_amplitudes(lines, QUARTERING)) ** 2) for lines in drawn]) / wanted
+    ratio = (
+        np.array([0.5 * np.sum(np.abs(effect_amplitudes(lines, QUARTERING.effect)) ** 2) for lines in drawn]) / wanted
+    )
     assert abs(ratio.mean() - 1.0) < 3.5 * ratio.std(ddof=1) / math.sqrt(20.0)
     assert ratio.std() < 0.1
 
 
 def test_the_lines_are_summed_as_cosines() -> None:
     lines = wave_components(BEAM, np.random.default_rng(3), frequency_band(BEAM))
-    amplitude, time = effect_amplitudes(lines, BEAM), 0.05 * np.arange(1003)
+    amplitude, time = effect_amplitudes(lines, BEAM.effect), 0.05 * np.arange(1003)
     wanted = np.real(amplitude[:, None] * np.exp(1j * lines.omega_e[:, None] * time)).sum(axis=0)
     assert sum_harmonics(lines.omega_e, amplitude, 0.05, 1003) == pytest.approx(wanted, abs=1e-10)
 

@@ -78,8 +78,10 @@ def _print_controllers(tuning: "Tuning") -> None:
     # without control an integrator carries the output anywhere: there is nothing to compare with
     drifts = any(c.role == "plant" and c.den[-1] == 0.0 for c in tuning.components)
     channels = [f"{names[0]} [{output_unit}]", f"{names[1]} [{actuator_unit}]", f"rate [{rate}]"]
+    channels += ["accel. [m/s^2]"] if tuning.motion else []
     rows = [["controller", "reduced %", *channels, "Ms", "sat. %", "rate sat. %", ""]]
     factors = {"output": output_factor, "actuator": actuator_factor, "actuator_rate": actuator_factor}
+    factors |= {"motion": 1.0} if tuning.motion else {}
     for c in tuning.compared:
         rows.append([
             c.name, "" if drifts or math.isnan(c.reduction) else fixed(100.0 * c.reduction, 1),

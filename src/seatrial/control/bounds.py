@@ -5,7 +5,7 @@ from dataclasses import replace
 from importlib.util import find_spec
 
 from seatrial.control.quadratic import quadratic_bound, rational_spectrum
-from seatrial.control.task import Seaway, TuningTask
+from seatrial.control.task import OUTPUT, Seaway, TuningTask
 from seatrial.control.youla import NoBound, youla_bound
 from seatrial.core.results.tuning import PerformanceBound
 from seatrial.core.values import Array
@@ -23,10 +23,10 @@ def bounds(task: TuningTask, loop: TransferLoop, gains: Array) -> tuple[Performa
     Where cvxpy is installed the convex one in the sea itself, and in a rational spectrum fitted to it: one without
     energy outside a band lets complicated controllers predict what real seas, with tails, do not. The linear-quadratic
     one in the latter, for context. None for servo loops on plants that integrate or run away (an autopilot), nor where
-    no sea is met: their output has no variance without control.
+    no sea is met: their output has no variance without control. Nor where a point of the hull counts, not the output.
     """
     sea = next((met for met in task.disturbances if isinstance(met, Seaway)), None)
-    if sea is None or task.demand is not None:
+    if sea is None or task.demand is not None or task.motion is not OUTPUT:
         return ()
     loop = sea.disturbed(loop)
     waves, peak = sea.exposure(loop), task.constraints.Ms

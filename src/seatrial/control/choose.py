@@ -9,7 +9,7 @@ import numpy as np
 from seatrial.control.choose_by_simulation import choose_by_simulation
 from seatrial.control.demand import shortfall
 from seatrial.control.front import spread_points
-from seatrial.control.gain_choice import GainChoice, non_dominated_gains, output_and_rate_variances
+from seatrial.control.gain_choice import GainChoice, motion_and_rate_variances, non_dominated_gains
 from seatrial.control.gain_evaluation import GainEvaluator
 from seatrial.control.task import Demand, TuningTask
 from seatrial.core.results.tuning import ParetoFront
@@ -22,7 +22,7 @@ _LEAST_RMS, _LEAST_RANGE = 1e-150, 1e-12
 
 @dataclass(frozen=True, eq=False)
 class _Candidate:
-    """Gains (g,) of a front; variances: of output and actuator rate, (2,)."""
+    """Gains (g,) of a front; variances: of the motion that counts and the actuator rate, (2,)."""
 
     evaluator: GainEvaluator
     front_name: str
@@ -49,7 +49,7 @@ def choose(
 def _candidates(judge: GainEvaluator, front: ParetoFront) -> list[_Candidate]:
     """Return gains of a front of which none leaves less of the output at a lower actuator rate."""
     some = non_dominated_gains(judge, front)
-    variances = output_and_rate_variances(judge, some)
+    variances = motion_and_rate_variances(judge, some)
     return [_Candidate(judge, front.name, gains, both) for gains, both in zip(some, variances, strict=True)]
 
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import stdtrit
 
-from seatrial.control.gain_choice import GainChoice, NamedGains, gains_on_bound, non_dominated_gains
-from seatrial.control.gain_evaluation import OUTPUT, GainEvaluator, exceedance_share
+from seatrial.control.gain_choice import ON_BOUND, GainChoice, NamedGains, gains_on_bound, non_dominated_gains
+from seatrial.control.gain_evaluation import GainEvaluator, exceedance_share
 from seatrial.control.least_output import least_output_gains, spread_gains
 from seatrial.control.seaway_simulation import simulate_in_seaway
 from seatrial.control.task import TuningTask
@@ -105,7 +105,7 @@ def _gains_with_margin(judge: GainEvaluator, tried: list[_Candidate], like: _Can
 
     tried: candidates to begin from beside spread gains; terms that their loop lacks have no gain.
     """
-    task, worst = judge.task, like.evaluator.evaluate(like.gains[None]).variances[0, :, 1:].max(axis=0)
+    task, worst = judge.task, like.evaluator.evaluate(like.gains[None]).variances[0, :, 1:3].max(axis=0)
     limits = task.constraints
     amplitudes, rates = (
         min(share, max(exceedance_share(limit, float(used)), _LEAST_SHARE))
@@ -114,7 +114,7 @@ def _gains_with_margin(judge: GainEvaluator, tried: list[_Candidate], like: _Can
         )
     )
     within = replace(limits, Ms=Ms, saturation=amplitudes, rate_saturation=rates)
-    evaluator = GainEvaluator(replace(task, constraints=within), judge.loop, (OUTPUT,))
+    evaluator = GainEvaluator(replace(task, constraints=within), judge.loop, (task.motion,))
     named = [dict(zip(one.evaluator.loop.gains.names, one.gains.tolist(), strict=True)) for one in tried]
     known = np.array([[gains.get(name, 0.0) for name in judge.loop.gains.names] for gains in named])
     return least_output_gains(evaluator, np.concatenate([spread_gains(evaluator, seed), known]))
@@ -149,7 +149,11 @@ def _designs(tried: list[_Candidate], chosen: _Candidate) -> tuple[NamedGains, .
     )
     hard = max(some, key=lambda one: one.reduction)
     named = {ROBUST: robust, HARD_WORKING: hard}
-    return tuple(NamedGains(name, one.evaluator, one.gains) for name, one in named.items() if one is not chosen)
+    return tuple(NamedGains(name, one.evaluator, one.gains) for name, one in named.items() if not _is_same(one, chosen))
+
+
+def _is_same(one: _Candidate, other: _Candidate) -> bool:
+    return one.front_name == other.front_name and bool(np.allclose(one.gains, other.gains, rtol=ON_BOUND))
 
 
 def _neighbouring_gains(candidates: Array, gains: Array) -> Array:

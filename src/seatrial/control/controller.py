@@ -12,6 +12,7 @@ from seatrial.control.gain_evaluation import (
     GainEvaluator,
     exceedance_share,
 )
+from seatrial.control.task import OUTPUT
 from seatrial.core.results.tuning import Component, Controller, DiscreteBlock, DiscreteController
 from seatrial.core.values import Array
 from seatrial.physics.loops import Block, TransferLoop, margins, reversals_per_hour
@@ -21,6 +22,7 @@ from seatrial.physics.loops.margins import frequency_band
 # relative excess over a limit that rounding explains; far below any margin that matters, our choice
 _ROUNDING = 1e-9
 
+_RMS_NAMES = ("output", "actuator", "actuator_rate", "motion")  # in the order of an evaluation's variances
 _POINTS = 400  # frequencies of the curves in the result, evenly in the logarithm; chosen
 
 
@@ -32,14 +34,15 @@ def describe_controller(evaluator: GainEvaluator, name: str, gains: Array) -> Co
     frail = margins(frailest)
     variances, limits = evaluation.variances[0], evaluator.task.constraints
     rms = np.sqrt(variances.mean(axis=0))
-    left = float(rms[0]) / math.sqrt(evaluator.uncontrolled_variance) if evaluator.task.demand is None else math.nan
+    names = _RMS_NAMES[:3] if evaluator.task.motion is OUTPUT else _RMS_NAMES
+    left = float(rms[3]) / math.sqrt(evaluator.uncontrolled_variance) if evaluator.task.demand is None else math.nan
     omega = np.geomspace(*frequency_band(frailest), _POINTS)
     open_loop, drive = frailest.open_loop(omega), evaluator.task.drive
     return Controller(
         name=name,
         gains=dict(zip(evaluator.loop.gains.names, gains.tolist(), strict=True)),
         objectives=evaluation.objectives[0],
-        rms=dict(zip(("output", "actuator", "actuator_rate"), rms.tolist(), strict=True)),
+        rms=dict(zip(names, rms.tolist(), strict=False)),
         reduction=1.0 - left,
         Ms=frail.Ms,
         gain_margin=frail.gain,

@@ -54,12 +54,12 @@ def gains_on_bound(loop: TransferLoop, gains: Array) -> tuple[GainOnBound, ...]:
 
 
 def non_dominated_gains(evaluator: GainEvaluator, front: ParetoFront) -> Array:
-    """Return gains of the front of which none leaves less of the output at a lower actuator rate, by output, (n, g)."""
-    both = output_and_rate_variances(evaluator, front.gains)
+    """Return gains of the front of which none leaves less of the motion at a lower actuator rate, by motion, (n, g)."""
+    both = motion_and_rate_variances(evaluator, front.gains)
     first = non_dominated(both)
     return front.gains[first[np.argsort(both[first, 0])]]
 
 
-def output_and_rate_variances(evaluator: GainEvaluator, gains: Array) -> Array:
-    """Return variances of output and actuator rate, means over what the loop meets, (n, 2)."""
-    return evaluator.evaluate(gains).variances[:, :, [0, 2]].mean(axis=1)
+def motion_and_rate_variances(evaluator: GainEvaluator, gains: Array) -> Array:
+    """Return variances of the motion that counts and of the actuator's rate, means over what the loop meets, (n, 2)."""
+    return evaluator.evaluate(gains).variances[:, :, [3, 2]].mean(axis=1)

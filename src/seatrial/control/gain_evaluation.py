@@ -6,13 +6,12 @@ from functools import cached_property
 
 import numpy as np
 
-from seatrial.control.task import TuningTask
+from seatrial.control.task import OUTPUT, TuningTask
 from seatrial.core.values import Array
 from seatrial.physics.loops import LoopSignal, Objective, Performance, TransferLoop
 from seatrial.physics.loops.objective import variance
 from seatrial.physics.loops.performance import distinct_variances
 
-OUTPUT = variance("output", "rad^2", LoopSignal.OUTPUT)
 ACTUATOR = variance("actuator", "rad^2", LoopSignal.ACTUATOR)
 ACTUATOR_RATE = variance("actuator rate", "rad^2/s^2", LoopSignal.ACTUATOR, 1)
 ACTUATOR_ACCELERATION = variance("actuator acceleration", "rad^2/s^4", LoopSignal.ACTUATOR, 2)
@@ -29,7 +28,7 @@ class GainEvaluation:
         excess: (n, 3): Ms, actuator variance and rate variance over what is allowed, minus 1, worst case; a set is
             feasible where none is positive. -1 where there is no limit.
         Ms: (n,), worst case.
-        variances: output, actuator, rate of each disturbance, (n, s, 3).
+        variances: output, actuator, rate, and the motion that counts, of each disturbance, (n, s, 4).
     """
 
     objectives: Array
@@ -52,20 +51,24 @@ class GainEvaluator:
     objectives: tuple[Objective, ...]
 
     @cached_property
+    def _judged(self) -> tuple[Objective, ...]:
+        return (*self.objectives, OUTPUT, ACTUATOR, ACTUATOR_RATE, self.task.motion)
+
+    @cached_property
     def _variance_indices(self) -> list[list[int]]:
-        return distinct_variances((*self.objectives, OUTPUT, ACTUATOR, ACTUATOR_RATE))[1]
+        return distinct_variances(self._judged)[1]
 
     @cached_property
     def performances(self) -> tuple[Performance, ...]:
         """One for each thing that disturbs the loop."""
-        rows = distinct_variances((*self.objectives, OUTPUT, ACTUATOR, ACTUATOR_RATE))[0]
+        rows = distinct_variances(self._judged)[0]
         loops = [(met, met.disturbed(self.task.loop_at(met.U, self.loop))) for met in self.task.disturbances]
         return tuple(Performance(loop, met.exposure(loop), rows) for met, loop in loops)
 
     @cached_property
     def uncontrolled_variance(self) -> float:
-        """Mean variance of the output without control."""
-        place = self._variance_indices[-3][0]
+        """Mean variance of the motion that counts without control."""
+        place = self._variance_indices[-1][0]
         return float(np.mean([p.uncontrolled_variances[place] for p in self.performances]))
 
     @cached_property
@@ -78,10 +81,10 @@ class GainEvaluator:
     def evaluate(self, gains: Array) -> GainEvaluation:
         """Return all of the gains (n, g)."""
         made = [performance.evaluate(gains) for performance in self.performances]
-        places = self._variance_indices[-3:]
+        places = self._variance_indices[-4:]
         variances = np.stack([e.variances[:, [p[0] for p in places]] for e in made], axis=1)
         peak = np.max([e.Ms for e in made], axis=0)
-        worst = variances[:, :, 1:].max(axis=1)
+        worst = variances[:, :, 1:3].max(axis=1)
         over = np.where(np.isfinite(worst), worst, _UNSTABLE) / self.allowed_variances - 1.0
         excess = np.column_stack([peak / self.task.constraints.Ms - 1.0, over])
         return GainEvaluation(self._mean_objectives([e.variances for e in made]), excess, peak, variances)
@@ -110,7 +113,7 @@ class GainEvaluator:
         excess = np.zeros((3, len(gains)))
         frailest = max(self.performances, key=lambda p: p.evaluate(gains).Ms[0])
         excess[0] = frailest.Ms_gradient(gains) / self.task.constraints.Ms
-        for i, place in enumerate(at[0] for at in self._variance_indices[-2:]):
+        for i, place in enumerate(at[0] for at in self._variance_indices[-3:-1]):
             worst = int(np.argmax([v[0, place] for v in made]))
             excess[1 + i] = rows[worst][place] / self.allowed_variances[i]
         return objectives, excess

@@ -7,7 +7,7 @@ from itertools import product
 
 import numpy as np
 
-from seatrial.control.gain_evaluation import OUTPUT, GainEvaluator, exceedance_share
+from seatrial.control.gain_evaluation import GainEvaluator, exceedance_share
 from seatrial.control.gradient_refinement import all_gains, free_gain_bounds
 from seatrial.control.least_output import least_output_gains, spread_gains
 from seatrial.control.smooth_schedule import GainGrid, interpolated_gains, midpoints, smooth_gains
@@ -40,7 +40,7 @@ def schedule_conditions(task: TuningTask, grid: ScheduleGrid) -> tuple[ScheduleC
     made = []
     for height, U, beta in product(grid.heights, grid.speeds, grid.headings):
         there = replace(sea, spectrum=sea.spectrum.with_height(height), U=U, beta=beta)
-        evaluator = GainEvaluator(replace(task, disturbances=(there,)), task.loop, (OUTPUT,))
+        evaluator = GainEvaluator(replace(task, disturbances=(there,)), task.loop, (task.motion,))
         made.append(ScheduleCondition(U, beta, height, evaluator))
     return tuple(made)
 

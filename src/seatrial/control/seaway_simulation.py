@@ -1,7 +1,8 @@
 """A stabiliser at sea, with what its fins cannot do: every controller meets the same seas, so that pairs are compared.
 
-A sea is a sum of harmonics; what each does to the loop (its effective slope, its yaw moment) is met at its own signed
-frequency of encounter.
+A sea is a sum of harmonics; what each does to the loop (its effective slope, its yaw moment, the motion of the hull) is
+met at its own signed frequency of encounter. Motions of a hull are linear in forces: what waves do and what the fins do
+are added, and the controller sees the sum.
 """
 
 import math
@@ -11,12 +12,12 @@ from functools import lru_cache
 import numpy as np
 from scipy.special import stdtrit
 
-from seatrial.control.task import Seaway, SimulationSettings, TuningTask
+from seatrial.control.task import OUTPUT, Seaway, SimulationSettings, TuningTask
 from seatrial.core.results.tuning import PairedDifference, SeawaySimulation
-from seatrial.core.values import Array, InputError, Record, frozen
+from seatrial.core.values import Array, Channel, InputError, Record, frozen
 from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.hydro.excitation import Complex
-from seatrial.physics.loops import TransferLoop
+from seatrial.physics.loops import LoopSignal, TransferLoop, WaveEffect
 from seatrial.physics.loops.state_space import plant_model
 from seatrial.physics.sea.realise import Spacing, WaveComponents, realise, short_crested
 from seatrial.physics.simulate.closed_loop import UNLIMITED, ActuatorLimits, ClosedLoop
@@ -24,6 +25,8 @@ from seatrial.physics.simulate.closed_loop import UNLIMITED, ActuatorLimits, Clo
 LONG_CRESTED_LINES, SHORT_CRESTED_LINES = 800, 1600  # wave components of a simulated sea; chosen
 RUN_IN_SECONDS = 100.0  # before what is counted: several swings of any ship; chosen
 UNCONTROLLED = "uncontrolled"
+MOTION = "motion"
+"""Channel of the motion that counts where that is not the output."""
 _ENERGY_SHARE = 1e-4  # share of the energy cut at either end of the spectrum; chosen
 _REACH, _FREQUENCIES = 12.0, 4001  # highest frequency over the modal one that is looked at, and how many; chosen
 # rad: an effect is felt most from abeam, or where it is not felt there, on the quarter
@@ -55,8 +58,8 @@ def simulate_in_seaway(task: TuningTask, loop: TransferLoop, name: str, gains: A
     first = round(RUN_IN_SECONDS / trials.dt)
 
     def size(run: ClosedLoop, sea: Array, limits: ActuatorLimits) -> float:
-        states, _ = run.run(sea, limits)
-        return float(np.std(states[first:, run.model.states.index(run.output)]))
+        states, _ = run.run(*_disturbed_by(run, sea, seaway, limits))
+        return float(np.std(_motion(task, run, states, sea, seaway)[first:]))
 
     def of_one(sea: Array) -> list[float]:
         alone = size(still, sea, UNLIMITED)
@@ -68,11 +71,51 @@ def simulate_in_seaway(task: TuningTask, loop: TransferLoop, name: str, gains: A
         return [1.0 - size(steered, sea, limits) / alone for limits in stages]
 
     reductions = np.array(map_in_threads(of_one, list(met)))
-    shown = _without_run_in(steered.record(f"{name}, first sea", met[0], everything), first)
-    alone = _without_run_in(still.record("without control", met[0], UNLIMITED), first).channel(loop.output)
-    shown = replace(shown, channels={**shown.channels, f"{loop.output}_{UNCONTROLLED}": alone})
+    shown = _without_run_in(_record(task, steered, f"{name}, first sea", met[0], seaway, everything), first)
+    alone = _without_run_in(_record(task, still, "without control", met[0], seaway, UNLIMITED), first)
+    free = {f"{name}_{UNCONTROLLED}": alone.channel(name) for name in (loop.output, MOTION) if name in alone}
+    shown = replace(shown, channels={**shown.channels, **free})
     linear, limited, stalled = (frozen(column) for column in reductions.T)
     return SeawaySimulation(name, linear, limited, stalled, shown)
+
+
+def _disturbed_by(
+    run: ClosedLoop, sea: Array, seaway: Seaway, limits: ActuatorLimits
+) -> tuple[Array, ActuatorLimits, Array | None]:
+    """Return the disturbance, the limits and the reference with which to run in a sea (1 + p, n).
+
+    A motion of the hull is no input of its model: the controller sees it as a reference of opposite sign.
+    """
+    if not seaway.is_output:
+        return sea[0], limits, None
+    return np.zeros(sea.shape[1]), limits, run.start[run.model.states.index(run.output)] - sea[0]
+
+
+def _motion(task: TuningTask, run: ClosedLoop, states: Array, sea: Array, seaway: Seaway) -> Array:
+    """Return the motion that counts (n,): the output, or the acceleration at a point by second differences."""
+    names, row = run.model.states, task.motion.variances[0]
+    if row.signal is not LoopSignal.POINT:
+        return states[:, names.index(run.output)] + (sea[0] if seaway.is_output else 0.0)
+    place = [point.x for point in task.loop.points].index(row.x)
+    by_fins = states[:, names.index("z")] - row.x * states[:, names.index("theta")]
+    inner = np.diff(by_fins + sea[1 + place], 2) / run.dt**2
+    return np.concatenate([inner[:1], inner, inner[-1:]])
+
+
+def _record(task: TuningTask, run: ClosedLoop, name: str, sea: Array, seaway: Seaway, limits: ActuatorLimits) -> Record:
+    """Return a run in a sea as a record; of a hull in waves its output, the actuator and the motion that counts."""
+    made = run.record(name, *_disturbed_by(run, sea, seaway, limits))
+    if not seaway.is_output:
+        return made
+    output = made.channel(run.output)
+    shown = {
+        run.output: replace(output, values=frozen(output.values + sea[0])),
+        run.actuator: made.channel(run.actuator),
+    }
+    if task.motion is not OUTPUT:
+        states = np.stack([made[state] for state in run.model.states], axis=1)
+        shown[MOTION] = Channel(frozen(_motion(task, run, states, sea, seaway)), "m/s^2", "body", "down")
+    return replace(made, channels=shown)
 
 
 def compare_pairwise(chosen: SeawaySimulation, other: SeawaySimulation, stage: str) -> PairedDifference:
@@ -103,7 +146,7 @@ def closed_loop(task: TuningTask, loop: TransferLoop, gains: Array, U: float, dt
     if vessel is None:
         model = plant_model(at)
         return ClosedLoop(model, at, values, dt, model.input_names[0], model.input_names[1], at.output)
-    if not vessel.disturbance:
+    if not vessel.disturbance and not any(isinstance(met, Seaway) and met.is_output for met in task.disturbances):
         raise InputError(f"model '{vessel.model.name}' has no input for the sea; name one as the plant's disturbance")
     effect = at.plant.num[0] / loop.plant.num[0]
     return ClosedLoop(
@@ -114,13 +157,18 @@ def closed_loop(task: TuningTask, loop: TransferLoop, gains: Array, U: float, dt
 
 @lru_cache(maxsize=_KEPT_SEAS)
 def disturbance_series(seaway: Seaway, trials: SimulationSettings, seed: int) -> tuple[Array, ...]:
-    """Return the disturbance of each seed, a run-in of `RUN_IN_SECONDS` first; each (n,), read-only."""
+    """Return the disturbance of each seed and what the sea does at points, a run-in of `RUN_IN_SECONDS` first.
+
+    Each (1 + p, n), read-only.
+    """
     count = round((RUN_IN_SECONDS + trials.duration) / trials.dt) + 1
     band = frequency_band(seaway)
 
     def of_one(number: int) -> Array:
         lines = wave_components(seaway, np.random.default_rng(number), band)
-        return frozen(sum_harmonics(lines.omega_e, effect_amplitudes(lines, seaway), trials.dt, count))
+        effects = (seaway.effect, *seaway.at_points)
+        rows = [sum_harmonics(lines.omega_e, effect_amplitudes(lines, effect), trials.dt, count) for effect in effects]
+        return frozen(np.array(rows))
 
     return tuple(map_in_threads(of_one, [seed + k for k in range(trials.seeds)]))
 
@@ -132,11 +180,13 @@ def wave_components(seaway: Seaway, rng: np.random.Generator, band: tuple[float,
     return lines if seaway.spreading is None else short_crested(lines, rng, seaway.spreading)
 
 
-def effect_amplitudes(lines: WaveComponents, seaway: Seaway) -> Complex:
-    """Return complex amplitudes of what each wave does to the loop, (n,), each at its own heading."""
-    met = zip(lines.omega, lines.direction, strict=True)
-    effect = [seaway.effect.amplitude(np.array([omega]), seaway.U, float(beta))[0] for omega, beta in met]
-    return np.array(effect) * lines.amplitude
+def effect_amplitudes(lines: WaveComponents, effect: WaveEffect) -> Complex:
+    """Return complex amplitudes of what each wave does, (n,), each at its own heading."""
+    made = np.empty(len(lines.omega), dtype=np.complex128)
+    for beta in np.unique(lines.direction):
+        these = lines.direction == beta
+        made[these] = effect.amplitude(lines.omega[these], lines.U, float(beta))
+    return made * lines.amplitude
 
 
 def sum_harmonics(omega: Array, amplitude: Complex, dt: float, count: int) -> Array:
@@ -150,11 +200,19 @@ def sum_harmonics(omega: Array, amplitude: Complex, dt: float, count: int) -> Ar
 
 
 def frequency_band(seaway: Seaway) -> tuple[float, float]:
-    """Return frequencies [rad/s] of all waves that do much to the loop, up to twelve times the modal one."""
+    """Return frequencies [rad/s] of all waves that do much to the loop, up to twelve times the modal one.
+
+    Where the effect is the motion of a hull, of all that its excitation knows: points of it may feel shorter waves.
+    """
     peak = seaway.spectrum.modal_frequency
     omega = np.linspace(0.0, _REACH * peak, _FREQUENCIES)[1:]
-    sizes = (np.abs(seaway.effect.amplitude(omega, seaway.U, beta)) ** 2 for beta in _FELT_HEADINGS)
-    share = np.cumsum(next(size for size in sizes if size.any()) * seaway.spectrum.density(omega))
+    if seaway.is_output:
+        lower, upper = seaway.effect.frequency_range
+        size = np.where((omega >= lower) & (omega <= upper), 1.0, 0.0)
+    else:
+        sizes = (np.abs(seaway.effect.amplitude(omega, seaway.U, beta)) ** 2 for beta in _FELT_HEADINGS)
+        size = next(one for one in sizes if one.any())
+    share = np.cumsum(size * seaway.spectrum.density(omega))
     share /= share[-1]
     ends = np.searchsorted(share, [_ENERGY_SHARE, 1.0 - _ENERGY_SHARE])
     return float(omega[ends[0]]), float(omega[ends[1]])

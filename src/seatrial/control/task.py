@@ -16,16 +16,20 @@ from seatrial.physics.loops import (
     ActuatorDrive,
     Block,
     EncounterSpectrum,
+    LoopSignal,
     Objective,
     TransferLoop,
     WaveEffect,
     sea_disturbance,
+    variance,
 )
-from seatrial.physics.loops.encounter_spectrum import disturbance_spectrum
+from seatrial.physics.loops.encounter_spectrum import PointSpectrum, disturbance_spectrum
+from seatrial.physics.loops.objective import vertical_acceleration
 from seatrial.physics.sea.spectrum import Spectrum
 
 # damping ratio below which a swing counts as undamped: a tenth of the least of bare hulls (0.01: Lloyd 1989); chosen
 _UNDAMPED = 1e-3
+OUTPUT = variance("output", "rad^2", LoopSignal.OUTPUT)
 _SLOWEST, _FASTEST = 1e-3, 1e2  # frequencies of a slow disturbance over its bandwidth; chosen
 
 
@@ -34,6 +38,7 @@ class Seaway:
     """A sea met at a speed and heading: U [m/s], beta [rad, 0 following]; spreading: exponent s, None long-crested.
 
     effect: what its waves do to the loop; path: from there to the output, where it is not the loop's own disturbance.
+    at_points: what they do at the loop's points, in their order.
     """
 
     spectrum: Spectrum
@@ -42,6 +47,12 @@ class Seaway:
     effect: WaveEffect = WAVE_SLOPE
     spreading: float | None = None
     path: Block | None = None
+    at_points: tuple[WaveEffect, ...] = ()
+
+    @property
+    def is_output(self) -> bool:
+        """Whether the effect is the output itself without control, with nothing between."""
+        return self.path is not None and not self.path.order
 
     def disturbed(self, loop: TransferLoop) -> TransferLoop:
         """Return the loop with the path of the waves to its output."""
@@ -49,10 +60,10 @@ class Seaway:
 
     def exposure(self, loop: TransferLoop) -> EncounterSpectrum:
         """Return what the waves do to the loop that `disturbed` returns."""
+        response = loop.plant if self.is_output else self.disturbed(loop).disturbance
         return sea_disturbance(
-            self.spectrum, self.U, self.beta, self.disturbed(loop).disturbance, self.effect,
-            spreading=self.spreading,
-        )  # fmt: skip
+            self.spectrum, self.U, self.beta, response, self.effect, spreading=self.spreading, at_points=self.at_points
+        )
 
     @property
     def description(self) -> str:
@@ -84,12 +95,17 @@ class SlowDisturbance:
         return loop
 
     def exposure(self, loop: TransferLoop) -> EncounterSpectrum:
-        """Return the disturbance over five decades about its bandwidth."""
+        """Return the disturbance over five decades about its bandwidth.
+
+        Of a loop with points it acts like the actuator.
+        """
         b = self.bandwidth
-        return disturbance_spectrum(
+        made = disturbance_spectrum(
             lambda w: 2.0 * self.rms**2 * b / math.pi / (w**2 + b**2), _SLOWEST * b, _FASTEST * b, loop.disturbance,
             self.description,
         )  # fmt: skip
+        moved = [point.plant.frequency_response(made.omega_e) for point in loop.points]
+        return replace(made, points=tuple(PointSpectrum(np.abs(q) ** 2 * made.energy, q * made.energy) for q in moved))
 
     @property
     def description(self) -> str:
@@ -225,6 +241,14 @@ class TuningTask:
                                  f"{', '.join(self.loop.gains.names)}; give exactly these")  # fmt: skip
         if self.demand is None:
             refuse_unstable(self.loop)
+
+    @property
+    def motion(self) -> Objective:
+        """Of what the controller is to reduce: the acceleration at a point where the first objective is one, else the
+        output.
+        """
+        row = self.objectives[0].variances[0]
+        return vertical_acceleration(row.x) if row.signal is LoopSignal.POINT else OUTPUT
 
     def loop_at(self, U: float, loop: TransferLoop | None = None) -> TransferLoop:
         """Return the loop (the task's own if none is given) at the speed U [m/s]."""

@@ -18,7 +18,7 @@ from seatrial.control.published_search import OWN_CHOICE, published_search
 from seatrial.control.robustness import robustness
 from seatrial.control.schedule import schedule
 from seatrial.control.seaway_simulation import compare_pairwise, simulate_in_seaway
-from seatrial.control.task import TuningTask
+from seatrial.control.task import OUTPUT, TuningTask
 from seatrial.core.results.tuning import (
     Controller,
     PairedDifference,
@@ -110,6 +110,7 @@ def tune(
         reference=reference,
         designs=designs,
         gain_units={gain.name: gain.unit for gain in choice.evaluator.loop.gains},
+        motion="" if task.motion is OUTPUT else task.motion.name.removeprefix("variance of the "),
         robustness=_robustness(task, choice, own.designs, rivals),
         discrete=discrete_controller(choice.evaluator.loop.with_gains(choice.gains), task.sample_s),
     )

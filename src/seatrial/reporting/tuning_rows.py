@@ -84,7 +84,8 @@ def gain_texts(rows: Sequence[Mapping[str, float]], names: Sequence[str]) -> lis
 def rms_headings(tuning: Tuning) -> list[tuple[str, str]]:
     """Return names and units of the root mean squares."""
     channels = [(channel_meaning(name), tuning_text.unit_label(name)) for name in (tuning.output, tuning.actuator)]
-    return [*channels, ("its rate", tuning_text.unit_label(tuning.actuator, "/s"))]
+    motion = [(tuning.motion, "m/s²")] if tuning.motion else []
+    return [*channels, ("its rate", tuning_text.unit_label(tuning.actuator, "/s")), *motion]
 
 
 def controller_rows(tuning: Tuning) -> list[ControllerRow]:
@@ -145,7 +146,8 @@ def _controller_row(c: Controller, gains: tuple[str, ...], tuning: Tuning) -> Co
     factors = [degree_unit(unit)[0] for unit in tuning.units]
     of_output, of_actuator = channel_display_unit(tuning.output)[0], channel_display_unit(tuning.actuator)[0]
     rms = [c.rms.get(key, math.nan) * factor for key, factor in
-           (("output", of_output), ("actuator", of_actuator), ("actuator_rate", of_actuator))]  # fmt: skip
+           (("output", of_output), ("actuator", of_actuator), ("actuator_rate", of_actuator), ("motion", 1.0))
+           if key != "motion" or tuning.motion]  # fmt: skip
     has_limits = [math.isfinite(limit) for limit in (tuning.constraints.limit, tuning.constraints.rate)]
     return ControllerRow(
         c.name,

@@ -49,6 +49,11 @@ def _on_bounds(tuning: Tuning) -> list[str]:
     return [sentence(f"{f.text}; {f.advice}") for f in tuning.findings if f.code == "gain-on-bound"]
 
 
+def motion_name(tuning: Tuning) -> str:
+    """Return what the reductions are of, in words."""
+    return tuning.motion or channel_meaning(tuning.output)
+
+
 def has_reduction(tuning: Tuning) -> bool:
     """Return whether a reduction is shown: a loop that follows a demand is judged by the remaining error."""
     is_known = any(math.isfinite(c.reduction) for c in tuning.compared)
@@ -86,11 +91,9 @@ def _motion(tuning: Tuning) -> str:
     effort = f", with {' and '.join(moved)} rms of the {channel_meaning(tuning.actuator)}" if moved else ""
     remaining = quantity_text(tuning.output, rms["output"]) if "output" in rms else ""
     if has_reduction(tuning):
+        remaining = f"{significant(rms['motion'], 2)} m/s²" if tuning.motion else remaining
         to = f", to {remaining} rms" if remaining else ""
-        return (
-            f"By linear theory these gains reduce the {channel_meaning(tuning.output)} by "
-            f"{percent(c.reduction)}{to}{effort}."
-        )
+        return f"By linear theory these gains reduce the {motion_name(tuning)} by {percent(c.reduction)}{to}{effort}."
     return (
         f"By linear theory {remaining} rms of the {channel_meaning(tuning.output)} remains{effort}."
         if remaining
@@ -161,8 +164,9 @@ def _simulation(tuning: Tuning) -> str:
     s = chosen[0]
     linear, limited, stalled = (float(np.mean(x)) for x in (s.linear, s.limited, s.stalled))
     text = (
-        f"Simulated in {counted(len(s.linear), 'sea')}, it reduces the motion by {percent(linear)} without limits and "
-        f"by {percent(limited)} with those of angle and rate: they cost {percent_points(s.saturation_loss)}"
+        f"Simulated in {counted(len(s.linear), 'sea')}, it reduces the {tuning.motion or 'motion'} by "
+        f"{percent(linear)} without limits and by {percent(limited)} with those of angle and rate: they cost "
+        f"{percent_points(s.saturation_loss)}"
     )
     if math.isfinite(tuning.constraints.stall):
         text += f"; with stall beyond {_limit_text(tuning.actuator, tuning.constraints.stall)}, by {percent(stalled)}"

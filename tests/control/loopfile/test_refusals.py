@@ -83,7 +83,7 @@ KIND = 'kind = "yu2014"'
         ([("num = [1.0]", "num = [0.0]")], "plant.roll.num is zero"),
         ([("[actuator]", "[simulation]\nduration = 1e12\n[actuator]")], "simulation: 20 seas of 1e+12 s"),
         ([("[plant]", 'minimise = ["yaw"]\n[plant]')], "minimise[1].name = 'yaw'"),
-        ([("[plant]", 'minimise = ["motion_sickness"]\n[plant]')], "minimise[1]: 'motion_sickness' needs a lever"),
+        ([("[plant]", 'minimise = ["motion_sickness"]\n[plant]')], "minimise[1]: 'motion_sickness' needs lever"),
         (
             [("[plant]", 'minimise = ["fin_off_target"]\n[plant]'), ('limit = { value = 22, unit = "deg" }', "")],
             "minimise[1]: there is neither a target nor an [actuator] limit",
@@ -94,7 +94,7 @@ KIND = 'kind = "yu2014"'
         ),
         (
             [("[actuator]", "[schedule]\nspeeds = [9.0]\nheadings = [0.0, 1.0]\nheights = [3.0]\n[actuator]")],
-            "schedule.headings: long-crested waves at 0 deg",
+            "schedule.headings: the sea has no wave slope across the ship at a heading of 0 deg",
         ),
         ([("[actuator]", "[schedule]\nspeeds = []\nheadings = [1.0]\nheights = [3.0]\n[actuator]")], "schedule.speeds"),
         ([("[actuator]", "[simulation]\nstep = 500\n[actuator]")], "simulation: steps of 500 s"),

@@ -9,7 +9,16 @@ from seatrial.core.values import Array
 from seatrial.physics.hydro.dispersion import G
 from seatrial.physics.loops import HullFactor, LoopSignal, Objective, Performance, sea_disturbance
 from seatrial.physics.loops.fin import ROLL, fin_loop
-from seatrial.physics.loops.objective import motion_interruptions, motion_sickness, squared_deviation, variance
+from seatrial.physics.loops.objective import (
+    motion_interruptions,
+    motion_sickness,
+    motion_sickness_at,
+    motion_sickness_dose,
+    motion_sickness_weighting,
+    squared_deviation,
+    variance,
+    vertical_acceleration,
+)
 from seatrial.physics.loops.performance import distinct_variances
 from seatrial.physics.sea.response import MotionStatistics
 from seatrial.physics.sea.response import motion_sickness as sickness_of
@@ -124,3 +133,21 @@ def test_sickness_does_not_ask_on_which_side_one_stands() -> None:
     omega = np.array([0.7])
     port, starboard = motion_sickness(-4.0), motion_sickness(4.0)
     assert port.variances[1].magnitude(omega) == starboard.variances[1].magnitude(omega) == pytest.approx(4.0 * 0.49)
+
+
+def test_the_weighting_of_motion_sickness_is_the_tabulated_one() -> None:
+    """ISO 2631-1:1997, table 3, W_f in thousandths at nominal third-octave centres [Hz]."""
+    table = {0.1: 695, 0.125: 895, 0.16: 1006, 0.2: 992, 0.25: 854, 0.315: 619, 0.4: 384, 0.5: 224, 0.63: 116}
+    got = 1000.0 * motion_sickness_weighting(2.0 * math.pi * np.array([*table]))
+    np.testing.assert_allclose(got, [*table.values()], atol=0.6)
+
+
+def test_sickness_of_a_point_is_the_criterion_of_sea_response() -> None:
+    v = np.array([[0.4, 0.9]])
+    assert motion_sickness_at(20.0).value(v)[0] == pytest.approx(sickness_of(MotionStatistics(0.2, 0.4, 0.9)))
+
+
+def test_a_dose_grows_with_the_root_of_the_time() -> None:
+    v = np.array([[0.25]])
+    assert motion_sickness_dose(20.0, 7200.0).value(v)[0] == pytest.approx(0.5 * math.sqrt(7200.0))
+    assert vertical_acceleration(20.0).value(v)[0] == 0.25

@@ -42,4 +42,4 @@ def test_the_slope_of_a_small_hull_is_that_of_a_point() -> None:
     omega = np.geomspace(0.2, 2.0, 10)
     point = HullFactor(1e-6, 1e-6, 1e-6)
     np.testing.assert_allclose(point.amplitude(omega, 5.0, 1.0), WaveSlope().amplitude(omega, 5.0, 1.0), rtol=1e-6)
-    assert math.isinf(WaveSlope().highest_frequency) and HullFactor(1.0, 1.0, 2.0).highest_frequency < 10.0
+    assert math.isinf(WaveSlope().frequency_range[1]) and HullFactor(1.0, 1.0, 2.0).frequency_range[1] < 10.0

@@ -1,27 +1,33 @@
 """Tables of a loop file into disturbances of the loop: seas under a heading, slow ones, conditions of a schedule."""
 
-import math
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
 
-from seatrial.control.loopfile.plant import LoopPlant, yaw_acceleration_path
+from seatrial.control.loopfile.plant import LoopPlant, hull_factor
 from seatrial.control.loopfile.quantities import heading_value, positive_value, symbol_unit
 from seatrial.control.loopfile.schema import LoopFile, ScheduleTable, SeawayTable, SlowDisturbanceTable
+from seatrial.control.loopfile.wave_paths import WavePath, wave_path
 from seatrial.control.task import ScheduleGrid, Seaway, SlowDisturbance
 from seatrial.core.values import InputError
-from seatrial.physics.loops import WAVE_SLOPE, Block, HullFactor, TransferLoop, WaveEffect, YawAcceleration
-
-_NO_SLOPE = 1e-6  # |sin(heading)| below which long-crested waves have no slope across the ship: rounding
+from seatrial.physics.loops import TransferLoop
 
 
 def loop_disturbances(
-    file: LoopFile, plant: LoopPlant, hull: HullFactor | None
+    file: LoopFile, plant: LoopPlant, home: Path, places: tuple[float, ...]
 ) -> tuple[Seaway | SlowDisturbance, ...]:
-    """Return everything that disturbs the loop, in the order of the file."""
+    """Return everything that disturbs the loop, in the order of the file.
+
+    home: folder of the file; places: m forward of the origin, of the loop's points.
+    """
     if not file.seas and not file.slow_disturbances:
         raise InputError(
             "nothing disturbs the loop: add a block [[seas]], or [[slow_disturbances]] for what acts like the actuator"
         )
-    effect, path = _wave_effect(plant, hull) if file.seas else (WAVE_SLOPE, None)
-    seas = (seaway(table, plant.U, effect, path, f"seas[{i}]") for i, table in enumerate(file.seas, start=1))
+    seas: tuple[Seaway, ...] = ()
+    if file.seas:
+        path = wave_path(plant, hull_factor(file.hull, plant.ship), file.excitation, home, places)
+        seas = tuple(seaway(table, plant.U, path, f"seas[{i}]") for i, table in enumerate(file.seas, start=1))
     slow = (
         _slow_disturbance(table, plant, f"slow_disturbances[{i}]")
         for i, table in enumerate(file.slow_disturbances, start=1)
@@ -29,24 +35,10 @@ def loop_disturbances(
     return (*seas, *slow)
 
 
-def _wave_effect(plant: LoopPlant, hull: HullFactor | None) -> tuple[WaveEffect, Block | None]:
-    """Return what waves do to the loop and its path to the output: their slope to roll, their yaw moment to heading."""
-    if plant.disturbed_by == "alpha_w":
-        return hull or WAVE_SLOPE, None
-    if plant.output != "psi":
-        raise InputError(
-            f"seas: a sea acts on roll or heading, not on '{plant.output}'; describe what disturbs it under "
-            "[[slow_disturbances]]"
-        )
-    if hull is None:
-        raise InputError("seas: the yaw moment of waves needs the hull; add [hull] with L, B and T in m")
-    return YawAcceleration(hull.L, hull.T), yaw_acceleration_path(plant)
-
-
 def refuse_calm(
     disturbances: tuple[Seaway | SlowDisturbance, ...], loop: TransferLoop, grid: ScheduleGrid | None
 ) -> None:
-    """Refuse seas, and headings of a schedule, that have no slope across the ship."""
+    """Refuse seas, and headings of a schedule, that do not reach the loop."""
     for i, one in enumerate((m for m in disturbances if isinstance(m, Seaway)), start=1):
         try:
             one.exposure(loop)
@@ -57,20 +49,27 @@ def refuse_calm(
         raise InputError(
             "schedule: there is no block [[seas]] to give its spectrum; add one, or leave the schedule out"
         )
-    if grid is not None and seas[0].spreading is None:
-        for beta in grid.headings:
-            if abs(math.sin(beta)) < _NO_SLOPE:
-                raise InputError(
-                    f"schedule.headings: long-crested waves at {math.degrees(beta):.0f} deg have no slope across the "
-                    "ship; leave the heading out, or give the first sea a spreading"
-                )
+    for beta in () if grid is None else grid.headings:
+        try:
+            replace(seas[0], beta=beta).exposure(loop)
+        except InputError as error:
+            raise InputError(f"schedule.headings: {error}") from None
+    _refuse_other_speeds(seas, grid)
 
 
-def seaway(table: SeawayTable, U: float, effect: WaveEffect, path: Block | None, where: str) -> Seaway:
+def _refuse_other_speeds(seas: Sequence[Seaway], grid: ScheduleGrid | None) -> None:
+    """Refuse a schedule over speeds at which the motions of the hull in waves are not known."""
+    if grid is not None and seas[0].is_output and set(grid.speeds) != {seas[0].U}:
+        raise InputError(
+            f"schedule.speeds: the coefficients of heave and pitch hold at {seas[0].U:.4g} m/s; give this speed alone"
+        )
+
+
+def seaway(table: SeawayTable, U: float, path: WavePath, where: str) -> Seaway:
     """Return one sea; at the plant's speed U [m/s] where it names none."""
     speed = U if table.speed is None else positive_value(table.speed, "m/s", f"{where}.speed")
     beta = heading_value(table.heading, f"{where}.heading")
-    return Seaway(table.to_spectrum(where), speed, beta, effect, table.spreading, path)
+    return path.seaway(table.to_spectrum(where), speed, beta, table.spreading, where)
 
 
 def schedule_grid(table: ScheduleTable) -> ScheduleGrid:

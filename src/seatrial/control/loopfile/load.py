@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -9,8 +10,8 @@ from pydantic import ValidationError
 from seatrial.control.loopfile.disturbances import loop_disturbances, refuse_calm, schedule_grid
 from seatrial.control.loopfile.extended_structures import extended_structure
 from seatrial.control.loopfile.loop import loop_from_tables
-from seatrial.control.loopfile.objectives import objective
-from seatrial.control.loopfile.plant import LoopPlant, hull_factor, plant_from_table
+from seatrial.control.loopfile.objectives import objective, objective_places
+from seatrial.control.loopfile.plant import LoopPlant, plant_from_table
 from seatrial.control.loopfile.plausibility import refuse_reversed_plant, refuse_reversed_servo, refuse_wild_motion
 from seatrial.control.loopfile.quantities import angle_value, positive_value, rate_value, si_value, symbol_unit
 from seatrial.control.loopfile.schema import (
@@ -21,6 +22,7 @@ from seatrial.control.loopfile.schema import (
     PlantTable,
     SimulationTable,
 )
+from seatrial.control.loopfile.wave_paths import point_motions
 from seatrial.control.task import (
     Demand,
     PlantUncertainty,
@@ -67,15 +69,18 @@ def tuning_task(path: Path, own_model: Model | None = None, model_file: Path | N
     """
     file = parse_loop(path)
     try:
-        return _task_from_tables(file, plant_from_table(file.plant, path.resolve().parent, own_model, model_file))
+        home = path.resolve().parent
+        return _task_from_tables(file, plant_from_table(file.plant, home, own_model, model_file), home)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
 
 
-def _task_from_tables(file: LoopFile, plant: LoopPlant) -> TuningTask:
+def _task_from_tables(file: LoopFile, plant: LoopPlant, home: Path) -> TuningTask:
     loop = loop_from_tables(
         file.controller, file.actuator.servo, plant, file.name or f"{plant.actuator} on {plant.output}"
     )
+    places = objective_places(file.minimise)
+    loop = replace(loop, points=point_motions(plant, places))
     refuse_reversed_plant(plant, _plant_key(file.plant))
     refuse_reversed_servo(loop.servo)
     demand = None if file.demand is None else _demand(file.demand, plant)
@@ -84,7 +89,7 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant) -> TuningTask:
     if demand is None:
         refuse_unstable(loop)
     restriction = _constraints(file, plant)
-    met = loop_disturbances(file, plant, hull_factor(file.hull, plant.ship))
+    met = loop_disturbances(file, plant, home, places)
     plan = None if file.schedule is None else schedule_grid(file.schedule)
     refuse_calm(met, loop, plan)
     if demand is None:
@@ -120,11 +125,11 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant) -> TuningTask:
 
 
 def _wave_frequency(disturbances: Sequence[Seaway | SlowDisturbance], loop: TransferLoop) -> float | None:
-    """Return the mean frequency [rad/s] at which the first sea acts that has a path of its own; None without.
+    """Return the mean frequency [rad/s] at which the first sea acts that moves a craft by a path of its own; else None.
 
     Of the action, not of the motion: waves that keep up with the ship move its heading as far as they like.
     """
-    sea = next((one for one in disturbances if isinstance(one, Seaway) and one.path is not None), None)
+    sea = next((one for one in disturbances if isinstance(one, Seaway) and one.path and not one.is_output), None)
     return None if sea is None else sea.exposure(loop).mean_frequency(Block("action"))
 
 

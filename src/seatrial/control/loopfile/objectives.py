@@ -1,6 +1,7 @@
 """What is to be made small, by the names a loop file uses, as objectives."""
 
 import math
+from collections.abc import Sequence
 
 from seatrial.control.loopfile.plant import LoopPlant
 from seatrial.control.loopfile.quantities import positive_value, si_value, symbol_unit
@@ -9,7 +10,15 @@ from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import NOTATION, InputError
 from seatrial.data.trial.amounts import Amount
 from seatrial.physics.loops import LoopSignal, Objective
-from seatrial.physics.loops.objective import motion_interruptions, motion_sickness, squared_deviation, variance
+from seatrial.physics.loops.objective import (
+    motion_interruptions,
+    motion_sickness,
+    motion_sickness_at,
+    motion_sickness_dose,
+    squared_deviation,
+    variance,
+    vertical_acceleration,
+)
 
 # name -> where the variance is taken, power of the frequency
 _VARIANCES = {
@@ -24,6 +33,8 @@ _DERIVATIVES = ("", "rate of the ", "acceleration of the ")
 
 def objective(table: ObjectiveTable, plant: LoopPlant, constraints: ControllerConstraints, where: str) -> Objective:
     """Return the objective of that name."""
+    if table.x is not None:
+        return _objective_at_point(table, _in_metres(table.x, f"{where}.x"), where)
     what = _generic_name(table.name, plant, where)
     if what == "motion_interruptions":
         return motion_interruptions(_in_metres(table.height, f"{where}.height"), table.friction)
@@ -39,9 +50,25 @@ def objective(table: ObjectiveTable, plant: LoopPlant, constraints: ControllerCo
     return variance(f"variance of the {_DERIVATIVES[power]}{_meaning(symbol)}", _unit(symbol, power), seen, power)
 
 
+def objective_places(tables: Sequence[ObjectiveTable]) -> tuple[float, ...]:
+    """Return the places [m forward of the origin] that objectives name, each once."""
+    named = enumerate(tables, start=1)
+    return tuple(dict.fromkeys(_in_metres(t.x, f"minimise[{i}].x") for i, t in named if t.x is not None))
+
+
+def _objective_at_point(table: ObjectiveTable, x: float, where: str) -> Objective:
+    match table.name:
+        case "vertical_acceleration":
+            return vertical_acceleration(x)
+        case "motion_sickness":
+            return motion_sickness_at(x)
+        case _:
+            return motion_sickness_dose(x, positive_value(table.duration, "s", f"{where}.duration"))
+
+
 def _generic_name(name: str, plant: LoopPlant, where: str) -> str:
     """Return the name for any loop: `roll` is the output of a fin stabiliser, `fin` its actuator."""
-    on_roll = name.startswith(("roll", "motion"))
+    on_roll = name.startswith("roll") or name in ("motion_interruptions", "motion_sickness")
     if (on_roll and plant.output != "phi") or (name.startswith("fin") and plant.actuator != "alpha_f"):
         raise InputError(
             f"{where}: '{name}' is a word of roll stabilisers, the loop moves '{plant.output}' by '{plant.actuator}'; "

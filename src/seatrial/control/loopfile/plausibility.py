@@ -53,7 +53,7 @@ def refuse_wild_motion(disturbances: Sequence[Seaway | SlowDisturbance], loop: T
     if symbol_unit(plant.output) != "rad" or not math.isfinite(loop.disturbance.gain):
         return
     for one in disturbances:
-        rms = math.sqrt(one.exposure(loop).response_variance(loop.disturbance))
+        rms = math.sqrt(one.exposure(loop).response_variance(one.disturbed(loop).disturbance))
         if rms > _WILDEST_RMS:
             raise InputError(
                 f"without control {plant.output} would reach {math.degrees(rms):.3g} deg rms ({one.description}), more "

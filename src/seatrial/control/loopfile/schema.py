@@ -6,6 +6,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from seatrial.control.genetic_settings import GeneticTuning
 from seatrial.data.trial.amounts import Amount, SiAmount, StrictTable, Unit
+from seatrial.data.trial.schema import ExcitationTable
 from seatrial.data.trial.sea_table import SeaTable
 
 Coefficients = Annotated[tuple[float, ...], Field(min_length=1)]
@@ -233,16 +234,22 @@ class HullTable(StrictTable):
 ObjectiveName = Literal[
     "output", "output_rate", "output_acceleration", "actuator", "actuator_rate", "actuator_off_target",
     "roll", "roll_rate", "fin", "fin_rate", "fin_off_target", "motion_interruptions", "motion_sickness",
+    "vertical_acceleration", "motion_sickness_dose",
 ]  # fmt: skip
 
 
 class ObjectiveTable(StrictTable):
-    """One thing to be made small; `height` above the axis and `friction` of interruptions, `lever` of sickness."""
+    """One thing to be made small; `height` above the axis and `friction` of interruptions, `lever` of sickness by roll.
+
+    x: of what heave and pitch do at a point, forward of the origin; duration: of a sickness dose.
+    """
 
     name: ObjectiveName
     height: SiAmount | None = None
     friction: Positive = 0.25
     lever: SiAmount | None = None
+    x: SiAmount | None = None
+    duration: SiAmount = Amount(value=7200.0)  # s; two hours, as O'Hanlon & McCauley 1974
     target: SiAmount | None = None
     one_sided: bool = True
 
@@ -250,15 +257,20 @@ class ObjectiveTable(StrictTable):
     def _keys_of_what(self) -> Self:
         own = {
             "motion_interruptions": {"height", "friction"},
-            "motion_sickness": {"lever"},
+            "motion_sickness": {"lever", "x"},
+            "motion_sickness_dose": {"x", "duration"},
+            "vertical_acceleration": {"x"},
             "fin_off_target": {"target", "one_sided"},
             "actuator_off_target": {"target", "one_sided"},
         }.get(self.name, set())
         for key in sorted(self.model_fields_set - own - {"name"}):
             raise ValueError(f"'{self.name}' knows no '{key}'; leave it out")
-        for key in {"height", "lever"} & own:
-            if getattr(self, key) is None:
-                raise ValueError(f"'{self.name}' needs a {key} in metres")
+        needed = {"motion_interruptions": "height", "motion_sickness_dose": "x", "vertical_acceleration": "x"}
+        key = needed.get(self.name, "")
+        if key and getattr(self, key) is None:
+            raise ValueError(f"'{self.name}' needs {key} in metres")
+        if self.name == "motion_sickness" and (self.lever is None) == (self.x is None):
+            raise ValueError("'motion_sickness' needs lever (of roll) or x (of heave and pitch) in metres")
         return self
 
 
@@ -320,6 +332,7 @@ class LoopFile(StrictTable):
     controller: ControllerTable
     actuator: ActuatorTable = ActuatorTable()
     hull: HullTable | None = None
+    excitation: ExcitationTable | None = None
     seas: tuple[SeawayTable, ...] = ()
     slow_disturbances: tuple[SlowDisturbanceTable, ...] = ()
     minimise: Annotated[tuple[Annotated[ObjectiveTable, BeforeValidator(_as_objective)], ...], Field(min_length=1)] = (

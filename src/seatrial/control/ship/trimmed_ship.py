@@ -174,6 +174,14 @@ def rate_response(ship: TrimmedShip, state: str) -> Block:
     return _response(ship, linear, np.eye(len(names))[names.index(state)], 0.0, f"acceleration of {state}")
 
 
+def response_of_states(ship: TrimmedShip, name: str, weights: Mapping[str, float]) -> Block:
+    """Return the transfer function from an input to a weighted sum of states, in the notation's signs."""
+    linear, C = linearise(ship), np.zeros(len(ship.model.states))
+    for state, weight in weights.items():
+        C[ship.model.states.index(state)] = weight
+    return _transfer_function(ship, replace(linear, C=C, D=np.zeros(len(linear.D))), name)
+
+
 def _transfer_function(ship: TrimmedShip, linear: LinearisedShip, name: str) -> Block:
     """Return C (s I - A)^-1 B + D of one input, controllable and observable states only, in the notation's signs."""
     column = ship.model.input_names.index(name)

@@ -84,11 +84,14 @@ class Controller:
     gains: Annotated[dict[str, float], Field(description="name -> value")]
     objectives: Annotated[Array, named_by("objectives"), Field(description="objective -> value, shape (m,)")]
     rms: Annotated[
-        dict[str, Number], Field(description="of output, actuator, actuator_rate, SI, mean square over the seas")
+        dict[str, Number],
+        Field(description="of output, actuator, actuator_rate, and motion if named, SI, mean square over the seas"),
     ]
     reduction: Annotated[
         Number,
-        Field(description="of the output's rms against no control, 0 to 1; null: nothing to compare with"),
+        Field(
+            description="of the rms of output, or motion if named, against no control, 0 to 1; null: nothing to compare"
+        ),
     ]
     Ms: Annotated[Number, Field(description="Ms, the largest |S|; null: unstable")]
     gain_margin: Annotated[Number, Field(description="factor by which the loop gain may grow; null: any")]
@@ -184,7 +187,7 @@ class PerformanceBound:
 
 @dataclass(frozen=True, eq=False)
 class SeawaySimulation:
-    """One controller over seeds of the sea: reductions of the output's rms, 0 to 1, shape (seeds,)."""
+    """One controller over seeds of the sea: reductions of the rms as of `Controller`, 0 to 1, shape (seeds,)."""
 
     name: str
     linear: Annotated[ListedArray, Field(description="without limits")]
@@ -303,6 +306,9 @@ class Tuning(Summarised):
         tuple[Controller, ...], Field(description="a more robust and a harder working design beside the chosen one")
     ] = ()
 
+    motion: Annotated[
+        str, Field(description="of what reductions are, its rms in m/s^2 under `motion`; empty: of the output")
+    ] = ""
     robustness: Annotated[
         tuple[Robustness, ...], Field(description="of the stable controllers compared, the chosen one first")
     ] = ()

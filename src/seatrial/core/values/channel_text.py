@@ -10,7 +10,8 @@ from seatrial.core.values.units import display_unit
 
 # channels whose letter differs from their name
 _LETTERS = {
-    "psi": "ψ", "delta": "δ", "phi": "φ", "theta": "θ", "alpha_f": "α", "x0": "x₀", "y0": "y₀", "v_j": "vⱼ",
+    "psi": "ψ", "delta": "δ", "delta_f1": "δ₁", "delta_f2": "δ₂", "phi": "φ", "theta": "θ", "alpha_f": "α",
+    "x0": "x₀", "y0": "y₀", "v_j": "vⱼ",
     "wind_speed": "wind", "wind_direction": "wind from", "wind_speed_relative": "app. wind",
     "wind_direction_relative": "app. wind from",
 }  # fmt: skip

@@ -72,13 +72,27 @@ def _least_return_difference(x, y):
     return np.sqrt(min(zx * zx + zy * zy, least))
 
 
-@kernel(void(MATRIX, VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, VECTOR, MATRIX), **_ANY_ORDER_SUMS)
-def evaluate_loops(k, d, n, re, im, s_weights, t_weights, band_re, band_im, Ms, out):
+@kernel(F8(MATRIX, I8, VECTOR, VECTOR, VECTOR, VECTOR), **_ANY_ORDER_SUMS)
+def _mixed_variance(weights, first, s, t, x, y):
+    """Return the sum of w0 |S|^2 + w1 |T|^2 + 2 Re(S conj(T) (w2 + j w3)), T = L S, of four rows of weights."""
+    total = 0.0
+    for f in range(s.size):
+        both = (x[f] - 1.0) * weights[first + 2, f] + y[f] * weights[first + 3, f]
+        total += weights[first, f] * s[f] + weights[first + 1, f] * t[f] + 2.0 * s[f] * both
+    return total
+
+
+@kernel(
+    void(MATRIX, VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, VECTOR, MATRIX),
+    **_ANY_ORDER_SUMS,
+)
+def evaluate_loops(k, d, n, re, im, s_weights, t_weights, mixed_weights, band_re, band_im, Ms, out):
     """Compute sensitivity peak and variances of loops; infinite where a loop is unstable.
 
     k: gains (m, g). d (n + 1,), n (g, n + 1): characteristic polynomial d + k n. re, im: L_i (g, f) at the frequencies
-    of the sea; s_weights (rs, f), t_weights (rt, f): what |S|^2 and |L S|^2 weigh there. band_re, band_im: L_i over the
-    whole band, for the peak; without frequencies no peak. Ms (m,); out (m, rs + rt).
+    of the sea; s_weights (rs, f), t_weights (rt, f): what |S|^2 and |L S|^2 weigh there; mixed_weights (4 rm, f): four
+    rows for each variance of both, as of `_mixed_variance`. band_re, band_im: L_i over the whole band, for the peak;
+    without frequencies no peak. Ms (m,); out (m, rs + rt + rm).
     """
     order = d.size - 1
     row, x, y = np.empty(order + 1), np.empty(re.shape[1]), np.empty(re.shape[1])
@@ -112,13 +126,17 @@ def evaluate_loops(k, d, n, re, im, s_weights, t_weights, band_re, band_im, Ms, 
             for f in range(x.size):
                 total += t_weights[j, f] * t[f]
             out[m, s_weights.shape[0] + j] = total
+        both = s_weights.shape[0] + t_weights.shape[0]
+        for j in range(mixed_weights.shape[0] // 4):
+            out[m, both + j] = _mixed_variance(mixed_weights, 4 * j, s, t, x, y)
 
 
-@kernel(void(VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX), **_ANY_ORDER_SUMS)
-def variance_gradients(k, re, im, s_weights, t_weights, out):
-    """Set out = d variance / d gain of one loop, (rs + rt, g).
+@kernel(void(VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX), **_ANY_ORDER_SUMS)
+def variance_gradients(k, re, im, s_weights, t_weights, mixed_weights, out):
+    """Set out = d variance / d gain of one loop, (rs + rt + rm, g), of weights as of `evaluate_loops`.
 
-    With z = 1 + L: d|S|^2 = -2 Re(conj(z) L_i) |S|^4, d|L S|^2 = 2 Re(conj(L) L_i) |S|^2 + |L|^2 d|S|^2.
+    With z = 1 + L: d|S|^2 = -2 Re(conj(z) L_i) |S|^4, d|L S|^2 = 2 Re(conj(L) L_i) |S|^2 + |L|^2 d|S|^2,
+    d(S conj(T)) = conj(L_i) |S|^2 + conj(L) d|S|^2.
     """
     count = re.shape[1]
     x, y = np.empty(count), np.empty(count)
@@ -140,3 +158,13 @@ def variance_gradients(k, re, im, s_weights, t_weights, out):
             for f in range(count):
                 total += t_weights[j, f] * dt[f]
             out[s_weights.shape[0] + j, i] = total
+        both = s_weights.shape[0] + t_weights.shape[0]
+        for j in range(mixed_weights.shape[0] // 4):
+            total = 0.0
+            for f in range(count):
+                s = 1.0 / (x[f] * x[f] + y[f] * y[f])
+                real = re[i, f] * s + (x[f] - 1.0) * ds[f]
+                imag = im[i, f] * s + y[f] * ds[f]
+                total += mixed_weights[4 * j, f] * ds[f] + mixed_weights[4 * j + 1, f] * dt[f]
+                total += 2.0 * (mixed_weights[4 * j + 2, f] * real + mixed_weights[4 * j + 3, f] * imag)
+            out[both + j, i] = total

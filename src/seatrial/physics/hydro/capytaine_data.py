@@ -72,6 +72,11 @@ class HullExcitation:
 
     data: HullData
 
+    @property
+    def frequency_range(self) -> tuple[float, float]:
+        """The ends of the data [rad/s]."""
+        return self.data.froude_krylov.frequency_range
+
     def forces(self, omega: Array, U: float, beta: Array | float) -> tuple[Complex, Complex]:
         """Return `Excitation.forces`: Froude-Krylov force and diffraction at the frequency of the wave.
 

@@ -1,5 +1,6 @@
 """Wave excitation of heave and pitch: what every source of it answers, and the closed form for a box-shaped hull."""
 
+import math
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -21,6 +22,11 @@ class Excitation(Protocol):
     elevation at midship is Re(a exp(i omega_e t)), the force Re(F a exp(i omega_e t)) with the signed frequency of
     encounter. The papers' F_r cos + F_i sin is F = F_r - i F_i.
     """
+
+    @property
+    def frequency_range(self) -> tuple[float, float]:
+        """Wave frequencies [rad/s] from and to which the forces hold."""
+        ...
 
     def forces(self, omega: Array, U: float, beta: Array | float) -> tuple[Complex, Complex]:
         """Return F3 and M5, each of the shape (n,) of `omega` [rad/s, of the wave, not of encounter].
@@ -74,6 +80,11 @@ class BoxHull:
                 "the restoring matrix of the box hull has no positive determinant, so the hull would capsize end over "
                 f"end; check c35 = {self.c35:g} and c53 = {self.c53:g} against c33 and c55"
             )
+
+    @property
+    def frequency_range(self) -> tuple[float, float]:
+        """Zero, and k T = 1: beyond, the pressure 1 - k T of the paper would grow with depth."""
+        return 0.0, math.sqrt(G / self.T)
 
     def forces(self, omega: Array, U: float, beta: Array | float) -> tuple[Complex, Complex]:
         """Return the forces of `Excitation.forces`."""

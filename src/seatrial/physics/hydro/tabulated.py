@@ -47,6 +47,11 @@ class WaveTable:
             )
         self._refuse_phase_jumps()
 
+    @property
+    def frequency_range(self) -> tuple[float, float]:
+        """Its first and last frequency [rad/s]."""
+        return float(self.omega[0]), float(self.omega[-1])
+
     def interpolate(self, omega: Array, U: float, beta: Array | float) -> Complex:
         """Return values (k, m) at the frequencies (k,) and one heading, or one for each.
 

@@ -30,6 +30,11 @@ class TabulatedExcitation:
     table: WaveTable
     speed: float | None = None
 
+    @property
+    def frequency_range(self) -> tuple[float, float]:
+        """The ends of the table [rad/s]."""
+        return self.table.frequency_range
+
     def forces(self, omega: Array, U: float, beta: Array | float) -> tuple[Complex, Complex]:
         """Return the forces of `Excitation.forces`.
 

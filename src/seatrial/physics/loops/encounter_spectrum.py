@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from seatrial.core.values import Array, InputError
-from seatrial.physics.hydro.excitation import encounter_frequency
+from seatrial.physics.hydro.excitation import Complex, encounter_frequency
 from seatrial.physics.loops import quadrature
 from seatrial.physics.loops.block import Block
 from seatrial.physics.loops.wave_effect import WaveEffect, WaveSlope
@@ -35,6 +35,17 @@ _FIRST_STRIDE = 8  # directions left out between those of the first grid; chosen
 
 
 @dataclass(frozen=True, eq=False)
+class PointSpectrum:
+    """What a sea does at a point while the actuator rests, q, beside the disturbance w of the loop; both (n,).
+
+    energy: shares of the variance of q; cross: shares of E[q conj(w)], complex amplitudes at |omega_e|.
+    """
+
+    energy: Array
+    cross: Complex
+
+
+@dataclass(frozen=True, eq=False)
 class EncounterSpectrum:
     """A disturbance that a loop meets, node by node of a quadrature.
 
@@ -42,11 +53,13 @@ class EncounterSpectrum:
         omega_e: |frequency of encounter| [rad/s]; energy: share of the disturbance's variance at each node [unit^2],
             both (n,); single ones may be negative where many nodes were gathered on few.
         description: the sea in words.
+        points: what the same sea does at the loop's points, in their order.
     """
 
     omega_e: Array
     energy: Array
     description: str = ""
+    points: tuple[PointSpectrum, ...] = ()
 
     @property
     def variance(self) -> float:
@@ -71,6 +84,7 @@ def sea_disturbance(
     effect: WaveEffect = WAVE_SLOPE,
     *,
     spreading: float | None = None,
+    at_points: tuple[WaveEffect, ...] = (),
 ) -> EncounterSpectrum:
     """Return what the waves of a sea do to a loop, |effect|^2 S(omega): by default their slope across the ship [rad].
 
@@ -79,17 +93,19 @@ def sea_disturbance(
         response: from the disturbance to the motion; nodes suffice for variances of its angle and rate with half of its
             damping. A loop much nearer to instability, or slower, is resolved by its own closed-loop response D S.
         spreading: exponent s of a short-crested sea, cos^2s over +- 90 deg; None: long-crested.
+        at_points: what the waves do at the loop's points.
 
     Raises:
         InputError: speed, heading or spreading out of sense, or a sea without any effect on the loop.
     """
+    effects = (effect, *at_points)
     said = f"{spectrum.name}, {math.degrees(beta):.0f} deg"
     if spreading is None:
-        nodes = _long_crested_nodes(spectrum, U, beta, response, effect, _ACCURACY)
-        made = EncounterSpectrum(*_reduced_nodes(*nodes, response, _ACCURACY_OF_REDUCED), said)
+        nodes = _long_crested_nodes(spectrum, U, beta, response, effects, _ACCURACY)
+        made = _from_rows(*_reduced_nodes(*nodes, response, _ACCURACY_OF_REDUCED), said)
     else:
-        nodes = _ShortCrestedNodes(spectrum, U, beta, response, effect, spreading).converged_nodes()
-        made = EncounterSpectrum(*_reduced_nodes(*nodes, response, _ACCURACY_OF_DIRECTIONS), f"{said}, short-crested")
+        nodes = _ShortCrestedNodes(spectrum, U, beta, response, effects, spreading).converged_nodes()
+        made = _from_rows(*_reduced_nodes(*nodes, response, _ACCURACY_OF_DIRECTIONS), f"{said}, short-crested")
     if not made.variance > _NO_EFFECT * spectrum.moment(0):
         raise InputError(
             f"the sea has no {effect.name} at a heading of {math.degrees(beta):.0f} deg; "
@@ -102,21 +118,29 @@ def disturbance_spectrum(
     density: Callable[[Array], Array], lower: float, upper: float, response: Block, description: str
 ) -> EncounterSpectrum:
     """Return exposure to a disturbance of one-sided `density` [unit^2 s/rad] over the frequency of encounter itself."""
-    return EncounterSpectrum(*_converged_nodes(density, lambda w: w, (lower, upper), response, _ACCURACY), description)
+    nodes = _converged_nodes(lambda w: density(w)[None], lambda w: w, (lower, upper), response, _ACCURACY)
+    return _from_rows(*nodes, description)
+
+
+def _from_rows(omega_e: Array, rows: Array, description: str) -> EncounterSpectrum:
+    """Return the spectrum of rows (1 + 3 p, n): the disturbance's energy; of each point energy, cross in two parts."""
+    points = tuple(PointSpectrum(rows[i], rows[i + 1] + 1j * rows[i + 2]) for i in range(1, len(rows), 3))
+    return EncounterSpectrum(omega_e, rows[0], description, points)
 
 
 class _ShortCrestedNodes:
     """A short-crested sea: trapezoids over its directions, doubled until variances of angle and rate stand still."""
 
     def __init__(
-        self, spectrum: Spectrum, U: float, beta: float, response: Block, effect: WaveEffect, exponent: float
-    ) -> None:
+        self, spectrum: Spectrum, U: float, beta: float, response: Block, effects: tuple[WaveEffect, ...],
+        exponent: float,
+    ) -> None:  # fmt: skip
         if not exponent > 0.0:
             raise InputError(f"the spreading exponent s of a short-crested sea must be positive, not {exponent:g}")
         speed_factor(U, beta)
         self._nodes_by_direction: dict[int, tuple[Array, Array]] = {}
         self._one_direction = lambda away: _long_crested_nodes(
-            spectrum, U, math.acos(math.cos(beta + away)), response, effect, _ACCURACY_OF_ONE
+            spectrum, U, math.acos(math.cos(beta + away)), response, effects, _ACCURACY_OF_ONE
         )
         self._response, self._exponent = response, exponent
         # cos^2s is below 1e-13 beyond
@@ -126,10 +150,10 @@ class _ShortCrestedNodes:
         """Return |frequencies of encounter| and energies."""
         before, stride = np.full(2, np.inf), _FIRST_STRIDE
         while True:
-            omega_e, energy = self._nodes_at_stride(stride)
-            now = _variances(omega_e, energy, self._response)
+            omega_e, rows = self._nodes_at_stride(stride)
+            now = _variances(omega_e, rows[0], self._response)
             if np.all(np.abs(now - before) <= _ACCURACY_OF_DIRECTIONS * now) or stride == 1:
-                return omega_e, energy
+                return omega_e, rows
             before, stride = now, stride // 2
 
     def _nodes_at_stride(self, stride: int) -> tuple[Array, Array]:
@@ -142,27 +166,36 @@ class _ShortCrestedNodes:
             if place not in self._nodes_by_direction:
                 self._nodes_by_direction[place] = self._one_direction(float(angle))
         parts = [self._nodes_by_direction[place] for place in places]
-        energy = [share * energy for share, (_, energy) in zip(shares, parts, strict=True)]
-        return np.concatenate([omega_e for omega_e, _ in parts]), np.concatenate(energy)
+        rows = [share * rows for share, (_, rows) in zip(shares, parts, strict=True)]
+        return np.concatenate([omega_e for omega_e, _ in parts]), np.concatenate(rows, axis=1)
 
 
 def _long_crested_nodes(
-    spectrum: Spectrum, U: float, beta: float, response: Block, effect: WaveEffect, accuracy: float
+    spectrum: Spectrum, U: float, beta: float, response: Block, effects: tuple[WaveEffect, ...], accuracy: float
 ) -> tuple[Array, Array]:
     speed_factor(U, beta)
 
     def density(omega: Array) -> Array:
-        return np.abs(effect.amplitude(omega, U, beta)) ** 2 * spectrum.density(omega)
+        w, *elsewhere = (effect.amplitude(omega, U, beta) for effect in effects)
+        rows = [np.abs(w) ** 2]
+        overtaken = encounter_frequency(omega, U, beta) < 0.0
+        for q in elsewhere:
+            cross = q * w.conj()
+            rows += [np.abs(q) ** 2, cross.real, np.where(overtaken, -cross.imag, cross.imag)]
+        return np.stack(rows) * spectrum.density(omega)
 
     def encounter(omega: Array) -> Array:
         return np.abs(encounter_frequency(omega, U, beta))
 
-    lower = (spectrum.B / _NEGLIGIBLE_EXPONENT) ** 0.25
-    upper = min(_REACH * spectrum.modal_frequency, effect.highest_frequency)
+    lowest, highest = effects[0].frequency_range
+    lower = max((spectrum.B / _NEGLIGIBLE_EXPONENT) ** 0.25, lowest)
+    upper = min(_REACH * spectrum.modal_frequency, highest)
     peak = spectrum.modal_frequency
     # a raised peak is sharp and has a kink
     inner = () if spectrum.gamma == 1.0 else (0.65 * peak, peak, 1.45 * peak)
-    return _converged_nodes(density, encounter, (lower, *inner, max(upper, 2.0 * peak)), response, accuracy)
+    return _converged_nodes(
+        density, encounter, (lower, *inner, max(upper, min(2.0 * peak, highest))), response, accuracy
+    )
 
 
 def _converged_nodes(
@@ -176,23 +209,23 @@ def _converged_nodes(
     sharp, before, count = _with_less_damping(response), np.full(2, np.inf), _MIN_NODES
     while True:
         omega, width = quadrature.nodes(edges, count)
-        omega_e, energy = np.maximum(encounter(omega), _LOWEST_FREQUENCY), density(omega) * width
-        now = _variances(omega_e, energy, sharp)
+        omega_e, rows = np.maximum(encounter(omega), _LOWEST_FREQUENCY), density(omega) * width
+        now = _variances(omega_e, rows[0], sharp)
         if np.all(np.abs(now - before) <= accuracy * now) or count > _MAX_NODES:
-            return omega_e, energy
+            return omega_e, rows
         before, count = now, 3 * count // 2
 
 
-def _reduced_nodes(omega_e: Array, energy: Array, response: Block, accuracy: float) -> tuple[Array, Array]:
+def _reduced_nodes(omega_e: Array, rows: Array, response: Block, accuracy: float) -> tuple[Array, Array]:
     """Return fewer nodes, as long as the sharpened response does not notice."""
     sharp, count = _with_less_damping(response), _REDUCED_NODES
-    true = _variances(omega_e, energy, sharp)
+    true = _variances(omega_e, rows[0], sharp)
     while count < len(omega_e):
-        made = quadrature.gather_nodes(omega_e, energy, count)
-        if np.all(np.abs(_variances(*made, sharp) - true) <= accuracy * true):
-            return made
+        omega, made = quadrature.gather_nodes(omega_e, rows, count)
+        if np.all(np.abs(_variances(omega, made[0], sharp) - true) <= accuracy * true):
+            return omega, made
         count *= 2
-    return omega_e, energy
+    return omega_e, rows
 
 
 def _with_less_damping(response: Block) -> Block:
@@ -200,7 +233,7 @@ def _with_less_damping(response: Block) -> Block:
     poles = response.poles
     slowest = np.min(np.abs(poles[poles != 0.0]), initial=_HELD_POLE)
     damped = np.where(poles == 0.0, -slowest, -np.abs(poles.real) / _DAMPING_DIVISOR)
-    return replace(response, den=tuple(response.den[0] * np.poly(damped + 1j * poles.imag).real))
+    return replace(response, den=tuple(response.den[0] * np.atleast_1d(np.poly(damped + 1j * poles.imag).real)))
 
 
 def _variances(omega_e: Array, energy: Array, response: Block) -> Array:

@@ -19,6 +19,17 @@ class Term:
     block: Block
 
 
+@dataclass(frozen=True)
+class HullPoint:
+    """The downward motion of the hull x metres forward of its origin, z - x theta, that the actuator also makes.
+
+    plant: from the actuator to it.
+    """
+
+    x: float
+    plant: Block
+
+
 @dataclass(frozen=True, eq=False)
 class TransferLoop:
     """Negative feedback from an output y to the actuator a that moves it, against a disturbance w.
@@ -33,6 +44,7 @@ class TransferLoop:
         plant: P, from the actuator to the output; disturbance: D, from w to the output.
         gains: one parameter for each term, in order: value, bounds, free or fixed.
         output, actuator, disturbance_input: symbols of y, a and w.
+        points: what the actuator also moves, to be made small but not fed back.
 
     Raises:
         InputError: gains and terms do not go together, or a gain lacks a bound.
@@ -49,6 +61,7 @@ class TransferLoop:
     output: str = "phi"
     actuator: str = "alpha_f"
     disturbance_input: str = "alpha_w"
+    points: tuple[HullPoint, ...] = ()
 
     def __post_init__(self) -> None:
         if tuple(term.gain for term in self.terms) != self.gains.names or not self.terms:

@@ -18,14 +18,19 @@ class LoopSignal(Enum):
 
     OUTPUT = "output"
     ACTUATOR = "actuator"
+    POINT = "point"
 
 
 @dataclass(frozen=True)
 class WeightedVariance:
-    """The variance of an operator on the output or the actuator: `magnitude` is |W(j omega)| at omega [rad/s]."""
+    """The variance of an operator on a signal of the loop: `magnitude` is |W(j omega)| at omega [rad/s].
+
+    x: m forward of the origin, of the point whose downward motion the signal is; other signals have none.
+    """
 
     signal: LoopSignal
     magnitude: Callable[[Array], Array]
+    x: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -96,10 +101,63 @@ def motion_interruptions(height: float, friction: float = 0.25) -> Objective:
     return Objective("motion interruptions", "1/min", rows, value, slope)
 
 
-def motion_sickness(lever: float) -> Objective:
-    """Share of people sick within two hours, `lever` [m] off the axis; O'Hanlon & McCauley 1974 as in `sea.response`.
+def vertical_acceleration(x: float) -> Objective:
+    """Return the variance of the vertical acceleration x metres forward of the origin, of heave and pitch."""
+    row = WeightedVariance(LoopSignal.POINT, _frequency_power(2), x)
+    return Objective(
+        f"variance of the vertical acceleration at {x:g} m", "m^2/s^4", (row,), _first_variance, np.ones_like
+    )
 
-    The vertical acceleration of the output alone, lever omega^2 phi. Phi((log10(0.798 sqrt(v_4) / g) - mu) / 0.4),
+
+def motion_sickness_dose(x: float, duration: float) -> Objective:
+    """Return the motion sickness dose value [m/s^1.5] of so many seconds at x [m]: sqrt(duration times the variance of
+    the vertical acceleration weighted by W_f) (ISO 2631-1:1997, section 9; a third of it in per cent vomits).
+    """
+    row = WeightedVariance(LoopSignal.POINT, _weighted_acceleration, x)
+
+    def value(v: Array) -> Array:
+        return np.sqrt(duration * v[:, 0])
+
+    def slope(v: Array) -> Array:
+        return 0.5 * duration / value(v)[:, None]
+
+    return Objective(f"motion sickness dose value at {x:g} m", "m/s^1.5", (row,), value, slope)
+
+
+def motion_sickness_weighting(omega: Array) -> Array:
+    """Return |W_f| at omega [rad/s] (ISO 2631-1:1997, annex A: band limits, transition and step by their f and Q)."""
+    s, (f1, f2, f4, f5, f6) = 1j * omega, 2.0 * math.pi * np.array([0.08, 0.63, 0.25, 0.0625, 0.1])  # Hz, as printed
+    Q4, Q5, Q6 = 0.86, 0.80, 0.80  # quality factors, as printed
+    root = math.sqrt(2.0)
+    limits = s**2 / (s**2 + root * f1 * s + f1**2) * f2**2 / (s**2 + root * f2 * s + f2**2)
+    transition = f4**2 / (s**2 + f4 / Q4 * s + f4**2)
+    step = (s**2 + f5 / Q5 * s + f5**2) / (s**2 + f6 / Q6 * s + f6**2)
+    return np.abs(limits * transition * step)
+
+
+def _weighted_acceleration(omega: Array) -> Array:
+    return motion_sickness_weighting(omega) * omega**2
+
+
+def motion_sickness_at(x: float) -> Objective:
+    """Return the share of people sick within two hours x metres forward of the origin, of heave and pitch."""
+    rows = tuple(WeightedVariance(LoopSignal.POINT, _frequency_power(power), x) for power in (1, 2))
+    return _sickness(f"motion sickness at {x:g} m", rows)
+
+
+def motion_sickness(lever: float) -> Objective:
+    """Return the share of people sick within two hours, `lever` [m] off the axis: of the output alone."""
+    rows = (
+        WeightedVariance(LoopSignal.OUTPUT, lambda w: abs(lever) * w),
+        WeightedVariance(LoopSignal.OUTPUT, lambda w: abs(lever) * w**2),
+    )
+    return _sickness("motion sickness", rows)
+
+
+def _sickness(name: str, rows: tuple[WeightedVariance, ...]) -> Objective:
+    """Return the share of people sick, of variances of vertical velocity and acceleration.
+
+    O'Hanlon & McCauley 1974 as in `sea.response`: Phi((log10(0.798 sqrt(v_4) / g) - mu) / 0.4),
     mu = -0.819 + 2.32 log10(omega)^2, omega = sqrt(v_4 / v_2).
     """
 
@@ -120,8 +178,4 @@ def motion_sickness(lever: float) -> Objective:
         by_second = density * (1.0 - 2.32 * 2.0 * ratio) * half / v[:, 1]  # 2.32 as above
         return np.stack([by_first, by_second], axis=1)
 
-    rows = (
-        WeightedVariance(LoopSignal.OUTPUT, lambda w: abs(lever) * w),
-        WeightedVariance(LoopSignal.OUTPUT, lambda w: abs(lever) * w**2),
-    )
-    return Objective("motion sickness", "1", rows, value, slope)
+    return Objective(name, "1", rows, value, slope)

@@ -1,7 +1,9 @@
 """A loop in a sea, ready to be evaluated at any gains: objectives, sensitivity peak, stability, gradients.
 
 Variances are sums over the nodes of the exposure, |S|^2 for the output and |L S|^2 for the actuator; no linear system
-is solved. An unstable loop, whose variances would be finite all the same, gets infinity everywhere.
+is solved. At a point the motion q without control becomes S q + T r, T = L S, where r = q - (P_q / P) D w is what
+would be left there if the output were held still: its variance is that of both and of what they have in common. An
+unstable loop, whose variances would be finite all the same, gets infinity everywhere.
 """
 
 from dataclasses import dataclass
@@ -16,6 +18,7 @@ from seatrial.physics.loops.loop import TransferLoop
 from seatrial.physics.loops.margins import frequency_band
 from seatrial.physics.loops.objective import LoopSignal, Objective, WeightedVariance
 
+_ORDER = (LoopSignal.OUTPUT, LoopSignal.ACTUATOR, LoopSignal.POINT)
 _MS_SAMPLES = 192  # frequencies that the peak of |S| is bracketed on; chosen
 
 
@@ -41,11 +44,11 @@ class Performance:
     A loop slower than 0.002 rad/s in following seas, where waves keep up with the ship, may be 0.1 % off.
 
     Attributes:
-        variances: variances computed, in this order; those on the output must stand first.
+        variances: variances computed, in this order: those on the output first, then the actuator, then points.
 
     Raises:
-        InputError: the plant does nothing at a frequency of the exposure, or rows on the actuator precede rows on the
-            output.
+        InputError: the plant does nothing at a frequency of the exposure, rows stand in another order, or a point is
+            none of the loop's, or unknown to the sea.
     """
 
     loop: TransferLoop
@@ -53,9 +56,15 @@ class Performance:
     variances: tuple[WeightedVariance, ...]
 
     def __post_init__(self) -> None:
-        seen = [row.signal is LoopSignal.ACTUATOR for row in self.variances]
+        seen = [_ORDER.index(row.signal) for row in self.variances]
         if seen != sorted(seen):
-            raise InputError("rows on the output must precede rows on the actuator")
+            raise InputError("rows on the output must precede rows on the actuator, and those rows on points")
+        points = {row.x for row in self.variances if row.signal is LoopSignal.POINT}
+        if points - {point.x for point in self.loop.points} or (points and not self.spectrum.points):
+            raise InputError(
+                f"loop '{self.loop.name}' in {self.spectrum.description} knows no motion at "
+                f"{', '.join(f'{x:g} m' for x in sorted(points))} forward of the origin"
+            )
         dead = self.spectrum.omega_e[self.loop.plant.frequency_response(self.spectrum.omega_e) == 0.0]
         if dead.size:
             raise InputError(
@@ -64,15 +73,26 @@ class Performance:
             )
 
     @cached_property
-    def _node_weights(self) -> tuple[Array, Array]:
-        """What |S|^2 and |L S|^2 weigh at each node: |W D|^2 and |W D / P|^2 times the energy."""
+    def _node_weights(self) -> tuple[Array, Array, Array]:
+        """What |S|^2, |L S|^2 and both weigh at each node: |W D|^2 and |W D / P|^2 times the energy; see the module."""
         w = self.spectrum.omega_e
         free = np.abs(self.loop.disturbance.frequency_response(w)) ** 2 * self.spectrum.energy
         moved = free / np.abs(self.loop.plant.frequency_response(w)) ** 2
         outputs = [row.magnitude(w) ** 2 * free for row in self.variances if row.signal is LoopSignal.OUTPUT]
         actuators = [row.magnitude(w) ** 2 * moved for row in self.variances if row.signal is LoopSignal.ACTUATOR]
-        shape = (-1, len(w))
-        return np.ascontiguousarray(np.reshape(outputs, shape)), np.ascontiguousarray(np.reshape(actuators, shape))
+        points = [row.magnitude(w) ** 2 * self._point_energies(row.x)
+                  for row in self.variances if row.signal is LoopSignal.POINT]  # fmt: skip
+        return tuple(np.ascontiguousarray(np.reshape(part, (-1, len(w)))) for part in (outputs, actuators, points))  # type: ignore[return-value]
+
+    def _point_energies(self, x: float) -> Array:
+        """Return energies of q and r and their cross spectrum's two parts at the point x, (4, n)."""
+        place = [point.x for point in self.loop.points].index(x)
+        q, w = self.spectrum.points[place], self.spectrum.omega_e
+        ratio = self.loop.points[place].plant.frequency_response(w) / self.loop.plant.frequency_response(w)
+        moved = ratio * self.loop.disturbance.frequency_response(w)
+        common = np.conj(moved) * q.cross
+        of_r = q.energy - 2.0 * common.real + np.abs(moved) ** 2 * self.spectrum.energy
+        return np.stack([q.energy, of_r, q.energy - common.real, -common.imag])
 
     @cached_property
     def _open_loop_tables(self) -> tuple[Array, Array, Array, Array]:
@@ -119,8 +139,8 @@ class Performance:
     @property
     def uncontrolled_variances(self) -> Array:
         """The variances with all gains at zero, (r,): those on the actuator vanish."""
-        on_s, on_t = self._node_weights
-        return np.concatenate([on_s.sum(axis=1), np.zeros(len(on_t))])
+        on_s, on_t, on_both = self._node_weights
+        return np.concatenate([on_s.sum(axis=1), np.zeros(len(on_t)), on_both[::4].sum(axis=1)])
 
 
 def _closest_to_zero(near: np.ndarray) -> float:
@@ -137,7 +157,7 @@ def _closest_to_zero(near: np.ndarray) -> float:
 
 
 def distinct_variances(objectives: tuple[Objective, ...]) -> tuple[tuple[WeightedVariance, ...], list[list[int]]]:
-    """Return all different rows of some objectives, outputs first, and for each objective where its own stand."""
+    """Return all different rows of some objectives in the order of `Performance`, and for each where its own stand."""
     different = dict.fromkeys(row for objective in objectives for row in objective.variances)
-    rows = sorted(different, key=lambda row: row.signal is LoopSignal.ACTUATOR)
+    rows = sorted(different, key=lambda row: _ORDER.index(row.signal))
     return tuple(rows), [[rows.index(row) for row in objective.variances] for objective in objectives]

@@ -35,8 +35,8 @@ def nodes(edges: tuple[float, ...], count: int) -> tuple[Array, Array]:
     return np.concatenate(made), np.concatenate(width)
 
 
-def gather_nodes(omega: Array, energy: Array, count: int) -> tuple[Array, Array]:
-    """Return the same sums over energy on `count` nodes: each energy goes to its eight neighbours by Lagrange.
+def gather_nodes(omega: Array, rows: Array, count: int) -> tuple[Array, Array]:
+    """Return the same sums over energies (r, n) on `count` nodes: each goes to its eight neighbours by Lagrange.
 
     What is summed must be smooth over arsinh(20 omega), as the response of a loop is. Single energies may come out
     negative.
@@ -47,9 +47,9 @@ def gather_nodes(omega: Array, energy: Array, count: int) -> tuple[Array, Array]
     at = x / step - 0.5
     first = np.clip(np.floor(at).astype(int) - _ORDER // 2 + 1, 0, count - _ORDER)
     u, place = at - first, np.arange(_ORDER)
-    made = np.zeros(count)
+    made = np.zeros((len(rows), count))
     for j in place:
         others = place[place != j]
         share = np.prod((u[:, None] - others) / (j - others), axis=1)
-        made += np.bincount(first + j, share * energy, count)
+        made += [np.bincount(first + j, share * energy, count) for energy in rows]
     return _LINEAR_BELOW * np.sinh((np.arange(count) + 0.5) * step), made

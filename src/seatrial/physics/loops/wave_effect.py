@@ -15,7 +15,7 @@ _DEEPEST = 18.0  # k T beyond which the energy exp(-k T) that reaches half the d
 
 
 class WaveEffect(Protocol):
-    """What a metre of wave does to a loop: `name` in words, `highest_frequency` [rad/s] beyond which it does nothing.
+    """What a metre of wave does to a loop: `name` in words, `frequency_range` [rad/s] outside which it does nothing.
 
     Amplitudes are in quadrature or in phase with the elevation amidships, which only a simulation heeds.
     """
@@ -26,8 +26,8 @@ class WaveEffect(Protocol):
         ...
 
     @property
-    def highest_frequency(self) -> float:
-        """Wave frequency [rad/s] beyond which the effect is negligible; infinite where it never is."""
+    def frequency_range(self) -> tuple[float, float]:
+        """Wave frequencies [rad/s] outside which the effect is negligible, or not known; infinite where it never is."""
         ...
 
     def amplitude(self, omega: Array, U: float, beta: float) -> Complex:
@@ -40,7 +40,7 @@ class WaveSlope:
     """The slope of the waves across the ship [rad], of a point."""
 
     name = "wave slope across the ship"
-    highest_frequency = math.inf
+    frequency_range = 0.0, math.inf
 
     def amplitude(self, omega: Array, U: float, beta: float) -> Complex:  # noqa: ARG002
         """Return i k |sin(beta)| of each wave, as of `WaveEffect`."""
@@ -62,9 +62,9 @@ class HullFactor:
     name = WaveSlope.name
 
     @property
-    def highest_frequency(self) -> float:
-        """Wave frequency [rad/s] whose energy exp(-k T) is below 2e-8."""
-        return _deepest_frequency(self.T)
+    def frequency_range(self) -> tuple[float, float]:
+        """Zero, and the wave frequency [rad/s] whose energy exp(-k T) is below 2e-8."""
+        return 0.0, _deepest_frequency(self.T)
 
     def slope_factor(self, omega: Array, beta: float) -> Array:
         """Return F [-] at wave frequencies omega [rad/s] and heading beta [rad, 0 following]."""
@@ -94,9 +94,9 @@ class YawAcceleration:
     name = "yaw moment of the waves"
 
     @property
-    def highest_frequency(self) -> float:
-        """Wave frequency [rad/s] whose energy exp(-k T) is below 2e-8."""
-        return _deepest_frequency(self.T)
+    def frequency_range(self) -> tuple[float, float]:
+        """Zero, and the wave frequency [rad/s] whose energy exp(-k T) is below 2e-8."""
+        return 0.0, _deepest_frequency(self.T)
 
     def amplitude(self, omega: Array, U: float, beta: float) -> Complex:  # noqa: ARG002
         """Return the amplitude as of `WaveEffect`, in phase with the slope along the ship."""

@@ -13,7 +13,7 @@ from seatrial.core.figures.ticks import span
 from seatrial.core.results.tuning import ManoeuvreResponse, Tuning
 from seatrial.core.text.words import counted
 from seatrial.core.values import Record, display_unit
-from seatrial.core.values.channel_text import channel_label
+from seatrial.core.values.channel_text import channel_label, unit_text
 
 # simulations of a seaway drawn at most, and the stretch of each [s]
 MAX_SIMULATIONS, WINDOW = 3, 150.0
@@ -69,15 +69,15 @@ def _manoeuvre_actuator(record: Record, name: str, tuning: Tuning) -> ChannelPan
 
 
 def seaway_view(tuning: Tuning) -> RunView | None:
-    """Return the roughest stretch of the first seed: output and actuator of the first controllers; None for none."""
-    simulations = [
-        s for s in tuning.seaway_simulations if first_channel(s.record, tuning.output, "output") and len(s.record) > 1
-    ][:MAX_SIMULATIONS]
+    """Return the roughest stretch of the first seed: motion and actuator of the first controllers; None for none."""
+    simulations = [s for s in tuning.seaway_simulations if _motion_channel(s.record, tuning) and len(s.record) > 1][
+        :MAX_SIMULATIONS
+    ]
     if not simulations:
         return None
-    window = _window(simulations[0].record, tuning.output)
+    window = _window(simulations[0].record, _motion_channel(simulations[0].record, tuning))
     records = {s.name: s.record.between(*window) for s in simulations}
-    outputs = {name: _output_panel(r, name, tuning) for name, r in records.items()}
+    outputs = {name: _motion_panel(r, name, tuning) for name, r in records.items()}
     actuators = {name: _actuator_panel(r, channel, name, tuning) for name, r in records.items()
                  if (channel := first_channel(r, tuning.actuator, "actuator"))}  # fmt: skip
     has_free = any(curve.stroke is FREE for panel in outputs.values() for curve in panel.curves)
@@ -94,12 +94,18 @@ def _on_one_axis(panels: dict[str, ChannelPanel]) -> list[ChannelPanel]:
     return [replace(panel, ends=ends) for panel in panels.values()]
 
 
-def _output_panel(record: Record, controller: str, tuning: Tuning) -> ChannelPanel:
-    """The output without control, where that is known, and with it."""
-    output, free = first_channel(record, tuning.output, "output"), uncontrolled_channel(record, tuning.output)
+def _motion_channel(record: Record, tuning: Tuning) -> str:
+    """Return the channel of what is to be small: the motion that counts, or the output; empty for none."""
+    return first_channel(record, *(["motion"] if tuning.motion else []), tuning.output, "output")
+
+
+def _motion_panel(record: Record, controller: str, tuning: Tuning) -> ChannelPanel:
+    """What is to be small without control, where that is known, and with it."""
+    motion = _motion_channel(record, tuning)
+    free, unit = uncontrolled_channel(record, motion), record.channel(motion).unit
     curves = (_curve(record, free, FREE, "without"),) if free else ()
-    label = f"{channel_label(tuning.output, record.channel(output).unit)}, {controller}"
-    return ChannelPanel(label, (*curves, _curve(record, output, CONTROLLED, "with control")))
+    name = f"{tuning.motion} [{unit_text(unit)}]" if motion == "motion" else channel_label(tuning.output, unit)
+    return ChannelPanel(f"{name}, {controller}", (*curves, _curve(record, motion, CONTROLLED, "with control")))
 
 
 def _actuator_panel(record: Record, channel: str, controller: str, tuning: Tuning) -> ChannelPanel:
@@ -110,9 +116,9 @@ def _actuator_panel(record: Record, channel: str, controller: str, tuning: Tunin
     return ChannelPanel(label, (_curve(record, channel, CONTROLLED, "moved"),), limits=limits)
 
 
-def _window(record: Record, output: str) -> tuple[float, float]:
-    """Start and end [s] of the window about the largest output, without control where that is known."""
-    values = record[uncontrolled_channel(record, output) or first_channel(record, output, "output")]
+def _window(record: Record, motion: str) -> tuple[float, float]:
+    """Start and end [s] of the window about the largest motion, without control where that is known."""
+    values = record[uncontrolled_channel(record, motion) or motion]
     middle = float(record.time[int(np.nanargmax(np.abs(values)))]) if np.isfinite(values).any() else 0.0
     first, last = float(record.time[0]), float(record.time[-1])
     start = min(max(first, middle - 0.5 * WINDOW), max(first, last - WINDOW))
