@@ -3,6 +3,8 @@
 `python docs/write_benchmark_table.py DIR --runs 30`
 
 DIR keeps the runs: the same command goes on where it stopped, and `--runs` may rise. `--problems` names some of them.
+Folds of measured trials have runs of their own number, `--fold-runs`: an evaluation of them takes a hundred times as
+long, and there are only so many sessions to leave out.
 """
 
 import argparse
@@ -17,6 +19,8 @@ from seatrial.problems.built_in import IDENTIFY, OUTPUT_ERROR
 PAGE = Path(__file__).parent / "benchmark-table.md"
 OWN_LIMIT = 1.1
 """Error over the bound, rms over runs and unknowns, up to which the own estimator counts as at the bound."""
+FOLDS = "-folds"
+"""How the names of problems on measured trials end."""
 CLAIM_RUNS = 30
 """Draws on which claims are tested: a two-sided sign test sees 24 : 6 of them after a correction for thirty claims."""
 HEAD = """# All built-in methods on all problems
@@ -24,7 +28,7 @@ HEAD = """# All built-in methods on all problems
 Written by `{command}`; [what is measured](benchmark.md#what-is-measured).
 {outcome}
 
-`{citation}`
+{citations}
 
 Median error of the answers, and the share of successes. The unit of an error stands at each problem; an error of 1 at
 the Cramér-Rao bound is what an efficient estimate has. The truth is scaled, and shifted from the middle of its box, by
@@ -37,27 +41,40 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="all built-in methods on all problems")
     parser.add_argument("folder", type=Path)
     parser.add_argument("--runs", type=int, default=30)
+    parser.add_argument("--fold-runs", type=int, default=10)
     parser.add_argument("--problems", nargs="*")
     parser.add_argument("--workers", type=int)
     options = parser.parse_args()
-    names = options.problems or [problem.name for problem in st.problems.list_problems()]
-    result = st.benchmark(names, options.folder, runs=options.runs, workers=options.workers, report_progress=print)
+    listed = tuple(options.problems or [problem.name for problem in st.problems.list_problems()])
+    names = [problem.name for problem in problems_matching(listed) if not problem.name.endswith(FOLDS)]
+    folds = [problem.name for problem in problems_matching(listed) if problem.name.endswith(FOLDS)]
     claims = [c for problem in problems_matching(tuple(names)) for c in problem.claims]
     rivals = sorted({name for claim in claims for name in (claim.better, claim.worse)})
     claimed = [problem.name for problem in problems_matching(tuple(names)) if problem.claims]
     judged = st.benchmark(
-        claimed, options.folder / "claims", against=rivals, runs=CLAIM_RUNS, workers=options.workers,
+        claimed, options.folder / "known", against=rivals, runs=CLAIM_RUNS, workers=options.workers,
         report_progress=print,
     )  # fmt: skip
+    result = st.benchmark(
+        names, options.folder / "known", runs=options.runs, workers=options.workers, report_progress=print
+    )  # fmt: skip
+    measured = None
+    if folds:
+        measured = st.benchmark(
+            folds, options.folder / "folds", runs=options.fold_runs, workers=options.workers, report_progress=print
+        )  # fmt: skip
     some = f" --problems {' '.join(options.problems)}" if options.problems else ""
-    command = f"python docs/write_benchmark_table.py DIR --runs {options.runs}{some}"
-    PAGE.write_text(page(result, judged, command), encoding="utf-8")
+    command = f"python docs/write_benchmark_table.py DIR --runs {options.runs} --fold-runs {options.fold_runs}{some}"
+    PAGE.write_text(page(result, measured, judged, command), encoding="utf-8")
 
 
-def page(result: Benchmark, judged: Benchmark, command: str) -> str:
-    """Return the page; `judged` has the methods of which papers make claims, on more draws."""
-    head = HEAD.format(command=command, outcome=_own_text(result), citation=result.citation)
-    return "\n".join([head, *_claims(judged), *(line for score in result.problems for line in _problem(score))]) + "\n"
+def page(result: Benchmark, measured: Benchmark | None, judged: Benchmark, command: str) -> str:
+    """Return the page; `judged` has the methods of which papers make claims, `measured` folds of real craft."""
+    parts = [result] if measured is None else [result, measured]
+    citations = "\n\n".join(f"`{part.citation}`" for part in parts)
+    head = HEAD.format(command=command, outcome=_own_text(result), citations=citations)
+    tables = [line for part in parts for score in part.problems for line in _problem(score)]
+    return "\n".join([head, *_claims(judged), *tables]) + "\n"
 
 
 def _own_text(result: Benchmark) -> str:
