@@ -26,15 +26,17 @@ def steering_angles(model: Model) -> tuple[str, ...]:
 def with_input_offsets(estimate: PointEstimate) -> PointEstimate:
     """Return the estimate with a zero of each steering angle as further unknowns of each session, starting at none.
 
-    An angle whose zero is estimated already, as a correction or as the model's parameter `<input>_0`, gets no other.
+    An angle whose zero is estimated already, as a correction or as the model's parameter `<input>_0`, gets no other,
+    and one that is zero at every sample none: it was not recorded, as that of fins which a ship does not have.
     """
     problem = estimate.problem
+    moves = dict(zip(problem.model.input_names, np.any(problem.data.inputs != 0.0, axis=0).tolist(), strict=True))
     known = {n.correction.input for n in problem.nuisances if n.correction.kind == "zero"}
     known |= {name.removesuffix("_0") for name in problem.free if name.endswith("_0")}
     added = tuple(
         Nuisance(InputCorrection(name, "zero"), Prior(0.0, OFFSET_DEVIATION, "as good as none"), "rad", is_stated=False)
         for name in steering_angles(problem.model)
-        if name not in known
+        if name not in known and moves[name]
     )
     if not added:
         return estimate
