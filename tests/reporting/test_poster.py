@@ -4,7 +4,7 @@ import pytest
 
 from seatrial.core.results.poster import Basis, Poster, PosterManoeuvre, PosterQuantity
 from seatrial.core.text.numbers import DASH
-from seatrial.reporting.poster import poster_table
+from seatrial.reporting.poster import html, poster_table
 
 
 @pytest.mark.parametrize(
@@ -30,3 +30,11 @@ def test_missing_value_is_a_dash() -> None:
     manoeuvre = PosterManoeuvre("turning-circle:35", (quantity,))
     sheet = Poster("ship", {"L": 100.0}, 1.0, "mmg", 5.0, 35.0, (manoeuvre,))
     assert poster_table([manoeuvre], sheet).rows[0].cells == ((DASH, "predicted"),)
+
+
+def test_the_poster_is_a_page_like_the_others_and_runs_nothing() -> None:
+    quantity = PosterQuantity("advance_L", 3.1, 3.0, 3.2, Basis.PREDICTED)
+    circle = PosterManoeuvre("turning-circle:35", (quantity,))
+    text = html(Poster("ship", {"L": 100.0}, 1.0, "mmg", 5.0, 35.0, (circle,)))
+    assert "script-src 'none'" in text and "<script" not in text and "unsafe" not in text
+    assert "Turning circle 35° to starboard" in text and "prefers-color-scheme: dark" in text

@@ -1,8 +1,6 @@
 """Answers a browser on the same machine: two fixed paths, the loopback address only, no files."""
 
-import base64
 import errno
-import hashlib
 import json
 import socketserver
 import sys
@@ -10,16 +8,18 @@ from collections.abc import Callable
 from functools import cache
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from importlib.resources import files
 from typing import Any
 from urllib.parse import parse_qs
 
+from seatrial.core.pages import shell
 from seatrial.core.values import InputError
 from seatrial.numerics.platform import reuses_addresses_safely
 
 LOOPBACK = "127.0.0.1"
 # s after which a request that has not been completed is dropped
 REQUEST_TIMEOUT_S = 5.0
+# the address of a page itself, in its policy
+SELF = "'self'"
 StateProvider = Callable[[int], dict[str, Any]]
 
 
@@ -134,26 +134,13 @@ HEADERS = {
 @cache
 def html() -> str:
     """Return the page, the same for every stream: style and script inside, nothing fetched but the state."""
-    page, style, script = (_template(name) for name in ("page.html", "page.css", "page.js"))
-    return page.replace("{style}", style).replace("{script}", script)
+    return shell.with_policy(shell.environment("seatrial.onboard").get_template("follow.html").render(), SELF)
 
 
 @cache
 def content_security_policy() -> str:
     """Return the page's policy: only its own script and style, and requests to its own address."""
-    style, script = (_digest(_template(name)) for name in ("page.css", "page.js"))
-    return (
-        f"default-src 'none'; script-src '{script}'; style-src '{style}'; connect-src 'self'; img-src data:; "
-        "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
-    )
-
-
-def _template(name: str) -> str:
-    return files("seatrial.onboard").joinpath("templates", name).read_text(encoding="utf-8")
-
-
-def _digest(text: str) -> str:
-    return "sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
+    return f"{shell.policy(html(), SELF)}; frame-ancestors 'none'"
 
 
 def _parse_since(query: str) -> int | None:

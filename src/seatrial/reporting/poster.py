@@ -15,7 +15,7 @@ from seatrial.core.figures.tracks import track_panel
 from seatrial.core.results.poster import Basis, Poster, PosterManoeuvre, PosterQuantity
 from seatrial.core.text.numbers import DASH, exponent, fixed, significant
 from seatrial.core.values.record_chart import has_track, record_track
-from seatrial.reporting.document import environment
+from seatrial.reporting.document import page_text
 from seatrial.reporting.measures import measure_label
 
 RESOLUTION = "IMO resolution A.601(15)"
@@ -67,7 +67,7 @@ def html(poster: Poster) -> str:
         "measured_runs": ", ".join(dict.fromkeys(runs)),
         "is_extrapolated": any(q.basis is Basis.EXTRAPOLATED for m in poster.manoeuvres for q in m.quantities),
     }
-    return environment().get_template("poster.html").render(context)
+    return page_text("poster.html", context)
 
 
 def particulars(poster: Poster) -> list[tuple[str, str]]:

@@ -8,7 +8,7 @@ import pytest
 from seatrial.core.figures.marks import ACCENT, GREY, INK, SECOND, Array
 from seatrial.core.figures.night import night_colour, night_rules
 
-GROUND = "#14191c"  # --ground of reporting/templates/dark.css
+GROUND = "#14191c"  # --ground of core/pages/templates/dark.css
 
 
 def luminance(colour: str) -> float:

@@ -2,8 +2,8 @@
 
 from jinja2 import DictLoader, Environment
 
+from seatrial.core.pages.compiled_templates import CompiledTemplates
 from seatrial.numerics.kernels.cache import cache_folder
-from seatrial.reporting.compiled_templates import CompiledTemplates
 
 
 def rendered(text: str) -> str:

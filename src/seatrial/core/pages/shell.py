@@ -1,0 +1,61 @@
+"""A page in its shell: the templates of a package on the shell's own, and the policy of what the page may run.
+
+The Content-Security-Policy names styles and scripts by their SHA-256 (W3C, Content Security Policy Level 3, 2.3.1).
+"""
+
+import base64
+import hashlib
+import re
+from functools import cache
+from typing import TYPE_CHECKING
+
+from seatrial.core.figures.night import night_rules
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+_COLOUR = re.compile(r'(?:fill|stroke)="(#[0-9a-f]{6}(?:[0-9a-f]{2})?)"')
+_STYLE, _SCRIPT = re.compile(r"<style>(.*?)</style>", re.DOTALL), re.compile(r"<script>(.*?)</script>", re.DOTALL)
+# places of the shell that are filled once the page's text is known
+_POLICY, _NIGHT_RULES = "POLICY-OF-THIS-PAGE", "/* NIGHT-RULES */"
+
+
+@cache
+def environment(package: str) -> "Environment":
+    """Return the templates of a package and the shell's, with everything escaped by default."""
+    from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
+
+    from seatrial.core.pages.compiled_templates import CompiledTemplates
+
+    return Environment(
+        loader=ChoiceLoader([PackageLoader(package), PackageLoader("seatrial.core.pages")]),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        bytecode_cache=CompiledTemplates(),
+    )
+
+
+def with_policy(text: str, connect: str = "'none'") -> str:
+    """Return a rendered page with the colours of its figures for dark screens and its policy.
+
+    Args:
+        connect: where its scripts may fetch from, as in a Content-Security-Policy.
+    """
+    text = text.replace(_NIGHT_RULES, night_rules(_COLOUR.findall(text)), 1)
+    return text.replace(_POLICY, policy(text, connect), 1)
+
+
+def policy(text: str, connect: str = "'none'") -> str:
+    """Return the policy of a page: nothing but its own styles and scripts may take effect."""
+    styles, scripts = (" ".join(map(_digest, pattern.findall(text))) for pattern in (_STYLE, _SCRIPT))
+    script = scripts or "'none'"
+    return (
+        f"default-src 'none'; img-src data:; style-src {styles}; script-src {script}; connect-src {connect}; "
+        "base-uri 'none'; form-action 'none'"
+    )
+
+
+def _digest(text: str) -> str:
+    return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
