@@ -18,12 +18,9 @@ from seatrial.control.gain_evaluation import gain_evaluator
 from seatrial.control.task import TuningTask
 from seatrial.core.results.tuning import Controller, Tuning
 from seatrial.core.values import Array
-from seatrial.data.folder.model_file import ModelFile, read_model_file, write_model
 from seatrial.physics.loops.autopilot import heading_gains_at, mean_pole
-from seatrial.physics.models.published import kvlcc2_full
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
-SCALE = 45.7  # of the KVLCC2 model, as in its trial
 BANDWIDTHS = (0.75, 1.5, 3.0)  # of the closed loops of rivals over the plant's mean pole; spread about the usual
 
 
@@ -36,18 +33,8 @@ def run() -> list[Line]:
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "model.toml"
             api.save(api.identify(api.load_trial(EXAMPLES / f"{trial}.toml")), folder)
-            if trial == "kvlcc2_hsva":
-                write_model(at_full_size(read_model_file(path, None)), path)
             lines += _craft(trial, api.load_loop(EXAMPLES / f"{loop}.toml", model_file=path))
     return lines
-
-
-def at_full_size(file: ModelFile) -> ModelFile:
-    """Return the identified model of KVLCC2 with the particulars of the ship; its coefficients are dimensionless."""
-    ship = kvlcc2_full().ship
-    return replace(
-        file, model=file.model.with_ship(ship), ship=ship, approach={"n": file.approach["n"] / math.sqrt(SCALE)}
-    )
 
 
 def rivals(task: TuningTask) -> dict[str, dict[str, float]]:

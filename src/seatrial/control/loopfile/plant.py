@@ -7,6 +7,7 @@ from pathlib import Path
 from seatrial.control.loopfile.blocks import block, block_text
 from seatrial.control.loopfile.quantities import angle_value, positive_value, si_value, symbol_unit
 from seatrial.control.loopfile.schema import BlockTable, FinTable, HullTable, PlantTable
+from seatrial.control.ship.model_at_scale import model_at_scale
 from seatrial.control.ship.trimmed_ship import plant_and_disturbance, plant_text, rate_response, trim_ship
 from seatrial.control.task import Effectiveness, TrimmedShip
 from seatrial.core.equations import Model
@@ -132,6 +133,8 @@ def _fin_effect(table: FinTable, known_K_alpha: float, U: float) -> tuple[float,
 
 def _plant_of_model(table: PlantTable, path: Path, own_model: Model | None) -> LoopPlant:
     file = read_model_file(path, own_model)
+    if table.scale is not None:
+        file = model_at_scale(file, table.scale)
     if file.model.equations.layout:
         file = replace(file, model=with_orders(file.model), approach={})
         table = _by_orders(table)

@@ -94,12 +94,14 @@ class FinTable(StrictTable):
 class PlantTable(StrictTable):
     """`[plant]`: what is controlled, as transfer functions or as a model file of `identify`.
 
-    `roll`: wave slope to roll angle, with `fin`; `response`: actuator to output; `model`: the path of a model file.
+    `roll`: wave slope to roll angle, with `fin`; `response`: actuator to output; `model`: the path of a model file, and
+    `scale` the length of the craft over that of the one identified, by Froude's law.
     """
 
     roll: BlockTable | None = None
     response: BlockTable | None = None
     model: str | None = None
+    scale: Positive | None = None
     speed: SiAmount | None = None
     fin: FinTable | None = None
     output: str | None = None
@@ -116,8 +118,9 @@ class PlantTable(StrictTable):
             raise ValueError("roll needs a table [plant.fin] with K_alpha, the wave slope a radian of fin is worth")
         if self.response is not None and (self.output is None or self.actuator is None or self.fin is not None):
             raise ValueError("response needs the symbols output and actuator, and no table fin")
-        if self.model is None and (self.inputs or self.amplitude is not None or self.disturbance is not None):
-            raise ValueError("inputs, amplitude and disturbance go with a model file; leave them out")
+        of_model = (self.amplitude, self.disturbance, self.scale)
+        if self.model is None and (self.inputs or any(one is not None for one in of_model)):
+            raise ValueError("inputs, amplitude, disturbance and scale go with a model file; leave them out")
         return self
 
 

@@ -7,11 +7,8 @@ import numpy as np
 from seatrial.core.values.errors import InputError
 from seatrial.core.values.record import Record
 
-# exponent of the length ratio by SI unit, equal gravity and density (ITTC 2021, 7.5-02-06-01, Froude scaling)
-_EXPONENTS: dict[str, float] = {
-    "1": 0.0, "rad": 0.0, "m": 1.0, "m^2": 2.0, "m^3": 3.0, "s": 0.5, "m/s": 0.5, "m/s^2": 0.0, "rad/s": -0.5,
-    "rps": -0.5, "N": 3.0, "N m": 4.0, "kg": 3.0, "kg/m^3": 0.0, "kg m^2": 5.0,
-}  # fmt: skip
+# exponent of the length ratio by base unit, equal gravity and density (ITTC 2021, 7.5-02-06-01, Froude scaling)
+_EXPONENTS = {"1": 0.0, "rad": 0.0, "m": 1.0, "s": 0.5, "rps": -0.5, "N": 3.0, "kg": 3.0}
 
 
 def froude_factor(unit: str, ratio: float) -> float:
@@ -22,9 +19,22 @@ def froude_factor(unit: str, ratio: float) -> float:
     """
     if not (np.isfinite(ratio) and ratio > 0):
         raise InputError(f"scale must be a positive number, not {ratio:g}; give 45.7 for a model 1:45.7")
-    if unit not in _EXPONENTS:
-        raise InputError(f"no Froude exponent is known for unit '{unit}'; convert the channel to an SI unit first")
-    return float(ratio ** _EXPONENTS[unit])
+    return float(ratio ** _exponent(unit))
+
+
+def _exponent(unit: str) -> float:
+    """Return the exponent of a product of powers over another, such as ``kg m^2/s``."""
+    total, sign = 0.0, 1.0
+    for side in unit.split("/"):
+        for factor in side.split():
+            base, _, power = factor.partition("^")
+            if base not in _EXPONENTS or not (power or "1").isdecimal():
+                raise InputError(
+                    f"no Froude exponent is known for unit '{unit}'; convert the channel to an SI unit first"
+                )
+            total += sign * _EXPONENTS[base] * int(power or "1")
+        sign = -1.0
+    return total
 
 
 def froude_scaled(record: Record, ratio: float) -> Record:
