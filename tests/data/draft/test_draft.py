@@ -1,5 +1,7 @@
 """A trial file drafted from logs of a craft that is simulated: units, frames and signs as planted, nothing silent."""
 
+import os
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -153,6 +155,14 @@ def test_header_separator_and_encoding_are_recognised(tmp_path: Path) -> None:
 def test_no_logs_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="there is no log to draft a trial of"):
         draft_trial(tmp_path)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="names of files are text, not bytes")
+def test_a_name_that_no_trial_file_can_hold_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / os.fsdecode(b"run_\xff.csv")
+    path.write_text("t,u\n0,1\n1,1\n2,1\n")
+    with pytest.raises(InputError, match=r"run_\\udcff.csv' is no name in UTF-8"):
+        draft_trial(path)
 
 
 def test_folders_of_topics_name_their_thrusters_and_axes_that_are_open_leave_sides_open(tmp_path: Path) -> None:

@@ -128,6 +128,12 @@ REFUSALS = [
     ("no session", '"day"', '"x{day}"', "'x{day}' does not fit the file name"),
     ("not a number", "L = 9.8", "L = nan", "finite number"),
     ("negative size", "L = 9.8", "L = 9.8\nm = -300", "ship.m = -300: a size is never negative"),
+    (
+        "time as length",
+        "L = 9.8",
+        'L = { value = 9.8, unit = "s" }',
+        "ship.L: 's' is no unit of this particular; write one of m",
+    ),
     ("no TOML", "[ship]", "[ship", "no valid TOML"),
     ("no size", "L = 9.8", 'L = { value = 1e308, unit = "km" }', "ship.L.value = 1e.308 is no size"),
     ("a long name", '"*.csv"', f'"{"x" * 300}.csv"', "there is no file"),

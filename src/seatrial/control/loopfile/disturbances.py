@@ -84,7 +84,7 @@ def schedule_grid(table: ScheduleTable) -> ScheduleGrid:
 
 def _slow_disturbance(table: SlowDisturbanceTable, plant: LoopPlant, where: str) -> SlowDisturbance:
     return SlowDisturbance(
-        positive_value(table.rms, symbol_unit(plant.disturbed_by), f"{where}.size"),
+        positive_value(table.rms, symbol_unit(plant.disturbed_by), f"{where}.rms"),
         positive_value(table.bandwidth, "rad/s", f"{where}.bandwidth"),
         plant.U if table.speed is None else positive_value(table.speed, "m/s", f"{where}.speed"),
         symbol_unit(plant.disturbed_by),

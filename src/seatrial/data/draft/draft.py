@@ -72,6 +72,7 @@ def draft_trial(*logs: str | Path, folder: str | Path = ".", length: float = 0.0
     if not 0.0 <= length < math.inf:
         raise InputError(f"length = {length:g}: a length in m is positive; correct it")
     surveys, reasons = _surveys([Path(log) for log in logs])
+    _refuse_unwritable_names(surveys)
     runs = runs_of_logs(surveys)
     used = {survey.path for run in runs for survey in run.sources}
     left_out = {one.path: "it is of another kind than the runs" for one in surveys if one.path not in used}
@@ -93,6 +94,17 @@ def draft_trial(*logs: str | Path, folder: str | Path = ".", length: float = 0.0
         text, tuple(surveys), tuple(runs), guesses[longest[0]], tuple(records), stretches, parts, held_out, session,
         bool(model.name) and not length,
     )  # fmt: skip
+
+
+def _refuse_unwritable_names(surveys: Sequence[LogSurvey]) -> None:
+    """Raises:
+    InputError: a file's name is of another encoding.
+    """
+    for survey in surveys:
+        try:
+            str(survey.path).encode()
+        except UnicodeEncodeError:
+            raise InputError(f"'{survey.path}' is no name in UTF-8, as a trial file needs it; rename it") from None
 
 
 def _pieces(

@@ -15,11 +15,12 @@ from seatrial.physics.models.published import parameter_set
 from seatrial.physics.sensors import Sensors, with_sensors
 
 Bounds = Mapping[str, tuple[float, float]]
-# particulars that people state although not every model asks for them
-COMMON_PARTICULARS = (
-    "L", "B", "d", "m", "I_z", "k_xx", "k_xx_prime", "GM", "x_G", "C_b", "volume", "D_P", "x_P", "A_R", "H_R", "x_R",
-    "A_T", "A_L", "rho", "pitch_ratio", "area_ratio", "blades",
-)  # fmt: skip
+COMMON_PARTICULARS = {
+    "L": "m", "B": "m", "d": "m", "m": "kg", "I_z": "kg m^2", "k_xx": "m", "k_xx_prime": "1", "GM": "m", "x_G": "m",
+    "C_b": "1", "volume": "m^3", "D_P": "m", "x_P": "m", "A_R": "m^2", "H_R": "m", "x_R": "m", "A_T": "m^2",
+    "A_L": "m^2", "rho": "kg/m^3", "pitch_ratio": "1", "area_ratio": "1", "blades": "1",
+}  # fmt: skip
+"""Particulars that people state although not every model asks for them -> SI unit."""
 
 
 _SIZES = frozenset((*COMMON_PARTICULARS, "I5", "c33", "c55")) - {"x_G", "x_P", "x_R", "GM"}
@@ -30,8 +31,11 @@ def ship_of(table: ShipTable) -> Ship:
     """Name, source, scale and particulars in SI units.
 
     Raises:
-        InputError: the length is missing or not positive, or a size is negative.
+        InputError: the length is missing or not positive, a size is negative, or a unit measures something else.
     """
+    for name, unit in table.units.items():
+        if si_unit(unit)[1] != (wanted := COMMON_PARTICULARS.get(name, si_unit(unit)[1])):
+            raise InputError(f"ship.{name}: '{unit}' is no unit of this particular; write one of {wanted}")
     for name, value in table.particulars.items():
         if name in _SIZES and value < 0.0:
             raise InputError(f"ship.{name} = {value:g}: a size is never negative; correct its sign")

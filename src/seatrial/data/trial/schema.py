@@ -61,6 +61,11 @@ class ShipTable(BaseModel):
         """Symbol -> value in SI units."""
         return {symbol: amount.in_si for symbol, amount in (self.__pydantic_extra__ or {}).items()}
 
+    @property
+    def units(self) -> dict[str, str]:
+        """Symbol -> unit, of the particulars that state one."""
+        return {symbol: amount.unit for symbol, amount in (self.__pydantic_extra__ or {}).items() if amount.unit}
+
 
 class TimeColumn(StrictTable):
     """Where the time stands: header name, or number counted from 1; without one the log's own time stamps count.
