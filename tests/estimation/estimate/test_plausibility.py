@@ -10,7 +10,11 @@ from seatrial.core.values import InputError, Prior, Record
 from seatrial.data.trial import EstimateMethod, EstimateSettings
 from seatrial.estimation.estimate.assemble import output_error_problem
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
-from seatrial.estimation.estimate.plausibility import refuse_implausible, with_plausible_start
+from seatrial.estimation.estimate.plausibility import (
+    implausible_coefficients,
+    refuse_implausible,
+    with_plausible_start,
+)
 from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions
@@ -55,9 +59,18 @@ def test_a_lost_search_is_one_sentence_with_what_to_try(
     with pytest.raises(InputError) as caught:
         refuse_implausible(estimate, errors)
     assert str(caught.value) == (
-        f"the search ended outside physics: {named}; give start values nearer the ship's under [model.start], bounds "
-        "under [model.bounds] or priors under [model.priors], or a record with harder manoeuvres"
+        f"the search ended outside physics: {named}; no values of this model repeat all runs: leave out under "
+        "[records] the runs that differ most in speed or rudder, take a model with what they differ by, or give priors "
+        "under [model.priors]"
     )
+
+
+def test_a_large_value_that_the_record_determines_is_no_lost_search() -> None:
+    """A thousand times the start, to a tenth; not a million times, nor where it is known to no better than itself."""
+    errors = np.array([0.01, 2e3])
+    assert implausible_coefficients(at(0.1, 2e4), errors) == ""
+    assert implausible_coefficients(at(0.1, 2e4), 10.0 * errors) == "T 2e+04, standard error 2e+04"
+    assert implausible_coefficients(at(0.1, 2e7), errors) == "T 2e+07, standard error 2e+03"
 
 
 def test_a_prior_that_expects_large_values_allows_them() -> None:
@@ -91,7 +104,7 @@ def estimated(record: Record, method: EstimateMethod) -> Estimation:
 
 
 def test_output_error_that_leaves_its_basin_is_refused(gusty_minute: Record) -> None:
-    with pytest.raises(InputError, match=r"the search ended outside physics: K .*, T .*; give start values"):
+    with pytest.raises(InputError, match=r"the search ended outside physics: K .*, T .*; no values of"):
         estimated(gusty_minute, EstimateMethod.MULTIPLE_SHOOTING)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.results import NoiseModel, SearchAttempt
 from seatrial.core.values import Array, InputError, ProgressReporter, Record
-from seatrial.data.trial import EstimateSettings, FitCriterion
+from seatrial.data.trial import EstimateMethod, EstimateSettings, FitCriterion
 from seatrial.estimation.estimate.assemble import output_error_problem
 from seatrial.estimation.estimate.closed_loop import LoopEvidence, closed_loop, loop_evidence
 from seatrial.estimation.estimate.criterion_choice import PREDICTION_ERROR, CriterionChoice, choose_criterion
@@ -22,7 +22,7 @@ from seatrial.estimation.estimate.intervals import (
     with_spread,
 )
 from seatrial.estimation.estimate.large_records import choice_over_all, choice_runs
-from seatrial.estimation.estimate.plausibility import refuse_implausible
+from seatrial.estimation.estimate.plausibility import implausible_coefficients, refuse_implausible
 from seatrial.estimation.estimate.point_estimate import PointEstimate, fit_output_error
 from seatrial.estimation.estimate.process_noise import ProcessNoise
 from seatrial.estimation.estimate.process_noise_interval import process_noise_interval
@@ -60,6 +60,7 @@ class Estimation:
         criterion, reasons: what was used, and why.
         process_noise: the Kalman filter that suits the estimate; None: none was needed, or multiple shooting was used.
         search_attempts: short searches from several starting points, the best first; empty: there was one.
+        abandoned: which criterion led outside physics, so that whole runs took its place; empty: none did.
     """
 
     estimate: PointEstimate
@@ -76,6 +77,7 @@ class Estimation:
     elapsed_s: float
     process_noise: ProcessNoise | None = None
     search_attempts: tuple[SearchAttempt, ...] = ()
+    abandoned: str = ""
 
     @property
     def interval(self) -> Interval:
@@ -153,7 +155,9 @@ def estimate_model(
 
     Start by the weak form, then multiple shooting with re-estimated noise; then, by the decision table, output error
     over whole runs or prediction error with process noise, unless a criterion or a segment length is set. Of long
-    records all this is done on some stretches, and the estimate then moved to the optimum of all samples.
+    records all this is done on some stretches, and the estimate then moved to the optimum of all samples. Where it ends
+    outside physics and nothing is set, output error over whole runs takes its place, which does not take what the model
+    leaves unexplained for a craft without damping.
 
     Raises:
         InputError: no excitation, no free parameter, outputs that cannot be compared, runs too short for a disturbance
@@ -183,6 +187,13 @@ def estimate_model(
     criterion = f"{choice.criterion}, Huber loss" if settings.robust else choice.criterion
     uncertainty = _uncertainty(choice, options, report)
     estimate = choice.estimate
+    lost = implausible_coefficients(estimate, uncertainty.interval.standard_error)
+    if lost and is_free:
+        over_runs = replace(settings, method=EstimateMethod.OUTPUT_ERROR)
+        report("start values: whole runs, as the search ended outside physics")
+        kept = estimate_model(model, runs, over_runs, options, report_progress)
+        reason = f"{criterion} ended outside physics ({lost})"
+        return replace(kept, abandoned=reason, reasons=(reason, *kept.reasons))
     refuse_implausible(estimate, uncertainty.interval.standard_error)
     return Estimation(
         estimate, shooting, uncertainty, choice.residuals, choice.inflation,

@@ -8,32 +8,46 @@ from numpy.typing import NDArray
 from seatrial.core.values import Array, InputError
 from seatrial.estimation.estimate.point_estimate import PointEstimate
 
-ABSURD_FACTOR = 1e3
-"""Times its characteristic size that a free coefficient without a prior may reach; chosen."""
+ABSURD_FACTOR, IMPOSSIBLE_FACTOR = 1e3, 1e6
+"""Times its characteristic size that a free coefficient without a prior may reach undetermined, and at all; chosen."""
+_DETERMINED = 2.0  # standard errors from which on a large value is the record's and not the search's; chosen
 
 _LOST_FACTOR = 30.0
 """The same from which a search begins anew: further out the likelihood hardly depends on it; chosen."""
 
 
+def implausible_coefficients(estimate: PointEstimate, standard_error: Array) -> str:
+    """Return the coefficients with which the search got lost, with their standard errors; empty where it did not.
+
+    Lost is what is no number, or so far outside the size of a coefficient that only an error much smaller than the
+    value would make it the record's. A model that diverges at the estimate is not judged here: the run that it cannot
+    repeat is named later.
+    """
+    free = estimate.problem.free
+    if not np.isfinite(estimate.optimum.solution.value):
+        return ""
+    values, errors = estimate.common_parameters[: len(free)], standard_error[: len(free)]
+    is_vague = ~(np.abs(values) >= _DETERMINED * errors)
+    is_absurd = (_is_beyond(estimate, ABSURD_FACTOR) & is_vague) | _is_beyond(estimate, IMPOSSIBLE_FACTOR)
+    lost = np.flatnonzero(is_absurd | np.isnan(errors))
+    if not len(lost):
+        return ""
+    named = ", ".join(f"{free[i]} {values[i]:.3g}" for i in lost)
+    return f"{named}, standard error {', '.join(f'{errors[i]:.2g}' for i in lost)}"
+
+
 def refuse_implausible(estimate: PointEstimate, standard_error: Array) -> None:
     """Refuse an estimate that is no number, or so far outside the size of its coefficients that the search got lost.
-
-    A model that diverges at the estimate is not judged here: the run that it cannot repeat is named later.
 
     Raises:
         InputError: which coefficients, their values, and what to try.
     """
-    free = estimate.problem.free
-    if not np.isfinite(estimate.optimum.solution.value):
-        return
-    values, errors = estimate.common_parameters[: len(free)], standard_error[: len(free)]
-    lost = np.flatnonzero(_is_beyond(estimate, ABSURD_FACTOR) | np.isnan(errors))
-    if len(lost):
-        text = ", ".join(f"{free[i]} {values[i]:.3g}" for i in lost)
+    lost = implausible_coefficients(estimate, standard_error)
+    if lost:
         raise InputError(
-            f"the search ended outside physics: {text}, standard error "
-            f"{', '.join(f'{errors[i]:.2g}' for i in lost)}; give start values nearer the ship's under [model.start], "
-            "bounds under [model.bounds] or priors under [model.priors], or a record with harder manoeuvres"
+            f"the search ended outside physics: {lost}; no values of this model repeat all runs: leave out under "
+            "[records] the runs that differ most in speed or rudder, take a model with what they differ by, or give "
+            "priors under [model.priors]"
         )
 
 

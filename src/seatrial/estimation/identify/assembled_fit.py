@@ -10,6 +10,7 @@ from seatrial.core.values.versions import versions
 from seatrial.data.trial.approach import approach_condition
 from seatrial.estimation.estimate import Estimation, IntervalMethod
 from seatrial.estimation.identify import fit_result
+from seatrial.estimation.identify.abandoned_criterion import abandoned_criterion_finding
 from seatrial.estimation.identify.closed_loop_findings import closed_loop_findings
 from seatrial.estimation.identify.course_stability import course_finding
 from seatrial.estimation.identify.held_couplings import held_couplings
@@ -71,6 +72,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
             *task.findings, *selected.findings, *findings, *fit_result.open_signs(estimation.model, coefficients),
             *unphysical_finding(estimation.model, runs.records), *fit_result.bounds_hit(estimation),
             *fit_result.unconverged(estimation), *other_optima(estimation),
+            *abandoned_criterion_finding(estimation, runs.records),
             *held_couplings(selected.estimation),
             *course_finding(estimation.model, assessment.stability, approach),
             *varying_gain_finding(estimation, runs.records),

@@ -182,14 +182,18 @@ def _advice_at_bound(gain: float, *, is_own: bool) -> str:
     return "widen the bound under [model.bounds] if physics allows it, else look for what the model lacks"
 
 
-def refuse_unidentified(estimation: Estimation) -> None:
+def refuse_unidentified(estimation: Estimation, contradicting: Sequence[Finding] = ()) -> None:
     """Refuse an estimate in which no free coefficient is known better than to its own size.
+
+    contradicting: findings on runs that the model cannot have together; these are then the reason.
 
     Raises:
         InputError: every standard error exceeds the value.
     """
     problem, names = estimation.estimate.problem, _unidentified_names(estimation)
     if names and len(names) == len(problem.free):
+        for finding in contradicting:
+            raise InputError(f"{finding.text}, which determines none of {', '.join(names)}; {finding.advice}")
         noise = ", ".join(f"{c} {s:.2g}" for c, s in zip(problem.data.outputs, problem.noise, strict=True))
         raise InputError(
             f"the records determine none of the free coefficients {', '.join(names)}: every standard error exceeds the "

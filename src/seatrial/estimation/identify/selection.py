@@ -3,6 +3,7 @@
 from seatrial.estimation.estimate import IntervalMethod
 from seatrial.estimation.estimate.singular import refuse_singular
 from seatrial.estimation.estimate.time_scale import is_pure_roll
+from seatrial.estimation.identify.abandoned_criterion import abandoned_criterion_finding
 from seatrial.estimation.identify.fit_result import refuse_unidentified
 from seatrial.estimation.identify.identification import Identification
 from seatrial.estimation.identify.model_selection import HOLDOUT_WINDOW_SHIP_LENGTHS, SelectedModel, select_model
@@ -21,7 +22,7 @@ def selected_model(task: Identification) -> SelectedModel:
     count = len(problem.free)
     hessian = estimation.estimate.optimum.normal.without_local()[1][:count, :count]
     refuse_singular(hessian, problem.free, estimation.estimate.common_parameters[:count])
-    refuse_unidentified(estimation)
+    refuse_unidentified(estimation, abandoned_criterion_finding(estimation, task.runs.records))
     model, family = task.trial.model, task.trial.family
     if task.choose and is_pure_roll(model):
         return select_roll_model(

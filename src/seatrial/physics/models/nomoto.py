@@ -29,7 +29,8 @@ def _rudder(sheet: Sheet) -> sp.Expr:
 
 def _cubic(sheet: Sheet) -> sp.Symbol:
     meaning = "cubic coefficient, K delta = r + alpha r^3: the gain falls as the rudder goes farther over"
-    return sheet.parameter("alpha", 0.0, "s^2/rad^2", meaning, "linear unless freed", scale=1.0)
+    scale = 100.0  # s^2/rad^2: (L/U)^2 of a ship of 60 m at 6 m/s, whose yaw rates are shares of U/L; chosen
+    return sheet.parameter("alpha", 0.0, "s^2/rad^2", meaning, "linear unless freed", scale=scale)
 
 
 @cache
