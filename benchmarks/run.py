@@ -33,6 +33,7 @@ import population
 import roll_decay
 import simulation
 import tune
+import verification
 import warm_start
 import waterjet_regressions
 from measure import Line, machine
@@ -56,6 +57,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "loops": loops.run,
     "tune": tune.run,
     "autopilots": autopilots.run,
+    "verification": verification.run,
     "roll_decay": roll_decay.run,
     "follow": follow.run,
     "campaign": campaign.run,

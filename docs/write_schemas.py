@@ -17,6 +17,7 @@ from seatrial.core.results.benchmark import Benchmark
 from seatrial.core.results.campaign import CampaignSummary
 from seatrial.core.results.online import Snapshot
 from seatrial.core.results.tuning import Tuning
+from seatrial.core.results.verification import Verification
 from seatrial.data.folder.document import document_schema
 from seatrial.data.trial.schema import trial_schema
 
@@ -25,6 +26,7 @@ RESULTS = {
     "result": Fit,
     "design": Design,
     "tuning": Tuning,
+    "verification": Verification,
     "study": Study,
     "comparison": Comparison,
     "online": Snapshot,

@@ -18,6 +18,7 @@ Functions (each also a command)
     poster        wheelhouse poster and pilot card of a fit
     export        write a model as files of another tool: C99, FMU, CasADi, MATLAB, Gazebo
     tune          tune a feedback loop on a model
+    verify        verify a tuned controller by the log of its trial (command tune --verify)
     follow        identify while the record is being made
     campaign      many identifications in a store: Monte Carlo, grids, runs left out, fleets
     benchmark     methods of estimation and optimisation against problems whose answer is known
@@ -42,6 +43,7 @@ Values
     EstimateSettings             how it is to be estimated
     Problem, Solution            a trial as an optimiser sees it; what an optimiser returns
     Fit, Design, Tuning, Study   results
+    Verification                 result of verify
     Finding, InputError          what a check reports; bad input, in one sentence
 
 Subpackages

@@ -26,11 +26,13 @@ from seatrial.api import (
     simulate,
     survey_log,
     tune,
+    verify,
     write_record,
 )
 from seatrial.core.equations import Model, Sheet
 from seatrial.core.results import Design, Fit, Study
 from seatrial.core.results.tuning import Tuning
+from seatrial.core.results.verification import Verification
 from seatrial.core.values import Channel, Finding, InputError, Parameters, Prior, Record, Ship
 from seatrial.data.read import ColumnSpec, Layout
 from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRun
@@ -62,6 +64,7 @@ __all__ = [
     "Trial",
     "TrialRun",
     "Tuning",
+    "Verification",
     "benchmark",
     "campaign",
     "check",
@@ -96,6 +99,7 @@ __all__ = [
     "survey_log",
     "testing",
     "tune",
+    "verify",
     "write_record",
 ]
 

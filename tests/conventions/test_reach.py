@@ -22,7 +22,6 @@ EXCEPTIONS: dict[str, str] = {
     ": export_lazily": "every subpackage that exports names runs it on import",
     "api: demo": "`make demo` runs it; it takes longer than a test may",
     "api: draft_trial": "tests/data/draft drafts by it",
-    "api: load_loop": _IN_DOCS,
     "api: tune": _IN_DOCS,
     "core/equations: is_cached": "decides what is compiled ahead; tests/core/equations/test_cache.py",
     "data/example_series: write_demo": "tests/api/test_api.py loads what it writes",

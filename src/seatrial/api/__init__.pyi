@@ -33,7 +33,7 @@ from seatrial.api.trials import (
     prepared_run,
     survey_log,
 )
-from seatrial.api.tuning import load_loop, tune
+from seatrial.api.tuning import load_loop, tune, verify
 
 __all__ = [
     "benchmark", "campaign", "campaign_status", "check", "compare", "correct_trial", "course_findings", "demo",
@@ -41,5 +41,5 @@ __all__ = [
     "list_models", "load", "load_fit", "load_loop", "load_model", "load_trial", "measure_intervals", "measures",
     "model_guide", "poster", "predict", "prepared_run", "read_record", "replay", "replay_fmu", "report", "reproduce",
     "retry_campaign", "rms_differences", "rudder_rate_of", "save", "simulate", "steering", "survey_log", "tune",
-    "write_poster", "write_record",
+    "verify", "write_poster", "write_record",
 ]  # fmt: skip

@@ -57,7 +57,7 @@ def load_model(path: str | Path, own_model: "Model | None" = None) -> "ModelFile
 
 
 def load(folder: str | Path, own_model: "Model | None" = None) -> "Result":
-    """Load the fit, design, tuning, study or comparison that a folder holds; nothing is computed.
+    """Load the fit, design, tuning, verification, study or comparison that a folder holds; nothing is computed.
 
     Args:
         folder: as `save` or a command writes it.
@@ -100,8 +100,8 @@ def save(result: "Result | Snapshot | FollowResult", folder: str | Path) -> Path
     """Write the folder of a result (see docs/result-folder.md) with its report, all files or none.
 
     Args:
-        result: a fit, design, tuning, study or comparison, or what `follow` returns: the fit after `once`, else the
-            last estimate.
+        result: a fit, design, tuning, verification, study or comparison, or what `follow` returns: the fit after
+            `once`, else the last estimate.
         folder: a result that it holds is replaced; other files in it are left alone.
 
     Returns:
@@ -113,12 +113,14 @@ def save(result: "Result | Snapshot | FollowResult", folder: str | Path) -> Path
     from seatrial.core.results import Comparison, Design, Fit, Study
     from seatrial.core.results.online import Snapshot
     from seatrial.core.results.tuning import Tuning
+    from seatrial.core.results.verification import Verification
     from seatrial.core.values.files import write_files_atomically
     from seatrial.data.folder.result_folder import REPORT, folder_files, replaced_files
     from seatrial.reporting.pages import report_page
 
     # asked this way round, no result but that of `follow` needs its module
-    value = result if isinstance(result, Fit | Design | Tuning | Study | Comparison | Snapshot) else result.result
+    kinds = Fit | Design | Tuning | Study | Comparison | Verification | Snapshot
+    value = result if isinstance(result, kinds) else result.result
     page = {} if isinstance(value, Snapshot) else {REPORT: report_page(value).encode()}
     files = folder_files(value) | page
     return write_files_atomically(Path(folder), files, replaced_files(value)) / list(files)[-1]

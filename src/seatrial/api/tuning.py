@@ -1,5 +1,6 @@
-"""From a loop file to a tuned controller: load_loop, tune."""
+"""From a loop file to a tuned controller, and back from its trial: load_loop, tune, verify."""
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -7,7 +8,8 @@ if TYPE_CHECKING:
     from seatrial.control.task import TuningTask
     from seatrial.core.equations import Model
     from seatrial.core.results.tuning import Tuning
-    from seatrial.core.values import ProgressReporter
+    from seatrial.core.results.verification import Verification
+    from seatrial.core.values import ProgressReporter, Record
 
 
 def load_loop(path: str | Path, own_model: "Model | None" = None, model_file: str | Path | None = None) -> "TuningTask":
@@ -53,3 +55,40 @@ def tune(
         raise InputError(f"there is no tuning method '{method}'{spelling_hint(method, known)}")
     task = task if isinstance(task, TuningTask) else load_loop(task)
     return tune(task, seed=seed, report_progress=report_progress or (lambda _: None), method=TuningMethod(method))
+
+
+def verify(
+    task: "TuningTask | str | Path",
+    gains: "Mapping[str, float] | str | Path",
+    records: "Sequence[Record | str | Path]",
+) -> "Verification":
+    """Verify a tuned controller by the log of its trial: what was predicted, what was achieved, what was wrong.
+
+    Args:
+        task: as `load_loop` returns it, or the path of a loop file; its first sea has the heading of the legs.
+        gains: those that were on, by name, or the path of a ``gains.toml``.
+        records: with the loop's output and actuator; or paths: of trial files, of which every run that is not left out
+            is taken, and of record files of `write_record`. Legs with and without control are recognised.
+
+    Raises:
+        InputError: gains of another loop, a log without legs or too short, or an actuator that does not follow the
+            gains.
+    """
+    from seatrial.control.task import TuningTask
+    from seatrial.control.verification.verify import verify
+    from seatrial.data.folder.gains_file import read_gains
+
+    loaded = [record for one in records for record in ([one] if not isinstance(one, str | Path) else _log(Path(one)))]
+    values = read_gains(gains) if isinstance(gains, str | Path) else gains
+    return verify(task if isinstance(task, TuningTask) else load_loop(task), values, loaded)
+
+
+def _log(path: Path) -> "list[Record]":
+    """Return the runs of a trial file, or the record of one file."""
+    from seatrial.api.files import read_record
+    from seatrial.data.trial import Role, load_runs
+    from seatrial.data.trial.records import load_run
+
+    if path.suffix != ".toml":
+        return [read_record(path)]
+    return [load_run(run, 0.0).record for run in load_runs(path) if run.role is not Role.LEAVE_OUT]

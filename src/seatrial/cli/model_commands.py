@@ -16,7 +16,7 @@ from seatrial.cli.screen import print_file, print_lines
 from seatrial.cli.tuning_output import print_tuning
 
 if TYPE_CHECKING:
-    pass
+    from seatrial.control.task import TuningTask
 
 
 @app.command()
@@ -31,6 +31,13 @@ def tune(
     method: Annotated[
         str, typer.Option("--method", metavar="METHOD", help="front, or genetic (Yu et al. 2014), compared with it.")
     ] = "front",
+    verify: Annotated[
+        list[Path] | None,
+        typer.Option("--verify", metavar="LOG", help="Log of a trial with the controller: trial file or record."),
+    ] = None,
+    gains: Annotated[
+        Path | None, typer.Option("--gains", metavar="GAINS.toml", help="With --verify: the gains that were on.")
+    ] = None,
     model: OwnModelPath = None,
     json: Json = None,
     seed: Seed = 0,
@@ -40,12 +47,20 @@ def tune(
     Example: seatrial tune examples/fin_stabiliser.toml --out results/fins
 
     On an identified ship: --from results/waterjet/model.toml
+
+    After its trial, predicted against achieved: --verify log.toml --gains results/fins/gains.toml
     """
     from seatrial import api
+    from seatrial.core.values import InputError
     from seatrial.core.values.files import writable_folder
 
+    if (gains is None) != (not verify):
+        raise InputError("--verify LOG and --gains GAINS.toml go together; give both, or neither to tune")
     if out is not None:
         writable_folder(out)
+    if gains is not None and verify:
+        _verify(api.load_loop(loop, own_model(model), model_path), gains, verify, out, json)
+        return
     with progress_reporter() as report_progress:
         task = api.load_loop(loop, own_model(model), model_path)
         result = api.tune(task, seed=seed, report_progress=report_progress, method=method)
@@ -57,6 +72,21 @@ def tune(
     if out is not None:
         print_file("gains", out / "gains.toml")
         print_file("report", out / "report.html")
+
+
+def _verify(task: "TuningTask", gains: Path, logs: list[Path], out: Path | None, json: Path | None) -> None:
+    """Verify gains by logs, print the result and write it where that is wanted."""
+    from seatrial import api
+    from seatrial.cli.verification_output import print_verification
+
+    with progress_reporter() as report_progress:
+        report_progress("ship and seas that the legs show")
+        result = api.verify(task, gains, logs)
+        page = None if out is None else api.save(result, out)
+    print_verification(result)
+    write_json(json, lambda: result_document(result))
+    if page is not None:
+        print_file("report", page)
 
 
 @app.command()

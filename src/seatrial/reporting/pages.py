@@ -4,9 +4,12 @@ from seatrial.core.results import Comparison, Design, Fit, Study
 from seatrial.core.results.benchmark import Benchmark
 from seatrial.core.results.campaign import CampaignSummary
 from seatrial.core.results.tuning import Tuning
+from seatrial.core.results.verification import Verification
 
 
-def report_page(result: Fit | Design | Tuning | Study | Comparison | CampaignSummary | Benchmark) -> str:
+def report_page(
+    result: Fit | Design | Tuning | Study | Comparison | Verification | CampaignSummary | Benchmark,
+) -> str:
     """Return the self-contained HTML page of a result; nothing is computed."""
     match result:
         case Fit():
@@ -37,3 +40,7 @@ def report_page(result: Fit | Design | Tuning | Study | Comparison | CampaignSum
             from seatrial.reporting import benchmark
 
             return benchmark.html(result)
+        case Verification():
+            from seatrial.reporting import verification
+
+            return verification.html(result)

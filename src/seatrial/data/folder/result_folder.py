@@ -15,6 +15,7 @@ from seatrial.core.equations import Model
 from seatrial.core.results import Comparison, Design, Fit, Study
 from seatrial.core.results.online import Snapshot
 from seatrial.core.results.tuning import Tuning
+from seatrial.core.results.verification import Verification
 from seatrial.core.values import Array, InputError
 from seatrial.core.values.files import is_file, write_files_atomically
 from seatrial.core.values.tables import parse_json, read_bounded, read_table_text
@@ -39,7 +40,7 @@ from seatrial.data.trial.approach import approach_condition
 _LARGEST_COMPANION = 2**32
 MODEL, ARRAYS, REPORT = "model.toml", "arrays.npz", "report.html"
 T = TypeVar("T")
-Result = Fit | Design | Tuning | Study | Comparison
+Result = Fit | Design | Tuning | Study | Comparison | Verification
 
 
 @dataclass(frozen=True)
@@ -117,6 +118,10 @@ KINDS: tuple[FolderKind[Any], ...] = (
     FolderKind(Study, "study.json", "seatrial reproduce STUDY --out DIR"),
     FolderKind(
         Comparison, "comparison.json", "seatrial compare FIRST SECOND --out DIR", repeated=frozenset({"significant"})
+    ),
+    FolderKind(
+        Verification, "verification.json", "seatrial tune LOOP --verify LOG --out DIR",
+        repeated=frozenset({"outside", "moved"}),
     ),
 )  # fmt: skip
 

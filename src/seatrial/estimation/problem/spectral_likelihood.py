@@ -18,7 +18,7 @@ from seatrial.numerics.optimise import NormalEquations
 from seatrial.physics.simulate.harmonics import Complex
 
 # a Hann window spreads each frequency over its neighbours: that many times fewer of them are independent
-_WINDOW_CORRELATION = 35.0 / 18.0
+WINDOW_CORRELATION = 35.0 / 18.0
 # points a bin at which the model is evaluated before the window's leakage smears it, over that many bins either way
 POINTS_PER_BIN = 4
 _LEAKAGE_BINS = 8  # bins either way, as above
@@ -109,7 +109,7 @@ class SpectralLikelihood(FreeParameterProblem):
         gradient -= 2.0 * np.einsum("qky,ky->q", dm.conj(), pulled).real
         fisher = np.einsum("qkxy,pkyx->qp", scaled, scaled).real
         fisher += 2.0 * np.einsum("qkx,kxy,pky->qp", dm.conj(), inverse, dm).real
-        scale = 1.0 / _WINDOW_CORRELATION
+        scale = 1.0 / WINDOW_CORRELATION
         return NormalEquations(
             scale * cost, scale * gradient, scale * fisher, local, *_no_local_unknowns(local, len(shared))
         )
@@ -150,11 +150,17 @@ def fine_grid(omega: Array) -> Array:
 def apply_leakage(density: Complex) -> Complex:
     """Return densities on the fine grid, (q, m, ny, ny), as the window shows them at the bins, (q, k, ny, ny)."""
     offset = np.arange(-_LEAKAGE_BINS * POINTS_PER_BIN, _LEAKAGE_BINS * POINTS_PER_BIN + 1) / POINTS_PER_BIN
-    share = np.sinc(offset) / (1.0 - np.where(np.abs(offset) == 1.0, 2.0, offset) ** 2)
-    share = np.where(np.abs(offset) == 1.0, 0.5, share) ** 2
+    share = hann_leakage(offset)
     share /= np.sum(share)
     seen = np.lib.stride_tricks.sliding_window_view(density, len(share), axis=1)[:, ::POINTS_PER_BIN]
     return np.einsum("qkxys,s->qkxy", seen, share)
+
+
+def hann_leakage(offset: Array) -> Array:
+    """Return how much power a Hann window shows so many bins away, of any shape, over that in its own bin."""
+    is_neighbour = np.abs(offset) == 1.0
+    share = np.sinc(offset) / (1.0 - np.where(is_neighbour, 2.0, offset) ** 2)
+    return np.where(is_neighbour, 0.5, share) ** 2
 
 
 def hann_transform(values: Array, dt: float) -> tuple[Array, Complex]:

@@ -11,13 +11,12 @@ from functools import cached_property
 import numpy as np
 
 from seatrial.core.values import Array
-from seatrial.estimation.problem.spectral_likelihood import apply_leakage, fine_grid
+from seatrial.estimation.problem.spectral_likelihood import WINDOW_CORRELATION, apply_leakage, fine_grid
 from seatrial.numerics.optimise import NormalEquations
 from seatrial.physics.simulate.harmonics import Complex
 
 DAMPING, RESTORING = 5, 6  # places among the unknowns
 _SIGMA = (0.07, 0.09)  # peak widths of JONSWAP, Hasselmann et al. 1973
-_WINDOW_CORRELATION = 35.0 / 18.0  # of a Hann window, as in `spectral_likelihood`
 _STEP = 1e-5  # of the logarithmic unknowns, for central differences
 _NO_LOCAL = np.zeros((0, 0))
 
@@ -76,7 +75,7 @@ class UnknownWaves:
     def cost(self, shared: Array, local: Array) -> float:  # noqa: ARG002
         """Return the minus the logarithm of the likelihood, up to a constant."""
         density = self.windowed_density(shared)
-        return float(np.sum(np.log(density) + self.power / density)) / _WINDOW_CORRELATION
+        return float(np.sum(np.log(density) + self.power / density)) / WINDOW_CORRELATION
 
     def normal(self, shared: Array, local: Array) -> NormalEquations:
         """Return cost, gradient and Fisher information at a point."""
@@ -86,8 +85,8 @@ class UnknownWaves:
             2.0 * _STEP
         )
         relative = slopes / density
-        gradient = relative @ (1.0 - self.power / density) / _WINDOW_CORRELATION
-        hessian = relative @ relative.T / _WINDOW_CORRELATION
+        gradient = relative @ (1.0 - self.power / density) / WINDOW_CORRELATION
+        hessian = relative @ relative.T / WINDOW_CORRELATION
         size = len(shared)
         return NormalEquations(
             self.cost(shared, local), gradient, hessian, _NO_LOCAL, np.zeros((0, 0, 0)), np.zeros((0, size, 0))

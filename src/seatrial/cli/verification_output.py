@@ -1,0 +1,36 @@
+"""What `tune --verify` prints: predicted and achieved values, what was wrong, the legs."""
+
+from typing import TYPE_CHECKING
+
+from seatrial.cli.finding_output import print_warnings
+from seatrial.cli.screen import print_heading, print_lines, print_table
+from seatrial.cli.summary_output import print_summary
+
+if TYPE_CHECKING:
+    from seatrial.core.results.verification import Verification
+    from seatrial.reporting.text_tables import TextTable
+
+
+def print_verification(verification: "Verification") -> None:
+    """Print the verdict, predicted beside achieved values, the model before and with the log, the legs."""
+    from seatrial.reporting.verification_text import (
+        correction_table,
+        key_facts,
+        leg_table,
+        quantity_table,
+        reduction_table,
+        verdict,
+    )
+
+    print_summary(f"{verification.name}: verified", verdict(verification), key_facts(verification))
+    for table in (quantity_table, reduction_table, correction_table, leg_table):
+        _print_table(table(verification))
+    print_warnings(verification.findings)
+
+
+def _print_table(table: "TextTable") -> None:
+    print_heading(table.title)
+    flush_left = [k for k, is_number in enumerate(table.numeric) if not is_number]
+    print_table([table.header, *table.rows], flush_left=flush_left, indent="  ")
+    if table.note:
+        print_lines([table.note], "  ")

@@ -1,0 +1,1 @@
+"""A controller after its trial at sea: predicted against achieved, and what in the model was wrong."""

@@ -1,0 +1,91 @@
+"""A tuned controller and the log of its trial in, a verification out."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from seatrial.control.task import TuningTask
+from seatrial.control.verification.model_corrections import model_corrections
+from seatrial.control.verification.stabiliser import StabiliserLog, prior_deviations, verify_stabiliser
+from seatrial.core.results.verification import ModelCorrection, Verification
+from seatrial.core.values import Array, Finding, InputError, Record, Severity, spelling_hint
+from seatrial.core.values.versions import versions
+from seatrial.physics.loops import margins
+
+_GAIN_TOLERANCE = 0.15  # of what the gains order, beyond which the actuator did something else; chosen
+
+
+def verify(task: TuningTask, gains: Mapping[str, float], records: Sequence[Record]) -> Verification:
+    """Return what was predicted beside what the records show, and what in the model was wrong.
+
+    gains: those that were on, by name.
+
+    Raises:
+        InputError: gains of another loop, an unstable loop, a log without legs or too short, or an actuator that does
+            not follow the gains.
+    """
+    values = gains_of_loop(task, gains)
+    if task.demand is not None:
+        raise InputError(f"loop '{task.name}' follows a demand; so far stabilisers are verified, in waves")
+    if not margins(task.loop.with_gains(values)).is_stable:
+        raise InputError(f"loop '{task.name}' is unstable with these gains: nothing is predicted of them; check them")
+    log = verify_stabiliser(task, values, records)
+    corrections = model_corrections(task.loop, prior_deviations(task), log.fit)
+    return Verification(
+        name=task.name,
+        plant=task.plant,
+        output=task.loop.output,
+        actuator=task.loop.actuator,
+        gains=dict(zip(task.loop.gains.names, values.tolist(), strict=True)),
+        legs=log.legs,
+        quantities=log.quantities,
+        reductions=log.reductions,
+        corrections=corrections,
+        findings=_findings(task, log, corrections),
+        versions=versions(),
+    )
+
+
+def gains_of_loop(task: TuningTask, gains: Mapping[str, float]) -> Array:
+    """Return the values (g,) in the loop's order.
+
+    Raises:
+        InputError: other names than those of the loop.
+    """
+    names = task.loop.gains.names
+    if unknown := [name for name in gains if name not in names]:
+        hint = spelling_hint(unknown[0], list(names))
+        raise InputError(f"loop '{task.name}' has no gain '{unknown[0]}'{hint}; its gains are {', '.join(names)}")
+    if missing := [name for name in names if name not in gains]:
+        raise InputError(f"loop '{task.name}' needs a value for gain {missing[0]}; give those that were on")
+    return np.array([gains[name] for name in names])
+
+
+def _findings(task: TuningTask, log: StabiliserLog, corrections: Sequence[ModelCorrection]) -> tuple[Finding, ...]:
+    found = [
+        Finding(
+            Severity.WARNING, "gains-differ",
+            f"record '{leg.record}': from {leg.start:.0f} s on '{task.loop.actuator}' moves {leg.gain_ratio:.2f} times "
+            "as much as these gains order", f"coherence {leg.correlation:.2f}",
+            "check that these gains were on, and whether the actuator was at its limits",
+        )
+        for leg in log.legs if leg.is_controlled and abs(leg.gain_ratio - 1.0) > _GAIN_TOLERANCE
+    ]  # fmt: skip
+    found += [
+        Finding(
+            Severity.WARNING, "model-moved", f"the log moves the {c.name} from {c.model:.3g} to {c.log:.3g}",
+            f"95 % interval {c.lower:.3g} to {c.upper:.3g}", "tune again with the corrected value",
+        )
+        for c in corrections if c.is_moved
+    ]  # fmt: skip
+    if all(leg.is_controlled for leg in log.legs):
+        found.append(Finding(
+            Severity.INFO, "no-leg-off", "no leg has the controller off: the reduction rests on the model alone", "",
+            "log a leg of the same length without control, before or after",
+        ))  # fmt: skip
+    if not log.fit.is_converged:
+        found.append(Finding(
+            Severity.WARNING, "not-converged", "the search for ship and seas did not converge", "",
+            "look at the spectra of the legs: is the heading to the waves that of the loop file's first sea?",
+        ))  # fmt: skip
+    return tuple(found)

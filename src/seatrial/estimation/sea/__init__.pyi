@@ -1,0 +1,10 @@
+"""Names of this package, imported when first used."""
+
+from seatrial.estimation.sea.encountered_sea import EncounteredSea as EncounteredSea, encountered_sea as encountered_sea
+from seatrial.estimation.sea.encountered_sea import sea_spectrum as sea_spectrum
+from seatrial.estimation.sea.legs_in_waves import LegFit as LegFit, LegPriors as LegPriors
+from seatrial.estimation.sea.legs_in_waves import LegsInWaves as LegsInWaves, fit_legs as fit_legs
+from seatrial.estimation.sea.plant_factors import PLANT_FACTORS as PLANT_FACTORS, altered_loop as altered_loop
+from seatrial.estimation.sea.stretch_spectra import StretchSpectra as StretchSpectra
+from seatrial.estimation.sea.stretch_spectra import stretch_spectra as stretch_spectra
+from seatrial.estimation.sea.wave_leg import LegLikelihood as LegLikelihood, WaveLeg as WaveLeg

@@ -1,0 +1,30 @@
+"""A loop whose ship differs from the model: by the actuator's effect, the natural frequency, and the damping."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from seatrial.core.values import Array
+from seatrial.physics.loops import Block, TransferLoop
+
+PLANT_FACTORS = ("gain", "frequency", "damping")
+"""What may differ, as logarithms of factors; zeros leave a loop as it is."""
+
+
+def altered_loop(loop: TransferLoop, factors: Array) -> TransferLoop:
+    """Return the loop with the plant's gain, and the natural frequencies and damping of plant and disturbance, changed.
+
+    factors: (3,), logarithms, in the order of `PLANT_FACTORS`. Gains at rest are kept but for the first factor.
+    """
+    gain, frequency, damping = np.exp(factors).tolist()
+    plant = _altered_block(loop.plant, frequency, damping).scaled(gain)
+    return replace(loop, plant=plant, disturbance=_altered_block(loop.disturbance, frequency, damping))
+
+
+def _altered_block(block: Block, frequency: float, damping: float) -> Block:
+    """Return H(s / frequency) with the real parts of its poles times `damping`, the same at s = 0."""
+    poles = frequency * (damping * block.poles.real + 1j * block.poles.imag)
+    stretched = np.array(block.num) / frequency ** np.arange(len(block.num) - 1, -1, -1)
+    den = np.real(np.poly(poles))
+    num = stretched * (den[-1] / block.den[-1])
+    return replace(block, num=tuple(num.tolist()), den=tuple(den.tolist()))

@@ -1,0 +1,132 @@
+"""A verification in sentences and tables; page and terminal share them."""
+
+import math
+
+from seatrial.core.results.verification import ModelCorrection, Verification, VerifiedLeg, VerifiedQuantity
+from seatrial.core.text.numbers import DASH, exact, fixed, significant
+from seatrial.core.text.words import counted, enumeration
+from seatrial.core.values import Severity, display_unit
+from seatrial.core.values.channel_text import channel_meaning
+from seatrial.reporting.first_screen import KeyFact
+from seatrial.reporting.text_tables import TextTable
+
+_DIGITS = 3  # of values; chosen
+
+
+def verdict(v: Verification) -> str:
+    """Return what was achieved of what was predicted, in a sentence."""
+    reduction = v.quantities[0]
+    achieved, low, high, predicted = (
+        fixed(100.0 * x, 1) for x in (reduction.achieved, reduction.lower, reduction.upper, reduction.predicted)
+    )
+    how = "as predicted" if reduction.is_inside else "not as predicted"
+    return (
+        f"The controller took {achieved} % off the {channel_meaning(v.output)} (95 % interval {low} to {high} %), {how}"
+        f": the model says {predicted} % in the sea that was met."
+    )
+
+
+def key_facts(v: Verification) -> tuple[KeyFact, ...]:
+    """Return the rows at the top."""
+    moved = [f"{c.name}: {exact(c.model, _DIGITS)} → {exact(c.log, _DIGITS)}" for c in v.corrections if c.is_moved]
+    warned = list(dict.fromkeys(f.code for f in v.findings if f.severity is not Severity.INFO))
+    on = sum(leg.is_controlled for leg in v.legs)
+    inside = len(v.quantities) - len(v.outside)
+    return (
+        KeyFact("Inside", f"{inside} of {counted(len(v.quantities), 'quantity').replace('quantitys', 'quantities')}",
+                "quantities", not v.outside),
+        KeyFact("Outside", enumeration(v.outside) or "none", "quantities", not v.outside),
+        KeyFact("Model", "; ".join(moved) or "no property moved beyond its interval", "model", not moved),
+        KeyFact("Legs", f"{on} with control, {len(v.legs) - on} without", "legs", None if on < len(v.legs) else False),
+        KeyFact("Warnings", enumeration(warned) or "none", "findings" if v.findings else "", not warned),
+    )  # fmt: skip
+
+
+def quantity_table(v: Verification) -> TextTable:
+    """Return predicted and achieved values with their intervals."""
+    return TextTable(
+        "Predicted and achieved, legs with control",
+        ("", "unit", "predicted", "95 % interval", "achieved", "95 % interval", ""),
+        (False, False, True, True, True, True, False),
+        tuple(_quantity_row(q) for q in v.quantities),
+        "Predicted: by the model as it was, in the seas that explain the legs. Inside: the 95 % interval of the "
+        "difference includes zero.",
+    )
+
+
+def _quantity_row(q: VerifiedQuantity) -> tuple[str, ...]:
+    factor, unit = (100.0, "%") if q.unit == "1" else _rate_unit(q.unit)
+    low, high, lower, upper = (factor * x for x in (q.predicted_lower, q.predicted_upper, q.lower, q.upper))
+    return (
+        q.name, unit, significant(factor * q.predicted, _DIGITS), _ends(low, high),
+        significant(factor * q.achieved, _DIGITS), _ends(lower, upper), "inside" if q.is_inside else "outside",
+    )  # fmt: skip
+
+
+def _rate_unit(unit: str) -> tuple[float, str]:
+    """Return factor and unit for reading, of an angle or its rate."""
+    base = unit.removesuffix("/s")
+    factor, shown = display_unit(base)
+    return factor, shown + unit.removeprefix(base)
+
+
+def _ends(lower: float, upper: float) -> str:
+    return f"{significant(lower, _DIGITS)} to {significant(upper, _DIGITS)}"
+
+
+def reduction_table(v: Verification) -> TextTable:
+    """Return the reduction by each way to correct for the sea."""
+    rows = tuple(
+        (r.method, fixed(100.0 * r.value, 1), f"{fixed(100.0 * r.lower, 1)} to {fixed(100.0 * r.upper, 1)}")
+        for r in v.reductions
+    )
+    return TextTable(
+        "Reduction achieved, by how the sea is accounted for", ("", "%", "95 % interval"), (False, True, True), rows, ""
+    )
+
+
+def correction_table(v: Verification) -> TextTable:
+    """Return the plant's properties before the log and with it."""
+    return TextTable(
+        "The model before the log and with it",
+        ("", "unit", "model", "± before", "with the log", "95 % interval", ""),
+        (False, False, True, True, True, True, False),
+        tuple(_correction_row(c) for c in v.corrections),
+        "Before: standard deviation, of [uncertainty] in the loop file; damping 30 %. With the log: what was known "
+        "before is the prior. Moved: the model's value lies outside the interval.",
+    )
+
+
+def _correction_row(c: ModelCorrection) -> tuple[str, ...]:
+    model, deviation, log = (significant(x, _DIGITS) for x in (c.model, c.deviation, c.log))
+    unit = "" if c.unit == "1" else c.unit
+    return c.name, unit, model, deviation, log, _ends(c.lower, c.upper), "moved" if c.is_moved else "held"
+
+
+def leg_table(v: Verification) -> TextTable:
+    """Return the legs with the sea that explains each."""
+    (factor, unit), (actuator_factor, actuator_unit) = (_channel_unit(name) for name in (v.output, v.actuator))
+    return TextTable(
+        "Legs, and the sea that explains each",
+        ("record", "from s", "to s", "control", "height m", "95 % interval", "peak s", "95 % interval",
+         f"{v.output} {unit}", f"{v.actuator} {actuator_unit}", "of its orders"),
+        (False, True, True, False, True, True, True, True, True, True, True),
+        tuple(_leg_row(leg, factor, actuator_factor) for leg in v.legs),
+        "Last columns: rms, and what the actuator did over what the gains order of the output.",
+    )  # fmt: skip
+
+
+def _channel_unit(symbol: str) -> tuple[float, str]:
+    from seatrial.data.folder.orders import channel_display_unit
+
+    return channel_display_unit(symbol)
+
+
+def _leg_row(leg: VerifiedLeg, factor: float, actuator_factor: float) -> tuple[str, ...]:
+    return (
+        leg.record, fixed(leg.start, 0), fixed(leg.stop, 0), "on" if leg.is_controlled else "off",
+        significant(leg.height, _DIGITS), _ends(leg.height_lower, leg.height_upper),
+        significant(leg.period, _DIGITS), _ends(leg.period_lower, leg.period_upper),
+        significant(factor * leg.output_rms, _DIGITS), significant(actuator_factor * leg.actuator_rms, _DIGITS),
+        DASH if math.isnan(leg.gain_ratio) else fixed(leg.gain_ratio, 2),
+    )  # fmt: skip
