@@ -119,8 +119,8 @@ def save(result: "Result | Snapshot | FollowResult", folder: str | Path) -> Path
     from seatrial.reporting.pages import report_page
 
     # asked this way round, no result but that of `follow` needs its module
-    kinds = Fit | Design | Tuning | Study | Comparison | Verification | Snapshot
-    value = result if isinstance(result, kinds) else result.result
+    is_result = isinstance(result, Fit | Design | Tuning | Study | Comparison | Verification | Snapshot)
+    value = result if is_result else result.result
     page = {} if isinstance(value, Snapshot) else {REPORT: report_page(value).encode()}
     files = folder_files(value) | page
     return write_files_atomically(Path(folder), files, replaced_files(value)) / list(files)[-1]

@@ -126,9 +126,7 @@ def _verified_leg(leg: _Leg, fit: LegFit, place: int) -> VerifiedLeg:
         InputError: it did not.
     """
     (height, period, _), (height_sd, period_sd, _) = fit.seas[place], fit.sea_deviations(place)
-    heights, periods = (
-        np.exp([v, *normal_interval(v, sd)]).tolist() for v, sd in ((height, height_sd), (period, period_sd))
-    )
+    heights, periods = (_log_normal_interval(*pair) for pair in ((height, height_sd), (period, period_sd)))
     mean, logged = products(leg.spectra).mean(axis=0), leg.logged
     moments = leg.logged_moments(mean, fit.ship)
     ratio, coherence = _followed_gains(leg, mean) if logged.is_controlled else (math.nan, math.nan)
@@ -139,10 +137,17 @@ def _verified_leg(leg: _Leg, fit: LegFit, place: int) -> VerifiedLeg:
         )
     strong = leg.waves.spectra
     return VerifiedLeg(
-        logged.record, logged.start, logged.stop, logged.is_controlled, logged.U, *heights, *periods,
+        logged.record, logged.start, logged.stop, logged.is_controlled, logged.U,
+        math.exp(height), *heights, math.exp(period), *periods,
         math.sqrt(moments.output), math.sqrt(moments.actuator), ratio, coherence,
         strong.omega, np.real(strong.cross_density(0, 0)), _predicted_density(leg, fit.seas[place]),
     )  # fmt: skip
+
+
+def _log_normal_interval(centre: float, deviation: float) -> tuple[float, float]:
+    """Return the ends of the 95 % interval of a quantity whose logarithm is normal."""
+    low, high = normal_interval(centre, deviation)
+    return math.exp(low), math.exp(high)
 
 
 def _followed_gains(leg: _Leg, mean: Complex) -> tuple[float, float]:

@@ -73,7 +73,7 @@ def encountered_sea(bins: Array, U: float, beta: float, effect: WaveEffect) -> E
     steepest = max(abs(1.0 - 2.0 * q * lowest), abs(1.0 - 2.0 * q * highest))
     count = math.ceil(_NODES_A_BIN * max(steepest, 1.0) * (highest - lowest) / step)
     width = (highest - lowest) / count
-    omega = lowest + width * (np.arange(count) + 0.5)
+    omega = np.asarray(lowest + width * (np.arange(count) + 0.5), dtype=np.float64)
     omega_e = np.abs(encounter_frequency(omega, U, beta))
     leakage = hann_leakage((bins[:, None] - omega_e) / step) / _WINDOW_POWER / step
     return EncounteredSea(omega, omega_e, width, np.abs(effect.amplitude(omega, U, beta)) ** 2, leakage)
