@@ -91,6 +91,12 @@ def test_half_of_the_gains_is_a_finding(task: TuningTask, log: SimulatedLog) -> 
     assert "gains-differ" in [f.code for f in st.verify(task, halved, log.records).findings]
 
 
+def test_waves_that_reach_the_output_otherwise_are_refused(task: TuningTask, log: SimulatedLog) -> None:
+    pitching = replace(task, disturbances=(replace(task.disturbances[0], path=task.loop.disturbance),))
+    with pytest.raises(InputError, match="not verified in waves"):
+        st.verify(pitching, PUBLISHED_GAINS, log.records)
+
+
 def test_a_loop_without_a_sea_is_refused(task: TuningTask, log: SimulatedLog) -> None:
     slow = replace(task, disturbances=(SlowDisturbance(0.01, 0.1, 9.0),), schedule_grid=None)
     with pytest.raises(InputError, match="names no sea"):

@@ -100,6 +100,8 @@ def verify_stabiliser(task: TuningTask, gains: Array, records: Sequence[Record])
     seaway = next((met for met in task.disturbances if isinstance(met, Seaway)), None)
     if seaway is None:
         raise InputError(f"tuning '{task.name}' names no sea; add [[seas]] with the heading of the legs")
+    if seaway.path is not None:
+        raise InputError(f"the loop on '{task.loop.output}' is not verified in waves; that of roll is")
     loop = task.loop.with_gains(gains)
     legs = [_prepared(task, leg, loop, seaway) for leg in legs_on_and_off(records, loop, task.U)]
     fit = fit_legs([leg.waves for leg in legs], LegPriors(prior_deviations(task), np.array(SEA_CHANGE)))
