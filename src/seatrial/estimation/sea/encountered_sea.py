@@ -67,9 +67,10 @@ def encountered_sea(bins: Array, U: float, beta: float, effect: WaveEffect) -> E
         InputError: speed or heading out of sense.
     """
     q, step = speed_factor(U, beta), float(bins[1] - bins[0])
-    lowest = _LONGEST * float(bins[0])
-    highest = min(_highest_wave(float(bins[-1]) + _LEAKAGE_BINS * step, q), effect.highest_frequency)
-    highest = min(highest, _SHORTEST * float(bins[-1]))
+    longest, shortest = effect.frequency_range
+    lowest = max(_LONGEST * float(bins[0]), longest)
+    highest = _highest_wave(float(bins[-1]) + _LEAKAGE_BINS * step, q)
+    highest = min(highest, shortest, _SHORTEST * float(bins[-1]))
     steepest = max(abs(1.0 - 2.0 * q * lowest), abs(1.0 - 2.0 * q * highest))
     count = math.ceil(_NODES_A_BIN * max(steepest, 1.0) * (highest - lowest) / step)
     width = (highest - lowest) / count
