@@ -72,7 +72,7 @@ def _leg(
     task: TuningTask, loop: TransferLoop, gains: Array, sea: Seaway, seed: int, leg_s: float
 ) -> tuple[Array, Array]:
     """Return roll and fin angle (n,) of a leg, after its run-in."""
-    disturbance = disturbance_series(sea, SimulationSettings(1, leg_s, DT), seed)[0]
+    (disturbance,) = disturbance_series(sea, SimulationSettings(1, leg_s, DT), seed)[0]
     closed = closed_loop(replace(task, loop=loop), loop, gains, task.U, DT)
     r = task.constraints
     states, moved = closed.run(disturbance, ActuatorLimits(r.limit, r.rate))
