@@ -17,21 +17,20 @@ from seatrial.core.results import (
     Stability,
     Symmetry,
 )
-from seatrial.core.text.numbers import DASH, fixed, p_value, rounded, signed_percent, significant
+from seatrial.core.text.numbers import DASH, p_value, rounded, signed_percent, significant
 from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import display_unit
 from seatrial.core.values.channel_text import channel_meaning, channel_unit, unit_text
+from seatrial.reporting.coefficient_uses import CoefficientUse, coefficient_uses, meaning_lines
 from seatrial.reporting.disturbance_table import DisturbanceRow, disturbance_rows
-from seatrial.reporting.figures.directions import direction_chart, profile_chart, sensitivity_chart
+from seatrial.reporting.figures.directions import direction_chart, profile_chart
 from seatrial.reporting.posterior_part import PosteriorPart, posterior_part
 from seatrial.reporting.tables import assumption
 
 # relative standard deviation up to which a combination is well determined, and up to which poorly
 WELL_DETERMINED, POORLY_DETERMINED = 0.1, 1.0
-# variance inflation from which on coefficients are collinear (Marquardt 1970)
-MIN_VARIANCE_INFLATION = 10.0
 # entries of each kind that are shown unfolded
-MAX_SHIFTS, MAX_TEXTS, MAX_ROWS, MAX_DIRECTIONS, MAX_BARS = 5, 5, 10, 16, 20
+MAX_SHIFTS, MAX_TEXTS, MAX_ROWS, MAX_DIRECTIONS = 5, 5, 20, 16
 
 
 @dataclass(frozen=True)
@@ -108,19 +107,16 @@ class IdentifiabilityChapter:
     is_examined: bool
     structural: tuple[SymmetryRow, ...]
     determined_sentence: str
+    meaning: tuple[tuple[str, str], ...]
+    uses: tuple[CoefficientUse, ...]
+    more_uses: tuple[CoefficientUse, ...]
     accuracy_classes: tuple[AccuracyClass, ...]
     directions: Markup
     weakest: tuple[str, ...]
     weaker: tuple[str, ...]
     more_directions: str
     condition: str
-    collinear: tuple[tuple[str, str, str, str], ...]
-    collinear_more: tuple[tuple[str, str, str, str], ...]
-    has_sensitivities: bool
-    sensitivities: Markup
-    sensitivities_more: str
     consequences: tuple[ConsequenceRow, ...]
-    consequence_texts: tuple[str, ...]
     stability: str
     noise: NoiseText | None
     profiles: Markup
@@ -138,26 +134,22 @@ def identifiability_chapter(fit: Fit) -> IdentifiabilityChapter | None:
         return None
     content = identifiability or Identifiability((), (), math.nan, math.nan)
     names = [c.name for c in fit.coefficients]
-    strongest = sorted(content.sensitivities, key=lambda s: -s.effect)
-    pairs, more = _collinear_rows(content), counted(len(strongest[MAX_BARS:]), "further coefficient")
+    uses = coefficient_uses(fit.coefficients, content)
     texts = tuple(sentence(d.text, names) for d in content.directions if d.standard_deviation >= WELL_DETERMINED)
     return IdentifiabilityChapter(
         is_examined=identifiability is not None,
         structural=tuple(_symmetry_row(s, fit, names) for s in content.structural),
         determined_sentence=determined_sentence(fit),
+        meaning=meaning_lines(fit, content, uses),
+        uses=uses[:MAX_ROWS],
+        more_uses=uses[MAX_ROWS:],
         accuracy_classes=_accuracy_classes(content.directions),
         directions=Markup(svg(direction_chart(content.directions[:MAX_DIRECTIONS]))),
         weakest=texts[:MAX_TEXTS],
         weaker=texts[MAX_TEXTS:],
         more_directions=_more_directions(content.directions[MAX_DIRECTIONS:]),
         condition=rounded(content.condition) if math.isfinite(content.condition) else "",
-        collinear=tuple(pairs[:MAX_ROWS]),
-        collinear_more=tuple(pairs[MAX_ROWS:]),
-        has_sensitivities=bool(strongest),
-        sensitivities=Markup(svg(sensitivity_chart(strongest[:MAX_BARS]))),
-        sensitivities_more=f" {more.capitalize()} with smaller effects not drawn." if strongest[MAX_BARS:] else "",
         consequences=tuple(_consequence_row(c) for c in content.consequences),
-        consequence_texts=tuple(sentence(c.text, names) for c in content.consequences if c.text),
         stability=_stability_sentence(content.stability, names) if content.stability else "",
         noise=_noise_text(fit.noise_model, names) if fit.noise_model else None,
         profiles=Markup(svg(profile_chart(content.profiles, {c.name: c.unit for c in fit.coefficients}))),
@@ -220,16 +212,6 @@ def _more_directions(rest: Sequence[Direction]) -> str:
     worst = 100.0 * max(d.standard_deviation for d in rest)
     number = counted(len(rest), "further combination").capitalize()
     return f"{number} not drawn, {significant(worst, 2)} % or better."
-
-
-def _collinear_rows(identifiability: Identifiability) -> list[tuple[str, str, str, str]]:
-    items = sorted(identifiability.collinearity, key=lambda c: -c.variance_inflation)
-    return [
-        (c.parameter, significant(c.variance_inflation, 2) if math.isfinite(c.variance_inflation) else "∞", c.partner,
-         fixed(c.correlation, 2))
-        for c in items
-        if c.variance_inflation > MIN_VARIANCE_INFLATION
-    ]  # fmt: skip
 
 
 def _consequence_row(c: Consequence) -> ConsequenceRow:

@@ -9,8 +9,9 @@ from seatrial.core.results.window_scores import ChannelScore
 from seatrial.core.text.numbers import fixed, significant
 from seatrial.core.text.words import counted, enumeration
 from seatrial.core.values import Severity
+from seatrial.reporting.coefficient_uses import MIN_VARIANCE_INFLATION
 from seatrial.reporting.first_screen import FirstScreen, KeyFact
-from seatrial.reporting.identifiability_chapter import MIN_VARIANCE_INFLATION, determined_sentence
+from seatrial.reporting.identifiability_chapter import determined_sentence
 from seatrial.reporting.measures import IntervalVerdict, interval_verdict
 from seatrial.reporting.operators import operators_sentence
 from seatrial.reporting.runs import ERROR_LABELS, badness

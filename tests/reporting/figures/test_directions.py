@@ -1,10 +1,10 @@
-"""Directions lie in their zones; what is not determined has a note, what is small a pale bar."""
+"""Directions lie in their zones; what is not determined has a note."""
 
 import math
 
-from seatrial.core.figures.marks import Points, Rectangle, Shape, Text
-from seatrial.core.results import Direction, Sensitivity
-from seatrial.reporting.figures.directions import combination_text, direction_chart, sensitivity_chart
+from seatrial.core.figures.marks import Points, Shape, Text
+from seatrial.core.results import Direction
+from seatrial.reporting.figures.directions import combination_text, direction_chart
 
 
 def test_markers_follow_the_zones() -> None:
@@ -24,11 +24,3 @@ def test_the_parts_of_a_direction_are_its_largest() -> None:
     direction = Direction({"Y_v": 0.74, "N_v": -0.56, "a": 0.3, "b": 0.25, "c": 0.01}, 0.4, "")
     assert combination_text(direction) == "0.74 Y_v − 0.56 N_v + 0.30 a …"
     assert combination_text(Direction({"Y_v": -1.0}, 0.4, "")) == "− Y_v"
-
-
-def test_an_effect_below_the_noise_is_pale() -> None:
-    chart = sensitivity_chart([Sensitivity("a", 20.0, {}), Sensitivity("b", 0.3, {}), Sensitivity("c", 0.0, {})])
-    assert chart is not None
-    first, second = (mark for mark in chart.panels[0].marks if isinstance(mark, Rectangle))
-    assert (first.right, second.right) == (20.0, 0.3) and first.fill != second.fill
-    assert sensitivity_chart([]) is None

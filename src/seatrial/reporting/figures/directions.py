@@ -1,4 +1,4 @@
-"""How well each direction is determined, what each coefficient does, and profile likelihoods."""
+"""How well each direction is determined, and profile likelihoods."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -23,7 +23,7 @@ from seatrial.core.figures.marks import (
     Text,
 )
 from seatrial.core.figures.rows import SMALL, decades_axis, no_information, row_panel
-from seatrial.core.results import Direction, Profile, Sensitivity
+from seatrial.core.results import Direction, Profile
 from seatrial.core.text.numbers import MINUS, fixed
 from seatrial.core.values import display_unit
 from seatrial.core.values.channel_text import unit_text
@@ -72,24 +72,6 @@ def direction_chart(directions: Sequence[Direction]) -> Chart | None:
             marks.append(no_information(axis, row, _ZONE_COLOURS[zone]))
     panel = row_panel([combination_text(d) for d in directions], axis, marks)
     return Chart("how well combinations of coefficients are determined", (panel,))
-
-
-def sensitivity_chart(sensitivities: Sequence[Sensitivity]) -> Chart | None:
-    """Return a bar for each coefficient: effect of 10 % of it in units of noise; None for none."""
-    finite = [s for s in sensitivities if math.isfinite(s.effect) and s.effect > 0]
-    if not finite:
-        return None
-    axis = decades_axis(
-        [s.effect for s in finite],
-        (0.1, 10.0),
-        "change of the compared outputs for 10 % of the coefficient, in units of their noise",
-    )
-    # px, chosen
-    bars = [Rectangle(axis.ends[0], row - 0.28, s.effect, row + 0.28, ACCENT if s.effect >= 1.0 else "#a9bccb")
-            for row, s in enumerate(finite)]  # fmt: skip
-    note = Text(1.0, -0.5, "as large as the noise", Anchor.MIDDLE, SMALL, dy=-7.0)
-    panel = row_panel([s.parameter for s in finite], axis, [*bars, Rule(1.0, _LIMIT, is_vertical=True), note])
-    return Chart("what each coefficient does to the records", (panel,))
 
 
 def combination_text(direction: Direction) -> str:
