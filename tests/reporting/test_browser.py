@@ -85,7 +85,7 @@ def test_printing_unfolds_everything(browser: "Browser", page: Path) -> None:
     assert window.locator("details:not([open])").count() > 0
     window.evaluate("void dispatchEvent(new Event('beforeprint'))")
     assert window.locator("details:not([open])").count() == 0
-    assert window.locator("#identifiability ~ h3:visible").count() >= 8
+    assert window.locator("section:has(#identifiability) h3:visible").count() >= 8
     series = window.locator(".series")
     assert window.locator(".series canvas").count() >= series.count() > 0
     assert len(window.pdf(format="A4", prefer_css_page_size=True)) > 50_000
