@@ -1,6 +1,8 @@
 """What identify prints of a fit: verdict, estimates and held-out runs with marks, and nothing that was not examined."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from tests.reporting.complete_fit import baselines, complete_fit
@@ -12,6 +14,8 @@ from seatrial.cli.fit_output import print_fit
 from seatrial.cli.screen import Detail, printing
 from seatrial.cli.study_output import print_study
 from seatrial.core.values import Finding, Severity
+from seatrial.data.folder.model_file import model_text
+from seatrial.data.folder.result_folder import model_of_fit
 
 
 def printed(capsys: pytest.CaptureFixture[str]) -> str:
@@ -118,3 +122,19 @@ def test_a_study_answers_first_and_counts_its_checks(capsys: pytest.CaptureFixtu
     assert any(line.strip().startswith("FAILS") and line.endswith("few runs") for line in lines)
     assert lines[2] == "Not all of them: the fit has two optima."
     assert any(". Setting: search box about the truth" in line for line in lines)
+
+
+def test_a_warning_of_the_fit_goes_with_its_model_file_and_is_printed_where_that_simulates(
+    run_command: Callable[..., int], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lasting = Finding(Severity.WARNING, "gain-falls", "the gain falls")
+    other = Finding(Severity.WARNING, "closure", "the log is off")
+    file = model_of_fit(replace(fabricated_fit(), findings=(lasting, other)))
+    assert file.provenance.warnings == ("[gain-falls] the gain falls",)
+    path = tmp_path / "model.toml"
+    path.write_text(model_text(file))
+    manoeuvre = ("--manoeuvre", "turning-circle:35", "--set", "v_j=1.866", "--duration", "20")
+    assert run_command("simulate", path, *manoeuvre, "--out", tmp_path / "turn.csv") == 0
+    text = capsys.readouterr().out
+    assert "of the fit: [gain-falls] the gain falls" in text
+    assert "the log is off" not in text

@@ -181,6 +181,8 @@ def simulate(
         print_lines([f"against {measured.name}: rms {errors_text(rms)}"])
     if rate is not None:
         print_lines([rate.text])
+    for text in file.provenance.warnings:
+        print_finding("warning", f"of the fit: {text}")
     for finding in api.course_findings(file, manoeuvre or "", constant):
         print_finding("warning", f"[{finding.code}] {finding.text}: a straight run is one that it does not hold")
     write_json(

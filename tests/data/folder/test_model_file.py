@@ -36,7 +36,13 @@ def whole_file() -> ModelFile:
     return ModelFile(
         model.with_parameters(parameters),
         root @ root.T,
-        ModelProvenance((RecordSource("run", "training", "ab12"),), "output error", 7, {"seatrial": "0"}),
+        ModelProvenance(
+            (RecordSource("run", "training", "ab12"),),
+            "output error",
+            7,
+            {"seatrial": "0"},
+            ("[gain-falls] the gain K falls with the rudder angle",),
+        ),
         Ship("craft", {"L": 9.8}, "paper", 2.0),
         {"u": 0.8, "v_j": 1.866},
     )

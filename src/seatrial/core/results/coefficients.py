@@ -43,8 +43,13 @@ class Coefficient:
 
     @property
     def is_sign_open(self) -> bool:
-        """Whether its interval contains 0, so that the records do not determine it by itself."""
-        return self.lower is not None and self.upper is not None and self.lower < 0.0 < self.upper
+        """Whether its interval contains 0, so that the records do not determine it by itself.
+
+        An interval may be open at an end, where a profile of the likelihood has not ended.
+        """
+        if self.standard_error is None:
+            return False
+        return (self.lower is None or self.lower < 0.0) and (self.upper is None or self.upper > 0.0)
 
 
 @dataclass(frozen=True)

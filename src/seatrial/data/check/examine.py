@@ -8,6 +8,7 @@ from seatrial.data.check.channels import channel_findings, lag_findings
 from seatrial.data.check.comparison_stretch import comparison_stretch
 from seatrial.data.check.consequences import completed
 from seatrial.data.check.conventions import with_standard_signs
+from seatrial.data.check.drift_side import drift_side_findings
 from seatrial.data.check.dropped_rows import dropped_rows_findings
 from seatrial.data.check.feedback import feedback_findings
 from seatrial.data.check.kinematic_consistency import kinematic_consistency_findings
@@ -63,6 +64,7 @@ def _comparison_findings(record: Record) -> list[Finding]:
     return [
         *(() if motion is None else velocity_convention_findings(motion)),
         *(() if motion is None else kinematic_consistency_findings(motion)),
+        *(() if motion is None else drift_side_findings(motion)),
         *yaw_rate_findings(record),
         *rudder_findings(record),
         *lag_findings(record, motion),

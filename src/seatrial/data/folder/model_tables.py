@@ -125,12 +125,14 @@ class ModelProvenance:
         method: criterion, in a sentence.
         seed: of the estimate.
         versions: package -> version.
+        warnings: of the fit, a sentence each: what holds for every use of the values.
     """
 
     records: tuple[RecordSource, ...] = ()
     method: str = ""
     seed: int | None = None
     versions: Mapping[str, str] | None = None
+    warnings: tuple[str, ...] = ()
 
 
 def provenance_table(provenance: ModelProvenance) -> dict[str, Any]:
@@ -140,13 +142,16 @@ def provenance_table(provenance: ModelProvenance) -> dict[str, Any]:
         "versions": dict(provenance.versions or {}),
         "records": [asdict(record) for record in provenance.records],
     }
+    if provenance.warnings:
+        table["warnings"] = list(provenance.warnings)
     return table if provenance.seed is None else table | {"seed": provenance.seed}
 
 
 def provenance(table: Mapping[str, Any]) -> ModelProvenance:
     """Return the inverse of `provenance_table`."""
     records = tuple(RecordSource(str(r["name"]), str(r["role"]), str(r["sha256"])) for r in table["records"])
-    return ModelProvenance(records, str(table["method"]), table.get("seed"), dict(table["versions"]))
+    warnings = tuple(str(text) for text in table.get("warnings", ()))
+    return ModelProvenance(records, str(table["method"]), table.get("seed"), dict(table["versions"]), warnings)
 
 
 def ship_table(ship: Ship) -> dict[str, Any]:

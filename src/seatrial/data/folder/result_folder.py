@@ -68,12 +68,19 @@ class FolderKind(Generic[T]):
     repeated: frozenset[str] = frozenset()
 
 
+LASTING_WARNINGS = (
+    "not-converged", "search-abandoned", "unphysical-values", "gain-falls", "held-coupling", "term-worsens-prediction",
+)  # fmt: skip
+"""Codes of findings of a fit that hold for every use of its values: they are written into the model file."""
+
+
 def model_of_fit(fit: Fit) -> ModelFile:
     """Return the model file of a fit: equations, values and their covariance, ship, records, approach condition."""
     held_out = {p.record for p in fit.validation}
     roles = [(r, "validation" if r.name in held_out else "training") for r in fit.records]
     sources = tuple(RecordSource(record.name, role, record.provenance.sha256) for record, role in roles)
-    provenance = ModelProvenance(sources, fit.method.criterion, fit.seed, dict(fit.versions))
+    warnings = tuple(f"[{f.code}] {f.message}" for f in fit.findings if f.code in LASTING_WARNINGS)
+    provenance = ModelProvenance(sources, fit.method.criterion, fit.seed, dict(fit.versions), warnings)
     approach = approach_condition([r for r, role in roles if role == "training"], fit.model)
     return ModelFile(fit.model, fit.covariance, provenance, fit.ship, approach, fit.interval_basis)
 
