@@ -30,6 +30,7 @@ def print_tuning(tuning: "Tuning") -> None:
     print_lines(f"bound {b.name}: output variance {exact(b.ratio, 3)} of the chosen gains', {b.conditions}"
                 for b in tuning.bounds)  # fmt: skip
     _print_robustness(tuning)
+    _print_disturbances(tuning)
     _print_manoeuvres(tuning)
     print_warnings(tuning.findings)
     print_lines([_effort_text(tuning)])
@@ -151,6 +152,15 @@ def _print_robustness(tuning: "Tuning") -> None:
     if tuning.robustness:
         header = ("ships that differ", "stable draws", "largest Ms", "stable corners", "largest Ms", "at")
         print_table([header, *robustness_rows(tuning)], flush_left=(0, len(header) - 1))
+
+
+def _print_disturbances(tuning: "Tuning") -> None:
+    from seatrial.reporting.tuning_rows import disturbance_headings, disturbance_rows
+
+    if tuning.disturbance_simulations:
+        (_, unit, _), *_ = disturbance_headings(tuning)
+        header = (f"{tuning.output} kept, rms [{unit}]", "predicted", "simulated", "with limits")
+        print_table([header, *(row[:4] for row in disturbance_rows(tuning))])
 
 
 def _print_manoeuvres(tuning: "Tuning") -> None:

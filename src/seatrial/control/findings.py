@@ -11,6 +11,7 @@ from seatrial.control.schedule import Schedule
 from seatrial.control.task import Demand
 from seatrial.core.results.tuning import (
     Controller,
+    DisturbanceSimulation,
     ManoeuvreResponse,
     PairedDifference,
     ParetoFront,
@@ -23,6 +24,7 @@ from seatrial.core.values import Finding, Severity
 _NO_RESTRICTIONS = (
     "the genetic search knows no restriction: run without --method, or take 'own front' (reference in tuning.json)"
 )
+MAX_LIMITED_RATIO = 1.1  # of the output's rms with limits over that without; chosen
 _LEAST_COVERAGE = 0.97  # share of the hypervolume of the checking grid; chosen
 
 
@@ -33,6 +35,7 @@ class Checks:
     simulations: tuple[SeawaySimulation, ...] = ()
     comparisons: tuple[PairedDifference, ...] = ()
     manoeuvres: tuple[ManoeuvreResponse, ...] = ()
+    disturbances: tuple[DisturbanceSimulation, ...] = ()
     schedule: Schedule = field(default_factory=Schedule)
     bounds: tuple[PerformanceBound, ...] = ()
     is_interrupted: bool = False
@@ -54,6 +57,13 @@ def findings(
     found += _gain_findings(evaluator, chosen, method)
     found += _simulation_findings(checks.simulations, checks.comparisons, method)
     found += _demand_findings(evaluator.task.demand, checks.manoeuvres)
+    found += [
+        _warning("lost-to-limits", f"the output is {s.limited['output'] / s.unlimited['output']:.2g} times as large "
+                 f"with the actuator's limits as without, in {s.disturbance}",
+                 _advice("set a lower limit on saturation", method))
+        for s in checks.disturbances
+        if s.limited["output"] > MAX_LIMITED_RATIO * s.unlimited["output"]
+    ]  # fmt: skip
     if front.hypervolume < _LEAST_COVERAGE:
         found.append(_warning("coarse-front", f"the front covers {100.0 * front.hypervolume:.1f} % of what a grid of "
                               "all gains does", "give it another seed"))  # fmt: skip

@@ -6,6 +6,7 @@ are added, and the controller sees the sum.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
 
@@ -16,7 +17,7 @@ from seatrial.control.task import OUTPUT, Seaway, SimulationSettings, TuningTask
 from seatrial.core.results.tuning import PairedDifference, SeawaySimulation
 from seatrial.core.values import Array, Channel, InputError, Record, frozen
 from seatrial.numerics.workers import map_in_threads
-from seatrial.physics.hydro.excitation import Complex
+from seatrial.physics.hydro.excitation import Complex, encounter_frequency
 from seatrial.physics.loops import LoopSignal, TransferLoop, WaveEffect
 from seatrial.physics.loops.state_space import plant_model
 from seatrial.physics.sea.realise import Spacing, WaveComponents, realise, short_crested
@@ -199,16 +200,21 @@ def sum_harmonics(omega: Array, amplitude: Complex, dt: float, count: int) -> Ar
     return made.ravel()[:count]
 
 
-def frequency_band(seaway: Seaway) -> tuple[float, float]:
+def frequency_band(seaway: Seaway, response: Callable[[Array], Complex] | None = None) -> tuple[float, float]:
     """Return frequencies [rad/s] of all waves that do much to the loop, up to twelve times the modal one.
 
     Where the effect is the motion of a hull, of all that its excitation knows: points of it may feel shorter waves.
+    With a response (n,) over |omega_e| (n,), of all that do much to what responds: a ship answers most to waves that
+    keep up with it, of which there are few.
     """
     peak = seaway.spectrum.modal_frequency
     omega = np.linspace(0.0, _REACH * peak, _FREQUENCIES)[1:]
     if seaway.is_output:
         lower, upper = seaway.effect.frequency_range
         size = np.where((omega >= lower) & (omega <= upper), 1.0, 0.0)
+    elif response is not None:
+        sizes = (_responded(seaway, response, omega, beta) for beta in seaway.directions)
+        size = np.sum([*sizes], axis=0)
     else:
         sizes = (np.abs(seaway.effect.amplitude(omega, seaway.U, beta)) ** 2 for beta in _FELT_HEADINGS)
         size = next(one for one in sizes if one.any())
@@ -216,6 +222,11 @@ def frequency_band(seaway: Seaway) -> tuple[float, float]:
     share /= share[-1]
     ends = np.searchsorted(share, [_ENERGY_SHARE, 1.0 - _ENERGY_SHARE])
     return float(omega[ends[0]]), float(omega[ends[1]])
+
+
+def _responded(seaway: Seaway, response: Callable[[Array], Complex], omega: Array, beta: float) -> Array:
+    met = np.abs(encounter_frequency(omega, seaway.U, beta))
+    return np.abs(seaway.effect.amplitude(omega, seaway.U, beta) * response(met)) ** 2
 
 
 def _without_run_in(record: Record, first: int) -> Record:

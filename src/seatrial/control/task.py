@@ -50,6 +50,12 @@ class Seaway:
     at_points: tuple[WaveEffect, ...] = ()
 
     @property
+    def directions(self) -> tuple[float, ...]:
+        """The heading [rad], and those to either side of it that a short-crested sea has much of."""
+        aside = (0.0,) if self.spreading is None else (-0.25 * math.pi, 0.0, 0.25 * math.pi)
+        return tuple(math.acos(math.cos(self.beta + angle)) for angle in aside)
+
+    @property
     def is_output(self) -> bool:
         """Whether the effect is the output itself without control, with nothing between."""
         return self.path is not None and not self.path.order

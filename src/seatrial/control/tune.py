@@ -10,6 +10,7 @@ from seatrial.control.bounds import bounds, is_available
 from seatrial.control.choose import choose
 from seatrial.control.controller import components, describe_controller, discrete_controller
 from seatrial.control.demand import simulate_manoeuvres
+from seatrial.control.disturbance_simulation import simulate_disturbances
 from seatrial.control.findings import Checks, findings
 from seatrial.control.front import Effort, grid_front, pareto_front, refuse_idle, refuse_infeasible, thin_front
 from seatrial.control.gain_choice import GainChoice, NamedGains
@@ -94,6 +95,7 @@ def tune(
         extended_fronts=tuple(thin_front(made, FRONT_POINTS) for made in more_fronts if len(made.gains)),
         components=components(choice.evaluator.loop),
         seaway_simulations=checks.simulations,
+        disturbance_simulations=checks.disturbances,
         paired_differences=checks.comparisons,
         schedule=checks.schedule.points,
         schedule_trades=checks.schedule.trades,
@@ -169,6 +171,8 @@ def _run_checks(
         if task.demand is not None:
             report_progress(f"demand on {PARAMETER_DRAWS} ships that the fit allows")
             made.manoeuvres = simulate_manoeuvres(task, loop, "chosen", choice.gains, seed, draws=PARAMETER_DRAWS)
+            report_progress("what disturbs the loop, simulated with the actuator's limits")
+            made.disturbances = simulate_disturbances(task, loop, choice.gains, seed)
         if task.simulation is not None and task.demand is None:
             made.simulations, made.comparisons = _simulate_controllers(task, choice, compared, seed, report_progress)
         if task.schedule_grid is not None:

@@ -8,7 +8,15 @@ from markupsafe import Markup
 
 from seatrial.core.equations.latex import latex_symbol
 from seatrial.core.results.front_chart import degree_unit
-from seatrial.core.results.tuning import Component, Controller, DiscreteBlock, OperatingPoint, PerformanceBound, Tuning
+from seatrial.core.results.tuning import (
+    Component,
+    Controller,
+    DiscreteBlock,
+    DisturbanceSimulation,
+    OperatingPoint,
+    PerformanceBound,
+    Tuning,
+)
 from seatrial.core.text.numbers import DASH, exact, fixed, significant
 from seatrial.core.values.channel_text import channel_meaning
 from seatrial.data.folder.orders import channel_display_unit
@@ -16,6 +24,7 @@ from seatrial.reporting import tuning_text
 from seatrial.reporting.mathml import inline
 from seatrial.reporting.text_tables import TextTable
 
+_HALF = 1.96  # standard errors of half a 95 % interval
 # share of the largest gain of a name below which a gain is rounding
 ZERO_TOLERANCE = 1e-9
 
@@ -121,6 +130,27 @@ def robustness_rows(tuning: Tuning) -> list[tuple[str, ...]]:
         )
         for r in tuning.robustness
     ]  # fmt: skip
+
+
+def disturbance_headings(tuning: Tuning) -> list[tuple[str, str, int]]:
+    """Return what the columns of `disturbance_rows` are of, units, and how many columns each has."""
+    (output, of_output), (actuator, of_actuator), (_, of_rate), *_ = rms_headings(tuning)
+    return [(output, of_output, 3), (actuator, of_actuator, 2), ("its rate", of_rate, 2)]
+
+
+def disturbance_rows(tuning: Tuning) -> list[tuple[str, ...]]:
+    """Return of each disturbance rms: of the output predicted, simulated, limited; of actuator and rate without two."""
+    of_output, of_actuator = channel_display_unit(tuning.output)[0], channel_display_unit(tuning.actuator)[0]
+
+    def row(s: DisturbanceSimulation) -> tuple[str, ...]:
+        half = significant(of_output * _HALF * s.standard_error["output"], 1)
+        free = f"{significant(of_output * s.unlimited['output'], 3)} ± {half}"
+        moved = [significant(of_actuator * rms[key], 3)
+                 for key in ("actuator", "actuator_rate") for rms in (s.predicted, s.limited)]  # fmt: skip
+        ends = [significant(of_output * rms["output"], 3) for rms in (s.predicted, s.limited)]
+        return s.disturbance, ends[0], free, ends[1], *moved
+
+    return [row(s) for s in tuning.disturbance_simulations]
 
 
 def bound_row(b: PerformanceBound) -> tuple[str, str, str, str, str]:

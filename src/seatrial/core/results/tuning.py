@@ -209,6 +209,20 @@ class SeawaySimulation:
 
 
 @dataclass(frozen=True)
+class DisturbanceSimulation:
+    """The chosen controller in one disturbance: rms of output, actuator and actuator_rate, SI, over realisations."""
+
+    disturbance: Annotated[str, Field(description="in words")]
+    seeds: int
+    predicted: Annotated[dict[str, Number], Field(description="by linear theory")]
+    unlimited: Annotated[dict[str, Number], Field(description="simulated without limits")]
+    limited: Annotated[
+        dict[str, Number], Field(description="simulated with the actuator's limits of angle and rate; null: runs away")
+    ]
+    standard_error: Annotated[dict[str, Number], Field(description="of `unlimited`, from its scatter over the seeds")]
+
+
+@dataclass(frozen=True)
 class PairedDifference:
     """Reduction of the chosen controller minus that of another on the same seas, with its 95 % interval."""
 
@@ -306,6 +320,9 @@ class Tuning(Summarised):
         tuple[Controller, ...], Field(description="a more robust and a harder working design beside the chosen one")
     ] = ()
 
+    disturbance_simulations: Annotated[
+        tuple[DisturbanceSimulation, ...], Field(description="of a servo loop: the output kept, with limits")
+    ] = ()
     motion: Annotated[
         str, Field(description="of what reductions are, its rms in m/s^2 under `motion`; empty: of the output")
     ] = ""

@@ -1,0 +1,115 @@
+"""A servo loop kept steady in what disturbs it: simulated with its actuator's limits beside linear theory."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.signal import lfilter
+
+from seatrial.control.gain_evaluation import gain_evaluator
+from seatrial.control.seaway_simulation import effect_amplitudes, frequency_band, sum_harmonics, wave_components
+from seatrial.control.task import Seaway, SlowDisturbance, TuningTask
+from seatrial.core.results.tuning import DisturbanceSimulation
+from seatrial.core.values import Array, DivergedError
+from seatrial.numerics.workers import map_in_threads
+from seatrial.physics.hydro.excitation import Complex
+from seatrial.physics.loops import TransferLoop, plant_model
+from seatrial.physics.simulate.closed_loop import UNLIMITED, ActuatorLimits, ClosedLoop
+
+_SEEDS, _CYCLES = 8, 60  # realisations, and cycles of the output's mean frequency in each; chosen
+_STEP_SHARE = 0.1  # of the fastest pole's time constant, of a step; chosen
+_MOST_STEPS = 300_000  # of a realisation; chosen
+_RUN_IN = 5.0  # time constants of the slowest pole, before what is counted; chosen
+_COUNTED = 20.0  # the same, that are counted at least; chosen
+_LEAST_FREQUENCY = 1e-9  # rad/s: a wave that keeps up with the ship
+SIGNALS = ("output", "actuator", "actuator_rate")
+
+
+@dataclass(frozen=True)
+class _Clock:
+    """Step [s], number of samples of a realisation, and the first that is counted."""
+
+    dt: float
+    count: int
+    first: int
+
+
+def simulate_disturbances(
+    task: TuningTask, loop: TransferLoop, gains: Array, seed: int
+) -> tuple[DisturbanceSimulation, ...]:
+    """Return each of the task's disturbances with the gains (g,) of a stable loop: predicted, without and with limits.
+
+    The plant is that of linear theory, so that only the limits of angle and rate are new: what they cost is seen by
+    itself. Seas are sums of harmonics, slow disturbances exact steps of their process.
+    """
+    predicted = np.sqrt(gain_evaluator(task, loop).evaluate(gains[None]).variances[0, :, :3])
+    limits = ActuatorLimits(task.constraints.limit, task.constraints.rate)
+    return tuple(
+        _simulate(met, met.disturbed(task.loop_at(met.U, loop)).with_gains(gains), limits, expected, seed)
+        for met, expected in zip(task.disturbances, predicted, strict=True)
+    )
+
+
+def _simulate(
+    met: Seaway | SlowDisturbance, loop: TransferLoop, limits: ActuatorLimits, expected: Array, seed: int
+) -> DisturbanceSimulation:
+    """Return one disturbance before a loop; expected: rms by linear theory, (3,)."""
+    clock, model = _clock(met, loop), plant_model(loop)
+    actuator, disturbance = model.input_names
+    run = ClosedLoop(model, loop, loop.gain_values, clock.dt, actuator, disturbance, loop.output)
+
+    def of_one(number: int) -> Array:
+        series = _series(met, loop, clock, number)
+        return np.stack([_mean_squares(run, series, clock, each) for each in (UNLIMITED, limits)])
+
+    free, held = np.stack(map_in_threads(of_one, [seed + k for k in range(_SEEDS)]), axis=1)
+    rms = np.sqrt(free.mean(axis=0))
+    error = free.std(axis=0, ddof=1) / math.sqrt(_SEEDS) / (2.0 * rms)
+    columns = (expected, rms, np.sqrt(held.mean(axis=0)), error)
+    return DisturbanceSimulation(met.description, _SEEDS, *(_named(column) for column in columns))
+
+
+def _named(values: Array) -> dict[str, float]:
+    return dict(zip(SIGNALS, values.tolist(), strict=True))
+
+
+def _clock(met: Seaway | SlowDisturbance, loop: TransferLoop) -> _Clock:
+    """Return steps short for the fastest pole, a run-in for the slowest, and enough cycles of the output."""
+    spectrum = met.exposure(loop)
+    omega = spectrum.omega_e
+    energy = spectrum.energy * np.abs(_response(loop, omega)) ** 2
+    mean = float(np.sum(omega * energy) / np.sum(energy))
+    poles = loop.closed_loop_poles
+    slowest = 1.0 / float(-poles.real.max())
+    dt = _STEP_SHARE / float(np.abs(poles).max())
+    counted = max(_CYCLES * 2.0 * math.pi / mean, _COUNTED * slowest)
+    count = min(math.ceil((_RUN_IN * slowest + counted) / dt), _MOST_STEPS)
+    return _Clock(dt, count, min(math.ceil(_RUN_IN * slowest / dt), count // 2))
+
+
+def _response(loop: TransferLoop, omega: Array) -> Complex:
+    """Return D S at omega [rad/s], kept from zero where the plant integrates."""
+    w = np.maximum(omega, _LEAST_FREQUENCY)
+    return loop.disturbance.frequency_response(w) / (1.0 + loop.open_loop(w))
+
+
+def _series(met: Seaway | SlowDisturbance, loop: TransferLoop, clock: _Clock, number: int) -> Array:
+    rng = np.random.default_rng(number)
+    if isinstance(met, SlowDisturbance):
+        stay = math.exp(-met.bandwidth * clock.dt)
+        kicks = met.rms * math.sqrt(1.0 - stay**2) * rng.standard_normal(clock.count)
+        return np.asarray(lfilter([1.0], [1.0, -stay], kicks))
+    lines = wave_components(met, rng, frequency_band(met, lambda omega: _response(loop, omega)))
+    return sum_harmonics(lines.omega_e, effect_amplitudes(lines, met.effect), clock.dt, clock.count)
+
+
+def _mean_squares(run: ClosedLoop, disturbance: Array, clock: _Clock, limits: ActuatorLimits) -> Array:
+    """Return mean squares of output, actuator and its rate, (3,); infinite where the limits let the loop run away."""
+    first = clock.first
+    try:
+        states, moved = run.run(disturbance, limits)
+    except DivergedError:
+        return np.full(len(SIGNALS), np.inf)
+    output, rate = states[first:, run.model.states.index(run.output)], np.diff(moved[first:]) / run.dt
+    squares = [float(np.mean(signal**2)) for signal in (output, moved[first:], rate)]
+    return np.array(squares)
