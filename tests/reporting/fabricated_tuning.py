@@ -10,6 +10,7 @@ from seatrial.core.results.tuning import (
     Component,
     Controller,
     ControllerConstraints,
+    DisturbanceSimulation,
     ManoeuvreResponse,
     OperatingPoint,
     PairedDifference,
@@ -106,10 +107,21 @@ def fabricated_autopilot() -> Tuning:
         chosen=chosen, baselines=(given,), front=front, extended_fronts=(),
         components=components(loop), seaway_simulations=(), paired_differences=(), schedule=(), bounds=(),
         robustness=(),
+        disturbance_simulations=(_kept_in_a_slow_disturbance(),),
         manoeuvres=(_course_change(rng, "course change of 20 deg", "chosen", 1.7, 60.0),
                     replace(_course_change(rng, "course change of 20 deg", "given", 1.0, 12.0), draws=0, stable_draws=0,
                             worst_overshoot=math.nan, sampled_outputs=np.empty((0, 0)), settling=math.nan)),
         findings=(), reasons=(),
+    )  # fmt: skip
+
+
+def _kept_in_a_slow_disturbance() -> DisturbanceSimulation:
+    def rms(output: float, actuator: float, rate: float) -> dict[str, float]:
+        return {"output": output, "actuator": actuator, "actuator_rate": rate}
+
+    return DisturbanceSimulation(
+        "slow disturbance", 8, rms(0.0105, 0.0245, 0.0051), rms(0.01031, 0.0246, 0.0052), rms(0.011, 0.027, 0.00489),
+        rms(0.0002, 0.0005, 0.0001),
     )  # fmt: skip
 
 

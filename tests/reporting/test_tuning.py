@@ -14,14 +14,20 @@ from seatrial.core.results.tuning import PairedDifference, Tuning
 from seatrial.core.values import Finding, Severity
 from seatrial.reporting.first_screen import KeyFact
 from seatrial.reporting.tuning import TITLES, html
-from seatrial.reporting.tuning_rows import gain_texts, schedule_table, transfer_latex
+from seatrial.reporting.tuning_rows import (
+    disturbance_headings,
+    disturbance_rows,
+    gain_texts,
+    schedule_table,
+    transfer_latex,
+)
 from seatrial.reporting.tuning_text import comparison_sentence, demand_sentence, key_facts, verdict
 
 LARGEST = 600_000
 MADE = {"fin": fabricated_fin, "autopilot": fabricated_autopilot, "bare": fabricated_bare}
 SECTIONS = {
-    "fin": set(TITLES) - {"manoeuvres", "search"},
-    "autopilot": {"controllers", "margins", "manoeuvres", "loop", "method"},
+    "fin": set(TITLES) - {"disturbances", "manoeuvres", "search"},
+    "autopilot": {"controllers", "disturbances", "margins", "manoeuvres", "loop", "method"},
     "bare": {"controllers", "method"},
 }
 
@@ -55,6 +61,15 @@ def test_it_has_what_the_tuning_holds(page: str, fin: Tuning) -> None:
         assert word in page
     assert page.count("<svg xmlns") == 10
     assert page.count("<mfrac>") == 7
+
+
+def test_disturbances_are_shown_predicted_and_simulated() -> None:
+    autopilot = fabricated_autopilot()
+    assert disturbance_rows(autopilot) == [
+        ("slow disturbance", "0.602", "0.591 ± 0.02", "0.630", "1.40", "1.55", "0.292", "0.280")
+    ]
+    assert [count for *_, count in disturbance_headings(autopilot)] == [3, 2, 2]
+    assert "0.591 ± 0.02" in html(autopilot)
 
 
 def test_the_same_tuning_gives_the_same_bytes(page: str) -> None:
