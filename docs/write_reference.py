@@ -1,4 +1,4 @@
-"""Write docs/command-line.md from the commands, and the keys at the end of docs/trial-file.md from their schema.
+"""Write docs/command-line.md from the commands, and the keys at the end of trial-file.md and loop-file.md from schemas.
 
 `python docs/write_reference.py --check` writes nothing and names each page that differs.
 """
@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import Any
 
 import typer
-from trial_keys import trial_keys
+from schema_keys import schema_keys
 
 from seatrial.cli import app
+from seatrial.control.loopfile.schema import loop_schema
 from seatrial.data.trial.schema import trial_schema
 
 DOCS = Path(__file__).parent
-TRIAL_FILE = DOCS / "trial-file.md"
 MARK = "<!-- written by write_reference.py -->\n"
 HEAD = """# Command line
 
@@ -86,8 +86,9 @@ def _default(parameter: Any) -> str:
 def pages() -> Iterator[tuple[Path, str]]:
     """Yield path and text of each page."""
     yield DOCS / "command-line.md", page()
-    by_hand, mark, _ = TRIAL_FILE.read_text(encoding="utf-8").partition(MARK)
-    yield TRIAL_FILE, f"{by_hand}{mark}\n{trial_keys(trial_schema())}"
+    for name, schema in (("trial-file.md", trial_schema()), ("loop-file.md", loop_schema())):
+        by_hand, mark, _ = (DOCS / name).read_text(encoding="utf-8").partition(MARK)
+        yield DOCS / name, f"{by_hand}{mark}\n{schema_keys(schema)}"
 
 
 def main(*, check: bool) -> int:

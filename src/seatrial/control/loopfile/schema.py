@@ -5,7 +5,17 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from seatrial.control.genetic_settings import GeneticTuning
-from seatrial.data.trial.amounts import Amount, SiAmount, StrictTable, Unit
+from seatrial.data.trial.amounts import (
+    Amount,
+    Metres,
+    MetresPerSecond,
+    Radians,
+    RadiansPerSecond,
+    Seconds,
+    SiAmount,
+    StrictTable,
+    Unit,
+)
 from seatrial.data.trial.schema import ExcitationTable
 from seatrial.data.trial.sea_table import SeaTable
 
@@ -40,7 +50,7 @@ SiQuantities = Annotated[Quantities, BeforeValidator(_as_quantities)]
 class NotchTable(StrictTable):
     """(s^2 + 2 depth damping omega s + omega^2) / (s^2 + 2 damping omega s + omega^2): `depth` is what passes."""
 
-    omega: SiAmount
+    omega: RadiansPerSecond
     damping: Positive = 0.5
     depth: Annotated[float, Field(ge=0, lt=1)] = 0.1  # gain at omega; chosen
 
@@ -48,7 +58,7 @@ class NotchTable(StrictTable):
 class PassTable(StrictTable):
     """Of second order: low-pass omega^2, band-pass 2 damping omega s, high-pass s^2, over the polynomial of both."""
 
-    omega: SiAmount
+    omega: RadiansPerSecond
     damping: Positive = 0.7  # damping ratio, about that of Butterworth's filter, 0.707
 
 
@@ -62,7 +72,7 @@ class BlockTable(StrictTable):
     low_pass: PassTable | None = None
     band_pass: PassTable | None = None
     high_pass: PassTable | None = None
-    lag: SiAmount | None = None
+    lag: Seconds | None = None
     source: str = ""
 
     @model_validator(mode="after")
@@ -87,7 +97,7 @@ class FinTable(StrictTable):
     """
 
     K_alpha: Positive | None = None
-    at_speed: SiAmount | None = None
+    at_speed: MetresPerSecond | None = None
     law: Literal["constant", "U^2"] = "U^2"
 
 
@@ -102,12 +112,12 @@ class PlantTable(StrictTable):
     response: BlockTable | None = None
     model: str | None = None
     scale: Positive | None = None
-    speed: SiAmount | None = None
+    speed: MetresPerSecond | None = None
     fin: FinTable | None = None
     output: str | None = None
     actuator: str | None = None
     disturbance: str | None = None
-    amplitude: SiAmount | None = None
+    amplitude: Radians | None = None
     inputs: dict[str, SiAmount] = Field(default_factory=dict)
 
     @model_validator(mode="after")
@@ -148,8 +158,8 @@ class ControllerTable(StrictTable):
     preamplifier: Literal["printed", "washout"] = "washout"
     K_q: Positive | None = None
     parts: tuple[Literal["KP", "KI", "KD"], ...] = ()
-    derivative_filter: SiAmount | None = None
-    sample_s: SiAmount | None = None
+    derivative_filter: Seconds | None = None
+    sample_s: Seconds | None = None
     sensor: tuple[BlockTable, ...] = ()
     terms: tuple[TermTable, ...] = ()
     filters: tuple[BlockTable, ...] = ()
@@ -203,9 +213,9 @@ class ActuatorTable(StrictTable):
 
     limit: SiAmount | None = None
     rate: SiAmount | None = None
-    stall: SiAmount | None = None
-    dead_time: SiAmount | None = None
-    inertia: SiAmount | None = None
+    stall: Radians | None = None
+    dead_time: Seconds | None = None
+    inertia: Annotated[SiAmount, Field(json_schema_extra={"x-unit": "kg m^2"})] | None = None
     efficiency: Annotated[float, Field(gt=0, le=1)] = 1.0
     servo: tuple[BlockTable, ...] = ()
 
@@ -213,8 +223,8 @@ class ActuatorTable(StrictTable):
 class SeawayTable(SeaTable):
     """One `[[seas]]` block: a sea, met under a heading (0 following, 180 degrees head) at a speed."""
 
-    heading: SiAmount
-    speed: SiAmount | None = None
+    heading: Radians
+    speed: MetresPerSecond | None = None
     spreading: Positive | None = None
 
 
@@ -222,16 +232,16 @@ class SlowDisturbanceTable(StrictTable):
     """One `[[slow_disturbances]]` block: its rms, acting like the actuator; bandwidth in rad/s."""
 
     rms: SiAmount
-    bandwidth: SiAmount
-    speed: SiAmount | None = None
+    bandwidth: RadiansPerSecond
+    speed: MetresPerSecond | None = None
 
 
 class HullTable(StrictTable):
     """`[hull]`: the box over which the slope of short waves is averaged."""
 
-    L: SiAmount
-    B: SiAmount
-    T: SiAmount
+    L: Metres
+    B: Metres
+    T: Metres
 
 
 ObjectiveName = Literal[
@@ -248,11 +258,11 @@ class ObjectiveTable(StrictTable):
     """
 
     name: ObjectiveName
-    height: SiAmount | None = None
+    height: Metres | None = None
     friction: Positive = 0.25
-    lever: SiAmount | None = None
-    x: SiAmount | None = None
-    duration: SiAmount = Amount(value=7200.0)  # s; two hours, as O'Hanlon & McCauley 1974
+    lever: Metres | None = None
+    x: Metres | None = None
+    duration: Seconds = Amount(value=7200.0)  # s; two hours, as O'Hanlon & McCauley 1974
     target: SiAmount | None = None
     one_sided: bool = True
 
@@ -298,8 +308,8 @@ class SimulationTable(StrictTable):
     """`[simulation]`: the nonlinear check; no seeds, no check."""
 
     seeds: Annotated[int, Field(ge=0, le=1000)] = 20  # seas, as in `SimulationSettings`
-    duration: SiAmount = Amount(value=1000.0)  # s, as in `SimulationSettings`
-    step: SiAmount = Amount(value=0.05)  # s, as in `SimulationSettings`
+    duration: Seconds = Amount(value=1000.0)  # s, as in `SimulationSettings`
+    step: Seconds = Amount(value=0.05)  # s, as in `SimulationSettings`
 
 
 class DemandTable(StrictTable):
@@ -311,10 +321,10 @@ class DemandTable(StrictTable):
 
     change: SiAmount
     overshoot: Annotated[float, Field(ge=0, lt=1)] = 0.02  # share of the change; chosen
-    settling: SiAmount | None = None
+    settling: Seconds | None = None
     feed_forward: bool = False
-    time_constant: SiAmount | None = None
-    duration: SiAmount | None = None
+    time_constant: Seconds | None = None
+    duration: Seconds | None = None
 
 
 class UncertaintyTable(StrictTable):
@@ -322,7 +332,7 @@ class UncertaintyTable(StrictTable):
 
     gain: Annotated[float, Field(ge=0, lt=1)] = 0.2  # as in `PlantUncertainty`
     time: Annotated[float, Field(ge=0, lt=1)] = 0.1  # as in `PlantUncertainty`
-    dead_time: SiAmount | None = None
+    dead_time: Seconds | None = None
     draws: Annotated[int, Field(ge=0, le=100_000)] = 1000  # as in `PlantUncertainty`
 
 

@@ -100,6 +100,12 @@ class InSi:
         return amount.in_si
 
 
+# amounts that stay as they are written, with the SI unit of a bare number for schema and reference
+Metres = Annotated[SiAmount, Field(json_schema_extra={"x-unit": "m"})]
+Seconds = Annotated[SiAmount, Field(json_schema_extra={"x-unit": "s"})]
+Radians = Annotated[SiAmount, Field(json_schema_extra={"x-unit": "rad"})]
+MetresPerSecond = Annotated[SiAmount, Field(json_schema_extra={"x-unit": "m/s"})]
+RadiansPerSecond = Annotated[SiAmount, Field(json_schema_extra={"x-unit": "rad/s"})]
 Speed = Annotated[float, InSi("m/s")]
 Angle = Annotated[float, InSi("rad")]
 PositiveLength = Annotated[float, InSi("m", is_positive=True)]

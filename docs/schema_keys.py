@@ -1,4 +1,4 @@
-"""The part of docs/trial-file.md that lists every key: type, unit and default, from the schema of the trial file."""
+"""The part of a page that lists every key of a file: type, unit and default, from the schema of the file."""
 
 import json
 from collections.abc import Iterator, Mapping
@@ -10,8 +10,8 @@ JsonSchema = Mapping[str, Any]
 REQUIRED = "required"
 
 
-def trial_keys(schema: JsonSchema) -> str:
-    """Return a table for each table of the trial file, in the order in which they are met from the root."""
+def schema_keys(schema: JsonSchema) -> str:
+    """Return a table for each table of the file, in the order in which they are met from the root."""
     return "\n".join(_table(path, entry, schema) for path, entry in _tables(schema))
 
 
@@ -31,7 +31,7 @@ def _tables(schema: JsonSchema) -> Iterator[tuple[str, JsonSchema]]:
 
 def _references(value: JsonSchema) -> Iterator[tuple[str, str]]:
     """Yield the tables that a value may be, each with how its heading is written."""
-    if "$ref" in value:
+    if "$ref" in value and not _is_amount(value):
         yield value["$ref"].rpartition("/")[2], "[{}]"
     for part in value.get("anyOf", ()):
         yield from _references(part)
@@ -90,7 +90,10 @@ def _is_amount(part: JsonSchema) -> bool:
 
 
 def _default(value: JsonSchema) -> str:
+    """Return the default as it is written; empty for none, and for tables, whose keys have their own."""
     default = value.get("default")
-    if default is None or default in ("", [], {}) or isinstance(default, dict):
-        return ""
-    return f"`{json.dumps(default, ensure_ascii=False)}`"
+    if isinstance(default, dict):
+        default = default.get("value")  # of an amount
+    if isinstance(default, list):
+        default = [item["name"] if isinstance(item, dict) and "name" in item else item for item in default]
+    return "" if default is None or default in ("", []) else f"`{json.dumps(default, ensure_ascii=False)}`"
