@@ -31,7 +31,7 @@ def test_a_bare_log_is_listed(tmp_path: Path) -> None:
 def test_a_draft_is_written_once_and_checked(tmp_path: Path) -> None:
     log, trial = write(tmp_path / "run.csv", BASE | {"rot": TRUTH["r"]}), tmp_path / "trial.toml"
     text = output("init", str(log), "--out", str(trial))
-    assert "follows d(psi)/dt" in text and "zigzag1, " in text and "Next: seatrial check" in text
+    assert "follows d(psi)/dt" in text and "zigzag1, " in text and "Next: name the column of rudder" in text
     assert "zigzag1" in trial.with_suffix(".html").read_text(encoding="utf-8")
     with pytest.raises(InputError, match="exists and is not overwritten"):
         output("init", str(log), "--out", str(trial))
@@ -61,19 +61,20 @@ def test_a_draft_of_runs_takes_them_whole_and_a_model_of_its_inputs(tmp_path: Pa
     write(tmp_path / "b.csv", columns)
     text = output("init", str(tmp_path), "--out", str(tmp_path / "trial.toml"))
     assert "a.csv: 3 manoeuvres: zigzag, straight, circle to starboard" in text
-    assert "put the length of the craft after 'L =', then seatrial check" in text
+    assert "put the length of the craft after 'L =' in" in text
     draft = (tmp_path / "trial.toml").read_text(encoding="utf-8")
     assert "parts" not in draft
     assert '\nname = "thrusters"' in draft
-    assert 'validate = "a"' in draft
+    assert 'validate = "b"' in draft
 
 
 def test_the_manoeuvres_of_a_single_log_are_runs(tmp_path: Path) -> None:
     write(tmp_path / "a.csv", BASE | {"rudder": TRUTH["delta"] * 180.0 / np.pi})
     text = output("init", str(tmp_path), "--length", "20", "--out", str(tmp_path / "trial.toml"))
-    assert text.endswith(f"Next: seatrial check {tmp_path / 'trial.toml'}\n")
+    assert text.endswith(f"Next: seatrial identify {tmp_path / 'trial.toml'} --out results\n")
     draft = (tmp_path / "trial.toml").read_text(encoding="utf-8")
-    assert draft.count("\nparts = [") == 1 and draft.count("\n    { name = ") == 3
+    assert draft.count("\nparts = [") == 1 and draft.count("\n    { name = ") == 2
+    assert draft.count("\n#   { name = ") == 1  # the straight run
     assert "Next: seatrial identify" in output("check", str(tmp_path / "trial.toml"))
 
 

@@ -48,6 +48,10 @@ def init(
     write_atomically(out, draft.text.encode())
     write_atomically(page, draft_page(draft, out.name).encode())
     _print_guesses([g for part in draft.guesses for g in part if g.is_used])
+    ignored = draft.unrecognised
+    if ignored:
+        more = f" and {len(ignored) - COLUMNS_SHOWN} more" if len(ignored) > COLUMNS_SHOWN else ""
+        print_lines([f"NOTE not recognised, not used: {', '.join(ignored[:COLUMNS_SHOWN])}{more}"])
     for run, stretches, parts in zip(draft.runs, draft.stretches, draft.parts, strict=True):
         name = run.name or run.sources[0].path.name
         print_lines(f"{name}: {one.name}, {one.start:.4g} to {one.stop:.4g} s: {one.evidence}" for one in parts)
@@ -76,10 +80,12 @@ def _after_draft(draft: "DraftTrial", out: Path) -> str:
     if not any(g.is_used for part in draft.guesses for g in part):
         log = draft.surveys[0].path
         return f"no column is recognised; seatrial check {in_shell(log)} lists them, name channels in {out}"
-    steps = ["decide what is OPEN in it"] if draft.open_questions else []
-    steps += ["put the length of the craft after 'L ='"] if draft.lacks_length else []
-    check = f"seatrial check {in_shell(out)}"
-    return f"read {out}, {', '.join(steps)}, then {check}" if steps else check
+    steps = [f"decide what is OPEN in {out}"] if draft.open_questions else []
+    steps += [f"put the length of the craft after 'L =' in {out} (init --length does)"] if draft.lacks_length else []
+    steps += [f"name the column of rudder, thruster or roll angle in {out}"] if draft.lacks_input else []
+    if steps:
+        return f"{', '.join(steps)}, then seatrial check {in_shell(out)}"
+    return f"seatrial identify {in_shell(out)} --out results"
 
 
 def _print_guesses(guesses: "Sequence[ColumnGuess]") -> None:

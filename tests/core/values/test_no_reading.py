@@ -10,3 +10,10 @@ def test_only_what_recurs_far_outside_is_no_reading() -> None:
     assert sentinel_value(np.append(values, [-999.0, -999.0])) == -999.0
     assert sentinel_value(np.append(values, [1e6, np.nan, 1e6])) == 1e6
     assert sentinel_value(np.append(values, -999.0)) is None and sentinel_value(values) is None
+
+
+def test_north_is_next_to_a_heading_a_little_west_of_it() -> None:
+    headings = np.radians(np.append(np.linspace(355.0, 359.9, 50), [0.0, 0.0, 0.0]))
+    assert sentinel_value(headings, "rad") is None and sentinel_value(headings) == 0.0
+    assert sentinel_value(np.append(headings[:50], np.radians([-999.0, -999.0])), "rad") == np.radians(-999.0)
+    assert sentinel_value(np.append(headings[:50], [2.0, 2.0]), "rad") == 2.0

@@ -114,6 +114,14 @@ def test_a_current_shows_in_closure() -> None:
     assert finding.severity is Severity.WARNING and "current or velocity bias of 0.1 m/s" in finding.message
 
 
+def test_an_error_of_the_speed_below_what_a_good_log_has_is_a_note() -> None:
+    record = zigzag()
+    speed = float(np.mean(np.hypot(record["u"], record["v"])))
+    for share, code in ((0.004, "small-closure"), (0.03, "closure")):
+        finding = found(with_values(record, x0=record["x0"] + share * speed * record.time), code)
+        assert (finding.severity is Severity.INFO) == (code == "small-closure")
+
+
 @pytest.mark.parametrize("samples", [5, -8])
 def test_lags_are_measured(samples: int) -> None:
     record = zigzag(noise=1.0)

@@ -121,7 +121,7 @@ def test_sources_of_several_kinds_make_one_run(tmp_path: Path) -> None:
     draft = draft_trial(tmp_path, folder=tmp_path)
     (tmp_path / "trial.toml").write_text(draft.text, encoding="utf-8")
     runs = load_runs(tmp_path / "trial.toml")
-    assert [run.name for run in runs] == ["zigzag1", "straight1", "circle_starboard_1"]
+    assert [run.name for run in runs] == ["zigzag1", "circle_starboard_1"]
     assert set(runs[0].raw_record().channels) == {"x0", "y0", "psi"}
 
 

@@ -60,3 +60,27 @@ def test_a_speed_of_the_wind_is_no_speed_of_the_craft() -> None:
 def test_the_side_of_a_thruster_is_that_of_its_name(name: str, side: str) -> None:
     guess = guess_by_name("", name, "")
     assert guess is not None and guess.side == side
+
+
+@pytest.mark.parametrize(
+    ("name", "symbol", "unit"),
+    [
+        ("Gyro heading", "psi", ""),
+        ("GPS1 SOG (kn)", "sog", "kn"),
+        ("GNSS2 Longitude", "lon", ""),
+        ("gps speed [m/s]", "sog", "m/s"),
+        ("GPS course", "cog", ""),
+        ("IMU yaw rate (deg/s)", "r", "deg/s"),
+        ("Heading true", "psi", ""),
+        ("heading_deg_t", "psi", ""),
+        ("Rudder actual", "delta", ""),
+        ("Wind app. spd", "wind_speed_relative", ""),
+        ("apparent wind direction", "wind_direction_relative", ""),
+        ("gyro_z", "r", ""),
+    ],
+)
+def test_an_instrument_before_a_name_and_how_it_was_taken_behind_it_change_nothing(
+    name: str, symbol: str, unit: str
+) -> None:
+    guess = guess_by_name("", name, "")
+    assert guess is not None and (guess.symbol, guess.unit) == (symbol, unit)

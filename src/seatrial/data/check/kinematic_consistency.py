@@ -1,5 +1,6 @@
 """Integrated velocity against position over the whole record: the place where wrong points show."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -25,6 +26,9 @@ REVERSED_SWAY, SWAY_MARGIN = 2.0, 0.4
 WALK_FACTOR, NOISE_SHARE = 2.5, 0.25
 # residuals over path length that are negligible, and large; multiple of the noise that is tolerated, ours
 MIN_RELATIVE_ERROR, LARGE_RELATIVE_ERROR, NOISE_FACTOR = 1e-4, 3e-3, 1.5
+# error of a velocity over the mean speed up to which it is a note: half of what a speed log may be wrong by
+# (IMO A.824(19), accuracy of measurement: 2 % of the speed), and below what planted_faults.py plants
+SMALL_SPEED_ERROR = 0.01
 
 
 @dataclass(frozen=True)
@@ -37,6 +41,16 @@ class ErrorCause:
     coefficients: tuple[float, ...]
     residual_rms: float
     edits: tuple[TrialEdit, ...] = ()
+
+    def speed_error(self, mean_speed: float) -> float:
+        """The error of the velocity [m/s] that the cause is, at a mean speed [m/s]; infinite where it is none."""
+        match self.name:
+            case "current" | "bias of u" | "bias of v":
+                return math.hypot(*self.coefficients)
+            case "scale":
+                return abs(self.coefficients[0]) * mean_speed
+            case _:
+                return math.inf
 
     def rank(self) -> float:
         """Residual with which causes are compared: one with two coefficients must leave less than one with one."""
@@ -64,9 +78,15 @@ def kinematic_consistency_findings(motion: RecordedMotion) -> tuple[Finding, ...
     if gain < DOUBTFUL_GAIN and not is_significant:
         advice = "check frame, reference point, lag and bias of u, v against the positions"
         return (Finding(Severity.WARNING, "closure", message, evidence, advice),)
-    alike = [one.text for one in ranked if one.residual_rms <= AMBIGUOUS_RATIO * best.residual_rms]
-    message += f"; {' or '.join(alike[:MOST_CAUSES])} would explain it"
+    alike = [one for one in ranked if one.residual_rms <= AMBIGUOUS_RATIO * best.residual_rms]
+    message += f"; {' or '.join(one.text for one in alike[:MOST_CAUSES])} would explain it"
     evidence += f", {_residuals_text(ranked)}"
+    mean_speed = motion.path_length / record.duration
+    if max(one.speed_error(mean_speed) for one in alike) < SMALL_SPEED_ERROR * mean_speed:
+        advice = (
+            f"no action needed: it is below {SMALL_SPEED_ERROR:.0%} of the speed, and a good log may have twice that"
+        )
+        return (Finding(Severity.INFO, "small-closure", message, evidence, advice),)
     is_distinct = second.residual_rms > DOUBTFUL_GAIN * best.residual_rms
     is_certain = best.name == "point" and gain > CERTAIN_GAIN and is_distinct
     severity = Severity.ERROR if is_certain else Severity.WARNING

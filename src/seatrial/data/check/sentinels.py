@@ -21,7 +21,7 @@ def without_sentinels(record: Record) -> tuple[Record, tuple[Finding, ...]]:
     ]
     for symbol in [s for s in record.channels if s not in INPUT_CHANNELS]:
         values = record[symbol]
-        sentinel = sentinel_value(values)
+        sentinel = sentinel_value(values, record.channel(symbol).unit)
         if sentinel is None:
             continue
         rows = values == sentinel

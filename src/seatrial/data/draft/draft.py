@@ -10,9 +10,9 @@ from seatrial.core.values.files import is_folder
 from seatrial.data.draft.agreement import agreed_guesses
 from seatrial.data.draft.behaviour import checked_by_behaviour, run_record
 from seatrial.data.draft.column_guess import ColumnGuess
-from seatrial.data.draft.draft_text import RecordsBlock, trial_text
+from seatrial.data.draft.draft_text import RecordsBlock, trial_text, unrecognised_columns
 from seatrial.data.draft.guess import guess_columns, without_conflicts
-from seatrial.data.draft.manoeuvres import find_stretches, is_decay, numbered, offered_parts
+from seatrial.data.draft.manoeuvres import find_stretches, is_decay, numbered, offered_parts, used_parts
 from seatrial.data.draft.runs_of_logs import LogRun, runs_of_logs
 from seatrial.data.draft.session_text import session_line
 from seatrial.data.draft.starting_model import StartingModel, held_out_run, starting_model
@@ -37,8 +37,10 @@ class DraftTrial:
         records: of each run, even and complete; None where its columns make none.
         stretches: manoeuvres found, of each run; parts: those of them that are runs of their own.
         held_out: the run that judges the model; empty: none can.
+        unrecognised: columns of the longest run that stand for no channel.
         session: the line that says which runs share their offsets; empty: each has its own.
         lacks_length: whether the length of the craft is to be stated.
+        lacks_input: whether no column is an input of a model.
     """
 
     text: str
@@ -49,8 +51,10 @@ class DraftTrial:
     stretches: tuple[tuple[LogStretch, ...], ...] = ()
     parts: tuple[tuple[LogStretch, ...], ...] = ()
     held_out: str = ""
+    unrecognised: tuple[str, ...] = ()
     session: str = ""
     lacks_length: bool = False
+    lacks_input: bool = False
 
     @property
     def open_questions(self) -> tuple[ColumnGuess, ...]:
@@ -82,17 +86,21 @@ def draft_trial(*logs: str | Path, folder: str | Path = ".", length: float = 0.0
     guesses = [agreed_guesses(parts, examined) for parts in named]
     records = [run_record(run.sources, parts) for run, parts in zip(runs, guesses, strict=True)]
     stretches = numbered([find_stretches(run.sources, one) for run, one in zip(runs, records, strict=True)])
-    model = starting_model({g.symbol for one in guesses[longest[0]] for g in one if g.is_used}, records, length)
+    symbols = {g.symbol for one in guesses[longest[0]] for g in one if g.is_used}
+    model = starting_model(symbols, records, length)
     # whatever a craft with thrusters does shows them: its runs stay whole where one can judge the others
     parts = tuple(() for _ in runs) if model.has_thrusters and len(runs) > 1 else offered_parts(records, stretches)
-    held_out, session = held_out_run(model, _pieces(runs, records, parts)), session_line(runs)
+    pieces = _pieces(runs, records, parts)
+    model = starting_model(symbols, list(pieces.values()), length) if pieces else model
+    held_out, session = held_out_run(model, pieces), session_line(runs)
     blocks = _blocks(runs, guesses, stretches, parts, longest[0])
     blocks = [_with_roles(block, model, held_out, session) for block in blocks]
     tables = tables_text(model, [g for _, columns in blocks[0].sources for g in columns], length)
     text = trial_text(blocks, tables, reasons | left_out, Path(folder).resolve())
     return DraftTrial(
-        text, tuple(surveys), tuple(runs), guesses[longest[0]], tuple(records), stretches, parts, held_out, session,
-        bool(model.name) and not length,
+        text, tuple(surveys), tuple(runs), guesses[longest[0]], tuple(records), stretches, parts, held_out,
+        tuple(name for one in blocks[0].sources for name in unrecognised_columns(*one)), session,
+        bool(model.name) and not length, not model.name,
     )  # fmt: skip
 
 
@@ -116,7 +124,7 @@ def _pieces(
         if record is None:
             return {}
         origin = float(record.time[0])
-        cut = {one.name: record.between(origin + one.start, origin + one.stop) for one in offered}
+        cut = {one.name: record.between(origin + one.start, origin + one.stop) for one in used_parts(offered)}
         pieces |= cut or {run.name or run_name(run.sources[0].path): record}
     return pieces
 

@@ -7,10 +7,11 @@ from pathlib import Path
 
 from seatrial.core.text.words import counted
 from seatrial.data.draft.column_guess import ColumnGuess
+from seatrial.data.draft.manoeuvres import used_parts
 from seatrial.data.draft.named_manoeuvre import name_contradiction
 from seatrial.data.draft.stored_parameters import antenna_place
 from seatrial.data.draft.stretch import LogStretch
-from seatrial.data.draft.survey import LogSurvey
+from seatrial.data.draft.survey import LogSurvey, TopicSummary
 from seatrial.data.read import ColumnSpec
 from seatrial.data.read.layout import TimeSpec
 
@@ -159,17 +160,25 @@ def _channel_lines(survey: LogSurvey, guesses: Sequence[ColumnGuess]) -> list[st
     return [*lines, *_unused_lines(survey, guesses)]
 
 
+def unrecognised_columns(survey: LogSurvey, guesses: Sequence[ColumnGuess]) -> list[str]:
+    """Return the names of columns that stand for no channel: by name nothing, or text."""
+    known = {str(guess.source) for guess in guesses if guess.is_used or guess.unused_because}
+    return [
+        name for topic in survey.topics for name in (*_column_names(topic), *topic.text_columns) if name not in known
+    ]
+
+
+def _column_names(topic: TopicSummary) -> list[str]:
+    return [f"{topic.topic}/{column.name}" if topic.topic else column.name for column in topic.columns]
+
+
 def _unused_lines(survey: LogSurvey, guesses: Sequence[ColumnGuess]) -> list[str]:
     """Columns that are not used: those that are recognised with the reason, the others by name."""
     named = {str(guess.source) for guess in guesses if guess.is_used}
-    columns = [
-        f"{topic.topic}/{column.name}" if topic.topic else column.name
-        for topic in survey.topics
-        for column in topic.columns
-    ]
+    columns = [name for topic in survey.topics for name in _column_names(topic)]
     reasons = {str(g.source): f"{g.symbol}, {g.unused_because}" for g in guesses if g.unused_because}
     recognised = [f"{name} ({reasons[name]})" for name in columns if name in reasons and name not in named]
-    rest = [name for name in columns if name not in named and name not in reasons]
+    rest = unrecognised_columns(survey, guesses)
     more = f", and {len(rest) - _UNUSED_SHOWN} more ('seatrial check {survey.path.name}' lists them)"
     shown = ", ".join(rest[:_UNUSED_SHOWN]) + (more if len(rest) > _UNUSED_SHOWN else "")
     lines = [f"# not used: {_comment(', '.join(recognised))}"] if recognised else []
@@ -194,12 +203,15 @@ def _part_lines(stretches: Mapping[str, Sequence[LogStretch]], parts: Sequence[S
     lines = [_run_line(name, found) for name, found in stretches.items() if found and name not in offered]
     if not offered:
         return lines
-    lines += ["# Each of these manoeuvres is a run of its own; what lies between them is not used.", "parts = ["]
+    lines += [
+        "# Each of these manoeuvres is a run of its own; what lies between them is not used.",
+        "parts = [",
+    ]
     for name, part in offered.items():
-        file = f"file = {_quoted(name)}, " if name else ""
+        used, file = used_parts(part), f"file = {_quoted(name)}, " if name else ""
         lines += [
-            f'    {{ {file}name = {_quoted(one.name)}, from = "{one.start:.6g} s", to = "{one.stop:.6g} s" }},'
-            f"    # {one.evidence}"
+            f'{"   " if one in used else "#  "} {{ {file}name = {_quoted(one.name)}, from = "{one.start:.6g} s", '
+            f'to = "{one.stop:.6g} s" }},    # {one.evidence}'
             for one in part
         ]
     return [*lines, "]"]

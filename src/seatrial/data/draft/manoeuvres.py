@@ -6,7 +6,15 @@ from itertools import pairwise
 
 from seatrial.core.values import InputError, Record
 from seatrial.data.check.approach_phase import approach_fault
-from seatrial.data.draft.motion_stretches import DECAY, SHORTEST_STRAIGHT_S, decays, spirals, stops, straight_runs
+from seatrial.data.draft.motion_stretches import (
+    DECAY,
+    SHORTEST_STRAIGHT_S,
+    STRAIGHT,
+    decays,
+    spirals,
+    stops,
+    straight_runs,
+)
 from seatrial.data.draft.stretch import MIN_SAMPLES, LogStretch
 from seatrial.data.draft.survey import LogSurvey
 from seatrial.data.draft.turns import turning_stretches
@@ -76,6 +84,11 @@ def offered_parts(
         () if record is not None and _is_whole(record, run, len(records)) else tuple(run)
         for record, run in zip(records, stretches, strict=True)
     )
+
+
+def used_parts(offered: Sequence[LogStretch]) -> tuple[LogStretch, ...]:
+    """Return those of the offered stretches of a run that are runs of their own; straight ones only where all are."""
+    return tuple(one for one in offered if not one.name.startswith(STRAIGHT)) or tuple(offered)
 
 
 def _is_whole(record: Record, stretches: Sequence[LogStretch], count: int) -> bool:

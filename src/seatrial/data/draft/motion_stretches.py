@@ -9,7 +9,7 @@ from seatrial.data.check.roll_release import release_row
 from seatrial.data.check.signal import Mask, mask_intervals
 from seatrial.data.draft.stretch import LogStretch, elapsed, padded, smooth_speed
 
-DECAY = "decay"  # kind of a stretch
+DECAY, STRAIGHT = "decay", "straight"  # kinds of a stretch
 SHORTEST_STRAIGHT_S = 20.0  # s, of the shortest straight run; chosen
 _STRAIGHT_HEADING = np.radians(5.0)  # rad, range of headings of a straight run; chosen
 _MOVES = 0.2  # of the largest speed, above which a craft moves; chosen
@@ -38,7 +38,7 @@ def straight_runs(record: Record) -> list[LogStretch]:
         even &= flow > _MOVES * np.max(flow)
     text = f"heading within {np.degrees(_STRAIGHT_HEADING):.0f} deg"
     ends = mask_intervals(_widened(even, window // 2))
-    return [LogStretch("straight", float(time[a]), float(time[b - 1]), text) for a, b in ends]
+    return [LogStretch(STRAIGHT, float(time[a]), float(time[b - 1]), text) for a, b in ends]
 
 
 def _widened(mask: Mask, half: int) -> Mask:

@@ -113,6 +113,8 @@ _MESSAGES = [
 _FORWARD, _ACROSS = "(forward|fwd|ahead|longitudinal)", "(stbd|starboard|lateral|transverse)"
 _COMPASS = "a magnetic one is psi_magnetic, with variation"
 _ENGINE = "rate of the engine: to use it, write it as channels.n with scale = propeller turns over engine turns"
+_WIND = "which only model mmg takes"
+_APPARENT, _ANGLE = "app(arent)?", "(dir(ection)?|angle)"
 _PORT, _STARBOARD = "(left|port)", "(right|starboard|stbd)"
 _SIDES = {"port": _PORT, "starboard": _STARBOARD}
 _THRUSTER, _PULSE = "(thr(ottle|uster)?|motor|esc|pwm|command|cmd)", "(_(pwm|us|out|output|raw|cmd))?"
@@ -120,8 +122,9 @@ _WORDS = [
     *_rules(
         "",
         (r"lat(itude)?", "lat", ""), (r"lon(gitude)?|lng", "lon", ""),
-        (r"sog|speed_over_ground|ground_?speed", "sog", ""),
-        (r"cog|course(_over_ground)?", "cog", ""), (r"stw|speed_through_water|log_speed", "stw", ""),
+        (r"sog|speed_over_ground|ground_?speed|(gps|gnss)\d*_(speed|spd)", "sog", ""),
+        (r"cog|course(_over_ground)?|(gps|gnss)\d*_(heading|course|track)", "cog", ""),
+        (r"stw|speed_through_water|log_speed", "stw", ""),
         (r"hdm|mag(netic)?_heading|heading_mag(netic)?", "psi_magnetic", ""),
         (r"compass(_heading)?|gyro_?compass", "psi", "", "", "", 1.0, "", _COMPASS),
         (r"(true_)?heading|hdg|hdt|psi|psi_hat|yaw|yaw_angle", "psi", ""),
@@ -144,10 +147,12 @@ _WORDS = [
         (rf"{_THRUSTER}_?{_PORT}{_PULSE}|{_PORT}_?{_THRUSTER}{_PULSE}", "command_1", ""),
         (rf"{_THRUSTER}_?{_STARBOARD}{_PULSE}|{_STARBOARD}_?{_THRUSTER}{_PULSE}", "command_2", ""),
         (rf"({_THRUSTER}|servo)_?(\d+){_PULSE}", "command_{}", ""),
-        (r"wind_velo_true|true_wind_speed|tws", "wind_speed", ""),
-        (r"wind_dir_true|true_wind_dir(ection)?|twd", "wind_direction", ""),
-        (r"wind_velo_relative(_mid)?|apparent_wind_speed|aws", "wind_speed_relative", ""),
-        (r"wind_dir_relative(_mid)?|apparent_wind_angle|awa", "wind_direction_relative", ""),
+        (r"wind_velo_true|true_wind_speed|tws", "wind_speed", "", "", "", 1.0, _WIND),
+        (r"wind_dir_true|true_wind_dir(ection)?|twd", "wind_direction", "", "", "", 1.0, _WIND),
+        (rf"wind_{_APPARENT}_(spd|speed)|{_APPARENT}_wind_(spd|speed)", "wind_speed_relative", "", "", "", 1.0, _WIND),
+        (rf"wind_{_APPARENT}_{_ANGLE}|{_APPARENT}_wind_{_ANGLE}", "wind_direction_relative", "", "", "", 1.0, _WIND),
+        (r"wind_velo_relative(_mid)?|apparent_wind_speed|aws", "wind_speed_relative", "", "", "", 1.0, _WIND),
+        (r"wind_dir_relative(_mid)?|apparent_wind_angle|awa", "wind_direction_relative", "", "", "", 1.0, _WIND),
     ),
 ]  # fmt: skip
 # words of topics that hold orders or limits, not measurements
@@ -156,6 +161,11 @@ _ORDERS = re.compile(r"set_?point|target|desired|reference|goal|limits?\b|cmd|co
 _KNOWN_LOGGERS = ("ulog", "ardupilot-bin", "ardupilot-tlog", "nmea0183", "nmea2000")
 # column of a table into which an autopilot's log was exported: ``ATT.Yaw``, ``XKF1[0].VN``
 _EXPORTED = re.compile(r"/?([A-Za-z]\w*(?:\[\d+\])?)[./](\w+(?:\[\d+\])?)")
+# words before a quantity that name an instrument, and words behind it that say how it was taken
+_INSTRUMENTS = re.compile(
+    r"((d?gps|gnss|rtk|imu|ahrs|ins|mru|gyro|vdr|nav|nmea|ais|doppler|dvl|sensor|ship|vessel)\d*_)+"
+)
+_QUALIFIERS = re.compile(r"(_(true|t|filt(ered)?|meas(ured)?|actual|raw|avg|mean|value|deg_t|\d))+$")
 _BRACKETS = re.compile(r"[\[(]([^\])]*)[\])]")
 
 
@@ -196,12 +206,21 @@ def guess_by_name(topic: str, name: str, stated_unit: str, log_format: str = "te
     bracketed = _BRACKETS.search(name)
     unit = _known_unit(stated_unit) or (_known_unit(bracketed[1]) if bracketed else "")
     plain = re.sub(r"[^a-z0-9]+", "_", _BRACKETS.sub("", name).strip().lower()).strip("_")
-    for text, word_unit in _with_unit_word(plain):
+    for text, word_unit in _readings(plain):
         for rule in _WORDS:
             match = re.fullmatch(rule.pattern, text)
             if match:
                 return _guess(rule, match, unit or word_unit, "its name")
     return None
+
+
+def _readings(plain: str) -> list[tuple[str, str]]:
+    """A name with the unit behind it: as it is, then without what only says from where it comes."""
+    bare = _QUALIFIERS.sub("", _INSTRUMENTS.sub("", plain))
+    names = [plain] if bare in ("", plain) else [plain, bare]
+    whole = [reading for name in names for reading in _with_unit_word(name)]
+    cut = ((_QUALIFIERS.sub("", name), unit) for name, unit in whole if unit)
+    return [*whole, *(reading for reading in cut if reading not in whole and reading[0])]
 
 
 def _with_unit_word(plain: str) -> list[tuple[str, str]]:

@@ -88,7 +88,7 @@ def starting_model(symbols: Set[str], records: Sequence[Record | None], length: 
 
 
 def held_out_run(model: StartingModel, records: Mapping[str, Record]) -> str:
-    """Return the run to judge the model by: the middle one by size of those whose inputs lie within the others'.
+    """Return the run to judge the model by: the upper middle one by size of those whose inputs lie within the others'.
 
     Empty where there is none: a model is not judged beyond the runs that it is fitted to, nor by one that hardly
     steers.
@@ -100,7 +100,7 @@ def held_out_run(model: StartingModel, records: Mapping[str, Record]) -> str:
     within = ([n for n in steered if _lies_within(model, n, records, share)] for share in (_BEYOND, _FARTHER_BEYOND))
     inside = next((names for names in within if names), [])
     ordered = sorted(inside, key=lambda name: sizes[name])
-    return ordered[(len(ordered) - 1) // 2] if ordered else ""
+    return ordered[len(ordered) // 2] if ordered else ""
 
 
 def _lies_within(model: StartingModel, name: str, records: Mapping[str, Record], beyond: float) -> bool:

@@ -29,7 +29,7 @@ def without_sentinel(one: Measured, time: Array) -> tuple[Measured, str]:
 
     time: stamps (n,) [s]. Commands are left alone.
     """
-    sentinel = None if one.column.is_held else sentinel_value(one.values)
+    sentinel = None if one.column.is_held else sentinel_value(one.values, one.column.quantity.unit)
     if sentinel is None:
         return one, ""
     rows = one.values == sentinel

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.values import Array, InputError, spelling_hint
+from seatrial.data.read.degrees_minutes import degrees_of
 from seatrial.data.read.layout import ColumnSpec
 
 EMPTY_CELLS = ("", "na", "n/a", "null", "none")
@@ -86,7 +87,7 @@ class RawTable:
         return column.label or self.names[index] or f"column {index + 1}"
 
     def numbers(self, column: ColumnSpec) -> Array:
-        """The cells of a column as numbers, shape (n,); empty cells are NaN.
+        """The cells of a column as numbers, shape (n,); empty cells are NaN, 54°06.5'N is 54.108 (degrees).
 
         Raises:
             InputError: no such column, or a cell that is not a finite number (row and column named).
@@ -119,6 +120,9 @@ class RawTable:
         text = str(cell).strip().replace(_MINUS_SIGN, "-")
         if _NUMBER.fullmatch(text):
             return float(text[0] in "tT") if text[0] in "tTfF" else float(text)
+        angle = degrees_of(text)
+        if angle is not None:
+            return angle
         where = f"{self.file}: row {self.first_row + row}, {column.display_name}: '{text[:_LONGEST_CELL]}'"
         if _GROUPED_NUMBER.fullmatch(text):
             raise InputError(f"{where} has a thousands separator; write the file without, or set decimal")

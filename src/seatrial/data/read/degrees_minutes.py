@@ -1,0 +1,29 @@
+"""Angles as navigators write them: degrees with minutes and seconds, and the side of the world."""
+
+import re
+
+_SIXTIETH = 60.0  # minutes of a degree, seconds of a minute
+_HALF_TURN, _TWO_DIGITS = 180.0, 100.0  # deg; of the minutes behind the degrees in NMEA 0183's dddmm.mmmm
+_NUMBER = r"\d+(?:[.,]\d+)?"
+_ANGLE = re.compile(
+    rf"(?P<before>[NSEW])?\s*(?P<deg>{_NUMBER})\s*[°ºd ]?\s*"
+    rf"(?:(?P<min>{_NUMBER})\s*['′’m]?\s*)?(?:(?P<sec>{_NUMBER})\s*(?:\"|″|”|''|s)?\s*)?(?P<after>[NSEW])?",
+    re.IGNORECASE,
+)
+
+
+def degrees_of(text: str) -> float | None:
+    """Return an angle with its side in decimal degrees, north and east positive; None for text that is none.
+
+    `54°06.00049'N`, `7 54 00.2 E`, `S 12.5`, `5406.00049N`; the side, before or behind, is what marks it.
+    """
+    match = _ANGLE.fullmatch(text.strip())
+    if match is None or bool(match["before"]) == bool(match["after"]):
+        return None
+    degrees, minutes, seconds = (float((match[part] or "0").replace(",", ".")) for part in ("deg", "min", "sec"))
+    if degrees > _HALF_TURN and not match["min"]:
+        degrees, minutes = divmod(degrees, _TWO_DIGITS)
+    if max(minutes, seconds) >= _SIXTIETH:
+        return None
+    sign = -1.0 if (match["before"] or match["after"]).upper() in "SW" else 1.0
+    return sign * (degrees + minutes / _SIXTIETH + seconds / _SIXTIETH**2)
