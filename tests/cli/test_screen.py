@@ -50,7 +50,8 @@ def test_findings_stand_by_severity_with_their_count(capsys: pytest.CaptureFixtu
     assert lines[0] == "ERROR   [rudder-sign] the rudder turns the other way (r 0.9)"
     assert lines[1].strip() == "consequence: signs are wrong"
     assert lines[3].strip() == "... and 1 more of this kind; --all shows them"
-    assert lines[-1] == "1 error, 2 warnings, 1 note" == count_sentence(FINDINGS)
+    assert count_sentence(FINDINGS) == "1 error, 2 warnings, 1 note"
+    assert lines[-1] == f"{count_sentence(FINDINGS)}; codes in brackets: docs/bad-fit.md"
 
 
 def test_quiet_leaves_errors_and_verbose_shows_all(capsys: pytest.CaptureFixture[str]) -> None:

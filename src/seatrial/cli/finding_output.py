@@ -43,7 +43,8 @@ def print_findings(
         if alike[0].advice:
             print_lines([f"advice: {alike[0].advice}"], _INDENT)
     hidden = "; --verbose shows notes" if not has_notes and any(severity == "info" for severity, _ in kinds) else ""
-    print_lines([f"{count_sentence(findings)}{hidden}"])
+    where = "; codes in brackets: docs/bad-fit.md" if any(f.severity.value != "info" for f in findings) else ""
+    print_lines([f"{count_sentence(findings)}{hidden}{where}"])
 
 
 def print_warnings(findings: "Sequence[Finding]", rest: str = "the report lists them") -> None:
