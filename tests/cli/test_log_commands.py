@@ -65,7 +65,7 @@ def test_a_draft_of_runs_takes_them_whole_and_a_model_of_its_inputs(tmp_path: Pa
     draft = (tmp_path / "trial.toml").read_text(encoding="utf-8")
     assert "parts" not in draft
     assert '\nname = "thrusters"' in draft
-    assert 'validate = "b"' in draft
+    assert 'validate = "a"' in draft
 
 
 def test_the_manoeuvres_of_a_single_log_are_runs(tmp_path: Path) -> None:

@@ -17,6 +17,7 @@ _LINEAR_TERMS = ("X_u", "X_rr", "Y_v", "Y_r", "Y_d", "N_v", "N_r", "N_d")  # the
 _VELOCITIES = (frozenset({"u", "v"}), frozenset({"sog", "cog", "psi"}))  # either shows how a ship drifts
 _APPROACH_S = 5.0  # s from the start of a run whose mean speed is that of the approach; chosen
 _STEADY_RATE = 0.1  # of its median, by which the rate of a propeller may vary that is steady; chosen
+_CHOICE = 3  # runs from which on the middle one by size is held out
 _HARDLY_STEERED = 0.3  # of the largest size of the inputs of a run, below which a run judges nothing; chosen
 # of the range of an input in the other runs, by which a run may leave it and still lie within; by which one may where
 # no other run lies within; chosen
@@ -90,6 +91,8 @@ def starting_model(symbols: Set[str], records: Sequence[Record | None], length: 
 def held_out_run(model: StartingModel, records: Mapping[str, Record]) -> str:
     """Return the run to judge the model by: the upper middle one by size of those whose inputs lie within the others'.
 
+    Of two the smaller one, since the larger one shows more to the estimate.
+
     Empty where there is none: a model is not judged beyond the runs that it is fitted to, nor by one that hardly
     steers.
     """
@@ -100,7 +103,7 @@ def held_out_run(model: StartingModel, records: Mapping[str, Record]) -> str:
     within = ([n for n in steered if _lies_within(model, n, records, share)] for share in (_BEYOND, _FARTHER_BEYOND))
     inside = next((names for names in within if names), [])
     ordered = sorted(inside, key=lambda name: sizes[name])
-    return ordered[len(ordered) // 2] if ordered else ""
+    return ordered[len(ordered) // 2 if len(ordered) >= _CHOICE else 0] if ordered else ""
 
 
 def _lies_within(model: StartingModel, name: str, records: Mapping[str, Record], beyond: float) -> bool:
