@@ -98,3 +98,25 @@ def test_errors_of_several_channels_pool_as_their_norm() -> None:
     still = Record.from_arrays("still", time, {"x0": np.zeros(4), "y0": np.zeros(4)})
     away = Record.from_arrays("away", time, {"x0": np.full(4, 3.0), "y0": np.full(4, 4.0)})
     assert pooled_rms([still], [away], ("x0", "y0")) == pytest.approx(5.0)
+
+
+def test_the_band_of_a_decay_holds_what_gusts_do_to_the_roll() -> None:
+    """White roll accelerations, 0.004 rad/s^2 over the root of a second, that whole runs leave in the residuals."""
+    rng, step, samples = np.random.default_rng(2), 0.005, 800
+    records = []
+    for name, angle in (("a", 0.3), ("b", -0.28), ("c", 0.25), ("v", 0.27)):
+        phi, p, measured = angle, 0.0, []
+        for k in range(10 * samples):
+            if k % 10 == 0:
+                measured.append(phi)
+            gust = 0.004 * rng.standard_normal() / np.sqrt(step)
+            phi, p = phi + step * p, p + step * (gust - 0.08 * p - 0.2 * abs(p) * p - 1.3 * phi)
+        noisy = np.array(measured) + 5e-4 * rng.standard_normal(samples)
+        records.append(Record.from_arrays(name, 0.05 * np.arange(float(samples)), {"phi": noisy}))
+    roles = (Role.TRAIN, Role.TRAIN, Role.TRAIN, Role.VALIDATE)
+    ship = roll().with_parameters(roll().parameters.only_free(("b_1", "b_2", "c_1")))
+    fit = identify(Trial(Ship("boat", {"L": 20.0}), tuple(map(TrialRun, records, roles)), ship), windows="10s")
+    (window,) = fit.validation[0].windows
+    inside = window.scores["phi_deg"].inside_band
+    assert inside is not None
+    assert inside > 0.9

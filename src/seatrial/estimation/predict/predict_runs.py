@@ -75,10 +75,11 @@ class IntervalCalibration:
 def prediction_uncertainty(estimation: Estimation) -> PredictionUncertainty:
     """Covariance of the coefficients, and of what a new session has of its own.
 
-    Process noise counts where the coefficients come from prediction error: elsewhere model error is in its intensities.
+    Process noise counts where it makes one-step residuals white: under prediction error, and where the intervals of
+    whole runs come from it. Elsewhere model error is in its intensities.
     """
     problem, count = estimation.estimate.problem, len(estimation.estimate.problem.free)
-    intensity = estimation.noise_model.process if estimation.has_process_noise else {}
+    intensity = estimation.noise_model.process if estimation.process_noise is not None else {}
     return PredictionUncertainty(
         estimation.interval.covariance[:count, :count],
         estimation.estimate.population.new_session_covariance,
