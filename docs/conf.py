@@ -73,6 +73,7 @@ html_static_path = ["static"]
 html_css_files = ["pages.css"]
 # a browser that reads the pages from disk may not fetch them for excerpts; titles and links are found without
 html_show_search_summary = False
+html_context = {"default_mode": "auto"}  # light or dark as the reader's screen is; without it the theme complains
 html_theme_options = {
     "github_url": "https://github.com/seatrial/seatrial",
     "header_links_before_dropdown": 8,
