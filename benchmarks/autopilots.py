@@ -7,6 +7,7 @@ waves from the quarter and the bow, with a slow disturbance for wind and current
 import math
 import os
 import tempfile
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -26,15 +27,18 @@ BANDWIDTHS = (0.75, 1.5, 3.0)  # of the closed loops of rivals over the plant's 
 
 def run() -> list[Line]:
     """Return the lines of each craft."""
-    lines = []
+    return [line for name, task in tasks() for line in _craft(name, task)]
+
+
+def tasks() -> Iterator[tuple[str, TuningTask]]:
+    """Give the name of each craft's trial and the tuning of its autopilot in weather, on the model identified."""
     for trial, loop in (("waterjet", "waterjet_weather"), ("kvlcc2_hsva", "kvlcc2_weather")):
         if trial == "kvlcc2_hsva" and "SEATRIAL_DATA" not in os.environ:
             continue
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "model.toml"
             api.save(api.identify(api.load_trial(EXAMPLES / f"{trial}.toml")), folder)
-            lines += _craft(trial, api.load_loop(EXAMPLES / f"{loop}.toml", model_file=path))
-    return lines
+            yield trial, api.load_loop(EXAMPLES / f"{loop}.toml", model_file=path)
 
 
 def rivals(task: TuningTask) -> dict[str, dict[str, float]]:

@@ -36,6 +36,7 @@ import tune
 import verification
 import warm_start
 import waterjet_regressions
+import wave_observer
 from measure import Line, machine
 
 BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
@@ -57,6 +58,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "loops": loops.run,
     "tune": tune.run,
     "autopilots": autopilots.run,
+    "wave_observer": wave_observer.run,
     "verification": verification.run,
     "roll_decay": roll_decay.run,
     "follow": follow.run,

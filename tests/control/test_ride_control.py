@@ -21,8 +21,9 @@ from seatrial.control.loopfile.load import tuning_task
 from seatrial.control.seaway_simulation import simulate_in_seaway
 from seatrial.control.task import Seaway, SimulationSettings, TuningTask
 from seatrial.core.values import Array, InputError
+from seatrial.physics.hydro.capytaine_data import HullExcitation, read_capytaine
 from seatrial.physics.hydro.dispersion import G
-from seatrial.physics.hydro.excitation import BoxHull, Complex
+from seatrial.physics.hydro.excitation import BoxHull, Complex, Excitation
 from seatrial.physics.loops.objective import motion_sickness_weighting
 from seatrial.physics.sea.response import MotionStatistics, motion_sickness
 
@@ -118,17 +119,37 @@ def test_simulated_seas_have_the_reduction_of_linear_theory(task: TuningTask) ->
     assert {"motion", "motion_uncontrolled", "theta", "theta_uncontrolled", "delta_f1"} == set(run.record.channels)
 
 
+def tabulated(folder: Path, excitation: Excitation, heading: float) -> TuningTask:
+    """The loop in forces that a table has of an excitation."""
+    omega = np.linspace(0.25, 2.08, 300)
+    F3, M5 = excitation.forces(omega, U, math.radians(heading))
+    rows = np.column_stack([omega, np.full(300, heading), F3.real, F3.imag, M5.real, M5.imag])
+    head = "omega,heading_deg,F3_real,F3_imag,M5_real,M5_imag"
+    np.savetxt(folder / "forces.csv", rows, delimiter=",", header=head, comments="")
+    source = ('source = "box"', 'source = "table"\nfile = "forces.csv"')
+    return ride(folder, source, ("value = 135", f"value = {heading}"))
+
+
 def test_a_table_of_the_same_forces_gives_the_same_loop(tmp_path: Path, task: TuningTask) -> None:
     v = {p.name: p.value for p in heave_and_pitch().parameters}
     box = BoxHull(60.0, 7.137, 2.27, v["c33"], v["c35"], v["c53"], v["c55"])
-    omega = np.linspace(0.25, 2.08, 300)
-    F3, M5 = box.forces(omega, U, math.radians(135.0))
-    rows = np.column_stack([omega, np.full(300, 135.0), F3.real, F3.imag, M5.real, M5.imag])
-    head = "omega,heading_deg,F3_real,F3_imag,M5_real,M5_imag"
-    np.savetxt(tmp_path / "forces.csv", rows, delimiter=",", header=head, comments="")
-    tabulated = ride(tmp_path, ('source = "box"', 'source = "table"\nfile = "forces.csv"'))
-    one, other = (gain_evaluator(each).evaluate(GAINS[None]).variances for each in (task, tabulated))
-    np.testing.assert_allclose(other, one, rtol=2e-4)
+    pair = (gain_evaluator(each).evaluate(GAINS[None]).variances for each in (task, tabulated(tmp_path, box, 135.0)))
+    np.testing.assert_allclose(*pair, rtol=2e-4)
+
+
+def test_forces_of_a_panel_code_give_the_loop_of_their_table(tmp_path: Path) -> None:
+    """A dataset of Capytaine at rest, speed terms by strip theory, against the same forces written out."""
+    pytest.importorskip("xarray", reason="xarray is not installed (extra hydro)")
+    from tests.physics.hydro.test_capytaine_data import capytaine_dataset
+
+    hull = capytaine_dataset(np.linspace(0.25, 2.08, 60))
+    hull["Froude_Krylov_force"] = 3.15e6 * hull["Froude_Krylov_force"]
+    hull.to_netcdf(tmp_path / "hull.nc")
+    source = ('source = "box"', 'source = "capytaine"\nfile = "hull.nc"')
+    task = ride(tmp_path, source, ("value = 135", "value = 180"))
+    panels = HullExcitation(read_capytaine(tmp_path / "hull.nc"))
+    pair = (gain_evaluator(each).evaluate(GAINS[None]).variances for each in (task, tabulated(tmp_path, panels, 180.0)))
+    np.testing.assert_allclose(*pair, rtol=5e-4)
 
 
 def test_the_sea_says_what_it_moves(task: TuningTask) -> None:

@@ -17,7 +17,7 @@ HEADINGS = np.array([0.0, 0.5 * np.pi, np.pi, 1.5 * np.pi])
 X = 10.0
 
 
-def _dataset(frequencies: np.ndarray = OMEGA) -> "xr.Dataset":
+def capytaine_dataset(frequencies: np.ndarray = OMEGA) -> "xr.Dataset":
     """A float of unit stiffness at x = 10 m that feels the elevation there: exp(i k x cos beta), no diffraction."""
     k = frequencies**2 / G
     elevation = np.exp(1j * k[:, None] * X * np.cos(HEADINGS))
@@ -48,17 +48,18 @@ def _dataset(frequencies: np.ndarray = OMEGA) -> "xr.Dataset":
 
 def test_a_crest_reaches_the_forward_point_early_in_head_waves() -> None:
     """The crest passes x = 10 m a phase k x before midship in head waves, and after it in following ones."""
-    excitation = HullExcitation(hull_data(_dataset()))
+    excitation = HullExcitation(hull_data(capytaine_dataset()))
     k = OMEGA**2 / G
     head, head_moment = excitation.forces(OMEGA, 0.0, np.pi)
     following, _ = excitation.forces(OMEGA, 0.0, 0.0)
     np.testing.assert_allclose(head, np.exp(1j * k * X), rtol=1e-12)
     np.testing.assert_allclose(following, np.exp(-1j * k * X), rtol=1e-12)
     np.testing.assert_allclose(head_moment, -X * head, rtol=1e-12)
+    assert excitation.frequency_range == (0.3, 1.5)
 
 
 def test_rows_are_forces_and_heave_comes_first() -> None:
-    data = hull_data(_dataset())
+    data = hull_data(capytaine_dataset())
     np.testing.assert_allclose(data.added_mass[:, 0, 0], OMEGA)
     assert data.added_mass[0, 0, 1] == 100.0 and data.added_mass[0, 1, 0] == 200.0
     np.testing.assert_allclose(data.stiffness, [[1.0, -X], [-X, X**2]])
@@ -66,22 +67,25 @@ def test_rows_are_forces_and_heave_comes_first() -> None:
 
 
 def test_the_order_of_dimensions_and_rows_is_no_matter() -> None:
-    one, other = hull_data(_dataset()), hull_data(_dataset().transpose().isel(omega=slice(None, None, -1)))
+    one, other = (
+        hull_data(capytaine_dataset()),
+        hull_data(capytaine_dataset().transpose().isel(omega=slice(None, None, -1))),
+    )
     np.testing.assert_array_equal(one.added_mass, other.added_mass)
     np.testing.assert_array_equal(one.froude_krylov.values, other.froude_krylov.values)
 
 
 def test_infinite_frequency_is_set_apart() -> None:
-    ends = _dataset().isel(omega=[-1]).assign_coords(omega=[np.inf])
+    ends = capytaine_dataset().isel(omega=[-1]).assign_coords(omega=[np.inf])
     waves = ["Froude_Krylov_force", "diffraction_force"]
     ends[waves] = ends[waves] * np.nan
-    data = hull_data(xr.concat([_dataset(), ends], dim="omega", data_vars="minimal"))
+    data = hull_data(xr.concat([capytaine_dataset(), ends], dim="omega", data_vars="minimal"))
     assert data.added_mass_infinite is not None and data.added_mass_infinite[0, 0] == OMEGA[-1]
     np.testing.assert_array_equal(data.omega, OMEGA)
 
 
 def test_coefficients_at_speed_come_from_the_frequency_of_encounter() -> None:
-    data = hull_data(_dataset())
+    data = hull_data(capytaine_dataset())
     A, B = data.coefficients(np.array([-0.9]), 4.0)
     np.testing.assert_allclose(A[0, 0, 0], 0.9, rtol=1e-6)
     np.testing.assert_allclose(B[0, 0, 1] - B[0, 1, 0], 0.1 * (100 - 200) + 2 * 4.0 * 0.9, rtol=1e-6)
@@ -92,13 +96,13 @@ def test_coefficients_at_speed_come_from_the_frequency_of_encounter() -> None:
 def test_a_file_with_parts_apart(tmp_path: Path) -> None:
     """As Capytaine writes it: a dimension 'complex' of re and im."""
     pytest.importorskip("h5netcdf", reason="h5netcdf is not installed (extra hydro)")
-    dataset = _dataset()
+    dataset = capytaine_dataset()
     for key in ("Froude_Krylov_force", "diffraction_force"):
         dataset[key] = xr.concat([dataset[key].real, dataset[key].imag], dim="complex").assign_coords(
             complex=["re", "im"]
         )
     dataset.to_netcdf(tmp_path / "hull.nc", engine="h5netcdf")
-    again, one = read_capytaine(tmp_path / "hull.nc"), hull_data(_dataset())
+    again, one = read_capytaine(tmp_path / "hull.nc"), hull_data(capytaine_dataset())
     np.testing.assert_array_equal(again.froude_krylov.values, one.froude_krylov.values)
     np.testing.assert_array_equal(again.damping, one.damping)
 
@@ -117,7 +121,7 @@ def test_a_file_with_parts_apart(tmp_path: Path) -> None:
 )
 def test_datasets_out_of_sense(change: Callable, words: str) -> None:
     with pytest.raises(InputError, match=words):
-        hull_data(change(_dataset()))
+        hull_data(change(capytaine_dataset()))
 
 
 def test_a_file_that_is_not_there(tmp_path: Path) -> None:

@@ -4,6 +4,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from seatrial.control.loopfile.plant import LoopPlant, hull_factor
 from seatrial.control.loopfile.quantities import heading_value, positive_value, symbol_unit
 from seatrial.control.loopfile.schema import LoopFile, ScheduleTable, SeawayTable, SlowDisturbanceTable
@@ -59,7 +61,9 @@ def refuse_calm(
 
 def _refuse_other_speeds(seas: Sequence[Seaway], grid: ScheduleGrid | None) -> None:
     """Refuse a schedule over speeds at which the motions of the hull in waves are not known."""
-    if grid is not None and seas[0].is_output and set(grid.speeds) != {seas[0].U}:
+    if grid is None or not seas[0].is_output:
+        return
+    if not np.allclose(grid.speeds, seas[0].U):
         raise InputError(
             f"schedule.speeds: the coefficients of heave and pitch hold at {seas[0].U:.4g} m/s; give this speed alone"
         )
