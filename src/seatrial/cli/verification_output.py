@@ -12,19 +12,12 @@ if TYPE_CHECKING:
 
 
 def print_verification(verification: "Verification") -> None:
-    """Print the verdict, predicted beside achieved values, the model before and with the log, the legs."""
-    from seatrial.reporting.verification_text import (
-        correction_table,
-        key_facts,
-        leg_table,
-        quantity_table,
-        reduction_table,
-        verdict,
-    )
+    """Print the verdict, predicted beside achieved values, the model before and with the log, legs or changes."""
+    from seatrial.reporting.verification_text import key_facts, tables, verdict
 
     print_summary(f"{verification.name}: verified", verdict(verification), key_facts(verification))
-    for table in (quantity_table, reduction_table, correction_table, leg_table):
-        _print_table(table(verification))
+    for table in tables(verification).values():
+        _print_table(table)
     print_warnings(verification.findings)
 
 

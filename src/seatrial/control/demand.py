@@ -179,7 +179,7 @@ def _required_demand(task: TuningTask) -> Demand:
 def _programmes(task: TuningTask, loop: TransferLoop, gains: Array, demand: Demand) -> tuple[_Programme, ...]:
     fastest = float(np.abs(loop.with_gains(gains).closed_loop_poles).max(initial=_SLOWEST_POLE))
     count = int(np.clip(math.ceil(demand.duration * fastest / _STEP_SHARE), _FEWEST_STEPS, _MOST_STEPS))
-    dt, rate = demand.duration / count, _reference_rate(task, loop, demand)
+    dt, rate = demand.duration / count, reference_rate(task, loop, demand)
     change, zigzag = np.full(count + 1, demand.change), np.empty(count + 1)
     change[0] = 0.0
     begun = tuple(max(1, count * leg // _LEGS) for leg in range(_LEGS))
@@ -198,8 +198,8 @@ def _programmes(task: TuningTask, loop: TransferLoop, gains: Array, demand: Dema
     return programme(changed, change, (1,)), programme("zigzag", zigzag, begun)
 
 
-def _reference_rate(task: TuningTask, loop: TransferLoop, demand: Demand) -> float:
-    """Rate of the output that half the actuator's limit keeps up, at the mean of the plant's poles or more slowly."""
+def reference_rate(task: TuningTask, loop: TransferLoop, demand: Demand) -> float:
+    """Return the rate of the output that half the actuator's limit keeps up, at the plant's mean pole at most."""
     omega = 1.0 / demand.time_constant
     if np.any(loop.plant.poles != 0.0):
         omega = min(omega, mean_pole(loop.plant))

@@ -1,5 +1,7 @@
 """The page of a verified controller: predicted beside achieved, the model before and with the log, the legs."""
 
+import math
+
 import numpy as np
 from markupsafe import Markup
 
@@ -8,25 +10,32 @@ from seatrial.core.figures.marks import ACCENT, SECOND, Line, Mark, Marker, Poin
 from seatrial.core.figures.rows import row_panel
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.figures.ticks import span
-from seatrial.core.results.verification import Verification, VerifiedLeg
+from seatrial.core.results.verification import Verification, VerifiedLeg, VerifiedQuantity
 from seatrial.core.text.numbers import exact, fixed
+from seatrial.core.values import Array
 from seatrial.core.values.channel_text import channel_meaning
+from seatrial.data.folder.orders import channel_display_unit
 from seatrial.reporting import verification_text
 from seatrial.reporting.document import page_text
 from seatrial.reporting.first_screen import FirstScreen
 from seatrial.reporting.tables import finding_groups
 
-TITLES = {
-    "findings": "Findings",
-    "quantities": "Predicted and achieved, legs with control",
-    "reductions": "Reduction achieved, by how the sea is accounted for",
-    "model": "The model before the log and with it",
-    "legs": "Legs, and the sea that explains each",
-    "method": "Method and provenance",
-}
 FOREST_CAPTION = (
     "Achieved over predicted, 95 % intervals of what was achieved; the vertical line is the prediction, its own "
     "interval is in the table. Red: outside."
+)
+CHANGES_FOREST_CAPTION = (
+    "Over the prediction: 95 % interval of the prediction, and as a point what was achieved. Red: outside."
+)
+CHANGES_CAPTION = (
+    "Each change from its order on: as logged, by the model as it was without weather, and the order (dashed)."
+)
+CHANGES_METHOD = (
+    "Changes are found in the channel of what was ordered. Each is simulated by the nonlinear model within the "
+    "actuator's limits, and by ships drawn from the covariance of the fit; what weather does is taken from the log, "
+    "from when the changes had settled on, and laid over the simulations from random moments on. Motions are averaged over "
+    "half of the reference's time constant before overshoot and settling are read, of predictions too. The model is "
+    "estimated anew from the log by the estimator of identify, with its covariance as prior."
 )
 SPECTRA_CAPTION = (
     "Density of the motion over the frequency of encounter: points as logged, line by the model as it was in the sea "
@@ -41,28 +50,30 @@ METHOD = (
     "the errors of ship and seas."
 )
 _INSIDE, _OUTSIDE, _ONE = Stroke(ACCENT, 2.0), Stroke(SECOND, 2.0), Stroke("#8a9299", 1.2)  # px, chosen
+_ORDER = Stroke("#8a9299", 1.2, "5 3")  # px, chosen
 _DIGITS = 5  # of gains; chosen
 _SIZE, _POINT, _HEIGHT, _COLUMNS = 3.2, 2.2, 150.0, 2  # px, px, px, panels side by side; chosen
 
 
 def html(v: Verification) -> str:
     """Return the page as text; sections without content are left out."""
-    findings = finding_groups(v.findings)
-    content: dict[str, object] = {"findings": findings}
-    figure, caption = Markup(svg(quantity_forest(v))), FOREST_CAPTION
+    findings, tables = finding_groups(v.findings), verification_text.tables(v)
+    headings = {key: table.title for key, table in tables.items()}
+    titles = ({"findings": "Findings"} if findings else {}) | headings | {"method": "Method and provenance"}
+    screen = FirstScreen(
+        verification_text.verdict(v), verification_text.key_facts(v), Markup(svg(quantity_forest(v))),
+        CHANGES_FOREST_CAPTION if v.changes else FOREST_CAPTION,
+    )  # fmt: skip
+    figures = {"legs": (spectra_chart(v), SPECTRA_CAPTION), "changes": (changes_chart(v), CHANGES_CAPTION)}
     context = {
         "verification": v,
-        "titles": {key: title for key, title in TITLES.items() if content.get(key, True)},
-        "screen": FirstScreen(verification_text.verdict(v), verification_text.key_facts(v), figure, caption),
+        "titles": titles,
+        "screen": screen,
         "gains": [(name, exact(value, _DIGITS)) for name, value in v.gains.items()],
         "findings": findings,
-        "quantities": verification_text.quantity_table(v),
-        "reductions": verification_text.reduction_table(v),
-        "model": verification_text.correction_table(v),
-        "legs": verification_text.leg_table(v),
-        "spectra": Markup(svg(spectra_chart(v))),
-        "spectra_caption": SPECTRA_CAPTION,
-        "method": METHOD,
+        "tables": tables,
+        "figures": {key: (Markup(svg(chart)), caption) for key, (chart, caption) in figures.items() if chart},
+        "method": CHANGES_METHOD if v.changes else METHOD,
     }
     return page_text("verification.html", context)
 
@@ -70,18 +81,47 @@ def html(v: Verification) -> str:
 def quantity_forest(v: Verification) -> Chart:
     """Return what was achieved over what was predicted, a row for each quantity."""
     marks: list[Mark] = [Rule(1.0, _ONE, is_vertical=True)]
-    ratios = [np.array([q.lower, q.achieved, q.upper]) / q.predicted for q in v.quantities]
-    for row, (q, (lower, middle, upper)) in enumerate(zip(v.quantities, ratios, strict=True)):
+    shown = [q for q in v.quantities if q.predicted > 0.0]
+    ratios = [_interval(q) / q.predicted for q in shown]
+    for row, (q, (lower, middle, upper)) in enumerate(zip(shown, ratios, strict=True)):
         stroke, place = _INSIDE if q.is_inside else _OUTSIDE, np.full(2, float(row))
         marks.append(Line(np.array([lower, upper]), place, stroke))
         marker = Marker(Shape.CIRCLE, _SIZE, stroke.colour, stroke.colour, 0.0)
         marks.append(Points(np.array([middle]), place[:1], marker))
     axis = Axis(span([np.concatenate([*ratios, np.ones(1)])]), "achieved over predicted", tick_count=7)
-    return Chart("predicted and achieved", (row_panel([q.name for q in v.quantities], axis, marks, top=4.0),))
+    return Chart("predicted and achieved", (row_panel([q.name for q in shown], axis, marks, top=4.0),))
 
 
-def spectra_chart(v: Verification) -> Chart:
-    """Return the motion's density of each leg, logged and by the model as it was."""
+def _interval(q: VerifiedQuantity) -> Array:
+    """Return lower end, achieved value and upper end; ends of the prediction where there are no others."""
+    ends = (q.predicted_lower, q.predicted_upper) if math.isnan(q.lower) else (q.lower, q.upper)
+    return np.array([ends[0], q.achieved, ends[1]])
+
+
+def changes_chart(v: Verification) -> Chart | None:
+    """Return the output of each change over time, logged and by the model, with the order; None without changes."""
+    if not v.changes:
+        return None
+    factor, unit = channel_display_unit(v.output)
+    boxes = tiles(len(v.changes), _COLUMNS, _HEIGHT, left=58.0, right=12.0, gap=58.0)  # px, chosen
+    panels = []
+    for box, c in zip(boxes, v.changes, strict=True):
+        time = c.dt * np.arange(len(c.order))
+        series = ((c.order, _ORDER), (c.measured, _OUTSIDE), (c.predicted, _INSIDE))
+        marks = tuple(Line(time, factor * values, stroke) for values, stroke in series)
+        ends = span([factor * values for values, _ in series])
+        y = Axis(ends, f"{v.output} [{unit}]")
+        panels.append(Panel(box, Axis((0.0, float(time[-1])), "time from the order [s]"), y, marks,
+                            f"{c.record}, {fixed(c.start, 0)} s"))  # fmt: skip
+    legend = (LegendEntry("as logged", _OUTSIDE), LegendEntry("by the model as it was", _INSIDE),
+              LegendEntry("ordered", _ORDER))  # fmt: skip
+    return Chart(f"changes of the {channel_meaning(v.output)}", tuple(panels), legend)
+
+
+def spectra_chart(v: Verification) -> Chart | None:
+    """Return the motion's density of each leg, logged and by the model as it was; None without legs."""
+    if not v.legs:
+        return None
     boxes = tiles(len(v.legs), _COLUMNS, _HEIGHT, left=58.0, right=12.0, gap=58.0)  # px, chosen
     panels = tuple(_spectrum_panel(box, leg, v.output) for box, leg in zip(boxes, v.legs, strict=True))
     legend = (

@@ -4,7 +4,7 @@ import math
 
 from seatrial.core.results.verification import ModelCorrection, Verification, VerifiedLeg, VerifiedQuantity
 from seatrial.core.text.numbers import DASH, exact, fixed, significant
-from seatrial.core.text.words import counted, enumeration
+from seatrial.core.text.words import enumeration
 from seatrial.core.values import Severity, display_unit
 from seatrial.core.values.channel_text import channel_meaning
 from seatrial.reporting.first_screen import KeyFact
@@ -15,43 +15,89 @@ _DIGITS = 3  # of values; chosen
 
 def verdict(v: Verification) -> str:
     """Return what was achieved of what was predicted, in a sentence."""
+    return _changes_verdict(v) if v.changes else _legs_verdict(v)
+
+
+def _legs_verdict(v: Verification) -> str:
     reduction = v.quantities[0]
     achieved, low, high, predicted = (
         fixed(100.0 * x, 1) for x in (reduction.achieved, reduction.lower, reduction.upper, reduction.predicted)
     )
-    how = "as predicted" if reduction.is_inside else "not as predicted"
     return (
-        f"The controller took {achieved} % off the {channel_meaning(v.output)} (95 % interval {low} to {high} %), {how}"
-        f": the model says {predicted} % in the sea that was met."
+        f"The controller took {achieved} % off the {channel_meaning(v.output)} (95 % interval {low} to {high} %), "
+        f"{_agreement(reduction)}: the model says {predicted} % in the sea that was met."
     )
+
+
+def _changes_verdict(v: Verification) -> str:
+    overshoot, settling = v.quantities[:2]
+    share, least, most = (fixed(100.0 * x, 1) for x in (
+        overshoot.achieved, overshoot.predicted_lower, overshoot.predicted_upper))  # fmt: skip
+    time, first, last = (significant(x, _DIGITS) for x in (
+        settling.achieved, settling.predicted_lower, settling.predicted_upper))  # fmt: skip
+    return (
+        f"Changes of the {channel_meaning(v.output)} overshoot by {share} %, {_agreement(overshoot)} ({least} to {most} "
+        f"%), and settle in {time} s, {_agreement(settling)} ({first} to {last} s)."
+    )
+
+
+def _agreement(q: VerifiedQuantity) -> str:
+    return "as predicted" if q.is_inside else "not as predicted"
 
 
 def key_facts(v: Verification) -> tuple[KeyFact, ...]:
     """Return the rows at the top."""
     moved = [f"{c.name}: {exact(c.model, _DIGITS)} → {exact(c.log, _DIGITS)}" for c in v.corrections if c.is_moved]
     warned = list(dict.fromkeys(f.code for f in v.findings if f.severity is not Severity.INFO))
-    on = sum(leg.is_controlled for leg in v.legs)
     inside = len(v.quantities) - len(v.outside)
+    unmoved = "no property moved beyond its interval" if v.corrections else "not estimated anew"
     return (
-        KeyFact("Inside", f"{inside} of {counted(len(v.quantities), 'quantity').replace('quantitys', 'quantities')}",
-                "quantities", not v.outside),
+        KeyFact("Inside", f"{inside} of {len(v.quantities)} quantities", "quantities", not v.outside),
         KeyFact("Outside", enumeration(v.outside) or "none", "quantities", not v.outside),
-        KeyFact("Model", "; ".join(moved) or "no property moved beyond its interval", "model", not moved),
-        KeyFact("Legs", f"{on} with control, {len(v.legs) - on} without", "legs", None if on < len(v.legs) else False),
+        KeyFact("Model", "; ".join(moved) or unmoved, "model" if v.corrections else "",
+                not moved if v.corrections else None),
+        _extent_fact(v),
         KeyFact("Warnings", enumeration(warned) or "none", "findings" if v.findings else "", not warned),
     )  # fmt: skip
+
+
+def _extent_fact(v: Verification) -> KeyFact:
+    """Return how many legs or changes the log holds."""
+    if v.changes:
+        return KeyFact("Changes", str(len(v.changes)), "changes")
+    on = sum(leg.is_controlled for leg in v.legs)
+    is_enough = None if on < len(v.legs) else False
+    return KeyFact("Legs", f"{on} with control, {len(v.legs) - on} without", "legs", is_enough)
+
+
+def tables(v: Verification) -> dict[str, TextTable]:
+    """Return the tables that have rows, by the key of their section."""
+    every = {
+        "quantities": quantity_table(v), "reductions": reduction_table(v), "model": correction_table(v),
+        "legs": leg_table(v), "changes": change_table(v),
+    }  # fmt: skip
+    return {key: table for key, table in every.items() if table.rows}
 
 
 def quantity_table(v: Verification) -> TextTable:
     """Return predicted and achieved values with their intervals."""
     return TextTable(
-        "Predicted and achieved, legs with control",
+        "Predicted and achieved" if v.changes else "Predicted and achieved, legs with control",
         ("", "unit", "predicted", "95 % interval", "achieved", "95 % interval", ""),
         (False, False, True, True, True, True, False),
         tuple(_quantity_row(q) for q in v.quantities),
-        "Predicted: by the model as it was, in the seas that explain the legs. Inside: the 95 % interval of the "
-        "difference includes zero.",
+        _CHANGES_NOTE if v.changes else _LEGS_NOTE,
     )
+
+
+_LEGS_NOTE = (
+    "Predicted: by the model as it was, in the seas that explain the legs. Inside: the 95 % interval of the difference "
+    "includes zero."
+)
+_CHANGES_NOTE = (
+    "Means over the changes. Predicted: by ships drawn from the fit, with the log's own weather on top, median and "
+    "95 % interval. Inside: what was achieved lies in it."
+)
 
 
 def _quantity_row(q: VerifiedQuantity) -> tuple[str, ...]:
@@ -71,6 +117,9 @@ def _rate_unit(unit: str) -> tuple[float, str]:
 
 
 def _ends(lower: float, upper: float) -> str:
+    """Return an interval; a dash where there is none."""
+    if math.isnan(lower + upper):
+        return DASH
     return f"{significant(lower, _DIGITS)} to {significant(upper, _DIGITS)}"
 
 
@@ -92,9 +141,12 @@ def correction_table(v: Verification) -> TextTable:
         ("", "unit", "model", "± before", "with the log", "95 % interval", ""),
         (False, False, True, True, True, True, False),
         tuple(_correction_row(c) for c in v.corrections),
-        "Before: standard deviation, of [uncertainty] in the loop file; damping 30 %. With the log: what was known "
-        "before is the prior. Moved: the model's value lies outside the interval.",
+        f"Before: standard deviation, {_PRIOR_OF_CHANGES if v.changes else _PRIOR_OF_LEGS}. With the log: what was "
+        "known before is the prior. Moved: the model's value lies outside the interval.",
     )
+
+
+_PRIOR_OF_LEGS, _PRIOR_OF_CHANGES = "of [uncertainty] in the loop file; damping 30 %", "of the model's covariance"
 
 
 def _correction_row(c: ModelCorrection) -> tuple[str, ...]:
@@ -130,3 +182,23 @@ def _leg_row(leg: VerifiedLeg, factor: float, actuator_factor: float) -> tuple[s
         significant(factor * leg.output_rms, _DIGITS), significant(actuator_factor * leg.actuator_rms, _DIGITS),
         DASH if math.isnan(leg.gain_ratio) else fixed(leg.gain_ratio, 2),
     )  # fmt: skip
+
+
+def change_table(v: Verification) -> TextTable:
+    """Return each change: overshoot and settling, predicted without weather and achieved."""
+    factor, unit = _channel_unit(v.output)
+    rows = tuple(
+        (
+            c.record, fixed(c.start, 0), significant(factor * c.change, _DIGITS),
+            fixed(100.0 * c.predicted_overshoot, 1), fixed(100.0 * c.overshoot, 1),
+            significant(c.predicted_settling, _DIGITS), significant(c.settling, _DIGITS),
+        )
+        for c in v.changes
+    )  # fmt: skip
+    return TextTable(
+        "Changes one by one",
+        ("record", "at s", f"change {unit}", "overshoot % predicted", "achieved", "settling s predicted", "achieved"),
+        (False, True, True, True, True, True, True),
+        rows,
+        "Predicted by the model as it was, without weather.",
+    )

@@ -5,9 +5,18 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from seatrial.control.task import TuningTask
+from seatrial.control.verification.course_changes import verify_changes
 from seatrial.control.verification.model_corrections import model_corrections
+from seatrial.control.verification.refitted_model import refitted_coefficients
 from seatrial.control.verification.stabiliser import StabiliserLog, prior_deviations, verify_stabiliser
-from seatrial.core.results.verification import ModelCorrection, Verification
+from seatrial.core.results.verification import (
+    ModelCorrection,
+    ReductionEstimate,
+    Verification,
+    VerifiedChange,
+    VerifiedLeg,
+    VerifiedQuantity,
+)
 from seatrial.core.values import Array, Finding, InputError, Record, Severity, spelling_hint
 from seatrial.core.values.versions import versions
 from seatrial.physics.loops import margins
@@ -25,24 +34,61 @@ def verify(task: TuningTask, gains: Mapping[str, float], records: Sequence[Recor
             not follow the gains.
     """
     values = gains_of_loop(task, gains)
-    if task.demand is not None:
-        raise InputError(f"loop '{task.name}' follows a demand; so far stabilisers are verified, in waves")
     if not margins(task.loop.with_gains(values)).is_stable:
         raise InputError(f"loop '{task.name}' is unstable with these gains: nothing is predicted of them; check them")
-    log = verify_stabiliser(task, values, records)
+    return (_of_changes if task.demand is not None else _of_legs)(task, values, records)
+
+
+def _of_legs(task: TuningTask, gains: Array, records: Sequence[Record]) -> Verification:
+    """Return the verification of a stabiliser."""
+    log = verify_stabiliser(task, gains, records)
     corrections = model_corrections(task.loop, prior_deviations(task), log.fit)
+    findings = (*_leg_findings(task, log), *_moved_findings(corrections))
+    return _verification(task, gains, log.quantities, corrections, findings, legs=log.legs, reductions=log.reductions)
+
+
+def _of_changes(task: TuningTask, gains: Array, records: Sequence[Record]) -> Verification:
+    """Return the verification of a loop that follows a demand."""
+    log = verify_changes(task, gains, records)
+    corrections: tuple[ModelCorrection, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    try:
+        if task.trimmed_ship is None or task.demand is None:
+            raise InputError("the plant is a transfer function, of which nothing is estimated")
+        length = task.U * task.demand.time_constant  # its default is length over speed
+        corrections = refitted_coefficients(task.trimmed_ship, records, length)
+    except InputError as error:
+        text = f"the model was not estimated anew from the log: {error}"
+        findings = (Finding(Severity.INFO, "model-as-it-was", text, "", "identify it from a trial of its own"),)
+    return _verification(
+        task, gains, log.quantities, corrections, (*findings, *_moved_findings(corrections)), changes=log.changes
+    )
+
+
+def _verification(
+    task: TuningTask,
+    gains: Array,
+    quantities: tuple[VerifiedQuantity, ...],
+    corrections: tuple[ModelCorrection, ...],
+    findings: tuple[Finding, ...],
+    *,
+    legs: tuple[VerifiedLeg, ...] = (),
+    reductions: tuple[ReductionEstimate, ...] = (),
+    changes: tuple[VerifiedChange, ...] = (),
+) -> Verification:
     return Verification(
         name=task.name,
         plant=task.plant,
         output=task.loop.output,
         actuator=task.loop.actuator,
-        gains=dict(zip(task.loop.gains.names, values.tolist(), strict=True)),
-        legs=log.legs,
-        quantities=log.quantities,
-        reductions=log.reductions,
+        gains=dict(zip(task.loop.gains.names, gains.tolist(), strict=True)),
+        legs=legs,
+        quantities=quantities,
+        reductions=reductions,
         corrections=corrections,
-        findings=_findings(task, log, corrections),
+        findings=findings,
         versions=versions(),
+        changes=changes,
     )
 
 
@@ -61,7 +107,19 @@ def gains_of_loop(task: TuningTask, gains: Mapping[str, float]) -> Array:
     return np.array([gains[name] for name in names])
 
 
-def _findings(task: TuningTask, log: StabiliserLog, corrections: Sequence[ModelCorrection]) -> tuple[Finding, ...]:
+def _moved_findings(corrections: Sequence[ModelCorrection]) -> list[Finding]:
+    """Return what the log moves beyond its interval, a warning each."""
+    return [
+        Finding(
+            Severity.WARNING, "model-moved", f"the log moves the {c.name} from {c.model:.3g} to {c.log:.3g}",
+            f"95 % interval {c.lower:.3g} to {c.upper:.3g}", "tune again with the corrected value",
+        )
+        for c in corrections if c.is_moved
+    ]  # fmt: skip
+
+
+def _leg_findings(task: TuningTask, log: StabiliserLog) -> list[Finding]:
+    """Return what to warn of in the legs of a stabiliser."""
     found = [
         Finding(
             Severity.WARNING, "gains-differ",
@@ -70,13 +128,6 @@ def _findings(task: TuningTask, log: StabiliserLog, corrections: Sequence[ModelC
             "check that these gains were on, and whether the actuator was at its limits",
         )
         for leg in log.legs if leg.is_controlled and abs(leg.gain_ratio - 1.0) > _GAIN_TOLERANCE
-    ]  # fmt: skip
-    found += [
-        Finding(
-            Severity.WARNING, "model-moved", f"the log moves the {c.name} from {c.model:.3g} to {c.log:.3g}",
-            f"95 % interval {c.lower:.3g} to {c.upper:.3g}", "tune again with the corrected value",
-        )
-        for c in corrections if c.is_moved
     ]  # fmt: skip
     if all(leg.is_controlled for leg in log.legs):
         found.append(Finding(
@@ -88,4 +139,4 @@ def _findings(task: TuningTask, log: StabiliserLog, corrections: Sequence[ModelC
             Severity.WARNING, "not-converged", "the search for ship and seas did not converge", "",
             "look at the spectra of the legs: is the heading to the waves that of the loop file's first sea?",
         ))  # fmt: skip
-    return tuple(found)
+    return found

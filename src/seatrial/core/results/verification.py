@@ -6,7 +6,7 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field, computed_field
 
-from seatrial.core.results.fields import ListedArray, Number, ReportedFinding
+from seatrial.core.results.fields import ListedArray, Number, ReportedFinding, StoredArray
 from seatrial.core.results.summary import Summarised, Summary
 
 
@@ -20,10 +20,16 @@ class VerifiedQuantity:
     predicted_lower: Number
     predicted_upper: Number
     achieved: Annotated[Number, Field(description="by the log")]
-    lower: Annotated[Number, Field(description="of what was achieved")]
-    upper: Number
+    lower: Annotated[
+        Number, Field(description="of what was achieved; null: the interval of the prediction has what chance does")
+    ]
+    upper: Annotated[Number, Field(description="as `lower`")]
     is_inside: Annotated[
-        bool, Field(description="whether the 95 % interval of the difference, errors of both in it, includes zero")
+        bool,
+        Field(
+            description="whether the 95 % interval of the difference, errors of both in it, includes zero; where what "
+            "was achieved has no interval, whether it lies in that of the prediction"
+        ),
     ]
 
 
@@ -81,6 +87,27 @@ class VerifiedLeg:
     ] = field(default_factory=lambda: np.empty(0))
 
 
+@dataclass(frozen=True, eq=False)
+class VerifiedChange:
+    """One change of an ordered output; series about what was held before, SI, shape (n,)."""
+
+    record: Annotated[str, Field(description="name of the record")]
+    start: Annotated[float, Field(description="s on the record's clock")]
+    change: Annotated[float, Field(description="of the order, SI")]
+    predicted_overshoot: Annotated[Number, Field(description="share of the change, by the model without weather")]
+    overshoot: Annotated[Number, Field(description="share of the change")]
+    predicted_settling: Annotated[Number, Field(description="s until the output stays within 5 %, without weather")]
+    settling: Annotated[Number, Field(description="s until the output stays within 5 %; the leg's length: never")]
+    output: Annotated[str, Field(description="symbol")]
+    actuator: Annotated[str, Field(description="symbol")]
+    dt: Annotated[float, Field(description="s between two samples")]
+    order: StoredArray
+    measured: Annotated[StoredArray, Field(description="the output")]
+    predicted: Annotated[StoredArray, Field(description="the output by the model, without weather")]
+    moved: Annotated[StoredArray, Field(description="the actuator")]
+    predicted_moved: Annotated[StoredArray, Field(description="the actuator by the model, without weather")]
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Verification(Summarised):
     """What the log of a trial says of a tuned controller."""
@@ -96,6 +123,7 @@ class Verification(Summarised):
     corrections: tuple[ModelCorrection, ...]
     findings: tuple[ReportedFinding, ...]
     versions: Annotated[dict[str, str], Field(description="package -> version")] = field(default_factory=dict)
+    changes: Annotated[tuple[VerifiedChange, ...], Field(description="of a loop that follows a demand")] = ()
 
     @computed_field(description="names of the quantities that lie outside what was predicted")
     @property
