@@ -67,8 +67,9 @@ def verify(
     Args:
         task: as `load_loop` returns it, or the path of a loop file; its first sea has the heading of the legs.
         gains: those that were on, by name, or the path of a ``gains.toml``.
-        records: with the loop's output and actuator, and what was ordered where it follows a demand (``psi_ref``); or paths: of trial files, of which every run that is not left out
-            is taken, and of record files of `write_record`. Legs with and without control are recognised.
+        records: with the loop's output and actuator, and what was ordered where it follows a demand (``psi_ref``); or
+            paths: of trial files, of which every run that is not left out is taken, and of record files of
+            `write_record`. Legs with and without control, and changes of what was ordered, are recognised.
 
     Raises:
         InputError: gains of another loop, a log without legs or too short, or an actuator that does not follow the

@@ -36,8 +36,8 @@ def _changes_verdict(v: Verification) -> str:
     time, first, last = (significant(x, _DIGITS) for x in (
         settling.achieved, settling.predicted_lower, settling.predicted_upper))  # fmt: skip
     return (
-        f"Changes of the {channel_meaning(v.output)} overshoot by {share} %, {_agreement(overshoot)} ({least} to {most} "
-        f"%), and settle in {time} s, {_agreement(settling)} ({first} to {last} s)."
+        f"Changes of the {channel_meaning(v.output)} overshoot by {share} %, {_agreement(overshoot)} ({least} to "
+        f"{most} %), and settle in {time} s, {_agreement(settling)} ({first} to {last} s)."
     )
 
 
