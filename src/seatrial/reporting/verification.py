@@ -34,8 +34,8 @@ CHANGES_METHOD = (
     "Changes are found in the channel of what was ordered. Each is simulated by the nonlinear model within the "
     "actuator's limits, and by ships drawn from the covariance of the fit; what weather does is taken from the log, "
     "from when the changes had settled on, and laid over the simulations from random moments on. Motions are averaged "
-    "over half of the reference's time constant before overshoot and settling are read, of predictions too. The model is "
-    "estimated anew from the log by the estimator of identify, with its covariance as prior."
+    "over half of the reference's time constant before overshoot and settling are read, of predictions too. The model "
+    "is estimated anew from the log by the estimator of identify, with its covariance as prior."
 )
 SPECTRA_CAPTION = (
     "Density of the motion over the frequency of encounter: points as logged, line by the model as it was in the sea "
