@@ -106,7 +106,7 @@ def changes_chart(v: Verification) -> Chart | None:
     boxes = tiles(len(v.changes), _COLUMNS, _HEIGHT, left=58.0, right=12.0, gap=58.0)  # px, chosen
     panels = []
     for box, c in zip(boxes, v.changes, strict=True):
-        time = c.dt * np.arange(len(c.order))
+        time: Array = c.dt * np.arange(len(c.order), dtype=np.float64)
         series = ((c.order, _ORDER), (c.measured, _OUTSIDE), (c.predicted, _INSIDE))
         marks = tuple(Line(time, factor * values, stroke) for values, stroke in series)
         ends = span([factor * values for values, _ in series])
