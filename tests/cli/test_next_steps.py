@@ -25,7 +25,14 @@ def test_after_a_check_errors_come_first() -> None:
 
 def test_after_a_fit_a_run_is_held_out_or_a_manoeuvre_simulated() -> None:
     fit = fabricated_fit()
-    assert after_fit(fit, OUT) == "seatrial simulate results/model.toml --manoeuvre turning-circle:35 --out circle.csv"
+    circle = "seatrial simulate results/model.toml --manoeuvre turning-circle:30 --out circle.csv"
+    assert after_fit(fit, OUT) == circle  # as far as the rudder went in the runs that were fitted
+    first = replace(fit.coefficients[0], lower=-1.0, upper=1.0, fixed=False)
+    undecided = replace(fit, coefficients=(first,))
+    assert after_fit(undecided, OUT, TRIAL) == (
+        f"{circle}; for a manoeuvre that determines {first.name}: seatrial design 'my trial.toml' --from "
+        "results/model.toml --out plan"
+    )
     trained = replace(fit, predictions=tuple(replace(p, role="training") for p in fit.predictions))
     assert after_fit(trained, OUT, TRIAL).startswith("name a run to hold out in 'my trial.toml'")
 

@@ -10,6 +10,9 @@ if TYPE_CHECKING:
     from seatrial.core.results.campaign import CampaignStatus
     from seatrial.core.values import Finding
 
+FULL_RUDDER_DEG = 35.0  # deg, of most ships' rudders (SOLAS II-1/29)
+NAMES_SHOWN = 3  # coefficients that a line names; chosen
+
 
 def after_check(findings: "tuple[Finding, ...]", trial: Path) -> str:
     """Return what follows a check: to correct, the advice of the first error, what a model lacks, or to identify."""
@@ -36,13 +39,34 @@ def after_fit(fit: "Fit", folder: Path, trial: Path | None = None) -> str:
     if fit.model.equations.layout:
         return f"seatrial simulate {model} --manoeuvre spin:50 --out spin.csv"
     if "delta" in fit.model.input_names and "psi" in fit.model.states:
-        return f"seatrial simulate {model} --manoeuvre turning-circle:35 --out circle.csv"
+        circle = f"seatrial simulate {model} --manoeuvre turning-circle:{_recorded_rudder(fit):.0f} --out circle.csv"
+        return f"{circle}{_design_step(fit, model, trial)}"
     predicted = fit.validation or fit.predictions  # none where only spectra were compared
     if trial is None or not predicted:
         return f"seatrial report {in_shell(folder)}"
     return (
         f"seatrial simulate {model} --trial {in_shell(trial)} --inputs {in_shell(predicted[0].record)} --out replay.csv"
     )
+
+
+def _recorded_rudder(fit: "Fit") -> float:
+    """The largest rudder angle [deg] of the runs that were fitted, at most 35: beyond it the model extrapolates."""
+    import numpy as np
+
+    from seatrial.physics.manoeuvres import REACH_PERCENTILE
+
+    runs = [p.measured for p in fit.predictions if p.role == "training" and "delta" in p.measured]
+    reaches = [float(np.degrees(np.nanpercentile(np.abs(run["delta"]), REACH_PERCENTILE))) for run in runs]
+    return min(max(reaches, default=FULL_RUDDER_DEG), FULL_RUDDER_DEG)
+
+
+def _design_step(fit: "Fit", model: str, trial: Path | None) -> str:
+    """The command that designs a manoeuvre where signs are open; empty where none is, or no trial is given."""
+    names = [c.name for c in fit.coefficients if c.is_sign_open and not c.fixed]
+    if not names or trial is None:
+        return ""
+    shown = f"{', '.join(names[:NAMES_SHOWN])}{' ...' if len(names) > NAMES_SHOWN else ''}"
+    return f"; for a manoeuvre that determines {shown}: seatrial design {in_shell(trial)} --from {model} --out plan"
 
 
 def after_campaign(status: "CampaignStatus", store: Path) -> str:

@@ -73,6 +73,12 @@ def _as_rudder(guess: ColumnGuess, setting: OutputSetting) -> ColumnGuess:
     return replace(rudder, positive=side, other_reading=other).with_evidence(setting.evidence)
 
 
+def rudder_in_percent(guess: ColumnGuess) -> ColumnGuess:
+    """Return a rudder that is logged as a share of its range as an angle: coefficients, not predictions, go with it."""
+    text = f"in per cent; ESTIMATED: {_FULL_RUDDER:g} deg at 100, write yours as scale"
+    return replace(guess, unit="deg", span=100.0, scale=_FULL_RUDDER).with_evidence(text)  # per cent of full
+
+
 def rest_of_commands(record: Record) -> Changes:
     """Return the commands whose pulse at rest is the middle one, as the craft stands still with it at the start."""
     names = [name for name in record.channels if name.startswith("command_")]

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.data.draft.column_guess import ColumnGuess
-from seatrial.data.draft.commands import command_guess
+from seatrial.data.draft.commands import command_guess, rudder_in_percent
 from seatrial.data.draft.naming import NameGuess, guess_by_name
 from seatrial.data.draft.survey import ColumnSummary, LogSurvey, TopicSummary
 from seatrial.data.draft.time_columns import column_values
@@ -99,6 +99,8 @@ def _first_guess(survey: LogSurvey, topic: TopicSummary, column: ColumnSummary, 
     )
     if named.symbol.startswith("command_"):
         return command_guess(replace(guess, side=named.side), column, survey)
+    if named.symbol == "delta" and named.unit == "percent":
+        return rudder_in_percent(guess)
     if rule.frame == "enu":
         other = 'frame = "earth" (x north, y east): the log does not say'
         return replace(guess, other_reading=other).with_evidence("axes as ROS recommends (REP 103)")

@@ -241,7 +241,8 @@ def _guess(rule: NameRule, match: re.Match[str], unit: str, evidence: str) -> Na
         expected = log_quantity(symbol).unit
     except InputError:
         return None
-    if unit and unit != "us" and si_unit(unit)[1] != expected:
+    is_share = symbol == "delta" and unit == "percent"
+    if unit and unit != "us" and not is_share and si_unit(unit)[1] != expected:
         unit = ""
     side = next((word for word, names in _SIDES.items() if re.search(names, match.string)), "")
     return NameGuess(rule, symbol, unit, evidence, side)

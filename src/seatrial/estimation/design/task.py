@@ -10,6 +10,7 @@ from seatrial.core.values import Array, InputError, Ship, spelling_hint
 from seatrial.data.folder.model_file import ModelFile
 from seatrial.data.trial import Trial
 from seatrial.data.trial.design_request import DesignRequest
+from seatrial.estimation.design.from_records import recorded_request
 from seatrial.physics.simulate.actuators import settled_actuators
 from seatrial.physics.simulate.approach import approach_speed, held_inputs
 
@@ -109,20 +110,22 @@ def design_task(trial: Trial, model_file: ModelFile | None = None) -> DesignTask
     """Return the task that the trial describes.
 
     Args:
+        trial: without a table [design] the manoeuvre is like the recorded ones.
         model_file: its values, freedom and covariance take the place of the trial's.
     """
     where = f"{trial.path}: " if trial.path else ""
-    request = trial.design_request
-    if request is None:
-        raise InputError(f"{where}there is no table [design]; add it with duration, rate and [design.inputs]")
     try:
+        request, sensors = trial.design_request, trial.noise
+        if request is None:
+            request, recorded = recorded_request(trial)
+            sensors = {**recorded, **sensors}
         model = trial.model if model_file is None else _demand_same_equations(model_file.model, trial.model)
         _demand_sizes(model)
         task = DesignTask(
             question=trial.question,
             ship=trial.ship,
             model=model,
-            sensors=trial.noise,
+            sensors=sensors,
             request=request,
             covariance=model_file.covariance if model_file is not None and model_file.covariance.size else None,
         )
