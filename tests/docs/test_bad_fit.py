@@ -3,6 +3,7 @@
 import ast
 import re
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 from seatrial.data.check.consequences import CONSEQUENCES
@@ -12,9 +13,11 @@ PAGE = REPOSITORY / "docs" / "bad-fit.md"
 CODE = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 
 
+@cache
 def codes_of_source() -> set[str]:
     """Second arguments of `Finding` and of helpers that hand one on as `code`; those whose consequence is stated."""
-    trees = [ast.parse(path.read_text(encoding="utf-8")) for path in (REPOSITORY / "src" / "seatrial").rglob("*.py")]
+    texts = (path.read_text(encoding="utf-8") for path in (REPOSITORY / "src" / "seatrial").rglob("*.py"))
+    trees = [ast.parse(text) for text in texts if "finding" in text.lower() or "_warning(" in text]
     constants = {name: text for tree in trees for name, text in _named_texts(tree)}
     codes = set(CONSEQUENCES)
     for tree in trees:
