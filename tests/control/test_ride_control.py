@@ -16,6 +16,7 @@ from tests.control.loop_files import (
     write_loop_file,
 )
 
+from seatrial.control.controller import components
 from seatrial.control.gain_evaluation import gain_evaluator
 from seatrial.control.loopfile.load import tuning_task
 from seatrial.control.seaway_simulation import simulate_in_seaway
@@ -200,3 +201,10 @@ def test_speeds_in_waves_are_refused_as_before(tmp_path: Path) -> None:
     )
     with pytest.raises(InputError, match="waves reach roll, heading, and heave and pitch"):
         tuning_task(write_loop_file(tmp_path, text.replace('[excitation]\nsource = "box"\n', "")))
+
+
+def test_the_loop_shows_waves_as_motion_of_the_hull(task: TuningTask) -> None:
+    shown = components(task.disturbances[0].disturbed(task.loop))
+    assert (shown[-1].role, shown[-1].name, shown[-1].num, shown[-1].den) == (
+        "disturbance", "motion of the hull", (1.0,), (1.0,),
+    )  # fmt: skip

@@ -93,7 +93,7 @@ def tune(
         baselines=baselines,
         front=thin_front(fronts[0][1], FRONT_POINTS),
         extended_fronts=tuple(thin_front(made, FRONT_POINTS) for made in more_fronts if len(made.gains)),
-        components=components(choice.evaluator.loop),
+        components=components(task.disturbances[0].disturbed(choice.evaluator.loop)),
         seaway_simulations=checks.simulations,
         disturbance_simulations=checks.disturbances,
         paired_differences=checks.comparisons,
