@@ -13,6 +13,8 @@ from seatrial.data.draft.naming import guess_by_name
         ("Speed stbd [kn]", "v", "kn"),
         ("lateral velocity", "v", ""),
         ("Shaft [rpm]", "n", "rpm"),
+        ("Wave probe LCG [mm]", "zeta", "mm"),
+        ("Heave LCG [mm]", "z", "mm"),
     ],
 )
 def test_speeds_along_and_across_and_the_rate_of_the_shaft_are_recognised(name: str, symbol: str, unit: str) -> None:

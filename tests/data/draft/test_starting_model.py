@@ -31,6 +31,7 @@ def decay(angle_deg: float) -> Record:
         ({"delta", "psi", "command_1"}, "nomoto"),
         ({"command_1", "command_2", "psi", "phi"}, "thrusters"),
         ({"phi", "p"}, "roll"),
+        ({"zeta", "z", "theta"}, "heave_pitch"),
         ({"phi", "psi"}, ""),
         ({"lat", "lon"}, ""),
     ],

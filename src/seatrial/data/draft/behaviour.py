@@ -26,6 +26,7 @@ from seatrial.data.draft.axes import with_axes_by_fixes
 from seatrial.data.draft.column_guess import Changes, ColumnGuess
 from seatrial.data.draft.commands import command_directions, rest_of_commands
 from seatrial.data.draft.survey import LogSurvey
+from seatrial.data.draft.wave_signs import wave_motion_signs
 from seatrial.data.read.assemble import LogSource, assemble_record, record_of_sources
 
 # correlation with the rate of the heading that proves a yaw rate; factor by which a unit may be missed; chosen
@@ -47,6 +48,7 @@ def checked_by_behaviour(
         _rudder_sign,
         rest_of_commands,
         command_directions,
+        wave_motion_signs,
     ):
         record = run_record(surveys, result)
         if record is not None:

@@ -154,6 +154,7 @@ def _with_roles(block: RecordsBlock, model: StartingModel, held_out: str, sessio
         block,
         validate=held_out if held_out in names else "",
         session=session,
+        has_waves=model.has_waves,
         is_released=model.swings and all(any(map(is_decay, one)) for one in block.stretches),
     )
 

@@ -12,6 +12,7 @@ from seatrial.data.draft.named_manoeuvre import name_contradiction
 from seatrial.data.draft.stored_parameters import antenna_place
 from seatrial.data.draft.stretch import LogStretch
 from seatrial.data.draft.survey import LogSurvey, TopicSummary
+from seatrial.data.draft.waves_text import wave_lines
 from seatrial.data.read import ColumnSpec
 from seatrial.data.read.layout import TimeSpec
 
@@ -29,6 +30,7 @@ class RecordsBlock:
         stretches: manoeuvres in the run, or in each of the files.
         parts: those of them that are offered as runs of their own.
         validate: the run to keep out of the estimation; empty: none of this block.
+        has_waves: whether the waves are an input.
         is_released: whether each run is a roll decay, to be used from its release on.
     """
 
@@ -39,6 +41,7 @@ class RecordsBlock:
     parts: tuple[tuple[LogStretch, ...], ...]
     validate: str = ""
     session: str = ""
+    has_waves: bool = False
     is_released: bool = False
 
 
@@ -70,7 +73,8 @@ def _block_lines(block: RecordsBlock, folder: Path) -> list[str]:
         for survey, guesses in block.sources:
             lines += [*_layout_lines(survey), *_channel_lines(survey, guesses)]
         names = ["" if len(block.files) == 1 else survey.path.stem for survey in block.files]
-        return [*lines, *_part_lines(dict(zip(names, block.stretches, strict=True)), block.parts)]
+        lines += _part_lines(dict(zip(names, block.stretches, strict=True)), block.parts)
+        return [*lines, *(wave_lines() if block.has_waves else [])]
     lines += [
         f"name = {_quoted(block.name)}",
         *_role_lines(block),

@@ -115,6 +115,7 @@ _COMPASS = "a magnetic one is psi_magnetic, with variation"
 _ENGINE = "rate of the engine: to use it, write it as channels.n with scale = propeller turns over engine turns"
 _WIND = "which only model mmg takes"
 _APPARENT, _ANGLE = "app(arent)?", "(dir(ection)?|angle)"
+_PROBE = "counts as the elevation at midship"
 _PORT, _STARBOARD = "(left|port)", "(right|starboard|stbd)"
 _SIDES = {"port": _PORT, "starboard": _STARBOARD}
 _THRUSTER, _PULSE = "(thr(ottle|uster)?|motor|esc|pwm|command|cmd)", "(_(pwm|us|out|output|raw|cmd))?"
@@ -143,6 +144,10 @@ _WORDS = [
         (r"n_prop|(prop(eller)?|shaft)_(rate|rpm|rps|speed)|shaft|rpm|rps|n", "n", ""),
         (r"roll(_angle)?|phi|heel", "phi", ""), (r"pitch(_angle)?|theta|trim_angle", "theta", ""),
         (r"roll_rate|p", "p", ""), (r"heave|z", "z", ""),
+        (
+            r"zeta|wave(_(probe|gauge|height|elevation))?|(free_)?surface_elevation",
+            "zeta", "", "", "", 1.0, "", _PROBE,
+        ),
         (r"(batt?(ery)?_?)?volt(s|age)?|batt?(ery)?(_v)?|v_?batt?(ery)?", "voltage", ""),
         (rf"{_THRUSTER}_?{_PORT}{_PULSE}|{_PORT}_?{_THRUSTER}{_PULSE}", "command_1", ""),
         (rf"{_THRUSTER}_?{_STARBOARD}{_PULSE}|{_STARBOARD}_?{_THRUSTER}{_PULSE}", "command_2", ""),
@@ -165,7 +170,9 @@ _EXPORTED = re.compile(r"/?([A-Za-z]\w*(?:\[\d+\])?)[./](\w+(?:\[\d+\])?)")
 _INSTRUMENTS = re.compile(
     r"((d?gps|gnss|rtk|imu|ahrs|ins|mru|gyro|vdr|nav|nmea|ais|doppler|dvl|sensor|ship|vessel)\d*_)+"
 )
-_QUALIFIERS = re.compile(r"(_(true|t|filt(ered)?|meas(ured)?|actual|raw|avg|mean|value|deg_t|\d))+$")
+_QUALIFIERS = re.compile(
+    r"(_(true|t|filt(ered)?|meas(ured)?|actual|raw|avg|mean|value|deg_t|lcg|cg|mid(ships?)?|amidships|\d))+$"
+)
 _BRACKETS = re.compile(r"[\[(]([^\])]*)[\])]")
 
 

@@ -26,7 +26,7 @@ class EstimatedValue:
 
 def mass_properties(length: float) -> tuple[EstimatedValue, ...]:
     """Return mass, centre of gravity, inertia [SI] and water density of a ship of this length [m]."""
-    values = displacement(_form(length), _SEA_WATER).values
+    values = displacement(hull_form(length), _SEA_WATER).values
     form = f"L/B {_LENGTH_TO_BREADTH:g}, B/d {_BREADTH_TO_DRAUGHT:g}, C_b {_BLOCK:g}"
     return (
         EstimatedValue("m", values["m"], f"kg, of a hull with {form}; write the displacement if you know it"),
@@ -38,14 +38,15 @@ def mass_properties(length: float) -> tuple[EstimatedValue, ...]:
 
 def added_masses(length: float) -> tuple[EstimatedValue, ...]:
     """Return the acceleration derivatives over rho/2 L^3 and rho/2 L^5 of a ship of this length [m]."""
-    form = _form(length)
+    form = hull_form(length)
     estimate = added_mass(form)
     names = {"X_udot": "m_x_prime", "Y_vdot": "m_y_prime", "N_rdot": "J_z_prime"}
     text = f"{ZHOU}, for {estimate.limits}; of other forms a guess"
     return tuple(EstimatedValue(key, -estimate.values[one] * form.d / form.L, text) for key, one in names.items())
 
 
-def _form(length: float) -> HullForm:
+def hull_form(length: float) -> HullForm:
+    """Return a form of this length [m], of a ship of which nothing else is stated."""
     breadth = length / _LENGTH_TO_BREADTH
     return HullForm(length, breadth, breadth / _BREADTH_TO_DRAUGHT, _BLOCK)
 

@@ -7,7 +7,8 @@ import numpy as np
 
 from seatrial.core.values import Record
 
-_THRUSTERS, _ROLL, _SHIP = "thrusters", "roll", "abkowitz"
+_THRUSTERS, _ROLL, _SHIP, _WAVES = "thrusters", "roll", "abkowitz", "heave_pitch"
+_WAVE, _MOTION_IN_WAVES = "zeta", frozenset({"z", "theta"})
 _ROLL_MOTION = frozenset({"phi", "p"})
 _STEERED_MOTION = frozenset({"psi", "psi_magnetic", "r", "u", "v", "x0", "y0", "lat", "lon"})
 # largest rudder angle of one run over that of another, from which on the fall of the gain with it shows; chosen
@@ -55,6 +56,11 @@ class StartingModel:
         return self.name == _THRUSTERS
 
     @property
+    def has_waves(self) -> bool:
+        """Whether its input is the elevation of the waves."""
+        return self.name == _WAVES
+
+    @property
     def swings(self) -> bool:
         """Whether its input is an angle that swings to both sides of its rest."""
         return self.name == _ROLL
@@ -81,6 +87,8 @@ def starting_model(symbols: Set[str], records: Sequence[Record | None], length: 
         return StartingModel("nomoto", why, ("K", "T", "alpha") if falls else (), reason, ("delta",))
     if commands:
         return StartingModel(_THRUSTERS, "of a craft that steers by its thrusters", (), "", commands)
+    if _WAVE in symbols and symbols & _MOTION_IN_WAVES:
+        return StartingModel(_WAVES, "of a craft that waves of recorded elevation move", inputs=(_WAVE,))
     if symbols & _ROLL_MOTION and not symbols & _STEERED_MOTION:
         reason = "linear and quadratic damping, restoring, its cubic term, angle of rest"
         free = ("b_1", "b_2", "c_1", "c_3", "phi_0")

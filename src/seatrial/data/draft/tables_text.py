@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.ship_estimates import added_masses, mass_properties
 from seatrial.data.draft.starting_model import StartingModel
+from seatrial.data.draft.waves_text import excitation_lines, ship_in_waves
 
 _LEVER_SHARE = 0.15  # of the length, from the centre line to a thruster of a pair; chosen: a catamaran's hull
 _CURRENT = 0.3  # m/s, standard deviation of an unknown current; as the advice of the checks
@@ -33,6 +34,7 @@ def tables_text(model: StartingModel, guesses: Sequence[ColumnGuess], length: fl
         *(["", "[model.fixed]", *(one.line for one in added_masses(length))] if model.has_forces_of_a_ship else []),
         *(thruster_tables(guesses, length) if model.has_thrusters else []),
         "",
+        *(excitation_lines() if model.has_waves else []),
         *_sensor_lines(model, guesses),
         *_offset_lines(model, guesses),
     ]
@@ -44,6 +46,8 @@ def _ship_lines(model: StartingModel, length: float) -> list[str]:
     if model.has_forces_of_a_ship:
         lines += [one.line for one in mass_properties(length)]
         lines.append(f"U_n = {model.speed:.2f}    # m/s, speed at which the runs begin, as recorded")
+    if model.has_waves and length:
+        lines += [one.line for one in ship_in_waves(length)]
     if model.swings:
         lines.append("# B = 0.0    # m, breadth: with it GM follows from the period")
     return lines
