@@ -3,11 +3,13 @@
 `python docs/write_benchmark_table.py DIR --runs 30`
 
 DIR keeps the runs: the same command goes on where it stopped, and `--runs` may rise. `--problems` names some of them.
-Folds of measured trials have runs of their own number, `--fold-runs`: an evaluation of them takes a hundred times as
-long, and there are only so many sessions to leave out.
+Craft with thrusters and folds of measured trials have runs of their own number, `--dear-runs`: a run of them takes 10
+to 40 times as long, and of folds there are only so many sessions to leave out.
 """
 
 import argparse
+from collections.abc import Sequence
+from fnmatch import fnmatch
 from pathlib import Path
 
 import seatrial as st
@@ -19,8 +21,8 @@ from seatrial.problems.built_in import IDENTIFY, OUTPUT_ERROR
 PAGE = Path(__file__).parent / "benchmark-table.md"
 OWN_LIMIT = 1.1
 """Error over the bound, rms over runs and unknowns, up to which the own estimator counts as at the bound."""
-FOLDS = "-folds"
-"""How the names of problems on measured trials end."""
+DEAR = ("thrusters-*", "*-folds")
+"""Patterns of the problems whose runs take long."""
 CLAIM_RUNS = 30
 """Draws on which claims are tested: a two-sided sign test sees 24 : 6 of them after a correction for thirty claims."""
 HEAD = """# All built-in methods on all problems
@@ -41,13 +43,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="all built-in methods on all problems")
     parser.add_argument("folder", type=Path)
     parser.add_argument("--runs", type=int, default=30)
-    parser.add_argument("--fold-runs", type=int, default=10)
+    parser.add_argument("--dear-runs", type=int, default=6)
     parser.add_argument("--problems", nargs="*")
     parser.add_argument("--workers", type=int)
     options = parser.parse_args()
     listed = tuple(options.problems or [problem.name for problem in st.problems.list_problems()])
-    names = [problem.name for problem in problems_matching(listed) if not problem.name.endswith(FOLDS)]
-    folds = [problem.name for problem in problems_matching(listed) if problem.name.endswith(FOLDS)]
+    every = [problem.name for problem in problems_matching(listed)]
+    dear = [name for name in every if any(fnmatch(name, pattern) for pattern in DEAR)]
+    names = [name for name in every if name not in dear]
     claims = [c for problem in problems_matching(tuple(names)) for c in problem.claims]
     rivals = sorted({name for claim in claims for name in (claim.better, claim.worse)})
     claimed = [problem.name for problem in problems_matching(tuple(names)) if problem.claims]
@@ -58,30 +61,31 @@ def main() -> None:
     result = st.benchmark(
         names, options.folder / "known", runs=options.runs, workers=options.workers, report_progress=print
     )  # fmt: skip
-    measured = None
-    if folds:
-        measured = st.benchmark(
-            folds, options.folder / "folds", runs=options.fold_runs, workers=options.workers, report_progress=print
+    rest = None
+    if dear:
+        rest = st.benchmark(
+            dear, options.folder / "dear", runs=options.dear_runs, workers=options.workers, report_progress=print
         )  # fmt: skip
     some = f" --problems {' '.join(options.problems)}" if options.problems else ""
-    command = f"python docs/write_benchmark_table.py DIR --runs {options.runs} --fold-runs {options.fold_runs}{some}"
-    PAGE.write_text(page(result, measured, judged, command), encoding="utf-8")
+    command = f"python docs/write_benchmark_table.py DIR --runs {options.runs} --dear-runs {options.dear_runs}{some}"
+    PAGE.write_text(page(result, rest, judged, command), encoding="utf-8")
 
 
-def page(result: Benchmark, measured: Benchmark | None, judged: Benchmark, command: str) -> str:
-    """Return the page; `judged` has the methods of which papers make claims, `measured` folds of real craft."""
-    parts = [result] if measured is None else [result, measured]
+def page(result: Benchmark, rest: Benchmark | None, judged: Benchmark, command: str) -> str:
+    """Return the page; `judged` has the methods of which papers make claims, `rest` the problems with fewer runs."""
+    parts = [result] if rest is None else [result, rest]
     citations = "\n\n".join(f"`{part.citation}`" for part in parts)
-    head = HEAD.format(command=command, outcome=_own_text(result), citations=citations)
+    head = HEAD.format(command=command, outcome=_own_text(parts), citations=citations)
     tables = [line for part in parts for score in part.problems for line in _problem(score)]
     return "\n".join([head, *_claims(judged), *tables]) + "\n"
 
 
-def _own_text(result: Benchmark) -> str:
+def _own_text(parts: Sequence[Benchmark]) -> str:
     """Where the own estimators are at the bound, and where not."""
     lines = []
     for name in (OUTPUT_ERROR, IDENTIFY):
-        scores = {p.name: m for p in result.problems for m in p.methods if m.method == name and _has_bound(p)}
+        problems = [p for part in parts for p in part.problems if _has_bound(p)]
+        scores = {p.name: m for p in problems for m in p.methods if m.method == name}
         beyond = {p: m for p, m in scores.items() if not (m.rms is not None and m.rms <= OWN_LIMIT and not m.failures)}
         text = "; ".join(f"{p} ({_error(m)})" for p, m in beyond.items())
         near = f"{len(scores) - len(beyond)} of {len(scores)} problems with noise"
