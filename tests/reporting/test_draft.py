@@ -7,7 +7,7 @@ import numpy as np
 from tests.data.draft.test_draft import BASE, TRUTH, write
 
 from seatrial.api import draft_trial
-from seatrial.reporting.draft import html
+from seatrial.reporting.draft import html, verdict
 from seatrial.reporting.figures.log_parts import log_view
 
 
@@ -18,7 +18,14 @@ def test_the_page_shows_columns_runs_and_parts(tmp_path: Path) -> None:
     assert "&lt;trial&gt;.toml" in page and "<b>n</b>" not in page
     for part in ("1 column to decide", "unit = &#34;rpm&#34;", "1 zigzag1", "circle_starboard_1", "turns to starboard"):
         assert part in page
+    assert verdict(draft) == f"1 run with {len(draft.stretches[0])} manoeuvres found; 1 column to decide."
+    assert "Parts that stand behind a #" in page
     HTMLParser().feed(page)
+
+
+def test_a_run_without_manoeuvres_has_no_parts_to_choose(tmp_path: Path) -> None:
+    draft = draft_trial(write(tmp_path / "run.csv", {name: BASE[name][:50] for name in BASE}), folder=tmp_path)
+    assert "1 run with no manoeuvres found" in html(draft, "t") and "behind a #" not in html(draft, "t")
 
 
 def test_parts_are_coloured_on_the_track_and_behind_each_channel(tmp_path: Path) -> None:

@@ -24,7 +24,7 @@ _HEADER = ("method", "median", "rms", "success %", "evaluations", "to success", 
 _NUMERIC = (False, True, True, True, True, True, True, True, False)
 _ZERO = 1e-9  # smallest error that is drawn on a logarithmic axis; chosen
 _MARGIN = 1.3  # free factor beyond the ends of a logarithmic axis; chosen
-HEADINGS = {"outcome": "Summary", "problems": "Problems", "findings": "Findings", "methods": "Methods",
+HEADINGS = {"problems": "Problems", "findings": "Findings", "methods": "Methods",
             "provenance": "Provenance"}  # fmt: skip
 TABLE_NOTE = (
     "Median and rms: errors in the unit of the problem. Evaluations: median of a run; to success: those of all runs "
@@ -54,6 +54,7 @@ def html(result: Benchmark) -> str:
         "titles": {key: title for key, title in HEADINGS.items() if content.get(key, True)},
         "benchmark": result,
         "outcome": outcome(result),
+        "heading_counts": f"{counted(len(result.problems), 'problem')}, {counted(len(result.methods), 'method')}",
         "parts": [problem_part(score, result.targets) for score in result.problems],
         "note": TABLE_NOTE,
         "method_table": TextTable(

@@ -47,6 +47,7 @@ def html(draft: DraftTrial, title: str) -> str:
     ]
     context = {
         "title": title,
+        "verdict": verdict(draft),
         "titles": TITLES,
         "rows": rows,
         "open_count": counted(len(draft.open_questions), "column") if draft.open_questions else "",
@@ -54,6 +55,16 @@ def html(draft: DraftTrial, title: str) -> str:
         "unfolded": _OPEN_RUNS,
     }
     return page_text("draft.html", context)
+
+
+def verdict(draft: DraftTrial) -> str:
+    """Return how much was found: runs, manoeuvres, and columns that are to be decided."""
+    parts = sum(map(len, draft.stretches))
+    runs = f"{counted(len(draft.runs), 'run')} with {counted(parts, 'manoeuvre')} found"
+    undecided = len(draft.open_questions)
+    return (
+        f"{runs}; {counted(undecided, 'column')} to decide." if undecided else f"{runs}; no column is left to decide."
+    )
 
 
 def _column_row(guess: ColumnGuess) -> ColumnRow:
