@@ -1,6 +1,7 @@
-"""Peak memory of each command on its example, and on ten times the data: `python benchmarks/memory.py [command ...]`.
+"""Peak memory of each command on its example, and on ten times the data.
 
-Ten times the data are the example's records at ten times their rate, interpolated. Each command runs in a process of
+`python benchmarks/memory.py [command ...]` measures the named commands only. Ten times the data are the example's
+records at ten times their rate, interpolated; ten times the runs for what takes no records but many of them. Each command runs in a process of
 its own; what is printed is the largest resident memory of that process (readers of binary formats are others), and that
 of a process that only imports the libraries.
 """
@@ -9,6 +10,7 @@ import re
 import subprocess
 import sys
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +18,9 @@ from measure import Line, machine
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 FACTOR = 10
+RUNS = 3
+"""Runs of a benchmark or a campaign; ten times as many beside them. Chosen: each takes seconds."""
+BENCHMARKED = "yu2014-3-printed"
 _KIB = 1024  # bytes in the unit of ru_maxrss on Linux (getrusage(2)); macOS counts bytes
 COMMANDS = {
     "init": ["init", "{data}/waterjet", "--out", "{out}.toml"],
@@ -25,8 +30,24 @@ COMMANDS = {
     "report": ["report", "{fit}"],
     "simulate": ["simulate", "{fit}/model.toml", "--manoeuvre", "zigzag:20/20", "--out", "{out}.csv"],
     "design": ["design", "{data}/waterjet_design.toml", "--out", "{out}"],
-    "tune": ["tune", "{data}/fin_stabiliser.toml", "--out", "{out}"],
-    "reproduce": ["reproduce", "meng2014", "--quick", "--out", "{out}"],
+    "tune": ["tune", "{data}/waterjet_autopilot.toml", "--from", "{fit}/model.toml", "--out", "{out}"],
+    "compare": ["compare", "{fit}", "{fit}", "--out", "{out}"],
+    "export": ["export", "{fit}/model.toml", "--to", "c99", "--out", "{out}"],
+    "models": ["models"],
+    "benchmark": [
+        "benchmark",
+        BENCHMARKED,
+        "--against",
+        "iwho",
+        "--runs",
+        "{runs}",
+        "--workers",
+        "1",
+        "--out",
+        "{out}",
+    ],
+    "campaign": ["campaign", "run", "{plan}", "--workers", "1", "--out", "{out}"],
+    "reproduce": ["reproduce", "yu2014", "--quick", "--out", "{out}"],
 }
 # a process inherits the peak of the one that starts it: this one is small
 _LAUNCHER = """
@@ -35,7 +56,8 @@ process = subprocess.Popen(sys.argv[1:], stdout=subprocess.DEVNULL, stderr=subpr
 _, status, usage = os.wait4(process.pid, 0)
 print(os.waitstatus_to_exitcode(status), usage.ru_maxrss)
 """
-_WITHOUT_RECORDS = ("simulate", "design", "tune", "reproduce")  # what they take does not grow with a record
+# what they take does not grow with a record or with a number of runs
+_WITHOUT_RECORDS = ("simulate", "design", "tune", "reproduce", "models", "export")
 
 
 def peak_memory(program: list[str]) -> float:
@@ -66,27 +88,44 @@ def finer_records(target: Path) -> None:
         (target / trial.name).write_text(text)
 
 
-def run(names: list[str] | None = None) -> list[Line]:
+def plan_of(runs: int, target: Path) -> Path:
+    """Write the example of a campaign with so many runs."""
+    text = (EXAMPLES / "coverage.toml").read_text()
+    target.write_text(re.sub(r"^seeds = \d+$", f"seeds = {runs}", text, flags=re.M))
+    return target
+
+
+def run(names: Sequence[str] = ()) -> list[Line]:
     """Peak memory as a table, MB."""
     program = [sys.executable, "-c", "from seatrial.cli import main; main()"]
     imports = "import numpy, scipy.optimize, numba, pandas, pydantic, typer"
-    lines = [Line("importing the libraries", peak_memory([sys.executable, "-c", imports]) / 1e6, "MB")]
+    lines = [Line("importing the libraries alone", peak_memory([sys.executable, "-c", imports]) / 1e6, "MB")]
     with tempfile.TemporaryDirectory() as place:
         finer_records(Path(place) / "finer")
         fits = {}
-        for size, data in (("", EXAMPLES), (f", {FACTOR} times the data", Path(place) / "finer")):
+        for size, data, runs in (
+            ("", EXAMPLES, RUNS),
+            (f", {FACTOR} times the data", Path(place) / "finer", FACTOR * RUNS),
+        ):
             fits[size] = f"{place}/fit{len(fits)}"
             subprocess.run([*program, "identify", f"{data}/waterjet.toml", "--out", fits[size]], capture_output=True)
             for name in names or COMMANDS:
                 if size and name in _WITHOUT_RECORDS:
                     continue
-                values = {"data": str(data), "fit": fits[size], "out": f"{place}/{name}{len(fits)}"}
+                plan = plan_of(runs, Path(place) / f"plan{len(fits)}.toml")
+                values = {
+                    "data": data,
+                    "fit": fits[size],
+                    "out": f"{place}/{name}{len(fits)}",
+                    "runs": runs,
+                    "plan": plan,
+                }
                 arguments = [part.format(**values) for part in COMMANDS[name]]
                 lines.append(Line(name + size, peak_memory([*program, *arguments]) / 1e6, "MB"))
+                print(f"  {lines[-1].quantity:<40} {lines[-1].value:>8.0f} MB", flush=True)
     return lines
 
 
 if __name__ == "__main__":
     print(machine())
-    for line in run(sys.argv[1:]):
-        print(f"  {line.quantity:<40} {line.value:>8.0f} {line.unit}", flush=True)
+    run(sys.argv[1:])

@@ -27,6 +27,7 @@ import heave_pitch
 import kvlcc2_zigzags
 import long_record
 import loops
+import memory
 import montecarlo
 import numpy as np
 import population
@@ -63,6 +64,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "roll_decay": roll_decay.run,
     "follow": follow.run,
     "campaign": campaign.run,
+    "memory": memory.run,
 }
 
 

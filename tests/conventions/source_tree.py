@@ -3,7 +3,7 @@
 import ast
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 
 REPOSITORY = Path(__file__).parents[2]
@@ -20,6 +20,16 @@ class SourceFile:
     path: Path
     text: str
     tree: ast.Module
+
+    @cached_property
+    def nodes(self) -> tuple[ast.AST, ...]:
+        """Return every node of the tree."""
+        return tuple(ast.walk(self.tree))
+
+    @cached_property
+    def texts(self) -> tuple[str, ...]:
+        """Return every string constant."""
+        return tuple(n.value for n in self.nodes if isinstance(n, ast.Constant) and isinstance(n.value, str))
 
     @property
     def folder(self) -> str:

@@ -22,7 +22,7 @@ def _files() -> list[SourceFile]:
 def test_a_public_class_name_stands_for_one_thing() -> None:
     places: dict[str, list[str]] = defaultdict(list)
     for file in _files():
-        for node in ast.walk(file.tree):
+        for node in file.nodes:
             if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
                 places[node.name].append(file.place(node))
     assert {name: where for name, where in places.items() if len(where) > 1} == {}
@@ -54,7 +54,7 @@ def _declared(file: SourceFile) -> list[tuple[str, str]]:
     """Return place and name of everything a file declares for others to read."""
     declared = [(file.place(f), f.name) for f in functions(file.tree)]
     declared += [(file.place(a), a.arg) for f in functions(file.tree) for a in parameters(f)]
-    for node in ast.walk(file.tree):
+    for node in file.nodes:
         if isinstance(node, ast.ClassDef):
             declared.append((file.place(node), node.name))
             declared += [

@@ -1,6 +1,5 @@
 """Texts are in the plain English of the field: retired words stand in no page and in no text of the packages."""
 
-import ast
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -54,8 +53,7 @@ def test_texts_of_the_packages_use_fewer_and_fewer_retired_words() -> None:
     count = 0
     for package in PACKAGES:
         for file in source_files(package):
-            texts = (n.value for n in ast.walk(file.tree) if isinstance(n, ast.Constant) and isinstance(n.value, str))
-            count += sum(1 for text in texts for _ in _retired(text))
+            count += sum(1 for text in file.texts if RETIRED.search(text) for _ in _retired(text))
     assert count <= MOST_IN_SOURCE
 
 
@@ -70,9 +68,8 @@ def test_no_text_of_the_packages_has_a_number_without_its_leading_zero() -> None
         f"{file.folder}: {line.strip()[:100]}"
         for package in PACKAGES
         for file in source_files(package)
-        for node in ast.walk(file.tree)
-        if isinstance(node, ast.Constant) and isinstance(node.value, str)
-        for line in node.value.splitlines()
+        for text in file.texts
+        for line in text.splitlines()
         if BARE_DECIMAL.search(line)
     ]
     assert bare == []
