@@ -1,9 +1,9 @@
 """Peak memory of each command on its example, and on ten times the data.
 
 `python benchmarks/memory.py [command ...]` measures the named commands only. Ten times the data are the example's
-records at ten times their rate, interpolated; ten times the runs for what takes no records but many of them. Each command runs in a process of
-its own; what is printed is the largest resident memory of that process (readers of binary formats are others), and that
-of a process that only imports the libraries.
+records at ten times their rate, interpolated, or ten times the runs of a benchmark or a campaign. Each command runs in
+a process of its own; what is printed is the largest resident memory of that process (readers of binary formats are
+others), and that of a process that only imports the libraries.
 """
 
 import re
@@ -20,7 +20,6 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 FACTOR = 10
 RUNS = 3
 """Runs of a benchmark or a campaign; ten times as many beside them. Chosen: each takes seconds."""
-BENCHMARKED = "yu2014-3-printed"
 _KIB = 1024  # bytes in the unit of ru_maxrss on Linux (getrusage(2)); macOS counts bytes
 COMMANDS = {
     "init": ["init", "{data}/waterjet", "--out", "{out}.toml"],
@@ -35,20 +34,11 @@ COMMANDS = {
     "export": ["export", "{fit}/model.toml", "--to", "c99", "--out", "{out}"],
     "models": ["models"],
     "benchmark": [
-        "benchmark",
-        BENCHMARKED,
-        "--against",
-        "iwho",
-        "--runs",
-        "{runs}",
-        "--workers",
-        "1",
-        "--out",
-        "{out}",
+        "benchmark", "yu2014-3-printed", "--against", "iwho", "--runs", "{runs}", "--workers", "1", "--out", "{out}",
     ],
     "campaign": ["campaign", "run", "{plan}", "--workers", "1", "--out", "{out}"],
     "reproduce": ["reproduce", "yu2014", "--quick", "--out", "{out}"],
-}
+}  # fmt: skip
 # a process inherits the peak of the one that starts it: this one is small
 _LAUNCHER = """
 import os, subprocess, sys

@@ -1,5 +1,6 @@
 """What every test may use: real records, a seeded generator, the command line, the machine's browser."""
 
+import gc
 import os
 import shutil
 import sys
@@ -20,6 +21,9 @@ settings.load_profile("untimed")
 
 # texts are as in a pipe, uncut, though workers of a parallel run are given a terminal's width
 os.environ.pop("COLUMNS", None)
+
+# as the command line, for the same reason
+gc.set_threshold(cli.COLLECTION_THRESHOLD)
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 

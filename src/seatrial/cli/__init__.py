@@ -11,7 +11,7 @@ from seatrial.cli.commands import app
 INPUT_EXIT_CODE, INTERNAL_EXIT_CODE, INTERRUPT_EXIT_CODE = 2, 70, 130  # 70: EX_SOFTWARE of sysexits.h
 # new objects between two searches for unreachable cycles: most are modules and classes that live as long as the
 # process; chosen: Python's own 700 costs a sixteenth of the time of a command
-_COLLECTION_THRESHOLD = 50_000
+COLLECTION_THRESHOLD = 50_000
 # matrices are small and work is shared out over runs: threads of the linear algebra would wait for one another, and
 # round differently from machine to machine; read when NumPy is first imported
 _ALGEBRA_THREADS = {"OPENBLAS_NUM_THREADS": "1"}
@@ -20,7 +20,7 @@ _INTERRUPT_MESSAGE = "seatrial: interrupted; files are written whole or not at a
 
 def main() -> None:
     """Run the command line; bad input is one line on standard error, and so is an error of the program itself."""
-    gc.set_threshold(_COLLECTION_THRESHOLD)
+    gc.set_threshold(COLLECTION_THRESHOLD)
     for variable, threads in _ALGEBRA_THREADS.items():
         os.environ.setdefault(variable, threads)
     _prepare_streams()
