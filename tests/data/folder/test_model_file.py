@@ -126,6 +126,8 @@ def test_a_damaged_file_is_refused() -> None:
     [
         ("value = 9.8", "value = inf", r"L\.value = inf is no finite number"),
         ("value = 9.8", "value = true", r"L\.value = True is no finite number"),
+        ("value = 9.8", 'value = "1_0"', r"L\.value = 1_0 is no finite number"),
+        ("value = 9.8", "value = 9.8\nlower = nan", r"L\.lower = nan is no finite number"),
         ("value = 9.8", f"value = {10**400}", "beyond 64 bits"),
         ("\nL = 9.8", "\nL = nan", "L = nan is no finite number"),
     ],

@@ -36,7 +36,7 @@ def finite_number(number: Any, name: str) -> float:
     Raises:
         ValueError: it is no number, or not finite.
     """
-    if isinstance(number, bool) or not math.isfinite(value := float(number)):
+    if isinstance(number, bool | str) or not math.isfinite(value := float(number)):
         raise ValueError(f"{name} = {number} is no finite number")
     return value
 
@@ -190,8 +190,8 @@ def parameter(name: str, table: Mapping[str, Any]) -> Parameter:
         name=name,
         value=_value(table["value"], f"{name}.value"),
         unit=str(table["unit"]),
-        lower=float(table.get("lower", -math.inf)),
-        upper=float(table.get("upper", math.inf)),
+        lower=_bound(table.get("lower", -math.inf), f"{name}.lower"),
+        upper=_bound(table.get("upper", math.inf), f"{name}.upper"),
         scale=finite_number(table.get("scale", 0.0), f"{name}.scale"),
         prior=None if prior is None else _prior(prior, f"{name}.prior"),
         free=bool(table["free"]),
@@ -204,6 +204,11 @@ def parameter(name: str, table: Mapping[str, Any]) -> Parameter:
 def _value(number: Any, where: str) -> float:
     """A parameter's value; NaN where it has none yet."""
     return math.nan if isinstance(number, float) and math.isnan(number) else finite_number(number, where)
+
+
+def _bound(number: Any, where: str) -> float:
+    """A parameter's bound; infinite where there is none."""
+    return number if isinstance(number, float) and math.isinf(number) else finite_number(number, where)
 
 
 def _prior(table: Mapping[str, Any], where: str) -> Prior:
