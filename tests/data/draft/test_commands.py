@@ -110,3 +110,13 @@ def test_a_rudder_in_per_cent_is_an_angle_whose_full_travel_is_estimated(tmp_pat
     assert line in draft.text and "ESTIMATED: 35 deg at 100" in draft.text
     (record,) = (one for one in draft.records if one is not None)
     assert np.degrees(np.max(record["delta"])) == pytest.approx(28.0, abs=0.1)
+
+
+@pytest.mark.parametrize(("common", "other"), [(1406.0, "positive"), (1549.0, "zero = 1500")])
+def test_pulses_to_both_sides_of_1500_are_about_it_unless_another_rest_is_near(
+    tmp_path: Path, common: float, other: str
+) -> None:
+    (tmp_path / "run.csv").write_text("time,motor1\n0,1\n1,2\n2,3\n")
+    column = ColumnSummary("motor1", "us", 1337.0, 1900.0, 0.0, is_constant=False, common=common)
+    guess = command_guess(ColumnGuess("motor1", "command_1", ""), column, survey_log(tmp_path / "run.csv"))
+    assert guess is not None and guess.other_reading.startswith(other)

@@ -10,11 +10,12 @@ from seatrial.data.check import canonical_record
 from seatrial.data.check.thrusters import SURE_EFFECT, ThrusterEffect, thruster_effects
 from seatrial.data.draft.column_guess import Changes, ColumnGuess
 from seatrial.data.draft.stored_parameters import OutputSetting, is_disabled, output_setting
-from seatrial.data.draft.stretch import smooth_speed
+from seatrial.data.draft.stretch import padded, smooth_speed
 from seatrial.data.draft.survey import ColumnSummary, LogSurvey
 from seatrial.physics.models.thruster_layout import CommandInput, Thruster, ThrusterLayout
 
 _RANGE, _REST, _SPAN = (700.0, 2300.0), 1500.0, 400.0  # us, of servo pulses (ArduPilot, SERVOn_MIN, MAX)
+_NEVER_IDLE = 1200.0  # us; a motor of one direction idles between 1000 and 1100, and every log holds that; chosen
 _REST_TOLERANCE = 60.0  # us; chosen: trims of motors that stand still
 _SURELY_PERCENT = 20.0  # largest size of a command from which on up to 100 is per cent, not volts or amperes; chosen
 _FULL_RUDDER = 35.0  # deg, of most ships' rudders (SOLAS II-1/29): what a draft proposes
@@ -58,7 +59,8 @@ def _by_rest(guess: ColumnGuess, column: ColumnSummary) -> ColumnGuess:
     distance = abs(column.common - _REST)
     zero = column.common if distance < _REST_TOLERANCE else _REST
     pulse = replace(guess, unit="us", zero=zero, span=_SPAN).with_evidence(text)
-    if distance == 0.0:
+    to_both_sides = column.low > _NEVER_IDLE and min(_REST - column.low, column.high - _REST) > _REST_TOLERANCE
+    if distance == 0.0 or (to_both_sides and distance >= _REST_TOLERANCE):
         return replace(pulse, other_reading=_ONLY_SIGN)
     other = f"zero = {_REST:g}" if distance < _REST_TOLERANCE else "zero = 1000, span = 1000 (one direction)"
     return replace(pulse, other_reading=other)
@@ -103,6 +105,7 @@ def _with_rest_in_the_middle(guess: ColumnGuess) -> ColumnGuess:
 def command_directions(record: Record) -> Changes:
     """Return what shows which way each command drives the craft and to which side it turns it."""
     names = [name for name in record.channels if name.startswith("command_")]
+    record = _with_surge(record)
     if not names or not {"u", "r", "psi"} <= set(record.channels):
         return {}
     try:
@@ -117,6 +120,16 @@ def command_directions(record: Record) -> Changes:
         for name, effect in zip(names, effects, strict=True)
         if abs(effect.surge) > SURE_EFFECT
     }
+
+
+def _with_surge(record: Record) -> Record:
+    """The record with the speed ahead as the positions show it, where no speed is recorded."""
+    if "u" in record or not {"x0", "y0", "psi"} <= set(record.channels):
+        return record
+    north, east = (np.gradient(padded(record, record[one]), record.dt) for one in ("x0", "y0"))
+    ahead = north * np.cos(record["psi"]) + east * np.sin(record["psi"])
+    surge = Record.from_arrays("surge", record.time, {"u": ahead, "v": np.zeros_like(ahead)})
+    return record.with_channel("u", surge.channel("u")).with_channel("v", surge.channel("v"))
 
 
 def _with_direction(effect: ThrusterEffect, guess: ColumnGuess) -> ColumnGuess:
