@@ -122,3 +122,16 @@ def test_one_run_diverges(fit: Fit) -> None:
     (run, *_) = fit.validation
     lost = replace(run, divergence=Divergence(70.0, 65.0, "r"))
     assert rows(replace(fit, predictions=(lost,)))["Error, held out (rms)"].text == "1 run diverges"
+
+
+def test_a_velocity_that_a_baseline_predicts_better_is_no_best_in_every_quantity(fit: Fit) -> None:
+    scored = with_windows(fit, 1.0, 3.0)
+    (p,) = scored.validation
+    window = p.windows[0]
+    (rival, *_) = window.baselines
+    own, others = window.scores["psi_deg"], rival.scores["psi_deg"]
+    baseline = replace(rival, scores=rival.scores | {"r": replace(others, rms=0.01)})
+    both = replace(window, scores=window.scores | {"r": replace(own, rms=0.02)}, baselines=(baseline,))
+    fact = rows(replace(scored, predictions=(replace(p, windows=(both,)),)))["Closest baseline"]
+    assert fact.text.endswith(f"; without this fit r by {rival.name} is better")
+    assert fact.is_good is False

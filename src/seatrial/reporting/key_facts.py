@@ -20,6 +20,8 @@ from seatrial.reporting.verdict import error_text, has_converged, is_lost, share
 
 # share of values inside their 95 % intervals that counts as kept; chosen between 0.95 and the scatter of few values
 LEAST_COVERAGE = 0.9
+# what a prediction is for; velocities are compared with baselines too, but in a clause of their own
+_MAIN_CHANNELS = ("psi_deg", "position_m", "z", "theta_deg", "phi_deg")
 # names that a row holds, chosen
 MAX_NAMES = 4
 
@@ -74,7 +76,7 @@ def _baseline(fit: Fit) -> KeyFact:
         text = f"none compared: {w.divergence_text} of {w.window}{_run_name(fit, p)}"
         return KeyFact("Closest baseline", text, "prediction", is_good=False)
     compared = [(_ratio(key, w, score), p, w, key) for p in fit.validation if (w := _longest_windows(p))
-                for key, score in w.scores.items() if key in ("psi_deg", "position_m", "z", "theta_deg", "phi_deg")
+                for key, score in w.scores.items() if key in _MAIN_CHANNELS
                 and math.isfinite(score.rms) and any(key in b.scores for b in w.baselines)]  # fmt: skip
     if not compared:
         return KeyFact("Baseline", "none compared")
@@ -84,8 +86,15 @@ def _baseline(fit: Fit) -> KeyFact:
         f"{ERROR_LABELS[key][0]} over {w.window}{_run_name(fit, p)}: {error_text(key, w.scores[key].rms)} by this fit, "
         f"{error_text(key, best.scores[key].rms)} by {best.name}"
     )
-    verdict = "better without this fit" if ratio < 1.0 else "this fit is best in every quantity compared"
-    return KeyFact("Closest baseline", f"{text}; {verdict}", "prediction", ratio >= 1.0)
+    rest = dict.fromkeys(
+        f"{ERROR_LABELS[name][0]} by {rival}" for p in fit.validation if (w := _longest_windows(p))
+        for name, rival in w.better_baselines.items() if name not in _MAIN_CHANNELS
+    )  # fmt: skip
+    verdict = "this fit is best in every quantity compared"
+    if ratio < 1.0 or rest:
+        verdict = "; ".join([*(["better without this fit"] if ratio < 1.0 else []),
+                             *([f"without this fit {enumeration(list(rest))} is better"] if rest else [])])  # fmt: skip
+    return KeyFact("Closest baseline", f"{text}; {verdict}", "prediction", ratio >= 1.0 and not rest)
 
 
 def _run_name(fit: Fit, p: Prediction) -> str:

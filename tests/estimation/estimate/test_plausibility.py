@@ -73,6 +73,13 @@ def test_a_large_value_that_the_record_determines_is_no_lost_search() -> None:
     assert implausible_coefficients(at(0.1, 2e7), errors) == "T 2e+07, standard error 2e+03"
 
 
+def test_coefficients_that_the_records_do_not_show_apart_are_said_to_be_so() -> None:
+    with pytest.raises(
+        InputError, match=r"T 2e\+04, standard error 1e\+09; the records do not show these apart: record"
+    ):
+        refuse_implausible(at(0.1, 2e4), np.array([0.01, 1e9]))
+
+
 def test_a_prior_that_expects_large_values_allows_them() -> None:
     refuse_implausible(at(0.1, 5e4, prior=Prior(4e4, 1e4, "a hulk")), ERRORS)
 

@@ -235,8 +235,10 @@ def unconverged(estimation: Estimation) -> list[Finding]:
     """Return a warning where the search did not converge, and where noise levels and residuals do not agree."""
     status, findings = estimation.estimate.optimum.solution.status, []
     if not status.is_success:
-        findings.append(Finding(Severity.WARNING, NOT_CONVERGED, "the search did not converge", status.value,
-                        "do not use the coefficients before this is understood"))  # fmt: skip
+        how = status.value.partition(";")[0]  # what an optimiser's user may do follows
+        findings.append(Finding(Severity.WARNING, NOT_CONVERGED, "the search did not converge", how,
+                        "give start values nearer the ship's under [model.start], priors under [model.priors], or fix "
+                        "coefficients that trade against one another; do not use the coefficients before"))  # fmt: skip
     if not estimation.estimate.is_settled:
         findings.append(Finding(Severity.WARNING, "noise-not-settled", "the noise levels still change from round to "
                         "round, and with them the weights of the channels", "",
