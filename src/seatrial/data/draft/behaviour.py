@@ -75,7 +75,7 @@ def run_record(surveys: Sequence[LogSurvey], guesses: Sequence[Sequence[ColumnGu
     """The record of the used guesses, even and complete, in standard signs; None where there is none."""
     sources = []
     for survey, part in zip(surveys, guesses, strict=True):
-        columns = tuple(g.column for g in part if g.is_used)
+        columns = tuple(g.column for g in part if g.is_used and not g.is_of_wind)
         if columns:
             time = next(topic.time for topic in survey.topics if topic.time is not None)
             geometry = replace(survey.layout.geometry, variation=0.0)

@@ -41,6 +41,11 @@ class ColumnGuess:
         return bool(self.other_reading)
 
     @property
+    def is_of_wind(self) -> bool:
+        """Whether it is wind, which the models of a draft take for calm."""
+        return self.symbol.startswith("wind_")
+
+    @property
     def column(self) -> ColumnSpec:
         """The column as a layout has it."""
         return ColumnSpec(

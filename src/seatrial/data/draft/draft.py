@@ -58,8 +58,8 @@ class DraftTrial:
 
     @property
     def open_questions(self) -> tuple[ColumnGuess, ...]:
-        """The columns for which a person must choose."""
-        return tuple(g for part in self.guesses for g in part if g.is_used and g.is_open)
+        """The columns for which a person must choose; not wind."""
+        return tuple(g for part in self.guesses for g in part if g.is_used and g.is_open and not g.is_of_wind)
 
 
 def draft_trial(*logs: str | Path, folder: str | Path = ".", length: float = 0.0) -> DraftTrial:

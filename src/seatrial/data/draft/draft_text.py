@@ -159,7 +159,7 @@ def _channel_lines(survey: LogSurvey, guesses: Sequence[ColumnGuess]) -> list[st
         if guess.is_open:
             lines += [f"# OPEN {guess.symbol}: {why}; or {guess.other_reading}", f"# {line}"]
         else:
-            lines.append(f"{line}    # {why}")
+            lines.append(f"{'# ' if guess.is_of_wind else ''}{line}    # {why}")
     lines += [f"# left out: column {_comment(fault)}" for topic in survey.topics for fault in topic.faults]
     return [*lines, *_unused_lines(survey, guesses)]
 
