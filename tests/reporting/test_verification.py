@@ -62,6 +62,7 @@ def test_key_facts_name_what_moved() -> None:
     facts = {fact.name: fact for fact in key_facts(LEGS)}
     assert (facts["Model"].text, facts["Model"].is_good) == ("K: 0.2 → 0.14", False)
     assert facts["Legs"].text == "1 with control, 1 without"
+    assert facts["Outside"].text == "reduction"
     assert {fact.name: fact for fact in key_facts(TURNS)}["Model"].text == "not estimated anew"
 
 

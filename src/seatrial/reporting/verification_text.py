@@ -53,7 +53,7 @@ def key_facts(v: Verification) -> tuple[KeyFact, ...]:
     unmoved = "no property moved beyond its interval" if v.corrections else "not estimated anew"
     return (
         KeyFact("Inside", f"{inside} of {len(v.quantities)} quantities", "quantities", not v.outside),
-        KeyFact("Outside", enumeration(v.outside) or "none", "quantities", not v.outside),
+        *([KeyFact("Outside", enumeration(v.outside), "quantities", False)] if v.outside else []),
         KeyFact("Model", "; ".join(moved) or unmoved, "model" if v.corrections else "",
                 not moved if v.corrections else None),
         _extent_fact(v),

@@ -86,6 +86,15 @@ def test_other_gains_are_refused(task: TuningTask, log: SimulatedLog, gains: dic
         st.verify(task, gains, log.records)
 
 
+def test_fins_of_the_other_sign_are_named(task: TuningTask, log: SimulatedLog) -> None:
+    reversed_fins = [
+        record.with_channel("alpha_f", record.channel("alpha_f").with_values(-record["alpha_f"]))
+        for record in log.records
+    ]
+    with pytest.raises(InputError, match="moves against these gains"):
+        st.verify(task, PUBLISHED_GAINS, reversed_fins)
+
+
 def test_half_of_the_gains_is_a_finding(task: TuningTask, log: SimulatedLog) -> None:
     halved = {name: 2.0 * value for name, value in PUBLISHED_GAINS.items()}
     assert "gains-differ" in [f.code for f in st.verify(task, halved, log.records).findings]

@@ -132,6 +132,12 @@ def _verified_leg(leg: _Leg, fit: LegFit, place: int) -> VerifiedLeg:
     mean, logged = products(leg.spectra).mean(axis=0), leg.logged
     moments = leg.logged_moments(mean, fit.ship)
     ratio, coherence = _followed_gains(leg, mean) if logged.is_controlled else (math.nan, math.nan)
+    if coherence < -_LEAST_COHERENCE:
+        actuator = leg.loop.actuator
+        raise InputError(
+            f"record '{logged.record}': '{actuator}' moves against these gains (coherence {coherence:.2f}); it is "
+            f"positive the other way than the table of notation has it: declare that for '{actuator}' in [records.channels]"
+        )
     if coherence < _LEAST_COHERENCE:
         raise InputError(
             f"record '{logged.record}': from {logged.start:.0f} s on the actuator does not follow these gains "
