@@ -43,7 +43,6 @@ Values
     EstimateSettings             how it is to be estimated
     Problem, Solution            a trial as an optimiser sees it; what an optimiser returns
     Fit, Design, Tuning, Study   results
-    Verification                 result of verify
     Finding, InputError          what a check reports; bad input, in one sentence
 
 Subpackages

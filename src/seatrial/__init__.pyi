@@ -32,7 +32,6 @@ from seatrial.api import (
 from seatrial.core.equations import Model, Sheet
 from seatrial.core.results import Design, Fit, Study
 from seatrial.core.results.tuning import Tuning
-from seatrial.core.results.verification import Verification
 from seatrial.core.values import Channel, Finding, InputError, Parameters, Prior, Record, Ship
 from seatrial.data.read import ColumnSpec, Layout
 from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRun
@@ -64,7 +63,6 @@ __all__ = [
     "Trial",
     "TrialRun",
     "Tuning",
-    "Verification",
     "benchmark",
     "campaign",
     "check",

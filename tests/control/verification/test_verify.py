@@ -11,6 +11,7 @@ import seatrial as st
 from seatrial.control.loopfile.load import tuning_task
 from seatrial.control.task import SlowDisturbance, TuningTask
 from seatrial.control.verification.stabiliser import AS_THEY_ARE, BY_MODEL, BY_WAVES
+from seatrial.core.results.verification import Verification
 from seatrial.core.values import Channel, InputError, frozen
 from seatrial.physics.loops.fin import PUBLISHED_GAINS
 
@@ -28,11 +29,11 @@ def log(task: TuningTask) -> SimulatedLog:
 
 
 @pytest.fixture(scope="module")
-def verification(task: TuningTask, log: SimulatedLog) -> st.Verification:
+def verification(task: TuningTask, log: SimulatedLog) -> Verification:
     return verified(task, log)
 
 
-def test_a_ship_as_modelled_is_inside(verification: st.Verification, log: SimulatedLog) -> None:
+def test_a_ship_as_modelled_is_inside(verification: Verification, log: SimulatedLog) -> None:
     reduction = verification.quantities[0]
     assert verification.outside == ()
     assert verification.moved == ()

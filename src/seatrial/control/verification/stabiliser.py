@@ -136,7 +136,7 @@ def _verified_leg(leg: _Leg, fit: LegFit, place: int) -> VerifiedLeg:
         actuator = leg.loop.actuator
         raise InputError(
             f"record '{logged.record}': '{actuator}' moves against these gains (coherence {coherence:.2f}); it is "
-            f"positive the other way than the table of notation has it: declare that for '{actuator}' in [records.channels]"
+            f"positive the other way than the notation has it: declare that for '{actuator}' in [records.channels]"
         )
     if coherence < _LEAST_COHERENCE:
         raise InputError(
