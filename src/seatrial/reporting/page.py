@@ -71,7 +71,7 @@ def html(fit: Fit) -> str:
         "rolling": fit.roll
         and {"tables": roll_chapter.tables(fit.roll, fit.ship.scale), "figures": roll_chapter.figures(fit.roll)},
         "waves": (sea := fit.seakeeping)
-        and {"tables": seakeeping_chapter.tables(sea), "figures": seakeeping_chapter.figures(sea)},
+        and {"tables": seakeeping_chapter.tables(sea, length), "figures": seakeeping_chapter.figures(sea)},
         "findings": tables.finding_groups(fit.findings),
         "ahead": ahead.k_step_chapter(fit),
         "frequency": ahead.frequency_chapter(fit),

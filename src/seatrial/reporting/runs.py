@@ -191,9 +191,10 @@ def reading_note(predictions: Sequence[Prediction]) -> str:
         if any(has_band(p) for p in predictions)
         else ""
     )
+    ships = " Ships at equal times, to scale." if any(has_track(one.measured) for one in predictions) else ""
     return (
-        f"Broad grey line: {reference}. Thin dashed line: {p.model_word}, open loop, inputs {inputs}.{band} Ships at "
-        "equal times, to scale. Over a plot the cursor shows the values of all channels and the place on the track; "
+        f"Broad grey line: {reference}. Thin dashed line: {p.model_word}, open loop, inputs {inputs}.{band}"
+        f"{ships} Over a plot the cursor shows the values of all channels and the place on the track; "
         "drag to zoom, double-click to see all."
     )
 

@@ -8,9 +8,12 @@ from seatrial.core.results import Curve, Figure, Seakeeping, Table
 from seatrial.reporting.figures.study_figures import study_chart
 from seatrial.reporting.text_tables import TextTable, text_table
 
+# m; a shorter ship carries nobody who could be sick; chosen, below the smallest boats with a crew
+LEAST_CREWED_LENGTH = 6.0
 
-def tables(seakeeping: Seakeeping) -> list[TextTable]:
-    """Return motions of the ship, and vertical motions along it."""
+
+def tables(seakeeping: Seakeeping, length: float) -> list[TextTable]:
+    """Return motions of the ship, and vertical motions along it; length: of the ship [m], 0 where it is unknown."""
     motions = Table(
         "Motions in this sea",
         ("Motion", "significant amplitude", "mean zero-crossing period, s"),
@@ -18,12 +21,12 @@ def tables(seakeeping: Seakeeping) -> list[TextTable]:
          ("pitch, deg", seakeeping.pitch_significant, seakeeping.zero_crossing_periods[1])),
         f"{seakeeping.sea}; {seakeeping.speed:.3g} m/s, {seakeeping.heading:.0f}\u00b0 to the waves (180\u00b0: head).",
     )  # fmt: skip
-    rows = tuple(
-        (p.place, p.x, p.significant_amplitude, p.rms_acceleration, 100.0 * p.sickness_incidence)
-        for p in seakeeping.points
-    )
+    rows = tuple((p.place, p.x, p.significant_amplitude, p.rms_acceleration, 100.0 * p.sickness_incidence)
+                 for p in seakeeping.points)  # fmt: skip
     header = ("Place", "forward, m", "significant, m", "acceleration rms, m/s\u00b2", "sick in two hours, %")
     note = "Vertical motion; sickness by O'Hanlon & McCauley 1974."
+    if 0.0 < length < LEAST_CREWED_LENGTH:
+        rows, header, note = tuple(row[:-1] for row in rows), header[:-1], "Vertical motion."
     return [text_table(motions), text_table(Table("Vertical motion along the ship", header, rows, note))]
 
 

@@ -5,7 +5,7 @@ import numpy as np
 from matplotlib import pyplot
 
 from seatrial.core.values import Record
-from seatrial.core.values.record_chart import has_track, is_constant, record_chart
+from seatrial.core.values.record_chart import has_moving_track, has_track, is_constant, record_chart
 
 matplotlib.use("Agg")
 TIME = np.linspace(0.0, 60.0, 200)
@@ -29,4 +29,9 @@ def test_plot_draws_the_chart() -> None:
 
 def test_what_is_known_of_a_record() -> None:
     assert has_track(RECORD) and not has_track(RECORD.without("y0"))
+    assert has_moving_track(RECORD)
+    still = RECORD
+    for name in ("x0", "y0"):
+        still = still.with_channel(name, still.channel(name).with_values(0.0 * still[name]))
+    assert has_track(still) and not has_moving_track(still)
     assert is_constant(RECORD, "u") and not is_constant(RECORD, "psi")

@@ -26,7 +26,7 @@ from seatrial.core.figures.run import ChannelPanel, RunView, TimeCurve, channel_
 from seatrial.core.results.fit import Coefficient, Prediction
 from seatrial.core.values import Record, display_unit
 from seatrial.core.values.channel_text import channel_label, reading_order
-from seatrial.core.values.record_chart import PLAIN, has_track, is_constant, record_track, time_curve
+from seatrial.core.values.record_chart import PLAIN, has_moving_track, has_track, is_constant, record_track, time_curve
 
 # least and largest reach of the axis of coefficients [% of the estimate]
 NARROWEST, WIDEST = 1.0, 120.0
@@ -130,8 +130,7 @@ def has_band(prediction: Prediction) -> bool:
 
 def has_modelled_position(prediction: Prediction) -> bool:
     """Return whether the simulated position moves: that of a steering model without a speed stays where it is."""
-    simulated = prediction.simulated
-    return has_track(simulated) and not (is_constant(simulated, "x0") and is_constant(simulated, "y0"))
+    return has_moving_track(prediction.simulated)
 
 
 def _tracks(prediction: Prediction) -> list:

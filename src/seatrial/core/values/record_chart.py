@@ -49,6 +49,11 @@ def has_track(record: Record) -> bool:
     return set(POSITIONS) <= set(record.channels) and bool(np.isfinite(record["x0"] + record["y0"]).any())
 
 
+def has_moving_track(record: Record) -> bool:
+    """Return whether the record has positions that change: those of a steering model without a speed do not."""
+    return has_track(record) and not all(is_constant(record, name) for name in POSITIONS)
+
+
 def is_constant(record: Record, name: str) -> bool:
     """Return whether a channel never changes by more than a billionth of its largest value."""
     values = record[name][np.isfinite(record[name])]

@@ -12,7 +12,7 @@ from seatrial.core.results import Actuator, Design
 from seatrial.core.results.design import has_drift
 from seatrial.core.values import Record, display_unit
 from seatrial.core.values.channel_text import channel_label, channel_unit, display_values
-from seatrial.core.values.record_chart import has_track, record_track
+from seatrial.core.values.record_chart import has_moving_track, record_track
 
 ORDERED, EXECUTED, LIMIT = Stroke(GREY, 2.6), Stroke(ACCENT, 1.3), Stroke(SECOND, 1.0, "6 3")  # px, chosen
 LEFT, RIGHT = 64.0, 12.0  # px, chosen
@@ -28,7 +28,7 @@ def order_view(design: Design) -> RunView:
     drift = drift_angle(executed) if has_drift(design) else None
     panels = [_order_panel(design, actuator) for actuator in design.actuators]
     panels += [] if drift is None else [_drift_panel(design, drift)]
-    tracks = (record_track(executed, EXECUTED),) if has_track(executed) else ()
+    tracks = (record_track(executed, EXECUTED),) if has_moving_track(executed) else ()
     length = design.model.parameters["L"].value if "L" in design.model.parameters else 0.0
     legend = (LegendEntry("ordered", ORDERED), LegendEntry("moved, ship as assumed", EXECUTED),
               LegendEntry("limit", LIMIT))  # fmt: skip
@@ -62,9 +62,9 @@ def _drift_panel(design: Design, drift: Array) -> ChannelPanel:
 
 
 def track_chart(design: Design) -> Chart | None:
-    """Return the track from above within the sea room; None where the model has no position."""
+    """Return the track from above within the sea room; None where the model has no position that moves."""
     executed = design.designed.executed
-    if not has_track(executed):
+    if not has_moving_track(executed):
         return None
     parameters, room = design.model.parameters, design.limits.sea_room
     length = parameters["L"].value if "L" in parameters else 0.0
