@@ -170,6 +170,15 @@ def test_the_cursor_is_linked_over_channels_and_track(browser: "Browser", page: 
     assert said == []
 
 
+def test_plots_far_below_the_window_are_drawn_without_being_scrolled_to(browser: "Browser", page: Path) -> None:
+    window, said = opened(browser, page)
+    window.wait_for_function(
+        "() => [...document.querySelectorAll('.series')].every(s => !s.checkVisibility() || s.matches('.is-drawn'))"
+    )
+    assert window.locator(".series.is-drawn").count() >= 2 and window.evaluate("scrollY") == 0
+    assert said == []
+
+
 def test_keys_move_the_cursor_speak_the_values_and_zoom(browser: "Browser", page: Path) -> None:
     window, said = opened(browser, page)
     panel = window.locator(".first .panel").first

@@ -174,6 +174,13 @@
     for (const entry of entries) if (entry.isIntersecting) figures.find(figure => figure.node === entry.target).draw();
   }, { rootMargin: "600px" });
   for (const figure of figures) near.observe(figure.node);
+  // the others when there is time, so that none is empty in a picture of the whole page
+  const later = window.requestIdleCallback ?? setTimeout;
+  function drawNext() {
+    const next = figures.find(figure => !figure.panels.length && figure.node.checkVisibility());
+    if (next) { next.draw(); later(drawNext); }
+  }
+  later(drawNext);
   // a plot that is new has no scales to be drawn again with until its first drawing
   function resize() {
     for (const figure of figures) if (!figure.draw()) { figure.fit(); figure.redraw(); }
