@@ -12,8 +12,6 @@ ABSURD_FACTOR, IMPOSSIBLE_FACTOR = 1e3, 1e6
 """Times its characteristic size that a free coefficient without a prior may reach undetermined, and at all; chosen."""
 _DETERMINED = 2.0  # standard errors from which on a large value is the record's and not the search's; chosen
 
-_FLAT = 1e4  # standard errors over the value from which on a record says nothing of a coefficient; chosen
-
 _LOST_FACTOR = 30.0
 """The same from which a search begins anew: further out the likelihood hardly depends on it; chosen."""
 
@@ -45,17 +43,11 @@ def refuse_implausible(estimate: PointEstimate, standard_error: Array) -> None:
         InputError: which coefficients, their values, and what to try.
     """
     lost = implausible_coefficients(estimate, standard_error)
-    values = np.abs(estimate.common_parameters[: len(estimate.problem.free)])
-    if lost and np.any(standard_error[: len(values)] > _FLAT * values):
-        raise InputError(
-            f"the search ended outside physics: {lost}; the records do not show these apart: record what does (sway v, "
-            "yaw rate r), fix some of them under [model.fixed], or give priors under [model.priors]"
-        )
     if lost:
         raise InputError(
-            f"the search ended outside physics: {lost}; no values of this model repeat all runs: leave out under "
-            "[records] the runs that differ most in speed or rudder, take a model with what they differ by, or give "
-            "priors under [model.priors]"
+            f"the search ended outside physics: {lost}; either the runs do not show these apart: fix some under "
+            "[model.fixed] or give priors under [model.priors]; or no values repeat all runs: leave out those that "
+            "differ most in speed or rudder, or take a model with what they differ by"
         )
 
 
