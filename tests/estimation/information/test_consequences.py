@@ -16,21 +16,21 @@ def test_the_answer_is_that_of_a_regression_with_the_wrong_value(seed: int, step
     fitted = np.array([0, 1, 3])
     data = matrix @ truth - matrix[:, 2] * (truth[2] + step)
     expected, left, *_ = np.linalg.lstsq(matrix[:, fitted], data)
-    moves, misfit = estimate_shifts(matrix.T @ matrix, fitted, 2, step)
+    moves, misfit = estimate_shifts(matrix.T @ matrix, fitted, step * np.eye(4)[2])
     np.testing.assert_allclose(moves, expected - truth[fitted], atol=1e-9)
     assert misfit == pytest.approx(float(left[0]), abs=1e-9)
 
 
 def test_an_assumed_value_that_a_fitted_one_can_replace_leaves_no_trace() -> None:
     matrix = np.array([[1.0, 2.0], [2.0, 4.0], [0.5, 1.0]])
-    moves, misfit = estimate_shifts(matrix.T @ matrix, np.array([0]), 1, 0.1)
+    moves, misfit = estimate_shifts(matrix.T @ matrix, np.array([0]), np.array([0.0, 0.1]))
     assert moves[0] == pytest.approx(-0.2)
     assert misfit == pytest.approx(0.0, abs=1e-12)
 
 
 def test_what_the_information_does_not_determine_stays() -> None:
     matrix = np.array([[1.0, 0.0, 2.0], [2.0, 0.0, 4.0], [0.5, 0.0, 1.5]])
-    moves, misfit = estimate_shifts(matrix.T @ matrix, np.array([0, 1]), 2, 0.1)
+    moves, misfit = estimate_shifts(matrix.T @ matrix, np.array([0, 1]), np.array([0.0, 0.0, 0.1]))
     assert moves[0] < 0.0
     assert moves[1] == 0.0
     assert misfit > 0.0

@@ -11,6 +11,7 @@ from seatrial.data.trial.approach import approach_condition
 from seatrial.estimation.estimate import Estimation, IntervalMethod
 from seatrial.estimation.identify import fit_result
 from seatrial.estimation.identify.abandoned_criterion import abandoned_criterion_finding
+from seatrial.estimation.identify.box_scale import stands_on_box
 from seatrial.estimation.identify.closed_loop_findings import closed_loop_findings
 from seatrial.estimation.identify.course_stability import course_finding
 from seatrial.estimation.identify.held_couplings import held_couplings
@@ -139,7 +140,9 @@ def _predictions(task: Identification, selected: SelectedModel) -> RunPrediction
 
 def _identifiability(task: Identification, estimation: Estimation, approach: Mapping[str, float]) -> Identifiability:
     """Return what the records determine, with profile likelihoods where these are required."""
-    assessment = identifiability(estimation, task.symmetries, approach, task.runs.length)
+    assessment = identifiability(
+        estimation, task.symmetries, approach, task.runs.length, stands_on_box(task.trial)
+    )  # fmt: skip
     return replace(assessment, profiles=_profiles(task, estimation))
 
 

@@ -11,6 +11,7 @@ from seatrial.core.values import Array, Prior
 from seatrial.data.trial.model_table import COMMON_PARTICULARS
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import PointEstimate
+from seatrial.estimation.identify.box_scale import box_scale
 from seatrial.estimation.identify.course_stability import course_stability
 from seatrial.estimation.information.collinearity import collinearity, condition_number
 from seatrial.estimation.information.consequences import consequence_text, estimate_shifts
@@ -29,11 +30,16 @@ _MIN_INFLUENCE = 1e-9
 
 
 def identifiability(
-    estimation: Estimation, symmetries: Sequence[Symmetry], approach: Mapping[str, float], length: float
+    estimation: Estimation,
+    symmetries: Sequence[Symmetry],
+    approach: Mapping[str, float],
+    length: float,
+    is_on_box: bool = False,
 ) -> Identifiability:
     """Return everything a report shows about identifiability.
 
-    structural: found before the fit; approach: steady speed u and inputs of the trials, SI, notation signs; length: m.
+    symmetries: found before the fit; approach: steady speed u and inputs of the trials, SI, notation signs; length: m;
+    is_on_box: whether the wave forces are those of a box with the stated stiffness.
     """
     problem = estimation.estimate.problem
     names, sizes = problem.free, _signed_scales(estimation)
@@ -48,7 +54,7 @@ def identifiability(
         condition=condition_number(data),
         collinearity=collinearity(data, names),
         sensitivities=sensitivities(estimation),
-        consequences=consequences(estimation),
+        consequences=consequences(estimation, is_on_box),
         stability=course_stability(
             estimation.model, covariance, estimation.interval.degrees_of_freedom, approach, length,
         ),
@@ -102,10 +108,15 @@ def sensitivities(estimation: Estimation) -> tuple[Sensitivity, ...]:
     )
 
 
-def consequences(estimation: Estimation) -> tuple[Consequence, ...]:
-    """What the estimates would do were an assumed value 10 % off, by one Gauss-Newton step; the worst first."""
+def consequences(estimation: Estimation, is_on_box: bool = False) -> tuple[Consequence, ...]:
+    """What the estimates would do were an assumed value 10 % off, by one Gauss-Newton step; the worst first.
+
+    is_on_box: whether the wave forces are those of a box, which change with the stated stiffness.
+    """
     estimate, model = _output_error_estimate(estimation), estimation.model
-    problem, names = _with_assumed_free(estimate.problem, model)
+    scaled_by_box = box_scale(model) if is_on_box else None
+    inertia = scaled_by_box.held if scaled_by_box else ()
+    problem, names = _with_assumed_free(estimate.problem, model, inertia)
     free, size = estimate.problem.free, len(problem.free)
     place = {n: i for i, n in enumerate(problem.free)}
     fitted = [place[n] for n in free]
@@ -118,26 +129,35 @@ def consequences(estimation: Estimation) -> tuple[Consequence, ...]:
     felt = _MIN_INFLUENCE * np.max(np.diag(information)[fitted] * sizes**2)
     chi_squared = 2.0 * problem.cost(shared, estimate.optimum.local)
     ranked: list[tuple[float, Consequence]] = []
-    for name in names:
-        p, value = place[name], model.parameters[name].value
-        if information[p, p] * value**2 < felt:
+    changes = {n: _unit(len(shared), place[n]) * RELATIVE_CHANGE * model.parameters[n].value for n in names}
+    if scaled_by_box:
+        changes = scaled_by_box.changes(changes, place, shared, RELATIVE_CHANGE)
+    for name, change in changes.items():
+        if change @ information @ change < felt * RELATIVE_CHANGE**2:
             continue
-        moves, misfit = estimate_shifts(information, moving, p, RELATIVE_CHANGE * value)
+        moves, misfit = estimate_shifts(information, moving, change)
         worst = float(np.max(np.abs(moves[: len(free)]) / deviation))
         ranked.append((worst, _consequence(name, moves[: len(free)] / sizes, free, misfit, chi_squared)))
     ranked.sort(key=lambda pair: -pair[0])
     return tuple(one for _, one in ranked[:_MAX_CONSEQUENCES])
 
 
-def _with_assumed_free(problem: OutputError, model: Model) -> tuple[OutputError, list[str]]:
-    """The problem with the assumed values free too, their priors put aside, and which they are."""
+def _unit(size: int, place: int) -> Array:
+    return np.eye(1, size, place)[0]
+
+
+def _with_assumed_free(
+    problem: OutputError, model: Model, held: Sequence[str] = ()
+) -> tuple[OutputError, list[str]]:  # fmt: skip
+    """The problem with the assumed values free too, their priors put aside, and which they are; held: further ones."""
     own = {n for n, _ in problem.session_parameters}
     known = {*_CONVENTIONS, *own, *(n for n in COMMON_PARTICULARS if n not in _ASSUMED_PARTICULARS)}
     if problem.extra_terms:  # measured forces may have been corrected with it
         known.add("x_G")
     names = [p.name for p in model.parameters if not p.free and p.value and p.name not in known]
-    loose = {n: Prior(0.0, np.inf) for n in names}
-    return replace(problem, model=model.with_parameters(model.parameters.freed(*names).with_priors(loose))), names
+    loose = {n: Prior(0.0, np.inf) for n in {*names, *held}}
+    freed = model.parameters.freed(*names, *(n for n in held if n not in names)).with_priors(loose)
+    return replace(problem, model=model.with_parameters(freed)), names
 
 
 def _consequence(

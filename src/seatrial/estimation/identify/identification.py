@@ -11,6 +11,7 @@ from seatrial.estimation.estimate.fit import with_segment_seconds
 from seatrial.estimation.estimate.runs import training_runs
 from seatrial.estimation.estimate.settings import INITIAL_STATE_SHIP_LENGTHS
 from seatrial.estimation.estimate.time_scale import characteristic_time
+from seatrial.estimation.identify.box_scale import box_scale, stands_on_box
 from seatrial.estimation.identify.criterion_by_left_out import preferred_estimation
 from seatrial.estimation.information.symmetries import refuse_unidentifiable, structural_symmetries
 from seatrial.estimation.problem.segments import compared_outputs
@@ -71,7 +72,10 @@ class Identification:
     @cached_property
     def symmetries(self) -> tuple[Symmetry, ...]:
         """Changes of parameters that no record of these outputs can show."""
-        return structural_symmetries(self.trial.model, self.outputs, self._force_names)
+        found = structural_symmetries(self.trial.model, self.outputs, self._force_names)
+        scale = box_scale(self.trial.model) if stands_on_box(self.trial) else None
+        together = scale.symmetry(self.trial.model, self.outputs) if scale else None
+        return (*found, *([together] if together else ()))
 
     @cached_property
     def estimation(self) -> Estimation:

@@ -16,18 +16,19 @@ _VISIBLE_GROWTH = 0.05  # relative growth of the residuals that is visible; chos
 _ROUNDING = 1e-13  # of a singular information matrix, over its largest singular value; chosen
 
 
-def estimate_shifts(information: Array, fitted: Index, assumed: int, step: float) -> tuple[Array, float]:
-    """Changes of the fitted parameters, (len(fitted),), and the growth of chi squared, for a step of the assumed one.
+def estimate_shifts(information: Array, fitted: Index, change: Array) -> tuple[Array, float]:
+    """Return changes of the fitted parameters, (len(fitted),), and the growth of chi squared, for an assumed change.
 
-    information: shape (n, n); fitted, assumed: positions in it. What the information does not determine stays.
+    information: shape (n, n); fitted: positions in it. change: of all parameters, (n,), whose effect on the outputs the
+    fitted ones make up for. What the information does not determine stays.
     """
-    cross = information[fitted, assumed]
+    pull = information @ change
     size = np.sqrt(information[fitted, fitted])
     scale = np.where(size > 0.0, 1.0 / np.where(size > 0.0, size, 1.0), 0.0)
     scaled = information[np.ix_(fitted, fitted)] * scale[:, None] * scale
-    solved = np.linalg.lstsq(scaled, scale * cross, rcond=_ROUNDING)[0]
-    moves = np.asarray(-step * scale * solved, dtype=np.float64)
-    return moves, max(float(step * (information[assumed, assumed] * step + cross @ moves)), 0.0)
+    solved = np.linalg.lstsq(scaled, scale * pull[fitted], rcond=_ROUNDING)[0]
+    moves = np.asarray(-scale * solved, dtype=np.float64)
+    return moves, max(float(change @ pull + pull[fitted] @ moves), 0.0)
 
 
 def consequence_text(
