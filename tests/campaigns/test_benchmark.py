@@ -102,8 +102,9 @@ def test_a_bad_method_is_a_row_that_says_so_and_the_others_go_on(tmp_path: Path)
     assert (
         scores["mine.py:Raises"].failures == 3 and scores["mine.py:Raises"].failure == "it raises RuntimeError: no way"
     )
-    assert scores["mine.py:Raises"].median is None and result.problems[0].methods[-1].method == "mine.py:Raises"
-    assert scores["mine.py:Unseeded"].failures == 1 and "not deterministic" in scores["mine.py:Unseeded"].failure
+    last = {m.method for m in result.problems[0].methods[-2:]}
+    assert scores["mine.py:Raises"].median is None and last == {"mine.py:Raises", "mine.py:Unseeded"}
+    assert scores["mine.py:Unseeded"].failures == 3 and "not deterministic" in scores["mine.py:Unseeded"].failure
     assert scores["mine.py:Endless"].budget_spent == 3 and scores["mine.py:Endless"].evaluations == 400
     assert scores["de"].successes == 3 and scores["de"].failures == 0
     assert all(t.larger == 3 for t in result.problems[0].tests if t.method == "mine.py:Raises")

@@ -52,7 +52,7 @@ def test_the_page_shows_everything_and_escapes_what_users_wrote(result: Benchmar
 def test_the_summary_says_what_an_entered_method_does(result: Benchmark) -> None:
     assert outcome(result)[1] == (
         "a<b>.py succeeds in 1 of 3 runs; in 1 comparison with built-in methods it is better in 0, worse in 0, and no "
-        "difference shows in 1. Some runs have no answer: it raises <x>."
+        "difference shows in 1. Without an answer 1: it raises <x>. Answers outside the box: 1."
     )
     built_in = replace(result, methods=result.methods[:1])
     assert outcome(built_in)[1] == "Smallest median error: toy-2: de."

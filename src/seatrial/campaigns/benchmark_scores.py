@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.special import bdtr
 
-from seatrial.campaigns.benchmark_work import ANSWER, METHOD, PROBLEM, SEED, TARGET, TARGETS
+from seatrial.campaigns.benchmark_work import ANSWER, METHOD, NOT_DETERMINISTIC, PROBLEM, SEED, TARGET, TARGETS
 from seatrial.campaigns.fit_rows import COEFFICIENT
 from seatrial.campaigns.journal import body_of
 from seatrial.campaigns.outcome import decoded
@@ -109,7 +109,7 @@ def _problem_score(
 ) -> ProblemScore:
     draw = problem.draw(min((run.seed for run in runs), default=0), placement)
     by_method = {m.name: [run for run in runs if run.method == m.name] for m in methods}
-    by_method = {name: some for name, some in by_method.items() if some}
+    by_method = {name: _counted(some) for name, some in by_method.items() if some}
     unit = np.median([run.seconds for run in by_method[REFERENCE]]) if REFERENCE in by_method else None
     built_in = {m.name: m.is_built_in for m in methods}
     scores = [_score(name, built_in[name], some, unit) for name, some in by_method.items()]
@@ -120,6 +120,12 @@ def _problem_score(
         tuple(CheckedClaim(claim.text, sign_test(by_method[claim.better], by_method[claim.worse]))
               for claim in problem.claims if {claim.better, claim.worse} <= by_method.keys()),
     )  # fmt: skip
+
+
+def _counted(runs: Sequence[MethodRun]) -> list[MethodRun]:
+    """The runs of a method; without their answers where one of them could not be repeated."""
+    failure = next((run.failure for run in runs if run.failure.startswith(NOT_DETERMINISTIC)), "")
+    return [replace(run, rows=(), failure=run.failure or failure) if failure else run for run in runs]
 
 
 def _score(name: str, is_built_in: bool, runs: Sequence[MethodRun], unit: float | None) -> MethodScore:

@@ -27,6 +27,8 @@ from seatrial.problems import (
 
 KIND, ANSWER, TARGET = "benchmark", "answer", "target"
 PROBLEM, VERSION, METHOD, DIGEST, SEED = "problem", "version", "method", "method_digest", "seed"
+NOT_DETERMINISTIC = "it is not deterministic"
+"""How the failure of a method begins whose first run does not repeat itself; none of its runs counts."""
 TARGETS = (300.0, 100.0, 30.0, 10.0, 3.0, 1.0)
 """Errors, in the limit of a success, to which evaluations are counted; chosen, two a decade down to the limit."""
 _DIGITS = 16  # of a digest in the keys: chosen, no two of a million alike
@@ -59,9 +61,7 @@ class BenchmarkTask:
         draw = _draw(problem.name, seed, self.placement)
         answer = attempt(method, problem, seed, self.placement, draw)
         if seed == self.first_seed and not repeats_itself(method, problem, seed, self.placement, answer):
-            raise MethodError(
-                "it is not deterministic: two runs of one seed differ; draw from the generator it is given"
-            )
+            raise MethodError(f"{NOT_DETERMINISTIC}: two runs of one seed differ; draw from the generator it is given")
         return [*_answer(answer, draw), *_coefficients(answer, draw)]
 
 

@@ -28,8 +28,9 @@ HEADINGS = {"problems": "Problems", "findings": "Findings", "methods": "Methods"
             "provenance": "Provenance"}  # fmt: skip
 TABLE_NOTE = (
     "Median and rms: errors in the unit of the problem. Evaluations: median of a run; to success: those of all runs "
-    "over the number of successes; a dash where the method does not use the fitness. Coverage: share of the method's "
-    "95 % intervals that hold the truth. Time: of a run, in those of random search; it varies by machine and load."
+    "over the number of successes. The median counts runs without an answer as the worst, the rms leaves them out. "
+    "Coverage: share of the method's 95 % intervals that hold the truth. Time: of a run, in those of random search, "
+    "where that took part; it varies by machine and load. A dash: none, as of evaluations without the fitness."
 )
 
 
@@ -82,13 +83,16 @@ def _entered_sentence(name: str, result: Benchmark) -> str:
     better, worse = (sum(t.verdict == word for t in tests) for word in ("better", "worse"))
     own = [m for p in result.problems for m in p.methods if m.method == name]
     successes, total = sum(m.successes for m in own), sum(m.runs + m.failures for m in own)
+    failures, outside = sum(m.failures for m in own), sum(m.outside for m in own)
     failed = next((m.failure for m in own if m.failure), "")
     text = (
         f"{name} succeeds in {successes} of {counted(total, 'run')}; in {counted(len(tests), 'comparison')} with "
         f"built-in methods it is better in {better}, worse in {worse}, and no difference shows in "
         f"{len(tests) - better - worse}."
     )
-    return f"{text} Some runs have no answer: {failed}." if failed else text
+    if failed:
+        text = f"{text} Without an answer {failures}: {failed}."
+    return f"{text} Answers outside the box: {outside}." if outside else text
 
 
 def problem_part(score: ProblemScore, targets: Sequence[float]) -> ProblemPart:
