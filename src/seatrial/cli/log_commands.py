@@ -63,6 +63,8 @@ def init(
     questions = draft.open_questions
     if questions:
         print_lines([f"{counted(len(questions), 'column')} to decide, marked OPEN in the file"])
+    if draft.estimated:
+        print_lines([f"ESTIMATED, so correct what you know: {', '.join(draft.estimated)}"])
     print_file("trial file", out)
     print_file("drawing", page)
     print_next(_after_draft(draft, out))

@@ -102,12 +102,12 @@ def test_commands_in_per_cent(tmp_path: Path, unit: str, is_open: bool) -> None:
     assert guess.is_open == is_open
 
 
-def test_a_rudder_in_per_cent_is_an_angle_whose_full_travel_is_estimated(tmp_path: Path) -> None:
+def test_a_rudder_in_per_cent_is_an_angle_whose_full_travel_is_a_question(tmp_path: Path) -> None:
     rows = "".join(f"{0.1 * k:.1f},{80.0 * np.sin(0.02 * k):.1f}\n" for k in range(300))
     (tmp_path / "run.csv").write_text(f"time,rudder_pct\n{rows}")
     draft = draft_trial(tmp_path / "run.csv", folder=tmp_path, length=8.0)
-    line = 'channels.delta = { column = "rudder_pct", unit = "deg", span = 100, scale = 35 }'
-    assert line in draft.text and "ESTIMATED: 35 deg at 100" in draft.text
+    line = '# channels.delta = { column = "rudder_pct", unit = "deg", span = 100, scale = 35 }'
+    assert line in draft.text and "scale = the angle at 100 per cent in deg" in draft.text
     (record,) = (one for one in draft.records if one is not None)
     assert np.degrees(np.max(record["delta"])) == pytest.approx(28.0, abs=0.1)
 

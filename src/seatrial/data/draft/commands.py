@@ -76,9 +76,10 @@ def _as_rudder(guess: ColumnGuess, setting: OutputSetting) -> ColumnGuess:
 
 
 def rudder_in_percent(guess: ColumnGuess) -> ColumnGuess:
-    """Return a rudder that is logged as a share of its range as an angle: coefficients, not predictions, go with it."""
-    text = f"in per cent; ESTIMATED: {_FULL_RUDDER:g} deg at 100, write yours as scale"
-    return replace(guess, unit="deg", span=100.0, scale=_FULL_RUDDER).with_evidence(text)  # per cent of full
+    """Return a rudder that is logged as a share of its range as an angle; which one full deflection is stays open."""
+    other = f"scale = the angle at 100 per cent in deg, not {_FULL_RUDDER:g}: the log does not say"
+    percent = replace(guess, unit="deg", span=100.0, scale=_FULL_RUDDER, other_reading=other)  # per cent of full
+    return percent.with_evidence("in per cent")
 
 
 def rest_of_commands(record: Record) -> Changes:

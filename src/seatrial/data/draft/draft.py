@@ -15,6 +15,7 @@ from seatrial.data.draft.guess import guess_columns, without_conflicts
 from seatrial.data.draft.manoeuvres import find_stretches, is_decay, numbered, offered_parts, used_parts
 from seatrial.data.draft.runs_of_logs import LogRun, runs_of_logs
 from seatrial.data.draft.session_text import session_line
+from seatrial.data.draft.ship_estimates import ESTIMATED
 from seatrial.data.draft.starting_model import StartingModel, held_out_run, starting_model
 from seatrial.data.draft.stretch import LogStretch
 from seatrial.data.draft.survey import LogSurvey, survey_log
@@ -55,6 +56,12 @@ class DraftTrial:
     session: str = ""
     lacks_length: bool = False
     lacks_input: bool = False
+
+    @property
+    def estimated(self) -> tuple[str, ...]:
+        """Keys of the file whose numbers nobody measured, each once."""
+        lines = (line.partition("=") for line in self.text.splitlines() if f"{ESTIMATED}: " in line)
+        return tuple(dict.fromkeys(key.strip() for key, sign, _ in lines if sign and not key.startswith("#")))
 
     @property
     def open_questions(self) -> tuple[ColumnGuess, ...]:

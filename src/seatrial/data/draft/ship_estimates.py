@@ -7,6 +7,8 @@ from seatrial.physics.hydro.empirical import ZHOU, HullForm, added_mass, displac
 # L/B, B/d and C_b of a ship of which only the length is stated; chosen: in the middle of the forms of Zhou's regression
 _LENGTH_TO_BREADTH, _BREADTH_TO_DRAUGHT, _BLOCK = 6.0, 3.0, 0.65
 _SEA_WATER = 1025.0  # kg/m^3 (ITTC 7.5-02-01-03, sea water at 15 degC: 1026)
+ESTIMATED = "ESTIMATED"
+"""Marks a line of a draft whose number is not measured."""
 _DIGITS = 4  # significant ones of an estimate; those of sea water
 
 
@@ -21,7 +23,7 @@ class EstimatedValue:
     @property
     def line(self) -> str:
         """The line of the trial file."""
-        return f"{self.key} = {_rounded(self.value)}    # ESTIMATED: {self.text}"
+        return f"{self.key} = {_rounded(self.value)}    # {ESTIMATED}: {self.text}"
 
 
 def mass_properties(length: float) -> tuple[EstimatedValue, ...]:

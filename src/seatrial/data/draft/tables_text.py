@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from seatrial.data.draft.column_guess import ColumnGuess
-from seatrial.data.draft.ship_estimates import added_masses, mass_properties
+from seatrial.data.draft.ship_estimates import ESTIMATED, added_masses, mass_properties
 from seatrial.data.draft.starting_model import StartingModel
 from seatrial.data.draft.waves_text import excitation_lines, ship_in_waves
 
@@ -82,7 +82,7 @@ def _lever_line(sign: float, length: float) -> str:
     lever = sign * _LEVER_SHARE * length
     if not lever:
         return "y = 0.0    # m to starboard, negative to port: measure it where it is not on the centre line"
-    return f"y = {lever:.2f}    # ESTIMATED: m to starboard, from L; measure it: yaw coefficients go with it"
+    return f"y = {lever:.2f}    # {ESTIMATED}: m to starboard, from L; measure it: yaw coefficients go with it"
 
 
 def _sensor_lines(model: StartingModel, guesses: Sequence[ColumnGuess]) -> list[str]:
