@@ -19,6 +19,7 @@ from seatrial.data.trial.excitation import excitation_of
 from seatrial.data.trial.follow_table import stream_of
 from seatrial.data.trial.forces import read_force_points
 from seatrial.data.trial.ground_velocities import ground_velocity_findings
+from seatrial.data.trial.hull_values import hull_value_findings
 from seatrial.data.trial.literature import prior_range_findings
 from seatrial.data.trial.model_table import build_trial_model, ship_of
 from seatrial.data.trial.runs import expand_variables, require_training_run, runs_of
@@ -173,6 +174,7 @@ def trial_of_tables(
         findings=(
             *ranges,
             *added_mass_findings(model, ship),
+            *hull_value_findings(ship),
             *ground_velocity_findings(model, file.sensors, file.records),
             *(finding for points in forces for finding in force_findings(points, unit)),
         ),
