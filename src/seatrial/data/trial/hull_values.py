@@ -7,7 +7,7 @@ from seatrial.core.values import Finding, Severity, Ship
 
 _GYRADII = (0.2, 0.3)  # of the length, in yaw and pitch; chosen: ITTC 7.5-02-07-02.1 takes 0.25 where nothing is known
 _USUAL_GYRADIUS = 0.25
-_SEA_WATER = 1025.0  # kg/m^3
+_SEA_WATER = 1025.0  # kg/m^3, where no density is stated; of the sea at 15 degC (ITTC 7.5-02-01-03: 1026)
 _FULLEST = 1.1  # C_b of a box, and a tenth for appendages and trim; chosen
 _INERTIAS = ("I_z", "I5")
 _DIGITS = 4  # significant, of an advised value
@@ -25,8 +25,8 @@ def hull_value_findings(ship: Ship) -> tuple[Finding, ...]:
     box = values.get("rho", _SEA_WATER) * length * values.get("B", math.inf) * values.get("d", math.inf)
     if mass > _FULLEST * box:
         water = significant(box, _DIGITS)
-        what = f"m = {significant(mass, _DIGITS)} kg is more than the {water} kg of water in a box of L, B and d"
-        findings.append(_finding(what, "correct m, L, B or d under [ship]"))
+        message = f"m = {significant(mass, _DIGITS)} kg is more than the {water} kg of water in a box of L, B and d"
+        findings.append(_finding(message, "correct m, L, B or d under [ship]"))
     return tuple(one for one in findings if one is not None)
 
 
@@ -43,5 +43,5 @@ def _gyradius_finding(name: str, inertia: float, mass: float, length: float) -> 
     )
 
 
-def _finding(what: str, advice: str) -> Finding:
-    return Finding(Severity.WARNING, "hull-values", what, "", advice, "coefficients scale with stated inertias")
+def _finding(message: str, advice: str) -> Finding:
+    return Finding(Severity.WARNING, "hull-values", message, "", advice, "coefficients scale with stated inertias")
