@@ -2,9 +2,9 @@
 
 import math
 from dataclasses import dataclass
+from itertools import accumulate
 
 import numpy as np
-from scipy.signal import lfilter
 
 from seatrial.control.gain_evaluation import gain_evaluator
 from seatrial.control.seaway_simulation import effect_amplitudes, frequency_band, sum_harmonics, wave_components
@@ -98,7 +98,7 @@ def _series(met: Seaway | SlowDisturbance, loop: TransferLoop, clock: _Clock, nu
     if isinstance(met, SlowDisturbance):
         stay = math.exp(-met.bandwidth * clock.dt)
         kicks = met.rms * math.sqrt(1.0 - stay**2) * rng.standard_normal(clock.count)
-        return np.asarray(lfilter([1.0], [1.0, -stay], kicks))
+        return np.fromiter(accumulate(kicks.tolist(), lambda now, kick: stay * now + kick), np.float64, clock.count)
     lines = wave_components(met, rng, frequency_band(met, lambda omega: _response(loop, omega)))
     return sum_harmonics(lines.omega_e, effect_amplitudes(lines, met.effect), clock.dt, clock.count)
 
