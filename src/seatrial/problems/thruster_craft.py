@@ -38,11 +38,16 @@ _BUDGET = 1000
 
 @dataclass(frozen=True)
 class KnownThrusterCraft:
-    """A craft that is known: its thrusters, the true coefficients, and the range of each input's steps."""
+    """A craft that is known: its thrusters, the true coefficients, and the range of each input's steps.
+
+    version: of its problem. accept: what checks of its records object to, and what is right.
+    """
 
     layout: ThrusterLayout
     values: Mapping[str, float]
     ranges: Mapping[str, tuple[float, float]]
+    version: int = 2
+    accept: tuple[str, ...] = ()
 
     @property
     def truth(self) -> Model:
@@ -99,7 +104,8 @@ CRAFTS: Mapping[str, KnownThrusterCraft] = {
             "tau": 0.35, "tau_down": 0.2, "tau_a": 0.5, "k_f": 0.25, "k_b": 0.2, "k_J": 0.05, "k_4": 0.1,
             "X_u": -0.03, "X_uu": -0.08, "Y_v": -0.05, "N_r": -0.2, "D_c": 0.03, "M_v": 1.5, "M_r": 2.2,
         },
-        {f"command_{k}": (-1.0, 1.0) for k in (1, 2, 3, 4)} | {f"alpha_{k}": (-3.0, 3.0) for k in (1, 2, 3, 4)},
+        {f"command_{k}": (-1.0, 1.0) for k in (1, 2, 3, 4)} | {f"alpha_{k}": (-1.5, 1.5) for k in (1, 2, 3, 4)},
+        version=3,  # angles within half a turn of one another: no step is ambiguous
     ),
     "twin-screw": KnownThrusterCraft(
         _twin_screw(),
@@ -109,6 +115,8 @@ CRAFTS: Mapping[str, KnownThrusterCraft] = {
             "M_r": 700.0,
         },
         {"rpm_1": (-4.0, 10.0), "rpm_2": (-4.0, 10.0), "delta": (-0.5, 0.5)},
+        version=3,
+        accept=("command-range",),  # its inputs are turns a second, no shares of full command
     ),
 }  # fmt: skip
 """Craft by name, SI; values chosen: a catamaran of 1 m, a ferry of 5 m by mass, a model ship of 4.4 m and 400 kg."""
@@ -122,7 +130,7 @@ def problems() -> tuple[BenchmarkProblem, ...]:
     noise = "u, v 0.03 m/s, r 0.01 rad/s, psi 0.01 rad, x0, y0 0.1 m, white"
     return tuple(
         BenchmarkProblem(
-            f"thrusters-{name}", 2,
+            f"thrusters-{name}", craft.version,
             f"a craft with {_WORDS[name]}, three runs of 60 s of steps of all commands, box ±50 % off centre",
             "ours", noise, _BUDGET, partial(_draw, craft),
         )
@@ -164,4 +172,5 @@ def _draw(craft: KnownThrusterCraft, rng: np.random.Generator, placement: Placem
     ship = Ship("craft with thrusters", {"L": craft.layout.length})
     settings = EstimateSettings(method=EstimateMethod.OUTPUT_ERROR)
     known = KnownCraft(ship, craft.truth, records, NOISE, dict.fromkeys(craft.truth.states, 0.0), settings)
-    return craft_draw(known, box, 0.5 * (box.lower + box.upper))
+    draw = craft_draw(known, box, 0.5 * (box.lower + box.upper))
+    return draw if draw.trial is None else replace(draw, trial=replace(draw.trial, accept=craft.accept))
