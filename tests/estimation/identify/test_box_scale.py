@@ -36,7 +36,12 @@ def wave_forces(factor: float) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     return time, {"F3": factor * F3, "M5": factor * M5, "delta_f1": 0.0 * time, "delta_f2": 0.0 * time}
 
 
-def fitted(model: Model, forces: tuple[np.ndarray, dict[str, np.ndarray]], truth: Model) -> Estimation:
+def fitted(
+    model: Model,
+    forces: tuple[np.ndarray, dict[str, np.ndarray]],
+    truth: Model,
+    method: EstimateMethod = EstimateMethod.OUTPUT_ERROR,
+) -> Estimation:
     time, inputs = forces
     moved = replay(truth, Record.from_arrays("run", time, wave_forces(1.0)[1]), dict.fromkeys(truth.states, 0.0))
     noise = np.random.default_rng(2)
@@ -45,7 +50,7 @@ def fitted(model: Model, forces: tuple[np.ndarray, dict[str, np.ndarray]], truth
         "theta": moved["theta"] + 1e-4 * noise.standard_normal(241),
     }
     record = Record.from_arrays("run", time, {**inputs, **motion})
-    settings = EstimateSettings(method=EstimateMethod.OUTPUT_ERROR)
+    settings = EstimateSettings(method=method)
     return estimate_model(model, Runs.one_session_each([record], 60.0), settings, EstimatorOptions(workers=1))
 
 
@@ -59,6 +64,19 @@ def test_every_coefficient_follows_the_stiffness_as_a_fit_with_ten_per_cent_more
         before, after = (e.model.parameters[name].value for e in (found, again))
         assert after / before - 1.0 == pytest.approx(change, rel=1e-3, abs=1e-4)
     assert stated.misfit == pytest.approx(0.0, abs=1e-6)
+
+
+def test_changes_are_over_the_final_estimate_where_another_one_was_simulated(model: Model) -> None:
+    found = fitted(model, wave_forces(1.0), model, EstimateMethod.PREDICTION_ERROR)
+    assert found.has_process_noise
+    assert (
+        found.model.parameters["b35"].value
+        != found.shooting.common_parameters[found.shooting.problem.free.index("b35")]
+    )
+    stated = next(c for c in consequences(found, is_on_box=True) if c.parameter == LABEL)
+    m, a33 = (found.model.parameters[n].value for n in ("m", "a33"))
+    expected = {"b35": 0.1, "b53": 0.1, "b33": 0.1, "a33": 0.1 * (m + a33) / a33}
+    assert {n: stated.estimate_changes[n] for n in expected} == pytest.approx(expected, rel=1e-6)
 
 
 def test_no_single_stiffness_is_named_beside_it(found: Estimation) -> None:

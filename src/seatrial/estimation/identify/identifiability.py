@@ -131,7 +131,7 @@ def consequences(estimation: Estimation, is_on_box: bool = False) -> tuple[Conse
     ranked: list[tuple[float, Consequence]] = []
     changes = {n: _unit(len(shared), place[n]) * RELATIVE_CHANGE * model.parameters[n].value for n in names}
     if scaled_by_box:
-        changes = scaled_by_box.changes(changes, place, shared, RELATIVE_CHANGE)
+        changes = scaled_by_box.changes(changes, place, _with_final_values(shared, place, model, free), RELATIVE_CHANGE)
     for name, change in changes.items():
         if change @ information @ change < felt * RELATIVE_CHANGE**2:
             continue
@@ -140,6 +140,14 @@ def consequences(estimation: Estimation, is_on_box: bool = False) -> tuple[Conse
         ranked.append((worst, _consequence(name, moves[: len(free)] / sizes, free, misfit, chi_squared)))
     ranked.sort(key=lambda pair: -pair[0])
     return tuple(one for _, one in ranked[:_MAX_CONSEQUENCES])
+
+
+def _with_final_values(values: Array, place: Mapping[str, int], model: Model, free: Sequence[str]) -> Array:
+    """The values with the free coefficients of the fit, over which relative changes are taken."""
+    final = values.copy()
+    for name in free:
+        final[place[name]] = model.parameters[name].value
+    return final
 
 
 def _unit(size: int, place: int) -> Array:
