@@ -65,7 +65,7 @@ def test_the_lines_name_what_is_used_how_and_the_assumption_that_matters_most(fi
     lines = dict(meaning_lines(one, known, coefficient_uses(one.coefficients, known)))
     assert lines["Single values"] == "a can be used by itself; not even the sign of v is known."
     assert lines["Assumed values"] == (
-        "m is stated, as no manoeuvre identifies it apart from the others; "
+        "m is held, as no manoeuvre identifies it apart from the others; "
         "a change of k by +10 % would change a by −20 %."
     )
     assert list(lines) == ["Predictions", "Single values", "Assumed values"]

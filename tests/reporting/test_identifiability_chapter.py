@@ -62,7 +62,7 @@ def test_parts_that_are_empty_have_no_heading() -> None:
     fit = fabricated_fit()
     only_noise = html(replace(fit, noise_model=NoiseModel("output error", math.nan, {}, {})))
     assert TITLE in only_noise and "Noise, and the criterion chosen for it" in headings(only_noise)
-    assert not {"Models compared", "Is the ship course stable?"} & set(headings(only_noise))
+    assert not {"Models compared", "Does it hold a straight course?"} & set(headings(only_noise))
     assert "Correlations between the estimates" in headings(only_noise)
     least = html(replace(fit, identifiability=Identifiability((), (), math.nan, math.nan)))
     assert "Structurally identifiable" in least

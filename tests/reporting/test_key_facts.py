@@ -112,10 +112,13 @@ def test_windows_that_diverge_have_no_better_baseline(fit: Fit) -> None:
     assert "diverges in 3 of 4 windows" in text and "without this fit" not in text
 
 
-def test_what_disturbances_leave_stands_beside_the_error(fit: Fit) -> None:
+def test_what_process_noise_leaves_stands_with_the_error(fit: Fit) -> None:
     (run, *_) = fit.validation
     floor = replace(run, noise_floor={"psi_deg": 0.5 * run.rms["psi_deg"]})
-    assert "disturbances alone would leave" in rows(replace(fit, predictions=(floor,)))["Error, held out (rms)"].text
+    assert (
+        "process noise as estimated, model error in it, would leave"
+        in rows(replace(fit, predictions=(floor,)))["Error, held out (rms)"].text
+    )
 
 
 def test_one_run_diverges(fit: Fit) -> None:

@@ -1,10 +1,19 @@
 """The chapter on a craft with thrusters: measures, curves and matrices as text; what ships have is left out."""
 
+import re
 from dataclasses import replace
 
 import pytest
 
-from seatrial.core.results import CommandCurve, CompassCurve, CraftMeasure, Fit, FossenMatrix, ThrusterCraft
+from seatrial.core.results import (
+    CommandCurve,
+    CompassCurve,
+    CraftMeasure,
+    Extrapolation,
+    Fit,
+    FossenMatrix,
+    ThrusterCraft,
+)
 from seatrial.physics.models import model_named
 from seatrial.reporting.page import html
 from seatrial.reporting.thruster_chapter import thruster_chapter
@@ -71,3 +80,39 @@ def test_the_page_of_such_a_craft_has_no_imo_table_and_no_ship_lengths(page: str
 def test_the_page_of_a_ship_has_no_such_chapter(fit: Fit) -> None:
     text = html(fit)
     assert "The craft: speed, turn, stop" not in text and "IMO standards" in text
+
+
+WITHOUT_RUDDER = ("waves", "roll", "thrusters")
+
+
+def of_kind(fit: Fit, kind: str) -> Fit:
+    """The fit as one of a craft without a rudder: its runs have no rudder angle, its model no such input."""
+    model = model_named({"waves": "heave_pitch", "roll": "roll", "thrusters": "thrusters"}[kind])
+    runs = tuple(
+        replace(p, measured=p.measured.without("delta"), measures={}, extrapolation=Extrapolation(1.4, {"drift": 1.4}))
+        for p in fit.predictions
+    )
+    assert fit.identifiability is not None and fit.identifiability.stability is not None
+    stability = replace(fit.identifiability.stability, text="the craft is course stable at 1.6 m/s")
+    return replace(
+        fit, model=model, predictions=runs, records=tuple(r.without("delta") for r in fit.records), offsets=(),
+        thruster_craft=CRAFT if kind == "thrusters" else None, frequency_responses=(), findings=(), question="",
+        identifiability=replace(fit.identifiability, stability=stability if kind == "thrusters" else None),
+        ship=replace(fit.ship, name="craft"),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", WITHOUT_RUDDER)
+def test_the_page_of_a_craft_without_a_rudder_does_not_speak_of_one(fit: Fit, kind: str) -> None:
+    text = re.sub(r"(?s)<(script|style).*?</\1>", "", html(of_kind(fit, kind)))
+    found = re.findall(r".{60}\brudder\b.{20}", text)
+    assert not found
+    if kind == "thrusters":
+        assert "returns to a straight course at equal orders of its thrusters" in text
+        assert "largest ratio of yaw rate, drift, command or speed" in text
+
+
+def test_the_page_of_a_ship_with_a_rudder_does(fit: Fit) -> None:
+    text = html(fit)
+    assert "returns to a straight course with the rudder amidships" in text
+    assert "largest ratio of yaw rate, drift, rudder or speed" in text

@@ -9,13 +9,19 @@ from tests.reporting.fabricated import zigzag
 
 from seatrial.core.results import Divergence, Fit, Prediction
 from seatrial.core.values import Record
-from seatrial.reporting.verdict import error_text, extrapolation_limit, run_name, share_sentence, verdict, worst_errors
+from seatrial.reporting.verdict import error_text, extrapolation_limit, run_name, verdict, worst_errors
 
 ANGLE = math.radians(20.0)
 
 
 def held(fit: Fit) -> Prediction:
     return fit.validation[0]
+
+
+def with_share(p: Prediction, share: float) -> Prediction:
+    """The run with an error of heading that is this share of its standard deviation, the largest of all."""
+    spread = math.degrees(float(np.nanstd(p.measured["psi"])))
+    return replace(p, rms={"psi_deg": share * spread})
 
 
 def with_runs(fit: Fit, *runs: Prediction) -> Fit:
@@ -42,44 +48,52 @@ def turning_circle(angle: float) -> Record:
 def test_one_run_is_named_by_its_manoeuvre_with_errors_and_limit(fit: Fit) -> None:
     p = held(fit)
     text = verdict(fit)
-    assert text.startswith("Predicts a 25° zigzag that was not used, 4 min 00 s, to ")
+    assert text.startswith("Predicts a 25° zigzag that was not used, 4 min 00 s, ")
     assert f"{error_text('psi_deg', p.rms['psi_deg'])} in heading and" in text
     assert text.endswith("; beyond 30° rudder the model extrapolates.")
 
 
-def test_a_run_that_is_lost_before_its_end_is_not_called_predicted(fit: Fit) -> None:
-    p = held(fit)
-    spread = math.degrees(float(np.nanstd(p.measured["psi"])))
-    lost, kept = (replace(p, rms=p.rms | {"psi_deg": share * spread}) for share in (0.51, 0.49))
-    text = verdict(with_runs(fit, lost))
-    assert text.startswith("Does not follow a 25° zigzag that was not used, to its end: ")
-    assert f"{error_text('psi_deg', 0.51 * spread)} in heading" in text
-    assert "over 4 min 00 s" in text
-    assert verdict(with_runs(fit, kept)).startswith("Predicts a 25° zigzag")
-    assert share_sentence([kept]).startswith(
-        "in heading 0.49 of the standard deviation of the motion itself (above 0.5"
-    )
-    assert share_sentence([kept, lost]).startswith("in heading 0.51 of ")
-    assert share_sentence([]) == ""
+def test_half_of_the_motion_on_either_side_reads_alike(fit: Fit) -> None:
+    below, above = (verdict(with_runs(fit, with_share(held(fit), share))) for share in (0.49, 0.51))
+    start = "Predicts a 25° zigzag that was not used, 4 min 00 s, roughly: to "
+    assert below.startswith(start) and above.startswith(start)
 
 
-def test_of_several_runs_those_that_are_lost_are_named(fit: Fit) -> None:
+@pytest.mark.parametrize(("share", "text"), [
+    (0.05, ", 4 min 00 s, closely: to "), (0.29, ", 4 min 00 s, well: to "), (0.31, ", 4 min 00 s, roughly: to "),
+    (0.71, ", 4 min 00 s, poorly: to "), (1.01, "Does not predict a 25° zigzag that was not used: "),
+])  # fmt: skip
+def test_the_error_as_a_share_of_the_motion_is_graded(fit: Fit, share: float, text: str) -> None:
+    p = with_share(held(fit), share)
+    assert text in verdict(with_runs(fit, p))
+    assert error_text("psi_deg", p.rms["psi_deg"]) in verdict(with_runs(fit, p))
+
+
+def test_of_several_runs_those_that_are_missed_are_named(fit: Fit) -> None:
     p = held(fit)
-    spread = math.degrees(float(np.nanstd(p.measured["psi"])))
-    first, second = (replace(p, record=name, rms=p.rms | {"psi_deg": share * spread})
-                     for name, share in (("one", 0.6), ("two", 0.2)))  # fmt: skip
+    first, second = (replace(with_share(p, share), record=name) for name, share in (("one", 0.8), ("two", 0.2)))
     text = verdict(with_runs(fit, first, second))
-    assert text.startswith("Of 2 runs that were not used, 4 min 00 s each, one is not followed to its end, to ")
-    assert ", one and two are not followed to their end, to " in verdict(
-        with_runs(fit, first, replace(first, record="two"))
-    )
+    assert text.startswith("Of 2 runs that were not used, 4 min 00 s each, one is poorly predicted, to ")
+    lost = with_share(first, 1.2)
+    assert ", one and two are not predicted, to " in verdict(with_runs(fit, lost, replace(lost, record="two")))
+    assert ", 4 min 00 s each, well or better: to " in verdict(with_runs(fit, second, replace(second, record="one")))
+
+
+def test_a_repeat_of_a_fitted_run_is_called_one(fit: Fit) -> None:
+    p = held(fit)
+    trained = next(one for one in fit.predictions if one.role == "training")
+    text = verdict(with_runs(fit, replace(p, measured=trained.measured)))
+    assert f"; it is a repeat of {trained.record}, which was fitted: it does not test other manoeuvres" in text
+    assert "a repeat of" not in verdict(fit)
+    both = verdict(with_runs(fit, replace(p, measured=trained.measured), replace(p, record="other")))
+    assert "; 1 of them repeats a fitted manoeuvre" in both
 
 
 def test_of_several_runs_the_worst_counts(fit: Fit) -> None:
     p = held(fit)
     worse = replace(p, record="other", rms=p.rms | {"psi_deg": 9.87, "position_m": 0.01})
     text = verdict(with_runs(fit, p, worse))
-    assert text.startswith("Predicts 2 runs that were not used, 4 min 00 s each, to 9.9° in heading and ")
+    assert text.startswith("Predicts 2 runs that were not used, 4 min 00 s each, roughly or better: to 9.9° in ")
     assert "at worst" in text and error_text("position_m", p.rms["position_m"]) in text
 
 

@@ -1,6 +1,6 @@
 """What `identify` prints of a fit: verdict and key figures, coefficients, held-out runs, findings."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from seatrial.cli.finding_output import print_warnings
@@ -105,19 +105,21 @@ def _coefficient_mark(c: "Coefficient") -> str:
 def _print_held_out(fit: "Fit") -> None:
     chosen = fit.validation if is_verbose() else fit.validation[:MAX_RUNS]
     for p in chosen:
-        _print_prediction(p)
+        _print_prediction(p, fit.predictions)
     if len(fit.validation) > len(chosen):
         print_lines(
             [f"... and {len(fit.validation) - len(chosen)} more held-out runs; --verbose and the report show them"]
         )
 
 
-def _print_prediction(p: "Prediction") -> None:
-    """Errors of a run that was not fitted, with what process noise alone would leave; its measures with their marks."""
+def _print_prediction(p: "Prediction", predictions: "Sequence[Prediction]") -> None:
+    """Errors of a run that was not fitted, with what the process noise would leave; its measures with their marks."""
     from seatrial.core.text.numbers import duration, exact
+    from seatrial.reporting.repeats import repeat_clause
 
     until = "" if p.divergence is None else f"; it diverges, its first {exact(p.divergence.seconds, 4)} s count"
-    print_heading(f"Held out: {p.record}, {duration(p.measured.duration)}{until}")
+    repeat = f"; {clause}" if (clause := repeat_clause(p, predictions)) else ""
+    print_heading(f"Held out: {p.record}, {duration(p.measured.duration)}{until}{repeat}")
     if not p.rms:
         print_lines(["nothing can be compared: no channel of the run is an output of the model"])
         return
@@ -134,7 +136,7 @@ def _print_prediction(p: "Prediction") -> None:
 def _error_header(p: "Prediction") -> list[str]:
     windows = [f"{w.count} x {w.window}" for w in p.windows]
     rival = f"best without fit, {p.windows[-1].window}" if p.windows else ""
-    return ["rms error", "whole run", "noise alone", "tied models", *windows, rival]
+    return ["rms error", "whole run", "process noise", "tied models", *windows, rival]
 
 
 def _error_cells(p: "Prediction", key: str) -> list[str]:

@@ -8,6 +8,7 @@ from enum import StrEnum
 from seatrial.core.results import Coefficient, Consequence, Fit, Identifiability
 from seatrial.core.text.numbers import DASH, fixed, signed_percent, significant
 from seatrial.core.text.words import enumeration
+from seatrial.core.values import NOT_MEASURED
 
 # variance inflation from which on coefficients are collinear (Marquardt 1970)
 MIN_VARIANCE_INFLATION = 10.0
@@ -102,8 +103,11 @@ def _single_values(uses: Sequence[CoefficientUse]) -> str:
 def _assumptions(fit: Fit, content: Identifiability) -> str:
     tied = {name for symmetry in content.structural for name in symmetry.parameters}
     held = [c.name for c in fit.coefficients if c.fixed and c.name in tied]
-    parts = [f"{enumeration(held, MAX_NAMES)} {'are' if len(held) > 1 else 'is'} stated, as no manoeuvre identifies "
+    parts = [f"{enumeration(held, MAX_NAMES)} {'are' if len(held) > 1 else 'is'} held, as no manoeuvre identifies "
              f"{'them' if len(held) > 1 else 'it'} apart from the others"] if held else []  # fmt: skip
+    guessed = [c.name for c in fit.coefficients if c.is_unmeasured]
+    if guessed:
+        parts.append(f"{enumeration(guessed, MAX_NAMES)} {'are' if len(guessed) > 1 else 'is'} {NOT_MEASURED}")
     worst = max((c for c in content.consequences if c.estimate_changes), key=_largest_change, default=None)
     if worst is not None:
         name, change = max(worst.estimate_changes.items(), key=lambda pair: abs(pair[1]))

@@ -19,7 +19,7 @@ from seatrial.core.results import (
 )
 from seatrial.core.text.numbers import DASH, p_value, rounded, signed_percent, significant
 from seatrial.core.text.words import counted, enumeration, sentence
-from seatrial.core.values import display_unit
+from seatrial.core.values import NOT_MEASURED, display_unit
 from seatrial.core.values.channel_text import channel_meaning, channel_unit, unit_text
 from seatrial.reporting.coefficient_uses import CoefficientUse, coefficient_uses, meaning_lines
 from seatrial.reporting.disturbance_table import DisturbanceRow, disturbance_rows
@@ -118,6 +118,7 @@ class IdentifiabilityChapter:
     condition: str
     consequences: tuple[ConsequenceRow, ...]
     stability: str
+    stability_condition: str
     noise: NoiseText | None
     profiles: Markup
     unbounded: str
@@ -149,8 +150,11 @@ def identifiability_chapter(fit: Fit) -> IdentifiabilityChapter | None:
         weaker=texts[MAX_TEXTS:],
         more_directions=_more_directions(content.directions[MAX_DIRECTIONS:]),
         condition=rounded(content.condition) if math.isfinite(content.condition) else "",
-        consequences=tuple(_consequence_row(c) for c in content.consequences),
+        consequences=tuple(_consequence_row(c, fit) for c in content.consequences),
         stability=_stability_sentence(content.stability, names) if content.stability else "",
+        stability_condition="craft returns to a straight course at equal orders of its thrusters"
+        if fit.model.equations.layout
+        else "ship returns to a straight course with the rudder amidships",
         noise=_noise_text(fit.noise_model, names) if fit.noise_model else None,
         profiles=Markup(svg(profile_chart(content.profiles, {c.name: c.unit for c in fit.coefficients}))),
         unbounded=_unbounded_sentence(content),
@@ -176,12 +180,20 @@ def determined_sentence(fit: Fit) -> str:
     if number >= len(free):
         tied = {name for symmetry in identifiability.structural for name in symmetry.parameters}
         held = [c.name for c in fit.coefficients if c.fixed and c.name in tied]
-        given = f", given the stated {enumeration(held)}, which no manoeuvre identifies apart from them" if held else ""
+        given = f", given {_held_text(fit, held)}, which no manoeuvre identifies apart from them" if held else ""
         together = f" together{given}, but {alone}" if vague else given
         return f"The records determine all {len(free)} free coefficients{together}."
     rest = "; the rest comes from the priors" if any(c.prior_mean is not None for c in free) else ""
     single = f", and of the coefficients {alone}" if vague else ""
     return f"The records determine about {number} of {len(free)} combinations of the free coefficients{rest}{single}."
+
+
+def _held_text(fit: Fit, names: Sequence[str]) -> str:
+    """Values that were held, those that nobody measured apart: ``the stated m and the estimated I_z``."""
+    unmeasured = {c.name for c in fit.coefficients if c.is_unmeasured}
+    stated, estimated = ([n for n in names if (n in unmeasured) is which] for which in (False, True))
+    parts = (("stated", stated), ("estimated", estimated))
+    return " and ".join(f"the {word} {enumeration(group)}" for word, group in parts if group)
 
 
 def _symmetry_row(s: Symmetry, fit: Fit, names: Sequence[str]) -> SymmetryRow:
@@ -214,10 +226,12 @@ def _more_directions(rest: Sequence[Direction]) -> str:
     return f"{number} not drawn, {significant(worst, 2)} % or better."
 
 
-def _consequence_row(c: Consequence) -> ConsequenceRow:
+def _consequence_row(c: Consequence, fit: Fit) -> ConsequenceRow:
+    is_guess = any(one.is_unmeasured for one in fit.coefficients if one.name == c.parameter)
+    parameter = f"{c.parameter} ({NOT_MEASURED})" if is_guess else c.parameter
     largest = list(c.estimate_changes.items())[:MAX_SHIFTS]
     moves = ", ".join(f"{name} {signed_percent(move)}" for name, move in largest)
-    return ConsequenceRow(c.parameter, signed_percent(c.change), moves or DASH, significant(c.misfit, 2))
+    return ConsequenceRow(parameter, signed_percent(c.change), moves or DASH, significant(c.misfit, 2))
 
 
 def _stability_sentence(s: Stability, names: Sequence[str]) -> str:

@@ -11,12 +11,13 @@ from seatrial.core.text.words import counted, enumeration
 from seatrial.core.values import Severity
 from seatrial.reporting.coefficient_uses import MIN_VARIANCE_INFLATION
 from seatrial.reporting.first_screen import FirstScreen, KeyFact
+from seatrial.reporting.grades import largest_error_share, share_sentence, worst_share
 from seatrial.reporting.identifiability_chapter import determined_sentence
 from seatrial.reporting.measures import IntervalVerdict, interval_verdict
 from seatrial.reporting.operators import operators_sentence
 from seatrial.reporting.runs import ERROR_LABELS, badness
 from seatrial.reporting.time_figures import run_figure
-from seatrial.reporting.verdict import error_text, has_converged, is_lost, share_sentence, verdict, worst_errors
+from seatrial.reporting.verdict import error_text, has_converged, verdict, worst_errors
 
 # share of values inside their 95 % intervals that counts as kept; chosen between 0.95 and the scatter of few values
 LEAST_COVERAGE = 0.9
@@ -41,7 +42,7 @@ def first_screen(fit: Fit, length: float) -> FirstScreen:
 
 def key_facts(fit: Fit) -> tuple[KeyFact, ...]:
     """Return the rows; a search that did not converge comes first; what the fit does not contain is said to be so."""
-    rows = _score(fit), _baseline(fit), _coverage(fit), _identifiability(fit)
+    rows = _score(fit), *_training_score(fit), _baseline(fit), _coverage(fit), _identifiability(fit)
     return (*rows, _warnings(fit)) if has_converged(fit) else (_warnings(fit), *rows)
 
 
@@ -57,11 +58,27 @@ def _score(fit: Fit) -> KeyFact:
         )
     floors = [error_text(key, max(p.noise_floor[key] for p in held if key in p.noise_floor))
               for key in ("psi_deg", "position_m") if any(key in p.noise_floor for p in held)]  # fmt: skip
-    floor = f"; disturbances alone would leave {enumeration(floors)}" if floors else ""
+    floor = f"; the process noise as estimated, model error in it, would leave {enumeration(floors)}" if floors else ""
     share = f"; {share_sentence(held)}" if share_sentence(held) else ""
-    return KeyFact(
-        name, f"{worst_errors(held)}{share}{floor}", "prediction", False if any(map(is_lost, held)) else None
+    largest = worst_share(held)
+    is_marked = largest is not None and largest.needs_attention
+    return KeyFact(name, f"{worst_errors(held)}{share}{floor}", "prediction", False if is_marked else None)
+
+
+def _training_score(fit: Fit) -> tuple[KeyFact, ...]:
+    """The training runs that the model misses, the worst first; no row where it reproduces them well."""
+    trained = {p.record: largest_error_share(p) for p in fit.predictions if p.role == "training"}
+    shares = {name: share for name, share in trained.items() if share is not None and share.needs_attention}
+    if not shares or not fit.validation:
+        return ()
+    worst = max(shares, key=lambda name: shares[name].share)
+    runs = [p for p in fit.predictions if p.record == worst]
+    names = enumeration(sorted(shares, key=lambda name: -shares[name].share), MAX_NAMES)
+    text = (
+        f"{names} {'is' if len(shares) == 1 else 'are'} missed although fitted, {worst} by {worst_errors(runs)} "
+        f"({shares[worst].grade}): model error, not extrapolation"
     )
+    return (KeyFact("Error, fitted (rms)", text, "training", is_good=False),)
 
 
 def _longest_windows(p: Prediction) -> WindowScore | None:

@@ -21,6 +21,7 @@ from seatrial.reporting.measures import (
     measure_decimals,
     measure_label,
 )
+from seatrial.reporting.repeats import MAX_NAMES, repeated_runs
 from seatrial.reporting.text_tables import TextTable
 from seatrial.reporting.time_figures import run_figure
 from seatrial.reporting.windows import window_tables
@@ -61,7 +62,7 @@ class MeasureTable:
 
 @dataclass(frozen=True)
 class ErrorCell:
-    """An error, what process noise alone would leave of it, and its spread over tied models; empty: not known."""
+    """An error, what the process noise would leave of it, and its spread over tied models; empty: not known."""
 
     value: str
     floor: str = ""
@@ -70,31 +71,36 @@ class ErrorCell:
 
 @dataclass(frozen=True)
 class RunScore:
-    """One run's errors; `extrapolation`: its index, `extrapolation_class`: inside, edge or beyond."""
+    """One run's errors; `extrapolation`: its index, `extrapolation_class`: inside, edge or beyond.
+
+    `repeats`: the training runs whose manoeuvre a held-out run repeats; empty: none.
+    """
 
     record: str
     is_held_out: bool
     cells: tuple[ErrorCell, ...]
     extrapolation: str
     extrapolation_class: str
+    repeats: str = ""
 
 
 @dataclass(frozen=True)
 class ScoreTable:
-    """Errors (rms) of every run; `header`: name and unit of each column."""
+    """Errors (rms) of every run; `header`: name and unit of each column; `order_word`: what is ordered."""
 
     header: tuple[tuple[str, str], ...]
     rows: tuple[RunScore, ...]
     has_floor: bool
     has_spread: bool
     has_extrapolation: bool
+    order_word: str
 
 
 @dataclass(frozen=True)
 class RunSection:
     """One run: its figure and measures; `is_other_manoeuvre`: no measure can be read from the simulated run.
 
-    `notes` say what process noise alone would leave, how far the run leaves the training, how tied models differ.
+    `notes` say what the process noise would leave, how far the run leaves the training, how tied models differ.
     """
 
     name: str
@@ -131,11 +137,16 @@ def score_table(predictions: Sequence[Prediction], length: float) -> ScoreTable:
         e = _extrapolation(p)
         until = "" if p.divergence is None else f" (diverges; first {duration(p.divergence.seconds)})"
         rows.append(RunScore(f"{p.record}{until}", p.role == "validation", cells, ratio_text(e.index) if e else "",
-                          extrapolation_zone(e.index) if e else ""))  # fmt: skip
+                          extrapolation_zone(e.index) if e else "", _repeats(p, predictions)))  # fmt: skip
     return ScoreTable(
         tuple(header), tuple(rows), any(c.floor for row in rows for c in row.cells),
         any(c.spread for row in rows for c in row.cells), any(row.extrapolation for row in rows),
+        "rudder" if any("delta" in p.measured for p in predictions) else "command",
     )  # fmt: skip
+
+
+def _repeats(p: Prediction, predictions: Sequence[Prediction]) -> str:
+    return enumeration(repeated_runs(p, predictions), MAX_NAMES) if p.role == "validation" else ""
 
 
 def _extrapolation(p: Prediction) -> Extrapolation | None:
@@ -241,7 +252,8 @@ def _notes(p: Prediction) -> list[str]:
         notes.append(f"Extrapolation index {extrapolation_text(e)}")
     if _error_texts(p.noise_floor):
         notes.append(
-            f"Process noise alone would leave {enumeration(_error_texts(p.noise_floor))} with a perfect model."
+            f"The process noise of the fit would leave {enumeration(_error_texts(p.noise_floor))} by itself; model "
+            "error counts in it."
         )
     if has_track(p.measured) and "x0" in p.simulated and not has_modelled_position(p):
         notes.append("The model does not predict the position: its speed U is 0.")

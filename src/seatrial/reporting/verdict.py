@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,6 +10,8 @@ from seatrial.core.text.numbers import duration, significant
 from seatrial.core.text.words import counted, enumeration
 from seatrial.core.values import InputError
 from seatrial.physics.manoeuvres import REACH_PERCENTILE, ManoeuvreKind, ObservedManoeuvre, to_starboard
+from seatrial.reporting.grades import Grade, largest_error_share
+from seatrial.reporting.repeats import MAX_NAMES, repeat_clause, repeated_runs
 from seatrial.reporting.runs import ERROR_LABELS
 
 # errors that a sentence names, the first ones that the runs have
@@ -20,9 +21,6 @@ ONE_SIDED = 1.25
 # rad below which the rudder is not over
 LEAST_RUDDER = math.radians(0.5)
 _DEGREES = math.degrees(1.0)
-# share of the spread of a motion, a standard deviation, from which on an error over the whole run has lost it; chosen
-LOST_SHARE = 0.5
-_MOTIONS = {"psi_deg": ("psi",), "position_m": ("x0", "y0"), "z": ("z",), "theta_deg": ("theta",), "phi_deg": ("phi",)}
 _MAIN_ERRORS = ("psi_deg", "position_m", "z", "theta_deg", "phi_deg")
 
 
@@ -52,90 +50,65 @@ def _score_clause(fit: Fit) -> str:
         to_errors = f", to {worst_errors(fit.predictions)}" if worst_errors(fit.predictions) else ""
         fitted = counted(len(fit.predictions), "run")
         return f"Reproduces the {fitted} it was fitted to{to_errors}; no run was held out to test its predictions"
-    diverged = [p for p in held if p.divergence is not None]
-    errors = worst_errors(held)
-    to_errors = f" to {errors}{' at worst' if len(held) > 1 else ''}" if errors else ""
-    if len(held) == 1:
-        p = held[0]
-        if p.divergence is not None:
-            return (
-                f"Does not predict {run_name(p)} that was not used: the simulation diverges after "
-                f"{duration(p.divergence.seconds)} of {duration(p.measured.duration)}"
-            )
-        if is_lost(p):
-            over = f"{errors} {_over_time(p)}"
-            return f"Does not follow {run_name(p)} that was not used, to its end: {over}"
-        return f"Predicts {run_name(p)} that was not used, {duration(p.measured.duration)},{to_errors}"
+    return _one_run_clause(held[0], fit.predictions) if len(held) == 1 else _several_runs_clause(held, fit.predictions)
+
+
+def _one_run_clause(p: Prediction, predictions: Sequence[Prediction]) -> str:
+    """How a single held-out run is predicted, as a grade and its errors, and what it repeats."""
+    if p.divergence is not None:
+        return (
+            f"Does not predict {run_name(p)} that was not used: the simulation diverges after "
+            f"{duration(p.divergence.seconds)} of {duration(p.measured.duration)}"
+        )
+    largest, errors, repeat = largest_error_share(p), worst_errors([p]), repeat_clause(p, predictions)
+    repeat = f"; it is {repeat}" if repeat else ""
+    if largest is not None and largest.grade is Grade.NOT:
+        return f"Does not predict {run_name(p)} that was not used: {errors} {_over_time(p)}{repeat}"
+    lasting = f"Predicts {run_name(p)} that was not used, {duration(p.measured.duration)},"
+    if largest is None:
+        return f"{lasting} to {errors}{repeat}" if errors else f"{lasting.rstrip(',')}{repeat}"
+    short = _short_windows(p) if largest.grade is Grade.POORLY else ""
+    return f"{lasting} {largest.grade}: to {errors}{f'; {short}' if short else ''}{repeat}"
+
+
+def _several_runs_clause(held: Sequence[Prediction], predictions: Sequence[Prediction]) -> str:
+    """How held-out runs are predicted: the worst of them counts, and is named where it is predicted poorly."""
+    diverged = [p.record for p in held if p.divergence is not None]
     if diverged:
         return (
             f"Of {len(held)} runs that were not used, {len(diverged)} cannot be predicted (the simulation diverges: "
-            f"{enumeration([p.record for p in diverged], 3)})"  # names that a sentence holds, chosen
+            f"{enumeration(diverged, MAX_NAMES)})"
         )
-    shortest, longest = (f([p.measured.duration for p in held]) for f in (min, max))
-    lasting = duration(shortest) if duration(shortest) == duration(longest) else (
-        f"{duration(shortest)} to {duration(longest)}")  # fmt: skip
-    lost = [p.record for p in held if is_lost(p)]
-    if lost:
-        names = enumeration(lost, 3)  # that a sentence holds, chosen
-        return f"Of {len(held)} runs that were not used, {lasting} each, {names} {_is_not_followed(lost)},{to_errors}"
-    return f"Predicts {len(held)} runs that were not used, {lasting} each,{to_errors}"
-
-
-def _is_not_followed(names: Sequence[str]) -> str:
-    return f"{'is' if len(names) == 1 else 'are'} not followed to {'its' if len(names) == 1 else 'their'} end"
-
-
-@dataclass(frozen=True)
-class ErrorShare:
-    """An error over a whole run, as a share of the standard deviation of that motion; name: as in `Prediction.rms`."""
-
-    name: str
-    share: float
-
-    @property
-    def is_lost(self) -> bool:
-        """Whether the error is more than half of the motion itself."""
-        return self.share > LOST_SHARE
-
-
-def largest_error_share(p: Prediction) -> ErrorShare | None:
-    """Return the error of a run that is the largest share of its own motion; None where none can be compared."""
-    shares = []
-    for name, channels in _MOTIONS.items():
-        if name in p.rms and all(c in p.measured for c in channels):
-            spread = math.sqrt(sum(float(np.nanvar(p.measured[c])) for c in channels))
-            size = spread * (_DEGREES if name.endswith("_deg") else 1.0)
-            shares.append(ErrorShare(name, p.rms[name] / size if size > 0.0 else math.inf))
-    return max(shares, key=lambda one: one.share, default=None)
-
-
-def is_lost(p: Prediction) -> bool:
-    """Return whether an error over the whole run is more than half of the motion itself."""
-    largest = largest_error_share(p)
-    return largest is not None and largest.is_lost
-
-
-def share_sentence(predictions: Sequence[Prediction]) -> str:
-    """Return the largest of all errors as a share of its motion, with the limit of the verdict; empty where unknown."""
-    shares = [share for p in predictions if (share := largest_error_share(p)) is not None]
-    if not shares:
-        return ""
-    largest = max(shares, key=lambda one: one.share)
-    return (
-        f"in {ERROR_LABELS[largest.name][0]} {significant(largest.share, 2)} of the standard deviation of the motion "
-        f"itself (above {LOST_SHARE:g}: does not follow)"
-    )
+    shortest, longest = (duration(f(p.measured.duration for p in held)) for f in (min, max))
+    lasting = f"{shortest if shortest == longest else f'{shortest} to {longest}'} each"
+    repeats = sum(bool(repeated_runs(p, predictions)) for p in held)
+    repeat = f"; {repeats} of them {'repeats' if repeats == 1 else 'repeat'} a fitted manoeuvre" if repeats else ""
+    errors = worst_errors(held)
+    at_worst = f"to {errors} at worst{repeat}" if errors else repeat.removeprefix("; ")
+    grades = {p.record: share.grade for p in held if (share := largest_error_share(p)) is not None}
+    worst = max(grades.values(), key=list(Grade).index, default=None)
+    if worst in (Grade.POORLY, Grade.NOT):
+        names = [name for name, grade in grades.items() if grade is worst]
+        verb = f"{'is' if len(names) == 1 else 'are'} {'not predicted' if worst is Grade.NOT else 'poorly predicted'}"
+        return f"Of {len(held)} runs that were not used, {lasting}, {enumeration(names, MAX_NAMES)} {verb}, {at_worst}"
+    graded = f" {worst} or better:" if worst is not None else ""
+    return f"Predicts {len(held)} runs that were not used, {lasting},{graded} {at_worst}"
 
 
 def _over_time(p: Prediction) -> str:
     """The length of the run, and the errors over its shortest windows."""
-    whole = f"over {duration(p.measured.duration)}"
+    whole, short = f"over {duration(p.measured.duration)}", _short_windows(p)
+    return f"{whole}, {short}" if short else whole
+
+
+def _short_windows(p: Prediction) -> str:
+    """The errors over the shortest windows; empty where none has any."""
     window = min(p.windows, key=lambda w: w.seconds, default=None)
     if window is None:
-        return whole
+        return ""
     names = [n for n in _MAIN_ERRORS if n in window.scores and math.isfinite(window.scores[n].rms)][:MAX_ERRORS]
     errors = enumeration([f"{error_text(n, window.scores[n].rms)} in {ERROR_LABELS[n][0]}" for n in names])
-    return f"{whole}, {errors} over {window.window}" if errors else whole
+    return f"{errors} over {window.window}" if errors else ""
 
 
 def worst_errors(predictions: Sequence[Prediction]) -> str:

@@ -61,7 +61,7 @@ def test_a_lost_search_is_one_sentence_with_what_to_try(
     assert str(caught.value) == (
         f"the search ended outside physics: {named}; either the runs do not show these apart: fix some under "
         "[model.fixed] or give priors under [model.priors]; or no values repeat all runs: leave out those that differ "
-        "most in speed or rudder, or take a model with what they differ by"
+        "most in speed or orders, or take a model with what they differ by"
     )
 
 

@@ -9,7 +9,7 @@ from pydantic import Field, PlainSerializer, WithJsonSchema
 from seatrial.core.results.closed_loop import FeedbackEvidence
 from seatrial.core.results.fields import ABSENT, Number, StoredArray
 from seatrial.core.text.numbers import significant
-from seatrial.core.values import InputError, display_unit
+from seatrial.core.values import NOT_MEASURED, InputError, display_unit
 
 
 def _absent_unless_given(value: float | None) -> object:
@@ -40,6 +40,11 @@ class Coefficient:
     source: Annotated[str, Field(description="where a fixed value or a prior comes from")] = ""
     meaning: Annotated[str, Field(description="one phrase, as the model gives it")] = ""
     latex: Annotated[str, Field(description="symbol in LaTeX, as the model gives it")] = ""
+
+    @property
+    def is_unmeasured(self) -> bool:
+        """Whether it was held at a value that a rule gives, and no measurement of the craft."""
+        return self.fixed and self.source.startswith(NOT_MEASURED)
 
     @property
     def is_sign_open(self) -> bool:

@@ -7,7 +7,7 @@ from seatrial.core.values.errors import DivergedError, InputError, spelling_hint
 from seatrial.core.values.finding import Finding, Severity, TrialEdit, worst_first
 from seatrial.core.values.force_points import ForceContent, ForcePoints
 from seatrial.core.values.notation import NOTATION, Quantity, quantity
-from seatrial.core.values.parameters import Parameter, Parameters, Prior
+from seatrial.core.values.parameters import NOT_MEASURED, Parameter, Parameters, Prior
 from seatrial.core.values.progress import ProgressReporter
 from seatrial.core.values.record import Record, RecordKind
 from seatrial.core.values.ship import Ship
@@ -15,8 +15,8 @@ from seatrial.core.values.units import display_unit, si_unit
 from seatrial.core.values.versions import versions
 
 __all__ = [
-    "NOTATION", "Array", "Channel", "DivergedError", "Finding", "ForceContent", "ForcePoints", "Index", "InputError",
-    "Parameter", "Parameters", "Prior", "ProgressReporter", "Provenance", "Quantity", "Record", "RecordKind",
-    "Severity", "Ship", "TrialEdit", "channel_hint", "display_unit", "frozen", "quantity", "si_unit", "spelling_hint",
-    "versions", "worst_first",
+    "NOTATION", "NOT_MEASURED", "Array", "Channel", "DivergedError", "Finding", "ForceContent", "ForcePoints", "Index",
+    "InputError", "Parameter", "Parameters", "Prior", "ProgressReporter", "Provenance", "Quantity", "Record",
+    "RecordKind", "Severity", "Ship", "TrialEdit", "channel_hint", "display_unit", "frozen", "quantity", "si_unit",
+    "spelling_hint", "versions", "worst_first",
 ]  # fmt: skip

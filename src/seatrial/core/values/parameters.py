@@ -22,6 +22,10 @@ class Prior:
     source: str = ""
 
 
+NOT_MEASURED = "estimated, not measured"
+"""How the source of a value begins that a rule gives, and no measurement of the craft."""
+
+
 @dataclass(frozen=True)
 class Parameter:
     """One named value of a model.

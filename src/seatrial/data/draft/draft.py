@@ -15,12 +15,12 @@ from seatrial.data.draft.guess import guess_columns, without_conflicts
 from seatrial.data.draft.manoeuvres import find_stretches, is_decay, numbered, offered_parts, used_parts
 from seatrial.data.draft.runs_of_logs import LogRun, runs_of_logs
 from seatrial.data.draft.session_text import session_line
-from seatrial.data.draft.ship_estimates import ESTIMATED
 from seatrial.data.draft.starting_model import StartingModel, held_out_run, starting_model
 from seatrial.data.draft.stretch import LogStretch
 from seatrial.data.draft.survey import LogSurvey, survey_log
 from seatrial.data.draft.tables_text import tables_text
 from seatrial.data.read import FORMATS
+from seatrial.data.trial.estimated_values import ESTIMATED
 from seatrial.data.trial.run_data import run_name
 
 _RUNS_EXAMINED = 6  # the longest, whose motion is compared with the guesses; chosen: some show what others do not

@@ -2,13 +2,12 @@
 
 from dataclasses import dataclass
 
+from seatrial.data.trial.estimated_values import ESTIMATED
 from seatrial.physics.hydro.empirical import ZHOU, HullForm, added_mass, displacement
 
 # L/B, B/d and C_b of a ship of which only the length is stated; chosen: in the middle of the forms of Zhou's regression
 _LENGTH_TO_BREADTH, _BREADTH_TO_DRAUGHT, _BLOCK = 6.0, 3.0, 0.65
 _SEA_WATER = 1025.0  # kg/m^3 (ITTC 7.5-02-01-03, sea water at 15 degC: 1026)
-ESTIMATED = "ESTIMATED"
-"""Marks a line of a draft whose number is not measured."""
 _DIGITS = 4  # significant ones of an estimate; those of sea water
 
 

@@ -3,9 +3,10 @@
 from collections.abc import Sequence
 
 from seatrial.data.draft.column_guess import ColumnGuess
-from seatrial.data.draft.ship_estimates import ESTIMATED, added_masses, mass_properties
+from seatrial.data.draft.ship_estimates import added_masses, mass_properties
 from seatrial.data.draft.starting_model import StartingModel
 from seatrial.data.draft.waves_text import excitation_lines, ship_in_waves
+from seatrial.data.trial.estimated_values import ESTIMATED
 
 _LEVER_SHARE = 0.15  # of the length, from the centre line to a thruster of a pair; chosen: a catamaran's hull
 _CURRENT = 0.3  # m/s, standard deviation of an unknown current; as the advice of the checks

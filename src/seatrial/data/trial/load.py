@@ -15,6 +15,7 @@ from seatrial.data.trial.added_masses import added_mass_findings
 from seatrial.data.trial.declared_channels import declared_channels
 from seatrial.data.trial.design_request import refuse_unsuitable
 from seatrial.data.trial.earlier_result import ResultReader, earlier_results
+from seatrial.data.trial.estimated_values import with_estimates_named
 from seatrial.data.trial.excitation import excitation_of
 from seatrial.data.trial.follow_table import stream_of
 from seatrial.data.trial.forces import read_force_points
@@ -99,7 +100,8 @@ def load_trial(path: str | Path, own_model: Model | None = None, read_result: Re
         InputError: one sentence naming file, key and what to do.
     """
     path = Path(path)
-    return trial_of_tables(parse_trial(path), path, own_model, read_result)
+    trial = trial_of_tables(parse_trial(path), path, own_model, read_result)
+    return with_estimates_named(trial, path.read_text(encoding="utf-8"))
 
 
 def trial_of_tables(

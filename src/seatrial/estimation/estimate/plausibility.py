@@ -47,7 +47,7 @@ def refuse_implausible(estimate: PointEstimate, standard_error: Array) -> None:
         raise InputError(
             f"the search ended outside physics: {lost}; either the runs do not show these apart: fix some under "
             "[model.fixed] or give priors under [model.priors]; or no values repeat all runs: leave out those that "
-            "differ most in speed or rudder, or take a model with what they differ by"
+            "differ most in speed or orders, or take a model with what they differ by"
         )
 
 

@@ -117,9 +117,7 @@ def refuse_diverging(estimate: PointEstimate, runs: Runs, settings: EstimateSett
     with np.errstate(all="ignore"):
         simulated = problem.simulated_outputs(estimate.common_parameters, problem.measured_initial_states())
     if not np.all(np.isfinite(simulated)):
-        raise InputError(
-            "the record so far gives no model that can be simulated; continue, or use larger rudder angles"
-        )
+        raise InputError("the record so far gives no model that can be simulated; continue, or give larger orders")
 
 
 def better_estimate(one: WindowEstimate, other: WindowEstimate) -> WindowEstimate:
