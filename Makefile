@@ -49,7 +49,7 @@ demo: $(READY)
 	@$(BIN)/seatrial demo --out demo --json demo/result.json
 
 test: $(READY)
-	@$(BIN)/python -m pytest -n 2 --dist loadfile
+	@$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 
 lint: style types imports
 

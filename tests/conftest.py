@@ -25,7 +25,15 @@ os.environ.pop("COLUMNS", None)
 # as the command line, for the same reason
 gc.set_threshold(cli.COLLECTION_THRESHOLD)
 
+# folders whose files take longest, run first, so that no worker of a parallel run waits for one of them at the end
+LONGEST_FIRST = {"studies", "cli", "reporting"}
+
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Put the longest files first; the others keep their order."""
+    items.sort(key=lambda item: LONGEST_FIRST.isdisjoint(item.path.relative_to(REPOSITORY).parts))
 
 
 @pytest.fixture(scope="session")

@@ -9,6 +9,9 @@ from seatrial.core.equations import Model
 from seatrial.core.results import Table
 from seatrial.core.values import Array
 from seatrial.data.example_series import JET_VELOCITY
+from seatrial.numerics.kernels.feedback import clamp, steer
+from seatrial.numerics.kernels.kernel import kernel
+from seatrial.numerics.kernels.types import COMMAND_SIGNATURE, OPTIONS
 from seatrial_studies.controller_cost import (
     ControlLabels,
     ControlledMotion,
@@ -26,6 +29,8 @@ DURATION, STEP = 120.0, 0.25  # s; long enough for the turn, and a step well bel
 NOZZLE_LIMIT = math.radians(35.0)  # the largest nozzle angle of the paper's manoeuvres
 NOZZLE_WEIGHT = 0.3  # rad of heading error that count as much as a radian of nozzle; our choice
 START_GAINS = np.array([1.0, 3.0])  # KP [rad/rad], KD [s]: where the tuning starts; our choice
+_INPUTS = np.array([0.0, JET_VELOCITY])  # nozzle amidships [rad], jet velocity [m/s]
+_RUNAWAY = 100.0  # approach speeds beyond which a motion has run away; our choice
 _LABELS = ControlLabels(("KP", "KD, s"), "heading error rms, deg", "nozzle rms, deg")
 _NOTE = (
     f"A change of heading by {math.degrees(TURN):.0f}° at 0.8 m/s, nozzle = KP error - KD r up to 35°, "
@@ -48,27 +53,32 @@ def heading_task() -> ControlTask[Model]:
 
 
 def _turn(craft: Model, gains: Array) -> ControlledMotion:
-    """The craft under the controller, by the classical Runge-Kutta method, the nozzle held over each step."""
-    rates, values = craft.compiled.rates, craft.parameters.values
-    place = {s: craft.states.index(s) for s in ("u", "r", "psi")}
-    x = np.zeros(len(craft.states))
-    x[place["u"]] = APPROACH_SPEED
-    stages = np.empty((4, len(x)))
-    errors, nozzles = [], []
-    for _ in range(round(DURATION / STEP)):
-        error = TURN - x[place["psi"]]
-        # positive nozzle angles of the model turn to port: its sign is turned here, so that KP > 0 closes the loop
-        delta = -float(np.clip(gains[0] * error - gains[1] * x[place["r"]], -NOZZLE_LIMIT, NOZZLE_LIMIT))
-        inputs = np.array([delta, JET_VELOCITY])
-        for k, share in enumerate((0.0, 0.5, 0.5, 1.0)):
-            rates(0.0, x + share * STEP * stages[k - 1] if k else x, inputs, values, stages[k])
-        x = x + STEP / 6.0 * (stages[0] + 2.0 * stages[1] + 2.0 * stages[2] + stages[3])
-        if not np.all(np.isfinite(x)) or abs(x[place["u"]]) > 100.0 * APPROACH_SPEED:
-            return ControlledMotion(np.inf, np.inf)
-        errors.append(error)
-        nozzles.append(delta)
-    output, actuator = (math.degrees(math.sqrt(float(np.mean(np.square(y))))) for y in (errors, nozzles))
+    """The craft under the controller, the nozzle held over each step."""
+    speed, heading, rate = (craft.states.index(s) for s in ("u", "psi", "r"))
+    start = np.zeros(len(craft.states))
+    start[speed] = APPROACH_SPEED
+    steps = round(DURATION / STEP)
+    states, inputs = np.empty((steps, len(start))), np.empty((steps, len(_INPUTS)))
+    memory = np.array([*gains, float(heading), float(rate)])
+    diverged = steer(
+        craft.compiled.rates, _order, start, _INPUTS, craft.parameters.values, memory, STEP, states, inputs
+    )
+    if diverged >= 0 or np.max(np.abs(states[:, speed])) > _RUNAWAY * APPROACH_SPEED:
+        return ControlledMotion(np.inf, np.inf)
+    output, actuator = (
+        math.degrees(math.sqrt(float(np.mean(y**2)))) for y in (TURN - states[:, heading], inputs[:, 0])
+    )
     return ControlledMotion(output, actuator)
+
+
+@kernel(COMMAND_SIGNATURE, **OPTIONS)
+def _order(t, x, memory, u):
+    """Nozzle angle KP error - KD r within its limit; memory: KP, KD, places of heading and rate.
+
+    Positive nozzle angles of the model turn to port: the sign is turned here, so that KP > 0 closes the loop.
+    """
+    KP, KD, heading, rate = memory
+    u[0] = -clamp(KP * (TURN - x[int(heading)]) - KD * x[int(rate)], NOZZLE_LIMIT)
 
 
 def heading_controller_costs(crafts: Mapping[str, Model]) -> tuple[ControllerCost, ...]:
