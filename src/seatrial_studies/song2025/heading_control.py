@@ -9,9 +9,7 @@ from seatrial.core.equations import Model
 from seatrial.core.results import Table
 from seatrial.core.values import Array
 from seatrial.data.example_series import JET_VELOCITY
-from seatrial.numerics.kernels.feedback import clamp, steer
-from seatrial.numerics.kernels.kernel import kernel
-from seatrial.numerics.kernels.types import COMMAND_SIGNATURE, OPTIONS
+from seatrial.physics.simulate import HeadingStep
 from seatrial_studies.controller_cost import (
     ControlLabels,
     ControlledMotion,
@@ -29,7 +27,8 @@ DURATION, STEP = 120.0, 0.25  # s; long enough for the turn, and a step well bel
 NOZZLE_LIMIT = math.radians(35.0)  # the largest nozzle angle of the paper's manoeuvres
 NOZZLE_WEIGHT = 0.3  # rad of heading error that count as much as a radian of nozzle; our choice
 START_GAINS = np.array([1.0, 3.0])  # KP [rad/rad], KD [s]: where the tuning starts; our choice
-_INPUTS = np.array([0.0, JET_VELOCITY])  # nozzle amidships [rad], jet velocity [m/s]
+NOZZLE = "delta"
+_STEP = HeadingStep(TURN, NOZZLE_LIMIT, NOZZLE, DURATION, STEP)
 _RUNAWAY = 100.0  # approach speeds beyond which a motion has run away; our choice
 _LABELS = ControlLabels(("KP", "KD, s"), "heading error rms, deg", "nozzle rms, deg")
 _NOTE = (
@@ -53,32 +52,18 @@ def heading_task() -> ControlTask[Model]:
 
 
 def _turn(craft: Model, gains: Array) -> ControlledMotion:
-    """The craft under the controller, the nozzle held over each step."""
-    speed, heading, rate = (craft.states.index(s) for s in ("u", "psi", "r"))
+    """The craft under the controller."""
     start = np.zeros(len(craft.states))
-    start[speed] = APPROACH_SPEED
-    steps = round(DURATION / STEP)
-    states, inputs = np.empty((steps, len(start))), np.empty((steps, len(_INPUTS)))
-    memory = np.array([*gains, float(heading), float(rate)])
-    diverged = steer(
-        craft.compiled.rates, _order, start, _INPUTS, craft.parameters.values, memory, STEP, states, inputs
-    )
-    if diverged >= 0 or np.max(np.abs(states[:, speed])) > _RUNAWAY * APPROACH_SPEED:
+    start[craft.states.index("u")] = APPROACH_SPEED
+    motion = _STEP.simulate(craft, gains, start, np.array([0.0, JET_VELOCITY]))
+    if motion is None or np.max(np.abs(motion[0][:, craft.states.index("u")])) > _RUNAWAY * APPROACH_SPEED:
         return ControlledMotion(np.inf, np.inf)
+    states, inputs = motion
     output, actuator = (
-        math.degrees(math.sqrt(float(np.mean(y**2)))) for y in (TURN - states[:, heading], inputs[:, 0])
+        math.degrees(math.sqrt(float(np.mean(y**2))))
+        for y in (TURN - states[:, craft.states.index("psi")], inputs[:, craft.input_names.index(NOZZLE)])
     )
     return ControlledMotion(output, actuator)
-
-
-@kernel(COMMAND_SIGNATURE, **OPTIONS)
-def _order(t, x, memory, u):
-    """Nozzle angle KP error - KD r within its limit; memory: KP, KD, places of heading and rate.
-
-    Positive nozzle angles of the model turn to port: the sign is turned here, so that KP > 0 closes the loop.
-    """
-    KP, KD, heading, rate = memory
-    u[0] = -clamp(KP * (TURN - x[int(heading)]) - KD * x[int(rate)], NOZZLE_LIMIT)
 
 
 def heading_controller_costs(crafts: Mapping[str, Model]) -> tuple[ControllerCost, ...]:

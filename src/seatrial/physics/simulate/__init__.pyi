@@ -3,6 +3,7 @@
 from seatrial.physics.simulate.batch import SegmentBatch as SegmentBatch
 from seatrial.physics.simulate.channels import inputs_of as inputs_of, record_of as record_of
 from seatrial.physics.simulate.replay import forces as forces
+from seatrial.physics.simulate.heading_step import HeadingStep as HeadingStep
 from seatrial.physics.simulate.harmonics import LinearSystem as LinearSystem, frequency_response as frequency_response
 from seatrial.physics.simulate.harmonics import harmonic_motion as harmonic_motion, linear_system as linear_system
 from seatrial.physics.simulate.linear import LinearBatch as LinearBatch, batch_class as batch_class
