@@ -1,8 +1,9 @@
 """Gains in, objectives and broken restrictions out, for all that a task meets; by the thousand, with gradients."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -16,6 +17,7 @@ ACTUATOR = variance("actuator", "rad^2", LoopSignal.ACTUATOR)
 ACTUATOR_RATE = variance("actuator rate", "rad^2/s^2", LoopSignal.ACTUATOR, 1)
 ACTUATOR_ACCELERATION = variance("actuator acceleration", "rad^2/s^4", LoopSignal.ACTUATOR, 2)
 _ROUNDING = 1e-9  # relative excess over a limit that rounding explains
+_REMEMBERED = 8  # single sets of gains whose evaluation is kept; chosen
 _UNSTABLE = 1e30  # variance in the place of infinity, whose ratio to a limit is no number where there is none
 
 
@@ -80,6 +82,19 @@ class GainEvaluator:
 
     def evaluate(self, gains: Array) -> GainEvaluation:
         """Return all of the gains (n, g)."""
+        return self._evaluated(gains) if len(gains) != 1 else self._remembered_evaluation(_bytes(gains))
+
+    @cached_property
+    def _remembered_evaluation(self) -> Callable[[bytes], GainEvaluation]:
+        """Evaluate one set of gains, given as bytes; searches return to the last few for value, slope and limits."""
+        return lru_cache(maxsize=_REMEMBERED)(lambda gains: self._evaluated(np.frombuffer(gains)[None].copy()))
+
+    @cached_property
+    def _remembered_slopes(self) -> Callable[[bytes], tuple[Array, Array]]:
+        """Return `slopes` at one set of gains, given as bytes."""
+        return lru_cache(maxsize=_REMEMBERED)(lambda gains: self._slopes_at(np.frombuffer(gains).copy()))
+
+    def _evaluated(self, gains: Array) -> GainEvaluation:
         made = [performance.evaluate(gains) for performance in self.performances]
         places = self._variance_indices[-4:]
         variances = np.stack([e.variances[:, [p[0] for p in places]] for e in made], axis=1)
@@ -104,19 +119,27 @@ class GainEvaluator:
 
     def slopes(self, gains: Array) -> tuple[Array, Array]:
         """Return d objectives / d gains (m, g) and d excess / d gains (3, g) at one stable point (g,)."""
-        made = [p.evaluate(gains).variances for p in self.performances]
+        return self._remembered_slopes(_bytes(gains))
+
+    def _slopes_at(self, gains: Array) -> tuple[Array, Array]:
+        evaluated = [p.evaluate(gains) for p in self.performances]
+        made = [one.variances for one in evaluated]
         rows = [p.variance_gradients(gains) for p in self.performances]
         objectives = np.array([
             np.mean([objective.gradient(v[:, at])[0] @ row[at] for v, row in zip(made, rows, strict=True)], axis=0)
             for objective, at in zip(self.objectives, self._variance_indices, strict=False)
         ])  # fmt: skip
         excess = np.zeros((3, len(gains)))
-        frailest = max(self.performances, key=lambda p: p.evaluate(gains).Ms[0])
+        frailest = self.performances[int(np.argmax([one.Ms[0] for one in evaluated]))]
         excess[0] = frailest.Ms_gradient(gains) / self.task.constraints.Ms
         for i, place in enumerate(at[0] for at in self._variance_indices[-3:-1]):
             worst = int(np.argmax([v[0, place] for v in made]))
             excess[1 + i] = rows[worst][place] / self.allowed_variances[i]
         return objectives, excess
+
+
+def _bytes(gains: Array) -> bytes:
+    return np.asarray(gains, dtype=np.float64).tobytes()
 
 
 def gain_evaluator(task: TuningTask, loop: TransferLoop | None = None) -> GainEvaluator:

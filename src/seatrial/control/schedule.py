@@ -7,7 +7,7 @@ from itertools import product
 
 import numpy as np
 
-from seatrial.control.gain_evaluation import GainEvaluator, exceedance_share
+from seatrial.control.gain_evaluation import GainEvaluation, GainEvaluator, exceedance_share
 from seatrial.control.gradient_refinement import all_gains, free_gain_bounds
 from seatrial.control.least_output import least_output_gains, spread_gains
 from seatrial.control.smooth_schedule import GainGrid, interpolated_gains, midpoints, smooth_gains
@@ -31,7 +31,11 @@ class ScheduleCondition:
 
     def cost(self, gains: Array) -> Array:
         """Return the output rms over that without control, of the gains (n, g); infinite where unstable."""
-        return np.sqrt(self.evaluator.evaluate(gains).objectives[:, 0] / self.evaluator.uncontrolled_variance)
+        return self.cost_of(self.evaluator.evaluate(gains))
+
+    def cost_of(self, evaluated: GainEvaluation) -> Array:
+        """Return the same of gains that the condition's evaluator evaluated."""
+        return np.sqrt(evaluated.objectives[:, 0] / self.evaluator.uncontrolled_variance)
 
 
 def schedule_conditions(task: TuningTask, grid: ScheduleGrid) -> tuple[ScheduleCondition, ...]:
@@ -138,9 +142,8 @@ def _common_gains(conditions: tuple[ScheduleCondition, ...], samples: Array, rng
     places, (low, high) = free_gain_bounds(conditions[0].evaluator)
     best, least, tried = None, math.inf, samples
     for size in np.geomspace(0.1, 0.003, _ROUNDS):  # steps from 10 % down to 0.3 % of each gain's range; chosen
-        total = np.mean(
-            [np.where(c.evaluator.evaluate(tried).is_feasible, c.cost(tried), np.inf) for c in conditions], axis=0
-        )
+        judged = [(c, c.evaluator.evaluate(tried)) for c in conditions]
+        total = np.mean([np.where(made.is_feasible, c.cost_of(made), np.inf) for c, made in judged], axis=0)
         place = int(np.argmin(total))
         if total[place] < least:
             best, least = tried[place], float(total[place])

@@ -52,32 +52,42 @@ def simulate_in_seaway(task: TuningTask, loop: TransferLoop, name: str, gains: A
         raise InputError("to simulate a stabiliser the tuning needs a sea and trials; give both, or leave trials out")
     trials = task.simulation
     steered = closed_loop(task, loop, gains, seaway.U, trials.dt)
-    still = replace(steered, gains=np.zeros(len(gains)))
     r = task.constraints
     everything = ActuatorLimits(r.limit, r.rate, r.stall)
     met = disturbance_series(seaway, trials, seed)
     first = round(RUN_IN_SECONDS / trials.dt)
 
-    def size(run: ClosedLoop, sea: Array, limits: ActuatorLimits) -> float:
-        states, _ = run.run(*_disturbed_by(run, sea, seaway, limits))
-        return float(np.std(_motion(task, run, states, sea, seaway)[first:]))
-
     def of_one(sea: Array) -> list[float]:
-        alone = size(still, sea, UNLIMITED)
-        if not alone > 0.0:
-            raise InputError(
-                f"the sea '{seaway.description}' does not move the ship; take another heading or a higher sea"
-            )
         stages = (UNLIMITED, everything.without_stall, everything)
-        return [1.0 - size(steered, sea, limits) / alone for limits in stages]
+        return [_rms(task, steered, sea, seaway, limits) for limits in stages]
 
-    reductions = np.array(map_in_threads(of_one, list(met)))
+    free = np.array(_uncontrolled_rms(task, seaway, seed))
+    reductions = 1.0 - np.array(map_in_threads(of_one, list(met))) / free[:, None]
     shown = _without_run_in(_record(task, steered, f"{name}, first sea", met[0], seaway, everything), first)
+    still = replace(steered, gains=np.zeros(len(gains)))
     alone = _without_run_in(_record(task, still, "without control", met[0], seaway, UNLIMITED), first)
-    free = {f"{name}_{UNCONTROLLED}": alone.channel(name) for name in (loop.output, MOTION) if name in alone}
-    shown = replace(shown, channels={**shown.channels, **free})
+    uncontrolled = {f"{name}_{UNCONTROLLED}": alone.channel(name) for name in (loop.output, MOTION) if name in alone}
+    shown = replace(shown, channels={**shown.channels, **uncontrolled})
     linear, limited, stalled = (frozen(column) for column in reductions.T)
     return SeawaySimulation(name, linear, limited, stalled, shown)
+
+
+@lru_cache(maxsize=_KEPT_SEAS)
+def _uncontrolled_rms(task: TuningTask, seaway: Seaway, seed: int) -> tuple[float, ...]:
+    """Return the rms of the motion that counts without control in each sea: the same for every controller."""
+    assert task.simulation is not None
+    still = closed_loop(task, task.loop, np.zeros(len(task.loop.terms)), seaway.U, task.simulation.dt)
+    seas = list(disturbance_series(seaway, task.simulation, seed))
+    made = tuple(map_in_threads(lambda sea: _rms(task, still, sea, seaway, UNLIMITED), seas))
+    if not min(made) > 0.0:
+        raise InputError(f"the sea '{seaway.description}' does not move the ship; take another heading or a higher sea")
+    return made
+
+
+def _rms(task: TuningTask, run: ClosedLoop, sea: Array, seaway: Seaway, limits: ActuatorLimits) -> float:
+    """Return the rms of the motion that counts of a run in a sea (1 + p, n), after the run-in."""
+    states, _ = run.run(*_disturbed_by(run, sea, seaway, limits))
+    return float(np.std(_motion(task, run, states, sea, seaway)[round(RUN_IN_SECONDS / run.dt) :]))
 
 
 def _disturbed_by(

@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
+from functools import lru_cache
 
 import numpy as np
 
@@ -30,6 +31,8 @@ from seatrial.physics.sea.spectrum import Spectrum
 # damping ratio below which a swing counts as undamped: a tenth of the least of bare hulls (0.01: Lloyd 1989); chosen
 _UNDAMPED = 1e-3
 OUTPUT = variance("output", "rad^2", LoopSignal.OUTPUT)
+_KEPT_SEAS = 256  # whose quadrature is kept: those of a schedule and between, of fronts on the same plant; chosen
+_sea_disturbance = lru_cache(maxsize=_KEPT_SEAS)(sea_disturbance)
 _SLOWEST, _FASTEST = 1e-3, 1e2  # frequencies of a slow disturbance over its bandwidth; chosen
 
 
@@ -67,7 +70,7 @@ class Seaway:
     def exposure(self, loop: TransferLoop) -> EncounterSpectrum:
         """Return what the waves do to the loop that `disturbed` returns."""
         response = loop.plant if self.is_output else self.disturbed(loop).disturbance
-        return sea_disturbance(
+        return _sea_disturbance(
             self.spectrum, self.U, self.beta, response, self.effect, spreading=self.spreading, at_points=self.at_points
         )
 

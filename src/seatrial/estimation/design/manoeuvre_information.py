@@ -4,7 +4,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatrial.core.results import ManoeuvrePrecision
 from seatrial.core.values import Array, Index, Record
@@ -79,23 +78,31 @@ class ManoeuvreEvaluator:
         count, width = self.ships.count, len(self.task.model.inputs)
         each = np.broadcast_to(model_inputs, (count, *model_inputs.shape[-2:])).reshape(-1, width)
         batch = replace(self._batch_without_inputs, inputs=np.array(each))
-        y, slopes, failed = batch.differentiate(
-            0, count, self._initial_states, self.ships.parameters, np.zeros((count, 0))
-        )
-        y = y.reshape(count, -1, len(self.outputs))
-        lost = (failed >= 0) | ~np.isfinite(y).all(axis=(1, 2))
-        relative = self._relative_errors(slopes.reshape(count, -1, *slopes.shape[1:]), lost)
+        tracks, information = zip(*(self._of_ship(batch, ship) for ship in range(count)), strict=True)
+        y, k = np.stack(tracks), len(self.task.model.parameters.free)
+        lost = np.any(~np.isfinite(y), axis=(1, 2))
+        errors = np.array([_standard_errors(one, k) for one in information]) / self._magnitudes
+        relative = np.where(lost[:, None], np.nan, errors)
         return ManoeuvreInformation(relative, *self._drift_and_distance(np.where(lost[:, None, None], 0.0, y)))
 
-    def _relative_errors(self, slopes: Array, lost: NDArray[np.bool_]) -> Array:
+    def _of_ship(self, batch: SegmentBatch, ship: int) -> tuple[Array, Array]:
+        """Return outputs (rows, ny), not finite where the ship is lost, and the information that its sensors give.
+
+        One ship at a time: its slopes stay in the processor's cache.
+        """
         seen, k = len(self.task.sensors), len(self.task.model.parameters.free)
         noise = np.array(list(self.task.sensors.values()))
-        scaled = (slopes[:, :, :seen] / noise[:, None]).reshape(len(slopes), -1, slopes.shape[3])
-        scaled = np.where(lost[:, None, None], 0.0, scaled)
-        information = np.matmul(scaled.transpose(0, 2, 1), scaled) * (self.task.request.rate * self.dt)
-        information[:, range(k), range(k)] += self.ships.precision
-        errors = np.array([_standard_errors(one, k) for one in information])
-        return np.where(lost[:, None], np.nan, errors / self._magnitudes)
+        y, slopes, failed = batch.differentiate(
+            ship, ship + 1, self._initial_states, self.ships.parameters, np.zeros((self.ships.count, 0))
+        )
+        scaled = slopes[:, :seen]
+        if failed[0] >= 0 or not np.isfinite(y).all():
+            y, scaled = np.full_like(y, np.nan), np.zeros_like(scaled)
+        scaled /= noise[:, None]
+        flat = scaled.reshape(-1, scaled.shape[2])
+        information = (flat.T @ flat) * (self.task.request.rate * self.dt)
+        information[range(k), range(k)] += self.ships.precision
+        return y, information
 
     def _drift_and_distance(self, y: Array) -> tuple[Array, Array]:
         at = {name: y[:, :, self.outputs.index(name)] for name in _TRACK_CHANNELS if name in self.outputs}

@@ -16,7 +16,7 @@ from numba import njit
 
 from seatrial.numerics.kernels.integrate import DIVERGED, rk4_step
 from seatrial.numerics.kernels.kernel import kernel
-from seatrial.numerics.kernels.types import COMMAND, COMMAND_SIGNATURE, F8, FUNCTION, I8, MATRIX, OPTIONS, VECTOR
+from seatrial.numerics.kernels.types import COMMAND, COMMAND_SIGNATURE, F8, FUNCTION, I8, LEAN, MATRIX, OPTIONS, VECTOR
 
 (
     CONTROLLER_ORDER, COUNT, OUTPUT, ACTUATOR, DISTURBED_INPUT, TRIM, EFFECT, LIMIT, SLEW, STALL, LOSS, STEP, ANGLE,
@@ -24,16 +24,12 @@ from seatrial.numerics.kernels.types import COMMAND, COMMAND_SIGNATURE, F8, FUNC
 ) = range(20)  # fmt: skip
 
 
-@kernel(I8(FUNCTION, COMMAND, VECTOR, VECTOR, VECTOR, VECTOR, F8, MATRIX, MATRIX), **OPTIONS)
-def steer(f, command, x0, u_start, p, memory, dt, x_out, u_out):
-    """Integrate with a command in the loop; return the step at which it diverged, or -1.
-
-    x_out, u_out: states and the input held from that sample on, one row a step.
-    """
+@kernel(I8(FUNCTION, COMMAND, VECTOR, VECTOR, VECTOR, VECTOR, F8, MATRIX, MATRIX, MATRIX), **LEAN)
+def _steer(f, command, x0, u, p, memory, dt, x_out, u_out, work):
     nx = x0.size
-    x, y = x0.copy(), np.empty(nx)
-    k1, k2, k3, k4 = np.empty(nx), np.empty(nx), np.empty(nx), np.empty(nx)
-    u = u_start.copy()
+    x, y, k1, k2, k3, k4 = work[0], work[1], work[2], work[3], work[4], work[5]
+    for i in range(nx):
+        x[i] = x0[i]
     size = 0.0
     for row in range(x_out.shape[0]):
         t = row * dt
@@ -48,10 +44,24 @@ def steer(f, command, x0, u_start, p, memory, dt, x_out, u_out):
     return -1
 
 
+def steer(f, command, x0, u_start, p, memory, dt, x_out, u_out):
+    """Integrate with a command in the loop; return the step at which it diverged, or -1.
+
+    x_out, u_out: states and the input held from that sample on, one row a step.
+    """
+    return _steer(f, command, x0, u_start.copy(), p, memory, dt, x_out, u_out, np.empty((6, len(x0))))
+
+
 @njit(inline="always", **OPTIONS)
 def controller_size(n):
-    """Return the places of one law: E (n, n), g0 (n), g1 (n), and the order a step ahead: row (n), r0, r1."""
+    """Return the places of one law: E by columns (n, n), g0 (n), g1 (n), the order a step ahead: row (n), r0, r1."""
     return n * n + 3 * n + 2
+
+
+@njit(inline="always", **OPTIONS)
+def series_start(n):
+    """Return the place of the reference, the first of the series, behind a controller of n states."""
+    return HEAD_SIZE + 2 * controller_size(n) + 3 * n + 1
 
 
 @njit(inline="always", **OPTIONS)
@@ -72,15 +82,18 @@ def effective_angle(angle, stall, loss):
 
 @njit(inline="always", **OPTIONS)
 def _advance(memory, law, states, n, last_error, error):
-    """Advance the controller's states over the step that ends now."""
-    g0, g1, scratch = law + n * n, law + n * n + n, states + n
+    """Advance the controller's states over the step that ends now, column by column: views become vectors."""
+    g0, g1 = law + n * n, law + n * n + n
+    before, now = memory[states : states + n], memory[states + n : states + 2 * n]
     for i in range(n):
-        total = memory[g0 + i] * last_error + memory[g1 + i] * error
-        for j in range(n):
-            total += memory[law + i * n + j] * memory[states + j]
-        memory[scratch + i] = total
+        now[i] = memory[g0 + i] * last_error + memory[g1 + i] * error
+    for j in range(n):
+        value = before[j]
+        column = memory[law + j * n : law + j * n + n]
+        for i in range(n):
+            now[i] += column[i] * value
     for i in range(n):
-        memory[states + i] = memory[scratch + i]
+        before[i] = now[i]
 
 
 @njit(inline="always", **OPTIONS)
@@ -91,14 +104,14 @@ def _row_times_states(memory, start, states, n):
     return total
 
 
-@kernel(COMMAND_SIGNATURE, **OPTIONS)
+@kernel(COMMAND_SIGNATURE, **LEAN)
 def linear_controller(_, x, memory, u):
     """Set order, angle and effect; slow states are held while a limit bites and they would drive further into it."""
     n, count, k = int(memory[CONTROLLER_ORDER]), int(memory[COUNT]), int(memory[STEP])
     size = controller_size(n)
     slow = HEAD_SIZE + 2 * size
     states = slow + n + 1
-    reference = states + 2 * n
+    reference = series_start(n)
     disturbance = reference + count + 1
     fed_forward = disturbance + count
     angles = fed_forward + count + 1

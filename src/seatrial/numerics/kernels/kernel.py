@@ -12,6 +12,7 @@ import hashlib
 import pickle
 import sys
 from collections.abc import Callable, Mapping
+from functools import cached_property
 from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any, cast
@@ -120,6 +121,19 @@ class Kernel(CPUDispatcher):
     def load(self) -> None:
         """Load or compile the machine code now."""
         self.compile(self.fixed)
+
+    @cached_property
+    def _numba_type_(self) -> types.Dispatcher:
+        return types.Dispatcher(self)
+
+    @cached_property
+    def _result(self) -> CompileResult:
+        self.load()
+        return self.overloads[self.fixed.args]
+
+    def get_compile_result(self, sig: Signature) -> CompileResult:  # noqa: ARG002
+        """Return the one compilation there is; Numba looks it up by its types, at every call that passes a kernel."""
+        return self._result
 
     def get_function_type(self) -> types.FunctionType | None:
         """Return its type as an argument of other kernels, which Numba knows of compiled functions only."""

@@ -34,7 +34,10 @@ class ControllerStateSpace:
     slow_rate: Array
 
     def discretised(self, dt: float, *, is_holding: bool) -> Array:
-        """E, g0, g1 and the row that gives the order a step ahead, flat; slow states stand still if `is_holding`."""
+        """Return E by columns, g0, g1 and the row that gives the order a step ahead, flat.
+
+        Slow states stand still if `is_holding`.
+        """
         moving = np.where(self.is_slow, 0.0, 1.0) if is_holding else np.ones(len(self.b))
         n = len(self.b)
         whole = np.zeros((n + 2, n + 2))
@@ -43,7 +46,7 @@ class ControllerStateSpace:
         made = expm(whole)
         E, held, ramp = made[:n, :n], made[:n, n], made[:n, n + 1]
         ahead = (self.c @ E, [self.c @ (held - ramp)], [self.c @ ramp + self.d])
-        return np.concatenate([E.ravel(), held - ramp, ramp, *ahead])
+        return np.concatenate([E.T.ravel(), held - ramp, ramp, *ahead])
 
 
 _UNIT_GAIN = ControllerStateSpace(np.zeros((0, 0)), np.zeros(0), np.zeros(0), 1.0, np.zeros(0, dtype=bool), np.zeros(1))
