@@ -23,6 +23,8 @@ from seatrial.numerics.kernels.types import COMMAND, COMMAND_SIGNATURE, F8, FUNC
     EFFECTIVE_ANGLE, SATURATION_EXCESS, ANTI_WINDUP, OUTPUT_LAST, OUTPUT_BEFORE_LAST, ERROR_LAST, HEAD_SIZE,
 ) = range(20)  # fmt: skip
 
+_WORK_ROWS = 6  # scratch of a step: x, y and the four stages of `rk4_step`
+
 
 @kernel(I8(FUNCTION, COMMAND, VECTOR, VECTOR, VECTOR, VECTOR, F8, MATRIX, MATRIX, MATRIX), **LEAN)
 def _steer(f, command, x0, u, p, memory, dt, x_out, u_out, work):
@@ -49,7 +51,7 @@ def steer(f, command, x0, u_start, p, memory, dt, x_out, u_out):
 
     x_out, u_out: states and the input held from that sample on, one row a step.
     """
-    return _steer(f, command, x0, u_start.copy(), p, memory, dt, x_out, u_out, np.empty((6, len(x0))))
+    return _steer(f, command, x0, u_start.copy(), p, memory, dt, x_out, u_out, np.empty((_WORK_ROWS, len(x0))))
 
 
 @njit(inline="always", **OPTIONS)
