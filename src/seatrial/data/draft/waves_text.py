@@ -23,7 +23,7 @@ def ship_in_waves(length: float) -> tuple[EstimatedValue, ...]:
         EstimatedValue("I5", mass["I_z"].value, "kg m^2, in pitch, gyradius L/4"),
         EstimatedValue("c33", weight * fullness * form.L * form.B, f"N/m, heave by heave, {text}"),
         EstimatedValue("c35", 0.0, "N/rad, heave by pitch; 0 of a waterplane alike fore and aft"),
-        EstimatedValue("c53", 0.0, "N, pitch by heave; equal to c35"),
+        EstimatedValue("c53", 0.0, "N m/m, pitch by heave; equal to c35"),
         EstimatedValue("c55", weight * pitch * form.B * form.L**3, f"N m/rad, pitch by pitch, {text}"),
     )
 
