@@ -100,23 +100,32 @@ def correct_trial(trial: "str | Path") -> "Correction":
     return corrected_trial(trial)
 
 
-def draft_trial(*logs: "str | Path", folder: "str | Path" = ".", length: float = 0.0) -> "DraftTrial":
+def draft_trial(
+    *logs: "str | Path",
+    folder: "str | Path" = ".",
+    length: float = 0.0,
+    beam: float = 0.0,
+    draught: float = 0.0,
+    mass: float = 0.0,
+) -> "DraftTrial":
     """Draft a trial file from logs: channels, units, frames and signs by name and behaviour, each with its evidence.
 
     Args:
         logs: files of any format, or folders; files of one kind are runs, of several kinds sources of one run.
         folder: where the trial file will lie; the paths in it count from there.
         length: of the craft between perpendiculars [m]; 0: it is not stated, and the file asks for it.
+        beam: breadth at the waterline [m]; 0: a rule by the length stands in for it, as for the next two.
+        draught: m. mass: kg.
 
     Returns:
         The text of the file; what is unsure stands in it as a commented line with both readings.
 
     Raises:
-        InputError: no logs, or one that cannot be read.
+        InputError: no logs, or one that cannot be read; a size below zero, or sizes that no hull has.
     """
-    from seatrial.data.draft import draft_trial
+    from seatrial.data.draft import StatedSize, draft_trial
 
-    return draft_trial(*logs, folder=folder, length=length)
+    return draft_trial(*logs, folder=folder, size=StatedSize(length, beam, draught, mass))
 
 
 def survey_log(path: "str | Path") -> "LogSurvey":

@@ -27,6 +27,9 @@ def init(
     length: Annotated[
         float, typer.Option("--length", metavar="METRES", help="Length of the craft; without it the file asks for it.")
     ] = 0.0,
+    beam: Annotated[float, typer.Option("--beam", metavar="METRES", help="Breadth, else estimated.")] = 0.0,
+    draught: Annotated[float, typer.Option("--draught", metavar="METRES", help="Draught, else estimated.")] = 0.0,
+    mass: Annotated[float, typer.Option("--mass", metavar="KG", help="Mass, displacement, else estimated.")] = 0.0,
 ) -> None:
     """Draft a trial file from logs: what each column is, with the evidence, and the manoeuvres found.
 
@@ -41,7 +44,7 @@ def init(
 
     if out.exists():
         raise InputError(f"--out '{out}' exists and is not overwritten; name another file, or remove it")
-    draft = api.draft_trial(*logs, folder=out.resolve().parent, length=length)
+    draft = api.draft_trial(*logs, folder=out.resolve().parent, length=length, beam=beam, draught=draught, mass=mass)
     page = out.with_suffix(".html")
     if page.exists():
         raise InputError(f"'{page}', the drawing beside --out, exists and is not overwritten; name another file")
@@ -58,7 +61,9 @@ def init(
         print_lines([f"{name}: {run_text(stretches)}"] if stretches and not parts else [])
         contradiction = name_contradiction(name, stretches)
         print_lines([f"NOTE {name}: {contradiction}"] if contradiction else [])
-    print_lines([f"kept out of the estimation, to judge the model by: {draft.held_out}"] if draft.held_out else [])
+    if draft.held_out.names:
+        why = f" ({draft.held_out.why})" if draft.held_out.why else ""
+        print_lines([f"kept out of the estimation, to judge the model by: {', '.join(draft.held_out.names)}{why}"])
     print_lines([draft.session.replace("    # ", ": ")] if draft.session else [])
     questions = draft.open_questions
     if questions:

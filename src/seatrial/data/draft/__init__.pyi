@@ -6,6 +6,7 @@ from seatrial.data.draft.guess import guess_columns
 from seatrial.data.draft.manoeuvres import find_stretches
 from seatrial.data.draft.named_manoeuvre import name_contradiction
 from seatrial.data.draft.runs_of_logs import LogRun, runs_of_logs
+from seatrial.data.draft.ship_estimates import StatedSize
 from seatrial.data.draft.stretch import LogStretch
 from seatrial.data.draft.survey import ColumnSummary, LogSurvey, TopicSummary, survey_log
 
@@ -16,6 +17,7 @@ __all__ = [
     "LogRun",
     "LogStretch",
     "LogSurvey",
+    "StatedSize",
     "TopicSummary",
     "checked_by_behaviour",
     "draft_trial",

@@ -1,6 +1,6 @@
 """A trial file drafted from logs: every guess with its evidence, what is unsure as a commented line."""
 
-import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,10 +12,12 @@ from seatrial.data.draft.behaviour import checked_by_behaviour, run_record
 from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.draft_text import RecordsBlock, trial_text, unrecognised_columns
 from seatrial.data.draft.guess import guess_columns, without_conflicts
+from seatrial.data.draft.held_out import NOTHING_HELD_OUT, HeldOutRuns, held_out_runs
 from seatrial.data.draft.manoeuvres import find_stretches, is_decay, numbered, offered_parts, used_parts
 from seatrial.data.draft.runs_of_logs import LogRun, runs_of_logs
 from seatrial.data.draft.session_text import session_line
-from seatrial.data.draft.starting_model import StartingModel, held_out_run, starting_model
+from seatrial.data.draft.ship_estimates import UNSTATED, StatedSize
+from seatrial.data.draft.starting_model import StartingModel, starting_model
 from seatrial.data.draft.stretch import LogStretch
 from seatrial.data.draft.survey import LogSurvey, survey_log
 from seatrial.data.draft.tables_text import tables_text
@@ -23,6 +25,7 @@ from seatrial.data.read import FORMATS
 from seatrial.data.trial.estimated_values import ESTIMATED
 from seatrial.data.trial.run_data import run_name
 
+_NOZZLE = re.compile("nozzle|jet|bucket", re.IGNORECASE)  # in the name of a column that steers by the jet itself
 _RUNS_EXAMINED = 6  # the longest, whose motion is compared with the guesses; chosen: some show what others do not
 
 
@@ -37,7 +40,7 @@ class DraftTrial:
         guesses: of the columns of each source of the longest run.
         records: of each run, even and complete; None where its columns make none.
         stretches: manoeuvres found, of each run; parts: those of them that are runs of their own.
-        held_out: the run that judges the model; empty: none can.
+        held_out: the runs that judge the model; empty: none can.
         unrecognised: columns of the longest run that stand for no channel.
         session: the line that says which runs share their offsets; empty: each has its own.
         lacks_length: whether the length of the craft is to be stated.
@@ -51,7 +54,7 @@ class DraftTrial:
     records: tuple[Record | None, ...] = ()
     stretches: tuple[tuple[LogStretch, ...], ...] = ()
     parts: tuple[tuple[LogStretch, ...], ...] = ()
-    held_out: str = ""
+    held_out: HeldOutRuns = NOTHING_HELD_OUT
     unrecognised: tuple[str, ...] = ()
     session: str = ""
     lacks_length: bool = False
@@ -69,19 +72,17 @@ class DraftTrial:
         return tuple(g for part in self.guesses for g in part if g.is_used and g.is_open and not g.is_of_wind)
 
 
-def draft_trial(*logs: str | Path, folder: str | Path = ".", length: float = 0.0) -> DraftTrial:
+def draft_trial(*logs: str | Path, folder: str | Path = ".", size: StatedSize = UNSTATED) -> DraftTrial:
     """Draft a trial file for logs: files, or folders whose logs are taken.
 
     Args:
         logs: which of them are runs, and which are sources of one run, follows from kind, clock and name.
         folder: where the trial file will lie; the paths in it count from there.
-        length: m between perpendiculars; 0: it is not stated, and the file asks for it.
+        size: what is stated of the craft; without a length the file asks for it.
 
     Raises:
-        InputError: no logs, or one that cannot be read; a length below zero.
+        InputError: no logs, or one that cannot be read.
     """
-    if not 0.0 <= length < math.inf:
-        raise InputError(f"length = {length:g}: a length in m is positive; correct it")
     surveys, reasons = _surveys([Path(log) for log in logs])
     _refuse_unwritable_names(surveys)
     runs = runs_of_logs(surveys)
@@ -94,20 +95,21 @@ def draft_trial(*logs: str | Path, folder: str | Path = ".", length: float = 0.0
     records = [run_record(run.sources, parts) for run, parts in zip(runs, guesses, strict=True)]
     stretches = numbered([find_stretches(run.sources, one) for run, one in zip(runs, records, strict=True)])
     symbols = {g.symbol for one in guesses[longest[0]] for g in one if g.is_used}
-    model = starting_model(symbols, records, length)
+    has_jet = any(_NOZZLE.search(str(g.source)) for one in guesses[longest[0]] for g in one if g.symbol == "delta")
+    model = starting_model(symbols, records, size, has_jet=has_jet)
     # whatever a craft with thrusters does shows them: its runs stay whole where one can judge the others
     parts = tuple(() for _ in runs) if model.has_thrusters and len(runs) > 1 else offered_parts(records, stretches)
     pieces = _pieces(runs, records, parts)
-    model = starting_model(symbols, list(pieces.values()), length) if pieces else model
-    held_out, session = held_out_run(model, pieces), session_line(runs)
+    model = starting_model(symbols, list(pieces.values()), size, has_jet=has_jet) if pieces else model
+    held_out, session = held_out_runs(model, pieces), session_line(runs)
     blocks = _blocks(runs, guesses, stretches, parts, longest[0])
     blocks = [_with_roles(block, model, held_out, session) for block in blocks]
-    tables = tables_text(model, [g for _, columns in blocks[0].sources for g in columns], length)
+    tables = tables_text(model, [g for _, columns in blocks[0].sources for g in columns], size)
     text = trial_text(blocks, tables, reasons | left_out, Path(folder).resolve())
     return DraftTrial(
         text, tuple(surveys), tuple(runs), guesses[longest[0]], tuple(records), stretches, parts, held_out,
         tuple(name for one in blocks[0].sources for name in unrecognised_columns(*one)), session,
-        bool(model.name) and not length, not model.name,
+        bool(model.name) and not size.length, not model.name,
     )  # fmt: skip
 
 
@@ -153,13 +155,13 @@ def _blocks(
     return [RecordsBlock("", ((files[longest], guesses[longest][0]),), files, tuple(stretches), tuple(parts))]
 
 
-def _with_roles(block: RecordsBlock, model: StartingModel, held_out: str, session: str) -> RecordsBlock:
-    """The block with the run that judges the model, its session, and roll decays from their release on."""
+def _with_roles(block: RecordsBlock, model: StartingModel, held_out: HeldOutRuns, session: str) -> RecordsBlock:
+    """The block with the runs that judge the model, its session, and roll decays from their release on."""
     names = [block.name, *(run_name(one.path) for one in block.files)]
     names += [one.name for offered in block.parts for one in offered]
     return replace(
         block,
-        validate=held_out if held_out in names else "",
+        validate=replace(held_out, names=tuple(one for one in held_out.names if one in names)),
         session=session,
         has_waves=model.has_waves,
         is_released=model.swings and all(any(map(is_decay, one)) for one in block.stretches),

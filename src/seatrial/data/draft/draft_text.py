@@ -7,6 +7,7 @@ from pathlib import Path
 
 from seatrial.core.text.words import counted
 from seatrial.data.draft.column_guess import ColumnGuess
+from seatrial.data.draft.held_out import NOTHING_HELD_OUT, HeldOutRuns
 from seatrial.data.draft.manoeuvres import used_parts
 from seatrial.data.draft.named_manoeuvre import name_contradiction
 from seatrial.data.draft.stored_parameters import antenna_place
@@ -29,7 +30,7 @@ class RecordsBlock:
         files: those of one kind; empty for a run with a name.
         stretches: manoeuvres in the run, or in each of the files.
         parts: those of them that are offered as runs of their own.
-        validate: the run to keep out of the estimation; empty: none of this block.
+        validate: the runs to keep out of the estimation; empty: none of this block.
         has_waves: whether the waves are an input.
         is_released: whether each run is a roll decay, to be used from its release on.
     """
@@ -39,7 +40,7 @@ class RecordsBlock:
     files: tuple[LogSurvey, ...]
     stretches: tuple[tuple[LogStretch, ...], ...]
     parts: tuple[tuple[LogStretch, ...], ...]
-    validate: str = ""
+    validate: HeldOutRuns = NOTHING_HELD_OUT
     session: str = ""
     has_waves: bool = False
     is_released: bool = False
@@ -98,9 +99,11 @@ def _without_evidence(line: str) -> str:
 
 
 def _role_lines(block: RecordsBlock) -> list[str]:
-    """Which run judges the model, and from where on a decay counts."""
-    why = "kept out of the estimation, to judge the model by; choose another one if you like"
-    lines = [f"validate = {_quoted(block.validate)}    # {why}"] if block.validate else []
+    """Which runs judge the model, and from where on a decay counts."""
+    names, why = block.validate.names, block.validate.why
+    reason = f"kept out of the estimation, to judge the model by{f': {why}' if why else ''}; choose others if you like"
+    listed = ", ".join(map(_quoted, names))
+    lines = [f"validate = {listed if len(names) == 1 else f'[{listed}]'}    # {reason}"] if names else []
     lines += [block.session] if block.session else []
     return [*lines, "from_release = true    # drops what lies before the release"] if block.is_released else lines
 

@@ -1,58 +1,161 @@
-"""What a ship's length alone says of its mass properties: values for a draft, to be replaced by better ones."""
+"""What a ship's stated size says of its mass, rudder and propeller: values for a draft, until better ones are known."""
 
+import math
 from dataclasses import dataclass
 
+from seatrial.core.values import InputError
 from seatrial.data.trial.estimated_values import ESTIMATED
-from seatrial.physics.hydro.empirical import ZHOU, HullForm, added_mass, displacement
+from seatrial.physics.hydro.dispersion import G
+from seatrial.physics.hydro.empirical import ZHOU, HullForm, added_mass, displacement, interaction_wake
 
 # L/B, B/d and C_b of a ship of which only the length is stated; chosen: in the middle of the forms of Zhou's regression
 _LENGTH_TO_BREADTH, _BREADTH_TO_DRAUGHT, _BLOCK = 6.0, 3.0, 0.65
+_BLOCKS = (0.2, 1.0)  # of anything that floats: a slender catamaran's hulls within L, B and d, a box
 _SEA_WATER = 1025.0  # kg/m^3 (ITTC 7.5-02-01-03, sea water at 15 degC: 1026)
+_SPAN = 0.75  # height of a rudder over the draught; chosen: between full ships' 0.7 and fine ships' 0.8
+_DIAMETER = 0.6  # of a propeller over the draught; chosen: between tankers' 0.5 and ferries' 0.75
+_PITCH_RATIOS = (0.5, 1.4)  # P/D of the B series (Oosterveld & van Oossanen 1975)
+# advance ratio over P/D of a ship under way, and range of advance ratios beyond which nothing drives a ship; chosen
+_ADVANCE, _ADVANCES = 0.5, (0.15, 1.2)
+_FASTEST = 0.4  # Froude number beyond which a hull no longer displaces its way as those of the regressions; chosen
 _DIGITS = 4  # significant ones of an estimate; those of sea water
 
 
 @dataclass(frozen=True)
+class StatedSize:
+    """What is stated of a craft; 0: not stated.
+
+    Attributes:
+        length: between perpendiculars [m].
+        beam: breadth at the waterline [m].
+        draught: m.
+        mass: kg.
+    """
+
+    length: float = 0.0
+    beam: float = 0.0
+    draught: float = 0.0
+    mass: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name, unit in (("length", "m"), ("beam", "m"), ("draught", "m"), ("mass", "kg")):
+            if not 0.0 <= getattr(self, name) < math.inf:
+                raise InputError(f"{name} = {getattr(self, name):g}: a {name} in {unit} is positive; correct it")
+        if self.length and not _BLOCKS[0] <= self.form.C_b <= _BLOCKS[1]:
+            raise InputError(
+                f"a mass of {self.mass:g} kg in L {self.length:g} m, B {self.form.B:.3g} m, d {self.form.d:.3g} m is a "
+                f"block coefficient of {self.form.C_b:.2g}, which no hull has; correct mass, length, beam or draught"
+            )
+
+    @property
+    def form(self) -> HullForm:
+        """The hull, with rules for what is not stated; the displacement is kept where it is stated."""
+        volume = self.mass / _SEA_WATER
+        beam, draught = self.beam, self.draught
+        if not beam and draught and volume:
+            beam = volume / (self.length * draught * _BLOCK)
+        elif not beam and volume:
+            beam = math.sqrt(volume * _BREADTH_TO_DRAUGHT / (self.length * _BLOCK))
+        beam = beam or self.length / _LENGTH_TO_BREADTH
+        if not draught:
+            draught = volume / (self.length * beam * _BLOCK) if volume else beam / _BREADTH_TO_DRAUGHT
+        block = volume / (self.length * beam * draught) if volume else _BLOCK
+        return HullForm(self.length, beam, draught, block)
+
+    @property
+    def rules(self) -> str:
+        """What is assumed of the hull, for people."""
+        ratios = (
+            ("" if self.beam else f"L/B {self.form.L / self.form.B:.3g}"),
+            ("" if self.draught else f"B/d {self.form.B / self.form.d:.3g}"),
+            f"C_b {self.form.C_b:.2g}",
+        )
+        return ", ".join(one for one in ratios if one)
+
+
+UNSTATED = StatedSize()
+"""Nothing is stated of the craft."""
+
+
+@dataclass(frozen=True)
 class EstimatedValue:
-    """One value of a draft: key, number, unit and meaning, and how it was estimated."""
+    """One value of a draft: key, number, unit and meaning, and how it was estimated, unless it was stated."""
 
     key: str
     value: float
     text: str
+    is_stated: bool = False
 
     @property
     def line(self) -> str:
         """The line of the trial file."""
-        return f"{self.key} = {_rounded(self.value)}    # {ESTIMATED}: {self.text}"
+        number = _as_float(f"{self.value:.12g}" if self.is_stated else f"{self.value:.{_DIGITS}g}")
+        return f"{self.key} = {number}    # {'' if self.is_stated else f'{ESTIMATED}: '}{self.text}"
 
 
-def mass_properties(length: float) -> tuple[EstimatedValue, ...]:
-    """Return mass, centre of gravity, inertia [SI] and water density of a ship of this length [m]."""
-    values = displacement(hull_form(length), _SEA_WATER).values
-    form = f"L/B {_LENGTH_TO_BREADTH:g}, B/d {_BREADTH_TO_DRAUGHT:g}, C_b {_BLOCK:g}"
-    return (
-        EstimatedValue("m", values["m"], f"kg, of a hull with {form}; write the displacement if you know it"),
-        EstimatedValue("x_G", values["x_G"], "m forward of midship"),
-        EstimatedValue("I_z", values["I_z"], "kg m^2, gyradius L/4 (Yasukawa & Yoshimura 2015)"),
-        EstimatedValue("rho", values["rho"], "kg/m^3, sea water; fresh water has 1000"),
+def main_dimensions(size: StatedSize) -> tuple[EstimatedValue, ...]:
+    """Return breadth and draught [m]."""
+    origin = "from length and mass" if size.mass else "from the length"
+    stated = (("B", size.form.B, "breadth", size.beam), ("d", size.form.d, "draught", size.draught))
+    return tuple(
+        EstimatedValue(key, value, f"m, {name}, {'as stated' if given else origin}", bool(given))
+        for key, value, name, given in stated
     )
 
 
-def added_masses(length: float) -> tuple[EstimatedValue, ...]:
-    """Return the acceleration derivatives over rho/2 L^3 and rho/2 L^5 of a ship of this length [m]."""
-    form = hull_form(length)
+def mass_properties(size: StatedSize) -> tuple[EstimatedValue, ...]:
+    """Return mass, centre of gravity, inertia [SI] and water density of a ship of this size."""
+    values = displacement(size.form, _SEA_WATER).values
+    text = f"kg, of a hull with {size.rules}; write the displacement if you know it (init --mass)"
+    return (
+        EstimatedValue("m", size.mass or values["m"], "kg, as stated" if size.mass else text, bool(size.mass)),
+        EstimatedValue("x_G", values["x_G"], "m forward of midship"),
+        EstimatedValue("I_z", values["I_z"], "kg m^2, gyradius L/4 (Yasukawa & Yoshimura 2015)"),
+        water_density(),
+    )
+
+
+def water_density() -> EstimatedValue:
+    """Return the density of sea water [kg/m^3]."""
+    return EstimatedValue("rho", _SEA_WATER, "kg/m^3, sea water; fresh water has 1000")
+
+
+def added_masses(size: StatedSize) -> tuple[EstimatedValue, ...]:
+    """Return the acceleration derivatives over rho/2 L^3 and rho/2 L^5 of a ship of this size."""
+    form = size.form
     estimate = added_mass(form)
     names = {"X_udot": "m_x_prime", "Y_vdot": "m_y_prime", "N_rdot": "J_z_prime"}
     text = f"{ZHOU}, for {estimate.limits}; of other forms a guess"
     return tuple(EstimatedValue(key, -estimate.values[one] * form.d / form.L, text) for key, one in names.items())
 
 
-def hull_form(length: float) -> HullForm:
-    """Return a form of this length [m], of a ship of which nothing else is stated."""
-    breadth = length / _LENGTH_TO_BREADTH
-    return HullForm(length, breadth, breadth / _BREADTH_TO_DRAUGHT, _BLOCK)
+def hull_rudder_propeller(size: StatedSize, speed: float, advance: float) -> tuple[EstimatedValue, ...]:
+    """Return what the MMG model needs besides the length, of a ship of `speed` [m/s] that makes `advance` [m] a turn.
+
+    Empty where no propeller under a hull of this draught makes so much or so little way in a turn, as where an engine
+    is recorded and not its shaft, and where the hull is too fast for the formulas.
+    """
+    form = size.form
+    if not (advance > 0.0 and 0.0 < speed < _FASTEST * math.sqrt(G * form.L)):
+        return ()
+    diameter = _DIAMETER * form.d
+    ratio = advance * (1.0 - interaction_wake(form)) / diameter  # J = u (1 - w) / (n D)
+    if not _ADVANCES[0] <= ratio <= _ADVANCES[1]:
+        return ()
+    pitch_ratio = min(max(ratio / _ADVANCE, _PITCH_RATIOS[0]), _PITCH_RATIOS[1])
+    # DNV rules for ships, part 3 chapter 14: least area of a rudder in the propeller's slipstream
+    area = form.L * form.d / 100.0 * (1.0 + 50.0 * form.C_b**2 * (form.B / form.L) ** 2)
+    return (
+        *main_dimensions(size),
+        EstimatedValue("C_b", form.C_b, "block coefficient" + (", from the stated mass" if size.mass else "")),
+        water_density(),
+        EstimatedValue("H_R", _SPAN * form.d, f"m, height of the rudder: {_SPAN:g} d"),
+        EstimatedValue("A_R", area, "m^2, area of the rudder: DNV's least area for L, B, d and C_b"),
+        EstimatedValue("D_P", diameter, f"m, diameter of the propeller: {_DIAMETER:g} d"),
+        EstimatedValue("pitch_ratio", pitch_ratio, "P/D, from the propeller's rate at the approach speed"),
+    )
 
 
-def _rounded(value: float) -> str:
-    """The number with four digits, as TOML writes a float."""
-    number = f"{value:.{_DIGITS}g}"
+def _as_float(number: str) -> str:
+    """The number as TOML writes a float."""
     return number if "." in number or "e" in number else f"{number}.0"

@@ -3,19 +3,24 @@
 from collections.abc import Sequence
 
 from seatrial.data.draft.column_guess import ColumnGuess
-from seatrial.data.draft.ship_estimates import added_masses, mass_properties
+from seatrial.data.draft.ship_estimates import StatedSize, added_masses, mass_properties
 from seatrial.data.draft.starting_model import StartingModel
 from seatrial.data.draft.waves_text import excitation_lines, ship_in_waves
 from seatrial.data.trial.estimated_values import ESTIMATED
 
 _LEVER_SHARE = 0.15  # of the length, from the centre line to a thruster of a pair; chosen: a catamaran's hull
+# formulas for what the records leave open, as 'seatrial models mmg' lists them
+_PRIOR_LINES = [
+    'priors_from = ["yoshimura", "zhou", "interaction", "propulsion", "displacement"]',
+    "prior_sd_percent = 50    # of coefficients whose scatter is not known",
+]
 _CURRENT = 0.3  # m/s, standard deviation of an unknown current; as the advice of the checks
 
 
-def tables_text(model: StartingModel, guesses: Sequence[ColumnGuess], length: float) -> list[str]:
+def tables_text(model: StartingModel, guesses: Sequence[ColumnGuess], size: StatedSize) -> list[str]:
     """Return the lines of ship and model, and of what else the model needs; of a model without a name what is missing.
 
-    guesses: of all sources of the longest run. length: m between perpendiculars; 0: it is not stated.
+    guesses: of all sources of the longest run.
     """
     if not model.name:
         return [
@@ -27,13 +32,14 @@ def tables_text(model: StartingModel, guesses: Sequence[ColumnGuess], length: fl
     return [
         "[ship]",
         'name = "craft"',
-        *_ship_lines(model, length),
+        *_ship_lines(model, size),
         "",
         "[model]",
         f'name = "{model.name}"    # {model.why}',
+        *(_PRIOR_LINES if model.has_propeller else []),
         *([f"free = [{names}]    # {model.free_reason}"] if model.free else []),
-        *(["", "[model.fixed]", *(one.line for one in added_masses(length))] if model.has_forces_of_a_ship else []),
-        *(thruster_tables(guesses, length) if model.has_thrusters else []),
+        *(["", "[model.fixed]", *(one.line for one in added_masses(size))] if model.has_derivatives else []),
+        *(thruster_tables(guesses, size.length) if model.has_thrusters else []),
         "",
         *(excitation_lines() if model.has_waves else []),
         *_sensor_lines(model, guesses),
@@ -41,16 +47,20 @@ def tables_text(model: StartingModel, guesses: Sequence[ColumnGuess], length: fl
     ]
 
 
-def _ship_lines(model: StartingModel, length: float) -> list[str]:
-    stated = f"L = {length:g}    # m, length of the craft, as stated"
-    lines = [stated if length else "L = 0.0    # MISSING: m, length of the craft, the one number that this file lacks"]
-    if model.has_forces_of_a_ship:
-        lines += [one.line for one in mass_properties(length)]
+def _ship_lines(model: StartingModel, size: StatedSize) -> list[str]:
+    stated = f"L = {size.length:g}    # m, length of the craft, as stated"
+    missing = "L = 0.0    # MISSING: m, length of the craft, the one number that this file lacks"
+    lines = [stated if size.length else missing, *(one.line for one in model.particulars)]
+    if model.has_derivatives:
+        lines += [one.line for one in mass_properties(size)]
         lines.append(f"U_n = {model.speed:.2f}    # m/s, speed at which the runs begin, as recorded")
-    if model.has_waves and length:
-        lines += [one.line for one in ship_in_waves(length)]
+    if model.has_waves and size.length:
+        lines += [one.line for one in ship_in_waves(size)]
+    if model.has_thrusters and size.mass:
+        lines.append(f"m = {size.mass:g}    # kg, as stated: forces are in newtons, with 5 per cent of it as m_x")
     if model.swings:
-        lines.append("# B = 0.0    # m, breadth: with it GM follows from the period")
+        breadth = f"B = {size.beam:g}    # m, breadth, as stated" if size.beam else "# B = 0.0    # m, breadth"
+        lines.append(f"{breadth}: with it GM follows from the period")
     return lines
 
 
@@ -95,12 +105,13 @@ def _sensor_lines(model: StartingModel, guesses: Sequence[ColumnGuess]) -> list[
 
 def _offset_lines(model: StartingModel, guesses: Sequence[ColumnGuess]) -> list[str]:
     """What differs from day to day: a current, where positions or velocities show it, and the zero of the rudder."""
-    if not model.has_forces_of_a_ship:
+    if not (model.has_forces_of_a_ship or model.has_thrusters):
         return []
     shows_current = _is_over_ground(guesses) or any(g.is_used and g.symbol in ("lat", "x0") for g in guesses)
     current = f"current = {_CURRENT:g}    # m/s, of which nothing is known but that it is of this size"
     zero = 'offsets = ["delta"]    # the zero of the rudder\'s indicator'
-    return ["[estimate]", *([current] if shows_current else []), zero, ""]
+    lines = [*([current] if shows_current else []), *([zero] if model.has_forces_of_a_ship else [])]
+    return ["[estimate]", *lines, ""] if lines else []
 
 
 def _is_over_ground(guesses: Sequence[ColumnGuess]) -> bool:

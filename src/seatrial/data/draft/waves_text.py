@@ -1,24 +1,23 @@
 """What a drafted trial needs of a craft in waves: its hull's stiffness, waves met, how elevation becomes force."""
 
-from seatrial.data.draft.ship_estimates import EstimatedValue, hull_form, mass_properties
+from seatrial.data.draft.ship_estimates import EstimatedValue, StatedSize, main_dimensions, mass_properties
 from seatrial.physics.hydro.dispersion import G
 
 # Parsons 2003, Parametric design, in Lamb (ed.), Ship Design and Construction, vol. 1, SNAME, ch. 11
 _SOURCE = "Parsons 2003"
 
 
-def ship_in_waves(length: float) -> tuple[EstimatedValue, ...]:
-    """Return breadth, draught, mass, pitch inertia and stiffness [SI] of a ship of this length [m]."""
-    form, mass = hull_form(length), {one.key: one for one in mass_properties(length)}
+def ship_in_waves(size: StatedSize) -> tuple[EstimatedValue, ...]:
+    """Return breadth, draught, mass, pitch inertia and stiffness [SI] of a ship of this size."""
+    form, mass = size.form, {one.key: one for one in mass_properties(size)}
     fullness = (
         1.0 + 2.0 * form.C_b
     ) / 3.0  # waterplane coefficient; Schneekluth & Bertram 1998, eq. (1.58), V sections
     pitch = 0.350 * fullness**2 - 0.405 * fullness + 0.146  # I_L / (B L^3); D'Arcangelo 1969, in Parsons 2003
     weight = mass["rho"].value * G
-    text = f"of a waterplane with C_WP {fullness:.2f} ({_SOURCE})"
+    text = f"in sea water, of a waterplane with C_WP {fullness:.2f} ({_SOURCE})"
     return (
-        EstimatedValue("B", form.B, "m, from L; the wave forces follow from it: measure it"),
-        EstimatedValue("d", form.d, "m, draught, from L; the wave forces follow from it: measure it"),
+        *main_dimensions(size),
         mass["m"],
         EstimatedValue("I5", mass["I_z"].value, "kg m^2, in pitch, gyradius L/4"),
         EstimatedValue("c33", weight * fullness * form.L * form.B, f"N/m, heave by heave, {text}"),

@@ -11,3 +11,4 @@ from seatrial.physics.manoeuvres.recognition import (
     recognise_manoeuvre as recognise_manoeuvre,
     to_starboard as to_starboard,
 )
+from seatrial.physics.manoeuvres.steered_orders import SteeredOrders as SteeredOrders, steered_orders as steered_orders

@@ -1,0 +1,121 @@
+"""The runs that judge the model of a draft: what tests it most, and no repeat of what trains where there is another."""
+
+from collections.abc import Mapping, Sequence, Set
+from dataclasses import dataclass
+
+import numpy as np
+
+from seatrial.core.text.words import enumeration
+from seatrial.core.values import Record
+from seatrial.data.draft.starting_model import StartingModel
+from seatrial.physics.manoeuvres import ManoeuvreKind, SteeredOrders, steered_orders
+
+_CHOICE = 3  # manoeuvres from which on the middle one by size is held out
+_HARDLY_STEERED = 0.3  # of the largest size of the inputs of a run, below which a run judges nothing; chosen
+# of the range of an input in the other runs, by which a run may leave it and still lie within; by which one may where
+# no other run lies within; chosen
+_BEYOND, _FARTHER_BEYOND = 0.05, 0.25
+# rudder of turning circles over that of the zigzags that train, up to which a model of propeller and rudder is judged
+# by them, and the fewest zigzags that train it; chosen
+_CIRCLE_OVER_ZIGZAG, _FEWEST_ZIGZAGS = 2.0, 2
+
+
+@dataclass(frozen=True)
+class HeldOutRuns:
+    """The runs that are kept out of the estimation, and why these; empty: none can judge the model."""
+
+    names: tuple[str, ...] = ()
+    why: str = ""
+
+
+NOTHING_HELD_OUT = HeldOutRuns()
+"""No run can judge the model."""
+
+
+def held_out_runs(model: StartingModel, records: Mapping[str, Record]) -> HeldOutRuns:
+    """Return the runs to judge the model by.
+
+    A model with propeller and rudder is judged by the turning circles where zigzags of half their rudder angle train
+    it. Else it is the upper middle one by size of the manoeuvres whose inputs lie within the others', with its repeats;
+    of two the smaller one, since the larger one shows more to the estimate. Where nothing but a repeat can be held out,
+    that is said.
+
+    Empty where there is none: a model is not judged beyond the runs that it is fitted to, nor by one that hardly
+    steers.
+    """
+    if not model.inputs:
+        return NOTHING_HELD_OUT
+    orders = {name: steered_orders(one) if "delta" in model.inputs else None for name, one in records.items()}
+    if model.has_propeller and (circles := _circles(orders)):
+        return HeldOutRuns(circles, "turning circles, of which none is fitted")
+    groups = _repeats(orders)
+    if middle := _middle(model, records, groups):
+        return HeldOutRuns(middle)
+    single = _middle(model, records, [(name,) for name in records])
+    repeated = [name for group in groups if set(single) & set(group) for name in group if name not in single]
+    if not repeated:
+        return HeldOutRuns(single)
+    return HeldOutRuns(single, f"a repeat of {enumeration(repeated)}: it tests no other manoeuvre, record one")
+
+
+def _circles(orders: Mapping[str, SteeredOrders | None]) -> tuple[str, ...]:
+    """The turning circles, where the zigzags determine the model without them; else nothing."""
+    zigzags = [abs(one.rudder) for one in orders.values() if one is not None and one.kind is ManoeuvreKind.ZIGZAG]
+    circles = {name: abs(one.rudder) for name, one in orders.items() if one is not None and one.is_turn}
+    if len(zigzags) < _FEWEST_ZIGZAGS or not circles:
+        return ()
+    return tuple(circles) if max(circles.values()) <= _CIRCLE_OVER_ZIGZAG * max(zigzags) else ()
+
+
+def _repeats(orders: Mapping[str, SteeredOrders | None]) -> list[tuple[str, ...]]:
+    """The runs, those with the same orders together."""
+    groups = list[tuple[str, ...]]()
+    for name, one in orders.items():
+        first = (orders[group[0]] for group in groups)
+        same = next((k for k, other in enumerate(first) if one and other and other.is_repeated_by(one)), None)
+        if same is None:
+            groups.append((name,))
+        else:
+            groups[same] = (*groups[same], name)
+    return groups
+
+
+def _middle(model: StartingModel, records: Mapping[str, Record], groups: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
+    """The upper middle one by size of the groups of runs that the others include; empty where none is."""
+    sizes = {name: _size(model, record) for name, record in records.items()}
+    steered = [group for group in groups if sizes[group[0]] > _HARDLY_STEERED * max(sizes.values())]
+    within = (
+        [g for g in steered if _lie_within(model, set(g), records, share)] for share in (_BEYOND, _FARTHER_BEYOND)
+    )
+    inside = next((found for found in within if found), [])
+    ordered = sorted(inside, key=lambda group: sizes[group[0]])
+    return ordered[len(ordered) // 2 if len(ordered) >= _CHOICE else 0] if ordered else ()
+
+
+def _lie_within(model: StartingModel, names: Set[str], records: Mapping[str, Record], beyond: float) -> bool:
+    """Whether the inputs of runs stay in the range of those of the other runs, of which there are as many at least."""
+    rest = [record for name, record in records.items() if name not in names]
+    for symbol in model.inputs:
+        ranges = [_range(model, one[symbol]) for one in rest if symbol in one]
+        own = [_range(model, records[name][symbol]) for name in names if symbol in records[name]]
+        if not own:
+            continue
+        if not ranges:
+            return False
+        low, high = min(a for a, _ in ranges), max(b for _, b in ranges)
+        slack = beyond * (high - low)
+        if min(a for a, _ in own) < low - slack or max(b for _, b in own) > high + slack:
+            return False
+    return len(rest) >= len(names)
+
+
+def _range(model: StartingModel, values: np.ndarray) -> tuple[float, float]:
+    """Of a roll decay the size of its angles: it swings to both sides, whichever it starts from."""
+    used = np.abs(values - np.median(values)) if model.swings else values
+    return float(np.min(used)), float(np.max(used))
+
+
+def _size(model: StartingModel, record: Record) -> float:
+    """The rms of the inputs; of a roll decay about its rest."""
+    parts = (record[one] for one in model.inputs if one in record)
+    return float(np.sqrt(sum(np.var(one) if model.swings else np.mean(one**2) for one in parts)))
