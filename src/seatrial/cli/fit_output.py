@@ -79,8 +79,9 @@ def _print_coefficients(fit: "Fit") -> None:
     print_table([[row[k] for k in used] for row in (header, *rows)], flush_left=words)
     if fit.thruster_craft is not None and fit.thruster_craft.force_unit == "N/kg":
         print_lines([
-            "  Forces and masses are those on each kg of m + m_x, as no thrust is known in newtons: state bollard, the "
-            "thrust at full command, of a thruster, and ship.m for newtons and kilograms."
+            "  Forces and masses are those on each kg of m + m_x, as no thrust is known in newtons: times the mass and "
+            "some 5 % of it for m_x they are newtons and kilograms. To estimate them, state bollard, the thrust of a "
+            "thruster at full command, and ship.m."
         ])  # fmt: skip
 
 

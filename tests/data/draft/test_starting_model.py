@@ -7,7 +7,8 @@ import pytest
 
 from seatrial.core.values import Record
 from seatrial.data.draft.column_guess import ColumnGuess
-from seatrial.data.draft.starting_model import held_out_run, starting_model
+from seatrial.data.draft.ship_estimates import StatedSize
+from seatrial.data.draft.starting_model import starting_model
 from seatrial.data.draft.tables_text import tables_text, thruster_tables
 from seatrial.data.trial.load import load_trial
 
@@ -18,11 +19,6 @@ TIME = np.arange(400) * 0.5
 def zigzag(rudder_deg: float) -> Record:
     delta = np.radians(rudder_deg) * np.sign(np.sin(0.2 * TIME))
     return Record.from_arrays("run", TIME, {"delta": delta, "psi": np.zeros(400)})
-
-
-def decay(angle_deg: float) -> Record:
-    phi = np.radians(angle_deg) * np.exp(-0.05 * TIME) * np.cos(TIME)
-    return Record.from_arrays("run", TIME, {"phi": phi})
 
 
 @pytest.mark.parametrize(
@@ -46,26 +42,6 @@ def test_the_fall_of_the_gain_is_free_where_rudder_angles_differ() -> None:
     assert starting_model(symbols, [zigzag(20.0), zigzag(22.0)]).free == ()
 
 
-def test_the_upper_middle_run_within_the_others_is_held_out() -> None:
-    records = {"a": zigzag(10.0), "b": zigzag(20.0), "c": zigzag(30.0)}
-    model = starting_model({"delta"}, list(records.values()))
-    assert held_out_run(model, records) == "a"  # of two; c leaves what the others show
-    assert held_out_run(model, records | {"d": zigzag(30.0)}) == "c"
-
-
-def test_no_run_is_held_out_whose_side_no_other_shows() -> None:
-    port = Record.from_arrays("p", TIME, {"delta": np.where(TIME > 20.0, -0.3, 0.0)})
-    starboard = Record.from_arrays("s", TIME, {"delta": np.where(TIME > 20.0, 0.3, 0.0)})
-    records = {"p": port, "s": starboard}
-    assert held_out_run(starting_model({"delta"}, list(records.values())), records) == ""
-    assert held_out_run(starting_model({"delta"}, [port]), {"p": port}) == ""
-
-
-def test_the_smaller_of_two_decays_is_held_out_to_whichever_side_it_starts() -> None:
-    records = {"large": decay(15.0), "small": decay(-10.0)}
-    assert held_out_run(starting_model({"phi"}, list(records.values())), records) == "small"
-
-
 def test_thrusters_are_named_by_the_side_that_the_motion_shows() -> None:
     left, right = (ColumnGuess(s, f"command_{k}", "1", side=s) for k, s in ((1, "port"), (2, "starboard")))
     text = "\n".join(thruster_tables([left, right], 2.0))
@@ -75,29 +51,53 @@ def test_thrusters_are_named_by_the_side_that_the_motion_shows() -> None:
     assert 'name = "thruster_1"' in unknown and 'angle = { channel = "alpha_1" }' in unknown
 
 
-def trial_run(rudder_deg: float, rate: float = 1.5) -> Record:
+def trial_run(rudder_deg: float, rate: float = 0.0) -> Record:
+    """A zigzag at 6 m/s; rate: of the propeller [1/s], 0: not recorded."""
     delta = np.radians(rudder_deg) * np.sign(np.sin(0.2 * TIME))
     same = np.ones(400)
-    return Record.from_arrays("run", TIME, {"delta": delta, "u": 6.0 * same, "v": 0.0 * same, "n": rate * same})
+    propeller = {"n": rate * same} if rate else {}
+    return Record.from_arrays("run", TIME, {"delta": delta, "u": 6.0 * same, "v": 0.0 * same, **propeller})
+
+
+LENGTH = StatedSize(35.0)
 
 
 def test_a_ship_of_stated_length_whose_drift_is_recorded_has_a_model_of_forces() -> None:
     runs = [trial_run(10.0), trial_run(20.0)]
-    model = starting_model(SHIP, runs, 35.0)
+    model = starting_model(SHIP, runs, LENGTH)
     assert (model.name, model.speed, model.free[-1]) == ("abkowitz", 6.0, "N_rrr")
     assert starting_model(SHIP, runs).name == "nomoto"  # no length
-    assert starting_model(SHIP - {"v"}, runs, 35.0).name == "nomoto"
-    assert starting_model(SHIP, [trial_run(10.0), trial_run(20.0, 2.0)], 35.0).name == "nomoto"  # its engine varies
+    assert starting_model(SHIP - {"v"}, runs, LENGTH).name == "nomoto"
+    engine = [trial_run(10.0, 25.0), trial_run(20.0, 40.0)]
+    assert starting_model(SHIP, engine, LENGTH).name == "nomoto"  # what turns is no propeller, and not steadily
 
 
-def test_the_tables_of_a_ship_are_a_trial_that_runs(tmp_path: Path) -> None:
-    model = starting_model(SHIP, [trial_run(10.0)], 35.0)
-    lines = tables_text(model, [ColumnGuess("a", "sog", "kn"), ColumnGuess("b", "cog", "deg")], 35.0)
-    (tmp_path / "log.csv").write_text("".join(f"{t},{t % 7}\n" for t in range(40)))
+def test_a_recorded_propeller_gives_the_model_with_propeller_and_rudder() -> None:
+    runs = [trial_run(10.0, 4.0), trial_run(20.0, 5.0)]
+    model = starting_model(SHIP, runs, LENGTH)
+    value = {one.key: one.value for one in model.particulars}
+    assert model.name == "mmg" and 0.5 <= value["pitch_ratio"] <= 1.4 and value["D_P"] < value["d"]
+    assert starting_model(SHIP, runs, StatedSize(6.0)).name == "nomoto"  # a Froude number of 0.78
+    steady = [trial_run(10.0, 4.0), trial_run(20.0, 4.0)]
+    assert starting_model(SHIP, steady, LENGTH, has_jet=True).name == "abkowitz"
+
+
+def test_a_run_that_starts_slowly_has_the_speed_that_it_reaches() -> None:
+    run = trial_run(10.0)
+    slow = run.with_channel("u", run.channel("u").with_values(np.minimum(0.1 * TIME, 6.0)))
+    assert starting_model(SHIP, [slow], LENGTH).speed == pytest.approx(6.0)
+
+
+@pytest.mark.parametrize("rate", [0.0, 4.0])
+def test_the_tables_of_a_ship_are_a_trial_that_runs(tmp_path: Path, rate: float) -> None:
+    model = starting_model(SHIP, [trial_run(10.0, rate)], LENGTH)
+    lines = tables_text(model, [ColumnGuess("a", "sog", "kn"), ColumnGuess("b", "cog", "deg")], LENGTH)
+    (tmp_path / "log.csv").write_text("".join(f"{t},{t % 7},4\n" for t in range(40)))
     records = '[[records]]\nfiles = ["log.csv"]\ntime = { column = 1 }\nchannels.delta = { column = 2, unit = "deg" }\n'
+    records += 'channels.n = { column = 3, unit = "rps" }\n'
     (tmp_path / "trial.toml").write_text("\n".join([*lines, records]))
     trial = load_trial(tmp_path / "trial.toml")
     value = {p.name: p.value for p in trial.model.parameters}
     assert value["I_z"] == pytest.approx(value["m"] * (35.0 / 4.0) ** 2, 1e-3)
-    assert value["Y_vdot"] < 0.0 and trial.estimate.current and 'velocity = "ground"' in "".join(lines)
-    assert any("ESTIMATED" in line and line.startswith("m = ") for line in lines)
+    assert trial.estimate.current and 'velocity = "ground"' in "".join(lines)
+    assert any("ESTIMATED" in line and line.startswith(("m = ", "D_P = ")) for line in lines)

@@ -4,17 +4,18 @@ import math
 
 import pytest
 
+from seatrial.data.draft.ship_estimates import StatedSize
 from seatrial.data.draft.waves_text import ship_in_waves
 
 
 def test_natural_periods_are_those_of_a_ship() -> None:
     """With added masses as large as the masses, heave and pitch of a 100 m ship have periods of 5 to 9 s."""
-    values = {one.key: one.value for one in ship_in_waves(100.0)}
+    values = {one.key: one.value for one in ship_in_waves(StatedSize(100.0))}
     for mass, stiffness in (("m", "c33"), ("I5", "c55")):
         assert 5.0 < 2.0 * math.pi * math.sqrt(2.0 * values[mass] / values[stiffness]) < 9.0
 
 
 @pytest.mark.parametrize(("key", "power"), [("m", 3), ("c33", 2), ("c55", 4), ("I5", 5)])
 def test_ships_of_one_form_scale_as_froude(key: str, power: int) -> None:
-    small, large = ({one.key: one.value for one in ship_in_waves(length)} for length in (2.0, 4.0))
+    small, large = ({one.key: one.value for one in ship_in_waves(StatedSize(length))} for length in (2.0, 4.0))
     assert large[key] == pytest.approx(2.0**power * small[key])

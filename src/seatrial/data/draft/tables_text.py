@@ -57,7 +57,9 @@ def _ship_lines(model: StartingModel, size: StatedSize) -> list[str]:
     if model.has_waves and size.length:
         lines += [one.line for one in ship_in_waves(size)]
     if model.has_thrusters and size.mass:
-        lines.append(f"m = {size.mass:g}    # kg, as stated: forces are in newtons, with 5 per cent of it as m_x")
+        lines.append(
+            f"m = {size.mass:g}    # kg, as stated: forces come out on each kg of m + m_x until a thruster has bollard"
+        )
     if model.swings:
         breadth = f"B = {size.beam:g}    # m, breadth, as stated" if size.beam else "# B = 0.0    # m, breadth"
         lines.append(f"{breadth}: with it GM follows from the period")

@@ -1,0 +1,73 @@
+"""What is stated of a craft is kept, and rules complete it to one hull."""
+
+import math
+
+import pytest
+
+from seatrial.core.values import InputError
+from seatrial.data.draft.ship_estimates import (
+    EstimatedValue,
+    StatedSize,
+    added_masses,
+    hull_rudder_propeller,
+    main_dimensions,
+    mass_properties,
+    water_density,
+)
+
+RHO = 1025.0
+
+
+@pytest.mark.parametrize(
+    "size",
+    [
+        StatedSize(62.0, mass=1.8e6),
+        StatedSize(62.0, beam=13.0, mass=1.8e6),
+        StatedSize(62.0, draught=4.4, mass=1.8e6),
+        StatedSize(62.0, 13.0, 4.4, 1.8e6),
+        StatedSize(62.0, 13.0),
+        StatedSize(62.0),
+    ],
+)
+def test_the_hull_displaces_its_mass(size: StatedSize) -> None:
+    mass = next(one for one in mass_properties(size) if one.key == "m")
+    form = size.form
+    assert mass.value == pytest.approx(RHO * form.C_b * form.L * form.B * form.d)
+    assert mass.is_stated == bool(size.mass)
+    assert (form.B, form.d) == (size.beam or form.B, size.draught or form.d)
+
+
+def test_what_is_stated_is_not_marked() -> None:
+    stated, estimated = (one.line for one in main_dimensions(StatedSize(62.0, 13.0)))
+    assert stated == "B = 13.0    # m, breadth, as stated" and "ESTIMATED: m, draught, from the length" in estimated
+    assert EstimatedValue("m", 1800000.0, "kg", is_stated=True).line == "m = 1800000.0    # kg"
+    assert water_density().value == RHO
+
+
+@pytest.mark.parametrize(
+    ("sizes", "message"),
+    [
+        ({"length": -1.0}, "a length in m is positive"),
+        ({"length": 10.0, "mass": math.inf}, "a mass in kg is positive"),
+        ({"length": 3.2, "beam": 0.5, "draught": 0.1, "mass": 900.0}, "block coefficient"),
+    ],
+)
+def test_sizes_that_no_hull_has_are_refused(sizes: dict[str, float], message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        StatedSize(**sizes)
+
+
+def test_the_formulas_for_kvlcc2_come_near_its_rudder_and_propeller() -> None:
+    """KVLCC2 in full scale (SIMMAN 2008): H_R 15.8 m, A_R 112.5 m^2, D_P 9.86 m, P/D 0.721; 15.5 kn."""
+    size = StatedSize(320.0, 58.0, 20.8, 0.81 * 320.0 * 58.0 * 20.8 * RHO)
+    value = {one.key: one.value for one in hull_rudder_propeller(size, 7.97, 7.97 / 1.73)}
+    published = {"C_b": 0.81, "H_R": 15.8, "A_R": 112.5, "D_P": 9.86, "pitch_ratio": 0.721}
+    assert value == pytest.approx(value | published, rel=0.35)  # what an estimate of a propeller is good for
+
+
+def test_no_propeller_is_estimated_for_what_turns_otherwise() -> None:
+    size = StatedSize(9.5)
+    assert not hull_rudder_propeller(size, 10.0, 0.2)  # a Froude number of 1
+    assert not hull_rudder_propeller(size, 3.0, 0.02)  # an engine at 9000 turns a minute
+    assert not hull_rudder_propeller(size, 3.0, 0.0)
+    assert all(one.value < 0.0 for one in added_masses(size))

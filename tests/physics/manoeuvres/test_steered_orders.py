@@ -1,0 +1,25 @@
+"""What was ordered in a run, and what counts as a repeat of it."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.reporting.fabricated import zigzag
+
+from seatrial.core.values import Record
+from seatrial.physics.manoeuvres import ManoeuvreKind, SteeredOrders, steered_orders
+
+
+def test_the_orders_are_those_of_the_run() -> None:
+    orders = steered_orders(zigzag("a", 20.0))
+    assert orders is not None and orders.kind is ManoeuvreKind.ZIGZAG and not orders.is_turn
+    assert math.degrees(orders.rudder) == pytest.approx(20.0, abs=0.5)
+    assert math.degrees(orders.heading) == pytest.approx(20.0, abs=1.0)
+    assert orders.speed == pytest.approx(0.8, abs=0.05)
+    assert steered_orders(zigzag("a", 20.0).without("psi")) is None
+    time = np.arange(0.0, 60.0, 0.5)
+    straight = Record.from_arrays("s", time, {"delta": 0.0 * time, "psi": 0.0 * time})
+    assert steered_orders(straight) is None
+    assert not orders.is_repeated_by(replace(orders, heading=0.5 * orders.heading)), "a zigzag 20/10"
+    assert SteeredOrders(orders.kind, 0.1, 0.1, math.nan).is_repeated_by(SteeredOrders(orders.kind, 0.11, 0.1, 1.0))
