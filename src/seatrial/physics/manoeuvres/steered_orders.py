@@ -68,5 +68,6 @@ def _is_near(one: float, other: float, least: float) -> bool:
 def _approach_speed(record: Record) -> float:
     if "u" not in record:
         return math.nan
-    start = record["u"][record.time <= record.time[0] + _APPROACH]
+    speeds = [record[name] for name in ("u", "v") if name in record]
+    start = np.sqrt(np.sum(np.square(speeds), axis=0))[record.time <= record.time[0] + _APPROACH]  # in whichever frame
     return float(np.nanmean(start)) if np.isfinite(start).any() else math.nan
