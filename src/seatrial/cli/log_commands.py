@@ -97,7 +97,15 @@ def _after_draft(draft: "DraftTrial", out: Path) -> str:
 
 def _print_guesses(guesses: "Sequence[ColumnGuess]") -> None:
     rows = [
-        ["OPEN" if g.is_open else "", g.symbol, str(g.source), g.unit, g.frame, g.positive, "; ".join(g.evidence)]
+        [
+            "OPEN" if g.is_open and not g.is_of_wind else "",
+            g.symbol,
+            str(g.source),
+            g.unit,
+            g.frame,
+            g.positive,
+            "; ".join(g.evidence),
+        ]
         for g in guesses
     ]
     if rows:

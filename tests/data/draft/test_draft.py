@@ -229,3 +229,11 @@ def test_dates_with_times_are_the_time_whatever_the_column_is_called(name: str, 
     (topic,) = survey_log(tmp_path / "nav.csv").topics
     assert topic.time is not None and (topic.time.source, topic.time.unit) == (name, "utc")
     assert topic.rate == pytest.approx(1.0)
+
+
+def test_ranges_are_those_of_all_files(tmp_path: Path) -> None:
+    swing = np.sin(TRUTH["t"])
+    for name, degrees in (("a", 15.0), ("b", 35.0)):
+        write(tmp_path / f"{name}.csv", {**BASE, "rudder": degrees * swing})
+    guess = next(g for part in draft_trial(tmp_path).guesses for g in part if g.symbol == "delta")
+    assert "from -35 to 35: degrees" in guess.evidence

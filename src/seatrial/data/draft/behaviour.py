@@ -27,6 +27,7 @@ from seatrial.data.draft.column_guess import Changes, ColumnGuess
 from seatrial.data.draft.commands import command_directions, rest_of_commands
 from seatrial.data.draft.survey import LogSurvey
 from seatrial.data.draft.wave_signs import wave_motion_signs
+from seatrial.data.draft.wind_columns import wind_readings
 from seatrial.data.read.assemble import LogSource, assemble_record, record_of_sources
 
 # correlation with the rate of the heading that proves a yaw rate; factor by which a unit may be missed; chosen
@@ -53,7 +54,10 @@ def checked_by_behaviour(
         record = run_record(surveys, result)
         if record is not None:
             changes = decide(record)
-            result = [[changes.get(g.symbol, _same)(g) if g.is_used else g for g in one] for one in result]
+            result = _changed(result, changes)
+    if any(g.is_used and g.is_of_wind for one in result for g in one):
+        record = run_record(surveys, result, has_wind=True)
+        result = result if record is None else _changed(result, wind_readings(record))
     if any(g.is_used and g.is_open and g.frame == "enu" for one in result for g in one):
         result = [[_as_open_as_the_axes(g) for g in one] for one in result]
     return result
@@ -67,15 +71,21 @@ def _as_open_as_the_axes(guess: ColumnGuess) -> ColumnGuess:
     return replace(guess, other_reading=other)
 
 
+def _changed(parts: Sequence[Sequence[ColumnGuess]], changes: Changes) -> list[list[ColumnGuess]]:
+    return [[changes.get(g.symbol, _same)(g) if g.is_used else g for g in one] for one in parts]
+
+
 def _same(guess: ColumnGuess) -> ColumnGuess:
     return guess
 
 
-def run_record(surveys: Sequence[LogSurvey], guesses: Sequence[Sequence[ColumnGuess]]) -> Record | None:
+def run_record(
+    surveys: Sequence[LogSurvey], guesses: Sequence[Sequence[ColumnGuess]], *, has_wind: bool = False
+) -> Record | None:
     """The record of the used guesses, even and complete, in standard signs; None where there is none."""
     sources = []
     for survey, part in zip(surveys, guesses, strict=True):
-        columns = tuple(g.column for g in part if g.is_used and not g.is_of_wind)
+        columns = tuple(g.column for g in part if g.is_used and (has_wind or not g.is_of_wind))
         if columns:
             time = next(topic.time for topic in survey.topics if topic.time is not None)
             geometry = replace(survey.layout.geometry, variation=0.0)

@@ -19,7 +19,7 @@ from seatrial.data.draft.session_text import session_line
 from seatrial.data.draft.ship_estimates import UNSTATED, StatedSize
 from seatrial.data.draft.starting_model import StartingModel, starting_model
 from seatrial.data.draft.stretch import LogStretch
-from seatrial.data.draft.survey import LogSurvey, survey_log
+from seatrial.data.draft.survey import LogSurvey, survey_log, with_common_ranges
 from seatrial.data.draft.tables_text import tables_text
 from seatrial.data.read import FORMATS
 from seatrial.data.trial.estimated_values import ESTIMATED
@@ -85,7 +85,7 @@ def draft_trial(*logs: str | Path, folder: str | Path = ".", size: StatedSize = 
     """
     surveys, reasons = _surveys([Path(log) for log in logs])
     _refuse_unwritable_names(surveys)
-    runs = runs_of_logs(surveys)
+    runs = runs_of_logs(with_common_ranges(surveys))
     used = {survey.path for run in runs for survey in run.sources}
     left_out = {one.path: "it is of another kind than the runs" for one in surveys if one.path not in used}
     named = [without_conflicts([guess_columns(one) for one in run.sources]) for run in runs]

@@ -113,7 +113,8 @@ _MESSAGES = [
 _FORWARD, _ACROSS = "(forward|fwd|ahead|longitudinal)", "(stbd|starboard|lateral|transverse)"
 _COMPASS = "a magnetic one is psi_magnetic, with variation"
 _ENGINE = "rate of the engine: to use it, write it as channels.n with scale = propeller turns over engine turns"
-_WIND = "only model mmg takes it: a comment in the file"
+_WIND = "no model but mmg takes it: a comment in the file"
+_APPARENT_WIND = "no model takes an apparent wind: a comment in the file"
 _APPARENT, _ANGLE = "app(arent)?", "(dir(ection)?|angle)"
 _PROBE = "counts as the elevation at midship"
 _PORT, _STARBOARD = "(left|port)", "(right|starboard|stbd)"
@@ -156,11 +157,13 @@ _WORDS = [
         (r"wind_velo_true|true_wind_speed|tws", "wind_speed", "", "", "", 1.0, "", _WIND),
         (r"wind_dir_true|true_wind_dir(ection)?|twd", "wind_direction", "", "", "", 1.0, "", _WIND),
         (rf"wind_{_APPARENT}_(spd|speed)|{_APPARENT}_wind_(spd|speed)",
-         "wind_speed_relative", "", "", "", 1.0, "", _WIND),
+         "wind_speed_relative", "", "", "", 1.0, "", _APPARENT_WIND),
         (rf"wind_{_APPARENT}_{_ANGLE}|{_APPARENT}_wind_{_ANGLE}",
-         "wind_direction_relative", "", "", "", 1.0, "", _WIND),
-        (r"wind_velo_relative(_mid)?|apparent_wind_speed|aws", "wind_speed_relative", "", "", "", 1.0, "", _WIND),
-        (r"wind_dir_relative(_mid)?|apparent_wind_angle|awa", "wind_direction_relative", "", "", "", 1.0, "", _WIND),
+         "wind_direction_relative", "", "", "", 1.0, "", _APPARENT_WIND),
+        (r"wind_velo_relative(_mid)?|apparent_wind_speed|aws", "wind_speed_relative", "", "", "", 1.0, "",
+         _APPARENT_WIND),
+        (r"wind_dir_relative(_mid)?|apparent_wind_angle|awa", "wind_direction_relative", "", "", "", 1.0, "",
+         _APPARENT_WIND),
     ),
 ]  # fmt: skip
 # words of topics that hold orders or limits, not measurements

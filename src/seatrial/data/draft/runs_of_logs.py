@@ -36,7 +36,7 @@ def runs_of_logs(surveys: Sequence[LogSurvey]) -> list[LogRun]:
     """
     kinds: dict[tuple, list[LogSurvey]] = {}
     for survey in surveys:
-        kinds.setdefault(_kind(survey), []).append(survey)
+        kinds.setdefault(survey.kind, []).append(survey)
     if len(kinds) == 1:
         return [LogRun("", (survey,)) for survey in surveys]
     groups = list(kinds.values())
@@ -49,11 +49,6 @@ def runs_of_logs(surveys: Sequence[LogSurvey]) -> list[LogRun]:
     if by_name := _by_name(groups):
         return _named(by_name)
     return [LogRun("", (survey,)) for survey in series] or _named([together])
-
-
-def _kind(survey: LogSurvey) -> tuple:
-    """What files of one kind share."""
-    return (survey.layout.format, *(table.names for table in survey.log.tables))
 
 
 def _earliest(group: Sequence[LogSurvey]) -> LogSurvey:

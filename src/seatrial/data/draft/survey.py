@@ -1,6 +1,7 @@
 """What is in a log: topics, columns, rates, ranges, share missing."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -72,6 +73,11 @@ class LogSurvey:
         """s of the longest topic."""
         return max((one.duration for one in self.topics if np.isfinite(one.duration)), default=float("nan"))
 
+    @property
+    def kind(self) -> tuple:
+        """What files of one kind share: format, and names of the columns of each topic."""
+        return (self.layout.format, *(table.names for table in self.log.tables))
+
 
 def survey_log(path: Path) -> LogSurvey:
     """Read a log of any format and summarise its topics.
@@ -86,6 +92,31 @@ def survey_log(path: Path) -> LogSurvey:
     layout = text_layout(path) if kind == "text" else Layout(kind, ColumnSpec("time", "", "s"), ())
     log = read_log(path, layout)
     return LogSurvey(path, layout, log, tuple(_topic_summary(table, layout) for table in log.tables))
+
+
+def with_common_ranges(surveys: Sequence[LogSurvey]) -> list[LogSurvey]:
+    """Return logs in which a column has the range of all logs with the same columns: of one craft they hold one."""
+    ends: dict[tuple, tuple[float, float]] = {}
+    for survey, topic, column in ((s, t, c) for s in surveys for t in s.topics for c in t.columns):
+        low, high = ends.get(key := (survey.kind, topic.topic, column.number), (column.low, column.high))
+        ends[key] = min(low, column.low), max(high, column.high)
+    return [
+        replace(
+            survey,
+            topics=tuple(
+                replace(
+                    topic,
+                    columns=tuple(_ranged(one, ends[survey.kind, topic.topic, one.number]) for one in topic.columns),
+                )
+                for topic in survey.topics
+            ),
+        )
+        for survey in surveys
+    ]
+
+
+def _ranged(column: ColumnSummary, ends: tuple[float, float]) -> ColumnSummary:
+    return replace(column, low=ends[0], high=ends[1])
 
 
 def _topic_summary(table: RawTable, layout: Layout) -> TopicSummary:

@@ -1,0 +1,86 @@
+"""What columns of wind are, by which reading of them the wind over ground is steady while the craft turns."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from seatrial.core.values import Array, Record
+from seatrial.data.draft.column_guess import Changes, ColumnGuess
+from seatrial.data.draft.stretch import padded
+
+_TURNS_RAD = np.radians(90.0)  # range of the heading from which on readings differ; chosen
+_SURE = 2.0  # scatter of the wind in one reading over that in another, from which on they differ; chosen
+_KNOT = 1852.0 / 3600.0  # m/s
+_PAIRS = (("wind_speed_relative", "wind_direction_relative"), ("wind_speed", "wind_direction"))
+_APPARENT, _OFF_BOW, _TRUE = (
+    "apparent wind, with an angle off the bow",
+    "the true wind's speed, with an angle off the bow",
+    "the true wind",
+)
+_NAMED = {"wind_speed_relative": _APPARENT, "wind_speed": _TRUE}
+
+
+def wind_readings(record: Record) -> Changes:
+    """Return what the wind's columns show: the reading in which it is steady, where that is another than their name's.
+
+    A wind over ground changes slowly; read wrongly it turns with the craft, or grows and falls with its speed.
+    """
+    changes: Changes = {}
+    velocity = _velocity(record)
+    if velocity is None or float(np.ptp(np.unwrap(record["psi"]))) < _TURNS_RAD:
+        return changes
+    for pair in _PAIRS:
+        if set(pair) <= set(record.channels):
+            scatters = _scatters(record[pair[0]], record[pair[1]], record["psi"], velocity)
+            changes = {**changes, **_changes(pair, scatters)}
+    return changes
+
+
+def _changes(pair: tuple[str, str], scatters: dict[tuple[str, str], float]) -> Changes:
+    best = min(scatters, key=lambda one: scatters[one])
+    named = _NAMED[pair[0]]
+    as_named = min(value for (reading, _), value in scatters.items() if reading == named)
+    if best[0] != named and as_named > _SURE * scatters[best]:
+        text = (
+            f"NOT AS NAMED: as {best[0]} it is steady within {scatters[best]:.0%} while the craft turns, "
+            f"as {named} within {as_named:.0%}"
+        )
+        return {pair[0]: lambda guess: guess.with_evidence(text)}
+    units = {unit: value for (reading, unit), value in scatters.items() if reading == named}
+    unit = min(units, key=lambda one: units[one])
+    if max(units.values()) > _SURE * units[unit]:
+        return {pair[0]: lambda guess: _with_unit(guess, unit)}
+    return {}
+
+
+def _with_unit(guess: ColumnGuess, unit: str) -> ColumnGuess:
+    """An open unit as the wind over ground shows it."""
+    if not guess.is_open:
+        return guess
+    return replace(guess, unit=unit, other_reading="").with_evidence(f"{unit}: the wind over ground is then steady")
+
+
+def _velocity(record: Record) -> tuple[Array, Array] | None:
+    """North and east velocity over ground [m/s], each (n,); None without positions or heading."""
+    if not {"x0", "y0", "psi"} <= set(record.channels):
+        return None
+    north, east = (np.gradient(padded(record, record[one]), record.dt) for one in ("x0", "y0"))
+    return north, east
+
+
+def _scatters(speed: Array, angle: Array, psi: Array, velocity: tuple[Array, Array]) -> dict[tuple[str, str], float]:
+    """Scatter of the wind over its mean in each reading and unit of an apparent speed.
+
+    Wind comes from a direction: what meets the craft comes from there and from ahead (Fossen 2021, section 10.1).
+    """
+    off_bow = speed * np.exp(1j * (psi + angle))
+    ship = velocity[0] + 1j * velocity[1]
+    readings = {
+        (_OFF_BOW, "m/s"): off_bow,
+        (_TRUE, "m/s"): speed * np.exp(1j * angle),
+        (_APPARENT, "m/s"): off_bow - ship,
+        (_APPARENT, "kn"): _KNOT * off_bow - ship,
+    }
+    return {
+        key: float(np.std(wind) / max(np.abs(np.mean(wind)), np.finfo(float).tiny)) for key, wind in readings.items()
+    }
