@@ -71,6 +71,17 @@ def test_a_rudder_that_cannot_move_is_refused(rate: float, repository: Path) -> 
         sea.simulate(ModelFile(trial.model, ship=trial.ship), "zigzag:20/20", rudder_rate=rate)
 
 
+@pytest.mark.parametrize("speed", [float("nan"), float("inf")])
+@pytest.mark.parametrize("name", ["nomoto", "roll", "waterjet"])
+def test_a_speed_that_is_no_number_is_refused_by_models_with_and_without_one(name: str, speed: float) -> None:
+    model = model_named(name)
+    record = Record.from_arrays("run", np.arange(3.0), {"delta": np.zeros(3)})
+    with pytest.raises(InputError, match=r"approach speed (nan|inf) m/s is no finite number"):
+        sea.simulate(ModelFile(model), "zigzag:20/20", speed=speed)
+    with pytest.raises(InputError, match=r"approach speed (nan|inf) m/s is no finite number"):
+        sea.simulate(ModelFile(model), record, speed=speed)
+
+
 def test_the_readmes_own_model_replaces_the_examples(repository: Path, tmp_path: Path) -> None:
     from seatrial.physics.models import model_from_file
 

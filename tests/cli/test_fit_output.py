@@ -62,8 +62,8 @@ def test_measures_that_are_not_determined_have_no_mark(capsys: pytest.CaptureFix
     (held,) = fit.validation
     loose = replace(held, measures={"advance_L": replace(held.measures["overshoot_1_deg"], is_determined=False)})
     print_fit(replace(fit, predictions=(*(p for p in fit.predictions if p is not held), loose)))
-    (row,) = [line.split() for line in printed(capsys).splitlines() if line.startswith("  advance, L")]
-    assert row[2:] == ["8.31", "not", "determined"]
+    (row,) = [line.split() for line in printed(capsys).splitlines() if line.startswith("  advance over ground, L")]
+    assert row[4:] == ["8.31", "not", "determined"]
 
 
 def test_with_verbose_it_prints_what_the_estimate_rests_on(capsys: pytest.CaptureFixture[str]) -> None:

@@ -6,6 +6,7 @@ from pathlib import Path
 from tests.reporting.fabricated import fabricated_fit
 
 from seatrial.cli.next_steps import after_campaign, after_check, after_fit
+from seatrial.core.results import Divergence
 from seatrial.core.results.campaign import CampaignStatus
 from seatrial.core.values import Finding, Severity, TrialEdit
 from seatrial.physics.models import heave_pitch
@@ -35,6 +36,12 @@ def test_after_a_fit_a_run_is_held_out_or_a_manoeuvre_simulated() -> None:
     )
     trained = replace(fit, predictions=tuple(replace(p, role="training") for p in fit.predictions))
     assert after_fit(trained, OUT, TRIAL).startswith("name a run to hold out in 'my trial.toml'")
+
+
+def test_after_a_fit_that_misses_the_page_on_bad_fits_is_named() -> None:
+    fit = fabricated_fit()
+    missed = tuple(replace(p, divergence=Divergence(70.0, 65.0, "r")) for p in fit.predictions)
+    assert after_fit(replace(fit, predictions=missed), OUT, TRIAL).startswith("docs/bad-fit.md, By symptom: ")
 
 
 def test_after_a_fit_of_spectra_which_predicts_no_run_its_report_is_named() -> None:

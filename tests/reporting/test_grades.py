@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from seatrial.core.results import Fit
-from seatrial.reporting.grades import ErrorShare, Grade, largest_error_share, share_sentence, worst_share
+from seatrial.core.results import Divergence, Fit
+from seatrial.reporting.grades import ErrorShare, Grade, is_missed, largest_error_share, share_sentence, worst_share
 
 
 def test_the_largest_share_over_quantities_and_runs_counts(fit: Fit) -> None:
@@ -36,3 +36,15 @@ def test_grade_and_scale_stand_with_the_share(fit: Fit) -> None:
 def test_each_limit_belongs_to_the_better_grade(share: float, grade: Grade, *, is_marked: bool) -> None:
     one = ErrorShare("psi_deg", share)
     assert one.grade is grade and one.needs_attention is is_marked
+
+
+def test_a_run_whose_mean_is_nearer_and_one_that_diverges_are_missed(fit: Fit) -> None:
+    p = fit.validation[0]
+    spread = math.degrees(float(np.nanstd(p.measured["psi"])))
+
+    def predicted(share: float) -> Fit:
+        return replace(fit, predictions=(replace(p, rms={"psi_deg": share * spread}),))
+
+    assert is_missed(predicted(1.1)) and not is_missed(predicted(0.9))
+    assert is_missed(replace(fit, predictions=(replace(p, divergence=Divergence(70.0, 65.0, "r")),)))
+    assert not is_missed(replace(fit, predictions=()))

@@ -3,6 +3,8 @@
 import math
 from dataclasses import replace
 
+import numpy as np
+
 from seatrial.core.results import ChannelScore, Divergence, Fit, Measure, WindowBaseline, WindowScore
 from seatrial.core.results.identifiability import Collinearity
 from seatrial.core.values import Severity
@@ -138,3 +140,15 @@ def test_a_velocity_that_a_baseline_predicts_better_is_no_best_in_every_quantity
     fact = rows(replace(scored, predictions=(replace(p, windows=(both,)),)))["Closest baseline"]
     assert fact.text.endswith(f"; without this fit r by {rival.name} is better")
     assert fact.is_good is False
+
+
+def test_fitted_runs_that_are_missed_are_a_row_of_their_own(fit: Fit) -> None:
+    first, *rest = (p for p in fit.predictions if p.role == "training")
+    spread = math.degrees(float(np.nanstd(first.measured["psi"])))
+    close = [replace(p, rms={"psi_deg": 0.1}) for p in (*rest, *fit.validation)]
+    assert "Error, fitted (rms)" not in rows(replace(fit, predictions=(replace(first, rms={"psi_deg": 0.1}), *close)))
+    missed = replace(first, rms={"psi_deg": 0.8 * spread})
+    fact = rows(replace(fit, predictions=(missed, *close)))["Error, fitted (rms)"]
+    assert fact.is_good is False and fact.section == "training"
+    assert fact.text.startswith(f"{first.record} is missed although fitted, {first.record} by ")
+    assert fact.text.endswith("(poorly): model error, not extrapolation")

@@ -8,7 +8,7 @@ from seatrial.reporting.measures import interval_verdict, manoeuvre_name, measur
 
 def test_names_and_units() -> None:
     assert measure_label("overshoot_2_deg") == ("2nd overshoot", "deg")
-    assert measure_label("advance_L") == ("advance", "L")
+    assert measure_label("advance_L") == ("advance over ground", "L")
     assert measure_label("new_thing_L") == ("new thing", "L") and measure_label("another") == ("another", "")
 
 
@@ -45,12 +45,13 @@ def test_an_interval_that_holds_whatever_a_ship_may_do_is_no_test(name: str, mea
 @pytest.mark.parametrize(("text", "name"), [
     ("zigzag:20/10", "zigzag 20°/10°"),
     ("zigzag:20/10:port", "zigzag 20°/10°, first to port"),
-    ("turning-circle:35", "turning circle with 35°"),
+    ("turning-circle:35", "turning circle with 35° to starboard"),
     ("turning-circle:35:starboard", "turning circle with 35° to starboard"),
     ("consecutive-zigzags:2", "consecutive zigzags, 2 executes each"),
     ("prbs:85%:13.3 s:0", "random steps (PRBS), 85 % of the range, 13.3 s at least, seed 0"),
     ("designed", "designed"),
-    ("pull-out:20:port", "pull out 20 port"),
+    ("pull-out:20:port", "pull-out from 20° to port"),
+    ("pull-out:20", "pull-out from 20° to starboard"),
 ])  # fmt: skip
 def test_manoeuvres_have_the_names_people_use(text: str, name: str) -> None:
     assert manoeuvre_name(text) == name

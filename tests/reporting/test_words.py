@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from seatrial.core.results import Fit
+from seatrial.core.results import Fit, OffsetPopulation
 from seatrial.numerics.optimise import Status
 from seatrial.reporting import summary
 from seatrial.reporting.citations import Citations
@@ -71,3 +71,12 @@ def test_residuals_and_search_are_stated_where_they_stand(fit: Fit) -> None:
     assert summary.convergence_sentence(fit) == ""
     stopped = replace(fit, solution=replace(fit.solution, status=Status.EXHAUSTED))
     assert summary.convergence_sentence(stopped).startswith("The search did not converge")
+
+
+def test_the_spread_of_offsets_over_one_session_is_called_assumed(fit: Fit) -> None:
+    population = OffsetPopulation("delta zero", "rad", 0.0, 0.01, 0.02)
+    several = replace(fit, offset_populations=(population,))
+    assert summary.offset_sentences(several) == (population.sentence,)
+    one = replace(several, offsets=several.offsets[:1])
+    assert summary.offset_sentences(one)[-1].startswith("One session was recorded: ")
+    assert summary.offset_sentences(replace(one, offset_populations=())) == ()

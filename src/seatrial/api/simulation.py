@@ -43,6 +43,7 @@ def steering(
         InputError: unknown manoeuvre, or a rudder that cannot move.
     """
     file = as_model_file(model)
+    _refuse_no_number(speed)
     if file.model.equations.layout:
         return _by_thrusters(manoeuvre, speed, inputs, duration, rudder_rate)
     from seatrial.physics.manoeuvres.programme import programme
@@ -127,10 +128,19 @@ def simulate(
             that diverges.
     """
     file = as_model_file(model)
+    _refuse_no_number(speed)
     if not isinstance(manoeuvre, str):
         return _replayed(file, manoeuvre, speed)
     steer = steering(file, manoeuvre, speed=speed, inputs=inputs, duration=duration, rudder_rate=rudder_rate, seed=seed)
     return steer(file.model)
+
+
+def _refuse_no_number(speed: float | None) -> None:
+    """Raises:
+    InputError: an approach speed is NaN or infinite, whether or not the model has a speed.
+    """
+    if speed is not None and not math.isfinite(speed):
+        raise InputError(f"the approach speed {speed:g} m/s is no finite number; state it in m/s, or leave it out")
 
 
 def _replayed(model: "ModelFile", record: "Record", speed: float | None) -> "Record":

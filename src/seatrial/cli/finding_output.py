@@ -48,10 +48,12 @@ def print_findings(
 
 
 def print_warnings(findings: "Sequence[Finding]", rest: str = "the report lists them") -> None:
-    """Print errors and warnings of a result, the latest first, under a heading; with --verbose notes, too."""
+    """Print errors and warnings of a result, the latest codes first, under a heading; with --verbose notes, too."""
     if is_verbose() or any(f.severity.value != "info" for f in findings):
         print_heading("Findings")
-        print_findings(findings[::-1], 1, rest, has_notes=is_verbose())
+        latest = {f.code: place for place, f in enumerate(findings)}
+        ordered = sorted(findings, key=lambda f: -latest[f.code])  # of one code in their order, the strongest first
+        print_findings(ordered, 1, rest, has_notes=is_verbose())
 
 
 def print_finding(severity: str, text: str) -> None:

@@ -42,8 +42,10 @@ def print_fit(fit: "Fit") -> None:
         print_method_comparison(fit, fit.reference)
     _print_held_out(fit)
     if fit.offset_populations:
+        from seatrial.reporting.summary import offset_sentences
+
         print_heading("Offsets of a new session")
-        print_lines((population.sentence for population in fit.offset_populations), "  ")
+        print_lines(offset_sentences(fit), "  ")
     _print_thruster_craft(fit)
     _print_course_stability(fit)
     print_model_selection(fit)
@@ -70,7 +72,9 @@ def _print_summary(fit: "Fit") -> None:
 
 def _print_coefficients(fit: "Fit") -> None:
     """Estimates with as many digits as their intervals carry; columns in which nothing stands are left out."""
-    free = [c for c in fit.coefficients if not c.fixed]
+    from seatrial.reporting.mass_specific import with_mass_specific_units
+
+    free = [c for c in with_mass_specific_units(fit).coefficients if not c.fixed]
     header = ("", "estimate", "std. error", "95 % from", "to", "unit", "known", "", "meaning")
     rows = [_coefficient_cells(c) for c in free]
     used = [k for k in range(len(header)) if any(row[k] for row in rows) and (k != 2 or is_verbose())]
@@ -179,7 +183,8 @@ def _measure_mark(name: str, m: "Measure") -> str:
 def _print_thruster_craft(fit: "Fit") -> None:
     """What a craft with thrusters does at full command."""
     from seatrial.core.text.numbers import exact
-    from seatrial.reporting.thruster_chapter import MEASURE_LABELS
+    from seatrial.reporting.measures import is_extrapolated
+    from seatrial.reporting.thruster_chapter import FAR_NOTE, MEASURE_LABELS
 
     if fit.thruster_craft is None or not fit.thruster_craft.measures:
         return
@@ -187,20 +192,25 @@ def _print_thruster_craft(fit: "Fit") -> None:
     rows = [["", "", "95 % from", "to"]]
     for name, m in fit.thruster_craft.measures.items():
         ends = ("" if x is None else exact(x, ERROR_DIGITS) for x in (m.lower, m.upper))
-        rows.append([MEASURE_LABELS.get(name, quantity_label(name)), exact(m.value, ERROR_DIGITS), *ends])
+        label = f"{MEASURE_LABELS.get(name, quantity_label(name))}{' *' if is_extrapolated(m) else ''}"
+        rows.append([label, exact(m.value, ERROR_DIGITS), *ends])
     print_table(rows, indent="  ")
+    if any(is_extrapolated(m) for m in fit.thruster_craft.measures.values()):
+        print_lines([FAR_NOTE], "  ")
 
 
 def _print_course_stability(fit: "Fit") -> None:
     """Whether the craft holds a straight course, and how fast it leaves one."""
     from seatrial.core.results.identifiability import COURSE_UNSTABLE
     from seatrial.core.text.words import sentence
+    from seatrial.reporting.grades import is_missed
 
     if fit.identifiability is None or fit.identifiability.stability is None:
         return
     turns = [f.evidence.partition("; ")[2] for f in fit.findings if f.code == COURSE_UNSTABLE]
     print_heading("Straight course")
-    print_lines([sentence(text) for text in (fit.identifiability.stability.text, *turns) if text], "  ")
+    missed = "This is the model's, which does not predict the held-out run." if is_missed(fit) else ""
+    print_lines([sentence(text) for text in (fit.identifiability.stability.text, *turns, missed) if text], "  ")
 
 
 def _print_extrapolation(e: "Extrapolation") -> None:

@@ -28,13 +28,17 @@ def after_check(findings: "tuple[Finding, ...]", trial: Path) -> str:
 
 
 def after_fit(fit: "Fit", folder: Path, trial: Path | None = None) -> str:
-    """Return what follows a fit: to hold a run out where none was, else to simulate what nobody measured.
+    """Return what follows a fit: to hold a run out where none was, to correct one that misses, else to simulate.
 
     trial: the file whose runs are replayed where the model steers no manoeuvre; None: there is none.
     """
+    from seatrial.reporting.grades import is_missed
+
     runs = sum(p.role == "training" for p in fit.predictions)
     if trial is not None and not fit.validation and runs > 1:
         return f'name a run to hold out in {in_shell(trial)}, validate = "...", and identify again'
+    if is_missed(fit):
+        return "docs/bad-fit.md, By symptom: the held-out run is not predicted, so correct the fit before it is used"
     model = in_shell(folder / "model.toml")
     if fit.model.equations.layout:
         return f"seatrial simulate {model} --manoeuvre spin:50 --out spin.csv"

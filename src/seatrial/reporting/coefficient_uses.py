@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
-from seatrial.core.results import Coefficient, Consequence, Fit, Identifiability
+from seatrial.core.results import Coefficient, Fit, Identifiability
 from seatrial.core.text.numbers import DASH, fixed, signed_percent, significant
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import NOT_MEASURED
@@ -108,13 +108,10 @@ def _assumptions(fit: Fit, content: Identifiability) -> str:
     guessed = [c.name for c in fit.coefficients if c.is_unmeasured]
     if guessed:
         parts.append(f"{enumeration(guessed, MAX_NAMES)} {'are' if len(guessed) > 1 else 'is'} {NOT_MEASURED}")
-    worst = max((c for c in content.consequences if c.estimate_changes), key=_largest_change, default=None)
-    if worst is not None:
-        name, change = max(worst.estimate_changes.items(), key=lambda pair: abs(pair[1]))
+    is_open = {c.name for c in fit.coefficients if c.is_sign_open}
+    moves = [(abs(x), c, n, x) for c in content.consequences for n, x in c.estimate_changes.items() if n not in is_open]
+    if moves:
+        _, worst, name, change = max(moves, key=lambda move: move[0])
         parts.append(f"a change of {worst.parameter} by {signed_percent(worst.change)} would change {name} by "
                      f"{signed_percent(change)}")  # fmt: skip
     return "; ".join(parts) + "." if parts else ""
-
-
-def _largest_change(c: Consequence) -> float:
-    return max(map(abs, c.estimate_changes.values()))

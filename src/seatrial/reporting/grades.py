@@ -7,7 +7,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from seatrial.core.results import Prediction
+from seatrial.core.results import Fit, Prediction
 from seatrial.core.text.numbers import significant
 from seatrial.reporting.runs import ERROR_LABELS
 
@@ -65,6 +65,13 @@ def worst_share(predictions: Sequence[Prediction]) -> ErrorShare | None:
     """Return the largest of all errors as a share of its motion; None where none can be compared."""
     shares = [share for p in predictions if (share := largest_error_share(p)) is not None]
     return max(shares, key=lambda one: one.share, default=None)
+
+
+def is_missed(fit: Fit) -> bool:
+    """Return whether a held-out run is not predicted at all: it diverges, or its mean is nearer."""
+    largest = worst_share(fit.validation)
+    is_lost = largest is not None and largest.grade is Grade.NOT
+    return is_lost or any(p.divergence is not None for p in fit.validation)
 
 
 def share_sentence(predictions: Sequence[Prediction]) -> str:

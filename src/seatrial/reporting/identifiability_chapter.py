@@ -30,6 +30,8 @@ from seatrial.reporting.tables import assumption
 # relative standard deviation up to which a combination is well determined, and up to which poorly
 WELL_DETERMINED, POORLY_DETERMINED = 0.1, 1.0
 # entries of each kind that are shown unfolded
+LEAST_MISFIT = 0.01  # rise of chi^2 below which it is called 0: a tenth of a standard error, squared
+LEAST_SHIFT = 5e-4  # relative change of an estimate that is named: 0.1 % when rounded
 MAX_SHIFTS, MAX_TEXTS, MAX_ROWS, MAX_DIRECTIONS = 5, 5, 20, 16
 
 
@@ -84,6 +86,7 @@ class NoiseText:
     measurement: tuple[NoiseRow, ...]
     candidates: tuple[DisturbanceRow, ...]
     closed_loop: str
+    has_disturbance: bool
 
 
 @dataclass(frozen=True)
@@ -229,9 +232,12 @@ def _more_directions(rest: Sequence[Direction]) -> str:
 def _consequence_row(c: Consequence, fit: Fit) -> ConsequenceRow:
     is_guess = any(one.is_unmeasured for one in fit.coefficients if one.name == c.parameter)
     parameter = f"{c.parameter} ({NOT_MEASURED})" if is_guess else c.parameter
-    largest = list(c.estimate_changes.items())[:MAX_SHIFTS]
+    is_open = {one.name for one in fit.coefficients if one.is_sign_open}
+    changes = ((n, x) for n, x in c.estimate_changes.items() if n not in is_open and abs(x) >= LEAST_SHIFT)
+    largest = list(changes)[:MAX_SHIFTS]
     moves = ", ".join(f"{name} {signed_percent(move)}" for name, move in largest)
-    return ConsequenceRow(parameter, signed_percent(c.change), moves or DASH, significant(c.misfit, 2))
+    misfit = significant(c.misfit, 2) if c.misfit >= LEAST_MISFIT else "0"
+    return ConsequenceRow(parameter, signed_percent(c.change), moves or DASH, misfit)
 
 
 def _stability_sentence(s: Stability, names: Sequence[str]) -> str:
@@ -261,6 +267,7 @@ def _noise_text(d: NoiseModel, names: Sequence[str]) -> NoiseText:
         tuple(_noise_row(channel, s, "") for channel, s in d.measurement.items()),
         disturbance_rows(d.candidates),
         " ".join(sentence(text) for text in d.closed_loop.sentences) if d.closed_loop else "",
+        d.disturbance != "none",
     )
 
 

@@ -5,17 +5,17 @@ import re
 from collections.abc import Sequence
 from enum import StrEnum
 
-from seatrial.core.results import Extrapolation, Measure
+from seatrial.core.results import CraftMeasure, Extrapolation, Measure
 from seatrial.core.text.numbers import ratio_text
 from seatrial.core.text.words import counted, enumeration, ordinal
 
 _MEASURES = {
     "rudder_deg": ("rudder angle", "deg"),
     "approach_speed": ("approach speed", "m/s"),
-    "advance_L": ("advance", "L"),
-    "transfer_L": ("transfer", "L"),
-    "tactical_diameter_L": ("tactical diameter", "L"),
-    "steady_diameter_L": ("steady turning diameter", "L"),
+    "advance_L": ("advance over ground", "L"),
+    "transfer_L": ("transfer over ground", "L"),
+    "tactical_diameter_L": ("tactical diameter over ground", "L"),
+    "steady_diameter_L": ("steady turning diameter, 2 U/r", "L"),
     "steady_yaw_rate_deg_s": ("steady yaw rate", "deg/s"),
     "steady_drift_deg": ("steady drift angle", "deg"),
     "speed_loss": ("speed lost in the turn, share of approach speed", ""),
@@ -44,14 +44,19 @@ def measure_label(name: str) -> tuple[str, str]:
 
 
 def manoeuvre_name(text: str) -> str:
-    """Return a manoeuvre as people call it: ``zigzag:20/10:port`` -> zigzag 20°/10°, first to port."""
+    """Return a manoeuvre as people call it: ``zigzag:20/10:port`` -> zigzag 20°/10°, first to port.
+
+    Turns without a side are to starboard, as the programmes have it.
+    """
     kind, *rest = text.split(":")
     side = rest.pop() if rest and rest[-1] in ("port", "starboard") else ""
     angles = rest[0] if rest else ""
     if kind == "zigzag" and re.fullmatch(r"[\d.]+/[\d.]+", angles):
         return f"zigzag {angles.replace('/', '°/')}°" + (f", first to {side}" if side else "")
     if kind == "turning-circle" and angles:
-        return f"turning circle with {angles}°" + (f" to {side}" if side else "")
+        return f"turning circle with {angles}° to {side or 'starboard'}"
+    if kind == "pull-out" and angles:
+        return f"pull-out from {angles}° to {side or 'starboard'}"
     if kind == "consecutive-zigzags" and angles:
         return f"consecutive zigzags, {counted(int(angles), 'execute')} each"
     if kind == "prbs" and len(rest) == 3:
@@ -120,6 +125,11 @@ def extrapolation_zone(index: float) -> str:
     if index <= INSIDE_INDEX:
         return "inside"
     return "edge" if index <= EDGE_INDEX else "beyond"
+
+
+def is_extrapolated(m: CraftMeasure) -> bool:
+    """Return whether what a craft does at full command lies beyond the training runs."""
+    return m.extrapolation_index is not None and m.extrapolation_index > EDGE_INDEX
 
 
 def extrapolation_text(e: Extrapolation) -> str:

@@ -7,6 +7,8 @@ from seatrial.core.results.ship_motions import IntervalEstimate
 from seatrial.core.results.thruster_craft import CraftMeasure, ThrusterCraft
 from seatrial.core.text.numbers import estimate_text, significant
 from seatrial.core.text.words import enumeration
+from seatrial.reporting.grades import is_missed
+from seatrial.reporting.measures import is_extrapolated
 from seatrial.reporting.roll_chapter import share_of_critical
 
 # measures of a craft with thrusters that a sentence names: key -> text before the value, unit after it
@@ -18,7 +20,12 @@ _CRAFT_MEASURES = {
 
 
 def operators_sentence(fit: Fit) -> str:
-    """Return what the ship does in terms of those who operate it; empty for a model of manoeuvring by a rudder."""
+    """Return what the ship does in terms of those who operate it.
+
+    Empty for a model of manoeuvring by a rudder, and for one that does not predict its held-out run.
+    """
+    if is_missed(fit):
+        return ""
     if fit.roll is not None:
         return _roll(fit.roll)
     if fit.thruster_craft is not None:
@@ -59,7 +66,9 @@ def _estimate(e: IntervalEstimate, unit: str) -> str:
 def _craft(craft: ThrusterCraft) -> str:
     clauses = [f"{verb} {_measure(craft.measures[name], unit)}" for name, (verb, unit) in _CRAFT_MEASURES.items()
                if name in craft.measures]  # fmt: skip
-    return f"At full command it {enumeration(clauses)}." if clauses else ""
+    is_far = any(is_extrapolated(craft.measures[name]) for name in _CRAFT_MEASURES if name in craft.measures)
+    place = "At full command, beyond the training runs," if is_far else "At full command"
+    return f"{place} it {enumeration(clauses)}." if clauses else ""
 
 
 def _measure(m: CraftMeasure, unit: str) -> str:

@@ -31,6 +31,7 @@ from seatrial.reporting.document import page_text
 from seatrial.reporting.figures.record_charts import track_overview
 from seatrial.reporting.figures.residual_charts import residual_series, whiteness_chart
 from seatrial.reporting.figures.search_charts import attempts_chart
+from seatrial.reporting.mass_specific import with_mass_specific_units
 from seatrial.reporting.windows import WINDOW_NOTE, baseline_sentence
 
 TITLES = {
@@ -58,7 +59,7 @@ TITLES = {
 
 def html(fit: Fit) -> str:
     """Return the page as text; sections without content are left out."""
-    citations = Citations()
+    fit, citations = with_mass_specific_units(fit), Citations()
     length = fit.ship.length if "L" in fit.ship.particulars else 0.0
     has_thrusters = bool(fit.model.equations.layout)
     is_steered = "psi" in fit.model.states or "delta" in fit.model.input_names
@@ -94,6 +95,8 @@ def html(fit: Fit) -> str:
         "coefficient_sentences": summary.coefficient_sentences(fit),
         "residual_sentence": summary.residual_sentence(fit),
         "convergence_sentence": summary.convergence_sentence(fit),
+        "search_status": summary.search_status(fit),
+        "offset_sentences": summary.offset_sentences(fit),
         "better_baselines": baseline_sentence(fit.validation, runs.ERROR_LABELS),
         "reading_note": runs.reading_note(fit.predictions),
         "window_note": WINDOW_NOTE if any(p.windows for p in fit.predictions) else "",

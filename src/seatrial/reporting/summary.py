@@ -20,7 +20,7 @@ def facts(fit: Fit) -> list[str]:
     seconds = sum(p.measured.duration for p in trained)
     return [
         *length, *scale, f"model {fit.model.name} with {counted(free, 'free coefficient')}",
-        f"fitted to {counted(len(trained), 'run')}, {duration(seconds)}", fit.method.criterion,
+        f"fitted to {counted(len(trained), 'run')}, {duration(seconds)} of records", fit.method.criterion,
     ]  # fmt: skip
 
 
@@ -100,7 +100,20 @@ def convergence_sentence(fit: Fit) -> str:
     """Return that a search did not converge, or how a search by a population ended; empty for one that did."""
     if fit.search is not None:
         return _search_end(fit.search)
-    return "" if fit.solution.status.is_success else f"The search did not converge: {fit.solution.status.value}."
+    return "" if fit.solution.status.is_success else f"The search did not converge: {search_status(fit)}."
+
+
+def search_status(fit: Fit) -> str:
+    """Return how the search ended, without what only the caller of an optimiser can do about it."""
+    return fit.solution.status.value.partition(";")[0]
+
+
+def offset_sentences(fit: Fit) -> tuple[str, ...]:
+    """Return what is expected of a new session's offsets; of one recorded session, that their spread is assumed."""
+    sentences = tuple(population.sentence for population in fit.offset_populations)
+    if not sentences or len({offset.group for offset in fit.offsets}) > 1:
+        return sentences
+    return (*sentences, "One session was recorded: how these differ between sessions is assumed, not estimated.")
 
 
 def _search_end(search: Search) -> str:

@@ -10,7 +10,7 @@ from seatrial.core.results.thruster_craft import CraftMeasure, FossenMatrix, Thr
 from seatrial.core.text.numbers import DASH, estimate_text, significant
 from seatrial.core.text.words import enumeration
 from seatrial.reporting.figures.thruster_charts import compass_chart, quadrant_chart, thrust_chart
-from seatrial.reporting.measures import EDGE_INDEX
+from seatrial.reporting.measures import is_extrapolated
 from seatrial.reporting.text_tables import TextTable
 
 MEASURE_LABELS = {
@@ -23,6 +23,7 @@ _MEASURES_NOTE = (
     "Simulated with the estimate: straight from rest with full command ahead, a spin from rest with full opposite "
     "commands, full astern at full speed."
 )
+FAR_NOTE = "* beyond the training runs: read the interval as a lower limit."
 _PER_MASS = (
     "No thrust is known in newtons, so that only ratios to m + m_x are determined: M, D and thrusts are those on each "
     "kilogram of it. Multiply all of them by m + m_x."
@@ -74,12 +75,12 @@ def _measures_table(measures: dict[str, CraftMeasure]) -> TextTable:
         m = measures.get(name)
         if m is None:
             continue
-        is_far = m.extrapolation_index is not None and m.extrapolation_index > EDGE_INDEX
-        far = far or is_far
+        far = far or is_extrapolated(m)
         error = None if m.lower is None or m.upper is None else 0.5 * (m.upper - m.lower)
         text = estimate_text(m.value, error, m.lower, m.upper)
-        rows.append((f"{label}{' *' if is_far else ''}", text.value, text.lower or DASH, text.upper or DASH))
-    note = f"{_MEASURES_NOTE}{' * beyond the training runs: read the interval as a lower limit.' if far else ''}"
+        star = " *" if is_extrapolated(m) else ""
+        rows.append((f"{label}{star}", text.value, text.lower or DASH, text.upper or DASH))
+    note = f"{_MEASURES_NOTE}{f' {FAR_NOTE}' if far else ''}"
     return TextTable(
         "What the craft does at full command", ("", "estimate", "95 % from", "to"), (False, True, True, True),
         tuple(rows), note,

@@ -8,16 +8,19 @@ import numpy as np
 from seatrial.core.results import Fit, Prediction
 from seatrial.core.text.numbers import duration, significant
 from seatrial.core.text.words import counted, enumeration
-from seatrial.core.values import InputError
-from seatrial.physics.manoeuvres import REACH_PERCENTILE, ManoeuvreKind, ObservedManoeuvre, to_starboard
+from seatrial.core.values import InputError, Record
+from seatrial.physics.manoeuvres import REACH_PERCENTILE, ManoeuvreKind, ObservedManoeuvre, initial_speed, to_starboard
 from seatrial.reporting.grades import Grade, largest_error_share
 from seatrial.reporting.repeats import MAX_NAMES, repeat_clause, repeated_runs
 from seatrial.reporting.runs import ERROR_LABELS
+from seatrial.reporting.summary import search_status
 
 # errors that a sentence names, the first ones that the runs have
 MAX_ERRORS = 2
 # factor of the reach of the rudder to one side from which on both sides are named
 ONE_SIDED = 1.25
+# share of their mean by which speeds at the start of runs differ that count as one; chosen
+ONE_SPEED = 0.1
 # rad below which the rudder is not over
 LEAST_RUDDER = math.radians(0.5)
 _DEGREES = math.degrees(1.0)
@@ -34,7 +37,8 @@ def unusable_sentence(fit: Fit) -> str:
     """Return that the coefficients must not be used, with the reason and a space behind it; empty where they can."""
     if has_converged(fit):
         return ""
-    return f"Do not use the coefficients: the search did not converge ({fit.solution.status.value.partition(';')[0]}). "
+    tested = "What is tested are predictions alone. " if fit.validation else ""
+    return f"Do not use the coefficients: the search did not converge ({search_status(fit)}). {tested}"
 
 
 def has_converged(fit: Fit) -> bool:
@@ -149,7 +153,8 @@ def extrapolation_limit(fit: Fit) -> str:
     training = [p.measured for p in fit.predictions if p.role == "training"]
     rudder = [to_starboard(r, "delta") for r in training if "delta" in r]
     if rudder:
-        return _beyond(_rudder_reach(np.concatenate(rudder)))
+        speed = _only_speed(training) if "u" in fit.model.states else ""
+        return _beyond(_rudder_reach(np.concatenate(rudder)), f", or from another speed than {speed}," if speed else "")
     if "phi" in fit.model.states and any("phi" in r for r in training):
         largest = max(float(np.nanmax(np.abs(r["phi"]))) for r in training if "phi" in r)  # a decay has it once
         return _beyond(f"{math.degrees(largest):.0f}° of roll")
@@ -159,8 +164,16 @@ def extrapolation_limit(fit: Fit) -> str:
     return ""
 
 
-def _beyond(reach: str) -> str:
-    return f"beyond {reach} the model extrapolates" if reach else ""
+def _beyond(reach: str, other: str = "") -> str:
+    return f"beyond {reach}{other} the model extrapolates" if reach else ""
+
+
+def _only_speed(training: Sequence[Record]) -> str:
+    """The speed from which all of several training runs begin; empty where they differ, and of one run."""
+    speeds = [speed for r in training if math.isfinite(speed := initial_speed(r))]
+    if len(speeds) < 2 or np.ptp(speeds) > ONE_SPEED * np.mean(speeds):
+        return ""
+    return f"{significant(float(np.mean(speeds)), 2)} m/s"
 
 
 def _rudder_reach(angles: np.ndarray) -> str:

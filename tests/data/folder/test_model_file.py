@@ -1,6 +1,7 @@
 """The model file: exact both ways, refused when its equations have changed, never executed."""
 
 import math
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -137,6 +138,13 @@ def test_a_number_that_is_not_finite_is_refused(old: str, new: str, says: str) -
     assert old in text
     with pytest.raises(InputError, match=says):
         parse_model(text.replace(old, new), "model.toml")
+
+
+def test_an_estimated_value_that_is_no_number_is_refused_with_file_and_key() -> None:
+    text, count = re.subn(r"(\[parameters\.N_v\]\nvalue = ).*", r"\1nan", model_text(whole_file()))
+    assert count == 1
+    with pytest.raises(InputError, match=r"'model\.toml' is damaged: parameters\.N_v\.value = nan is no finite number"):
+        parse_model(text, "model.toml")
 
 
 def margin(count: int) -> IntervalBasis:

@@ -6,7 +6,7 @@ import pytest
 
 from seatrial.core.values import NOT_MEASURED, Severity
 from seatrial.data.trial import load_trial
-from seatrial.data.trial.estimated_values import CODE, ESTIMATED, with_estimates_named
+from seatrial.data.trial.estimated_values import ESTIMATED, ESTIMATED_VALUES, with_estimates_named
 
 SHIP = """
 [ship]
@@ -85,7 +85,7 @@ def written(tmp_path: Path, text: str) -> Path:
 
 def test_marked_values_are_a_warning_and_carry_their_source(tmp_path: Path) -> None:
     trial = load_trial(written(tmp_path, SHIP))
-    (finding,) = [f for f in trial.findings if f.code == CODE]
+    (finding,) = [f for f in trial.findings if f.code == ESTIMATED_VALUES]
     assert finding.severity is Severity.WARNING
     assert finding.message == f"m, I_z and X_udot are {NOT_MEASURED}"
     assert trial.model.parameters["m"].source == f"{NOT_MEASURED}: kg, of a hull with L/B 6"
@@ -96,7 +96,7 @@ def test_marked_values_are_a_warning_and_carry_their_source(tmp_path: Path) -> N
 
 def test_of_thrusters_the_marked_lever_alone_is_named(tmp_path: Path) -> None:
     trial = load_trial(written(tmp_path, CATAMARAN))
-    (finding,) = [f for f in trial.findings if f.code == CODE]
+    (finding,) = [f for f in trial.findings if f.code == ESTIMATED_VALUES]
     assert finding.message == f"y_port is {NOT_MEASURED}" and "this value is" in finding.consequence
     assert trial.model.parameters["y_port"].source.startswith(NOT_MEASURED)
 
@@ -104,5 +104,5 @@ def test_of_thrusters_the_marked_lever_alone_is_named(tmp_path: Path) -> None:
 @pytest.mark.parametrize("text", [SHIP, CATAMARAN])
 def test_without_marks_nothing_is_said(tmp_path: Path, text: str) -> None:
     trial = load_trial(written(tmp_path, text.replace(f"# {ESTIMATED}", "# measured")))
-    assert not [f for f in trial.findings if f.code == CODE]
+    assert not [f for f in trial.findings if f.code == ESTIMATED_VALUES]
     assert with_estimates_named(trial, "") is trial

@@ -46,6 +46,7 @@ def test_a_term_that_worsens_the_held_out_run_is_named_with_both_errors() -> Non
     assert with_it == pytest.approx(fit.validation[0].rms["psi_deg"], rel=0.05)
     assert without == pytest.approx(fitted(0.0).validation[0].rms["psi_deg"], rel=0.15)
     assert without < 0.5 * with_it
+    assert finding.advice.startswith("do not fix it: the training runs determine it")
 
 
 def test_a_term_that_the_held_out_run_needs_is_not_named() -> None:

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.core.values import Channel, Prior, Record
-from seatrial.estimation.identify.unexcited_thrust import with_unexcited_thrust_held
+from seatrial.estimation.identify.unexcited_thrust import single_order_findings, with_unexcited_thrust_held
+from seatrial.physics.models import model_named
 from seatrial.physics.models.thruster_layout import CATAMARAN, ThrusterLayout
 from seatrial.physics.models.thrusters import thrusters
 
@@ -50,3 +51,25 @@ def test_a_prior_keeps_a_coefficient_free() -> None:
     held, _ = with_unexcited_thrust_held(model, [run(0.5, 0.5)])
     assert "k_b" in held.parameters.free_names
     assert "p_b" not in held.parameters.free_names
+
+
+def test_one_order_astern_does_not_separate_exponent_and_thrust() -> None:
+    runs = [run(0.8, 0.2), run(0.5, 0.0), run(-0.4, 0.0), run(0.3, -0.4)]
+    (finding,) = single_order_findings(thrusters(), runs)
+    assert finding.code == "single-order" and "only one order astern of port or starboard, 40 %" in finding.message
+    assert "k_b and p_b together" in finding.message and "full command is 2.5 times that order" in finding.consequence
+    assert single_order_findings(thrusters(), [*runs, run(-0.8, 0.0)]) == ()
+
+
+def test_one_order_ahead_is_named_likewise_and_a_fixed_exponent_ends_it() -> None:
+    model, runs = thrusters(), [run(0.5, 0.5), run(-0.4, -0.9)]
+    (finding,) = single_order_findings(model, runs)
+    assert "only one order ahead" in finding.message and "k_f and p_f together" in finding.message
+    assert single_order_findings(model.with_parameters(model.parameters.fixed("p_f")), runs) == ()
+    known = model.with_parameters(model.parameters.with_priors({"p_f": Prior(2.0, 0.2)}))
+    assert single_order_findings(known, runs) == ()
+
+
+def test_without_orders_or_thrusters_there_is_no_single_one() -> None:
+    assert single_order_findings(thrusters(), [run(0.0, 0.0)]) == ()
+    assert single_order_findings(model_named("nomoto"), [run(0.5, 0.5)]) == ()

@@ -20,6 +20,7 @@ from seatrial.data.folder import model_tables
 from seatrial.data.folder.model_tables import (
     ModelProvenance,
     covariance_matrix,
+    finite_number,
     interval_basis,
     interval_basis_table,
     matrix_rows,
@@ -153,6 +154,9 @@ def _model_file(table: Mapping[str, Any], where: str, own_model: Model | None) -
     covariance = covariance_matrix(table.get("covariance", {}).get("rows", []), f"{where}': covariance")
     if covariance.size and len(covariance) != len(parameters.free):
         raise ValueError(f"covariance has {len(covariance)} rows for {len(parameters.free)} free parameters")
+    if table["provenance"]["method"]:  # of a fit, so that every free parameter was estimated
+        for p in parameters.free:
+            finite_number(p.value, f"parameters.{p.name}.value")
     return ModelFile(
         model.with_parameters(parameters),
         covariance,

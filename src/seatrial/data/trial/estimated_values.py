@@ -14,7 +14,7 @@ ESTIMATED = "ESTIMATED"
 _TABLE = re.compile(r"^\[+(?P<name>[\w.]+)\]+")
 _MARKED = re.compile(rf"^(?P<key>\w+)\s*=[^#]*# {ESTIMATED}: (?P<text>[^;]*)")
 _THRUSTER_NAME = re.compile(r'^name\s*=\s*"(?P<name>[^"]*)"')
-CODE = "estimated-values"
+ESTIMATED_VALUES = "estimated-values"
 
 
 def with_estimates_named(trial: Trial, text: str) -> Trial:
@@ -50,9 +50,9 @@ def _with_sources(model: Model, marks: Mapping[str, str]) -> Model:
 
 
 def _finding(names: list[str]) -> Finding:
-    is_one = len(names) == 1
+    is_one, listed = len(names) == 1, enumeration(names, len(names))
     return Finding(
-        Severity.WARNING, CODE, f"{enumeration(names)} {'is' if is_one else 'are'} {NOT_MEASURED}",
+        Severity.WARNING, ESTIMATED_VALUES, f"{listed} {'is' if is_one else 'are'} {NOT_MEASURED}",
         f"marked {ESTIMATED} in the trial file",
         "write what you can measure in place of the estimate, and remove the mark",
         f"coefficients and intervals are right only as far as {'this value is' if is_one else 'these values are'}",

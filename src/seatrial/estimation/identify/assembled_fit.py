@@ -79,7 +79,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
             *varying_gain_finding(estimation, runs.records),
             *misfit_disturbance(
                 estimation.noise_model.process,
-                [p.simulated for p in predicted.predictions if p.role == "training"], task.characteristic_time,
+                [p for p in predicted.predictions if p.role == "training"], task.characteristic_time,
             ),
             *short_record_findings(estimation, assessment.profiles), *closed_loop_findings(estimation),
             *(sampling_findings(posterior) if posterior else ()),

@@ -1,4 +1,4 @@
-"""Couplings of a hull that are held at zero although the training runs speak against it: a score test of each.
+"""Terms of a hull that are held at zero although the training runs speak against it: a score test of each.
 
 One Newton step from the optimum with one more coefficient free says how far it would move, over its standard error, and
 what it would move with it (Rao 1948, Proc. Cambridge Phil. Soc. 44, 50-57: the score statistic is the square of the
@@ -13,6 +13,7 @@ from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, Finding, Severity
 from seatrial.estimation.estimate import Estimation
 from seatrial.estimation.problem.output_error import OutputError
+from seatrial.physics.models.candidate_structures import SURGE_TERMS
 
 _STANDARD_ERRORS = 5.0  # of a coupling, from which on it is named; chosen: beyond what is left of model error
 _MOVES = 2.0  # standard errors of a free coefficient by which it would move, from which on it is named; chosen
@@ -40,34 +41,42 @@ class _Score:
 
 
 def held_couplings(estimation: Estimation) -> tuple[Finding, ...]:
-    """Return a warning for each coupling of a craft with thrusters that is held at 0 and should not be."""
-    if not estimation.model.equations.layout:
-        return ()
-    from seatrial.physics.models.thrusters import COUPLINGS
+    """Return a warning for each term that is held at 0 and should not be, the strongest first.
 
-    parameters = estimation.model.parameters
-    candidates = tuple(p.name for p in parameters if p.name in COUPLINGS and not p.free and p.value == 0.0)
+    Of a craft with thrusters its couplings are examined. Of a ship it is what drift, turning and rudder cost in speed,
+    and the strongest alone is named, as one of these terms stands in for another.
+    """
+    parameters, has_thrusters = estimation.model.parameters, bool(estimation.model.equations.layout)
+    terms = _couplings() if has_thrusters else SURGE_TERMS
+    candidates = tuple(p.name for p in parameters if p.name in terms and not p.free and p.value == 0.0)
     if not candidates:
         return ()
     score = _score(estimation, candidates)
     errors = dict(zip(estimation.estimate.problem.free, estimation.interval.standard_error, strict=False))
-    findings = list[tuple[float, Finding]]()
-    for name in candidates:
-        size, steps = score.step(name, candidates)
-        if not abs(size) > _STANDARD_ERRORS:
-            continue
+    steps_of = {name: score.step(name, candidates) for name in candidates}
+    contradicted = (name for name in candidates if abs(steps_of[name][0]) > _STANDARD_ERRORS)
+    named = sorted(contradicted, key=lambda name: -abs(steps_of[name][0]))[: None if has_thrusters else 1]
+    free = ", ".join(f'"{n}"' for n in (*estimation.estimate.problem.free, *named[:1]))
+    findings = list[Finding]()
+    for name in named:
+        size, steps = steps_of[name]
         moved = {n: abs(step) / errors[n] for n, step in steps.items() if errors.get(n, 0.0) > 0.0}
         largest = sorted((n for n in moved if moved[n] > _MOVES), key=lambda n: -moved[n])[:_MOST_NAMED]
         text = enumeration([f"{n} by {moved[n]:.0f} standard errors" for n in largest])
-        free = ", ".join(f'"{n}"' for n in (*estimation.estimate.problem.free, name))
-        finding = Finding(
+        findings.append(Finding(
             Severity.WARNING, "held-coupling", f"{name} is held at 0 and the training runs speak against it, by "
             f"{abs(size):.0f} standard errors", f"in one step it would move {text}" if text else "",
-            f"free it and compare the held-out runs: under [model] write free = [{free}]",
+            f"free {named[0]}{', the strongest, first' if len(named) > 1 else ''} and compare the held-out runs: under "
+            f"[model] write free = [{free}]",
             "intervals of the coefficients that stand in for it do not hold their true values",
-        )  # fmt: skip
-        findings.append((abs(size), finding))
-    return tuple(finding for _, finding in sorted(findings, key=lambda one: -one[0]))
+        ))  # fmt: skip
+    return tuple(findings)
+
+
+def _couplings() -> tuple[str, ...]:
+    from seatrial.physics.models.thrusters import COUPLINGS  # here, as it imports SymPy
+
+    return COUPLINGS
 
 
 def _score(estimation: Estimation, couplings: tuple[str, ...]) -> _Score:

@@ -22,7 +22,7 @@ from seatrial.estimation.identify.strategies.search import estimate_by_search
 from seatrial.estimation.identify.strategies.steered import identify_steered, identify_with_static_forces
 from seatrial.estimation.identify.strategies.unknown_waves import identify_in_unknown_waves
 from seatrial.estimation.identify.strategies.wave_spectrum import identify_by_wave_spectrum
-from seatrial.estimation.identify.unexcited_thrust import with_unexcited_thrust_held
+from seatrial.estimation.identify.unexcited_thrust import single_order_findings, with_unexcited_thrust_held
 from seatrial.estimation.predict.k_step import horizon_list
 from seatrial.estimation.predict.window_scores import window_lengths
 
@@ -78,6 +78,7 @@ def identify(
     own_progress = own_estimate_progress(report_progress) if method.is_published else report_progress
     train = [r.record for r in checked.records if r.role is Role.TRAIN]
     model, held = with_unexcited_thrust_held(trial.model, train)
+    held = (*held, *single_order_findings(model, train))
     trial, findings = replace(trial, model=model), (*checked.findings, *held)
     task = Identification(trial, checked.records, findings, options, choose, began, own_progress)
     situation = identification_situation(task)

@@ -47,10 +47,28 @@ def needless_term_findings(estimation: Estimation, predictions: Sequence[Predict
     return (Finding(
         Severity.WARNING, "term-worsens-prediction", f"{runs} would be predicted better with {best} at 0",
         f"{'; '.join(texts)}; the other coefficients moved with it to first order",
-        "fix it at 0 and compare; so that the held-out runs stay a test, let training runs left out decide: "
-        "seatrial identify TRIAL.toml --choose",
+        _advice(is_needed=_is_needed(estimation, best)),
         "it follows the training runs and leads away from others",
     ),)  # fmt: skip
+
+
+def _is_needed(estimation: Estimation, name: str) -> bool:
+    """Whether the training runs determine the term: its 95 % interval does not contain 0."""
+    place = estimation.estimate.problem.free.index(name)
+    return abs(estimation.estimate.common_parameters[place]) > float(estimation.interval.half_width[place])
+
+
+def _advice(*, is_needed: bool) -> str:
+    if is_needed:
+        return (
+            "do not fix it: the training runs determine it; held-out and training runs ask for different models, so "
+            "look for what differs between them (a larger angle, another speed, the other side), and for terms that "
+            "grow with it"
+        )
+    return (
+        "fix it at 0 and compare; so that the held-out runs stay a test, let training runs left out decide: "
+        "seatrial identify TRIAL.toml --choose"
+    )
 
 
 def _without(estimation: Estimation, name: str) -> Model:

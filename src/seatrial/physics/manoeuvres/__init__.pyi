@@ -11,4 +11,8 @@ from seatrial.physics.manoeuvres.recognition import (
     recognise_manoeuvre as recognise_manoeuvre,
     to_starboard as to_starboard,
 )
-from seatrial.physics.manoeuvres.steered_orders import SteeredOrders as SteeredOrders, steered_orders as steered_orders
+from seatrial.physics.manoeuvres.steered_orders import (
+    SteeredOrders as SteeredOrders,
+    initial_speed as initial_speed,
+    steered_orders as steered_orders,
+)

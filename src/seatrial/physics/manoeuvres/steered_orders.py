@@ -53,7 +53,7 @@ def steered_orders(record: Record) -> SteeredOrders | None:
         return None
     if not run.holds or run.kind not in (ManoeuvreKind.ZIGZAG, *_TURNS):
         return None
-    speed = _approach_speed(record)
+    speed = initial_speed(record)
     if run.kind in _TURNS:
         return SteeredOrders(run.kind, run.longest_hold[0].angle, 0.0, speed)
     course, *turned = (run.psi_at(time) for time in run.executes)
@@ -65,7 +65,8 @@ def _is_near(one: float, other: float, least: float) -> bool:
     return abs(one - other) <= max(_TOLERANCE * max(abs(one), abs(other)), least)
 
 
-def _approach_speed(record: Record) -> float:
+def initial_speed(record: Record) -> float:
+    """Return the mean speed ahead over the first seconds of a run [m/s]; NaN where it was not recorded."""
     if "u" not in record:
         return math.nan
     speeds = [record[name] for name in ("u", "v") if name in record]

@@ -6,6 +6,9 @@ They are the same for every ship; a trial file may declare another under `[famil
 from collections.abc import Mapping
 from types import MappingProxyType
 
+SURGE_TERMS = ("X_u", "X_uu", "X_vv", "X_rr", "X_dd", "X_vr")
+"""What surge of an expansion may need: resistance, and the speed that drift, turning and rudder cost."""
+
 FREED_PARAMETERS: Mapping[str, Mapping[str, tuple[str, ...]]] = MappingProxyType(
     {
         "mmg": {
@@ -18,6 +21,7 @@ FREED_PARAMETERS: Mapping[str, Mapping[str, tuple[str, ...]]] = MappingProxyType
         "abkowitz": {
             "cubic rudder": ("Y_ddd", "N_ddd"),
             "rudder and drift": ("Y_vvd", "Y_vdd", "N_vvd", "N_vdd"),
+            "speed lost by drift and rudder": ("X_vr", "X_dd"),
             "change with speed": ("Y_vu", "Y_ru", "N_vu", "N_ru"),
         },
         "waterjet": {"inertia": ("m_x", "m_y", "J_z")},
