@@ -8,7 +8,7 @@ import pytest
 from tests.reporting.fabricated import zigzag
 
 from seatrial.core.values import Record
-from seatrial.physics.manoeuvres import ManoeuvreKind, SteeredOrders, steered_orders
+from seatrial.physics.manoeuvres import ManoeuvreKind, SteeredOrders, initial_speed, steered_orders
 
 
 def test_the_orders_are_those_of_the_run() -> None:
@@ -23,3 +23,10 @@ def test_the_orders_are_those_of_the_run() -> None:
     assert steered_orders(straight) is None
     assert not orders.is_repeated_by(replace(orders, heading=0.5 * orders.heading)), "a zigzag 20/10"
     assert SteeredOrders(orders.kind, 0.1, 0.1, math.nan).is_repeated_by(SteeredOrders(orders.kind, 0.11, 0.1, 1.0))
+
+
+def test_the_speed_at_the_start_is_that_of_the_first_seconds() -> None:
+    time = np.arange(0.0, 20.0, 0.5)
+    record = Record.from_arrays("s", time, {"u": np.where(time <= 5.0, 3.0, 1.0)})
+    assert initial_speed(record) == pytest.approx(3.0)
+    assert math.isnan(initial_speed(record.without("u")))
