@@ -3,13 +3,14 @@
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 from tests.reporting.fabricated import fabricated_fit
 
 from seatrial.cli.next_steps import after_campaign, after_check, after_fit
 from seatrial.core.results import Divergence
 from seatrial.core.results.campaign import CampaignStatus
-from seatrial.core.values import Finding, Severity, TrialEdit
-from seatrial.physics.models import heave_pitch
+from seatrial.core.values import Finding, Record, Severity, TrialEdit
+from seatrial.physics.models import heave_pitch, roll
 
 TRIAL, OUT = Path("my trial.toml"), Path("results")
 
@@ -42,6 +43,16 @@ def test_after_a_fit_that_misses_the_page_on_bad_fits_is_named() -> None:
     fit = fabricated_fit()
     missed = tuple(replace(p, divergence=Divergence(70.0, 65.0, "r")) for p in fit.predictions)
     assert after_fit(replace(fit, predictions=missed), OUT, TRIAL).startswith("docs/bad-fit.md, By symptom: ")
+
+
+def test_after_a_fit_of_decays_a_release_is_simulated(rng: np.random.Generator) -> None:
+    fit = fabricated_fit()
+    time = 0.1 * np.arange(50)
+    decay = Record.from_arrays("decay", time, {"phi": 0.2207 * np.cos(time) + 1e-6 * rng.standard_normal(50)})
+    runs = tuple(replace(fit.predictions[0], measured=decay, role=role) for role in ("training", "validation"))
+    assert after_fit(replace(fit, model=roll(), predictions=runs), OUT, TRIAL) == (
+        "seatrial simulate results/model.toml --manoeuvre release:12 --out release.csv"
+    )
 
 
 def test_after_a_fit_of_spectra_which_predicts_no_run_its_report_is_named() -> None:

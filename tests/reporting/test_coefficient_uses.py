@@ -22,6 +22,8 @@ def content(inflation: float = 1.5, **parts: tuple) -> Identifiability:
     ("coefficient", "inflation", "use"),
     [
         (PLAIN, 9.9, Use.BY_ITSELF),
+        (replace(PLAIN, standard_error=0.19), 9.9, Use.BY_ITSELF),
+        (replace(PLAIN, standard_error=0.21), 9.9, Use.VAGUELY),
         (PLAIN, 10.0, Use.AS_A_SET),
         (PLAIN, math.inf, Use.AS_A_SET),
         (replace(PLAIN, prior_mean=2.0, prior_standard_deviation=0.05), 1.5, Use.FROM_PRIOR),

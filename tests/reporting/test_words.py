@@ -31,9 +31,9 @@ def test_a_doi_becomes_a_link() -> None:
 
 
 def test_strong_correlations_are_named() -> None:
-    covariance = np.array([[1.0, -0.95, 0.0], [-0.95, 1.0, 0.0], [0.0, 0.0, 4.0]])
+    covariance = np.array([[1.0, -0.96, 0.0], [-0.96, 1.0, 0.0], [0.0, 0.0, 4.0]])
     assert correlation_text(("a", "b", "c"), covariance).startswith(
-        "1 pair at 0.90 or above in size; the strongest: b and a (−0.95)"
+        "1 pair at 0.95 or above in size; the strongest: b and a (−0.96)"
     )
     weak = np.array([[1.0, 0.4], [0.4, 1.0]])
     assert correlation_text(("a", "b"), weak) == "The strongest is 0.40, between b and a."
@@ -41,18 +41,17 @@ def test_strong_correlations_are_named() -> None:
     assert correlation_text(("a",), np.eye(1)) == ""
 
 
-def test_a_correlation_that_five_runs_give_by_chance_is_not_called_strong(rng: np.random.Generator) -> None:
-    """The limit is that below which 95 of 100 sets of five unrelated estimates of three coefficients stay."""
-    strong = np.array([[1.0, 0.93, 0.0], [0.93, 1.0, 0.0], [0.0, 0.0, 1.0]])
-    assert correlation_text(("a", "b", "c"), strong, 4.0) == (
-        "The strongest is 0.93, between b and a; with 5 runs or segments left out that may be chance."
+def test_a_correlation_that_four_runs_give_by_chance_is_not_called_strong(rng: np.random.Generator) -> None:
+    """The limit is that below which 95 of 100 sets of four unrelated estimates of three coefficients stay."""
+    strong = np.array([[1.0, 0.96, 0.0], [0.96, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    assert correlation_text(("a", "b", "c"), strong, 3.0) == (
+        "The strongest is 0.96, between b and a; with 4 runs or segments left out that may be chance."
     )
-    assert correlation_text(("a", "b", "c"), strong, 40.0).startswith("1 pair at 0.90 or above in size")
-    draws = [np.corrcoef(rng.standard_normal((3, 5))) for _ in range(4000)]
-    beyond = [np.abs(np.tril(r, k=-1)).max() > 0.9420 for r in draws]  # r of t_3(1 - 0.05/6) = 4.857 by tables
+    assert correlation_text(("a", "b", "c"), strong, 40.0).startswith("1 pair at 0.95 or above in size")
+    draws = [np.corrcoef(rng.standard_normal((3, 4))) for _ in range(4000)]
+    beyond = [np.abs(np.tril(r, k=-1)).max() > 0.98333 for r in draws]  # r of t_2(1 - 0.05/6) = 7.649 by tables
     assert np.mean(beyond) == pytest.approx(0.05, abs=0.012)
-    assert "2 pairs" not in correlation_text(("a", "b", "c"), np.where(strong == 0.93, 0.9425, strong), 4.0)
-    assert correlation_text(("a", "b", "c"), np.where(strong == 0.93, 0.9425, strong), 4.0).startswith("1 pair at 0.94")
+    assert correlation_text(("a", "b", "c"), np.where(strong == 0.96, 0.984, strong), 3.0).startswith("1 pair at 0.98")
 
 
 def test_the_coefficients_count_known_values_and_name_disagreeing_priors(fit: Fit) -> None:

@@ -31,7 +31,8 @@ def steering(
     Args:
         model: a model; or a fit or model file, with their ship and approach condition.
         manoeuvre: e.g. ``zigzag:20/20`` (see `seatrial.manoeuvres`); of a craft with thrusters ``straight:50``,
-            ``spin:50``, ``stop:50``, ``zigzag:30/20`` (per cent of full command; switching heading in degrees).
+            ``spin:50``, ``stop:50``, ``zigzag:30/20`` (per cent of full command; switching heading in degrees); of a
+            model that only rolls ``release:15`` (degrees).
         speed: approach speed, m/s; without it the speed at which surge balances.
         inputs: constant inputs besides the rudder, SI; without them those of the trials. ``ahead``: order ahead of a
             zigzag by thrusters, share of full command.
@@ -42,10 +43,14 @@ def steering(
     Raises:
         InputError: unknown manoeuvre, or a rudder that cannot move.
     """
+    from seatrial.physics.simulate.release import rolls_only
+
     file = as_model_file(model)
     _refuse_no_number(speed)
     if file.model.equations.layout:
         return _by_thrusters(manoeuvre, speed, inputs, duration, rudder_rate)
+    if rolls_only(file.model):
+        return _by_release(file.model, manoeuvre, speed, inputs, duration, rudder_rate)
     from seatrial.physics.manoeuvres.programme import programme
     from seatrial.physics.simulate.steer import manoeuvre as steered
 
@@ -101,6 +106,23 @@ def _by_thrusters(
     refuse_rudder_options(speed, rudder_rate)
     orders = thrust_programme(manoeuvre)
     return lambda craft: thrust_manoeuvre(craft, orders, duration=duration, inputs=inputs)
+
+
+def _by_release(
+    model: "Model",
+    manoeuvre: str,
+    speed: float | None,
+    inputs: Mapping[str, float] | None,
+    duration: float | None,
+    rudder_rate: float | None,
+) -> Steering:
+    from seatrial.physics.simulate.release import natural_period, release
+
+    if speed is not None or rudder_rate is not None or inputs:
+        raise InputError("a release needs no speed, no rudder rate and no inputs; leave them out")
+    period = natural_period(model)
+    release(model, manoeuvre, period, duration)
+    return lambda ship: release(ship, manoeuvre, period, duration)
 
 
 def simulate(

@@ -100,7 +100,7 @@ def simulate(
         typer.Option(
             "--manoeuvre",
             help="zigzag:20/20, turning-circle:35, spiral, pull-out or prbs; by thrusters straight:50, spin:50, "
-            "stop:50 or zigzag:30/20 (per cent); add :port.",
+            "stop:50 or zigzag:30/20 (per cent); of a roll model release:15; add :port.",
         ),
     ] = None,
     inputs: Annotated[
@@ -156,7 +156,7 @@ def simulate(
         record = api.simulate(file, measured, speed=speed)
     else:
         given_rate = None if rudder_rate is None else math.radians(rudder_rate)
-        rate = None if file.model.equations.layout else api.rudder_rate_of(file, given_rate)
+        rate = api.rudder_rate_of(file, given_rate) if "delta" in file.model.input_names else None
         steer = api.steering(
             file,
             manoeuvre or "",
@@ -173,7 +173,7 @@ def simulate(
             print(f"seatrial: {error}", file=sys.stderr)
     write_record_csv(record, out)
     reference = measured if measured is not None and {"psi", "delta"} <= set(measured.channels) else None
-    measures = api.measures(file, record, reference) if "psi" in record else {}
+    measures = api.measures(file, record, reference) if manoeuvre or "psi" in record else {}
     leaving = api.extrapolation(file, record)
     print_measures(measures, intervals, leaving)
     rms = {} if measured is None else api.rms_differences(measured, record)

@@ -1,5 +1,6 @@
 """The last line of a command: what to type next."""
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,6 +12,7 @@ if TYPE_CHECKING:
     from seatrial.core.values import Finding
 
 FULL_RUDDER_DEG = 35.0  # deg, of most ships' rudders (SOLAS II-1/29)
+RELEASE_DEG = 10.0  # deg, of a release where no run shows one; chosen
 NAMES_SHOWN = 3  # coefficients that a line names; chosen
 
 
@@ -45,6 +47,8 @@ def after_fit(fit: "Fit", folder: Path, trial: Path | None = None) -> str:
     if "delta" in fit.model.input_names and "psi" in fit.model.states:
         circle = f"seatrial simulate {model} --manoeuvre turning-circle:{_recorded_rudder(fit):.0f} --out circle.csv"
         return f"{circle}{_design_step(fit, model, trial)}"
+    if {"phi", "c_1"} <= {*fit.model.states, *fit.model.parameters.names} and fit.validation:
+        return f"seatrial simulate {model} --manoeuvre release:{_recorded_roll(fit):.0f} --out release.csv"
     predicted = fit.validation or fit.predictions  # none where only spectra were compared
     if trial is None or not predicted:
         return f"seatrial report {in_shell(folder)}"
@@ -62,6 +66,14 @@ def _recorded_rudder(fit: "Fit") -> float:
     runs = [p.measured for p in fit.predictions if p.role == "training" and "delta" in p.measured]
     reaches = [float(np.degrees(np.nanpercentile(np.abs(run["delta"]), REACH_PERCENTILE))) for run in runs]
     return min(max(reaches, default=FULL_RUDDER_DEG), FULL_RUDDER_DEG)
+
+
+def _recorded_roll(fit: "Fit") -> float:
+    """The largest roll angle [deg] of the runs that were fitted: beyond it the model extrapolates."""
+    import numpy as np
+
+    runs = [p.measured["phi"] for p in fit.predictions if p.role == "training" and "phi" in p.measured]
+    return math.floor(max((float(np.degrees(np.nanmax(np.abs(phi)))) for phi in runs), default=RELEASE_DEG))
 
 
 def _design_step(fit: "Fit", model: str, trial: Path | None) -> str:

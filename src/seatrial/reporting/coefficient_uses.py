@@ -14,6 +14,8 @@ from seatrial.core.values import NOT_MEASURED
 MIN_VARIANCE_INFLATION = 10.0
 # share of its prior's standard deviation from which on the records say next to nothing of a coefficient; chosen
 PRIOR_SHARE = 0.9
+# relative standard error from which on a value is known vaguely only, as of combinations in the same chapter; chosen
+WELL_DETERMINED = 0.1
 # names that a line holds, chosen
 MAX_NAMES = 8
 
@@ -22,6 +24,7 @@ class Use(StrEnum):
     """What a coefficient can be used for, the most first."""
 
     BY_ITSELF = "by itself"
+    VAGUELY = "by itself, vaguely"
     AS_A_SET = "with others only"
     FROM_PRIOR = "from its prior"
     SIGN_OPEN = "sign open"
@@ -65,7 +68,9 @@ def _use(c: Coefficient, inflation: float) -> Use:
         return Use.SIGN_OPEN
     if c.prior_standard_deviation and (c.standard_error or 0.0) >= PRIOR_SHARE * c.prior_standard_deviation:
         return Use.FROM_PRIOR
-    return Use.AS_A_SET if inflation >= MIN_VARIANCE_INFLATION else Use.BY_ITSELF
+    if inflation >= MIN_VARIANCE_INFLATION:
+        return Use.AS_A_SET
+    return Use.VAGUELY if (c.standard_error or 0.0) >= WELL_DETERMINED * abs(c.estimate) else Use.BY_ITSELF
 
 
 def _relative_half_width(c: Coefficient) -> float:
@@ -91,6 +96,7 @@ def _single_values(uses: Sequence[CoefficientUse]) -> str:
     parts = [f"{enumeration(free, MAX_NAMES) if free else 'no coefficient'} can be used by "
              f"{'themselves' if len(free) > 1 else 'itself'}"]  # fmt: skip
     sentences = {
+        Use.VAGUELY: "{} only vaguely, with standard errors above 10 %",
         Use.AS_A_SET: "{} only together, as their errors depend on one another",
         Use.FROM_PRIOR: "{} as far as the prior is right: the records add next to nothing",
         Use.SIGN_OPEN: "not even the sign of {} is known",

@@ -10,9 +10,11 @@ from seatrial.core.text.numbers import fixed
 from seatrial.core.text.words import counted, enumeration
 from seatrial.core.values import Array
 from seatrial.core.values.arrays import correlation_matrix
+from seatrial.reporting.coefficient_uses import MIN_VARIANCE_INFLATION
 
-# size from which on a correlation is strong, and how many of these are named
-STRONG_CORRELATION, MAX_PAIRS = 0.9, 4
+# size from which on a correlation is strong: it alone inflates variances as collinear coefficients have them, and how
+# many of these are named
+STRONG_CORRELATION, MAX_PAIRS = math.sqrt(1.0 - 1.0 / MIN_VARIANCE_INFLATION), 4
 
 
 def correlation_text(names: Sequence[str], covariance: Array, degrees_of_freedom: float = math.inf) -> str:

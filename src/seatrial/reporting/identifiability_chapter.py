@@ -21,14 +21,16 @@ from seatrial.core.text.numbers import DASH, p_value, rounded, signed_percent, s
 from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import NOT_MEASURED, display_unit
 from seatrial.core.values.channel_text import channel_meaning, channel_unit, unit_text
-from seatrial.reporting.coefficient_uses import CoefficientUse, coefficient_uses, meaning_lines
+from seatrial.reporting.coefficient_uses import WELL_DETERMINED, CoefficientUse, coefficient_uses, meaning_lines
 from seatrial.reporting.disturbance_table import DisturbanceRow, disturbance_rows
 from seatrial.reporting.figures.directions import direction_chart, profile_chart
 from seatrial.reporting.posterior_part import PosteriorPart, posterior_part
 from seatrial.reporting.tables import assumption
 
 # relative standard deviation up to which a combination is well determined, and up to which poorly
-WELL_DETERMINED, POORLY_DETERMINED = 0.1, 1.0
+POORLY_DETERMINED = 1.0
+# how a result names the criterion that simulates runs whole
+_OUTPUT_ERROR = "output error"
 # entries of each kind that are shown unfolded
 LEAST_MISFIT = 0.01  # rise of chi^2 below which it is called 0: a tenth of a standard error, squared
 LEAST_SHIFT = 5e-4  # relative change of an estimate that is named: 0.1 % when rounded
@@ -76,7 +78,10 @@ class NoiseRow:
 
 @dataclass(frozen=True)
 class NoiseText:
-    """Criterion, whiteness and intensities."""
+    """Criterion, whiteness and intensities.
+
+    is_whole_run: residuals are those of runs simulated whole, into which process noise has gone.
+    """
 
     method: str
     text: str
@@ -84,6 +89,7 @@ class NoiseText:
     process: tuple[NoiseRow, ...]
     quiet_states: str
     measurement: tuple[NoiseRow, ...]
+    is_whole_run: bool
     candidates: tuple[DisturbanceRow, ...]
     closed_loop: str
     has_disturbance: bool
@@ -265,6 +271,7 @@ def _noise_text(d: NoiseModel, names: Sequence[str]) -> NoiseText:
         tuple(_noise_row(state, q, "/√s") for state, q in active.items()),
         enumeration(quiet),
         tuple(_noise_row(channel, s, "") for channel, s in d.measurement.items()),
+        d.method == _OUTPUT_ERROR and bool(active),
         disturbance_rows(d.candidates),
         " ".join(sentence(text) for text in d.closed_loop.sentences) if d.closed_loop else "",
         d.disturbance != "none",

@@ -113,6 +113,7 @@ _EXTRAPOLATION_CLAUSES = {
     "rudder": ("uses {} times the rudder of", "{} times the rudder"),
     "rudder to port": ("uses more rudder to port than", "more rudder to port"),
     "rudder to starboard": ("uses more rudder to starboard than", "more rudder to starboard"),
+    "roll": ("rolls {} times as far as", "{} times the roll angle"),
     "fastest": ("goes {} times as fast as", "{} times the highest speed"),
     "slowest": ("slows to 1/{} of the lowest speed of", "1/{} of the lowest speed"),
 }

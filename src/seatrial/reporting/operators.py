@@ -27,7 +27,7 @@ def operators_sentence(fit: Fit) -> str:
     if is_missed(fit):
         return ""
     if fit.roll is not None:
-        return _roll(fit.roll)
+        return f"{_roll(fit.roll)}{_at_one_speed(fit)}"
     if fit.thruster_craft is not None:
         return _craft(fit.thruster_craft)
     return "" if fit.seakeeping is None else _waves(fit.seakeeping)
@@ -42,6 +42,12 @@ def _roll(roll: RollCharacteristics) -> str:
     if height is None or height.lower == height.upper:  # unknown, or given
         return f"{text}."
     return f"{text}; GM would be {_estimate(height, ' m')} with {roll.gyradius_source.partition(',')[0]}."
+
+
+def _at_one_speed(fit: Fit) -> str:
+    """Damping grows with speed, so that decays at one speed say nothing of another (Himeno 1981)."""
+    is_at_one = any(finding.code == "one-speed" for finding in fit.findings)
+    return " This is the damping at the speed of these runs only." if is_at_one else ""
 
 
 def _equivalent_damping(roll: RollCharacteristics) -> str:

@@ -42,6 +42,11 @@ def test_a_metacentric_height_that_is_known_gives_the_radius() -> None:
     assert metacentric_height(1.0, radius.value) == pytest.approx(1.1)
     assert metacentric_height(0.9, radius.upper) == metacentric_height(1.1, radius.lower) == pytest.approx(1.1)
     assert "GM of the ship, 1.1 m" in inertia.source
+    assert "3.3" not in inertia.source and "0.66 of the breadth, ships have 0.35 to 0.45" in inertia.source
+
+
+def test_a_radius_that_ships_have_is_not_questioned() -> None:
+    assert "of the breadth" not in roll_inertia(Ship("s", {"GM": 1.1, "B": 8.2}), C_1).source
 
 
 def test_a_period_that_is_not_determined_leaves_the_radius_open() -> None:

@@ -62,7 +62,8 @@ def _ship_lines(model: StartingModel, size: StatedSize) -> list[str]:
         )
     if model.swings:
         breadth = f"B = {size.beam:g}    # m, breadth, as stated" if size.beam else "# B = 0.0    # m, breadth"
-        lines.append(f"{breadth}: with it GM follows from the period")
+        lines.append(f"{breadth}: with it GM follows from the period, within some 40 %")
+        lines.append("# GM = 0.0    # m, metacentric height, if known: the period then gives the radius of gyration")
     return lines
 
 

@@ -16,7 +16,7 @@ from seatrial.physics.sensors import Sensors, with_sensors
 
 Bounds = Mapping[str, tuple[float, float]]
 COMMON_PARTICULARS = {
-    "L": "m", "B": "m", "d": "m", "m": "kg", "I_z": "kg m^2", "k_xx": "m", "k_xx_prime": "1", "GM": "m", "x_G": "m",
+    "L": "m", "B": "m", "d": "m", "m": "kg", "I_z": "kg m^2", "k_xx": "m", "k_xx_prime": "m", "GM": "m", "x_G": "m",
     "C_b": "1", "volume": "m^3", "D_P": "m", "x_P": "m", "A_R": "m^2", "H_R": "m", "x_R": "m", "A_T": "m^2",
     "A_L": "m^2", "rho": "kg/m^3", "pitch_ratio": "1", "area_ratio": "1", "blades": "1",
 }  # fmt: skip

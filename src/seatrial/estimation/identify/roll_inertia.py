@@ -38,7 +38,7 @@ def roll_inertia(ship: Ship, c_1: IntervalEstimate) -> RollInertia:
         source = f"{DRY_GYRADIUS} of the ship, {dry:.4g} m, and an added inertia of {share} % of it, chosen"
         return _by_gyradius(c_1, (low, middle, high), f"{source}; {GYRADIUS_WITH_ADDED_INERTIA} would replace this")
     if METACENTRIC_HEIGHT in particulars:
-        return _by_height(c_1, particulars[METACENTRIC_HEIGHT])
+        return _by_height(c_1, particulars[METACENTRIC_HEIGHT], particulars.get("B", 0.0))
     if "B" in particulars:
         low, middle, high = (share * particulars["B"] for share in GYRADIUS_OVER_BREADTH)
         source = f"a radius of gyration of {_range_text(GYRADIUS_OVER_BREADTH, 1.0)} of the breadth, chosen"
@@ -57,12 +57,22 @@ def _by_gyradius(c_1: IntervalEstimate, radii: tuple[float, float, float], sourc
     return RollInertia(IntervalEstimate(middle, low, high), height, source)
 
 
-def _by_height(c_1: IntervalEstimate, height: float) -> RollInertia:
+def _by_height(c_1: IntervalEstimate, height: float, breadth: float) -> RollInertia:
+    """height: GM [m]; breadth: m, 0 where it is not known."""
     radius = IntervalEstimate(
         gyradius_of(c_1.value, height), gyradius_of(c_1.upper, height),
         gyradius_of(c_1.lower, height) if c_1.lower > 0.0 else math.inf,
     )  # fmt: skip
-    source = f"{METACENTRIC_HEIGHT} of the ship, {height:.4g} m, taken as exact"
+    source = (
+        f"{METACENTRIC_HEIGHT} of the ship, {height:.4g} m, taken as exact (the radius goes with its root: half its "
+        "error in per cent)"
+    )
+    low, _, high = GYRADIUS_OVER_BREADTH
+    if breadth and not low <= radius.value / breadth <= high:
+        source += (
+            f"; the radius is {radius.value / breadth:.2g} of the breadth, ships have {low:g} to {high:g}: check GM, "
+            "the breadth and the period"
+        )
     return RollInertia(radius, IntervalEstimate(height, height, height), source)
 
 

@@ -12,8 +12,8 @@ from seatrial.physics.simulate.rudder_rate import RUDDER_RATE, sustained_rudder_
 
 SIDES = ("port", "starboard")
 """Of the rudder: to which it turns the ship; ranges are called ``rudder to port`` and ``rudder to starboard``."""
-# rad/s, rad, rad, m/s, m/s, below which a range counts as none; chosen
-NEGLIGIBLE = {"yaw_rate": 1e-4, "drift": 1e-3, "rudder": 1e-3, "fastest": 1e-3, "slowest": 1e-3}
+# rad/s, rad, rad, rad, m/s, m/s, below which a range counts as none; chosen
+NEGLIGIBLE = {"yaw_rate": 1e-4, "drift": 1e-3, "rudder": 1e-3, "roll": 1e-3, "fastest": 1e-3, "slowest": 1e-3}
 REST_SHARE = 0.1
 """Share of the fastest speed of the training runs below which a craft counts as at rest; chosen."""
 COMMAND = "command "
@@ -32,12 +32,12 @@ def motion_envelope(records: Sequence[Record], layout: str = "") -> dict[str, fl
 
 
 def _ranges(records: Sequence[Record], layout: str) -> dict[str, float]:
-    """Largest yaw rate, drift and rudder angle, also to each side, fastest and slowest speed, commands.
+    """Largest yaw rate, drift and rudder angle, also to each side, roll, fastest and slowest speed, commands.
 
-    The largest is the 99.5th percentile of all samples, so that a single bad one does not count. What no record holds
-    is absent. Drift is atan2(-v, u). Of every thruster of a `layout` (its text): ``command NAME ahead`` and ``astern``,
-    largest share of full command, and ``command NAME ahead, moving astern`` and so on, largest share times speed along
-    it in that quadrant [m/s].
+    The largest is the 99.5th percentile of all samples, so that a single bad one does not count; of roll, which a decay
+    has once, the largest of all. What no record holds is absent. Drift is atan2(-v, u). Of every thruster of a `layout`
+    (its text): ``command NAME ahead`` and ``astern``, largest share of full command, and ``command NAME ahead, moving
+    astern`` and so on, largest share times speed along it in that quadrant [m/s].
     """
     made: dict[str, float] = {}
     for name, samples in (
@@ -51,6 +51,9 @@ def _ranges(records: Sequence[Record], layout: str) -> dict[str, float]:
     for side, sign in zip(SIDES, (-1.0, 1.0), strict=True) if steered else ():
         angles = np.maximum(sign * np.concatenate(steered), 0.0)
         made[f"rudder to {side}"] = float(np.nanpercentile(angles, REACH_PERCENTILE))
+    rolls = [float(np.nanmax(np.abs(r["phi"]))) for r in records if "phi" in r]
+    if rolls:
+        made["roll"] = max(rolls)
     speeds = [_speed(r) for r in records if "u" in r]
     if speeds:
         flow = np.concatenate(speeds)
@@ -85,7 +88,7 @@ def extrapolation(predicted: Record, training_envelope: Mapping[str, float], lay
     """
     own = _ranges([predicted], layout)
     both = {n: (own[n], training_envelope[n]) for n in own if training_envelope.get(n, 0.0) > NEGLIGIBLE.get(n, 0.0)}
-    ratios = {n: both[n][0] / both[n][1] for n in ("yaw_rate", "drift", "rudder") if n in both}
+    ratios = {n: both[n][0] / both[n][1] for n in ("yaw_rate", "drift", "rudder", "roll") if n in both}
     for name in (f"rudder to {side}" for side in SIDES) if "rudder" in both else ():
         reach = both["rudder"][1]
         beyond = min(own[name], reach) - training_envelope.get(name, reach)

@@ -57,7 +57,20 @@ def gyradius_of(c_1: float, metacentric_height: float) -> float:
 def observed_swings(roll: Array, dt: float) -> tuple[Array, Array, Array]:
     """Amplitude [rad], logarithmic damping 2 ln(a_i / a_i+2) / T [1/s] and period T [s] of each swing of a decay.
 
-    roll (n,): from the angle of rest; a_i is the i-th extreme, of either side, by a parabola through three samples.
+    roll (n,): from the angle of rest; a_i is the i-th extreme, of either side.
+    """
+    time, size = swing_extremes(roll, dt)
+    if len(size) < 3:
+        return np.zeros(0), np.zeros(0), np.zeros(0)
+    period = time[2:] - time[:-2]
+    return np.sqrt(size[:-2] * size[2:]), 2.0 * np.log(size[:-2] / size[2:]) / period, period
+
+
+def swing_extremes(roll: Array, dt: float) -> tuple[Array, Array]:
+    """Time from the first sample [s] and size [rad] of the extremes to either side, by parabolas.
+
+    roll (n,): from the angle of rest. Each parabola goes through three samples. Only what lies between two crossings of
+    the angle of rest counts.
     """
     crossings = np.flatnonzero(roll[1:] * roll[:-1] < 0.0) + 1
     tops, sizes = [], []
@@ -69,8 +82,4 @@ def observed_swings(roll: Array, dt: float) -> tuple[Array, Array, Array]:
             shift = 0.5 * (left - right) / bend if bend < 0.0 else 0.0
             tops.append((k + shift) * dt)
             sizes.append(top - 0.25 * (left - right) * shift)
-    time, size = np.array(tops), np.array(sizes)
-    if len(size) < 3:
-        return np.zeros(0), np.zeros(0), np.zeros(0)
-    period = time[2:] - time[:-2]
-    return np.sqrt(size[:-2] * size[2:]), 2.0 * np.log(size[:-2] / size[2:]) / period, period
+    return np.array(tops), np.array(sizes)

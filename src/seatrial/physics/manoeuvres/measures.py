@@ -7,6 +7,7 @@ import numpy as np
 
 from seatrial.core.values import InputError, Record
 from seatrial.physics.manoeuvres.recognition import ManoeuvreKind, ObservedManoeuvre
+from seatrial.physics.manoeuvres.release import roll_measures
 from seatrial.physics.manoeuvres.thrust_measures import commands_of, thrust_measures
 from seatrial.physics.manoeuvres.track import Swing, mean_between, peak, speed, steady_turning
 
@@ -23,7 +24,8 @@ def measures(
     """Return measures of the manoeuvre the record shows, by name; those it does not allow are absent.
 
     Args:
-        record: needs ``psi`` and ``delta``; of a craft with thrusters see `thrust_measures`.
+        record: needs ``psi`` and ``delta``; of a craft with thrusters see `thrust_measures`, of a
+            decay of roll `roll_measures`.
             ``x0``, ``y0`` for distances, ``u``, ``v``, ``r`` for speeds and rates. A
             simulated record without ``u`` is that of a model without surge, whose distances mean nothing.
         length: of the ship [m], the unit of names ending in ``_L``.
@@ -52,6 +54,8 @@ def measures(
         reference = ObservedManoeuvre.from_record(reference)
     if "delta" not in record and commands_of(record):
         return thrust_measures(record)
+    if "psi" not in record and "phi" in record:
+        return roll_measures(record)
     seen = reference.transferred_to(record) if reference else ObservedManoeuvre.from_record(record)
     return {name: value + 0.0 for name, value in _measures_of(seen, length, switching).items()}  # -0 + 0 is 0
 
