@@ -36,7 +36,6 @@ EXCEPTIONS: dict[str, str] = {
     "estimation/estimate: warm_start": _WINDOW,
     "numerics/kernels: filter_linear": _COMPILED,
     "numerics/kernels: filter_runge_kutta": _COMPILED,
-    "numerics/kernels: linear_controller": _COMPILED,
     "numerics/kernels: load_kernels": "starts compiled code ahead of its use; whatever simulates runs it",
     "numerics/kernels: residuals_and_jacobian": _COMPILED,
     "numerics: distrust": "tests/core/equations/test_cache.py damages entries of every kind",

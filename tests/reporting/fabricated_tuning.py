@@ -10,6 +10,7 @@ from seatrial.core.results.tuning import (
     Component,
     Controller,
     ControllerConstraints,
+    CornerResponse,
     DisturbanceSimulation,
     ManoeuvreResponse,
     OperatingPoint,
@@ -18,6 +19,7 @@ from seatrial.core.results.tuning import (
     PerformanceBound,
     Robustness,
     SeawaySimulation,
+    TrackKeeping,
     Tuning,
 )
 from seatrial.core.values import Array, Channel, Finding, Parameter, Parameters, Record, RecordKind, Severity, frozen
@@ -111,8 +113,21 @@ def fabricated_autopilot() -> Tuning:
         manoeuvres=(_course_change(rng, "course change of 20 deg", "chosen", 1.7, 60.0),
                     replace(_course_change(rng, "course change of 20 deg", "given", 1.0, 12.0), draws=0, stable_draws=0,
                             worst_overshoot=math.nan, sampled_outputs=np.empty((0, 0)), settling=math.nan)),
-        findings=(), reasons=(),
+        findings=(), reasons=(), track=fabricated_track(),
     )  # fmt: skip
+
+
+def fabricated_track() -> TrackKeeping:
+    """A corner of 60 degrees turned in a circle, and a current in which the limits do not matter."""
+    t = np.linspace(-60.0, 200.0, 200)
+    turn, north = math.radians(60.0), np.where(t < 0.0, 7.0 * t, 7.0 * 0.5 * t)
+    east = np.where(t < 0.0, 0.0, 7.0 * 0.866 * t - 12.0 * t * np.exp(-t / 20.0))
+    record = Record.from_arrays("corner", t + 60.0, {"x0": north, "y0": east}, RecordKind.SIMULATED)
+    rms = {"output": 12.3, "actuator": 0.02, "actuator_rate": 0.002}
+    kept = DisturbanceSimulation("current of 0.3 m/s", 8, rms, rms | {"output": 12.1}, rms | {"output": 12.2},
+                                 {"output": 0.2, "actuator": 3e-4, "actuator_rate": 3e-5})  # fmt: skip
+    corner = CornerResponse(turn, 200.0, 0.3, record, 41.0, 55.0, 99, 100)
+    return TrackKeeping(300.0, 1.5, 0.02, 7.0, 1.6, 4.0, math.radians(48.0), 35.0, (kept,), corner)
 
 
 def _kept_in_a_slow_disturbance() -> DisturbanceSimulation:

@@ -13,6 +13,7 @@ from tests.reporting.test_page import HOSTILE, parsed
 from seatrial.core.results.tuning import PairedDifference, Tuning
 from seatrial.core.values import Finding, Severity
 from seatrial.reporting.first_screen import KeyFact
+from seatrial.reporting.track_part import corner_figure, corner_sentence, track_rows
 from seatrial.reporting.tuning import TITLES, html
 from seatrial.reporting.tuning_rows import (
     disturbance_headings,
@@ -21,13 +22,19 @@ from seatrial.reporting.tuning_rows import (
     schedule_table,
     transfer_latex,
 )
-from seatrial.reporting.tuning_text import comparison_sentence, demand_sentence, key_facts, verdict
+from seatrial.reporting.tuning_text import (
+    comparison_sentence,
+    demand_sentence,
+    guidance_sentence,
+    key_facts,
+    verdict,
+)
 
 LARGEST = 600_000
 MADE = {"fin": fabricated_fin, "autopilot": fabricated_autopilot, "bare": fabricated_bare}
 SECTIONS = {
-    "fin": set(TITLES) - {"disturbances", "manoeuvres", "search"},
-    "autopilot": {"controllers", "disturbances", "margins", "manoeuvres", "loop", "method"},
+    "fin": set(TITLES) - {"disturbances", "manoeuvres", "search", "track"},
+    "autopilot": {"controllers", "disturbances", "margins", "manoeuvres", "track", "loop", "method"},
     "bare": {"controllers", "method"},
 }
 
@@ -70,6 +77,25 @@ def test_disturbances_are_shown_predicted_and_simulated() -> None:
     ]
     assert [count for *_, count in disturbance_headings(autopilot)] == [3, 2, 2]
     assert "0.591 ± 0.02" in html(autopilot)
+
+
+def test_a_track_is_shown_with_its_guidance_and_corner() -> None:
+    autopilot = fabricated_autopilot()
+    track = autopilot.track
+    assert track is not None
+    assert guidance_sentence(track) == (
+        "Line of sight with a lookahead distance of 300 m and an integral gain of 1.50 m/s, at 7.00 m/s; with the "
+        "heading loop closed Ms 1.60, gain margin 12 dB, phase margin 48° and delay margin 35 s."
+    )
+    assert corner_sentence(track) == (
+        "At a corner of 60°, taken 200 m before it, in 0.3 m/s of current towards the outside, the craft goes 41.0 m "
+        "beyond the new leg; 99 of 100 ships that the fit allows keep a track (55.0 m at most)."
+    )
+    assert track_rows(autopilot, track) == [
+        ("current of 0.3 m/s", "12.3", "12.1 ± 0.4", "12.2", "1.15", "1.15", "0.115", "0.115")
+    ]
+    assert corner_figure(track) in html(autopilot)
+    assert rows(autopilot)["Track"].text == guidance_sentence(track)
 
 
 def test_the_same_tuning_gives_the_same_bytes(page: str) -> None:

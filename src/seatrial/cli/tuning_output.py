@@ -32,6 +32,7 @@ def print_tuning(tuning: "Tuning") -> None:
     _print_robustness(tuning)
     _print_disturbances(tuning)
     _print_manoeuvres(tuning)
+    _print_track(tuning)
     print_warnings(tuning.findings)
     print_lines([_effort_text(tuning)])
 
@@ -161,6 +162,17 @@ def _print_disturbances(tuning: "Tuning") -> None:
         (_, unit, _), *_ = disturbance_headings(tuning)
         header = (f"{tuning.output} kept, rms [{unit}]", "predicted", "simulated", "with limits")
         print_table([header, *(row[:4] for row in disturbance_rows(tuning))])
+
+
+def _print_track(tuning: "Tuning") -> None:
+    from seatrial.reporting.track_part import corner_sentence, track_rows
+    from seatrial.reporting.tuning_text import guidance_sentence
+
+    if tuning.track is not None:
+        print_lines([guidance_sentence(tuning.track)])
+        header = ("distance from the track, rms [m]", "predicted", "simulated", "with limits")
+        print_table([header, *(row[:4] for row in track_rows(tuning, tuning.track))])
+        print_lines([corner_sentence(tuning.track)], "  ")
 
 
 def _print_manoeuvres(tuning: "Tuning") -> None:

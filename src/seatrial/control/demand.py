@@ -65,7 +65,7 @@ def simulate_manoeuvres(
     limits = ActuatorLimits(task.constraints.limit, task.constraints.rate)
     return tuple(
         _simulate_manoeuvre(one, ship, loop, name, gains, limits, drawn.ships, stable)
-        for one in _programmes(task, loop, gains, _required_demand(task))
+        for one in _programmes(task, loop, gains, task.required_demand)
     )
 
 
@@ -74,7 +74,7 @@ def shortfall(task: TuningTask, loop: TransferLoop, gains: Array, *, draws: int 
 
     Every ship drawn is to be stable; the identified one settles within 5 % and overshoots no more than allowed.
     """
-    asked = _required_demand(task)
+    asked = task.required_demand
     stable, drawn = stable_draws(task, gains, loop, draws=draws)
     lost = drawn - stable
     try:
@@ -168,12 +168,6 @@ def settling_time(output: Array, demand: Array, step_samples: tuple[int, ...], d
             return math.nan
         slowest = max(slowest, (outside[-1] + 1) * dt if outside.size else 0.0)
     return slowest
-
-
-def _required_demand(task: TuningTask) -> Demand:
-    if task.demand is None:
-        raise InputError(f"tuning '{task.name}' follows no demand; give a change")
-    return task.demand
 
 
 def _programmes(task: TuningTask, loop: TransferLoop, gains: Array, demand: Demand) -> tuple[_Programme, ...]:

@@ -1,6 +1,7 @@
 """A servo loop kept steady in what disturbs it: simulated with its actuator's limits beside linear theory."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import accumulate
 
@@ -16,17 +17,17 @@ from seatrial.physics.hydro.excitation import Complex
 from seatrial.physics.loops import TransferLoop, plant_model
 from seatrial.physics.simulate.closed_loop import UNLIMITED, ActuatorLimits, ClosedLoop
 
-_SEEDS, _CYCLES = 8, 60  # realisations, and cycles of the output's mean frequency in each; chosen
+SEEDS, _CYCLES = 8, 60  # realisations, and cycles of the output's mean frequency in each; chosen
 _STEP_SHARE = 0.1  # of the fastest pole's time constant, of a step; chosen
 _MOST_STEPS = 300_000  # of a realisation; chosen
 _RUN_IN = 5.0  # time constants of the slowest pole, before what is counted; chosen
 _COUNTED = 20.0  # the same, that are counted at least; chosen
-_LEAST_FREQUENCY = 1e-9  # rad/s: a wave that keeps up with the ship
+LEAST_FREQUENCY = 1e-9  # rad/s: a wave that keeps up with the ship
 SIGNALS = ("output", "actuator", "actuator_rate")
 
 
 @dataclass(frozen=True)
-class _Clock:
+class DisturbanceClock:
     """Step [s], number of samples of a realisation, and the first that is counted."""
 
     dt: float
@@ -54,26 +55,27 @@ def _simulate(
     met: Seaway | SlowDisturbance, loop: TransferLoop, limits: ActuatorLimits, expected: Array, seed: int
 ) -> DisturbanceSimulation:
     """Return one disturbance before a loop; expected: rms by linear theory, (3,)."""
-    clock, model = _clock(met, loop), plant_model(loop)
+    clock, model = disturbance_clock(met, loop), plant_model(loop)
     actuator, disturbance = model.input_names
     run = ClosedLoop(model, loop, loop.gain_values, clock.dt, actuator, disturbance, loop.output)
 
     def of_one(number: int) -> Array:
-        series = _series(met, loop, clock, number)
+        series = disturbance_realisation(met, loop, clock, number)
         return np.stack([_mean_squares(run, series, clock, each) for each in (UNLIMITED, limits)])
 
-    free, held = np.stack(map_in_threads(of_one, [seed + k for k in range(_SEEDS)]), axis=1)
+    free, held = np.stack(map_in_threads(of_one, [seed + k for k in range(SEEDS)]), axis=1)
     rms = np.sqrt(free.mean(axis=0))
-    error = free.std(axis=0, ddof=1) / math.sqrt(_SEEDS) / (2.0 * rms)
+    error = free.std(axis=0, ddof=1) / math.sqrt(SEEDS) / (2.0 * rms)
     columns = (expected, rms, np.sqrt(held.mean(axis=0)), error)
-    return DisturbanceSimulation(met.description, _SEEDS, *(_named(column) for column in columns))
+    return DisturbanceSimulation(met.description, SEEDS, *(named_signals(column) for column in columns))
 
 
-def _named(values: Array) -> dict[str, float]:
+def named_signals(values: Array) -> dict[str, float]:
+    """Return rms of output, actuator and its rate by name."""
     return dict(zip(SIGNALS, values.tolist(), strict=True))
 
 
-def _clock(met: Seaway | SlowDisturbance, loop: TransferLoop) -> _Clock:
+def disturbance_clock(met: Seaway | SlowDisturbance, loop: TransferLoop) -> DisturbanceClock:
     """Return steps short for the fastest pole, a run-in for the slowest, and enough cycles of the output."""
     spectrum = met.exposure(loop)
     omega = spectrum.omega_e
@@ -84,26 +86,36 @@ def _clock(met: Seaway | SlowDisturbance, loop: TransferLoop) -> _Clock:
     dt = _STEP_SHARE / float(np.abs(poles).max())
     counted = max(_CYCLES * 2.0 * math.pi / mean, _COUNTED * slowest)
     count = min(math.ceil((_RUN_IN * slowest + counted) / dt), _MOST_STEPS)
-    return _Clock(dt, count, min(math.ceil(_RUN_IN * slowest / dt), count // 2))
+    return DisturbanceClock(dt, count, min(math.ceil(_RUN_IN * slowest / dt), count // 2))
 
 
 def _response(loop: TransferLoop, omega: Array) -> Complex:
     """Return D S at omega [rad/s], kept from zero where the plant integrates."""
-    w = np.maximum(omega, _LEAST_FREQUENCY)
+    w = np.maximum(omega, LEAST_FREQUENCY)
     return loop.disturbance.frequency_response(w) / (1.0 + loop.open_loop(w))
 
 
-def _series(met: Seaway | SlowDisturbance, loop: TransferLoop, clock: _Clock, number: int) -> Array:
+def disturbance_realisation(
+    met: Seaway | SlowDisturbance,
+    loop: TransferLoop,
+    clock: DisturbanceClock,
+    number: int,
+    response: Callable[[Array], Complex | Array] | None = None,
+) -> Array:
+    """Return a disturbance (n,) at the samples of a clock, from that seed.
+
+    response: over |omega_e| (n,), of what is counted, whose waves are taken; by default the loop's output.
+    """
     rng = np.random.default_rng(number)
     if isinstance(met, SlowDisturbance):
         stay = math.exp(-met.bandwidth * clock.dt)
         kicks = met.rms * math.sqrt(1.0 - stay**2) * rng.standard_normal(clock.count)
         return np.fromiter(accumulate(kicks.tolist(), lambda now, kick: stay * now + kick), np.float64, clock.count)
-    lines = wave_components(met, rng, frequency_band(met, lambda omega: _response(loop, omega)))
+    lines = wave_components(met, rng, frequency_band(met, response or (lambda omega: _response(loop, omega))))
     return sum_harmonics(lines.omega_e, effect_amplitudes(lines, met.effect), clock.dt, clock.count)
 
 
-def _mean_squares(run: ClosedLoop, disturbance: Array, clock: _Clock, limits: ActuatorLimits) -> Array:
+def _mean_squares(run: ClosedLoop, disturbance: Array, clock: DisturbanceClock, limits: ActuatorLimits) -> Array:
     """Return mean squares of output, actuator and its rate, (3,); infinite where the limits let the loop run away."""
     first = clock.first
     try:

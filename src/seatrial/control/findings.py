@@ -1,5 +1,6 @@
 """What to warn of in a tuning."""
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -17,6 +18,7 @@ from seatrial.core.results.tuning import (
     ParetoFront,
     PerformanceBound,
     SeawaySimulation,
+    TrackKeeping,
     TuningMethod,
 )
 from seatrial.core.values import Finding, Severity
@@ -38,6 +40,7 @@ class Checks:
     disturbances: tuple[DisturbanceSimulation, ...] = ()
     schedule: Schedule = field(default_factory=Schedule)
     bounds: tuple[PerformanceBound, ...] = ()
+    track: TrackKeeping | None = None
     is_interrupted: bool = False
 
 
@@ -64,6 +67,7 @@ def findings(
         for s in checks.disturbances
         if s.limited["output"] > MAX_LIMITED_RATIO * s.unlimited["output"]
     ]  # fmt: skip
+    found += _track_findings(checks.track)
     if front.hypervolume < _LEAST_COVERAGE:
         found.append(_warning("coarse-front", f"the front covers {100.0 * front.hypervolume:.1f} % of what a grid of "
                               "all gains does", "give it another seed"))  # fmt: skip
@@ -123,6 +127,23 @@ def _simulation_findings(
                                   f"'{pair.baseline}' {pair.stage}: {100.0 * pair.mean:+.1f} points, interval "
                                   f"{100.0 * pair.lower:+.1f} to {100.0 * pair.upper:+.1f}", "keep those, or give more "
                                   "freedom"))  # fmt: skip
+    return found
+
+
+def _track_findings(track: TrackKeeping | None) -> list[Finding]:
+    if track is None:
+        return []
+    found, corner = [], track.corner
+    if corner.stable_draws < corner.draws or math.isinf(corner.worst_overshoot):
+        lost = f"{corner.draws - corner.stable_draws} of {corner.draws} ships that the fit allows"
+        text = f"{lost} do not keep a track under this guidance, or run away at the corner"
+        found.append(_warning("track-lost", text, "more trials, or more margin (less Ms)"))
+    free, held = (
+        math.hypot(*(getattr(s, stage)["output"] for s in track.disturbances)) for stage in ("unlimited", "limited")
+    )
+    if held > MAX_LIMITED_RATIO * free:
+        text = f"the distance from the track is {held / free:.2g} times as large with the actuator's limits as without"
+        found.append(_warning("track-lost-to-limits", text, "allow the actuator more, or less Ms"))
     return found
 
 

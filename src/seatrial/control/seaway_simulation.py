@@ -210,7 +210,7 @@ def sum_harmonics(omega: Array, amplitude: Complex, dt: float, count: int) -> Ar
     return made.ravel()[:count]
 
 
-def frequency_band(seaway: Seaway, response: Callable[[Array], Complex] | None = None) -> tuple[float, float]:
+def frequency_band(seaway: Seaway, response: Callable[[Array], Complex | Array] | None = None) -> tuple[float, float]:
     """Return frequencies [rad/s] of all waves that do much to the loop, up to twelve times the modal one.
 
     Where the effect is the motion of a hull, of all that its excitation knows: points of it may feel shorter waves.
@@ -234,7 +234,7 @@ def frequency_band(seaway: Seaway, response: Callable[[Array], Complex] | None =
     return float(omega[ends[0]]), float(omega[ends[1]])
 
 
-def _responded(seaway: Seaway, response: Callable[[Array], Complex], omega: Array, beta: float) -> Array:
+def _responded(seaway: Seaway, response: Callable[[Array], Complex | Array], omega: Array, beta: float) -> Array:
     met = np.abs(encounter_frequency(omega, seaway.U, beta))
     return np.abs(seaway.effect.amplitude(omega, seaway.U, beta) * response(met)) ** 2
 

@@ -34,6 +34,7 @@ OUTPUT = variance("output", "rad^2", LoopSignal.OUTPUT)
 _KEPT_SEAS = 256  # whose quadrature is kept: those of a schedule and between, of fronts on the same plant; chosen
 _sea_disturbance = lru_cache(maxsize=_KEPT_SEAS)(sea_disturbance)
 _SLOWEST, _FASTEST = 1e-3, 1e2  # frequencies of a slow disturbance over its bandwidth; chosen
+_BEYOND = 30.0  # its highest frequency over the plant's fastest pole; chosen
 
 
 @dataclass(frozen=True)
@@ -90,7 +91,8 @@ class SlowDisturbance:
     """A slow disturbance: coloured noise of `rms` [`unit`] and `bandwidth` [rad/s], `acting_like` an input.
 
     Its one-sided density is 2 rms^2 bandwidth / pi / (omega^2 + bandwidth^2), that of a first-order Gauss-Markov
-    process (Gelb 1974, Applied Optimal Estimation, section 3.8). U: m/s, the ship's speed.
+    process (Gelb 1974, Applied Optimal Estimation, section 3.8). U: m/s, the ship's speed; path: to the output,
+    where it is not the loop's own disturbance.
     """
 
     rms: float
@@ -98,10 +100,16 @@ class SlowDisturbance:
     U: float
     unit: str = "rad"
     acting_like: str = "of the actuator"
+    path: Block | None = None
 
     def disturbed(self, loop: TransferLoop) -> TransferLoop:
-        """Return the loop as it is: its own disturbance is this one."""
-        return loop
+        """Return the loop with the path of the disturbance to its output: its own where there is none."""
+        return loop if self.path is None else replace(loop, disturbance=self.path)
+
+    def _fastest(self, loop: TransferLoop) -> float:
+        """Return the highest frequency [rad/s]: with a path of its own beyond the plant's fastest pole, too."""
+        poles = np.abs(loop.plant.poles) if self.path is not None else np.zeros(1)
+        return max(_FASTEST * self.bandwidth, _BEYOND * float(poles.max(initial=0.0)))
 
     def exposure(self, loop: TransferLoop) -> EncounterSpectrum:
         """Return the disturbance over five decades about its bandwidth.
@@ -110,8 +118,8 @@ class SlowDisturbance:
         """
         b = self.bandwidth
         made = disturbance_spectrum(
-            lambda w: 2.0 * self.rms**2 * b / math.pi / (w**2 + b**2), _SLOWEST * b, _FASTEST * b, loop.disturbance,
-            self.description,
+            lambda w: 2.0 * self.rms**2 * b / math.pi / (w**2 + b**2), _SLOWEST * b, self._fastest(loop),
+            self.disturbed(loop).disturbance, self.description,
         )  # fmt: skip
         moved = [point.plant.frequency_response(made.omega_e) for point in loop.points]
         return replace(made, points=tuple(PointSpectrum(np.abs(q) ** 2 * made.energy, q * made.energy) for q in moved))
@@ -174,6 +182,20 @@ class Demand:
 
 
 @dataclass(frozen=True)
+class TrackDemand:
+    """A track to be kept in a current across it: coloured noise of rms `current` [m/s] and `bandwidth` [rad/s].
+
+    turn: rad, of the corner on which the guidance is tried; acceptance: m along the track before it at which the next
+    leg is taken.
+    """
+
+    current: float
+    bandwidth: float
+    turn: float
+    acceptance: float
+
+
+@dataclass(frozen=True)
 class PlantUncertainty:
     """How far a ship may differ from the model: shares of the plant's gain and time constants, dead time [s], draws."""
 
@@ -216,6 +238,7 @@ class TuningTask:
         sample_s: sample time of the controller on board [s]; None: as the loop allows.
         drive: of the actuator, for its energy; None where no inertia is known.
         uncertainty: of the ships that the controllers are tried on.
+        track: to be kept around the heading loop; None where none is.
 
     Raises:
         InputError: nothing disturbs the loop, a plant with poles right of the axis, gains of other names.
@@ -240,6 +263,7 @@ class TuningTask:
     drive: ActuatorDrive | None = None
     sample_s: float | None = None
     uncertainty: PlantUncertainty = PlantUncertainty()
+    track: TrackDemand | None = None
 
     def __post_init__(self) -> None:
         if not self.disturbances or not self.objectives:
@@ -258,6 +282,17 @@ class TuningTask:
         """
         row = self.objectives[0].variances[0]
         return vertical_acceleration(row.x) if row.signal is LoopSignal.POINT else OUTPUT
+
+    @property
+    def required_demand(self) -> Demand:
+        """The demand.
+
+        Raises:
+            InputError: there is none.
+        """
+        if self.demand is None:
+            raise InputError(f"tuning '{self.name}' follows no demand; give a change")
+        return self.demand
 
     def loop_at(self, U: float, loop: TransferLoop | None = None) -> TransferLoop:
         """Return the loop (the task's own if none is given) at the speed U [m/s]."""

@@ -20,6 +20,7 @@ from seatrial.control.robustness import robustness
 from seatrial.control.schedule import schedule
 from seatrial.control.seaway_simulation import compare_pairwise, simulate_in_seaway
 from seatrial.control.task import OUTPUT, TuningTask
+from seatrial.control.track.tune_track import tune_track
 from seatrial.core.results.tuning import (
     Controller,
     PairedDifference,
@@ -114,6 +115,7 @@ def tune(
         gain_units={gain.name: gain.unit for gain in choice.evaluator.loop.gains},
         motion="" if task.motion is OUTPUT else task.motion.name.removeprefix("variance of the "),
         robustness=_robustness(task, choice, own.designs, rivals),
+        track=checks.track,
         discrete=discrete_controller(choice.evaluator.loop.with_gains(choice.gains), task.sample_s),
     )
 
@@ -173,6 +175,9 @@ def _run_checks(
             made.manoeuvres = simulate_manoeuvres(task, loop, "chosen", choice.gains, seed, draws=PARAMETER_DRAWS)
             report_progress("what disturbs the loop, simulated with the actuator's limits")
             made.disturbances = simulate_disturbances(task, loop, choice.gains, seed)
+        if task.track is not None:
+            report_progress("track: lookahead distance")
+            made.track = tune_track(task, task.track, loop, choice.gains, seed, report_progress)
         if task.simulation is not None and task.demand is None:
             made.simulations, made.comparisons = _simulate_controllers(task, choice, compared, seed, report_progress)
         if task.schedule_grid is not None:

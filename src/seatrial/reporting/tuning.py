@@ -10,7 +10,7 @@ from seatrial.core.results.loop_charts import bode_chart, nyquist_chart, sensiti
 from seatrial.core.results.tuning import ManoeuvreResponse, Tuning
 from seatrial.core.text.numbers import fixed
 from seatrial.core.values.channel_text import channel_meaning
-from seatrial.reporting import gain_search, tuning_rows, tuning_text
+from seatrial.reporting import gain_search, track_part, tuning_rows, tuning_text
 from seatrial.reporting.document import page_text
 from seatrial.reporting.figures.controlled_runs import manoeuvre_view, seaway_view
 from seatrial.reporting.figures.loop_diagram import loop_diagram, signal_order
@@ -31,6 +31,7 @@ TITLES = {
     "simulation": "Simulation with limits and stall",
     "disturbances": "Kept in simulated disturbances",
     "manoeuvres": "Response to demands",
+    "track": "Track keeping",
     "schedule": "Schedule",
     "bounds": "Lower bounds of any linear controller",
     "loop": "The loop",
@@ -61,6 +62,7 @@ def html(tuning: Tuning) -> str:
         "simulation": bool(tuning.seaway_simulations),
         "disturbances": bool(tuning.disturbance_simulations),
         "manoeuvres": bool(tuning.manoeuvres),
+        "track": tuning.track is not None,
         "schedule": bool(tuning.schedule),
         "bounds": bool(tuning.bounds),
         "loop": bool(tuning.components),
@@ -105,6 +107,7 @@ def html(tuning: Tuning) -> str:
         "disturbances": tuning_rows.disturbance_rows(tuning),
         "disturbance_heads": tuning_rows.disturbance_headings(tuning),
         "manoeuvres": [(m, _manoeuvre_figure(m, tuning), tuning_text.demand_sentence(m)) for m in tuning.manoeuvres],
+        "track": _track_context(tuning),
         "maps": Markup(svg(schedule_chart(tuning.schedule))),
         "schedule": tuning_rows.schedule_table(tuning.schedule),
         "trades": [(tuning_text.step_text(t.largest_step), fixed(t.cost, 3)) for t in tuning.schedule_trades],
@@ -126,6 +129,19 @@ def _lead_figure(tuning: Tuning) -> tuple[Markup, str]:
 def _manoeuvre_figure(m: ManoeuvreResponse, tuning: Tuning) -> Markup:
     view = manoeuvre_view(m, tuning)
     return run_figure(view, is_wide=True) if view else Markup()
+
+
+def _track_context(tuning: Tuning) -> dict[str, object]:
+    """What the chapter on track keeping shows; empty without one."""
+    if tuning.track is None:
+        return {}
+    return {
+        "sentences": (tuning_text.guidance_sentence(tuning.track), track_part.corner_sentence(tuning.track)),
+        "heads": [("distance", "m", 3), *tuning_rows.disturbance_headings(tuning)[1:]],
+        "rows": track_part.track_rows(tuning, tuning.track),
+        "figure": track_part.corner_figure(tuning.track),
+        "caption": track_part.CAPTION,
+    }
 
 
 def _search_context(tuning: Tuning) -> dict[str, object]:

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from seatrial.core.results.tuning import Controller, ManoeuvreResponse, PairedDifference, Tuning
+from seatrial.core.results.tuning import Controller, ManoeuvreResponse, PairedDifference, TrackKeeping, Tuning
 from seatrial.core.text.numbers import duration, exact, fixed, significant
 from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import Severity
@@ -37,6 +37,8 @@ def key_facts(tuning: Tuning) -> tuple[KeyFact, ...]:
         KeyFact("Compared", " ".join(map(comparison_sentence, pairs)), "simulation",
                 all(pair.upper >= 0.0 for pair in pairs)),
         KeyFact("Demands", " ".join(demands), "manoeuvres"),
+        KeyFact("Track", guidance_sentence(tuning.track) if tuning.track else "", "track",
+                tuning.track is None or tuning.track.corner.stable_draws == tuning.track.corner.draws),
         KeyFact("Schedule", _schedule(tuning), "schedule", all(s.is_feasible for s in tuning.schedule)),
     )  # fmt: skip
     text = " ".join(_on_bounds(tuning)) or enumeration(warned) or "none"
@@ -127,7 +129,16 @@ def _holds_other_ships(tuning: Tuning) -> bool:
     return all(r.stable_draws == r.draws and r.stable_corners == r.corners for r in tuning.robustness[:1])
 
 
-def margin_texts(c: Controller) -> list[str]:
+def guidance_sentence(track: TrackKeeping) -> str:
+    """Return lookahead distance and integral gain along a track with the margins of the outer loop."""
+    return (
+        f"Line of sight with a lookahead distance of {significant(track.lookahead, 3)} m and an integral gain of "
+        f"{significant(track.integral_gain, 3)} m/s, at {significant(track.speed, 3)} m/s; with the heading loop "
+        f"closed Ms {fixed(track.Ms, 2)}, {enumeration(margin_texts(track))}."
+    )
+
+
+def margin_texts(c: Controller | TrackKeeping) -> list[str]:
     """Return gain margin [dB], phase margin [deg] and delay margin [s] as text."""
     gain = f"{fixed(20.0 * math.log10(c.gain_margin), 0)} dB" if 0.0 < c.gain_margin < math.inf else "unlimited"
     phase = f"{fixed(math.degrees(c.phase_margin), 0)}°" if math.isfinite(c.phase_margin) else "unlimited"

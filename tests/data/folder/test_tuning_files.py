@@ -146,3 +146,11 @@ def test_the_schedule_is_a_table(fin: Tuning) -> None:
     assert float(rows[0]["cost given"]) == pytest.approx(fin.schedule[0].baseline_costs["given"], rel=1e-7)
     assert {row["feasible"] for row in rows} == {"yes", "no"}
     assert schedule_csv(fabricated_bare()) == ""
+
+
+def test_the_guidance_of_a_track_is_written_with_its_units() -> None:
+    table = tomllib.loads(gains_toml(fabricated_autopilot()))["track"]
+    assert table["lookahead_m"] == 300.0
+    assert table["integral_gain_m_per_s"] == 1.5
+    assert table["order_rate_deg_per_s"] == pytest.approx(1.1459, abs=1e-4)
+    assert "track" not in tomllib.loads(gains_toml(fabricated_fin()))

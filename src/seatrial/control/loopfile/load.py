@@ -21,6 +21,7 @@ from seatrial.control.loopfile.schema import (
     ObjectiveTable,
     PlantTable,
     SimulationTable,
+    TrackTable,
 )
 from seatrial.control.loopfile.wave_paths import point_motions
 from seatrial.control.task import (
@@ -29,6 +30,7 @@ from seatrial.control.task import (
     Seaway,
     SimulationSettings,
     SlowDisturbance,
+    TrackDemand,
     TuningTask,
     refuse_unstable,
 )
@@ -41,6 +43,8 @@ from seatrial.physics.loops import ActuatorDrive, Block, Objective, TransferLoop
 
 _TIME_CONSTANTS = 30.0  # duration of a demand where none is given, in its time constants; chosen
 _DELAY_OVER_DEAD_TIME = 2.0  # least delay margin over the declared dead time; chosen
+_ACCEPTANCE_LENGTHS = 2.0  # of the circle of acceptance, in lengths of the ship: Fossen 2011, section 10.3
+_SHARPEST_CORNER = math.radians(120.0)  # of a track; chosen
 _MOST_STEPS = 1e7  # steps over all seeds; guards against a wrong unit
 _MOST_TIME_CONSTANTS = 1e4  # longest duration of a demand, in its time constants; guards against a wrong unit
 
@@ -118,6 +122,7 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant, home: Path) -> TuningTas
         genetic=file.genetic,
         drive=_drive(file.actuator),
         uncertainty=_uncertainty(file),
+        track=None if file.track is None else _track(file.track, plant, demand),
         sample_s=None
         if file.controller.sample_s is None
         else positive_value(file.controller.sample_s, "s", "controller.sample_s"),
@@ -220,6 +225,31 @@ def _simulation_settings(table: SimulationTable | None, seas: int, demand: Deman
             "steps; take a shorter duration, longer steps or fewer seeds"
         )
     return SimulationSettings(table.seeds, duration, step)
+
+
+def _track(table: TrackTable, plant: LoopPlant, demand: Demand | None) -> TrackDemand:
+    """Return the track; the circle of acceptance defaults to two lengths (Fossen 2011, section 10.3)."""
+    if demand is None or plant.output != "psi":
+        raise InputError('track: a track is kept by a heading loop; give plant.output = "psi" and [demand], or leave '
+                         "the table out")  # fmt: skip
+    turn = angle_value(table.corner, "track.corner", 60.0)
+    if turn > _SHARPEST_CORNER:
+        raise InputError(
+            f"track.corner = {math.degrees(turn):.3g} deg is no corner to keep a track around; give one up to "
+            f"{math.degrees(_SHARPEST_CORNER):.0f} degrees"
+        )
+    if table.acceptance is not None:
+        acceptance = positive_value(table.acceptance, "m", "track.acceptance")
+    elif plant.ship is not None and "L" in plant.ship.particulars:
+        acceptance = _ACCEPTANCE_LENGTHS * plant.ship.length
+    else:
+        raise InputError("key 'track.acceptance' is missing, and the ship's length is not known; add it in m")
+    return TrackDemand(
+        positive_value(table.current, "m/s", "track.current"),
+        positive_value(table.bandwidth, "rad/s", "track.bandwidth"),
+        turn,
+        acceptance,
+    )
 
 
 def _demand(table: DemandTable, plant: LoopPlant) -> Demand:

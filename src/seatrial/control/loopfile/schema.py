@@ -327,6 +327,19 @@ class DemandTable(StrictTable):
     duration: Seconds | None = None
 
 
+class TrackTable(StrictTable):
+    """`[track]`: a track to be kept by line of sight around the heading loop, in a current across it.
+
+    `current` is its rms and `bandwidth` how fast it changes; `corner` is the turn of the track on which the guidance is
+    tried, and `acceptance` the distance before it at which the next leg is taken.
+    """
+
+    current: SiAmount
+    bandwidth: RadiansPerSecond
+    corner: Radians = Amount(value=60.0, unit="deg")  # a usual corner of survey lines; chosen
+    acceptance: Metres | None = None
+
+
 class UncertaintyTable(StrictTable):
     """`[uncertainty]`: shares by which the plant's gain and time constants may differ, dead time, ships to draw."""
 
@@ -358,6 +371,7 @@ class LoopFile(StrictTable):
     schedule: ScheduleTable | None = None
     simulation: SimulationTable | None = None
     demand: DemandTable | None = None
+    track: TrackTable | None = None
     uncertainty: UncertaintyTable = UncertaintyTable()
     genetic: GeneticTuning = GeneticTuning()
 

@@ -273,6 +273,42 @@ class TuningMethod(StrEnum):
     GENETIC = "genetic"
 
 
+@dataclass(frozen=True, eq=False)
+class CornerResponse:
+    """A corner of a track, taken by the nonlinear model within its limits in a steady current towards the outside."""
+
+    turn: Annotated[Number, Field(description="of the track, rad, positive to starboard")]
+    acceptance: Annotated[Number, Field(description="m along the track before the corner at which the leg is taken")]
+    current: Annotated[Number, Field(description="m/s, across the new leg")]
+    record: Annotated[StoredRecord, Field(description="position from the corner, heading, actuator, distance")]
+    overshoot: Annotated[Number, Field(description="m beyond the new leg")]
+    worst_overshoot: Annotated[Number, Field(description="m, over the craft drawn that are stable; null: none")]
+    stable_draws: Annotated[int, Field(description="craft drawn from the fit's covariance that keep a track")]
+    draws: Annotated[int, Field(description="craft drawn from the fit's covariance")]
+
+
+@dataclass(frozen=True, eq=False)
+class TrackKeeping:
+    """Line of sight with an integral around the heading loop: psi_d = chi - atan((e + sigma q) / Delta).
+
+    q' = Delta e / ((e + sigma q)^2 + Delta^2) (Borhaug, Pavlov & Pettersen 2008). Margins are those of the outer loop,
+    at the heading order, with the heading loop closed.
+    """
+
+    lookahead: Annotated[Number, Field(description="Delta, m")]
+    integral_gain: Annotated[Number, Field(description="sigma, m/s")]
+    order_rate: Annotated[Number, Field(description="fastest change of the heading order, rad/s")]
+    speed: Annotated[Number, Field(description="m/s, at which it was tuned")]
+    Ms: Number
+    gain_margin: Annotated[Number, Field(description="factor; null: any")]
+    phase_margin: Annotated[Number, Field(description="rad; null: any")]
+    delay_margin: Annotated[Number, Field(description="s; null: any")]
+    disturbances: Annotated[
+        tuple[DisturbanceSimulation, ...], Field(description="distance [m], actuator and its rate on a straight track")
+    ]
+    corner: CornerResponse
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Tuning(Summarised):
     """A tuned controller with everything its page shows."""
@@ -329,6 +365,7 @@ class Tuning(Summarised):
     robustness: Annotated[
         tuple[Robustness, ...], Field(description="of the stable controllers compared, the chosen one first")
     ] = ()
+    track: Annotated[TrackKeeping | None, Field(description="guidance along a track; null: none")] = None
 
     @property
     def compared(self) -> tuple[Controller, ...]:

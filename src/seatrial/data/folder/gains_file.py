@@ -8,7 +8,7 @@ from typing import Any
 
 import tomli_w
 
-from seatrial.core.results.tuning import Controller, OperatingPoint, Tuning
+from seatrial.core.results.tuning import Controller, OperatingPoint, TrackKeeping, Tuning
 from seatrial.core.values import InputError
 from seatrial.core.values.tables import parse_toml, read_table_text
 from seatrial.data.folder.orders import channel_display_unit
@@ -34,6 +34,8 @@ def gains_toml(tuning: Tuning) -> str:
     if tuning.discrete is not None:
         table["discrete"] = {"sample_s": tuning.discrete.sample_s, "rule": "Tustin",
                              "blocks": [asdict(block) for block in tuning.discrete.blocks]}  # fmt: skip
+    if tuning.track is not None:
+        table["track"] = _track_table(tuning.track)
     if tuning.schedule:
         table["schedule"] = [_schedule_entry(point) for point in tuning.schedule]
     return tomli_w.dumps(table)
@@ -95,6 +97,17 @@ def _margin_table(c: Controller) -> dict[str, float]:
         "noise_gain": c.noise_gain,
         "reversals_per_hour": c.reversals,
         "energy_J": c.energy,
+    })  # fmt: skip
+
+
+def _track_table(track: TrackKeeping) -> dict[str, float]:
+    """Return the guidance of a track: psi_d = chi - atan((e + sigma q) / Delta), see `TrackKeeping`."""
+    return _finite_numbers({
+        "lookahead_m": track.lookahead,
+        "integral_gain_m_per_s": track.integral_gain,
+        "order_rate_deg_per_s": math.degrees(track.order_rate),
+        "speed_m_per_s": track.speed,
+        "Ms": track.Ms,
     })  # fmt: skip
 
 

@@ -128,7 +128,7 @@ class ClosedLoop:
                 "disturbance, reference and feed-forward of a closed loop need the same number of samples, two or "
                 "more, without gaps"
             )
-        memory = self._controller_memory(disturbance, limits, wanted, added)
+        memory = self.controller_memory(disturbance, limits, wanted, added)
         states, inputs = np.empty((count, len(self.start))), np.empty((count, len(self.inputs)))
         diverged = steer(
             self.model.compiled.rates, kernel.linear_controller, self.start.copy(), self.inputs.copy(),
@@ -141,9 +141,10 @@ class ClosedLoop:
             raise DivergedError(f"loop '{self.loop.name}' before model '{self.model.name}' runs away at {time[-1]:g} s")
         return states, memory[len(memory) - count - 1 : -1]
 
-    def _controller_memory(
+    def controller_memory(
         self, disturbance: Array, limits: ActuatorLimits, reference: Array, fed_forward: Array
     ) -> Array:
+        """Return the memory of `linear_controller` for series (n,), checked by the caller."""
         made, count = controller_state_space(self.loop, self.gains), len(disturbance)
         n, place, disturbed = len(made.b), self._input_index(self.actuator), self._input_index(self.disturbance_input)
         values = {

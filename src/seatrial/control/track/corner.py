@@ -1,0 +1,104 @@
+"""A corner of a track, taken by the nonlinear model within its limits in a steady current, and by ships of the fit."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from seatrial.control.ship.parameter_draws import draw_parameters
+from seatrial.control.ship.trimmed_ship import plant_and_disturbance
+from seatrial.control.task import TrackDemand, TrimmedShip
+from seatrial.control.track.paths import HeadingLoop
+from seatrial.core.results.tuning import CornerResponse
+from seatrial.core.values import Array, Channel, DivergedError, InputError, Provenance, Record, RecordKind, frozen
+from seatrial.physics.loops import TransferLoop
+from seatrial.physics.simulate.closed_loop import ActuatorLimits, ClosedLoop
+from seatrial.physics.simulate.track_following import LineOfSight, PlannedTrack, TrackRun, follow_track
+
+# time constants Delta / U of the track before and after the corner; chosen
+_BEFORE, _AFTER = 8.0, 20.0
+_STEP_SHARE, _MOST_STEPS = 0.1, 40_000  # of the fastest pole's time constant, of a step; steps at most; chosen
+_SAMPLES = 1000  # of the record that is kept; chosen
+ERROR, CURRENT_NORTH, CURRENT_EAST = "cross_track_error", "current_north", "current_east"
+
+
+@dataclass(frozen=True, eq=False)
+class CornerTrial:
+    """How a corner is taken: the heading loop, guidance, limits, the demand, and the craft's speed U [m/s]."""
+
+    heading: HeadingLoop
+    guidance: LineOfSight
+    limits: ActuatorLimits
+    demand: TrackDemand
+    U: float
+
+    def respond(self, outer: TransferLoop, draws: int, seed: int) -> CornerResponse:
+        """Return the corner by the identified craft and the worst of those drawn.
+
+        A craft drawn that has no trim, or whose track is not stable, counts as unstable.
+        """
+        track = PlannedTrack(_BEFORE * self._time * self.U, self.demand.turn, self.demand.acceptance)
+        own = self._run(self.heading.ship, track)
+        drawn = draw_parameters(self.heading.ship, draws, seed)
+        stable = [ship for ship in drawn.ships if self._is_stable(ship, outer)]
+        worst = [self._overshoot_of(ship, track) for ship in stable]
+        return CornerResponse(
+            turn=self.demand.turn,
+            acceptance=self.demand.acceptance,
+            current=self.demand.current,
+            record=self._record(own, track),
+            overshoot=self._overshoot(own),
+            worst_overshoot=max(worst, default=math.nan),
+            stable_draws=len(stable),
+            draws=drawn.draws,
+        )
+
+    @property
+    def _time(self) -> float:
+        return self.guidance.lookahead / self.U
+
+    @property
+    def _step(self) -> float:
+        fastest = float(np.abs(self.heading.loop.closed_loop_poles).max())
+        return max(_STEP_SHARE / fastest, (_BEFORE + _AFTER) * self._time / _MOST_STEPS)
+
+    def _run(self, ship: TrimmedShip, track: PlannedTrack) -> TrackRun:
+        """Return the run of a craft that a steady current sets towards the outside of the turn."""
+        outward = -math.copysign(self.demand.current, track.turn)
+        set_to = {CURRENT_NORTH: -outward * math.sin(track.turn), CURRENT_EAST: outward * math.cos(track.turn)}
+        model = ship.model.with_values({name: v for name, v in set_to.items() if name in ship.model.parameters})
+        loop, dt = self.heading.loop, self._step
+        closed = ClosedLoop(model, loop, loop.gain_values, dt, ship.actuator, "", ship.output, ship.state, ship.inputs)
+        count = math.ceil((_BEFORE + _AFTER) * self._time / dt)
+        return follow_track(closed, self.guidance, np.zeros(count), track, self.limits)
+
+    def _overshoot(self, run: TrackRun) -> float:
+        """Return how far [m] the craft goes beyond the new leg, to the outside."""
+        return max(0.0, float(np.max(-math.copysign(1.0, self.demand.turn) * run.error[run.new_leg :])))
+
+    def _overshoot_of(self, ship: TrimmedShip, track: PlannedTrack) -> float:
+        try:
+            return self._overshoot(self._run(ship, track))
+        except (DivergedError, InputError):
+            return math.inf
+
+    def _is_stable(self, ship: TrimmedShip, outer: TransferLoop) -> bool:
+        """Return whether heading and track are stable with that craft."""
+        there = HeadingLoop(ship, replace(self.heading.loop, plant=plant_and_disturbance(ship)[0]))
+        try:
+            poles = replace(outer, plant=there.order_to_track()).closed_loop_poles
+        except InputError:
+            return False
+        return bool(poles.real.max() < 0.0)
+
+    def _record(self, run: TrackRun, track: PlannedTrack) -> Record:
+        """Return position, heading, rudder and distance, the corner at the origin."""
+        names, every = self.heading.ship.model.states, max(1, len(run.error) // _SAMPLES)
+        series: dict[str, Array] = {name: run.states[:, names.index(name)] for name in ("x0", "y0", "psi")}
+        series["x0"] = series["x0"] - track.corner
+        series[self.heading.ship.actuator] = run.actuator
+        channels = {n: Channel.from_notation(n, frozen(np.ascontiguousarray(v[::every]))) for n, v in series.items()}
+        channels[ERROR] = Channel(frozen(np.ascontiguousarray(run.error[::every])), "m", "body", "starboard")
+        time = frozen(self._step * every * np.arange(len(run.error[::every])))
+        said = Provenance(f"line of sight around loop '{self.heading.loop.name}' at a corner")
+        return Record("corner", time, channels, RecordKind.SIMULATED, provenance=said)
