@@ -44,6 +44,8 @@ def test_notes_are_counted_and_shown_when_required(capsys: pytest.CaptureFixture
         print_warnings(findings)
     assert "note    [two] a note" in printed(capsys)
     print_warnings(findings[1:])
+    assert "no errors, no warnings, 1 note; --verbose shows notes" in printed(capsys)
+    print_warnings([])
     assert printed(capsys) == ""
 
 

@@ -8,6 +8,7 @@ import pytest
 from seatrial.core.results import Coefficient, Consequence, Fit, Identifiability, Symmetry
 from seatrial.core.results.identifiability import Collinearity, Sensitivity
 from seatrial.reporting.coefficient_uses import Use, coefficient_uses, meaning_lines
+from seatrial.reporting.correlations import Partner
 
 PLAIN = Coefficient("a", "1", 2.0, 0.05, 1.9, 2.1, False)
 
@@ -35,6 +36,11 @@ def content(inflation: float = 1.5, **parts: tuple) -> Identifiability:
 def test_the_use_is_the_least_that_anything_allows(coefficient: Coefficient, inflation: float, use: Use) -> None:
     (row,) = coefficient_uses([coefficient, replace(PLAIN, name="held", fixed=True)], content(inflation))
     assert row.use is use and row.name == "a"
+
+
+def test_a_strong_correlation_of_the_intervals_ties_a_coefficient_whatever_its_inflation() -> None:
+    (row,) = coefficient_uses([PLAIN], content(1.5), {"a": Partner("c", -0.97)})
+    assert row.use is Use.AS_A_SET and row.partner == "c −0.97"
 
 
 def test_a_row_shows_half_width_effect_and_partner() -> None:

@@ -9,7 +9,7 @@ from seatrial.core.results import Fit, OffsetPopulation
 from seatrial.numerics.optimise import Status
 from seatrial.reporting import summary
 from seatrial.reporting.citations import Citations
-from seatrial.reporting.correlations import correlation_text
+from seatrial.reporting.correlations import correlation_text, strong_partners
 
 
 def test_publications_are_numbered_once_and_the_longest_wording_is_listed() -> None:
@@ -39,6 +39,14 @@ def test_strong_correlations_are_named() -> None:
     assert correlation_text(("a", "b"), weak) == "The strongest is 0.40, between b and a."
     assert correlation_text(("a", "b"), np.eye(2)) == "None is correlated with another."
     assert correlation_text(("a",), np.eye(1)) == ""
+
+
+def test_partners_are_those_of_the_sentence() -> None:
+    covariance = np.array([[1.0, -0.97, 0.0], [-0.97, 1.0, 0.0], [0.0, 0.0, 4.0]])
+    partners = strong_partners(("a", "b", "c"), covariance)
+    assert {name: (p.name, p.correlation) for name, p in partners.items()} == {"a": ("b", -0.97), "b": ("a", -0.97)}
+    weaker = np.where(covariance == -0.97, -0.96, covariance)
+    assert strong_partners(("a", "b", "c"), weaker, 3.0) == strong_partners(("a",), np.eye(1)) == {}
 
 
 def test_a_correlation_that_four_runs_give_by_chance_is_not_called_strong(rng: np.random.Generator) -> None:

@@ -49,7 +49,7 @@ def print_findings(
 
 def print_warnings(findings: "Sequence[Finding]", rest: str = "the report lists them") -> None:
     """Print errors and warnings of a result, the latest codes first, under a heading; with --verbose notes, too."""
-    if is_verbose() or any(f.severity.value != "info" for f in findings):
+    if findings:
         print_heading("Findings")
         latest = {f.code: place for place, f in enumerate(findings)}
         ordered = sorted(findings, key=lambda f: -latest[f.code])  # of one code in their order, the strongest first

@@ -60,7 +60,8 @@ def frequency_chapter(fit: Fit) -> Chapter | None:
     rows = tuple(_response_row(r) for r in fit.frequency_responses)
     note = (
         "Compared: frequencies at which the input has a thousandth of its largest density or more and the 95 % region "
-        "of the records leaves zero out; chance takes the model out of it at one in twenty."
+        "of the records leaves zero out, none where the records do not show the response; chance takes the model out "
+        "of the region at one in twenty."
     )
     table = TextTable("Where records and model are compared", header, (False, True, True, True, True), rows, note)
     chart = frequency_chart(fit.frequency_responses)

@@ -1,17 +1,17 @@
 """What each free coefficient can be used for, one row each, and three lines on what that means; nothing is computed."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from types import MappingProxyType
 
 from seatrial.core.results import Coefficient, Fit, Identifiability
 from seatrial.core.text.numbers import DASH, fixed, signed_percent, significant
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import NOT_MEASURED
+from seatrial.reporting.correlations import MIN_VARIANCE_INFLATION, Partner
 
-# variance inflation from which on coefficients are collinear (Marquardt 1970)
-MIN_VARIANCE_INFLATION = 10.0
 # share of its prior's standard deviation from which on the records say next to nothing of a coefficient; chosen
 PRIOR_SHARE = 0.9
 # relative standard error from which on a value is known vaguely only, as of combinations in the same chapter; chosen
@@ -43,32 +43,40 @@ class CoefficientUse:
     use: Use
 
 
-def coefficient_uses(coefficients: Sequence[Coefficient], content: Identifiability) -> tuple[CoefficientUse, ...]:
-    """Return a row for each free coefficient: those that can be used by themselves first, the widest interval last."""
+def coefficient_uses(
+    coefficients: Sequence[Coefficient],
+    content: Identifiability,
+    strong: Mapping[str, Partner] = MappingProxyType({}),
+) -> tuple[CoefficientUse, ...]:
+    """Return a row for each free coefficient: those that can be used by themselves first, the widest interval last.
+
+    strong: coefficients whose errors are strongly correlated in the intervals' covariance, as `strong_partners` has it.
+    """
     collinear = {c.parameter: c for c in content.collinearity}
     effects = {s.parameter: s.effect for s in content.sensitivities}
     rows = []
     for c in (c for c in coefficients if not c.fixed):
         tied, spread = collinear.get(c.name), _relative_half_width(c)
         inflation = tied.variance_inflation if tied else math.nan
-        use = _use(c, inflation)
+        use = _use(c, inflation, is_paired=c.name in strong)
+        partner = strong.get(c.name) or (Partner(tied.partner, tied.correlation) if tied and tied.partner else None)
         row = CoefficientUse(
             c.name, f"± {significant(100.0 * spread, 2)}" if math.isfinite(spread) else DASH,
             significant(effects.get(c.name), 2), "∞" if math.isinf(inflation) else significant(inflation, 2),
-            f"{tied.partner} {fixed(tied.correlation, 2)}" if tied and tied.partner else "", use,
+            f"{partner.name} {fixed(partner.correlation, 2)}" if partner else "", use,
         )  # fmt: skip
         rows.append((list(Use).index(use), spread if math.isfinite(spread) else math.inf, row))
     return tuple(row for *_, row in sorted(rows, key=lambda one: one[:2]))
 
 
-def _use(c: Coefficient, inflation: float) -> Use:
+def _use(c: Coefficient, inflation: float, *, is_paired: bool) -> Use:
     if c.lower is None or c.upper is None:
         return Use.NO_INTERVAL
     if c.is_sign_open:
         return Use.SIGN_OPEN
     if c.prior_standard_deviation and (c.standard_error or 0.0) >= PRIOR_SHARE * c.prior_standard_deviation:
         return Use.FROM_PRIOR
-    if inflation >= MIN_VARIANCE_INFLATION:
+    if is_paired or inflation >= MIN_VARIANCE_INFLATION:
         return Use.AS_A_SET
     return Use.VAGUELY if (c.standard_error or 0.0) >= WELL_DETERMINED * abs(c.estimate) else Use.BY_ITSELF
 

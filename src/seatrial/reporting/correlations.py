@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -10,11 +11,20 @@ from seatrial.core.text.numbers import fixed
 from seatrial.core.text.words import counted, enumeration
 from seatrial.core.values import Array
 from seatrial.core.values.arrays import correlation_matrix
-from seatrial.reporting.coefficient_uses import MIN_VARIANCE_INFLATION
 
+# variance inflation from which on coefficients are collinear (Marquardt 1970)
+MIN_VARIANCE_INFLATION = 10.0
 # size from which on a correlation is strong: it alone inflates variances as collinear coefficients have them, and how
 # many of these are named
 STRONG_CORRELATION, MAX_PAIRS = math.sqrt(1.0 - 1.0 / MIN_VARIANCE_INFLATION), 4
+
+
+@dataclass(frozen=True)
+class Partner:
+    """The coefficient with which another one is most correlated."""
+
+    name: str
+    correlation: float
 
 
 def correlation_text(names: Sequence[str], covariance: Array, degrees_of_freedom: float = math.inf) -> str:
@@ -46,6 +56,21 @@ def correlation_text(names: Sequence[str], covariance: Array, degrees_of_freedom
         f"{counted(count, 'pair').capitalize()} at {fixed(least, 2)} or above in size; the strongest: {strongest}. "
         "The records determine such coefficients mainly together: take them as a set, not one by one."
     )
+
+
+def strong_partners(
+    names: Sequence[str], covariance: Array, degrees_of_freedom: float = math.inf
+) -> dict[str, Partner]:
+    """Return the coefficients that are strongly correlated with another -> that one and the correlation.
+
+    Arguments, and what counts as strong, as in `correlation_text`.
+    """
+    if len(names) < 2 or covariance.shape != (len(names), len(names)):
+        return {}
+    matrix = np.nan_to_num(correlation_matrix(covariance)) * (1.0 - np.eye(len(names)))
+    least = max(STRONG_CORRELATION, _largest_by_chance(len(names), degrees_of_freedom))
+    places = ((name, int(np.argmax(np.abs(row))), row) for name, row in zip(names, matrix, strict=True))
+    return {name: Partner(names[k], float(row[k])) for name, k, row in places if abs(row[k]) >= least}
 
 
 def _largest_by_chance(count: int, degrees_of_freedom: float) -> float:

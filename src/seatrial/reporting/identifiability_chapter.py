@@ -22,6 +22,7 @@ from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import NOT_MEASURED, display_unit
 from seatrial.core.values.channel_text import channel_meaning, channel_unit, unit_text
 from seatrial.reporting.coefficient_uses import WELL_DETERMINED, CoefficientUse, coefficient_uses, meaning_lines
+from seatrial.reporting.correlations import strong_partners
 from seatrial.reporting.disturbance_table import DisturbanceRow, disturbance_rows
 from seatrial.reporting.figures.directions import direction_chart, profile_chart
 from seatrial.reporting.posterior_part import PosteriorPart, posterior_part
@@ -144,7 +145,9 @@ def identifiability_chapter(fit: Fit) -> IdentifiabilityChapter | None:
         return None
     content = identifiability or Identifiability((), (), math.nan, math.nan)
     names = [c.name for c in fit.coefficients]
-    uses = coefficient_uses(fit.coefficients, content)
+    basis = math.inf if fit.interval_basis is None else fit.interval_basis.degrees_of_freedom
+    strong = strong_partners(fit.model.parameters.free_names, fit.covariance, basis)
+    uses = coefficient_uses(fit.coefficients, content, strong)
     texts = tuple(sentence(d.text, names) for d in content.directions if d.standard_deviation >= WELL_DETERMINED)
     return IdentifiabilityChapter(
         is_examined=identifiability is not None,

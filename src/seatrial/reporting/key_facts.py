@@ -9,7 +9,7 @@ from seatrial.core.results.window_scores import ChannelScore
 from seatrial.core.text.numbers import fixed, significant
 from seatrial.core.text.words import counted, enumeration
 from seatrial.core.values import Severity
-from seatrial.reporting.coefficient_uses import MIN_VARIANCE_INFLATION
+from seatrial.reporting.correlations import MIN_VARIANCE_INFLATION
 from seatrial.reporting.first_screen import FirstScreen, KeyFact
 from seatrial.reporting.grades import largest_error_share, share_sentence, worst_share
 from seatrial.reporting.identifiability_chapter import determined_sentence

@@ -6,7 +6,7 @@ import pytest
 
 from seatrial.core.results.ship_motions import IntervalEstimate
 from seatrial.core.values import Ship
-from seatrial.estimation.identify.roll_inertia import roll_inertia
+from seatrial.estimation.identify.roll_inertia import gyradius_findings, roll_inertia
 from seatrial.physics.hydro.free_roll import metacentric_height
 
 C_1 = IntervalEstimate(1.0, 0.9, 1.1)
@@ -42,13 +42,23 @@ def test_a_metacentric_height_that_is_known_gives_the_radius() -> None:
     assert metacentric_height(1.0, radius.value) == pytest.approx(1.1)
     assert metacentric_height(0.9, radius.upper) == metacentric_height(1.1, radius.lower) == pytest.approx(1.1)
     assert "GM of the ship, 1.1 m" in inertia.source
-    assert "3.3" not in inertia.source and "0.66 of the breadth, ships have 0.35 to 0.45" in inertia.source
-
-
-def test_a_radius_that_ships_have_is_not_questioned() -> None:
-    assert "of the breadth" not in roll_inertia(Ship("s", {"GM": 1.1, "B": 8.2}), C_1).source
 
 
 def test_a_period_that_is_not_determined_leaves_the_radius_open() -> None:
     radius = roll_inertia(Ship("s", {"GM": 1.1}), IntervalEstimate(1.0, -0.1, 2.1)).gyradius
     assert radius is not None and radius.upper == math.inf
+
+
+@pytest.mark.parametrize(("radius", "text"), [(3.87, "0.47 of the breadth"), (2.0, "0.24 of the breadth"), (3.2, "")])
+def test_a_radius_unusual_for_the_breadth_is_named_with_the_usual_height(radius: float, text: str) -> None:
+    ship = Ship("yacht", {"L": 36.0, "B": 8.2, "GM": 1.1})
+    findings = gyradius_findings(ship, IntervalEstimate(radius, radius, radius))
+    assert [text in f.message for f in findings] == ([True] if text else [])
+    if radius == 3.87:
+        assert "GM would be 0.79 m" in findings[0].advice
+
+
+def test_without_height_breadth_or_radius_nothing_is_judged() -> None:
+    radius = IntervalEstimate(9.0, 9.0, 9.0)
+    assert gyradius_findings(Ship("s", {"B": 8.2}), radius) == gyradius_findings(Ship("s", {"GM": 1.0}), radius) == ()
+    assert gyradius_findings(Ship("s", {"B": 8.2, "GM": 1.0}), None) == ()

@@ -24,7 +24,9 @@ from seatrial.estimation.identify.other_optima import other_optima
 from seatrial.estimation.identify.physical_limits import unphysical_finding
 from seatrial.estimation.identify.posterior import sample_posterior, sampling_findings
 from seatrial.estimation.identify.profile import innovation_profiles, profiles
+from seatrial.estimation.identify.response_findings import response_findings
 from seatrial.estimation.identify.roll_characteristics import one_speed_finding, roll_characteristics
+from seatrial.estimation.identify.roll_inertia import gyradius_findings
 from seatrial.estimation.identify.seakeeping import seakeeping
 from seatrial.estimation.identify.short_records import default_profiles, short_record_findings
 from seatrial.estimation.identify.thruster_craft import thruster_craft
@@ -52,6 +54,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
     assessment = _identifiability(task, estimation, approach)
     coefficients = fit_result.coefficients(estimation, trial.truth, interval_ends(assessment.profiles, posterior))
     free = estimation.estimate.problem.free
+    responses = frequency_responses(estimation.model, predicted.predictions, task.outputs)
     predicted_runs = {p.record for p in predicted.predictions}
     scored = [r for r in task.records if r.record.name in predicted_runs]
     roll = roll_characteristics(estimation.model, estimation.interval, free, runs.records, trial.ship)
@@ -85,7 +88,9 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
             *(sampling_findings(posterior) if posterior else ()),
             *needless_term_findings(estimation, predicted.predictions),
             *predicted.findings,
+            *response_findings(responses),
             *one_speed_finding(roll, runs.records),
+            *gyradius_findings(trial.ship, roll.gyradius if roll else None),
         ),
         records=tuple(r.record for r in task.records),
         seed=task.options.seed,
@@ -104,7 +109,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         ),
         posterior=posterior,
         k_step_errors=k_step_errors(selected.estimation, scored, horizon_list(task.options.horizons)),
-        frequency_responses=frequency_responses(estimation.model, predicted.predictions, task.outputs),
+        frequency_responses=responses,
     )  # fmt: skip
 
 

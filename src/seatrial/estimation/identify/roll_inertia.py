@@ -4,7 +4,8 @@ import math
 from dataclasses import dataclass
 
 from seatrial.core.results.ship_motions import IntervalEstimate
-from seatrial.core.values import Ship
+from seatrial.core.text.numbers import significant
+from seatrial.core.values import Finding, Severity, Ship
 from seatrial.physics.hydro.free_roll import gyradius_of, metacentric_height
 
 GYRADIUS_WITH_ADDED_INERTIA, DRY_GYRADIUS, METACENTRIC_HEIGHT = "k_xx_prime", "k_xx", "GM"
@@ -38,7 +39,7 @@ def roll_inertia(ship: Ship, c_1: IntervalEstimate) -> RollInertia:
         source = f"{DRY_GYRADIUS} of the ship, {dry:.4g} m, and an added inertia of {share} % of it, chosen"
         return _by_gyradius(c_1, (low, middle, high), f"{source}; {GYRADIUS_WITH_ADDED_INERTIA} would replace this")
     if METACENTRIC_HEIGHT in particulars:
-        return _by_height(c_1, particulars[METACENTRIC_HEIGHT], particulars.get("B", 0.0))
+        return _by_height(c_1, particulars[METACENTRIC_HEIGHT])
     if "B" in particulars:
         low, middle, high = (share * particulars["B"] for share in GYRADIUS_OVER_BREADTH)
         source = f"a radius of gyration of {_range_text(GYRADIUS_OVER_BREADTH, 1.0)} of the breadth, chosen"
@@ -46,6 +47,24 @@ def roll_inertia(ship: Ship, c_1: IntervalEstimate) -> RollInertia:
         return _by_gyradius(c_1, (low, middle, high), f"{source}; {keys} under [ship] would replace this")
     keys = f"{METACENTRIC_HEIGHT}, {GYRADIUS_WITH_ADDED_INERTIA}, {DRY_GYRADIUS} or B"
     return RollInertia(None, None, f"the inertia is not known; give {keys} under [ship]")
+
+
+def gyradius_findings(ship: Ship, gyradius: IntervalEstimate | None) -> tuple[Finding, ...]:
+    """Return a warning `roll-gyradius` where GM and the period give a radius that is unusual for the stated breadth."""
+    values = ship.particulars
+    if gyradius is None or METACENTRIC_HEIGHT not in values or not values.get("B", 0.0) > 0.0:
+        return ()
+    low, usual, high = (share * values["B"] for share in GYRADIUS_OVER_BREADTH)
+    if low <= gyradius.value <= high:
+        return ()
+    share, height = gyradius.value / values["B"], values[METACENTRIC_HEIGHT]
+    return (Finding(
+        Severity.WARNING, "roll-gyradius", f"GM = {height:g} m and the period give a radius of gyration of "
+        f"{significant(share, 2)} of the breadth, ships have {_range_text(GYRADIUS_OVER_BREADTH, 1.0)}", "",
+        f"check GM, B and the loading of the tests: with {GYRADIUS_OVER_BREADTH[1]:g} of the breadth GM would be "
+        f"{significant(height * (usual / gyradius.value) ** 2, 2)} m",
+        "the radius, and moments in newton metres, follow the stated GM",
+    ),)  # fmt: skip
 
 
 def _by_gyradius(c_1: IntervalEstimate, radii: tuple[float, float, float], source: str) -> RollInertia:
@@ -57,8 +76,7 @@ def _by_gyradius(c_1: IntervalEstimate, radii: tuple[float, float, float], sourc
     return RollInertia(IntervalEstimate(middle, low, high), height, source)
 
 
-def _by_height(c_1: IntervalEstimate, height: float, breadth: float) -> RollInertia:
-    """height: GM [m]; breadth: m, 0 where it is not known."""
+def _by_height(c_1: IntervalEstimate, height: float) -> RollInertia:
     radius = IntervalEstimate(
         gyradius_of(c_1.value, height), gyradius_of(c_1.upper, height),
         gyradius_of(c_1.lower, height) if c_1.lower > 0.0 else math.inf,
@@ -67,12 +85,6 @@ def _by_height(c_1: IntervalEstimate, height: float, breadth: float) -> RollIner
         f"{METACENTRIC_HEIGHT} of the ship, {height:.4g} m, taken as exact (the radius goes with its root: half its "
         "error in per cent)"
     )
-    low, _, high = GYRADIUS_OVER_BREADTH
-    if breadth and not low <= radius.value / breadth <= high:
-        source += (
-            f"; the radius is {radius.value / breadth:.2g} of the breadth, ships have {low:g} to {high:g}: check GM, "
-            "the breadth and the period"
-        )
     return RollInertia(radius, IntervalEstimate(height, height, height), source)
 
 

@@ -112,7 +112,7 @@
       this.time = Array.from({ length: count }, (_, k) => start + (stop - start) * k / Math.max(1, count - 1));
       this.panels = [];
       this.height = node.closest(".first .square") && this.document.panels.length === 1 ? TALL : HEIGHT;
-      this.printWidth = this.height === HEIGHT && isWide ? FULL_PRINT_WIDTH : PRINT_WIDTH;
+      this.printWidth = this.height === HEIGHT && isWide && !node.closest(".square") ? FULL_PRINT_WIDTH : PRINT_WIDTH;
     }
     draw() {
       if (this.panels.length) return false;
