@@ -170,9 +170,12 @@
   }
 
   const figures = [...document.querySelectorAll(".series")].map((node, k) => new Figure(node, `figure${k}`));
+  const AHEAD = 600;  // px below the window from which on a figure is drawn
   const near = new IntersectionObserver(entries => {
     for (const entry of entries) if (entry.isIntersecting) figures.find(figure => figure.node === entry.target).draw();
-  }, { rootMargin: "600px" });
+  }, { rootMargin: `${AHEAD}px` });
+  // what the first picture of the page shows is drawn before it
+  for (const figure of figures) if (figure.node.checkVisibility() && figure.node.getBoundingClientRect().top < innerHeight + AHEAD) figure.draw();
   for (const figure of figures) near.observe(figure.node);
   // the others when there is time, so that none is empty in a picture of the whole page
   const later = window.requestIdleCallback ?? setTimeout;
