@@ -157,6 +157,41 @@ def test_what_is_wider_than_a_telephone_is_moved_by_keys(browser: "Browser", pag
     assert names is not None and names["x"] >= 0.0
 
 
+TELEPHONES = (390, 500)
+
+
+@pytest.mark.parametrize("width", TELEPHONES)
+def test_a_telephone_shows_estimates_with_their_intervals_and_says_what_goes_on(
+    browser: "Browser", page: Path, width: int
+) -> None:
+    """Coefficients with both ends of their intervals, and the forest, need not be moved; what is wider says so."""
+    window, said = opened(browser, page, width)
+    numbers = window.locator("section:has(#coefficients) tbody tr:first-child td.num:visible")
+    boxes = [numbers.nth(k).bounding_box() for k in range(3)]  # estimate, and both ends
+    assert all(box is not None and box["x"] + box["width"] <= width for box in boxes)
+    forest = window.locator("section:has(#coefficients) .narrow-only > svg:visible").first.bounding_box()
+    assert forest is not None and forest["x"] >= 0.0 and forest["x"] + forest["width"] <= width
+    window.locator("#unfold").dispatch_event("click")
+    silent = window.evaluate(
+        """() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(
+            [...document.querySelectorAll('.scroll, figure')]
+              .filter(box => box.checkVisibility() && box.scrollWidth > box.clientWidth + 1)
+              .filter(box => !getComputedStyle(box, '::before').content.includes('to the right'))
+              .map(box => box.textContent.trim().slice(0, 60))))))"""
+    )
+    assert silent == [] and window.locator(".is-wide:visible").count() > 0
+    assert said == []
+
+
+@pytest.mark.parametrize("width", [*TELEPHONES, 1400])
+def test_the_first_plots_are_drawn_before_the_first_picture(browser: "Browser", page: Path, width: int) -> None:
+    window = browser.new_page(viewport={"width": width, "height": 900})
+    count = "document.querySelectorAll('.first .is-drawn canvas').length"
+    window.add_init_script(f"addEventListener('DOMContentLoaded', () => {{ window.early = {count}; }})")
+    window.goto(page.as_uri())
+    assert window.evaluate("window.early") == window.locator(".first .series canvas").count() > 0
+
+
 def test_the_cursor_is_linked_over_channels_and_track(browser: "Browser", page: Path) -> None:
     window, said = opened(browser, page)
     section = window.locator("section:has(#prediction) .run").first

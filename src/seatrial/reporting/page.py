@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from markupsafe import Markup
 
 from seatrial.core.figures.heat_map import heat_map
+from seatrial.core.figures.run import NARROW
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Fit
 from seatrial.core.results.fit_charts import coefficients_chart
@@ -114,6 +115,7 @@ def html(fit: Fit) -> str:
         "has_meaning": any(c.meaning for c in fit.coefficients if not c.fixed),
         "has_prior": any(c.prior_mean is not None for c in fit.coefficients if not c.fixed),
         "forest": Markup(svg(coefficients_chart(fit.coefficients))),
+        "narrow_forest": Markup(svg(coefficients_chart(fit.coefficients, NARROW))),
         "correlation": Markup(_correlation_figure(fit)),
         "correlated": correlation_text(
             fit.model.parameters.free_names,

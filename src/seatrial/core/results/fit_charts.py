@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.core.figures.bands import BAND
-from seatrial.core.figures.chart import Axis, Chart, LegendEntry, tiles
+from seatrial.core.figures.chart import WIDTH, Axis, Chart, LegendEntry, tiles
 from seatrial.core.figures.marks import (
     ACCENT,
     GREY,
@@ -30,6 +30,7 @@ from seatrial.core.values.record_chart import PLAIN, has_moving_track, has_track
 
 # least and largest reach of the axis of coefficients [% of the estimate]
 NARROWEST, WIDEST = 1.0, 120.0
+TICKS_OF_WIDTH = 8  # of that axis over the whole width of a page; chosen
 MEASURED, SIMULATED = Stroke(GREY, 3.0), Stroke(ACCENT, 1.4, "5 2.5")  # px, chosen
 MAX_PANELS = 9  # px, chosen
 _ERROR = "error "
@@ -44,20 +45,24 @@ _TRUTH = Marker(Shape.DIAMOND, 3.4, SECOND, "#ffffff", 1.4)  # px, chosen
 NORMAL_95 = 1.96
 
 
-def coefficients_chart(coefficients: Sequence[Coefficient]) -> Chart | None:
-    """Return each free coefficient's interval, prior and known value [% from its estimate]; None where none is free."""
+def coefficients_chart(coefficients: Sequence[Coefficient], width: float = WIDTH) -> Chart | None:
+    """Return each free coefficient's interval, prior and known value [% from its estimate]; None where none is free.
+
+    width: px.
+    """
     free = [c for c in coefficients if not c.fixed and c.estimate != 0 and c.lower is not None and c.upper is not None]
     if not free:
         return None
     ends = [abs(_deviation(c, x)) for c in free for x in (c.lower, c.upper, c.truth) if x is not None]
     reach = float(np.clip(1.12 * max(ends), NARROWEST, WIDEST))  # 12 % more than the widest interval
-    x = Axis((-reach, reach), "deviation from the estimate, per cent of the estimate", tick_count=8)
+    ticks = max(2, round(TICKS_OF_WIDTH * width / WIDTH))
+    x = Axis((-reach, reach), "deviation from the estimate, per cent of the estimate", tick_count=ticks)
     marks = [mark for row, c in enumerate(free) for mark in _coefficient_marks(c, row, reach)]
     legend = [LegendEntry("estimate, 95 % interval", _INTERVAL)]
     legend += [LegendEntry("prior, 95 %", _PRIOR)] if any(c.prior_mean is not None for c in free) else []
     legend += [LegendEntry("known value", _TRUTH)] if any(c.truth is not None for c in free) else []
-    panel = row_panel([c.name for c in free], x, [Rule(0.0, _ZERO, is_vertical=True), *marks], top=4.0)
-    return Chart("95 % intervals of the free coefficients", (panel,), tuple(legend))
+    panel = row_panel([c.name for c in free], x, [Rule(0.0, _ZERO, is_vertical=True), *marks], top=4.0, width=width)
+    return Chart("95 % intervals of the free coefficients", (panel,), tuple(legend), width)
 
 
 def _deviation(c: Coefficient, value: float) -> float:
