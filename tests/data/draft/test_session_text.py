@@ -33,3 +33,8 @@ def test_a_day_in_the_name_counts_and_a_time_of_day_is_none(tmp_path: Path) -> N
     named = [_run(tmp_path, f"2026-08-14_{k}", "07:30:") for k in "ab"]
     assert session_line(named).startswith('session = "all"')
     assert session_line([_run(tmp_path, k, "07:30:") for k in "ab"]) == ""
+
+
+def test_clocks_without_a_date_that_go_on_are_of_one_day(tmp_path: Path) -> None:
+    later = [_run(tmp_path, name, first) for name, first in (("a", "07:30:"), ("b", "08:10:"))]
+    assert session_line(later).startswith('session = "all"    # clocks without a date go on')

@@ -17,6 +17,10 @@ from seatrial.data.draft.waves_text import wave_lines
 from seatrial.data.read import ColumnSpec
 from seatrial.data.read.layout import TimeSpec
 
+_NO_ANTENNA = (
+    "# antenna = { x = 0.0, y = 0.0 }    # m forward of midship, to starboard: state it; each metre that it is forward "
+    "of this counts as 0.017 m/s of sway for each deg/s of yaw"
+)
 _UNUSED_SHOWN = 12  # names of columns without a channel in the comment; chosen
 
 
@@ -114,7 +118,7 @@ def _antenna_lines(sources: Sequence[tuple[LogSurvey, tuple[ColumnGuess, ...]]])
         return []
     places = [place for survey, _ in sources if (place := antenna_place(survey.log.parameters)) is not None]
     if not places:
-        return ["# antenna = { x = 0.0, y = 0.0 }    # m forward of midship, to starboard: state it where it is not 0"]
+        return [_NO_ANTENNA]
     why = f"{places[0].evidence}; add the place of the autopilot where that is not midship"
     return [f"antenna = {{ x = {places[0].x:g}, y = {places[0].y:g} }}    # {why}"]
 

@@ -113,6 +113,7 @@ _MESSAGES = [
 _FORWARD, _ACROSS = "(forward|fwd|ahead|longitudinal)", "(stbd|starboard|lateral|transverse)"
 _COMPASS = "a magnetic one is psi_magnetic, with variation"
 _ENGINE = "rate of the engine: to use it, write it as channels.n with scale = propeller turns over engine turns"
+_RATE = "taken for the shaft's; of an engine behind a gear add scale = propeller turns over engine turns"
 _WIND = "no model but mmg takes it: a comment in the file"
 _APPARENT_WIND = "no model takes an apparent wind: a comment in the file"
 _APPARENT, _ANGLE = "app(arent)?", "(dir(ection)?|angle)"
@@ -143,7 +144,8 @@ _WORDS = [
         (r"sway_(dot|acc(eleration)?)", "v_dot", "", "body"),
         (r"rudder(_(angle|pos(ition)?|feedback|act(ual)?))?|rud|delta(_rudder)?|rsa|helm|nozzle(_angle)?", "delta", ""),
         (r"(main_|port_|stbd_)?eng(ine)?(_(rate|speed|revs?))?", "n", "", "", "", 1.0, _ENGINE),
-        (r"n_prop|(prop(eller)?|shaft)_(rate|rpm|rps|speed)|shaft|rpm|rps|n", "n", ""),
+        (r"n_prop|(prop(eller)?|shaft)_(rate|rpm|rps|speed)|shaft", "n", ""),
+        (r"rpm|rps|n", "n", "", "", "", 1.0, "", _RATE),
         (r"roll(_angle)?|phi|heel", "phi", ""), (r"pitch(_angle)?|theta|trim_angle", "theta", ""),
         (r"roll_rate|p", "p", ""), (r"heave|z", "z", ""),
         (

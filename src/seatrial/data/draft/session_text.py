@@ -3,17 +3,23 @@
 import math
 from collections.abc import Sequence
 from datetime import UTC, datetime
+from itertools import pairwise
 
 from seatrial.data.draft.clocks import time_span
 from seatrial.data.draft.runs_of_logs import LogRun
 from seatrial.data.trial.session import date_in
 
+_DAY_S = 86400.0  # s
 _EPOCH_CLOCK_S = 1e8  # s beyond which a clock counts from 1970 or the like, three years; as in the parts of a run
 
 
 def session_line(runs: Sequence[LogRun]) -> str:
     """Return ``session = ...`` with its reason; empty where a run has no date, or all days differ."""
     days = [_day_of(run) for run in runs]
+    if len(runs) > 1 and not any(days) and _is_one_clock(runs):
+        return (
+            'session = "all"    # clocks without a date go on from run to run: of one day they share its current and zeros'
+        )
     if len(runs) < 2 or not all(days):
         return ""
     if len(set(days)) == 1:
@@ -21,6 +27,14 @@ def session_line(runs: Sequence[LogRun]) -> str:
     if len(set(days)) == len(days):
         return ""
     return f'session = "day"    # runs of {len(set(days))} days: those of one share its current and its zeros'
+
+
+def _is_one_clock(runs: Sequence[LogRun]) -> bool:
+    """Whether clocks without a date go on from run to run within a day, and do not start anew."""
+    spans = sorted(time_span(max(run.sources, key=lambda one: one.duration)) for run in runs)
+    is_known = all(math.isfinite(end) for span in spans for end in span)
+    follows = all(before[1] <= after[0] for before, after in pairwise(spans))
+    return is_known and follows and spans[-1][1] - spans[0][0] <= _DAY_S
 
 
 def _day_of(run: LogRun) -> str:

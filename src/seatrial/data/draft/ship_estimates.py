@@ -13,10 +13,11 @@ _LENGTH_TO_BREADTH, _BREADTH_TO_DRAUGHT, _BLOCK = 6.0, 3.0, 0.65
 _BLOCKS = (0.2, 1.0)  # of anything that floats: a slender catamaran's hulls within L, B and d, a box
 _SEA_WATER = 1025.0  # kg/m^3 (ITTC 7.5-02-01-03, sea water at 15 degC: 1026)
 _SPAN = 0.75  # height of a rudder over the draught; chosen: between full ships' 0.7 and fine ships' 0.8
-_DIAMETER = 0.6  # of a propeller over the draught; chosen: between tankers' 0.5 and ferries' 0.75
-_PITCH_RATIOS = (0.5, 1.4)  # P/D of the B series (Oosterveld & van Oossanen 1975)
+_DIAMETERS = (0.35, 0.75)  # range of a propeller's diameter over the draught; chosen: small models, ferries
+_PITCH_RATIO = 0.75  # P/D, usual, and its range in the B series (Oosterveld & van Oossanen 1975)
+_PITCH_RATIOS = (0.5, 1.4)
 # advance ratio over P/D of a ship under way, and range of advance ratios beyond which nothing drives a ship; chosen
-_ADVANCE, _ADVANCES = 0.5, (0.15, 1.2)
+_ADVANCE, _ADVANCES = 0.5, (0.25, 1.2)
 _FASTEST = 0.4  # Froude number beyond which a hull no longer displaces its way as those of the regressions; chosen
 _DIGITS = 4  # significant ones of an estimate; those of sea water
 
@@ -138,11 +139,12 @@ def hull_rudder_propeller(size: StatedSize, speed: float, advance: float) -> tup
     form = size.form
     if not (advance > 0.0 and 0.0 < speed < _FASTEST * math.sqrt(G * form.L)):
         return ()
-    diameter = _DIAMETER * form.d
-    ratio = advance * (1.0 - interaction_wake(form)) / diameter  # J = u (1 - w) / (n D)
-    if not _ADVANCES[0] <= ratio <= _ADVANCES[1]:
+    flow = advance * (1.0 - interaction_wake(form))  # m in a turn: J = u (1 - w) / (n D)
+    smallest, largest = (share * form.d for share in _DIAMETERS)
+    diameter = min(max(flow / (_ADVANCE * _PITCH_RATIO), smallest), largest)
+    if not _ADVANCES[0] <= flow / diameter <= _ADVANCES[1]:
         return ()
-    pitch_ratio = min(max(ratio / _ADVANCE, _PITCH_RATIOS[0]), _PITCH_RATIOS[1])
+    pitch_ratio = min(max(flow / (_ADVANCE * diameter), _PITCH_RATIOS[0]), _PITCH_RATIOS[1])
     # DNV rules for ships, part 3 chapter 14: least area of a rudder in the propeller's slipstream
     area = form.L * form.d / 100.0 * (1.0 + 50.0 * form.C_b**2 * (form.B / form.L) ** 2)
     return (
@@ -151,8 +153,10 @@ def hull_rudder_propeller(size: StatedSize, speed: float, advance: float) -> tup
         water_density(),
         EstimatedValue("H_R", _SPAN * form.d, f"m, height of the rudder: {_SPAN:g} d"),
         EstimatedValue("A_R", area, "m^2, area of the rudder: DNV's least area for L, B, d and C_b"),
-        EstimatedValue("D_P", diameter, f"m, diameter of the propeller: {_DIAMETER:g} d"),
-        EstimatedValue("pitch_ratio", pitch_ratio, "P/D, from the propeller's rate at the approach speed"),
+        EstimatedValue(
+            "D_P", diameter, "m, diameter of the propeller, from its rate and the speed: R_0 and t_P go with it"
+        ),
+        EstimatedValue("pitch_ratio", pitch_ratio, "P/D, from the same"),
     )
 
 
