@@ -9,7 +9,8 @@ from seatrial.data.draft.clocks import time_span
 from seatrial.data.draft.runs_of_logs import LogRun
 from seatrial.data.trial.session import date_in
 
-_DAY_S = 86400.0  # s
+_ONE_CLOCK = "clocks without a date go on from run to run: of one day they share its current and zeros"
+_DAY_S = 86400.0  # s of a day
 _EPOCH_CLOCK_S = 1e8  # s beyond which a clock counts from 1970 or the like, three years; as in the parts of a run
 
 
@@ -17,9 +18,7 @@ def session_line(runs: Sequence[LogRun]) -> str:
     """Return ``session = ...`` with its reason; empty where a run has no date, or all days differ."""
     days = [_day_of(run) for run in runs]
     if len(runs) > 1 and not any(days) and _is_one_clock(runs):
-        return (
-            'session = "all"    # clocks without a date go on from run to run: of one day they share its current and zeros'
-        )
+        return f'session = "all"    # {_ONE_CLOCK}'
     if len(runs) < 2 or not all(days):
         return ""
     if len(set(days)) == 1:
