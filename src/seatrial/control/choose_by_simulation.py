@@ -69,7 +69,8 @@ def choose_by_simulation(
     def simulated(judge: GainEvaluator, front: ParetoFront, gains: Array) -> _Candidate:
         made = simulate_in_seaway(few, judge.loop, "candidate", gains, seed + _SELECTION_SEED_OFFSET)
         judged, loop = judge.evaluate(gains[None]), judge.loop
-        delays = [margins(task.loop_at(met.U, loop).with_gains(gains)).delay for met in task.disturbances]
+        speeds = dict.fromkeys(met.U for met in task.disturbances)
+        delays = [margins(task.loop_at(U, loop).with_gains(gains)).delay for U in speeds]
         return _Candidate(
             judge, gains, front.name, 0.5 * (made.limited + made.stalled), made.saturation_loss,
             float(judged.variances[0, :, 2].mean()), float(judged.Ms[0]), bool(gains_on_bound(loop, gains)),

@@ -8,6 +8,7 @@ averages them, their slopes would add up without end.
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -31,6 +32,7 @@ _LOWEST_FREQUENCY = 1e-9  # rad/s: a wave that keeps up with the ship
 _NO_EFFECT = 1e-12  # share of the sea's variance that counts as none: rounding
 _REACH = 12.0  # highest wave frequency over the modal one, as said above
 WAVE_SLOPE = WaveSlope()
+_KEPT_RESPONSES = 16  # blocks whose sharpened form is kept: every direction of a sea takes it; chosen
 _FIRST_STRIDE = 8  # directions left out between those of the first grid; chosen
 
 
@@ -228,6 +230,7 @@ def _reduced_nodes(omega_e: Array, rows: Array, response: Block, accuracy: float
     return omega_e, rows
 
 
+@lru_cache(maxsize=_KEPT_RESPONSES)
 def _with_less_damping(response: Block) -> Block:
     """Return the block with half of its damping, as feedback may leave it; what runs away or integrates as if held."""
     poles = response.poles

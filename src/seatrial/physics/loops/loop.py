@@ -85,6 +85,11 @@ class TransferLoop:
         return in_series("chain", (*self.sensor, *self.filters, *self.servo, self.plant))
 
     @cached_property
+    def _common(self) -> Block:
+        """Everything of the controller but the terms."""
+        return in_series("common", (*self.sensor, *self.filters, *self.servo))
+
+    @cached_property
     def polynomials(self) -> tuple[Array, Array]:
         """d(s), shape (n + 1,), and n_i(s), shape (g, n + 1), highest power first: L = sum gain_i n_i / d.
 
@@ -101,7 +106,7 @@ class TransferLoop:
 
     def controller_terms(self, omega: Array) -> Complex:
         """Return what each gain multiplies between y and a, shape (g, n), at omega (n,) [rad/s]."""
-        common = in_series("common", (*self.sensor, *self.filters, *self.servo)).frequency_response(omega)
+        common = self._common.frequency_response(omega)
         return np.stack([term.block.frequency_response(omega) * common for term in self.terms])
 
     def open_loop_terms(self, omega: Array) -> Complex:

@@ -1,11 +1,12 @@
 """Quadrature: trapezoids with corrected ends, and many nodes condensed on few."""
 
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
 from scipy.special import bernoulli
 
-from seatrial.core.values import Array
+from seatrial.core.values import Array, frozen
 
 _ORDER = 8  # of the end correction of the trapezoidal rule (Gregory, Euler-Maclaurin); chosen
 _END_WEIGHTS = 1.0 + np.linalg.solve(
@@ -13,6 +14,7 @@ _END_WEIGHTS = 1.0 + np.linalg.solve(
 )
 # rad/s: below, gathered nodes are even in frequency, above in its logarithm
 _LINEAR_BELOW = 0.05
+_KEPT = 64  # grids kept in memory: all directions of a sea share theirs; chosen
 
 
 def weights(count: int) -> Array:
@@ -23,6 +25,7 @@ def weights(count: int) -> Array:
     return made
 
 
+@lru_cache(maxsize=_KEPT)
 def nodes(edges: tuple[float, ...], count: int) -> tuple[Array, Array]:
     """Return `count` nodes, as many between all edges, even in their logarithm, and the width that each stands for."""
     made: list[Array] = []
@@ -32,7 +35,7 @@ def nodes(edges: tuple[float, ...], count: int) -> tuple[Array, Array]:
         u, step = np.linspace(low, high, own, retstep=True)
         made.append(np.exp(u))
         width.append(made[-1] * weights(own) * step)
-    return np.concatenate(made), np.concatenate(width)
+    return frozen(np.concatenate(made)), frozen(np.concatenate(width))
 
 
 def gather_nodes(omega: Array, rows: Array, count: int) -> tuple[Array, Array]:
