@@ -50,7 +50,7 @@ def test_one_run_is_named_by_its_manoeuvre_with_errors_and_limit(fit: Fit) -> No
     text = verdict(fit)
     assert text.startswith("Predicts a 25° zigzag that was not used, 4 min 00 s, ")
     assert f"{error_text('psi_deg', p.rms['psi_deg'])} in heading and" in text
-    assert text.endswith("; beyond 30° rudder, or from another speed than 0.80 m/s, the model extrapolates.")
+    assert text.endswith("; beyond 30° rudder, or from approach speeds far from 0.80 m/s, the model extrapolates.")
 
 
 def test_half_of_the_motion_on_either_side_reads_alike(fit: Fit) -> None:
@@ -146,7 +146,7 @@ def test_the_limit_of_the_rudder_is_that_of_each_side(fit: Fit, port: float, sta
 
 
 @pytest.mark.parametrize(("factor", "text"), [
-    (1.05, "beyond 30° rudder, or from another speed than 0.81 m/s, the model extrapolates"),
+    (1.05, "beyond 30° rudder, or from approach speeds far from 0.81 m/s, the model extrapolates"),
     (1.3, "beyond 30° rudder the model extrapolates"),
 ])  # fmt: skip
 def test_runs_from_one_speed_say_so(fit: Fit, factor: float, text: str) -> None:
@@ -155,7 +155,7 @@ def test_runs_from_one_speed_say_so(fit: Fit, factor: float, text: str) -> None:
     faster = first.measured.with_channel("u", u.with_values(factor * u.values))
     assert extrapolation_limit(replace(fit, predictions=(replace(first, measured=faster), *rest))) == text
     (one, *_) = rest
-    assert "another speed" not in extrapolation_limit(replace(fit, predictions=(one,))), "a single run shows no more"
+    assert "approach speeds" not in extrapolation_limit(replace(fit, predictions=(one,))), "a single run shows no more"
 
 
 def test_without_a_rudder_the_speed_limits(fit: Fit) -> None:

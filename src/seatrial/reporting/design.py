@@ -116,7 +116,8 @@ def _first_screen(design: Design) -> FirstScreen:
         if has_track(design) and has_drift(design)
         else ""
     )
-    caption = f"The ship as assumed; ships at equal times, to scale.{room}{drift}"
+    ships = "; ships at equal times, to scale" if has_track(design) else ""
+    caption = f"The ship as assumed{ships}.{room}{drift}"
     return FirstScreen(design_text.verdict(design), design_text.key_facts(design), figure, caption)
 
 

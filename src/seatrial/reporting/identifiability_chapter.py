@@ -187,8 +187,8 @@ def determined_sentence(fit: Fit) -> str:
     if identifiability is None or not math.isfinite(identifiability.effective_parameters):
         return ""
     number, vague = round(identifiability.effective_parameters), [c.name for c in free if c.is_sign_open]
-    alone = f"{len(free) - len(vague)} one by one: the 95 % {'intervals' if len(vague) > 1 else 'interval'} of "
-    alone += f"{enumeration(vague)} {'contain' if len(vague) > 1 else 'contains'} 0"
+    alone = f"{len(free) - len(vague)} one by one (the 95 % {'intervals' if len(vague) > 1 else 'interval'} of "
+    alone += f"{enumeration(vague)} {'contain' if len(vague) > 1 else 'contains'} 0)"
     if number >= len(free):
         tied = {name for symmetry in identifiability.structural for name in symmetry.parameters}
         held = [c.name for c in fit.coefficients if c.fixed and c.name in tied]
@@ -196,7 +196,7 @@ def determined_sentence(fit: Fit) -> str:
         together = f" together{given}, but {alone}" if vague else given
         return f"The records determine all {len(free)} free coefficients{together}."
     rest = "; the rest comes from the priors" if any(c.prior_mean is not None for c in free) else ""
-    single = f", and of the coefficients {alone}" if vague else ""
+    single = f", and {alone.replace(' one by one', f' of the {len(free)} coefficients one by one', 1)}" if vague else ""
     return f"The records determine about {number} of {len(free)} combinations of the free coefficients{rest}{single}."
 
 

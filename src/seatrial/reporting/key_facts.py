@@ -3,7 +3,7 @@
 import math
 
 from seatrial.core.results import Fit, Prediction, WindowScore
-from seatrial.core.results.fit_charts import headline_view
+from seatrial.core.results.fit_charts import has_band, headline_view
 from seatrial.core.results.identifiability import NOT_CONVERGED
 from seatrial.core.results.window_scores import ChannelScore
 from seatrial.core.text.numbers import fixed, significant
@@ -36,7 +36,8 @@ def first_screen(fit: Fit, length: float) -> FirstScreen:
     view = headline_view(p, length, fit.model.input_names)
     which = "The held-out run" if len(fit.validation) == 1 else (
         "The worst held-out run" if fit.validation else "The worst training run")  # fmt: skip
-    caption = f"{which}, {p.record}: {p.reference_word} and {p.model_word}."
+    band = " Pale: 95 % band, up to where it is half as wide as the track is long." if has_band(p) else ""
+    caption = f"{which}, {p.record}: {p.reference_word} and {p.model_word}.{band}"
     return FirstScreen(verdict(fit), key_facts(fit), run_figure(view, is_first=True), caption, operators_sentence(fit))
 
 
@@ -76,7 +77,7 @@ def _training_score(fit: Fit) -> tuple[KeyFact, ...]:
     names = enumeration(sorted(shares, key=lambda name: -shares[name].share), MAX_NAMES)
     text = (
         f"{names} {'is' if len(shares) == 1 else 'are'} missed although fitted, {worst} by {worst_errors(runs)} "
-        f"({shares[worst].grade}): model error, not extrapolation"
+        f"({shares[worst].grade}): model error, not extrapolation; docs/bad-fit.md, By symptom"
     )
     return (KeyFact("Error, fitted (rms)", text, "training", is_good=False),)
 

@@ -154,7 +154,9 @@ def extrapolation_limit(fit: Fit) -> str:
     rudder = [to_starboard(r, "delta") for r in training if "delta" in r]
     if rudder:
         speed = _only_speed(training) if "u" in fit.model.states else ""
-        return _beyond(_rudder_reach(np.concatenate(rudder)), f", or from another speed than {speed}," if speed else "")
+        return _beyond(
+            _rudder_reach(np.concatenate(rudder)), f", or from approach speeds far from {speed}," if speed else ""
+        )
     if "phi" in fit.model.states and any("phi" in r for r in training):
         largest = max(float(np.nanmax(np.abs(r["phi"]))) for r in training if "phi" in r)  # a decay has it once
         return _beyond(f"{math.degrees(largest):.0f}° of roll")

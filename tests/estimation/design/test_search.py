@@ -50,7 +50,9 @@ def test_standard_manoeuvres_keep_range_rate_and_where_they_can_the_limits(craft
 def test_a_trial_with_room_for_four_orders_has_its_standard_manoeuvres(craft: DesignTask) -> None:
     quarter = replace(NOZZLE_RANGE, hold=0.25 * craft.request.duration)
     task = with_inputs(craft, {"delta": quarter}, dict(craft.request.held))
-    assert any(standard.is_random for standard in standard_manoeuvres(bench(task)))
+    standards = standard_manoeuvres(bench(task))
+    assert any(standard.is_random for standard in standards)
+    assert len({standard.name for standard in standards}) == len(standards), "one hold for all: each row once"
 
 
 def test_the_yardstick_of_a_standard_manoeuvre_is_never_below_one(craft: DesignTask) -> None:

@@ -43,9 +43,8 @@ class StandardManoeuvre:
 def standard_manoeuvres(evaluator: ManoeuvreEvaluator) -> list[StandardManoeuvre]:
     """Return random binary sequences and, by the model, zigzags and turning circles, steps, or steps and a sweep."""
     task = evaluator.task
-    sequences = [
-        _largest_within_limits(evaluator, share, seed) for share in SWITCHING_SHARES for seed in SEQUENCE_SEEDS
-    ]
+    drawn = (_largest_within_limits(evaluator, share, seed) for share in SWITCHING_SHARES for seed in SEQUENCE_SEEDS)
+    sequences = list({one.name: one for one in drawn}.values())  # a short trial shortens all holds to one
     if task.model.equations.layout:
         return [*sequences, StandardManoeuvre("steps one by one", _single_step_inputs)]
     if not _is_steered(task):

@@ -11,6 +11,7 @@ from seatrial.data.trial.approach import approach_condition
 from seatrial.estimation.estimate import Estimation, IntervalMethod
 from seatrial.estimation.identify import fit_result
 from seatrial.estimation.identify.abandoned_criterion import abandoned_criterion_finding
+from seatrial.estimation.identify.antenna_place import antenna_findings
 from seatrial.estimation.identify.box_scale import stands_on_box
 from seatrial.estimation.identify.closed_loop_findings import closed_loop_findings
 from seatrial.estimation.identify.course_stability import course_finding
@@ -89,6 +90,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
             *needless_term_findings(estimation, predicted.predictions),
             *predicted.findings,
             *response_findings(responses),
+            *antenna_findings(predicted.predictions, runs.length),
             *one_speed_finding(roll, runs.records),
             *gyradius_findings(trial.ship, roll.gyradius if roll else None),
         ),
