@@ -16,9 +16,11 @@ _LEAST_SHARE, _LEAST_DISTANCE, _LEAST_ERROR = 0.6, 0.05, 0.25
 def antenna_findings(predictions: Sequence[Prediction], length: float) -> tuple[Finding, ...]:
     """Return a warning `antenna-place` with the place at which the recorded sway would be that of the model.
 
-    A receiver x forward of the origin moves sideways with v + x r (Fossen 2021, section 2.2). length: of the craft [m].
+    Held-out runs decide where there are any: a fit takes the place for sway in the runs that it is fitted to. A
+    receiver x forward of the origin moves sideways with v + x r (Fossen 2021, section 2.2). length: of the craft [m].
     """
-    runs = [p for p in predictions if p.divergence is None and all("v" in r for r in (p.measured, p.simulated))]
+    held = [p for p in predictions if p.role == "validation"]
+    runs = [p for p in held or predictions if p.divergence is None and all("v" in r for r in (p.measured, p.simulated))]
     runs = [p for p in runs if "r" in p.measured]
     if not runs or not length > 0.0:
         return ()
