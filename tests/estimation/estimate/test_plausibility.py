@@ -19,6 +19,7 @@ from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions
 from seatrial.numerics.optimise import Optimum, Solution, Status
+from seatrial.physics.models.abkowitz import abkowitz
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.problems.disturbed_craft import Disturbance, independent_nomoto
 
@@ -113,3 +114,19 @@ def test_prediction_error_returns_to_the_basin(gusty_minute: Record) -> None:
     error = found.estimate.common_parameters[:2] - [0.15, 8.0]
     assert np.all(np.abs(error) < 3.5 * found.interval.standard_error[:2])
     assert found.noise_model.disturbance == "first-order Markov on r"
+
+
+@pytest.mark.parametrize(("names", "is_named"), [(("psi", "x0", "y0"), True), (("psi", "u", "v"), False)])
+def test_a_search_lost_without_a_velocity_says_which_channels_show_sway(
+    names: tuple[str, ...], *, is_named: bool
+) -> None:
+    time = 0.1 * np.arange(100)
+    ship = {"L": 50.0, "m": 1e6, "x_G": 0.0, "I_z": 1.6e8, "rho": 1025.0, "U_n": 5.0, "X_u": -0.001}
+    model = abkowitz(("Y_v", "N_d")).with_values(ship)
+    run = Record.from_arrays("run", time, {"delta": np.sin(time), **dict.fromkeys(names, 0.1 * time)})
+    problem = output_error_problem(model, Runs.one_session_each([run], LENGTH), np.inf, EstimateSettings(), 1)
+    solution = Solution(np.array([-4e3, 500.0]), 1.0, Status.CONVERGED, 1)
+    optimum = Optimum(solution, local := np.zeros((1, len(problem.starts))), problem.normal(problem.start(), local))
+    with pytest.raises(InputError) as caught:
+        refuse_implausible(PointEstimate(problem, optimum), np.array([1e8, 1e7]))
+    assert ("declare channels.u and channels.v, or channels.sog and channels.cog" in str(caught.value)) == is_named

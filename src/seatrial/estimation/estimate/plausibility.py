@@ -47,8 +47,18 @@ def refuse_implausible(estimate: PointEstimate, standard_error: Array) -> None:
         raise InputError(
             f"the search ended outside physics: {lost}; either the runs do not show these apart: fix some under "
             "[model.fixed] or give priors under [model.priors]; or no values repeat all runs: leave out those that "
-            "differ most in speed or orders, or take a model with what they differ by"
+            f"differ most in speed or orders, or take a model with what they differ by{_without_velocity(estimate)}"
         )
+
+
+def _without_velocity(estimate: PointEstimate) -> str:
+    """What to do where the model has a sway that no record shows: positions alone leave its forces open."""
+    if "v" not in estimate.problem.model.states or "v" in estimate.problem.data.outputs:
+        return ""
+    return (
+        "; no run has a sway velocity, and positions alone hardly show the forces in sway: declare channels.u and "
+        'channels.v, or channels.sog and channels.cog, or write name = "nomoto" under [model]'
+    )
 
 
 def with_plausible_start(estimate: PointEstimate) -> PointEstimate:

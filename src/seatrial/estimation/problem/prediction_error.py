@@ -41,7 +41,8 @@ class KalmanInnovations:
     @property
     def normalised(self) -> Array:
         """Innovations in their standard deviations, (rows, ny): white, of unit variance, where the model is true."""
-        return self.e / np.sqrt(self.variance)
+        with np.errstate(invalid="ignore"):  # of a point whose variances are none, which no search accepts
+            return self.e / np.sqrt(self.variance)
 
 
 @dataclass(frozen=True, eq=False)
@@ -265,7 +266,8 @@ def _negative_log_likelihood(e: Array, v: Array) -> float:
 
 def _mean_information(e: Array, v: Array, de: Array) -> tuple[Array, Array]:
     """Return sum e de / v and sum de de' / v: gradient and information by the mean."""
-    root = np.sqrt(v)
+    with np.errstate(invalid="ignore"):  # the cost is infinite there
+        root = np.sqrt(v)
     jacobian = (de / root[:, :, None]).reshape(-1, de.shape[2])
     return jacobian.T @ (e / root).ravel(), jacobian.T @ jacobian
 
