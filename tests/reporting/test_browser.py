@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+import numpy as np
 import pytest
 from tests.reporting.fabricated_comparison import fabricated_comparison
 from tests.reporting.fabricated_design import fabricated_design
@@ -91,6 +92,23 @@ def test_printing_unfolds_everything(browser: "Browser", page: Path) -> None:
     assert len(window.pdf(format="A4", prefer_css_page_size=True)) > 50_000
 
 
+MOST_EMPTY = 0.45  # share of a sheet, but of the last one, that is left empty at most; chosen: a figure that moved on
+MARGINS = 17.0 / 297.0, 20.0 / 297.0  # of a sheet, above and below: `@page` in style.css, the page's number in it
+INK = 200  # grey level of 255 below which a pixel is printed on
+
+
+def empty_shares(document: bytes) -> list[float]:
+    """The share of each sheet of a PDF below its last line, margins left out."""
+    sheets = pytest.importorskip("pypdfium2", reason="pypdfium2 is not installed").PdfDocument(document)
+    shares = list[float]()
+    for k in range(len(sheets)):
+        grey = np.asarray(sheets[k].render(scale=0.5).to_pil().convert("L"))
+        top, bottom = round(MARGINS[0] * len(grey)), round((1.0 - MARGINS[1]) * len(grey))
+        rows = np.flatnonzero((grey[top:bottom] < INK).any(axis=1))
+        shares.append(1.0 - (rows[-1] + 1) / (bottom - top) if len(rows) else 1.0)
+    return shares
+
+
 def pages_of_every_kind(fit: Fit, study: Study) -> "dict[str, str]":
     return {
         "fit": fit_html(fit), "study": study_html(study), "fin": tuning_html(fabricated_fin()),
@@ -144,6 +162,26 @@ def test_every_text_stands_out_no_table_is_cut_and_all_is_named(
     assert window.evaluate(f"({RULES}).faint()") == []
     assert window.evaluate(f"({RULES}).cut()") == []
     assert window.evaluate(f"({RULES}).unnamed()") == []
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_no_printed_sheet_but_the_last_is_half_empty(
+    browser: "Browser", every_page: dict[str, Path], kind: str
+) -> None:
+    window, _ = opened(browser, every_page[kind])
+    shares = empty_shares(window.pdf(format="A4", prefer_css_page_size=True))
+    assert [round(share, 2) for share in shares[:-1] if share > MOST_EMPTY] == []
+    assert shares[-1] < 1.0, "no empty sheet at the end"
+
+
+def test_an_empty_half_is_seen(browser: "Browser", tmp_path: Path) -> None:
+    path = tmp_path / "two.html"
+    path.write_text(
+        "<p>one</p><p style='break-before: page; height: 200mm; background: black'>two</p>", encoding="utf-8"
+    )
+    window, _ = opened(browser, path)
+    first, second = empty_shares(window.pdf(format="A4", print_background=True))
+    assert first > 0.9 and second < 0.3
 
 
 def test_what_is_wider_than_a_telephone_is_moved_by_keys(browser: "Browser", page: Path) -> None:
