@@ -6,6 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from seatrial.core.equations import Model
     from seatrial.core.results import Design, Fit
     from seatrial.core.results.online import SampleCounts, Snapshot
@@ -107,6 +109,7 @@ def draft_trial(
     beam: float = 0.0,
     draught: float = 0.0,
     mass: float = 0.0,
+    columns: "Sequence[str]" = (),
 ) -> "DraftTrial":
     """Draft a trial file from logs: channels, units, frames and signs by name and behaviour, each with its evidence.
 
@@ -116,16 +119,19 @@ def draft_trial(
         length: of the craft between perpendiculars [m]; 0: it is not stated, and the file asks for it.
         beam: breadth at the waterline [m]; 0: a rule by the length stands in for it, as for the next two.
         draught: m. mass: kg.
+        columns: what columns are whose names say nothing: ``Klokke=time``, ``Kurs (gyro)=psi``.
 
     Returns:
         The text of the file; what is unsure stands in it as a commented line with both readings.
 
     Raises:
-        InputError: no logs, or one that cannot be read; a size below zero, or sizes that no hull has.
+        InputError: no logs, or one that cannot be read; a size below zero, or sizes that no hull has; a
+            stated column that no log has.
     """
-    from seatrial.data.draft import StatedSize, draft_trial
+    from seatrial.data.draft import StatedSize, draft_trial, stated_columns
 
-    return draft_trial(*logs, folder=folder, size=StatedSize(length, beam, draught, mass))
+    size = StatedSize(length, beam, draught, mass)
+    return draft_trial(*logs, folder=folder, size=size, stated=stated_columns(columns))
 
 
 def survey_log(path: "str | Path") -> "LogSurvey":

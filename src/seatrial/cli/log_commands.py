@@ -30,10 +30,16 @@ def init(
     beam: Annotated[float, typer.Option("--beam", metavar="METRES", help="Breadth, else estimated.")] = 0.0,
     draught: Annotated[float, typer.Option("--draught", metavar="METRES", help="Draught, else estimated.")] = 0.0,
     mass: Annotated[float, typer.Option("--mass", metavar="KG", help="Mass, displacement, else estimated.")] = 0.0,
+    column: Annotated[
+        list[str] | None,
+        typer.Option("--column", metavar="HEADING=CHANNEL", help="What a column is whose heading says nothing."),
+    ] = None,
 ) -> None:
     """Draft a trial file from logs: what each column is, with the evidence, and the manoeuvres found.
 
     Example: seatrial init 00000042.BIN --length 2.6 --out trial.toml
+
+    A heading of one's own: --column "Klokke=time" --column "Ror [deg]=delta"
     """
     from seatrial import api
     from seatrial.core.text.words import counted
@@ -44,7 +50,9 @@ def init(
 
     if out.exists():
         raise InputError(f"--out '{out}' exists and is not overwritten; name another file, or remove it")
-    draft = api.draft_trial(*logs, folder=out.resolve().parent, length=length, beam=beam, draught=draught, mass=mass)
+    draft = api.draft_trial(
+        *logs, folder=out.resolve().parent, length=length, beam=beam, draught=draught, mass=mass, columns=column or ()
+    )
     page = out.with_suffix(".html")
     if page.exists():
         raise InputError(f"'{page}', the drawing beside --out, exists and is not overwritten; name another file")
@@ -84,9 +92,6 @@ def _after_draft(draft: "DraftTrial", out: Path) -> str:
         why = "".join(f" ({note})" for note in notes[:1] if note)
         first = f"{log.name} has no time column that is recognised{why}; name it in {out}"
         return f"{first}, seatrial check {in_shell(log)} lists all"
-    if not any(g.is_used for part in draft.guesses for g in part):
-        log = draft.surveys[0].path
-        return f"no column is recognised; seatrial check {in_shell(log)} lists them, name channels in {out}"
     steps = [f"decide what is OPEN in {out}"] if draft.open_questions else []
     steps += [f"put the length of the craft after 'L =' in {out} (init --length does)"] if draft.lacks_length else []
     steps += [f"name the column of rudder, thruster or roll angle in {out}"] if draft.lacks_input else []
@@ -129,7 +134,9 @@ def print_survey(survey: "LogSurvey", *, show_all: bool) -> None:
     print_lines(f"event at {event.time:.6g} s: {event.name}" for event in survey.log.events[:TOPICS_SHOWN])
     if survey.log.parameters:
         print_lines([f"{counted(len(survey.log.parameters), 'parameter')} stored"])
-    print_next(f"seatrial init {in_shell(survey.path)} --out trial.toml")
+    has_time = any(topic.time is not None for topic in survey.topics)
+    time = "" if has_time else " --column 'HEADING OF THE TIME=time'"
+    print_next(f"seatrial init {in_shell(survey.path)}{time} --out trial.toml")
 
 
 def _print_topic(topic: "TopicSummary", *, show_all: bool, symbols: dict[str, str]) -> None:

@@ -7,6 +7,7 @@ from seatrial.data.draft.manoeuvres import find_stretches
 from seatrial.data.draft.named_manoeuvre import name_contradiction
 from seatrial.data.draft.runs_of_logs import LogRun, runs_of_logs
 from seatrial.data.draft.ship_estimates import StatedSize
+from seatrial.data.draft.stated_columns import stated_columns
 from seatrial.data.draft.stretch import LogStretch
 from seatrial.data.draft.survey import ColumnSummary, LogSurvey, TopicSummary, survey_log
 
@@ -26,5 +27,6 @@ __all__ = [
     "name_contradiction",
     "run_text",
     "runs_of_logs",
+    "stated_columns",
     "survey_log",
 ]

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from seatrial.core.values import InputError, Record
+from seatrial.core.values.errors import listed
 from seatrial.core.values.files import is_folder
 from seatrial.data.draft.agreement import agreed_guesses
 from seatrial.data.draft.behaviour import checked_by_behaviour, run_record
@@ -18,6 +19,7 @@ from seatrial.data.draft.runs_of_logs import LogRun, runs_of_logs
 from seatrial.data.draft.session_text import session_line
 from seatrial.data.draft.ship_estimates import UNSTATED, StatedSize
 from seatrial.data.draft.starting_model import StartingModel, starting_model
+from seatrial.data.draft.stated_columns import CHANNELS, NOTHING_STATED, TIME, StatedColumns, refuse_absent
 from seatrial.data.draft.stretch import LogStretch
 from seatrial.data.draft.survey import LogSurvey, survey_log, with_common_ranges
 from seatrial.data.draft.tables_text import tables_text
@@ -72,23 +74,30 @@ class DraftTrial:
         return tuple(g for part in self.guesses for g in part if g.is_used and g.is_open and not g.is_of_wind)
 
 
-def draft_trial(*logs: str | Path, folder: str | Path = ".", size: StatedSize = UNSTATED) -> DraftTrial:
+def draft_trial(
+    *logs: str | Path,
+    folder: str | Path = ".",
+    size: StatedSize = UNSTATED,
+    stated: StatedColumns = NOTHING_STATED,
+) -> DraftTrial:
     """Draft a trial file for logs: files, or folders whose logs are taken.
 
     Args:
         logs: which of them are runs, and which are sources of one run, follows from kind, clock and name.
         folder: where the trial file will lie; the paths in it count from there.
         size: what is stated of the craft; without a length the file asks for it.
+        stated: what columns are, by their headings.
 
     Raises:
-        InputError: no logs, or one that cannot be read.
+        InputError: no logs, one that cannot be read, or no column that is recognised.
     """
-    surveys, reasons = _surveys([Path(log) for log in logs])
+    surveys, reasons = _surveys([Path(log) for log in logs], stated)
     _refuse_unwritable_names(surveys)
     runs = runs_of_logs(with_common_ranges(surveys))
     used = {survey.path for run in runs for survey in run.sources}
     left_out = {one.path: "it is of another kind than the runs" for one in surveys if one.path not in used}
     named = [without_conflicts([guess_columns(one) for one in run.sources]) for run in runs]
+    _refuse_nothing_recognised(surveys, named)
     longest = sorted(range(len(runs)), key=lambda k: -runs[k].duration)[:_RUNS_EXAMINED]
     examined = [checked_by_behaviour(runs[k].sources, named[k]) for k in longest]
     guesses = [agreed_guesses(parts, examined) for parts in named]
@@ -111,6 +120,23 @@ def draft_trial(*logs: str | Path, folder: str | Path = ".", size: StatedSize = 
         tuple(name for one in blocks[0].sources for name in unrecognised_columns(*one)), session,
         bool(model.name) and not size.length, not model.name,
     )  # fmt: skip
+
+
+def _refuse_nothing_recognised(
+    surveys: Sequence[LogSurvey], named: Sequence[Sequence[Sequence[ColumnGuess]]]
+) -> None:  # fmt: skip
+    """Raises:
+    InputError: no column of any log stands for a channel; which there are, and how they are stated.
+    """
+    has_times = any(topic.time is not None for one in surveys for topic in one.topics)
+    if not has_times or any(guess.is_used for run in named for part in run for guess in part):
+        return
+    names = unrecognised_columns(surveys[0], ())
+    if names:
+        raise InputError(
+            f"no column of '{surveys[0].path.name}' is recognised by its heading: {listed(names)}; say what they "
+            f"are, as in --column '{names[0]}=psi'; channels are {CHANNELS}"
+        )
 
 
 def _refuse_unwritable_names(surveys: Sequence[LogSurvey]) -> None:
@@ -168,13 +194,13 @@ def _with_roles(block: RecordsBlock, model: StartingModel, held_out: HeldOutRuns
     )
 
 
-def _surveys(logs: Sequence[Path]) -> tuple[list[LogSurvey], dict[Path, str]]:
+def _surveys(logs: Sequence[Path], stated: StatedColumns) -> tuple[list[LogSurvey], dict[Path, str]]:
     """The logs, and the files of folders that are none, with the reason; a file that is named must be one."""
     named = {log for log in logs if not is_folder(log)}
     surveys, reasons = list[LogSurvey](), dict[Path, str]()
     for path in _log_files(logs):
         try:
-            survey = survey_log(path)
+            survey = survey_log(path, stated)
         except InputError as error:
             if path in named:
                 raise
@@ -183,11 +209,21 @@ def _surveys(logs: Sequence[Path]) -> tuple[list[LogSurvey], dict[Path, str]]:
         if path in named or any(topic.time is not None for topic in survey.topics):
             surveys.append(survey)
         else:
-            reasons[path] = "no column is a time"
+            reasons[path] = f"no column is a time{_how_to_state(survey, TIME)}"
     if not surveys:
         first = next(iter(reasons.items()))
         raise InputError(f"there is no log to draft a trial of: {first[0]}: {first[1]}")
+    refuse_absent(stated, (name for one in surveys for table in one.log.tables for name in table.names))
     return surveys, reasons
+
+
+def _how_to_state(survey: LogSurvey, meaning: str) -> str:
+    """The end of a sentence that says how a column is named: with the first one of text, or else of all."""
+    topic = next((one for one in survey.topics if one.text_columns or one.columns), None)
+    if topic is None:
+        return ""
+    heading = topic.text_columns[0] if topic.text_columns else topic.columns[0].name
+    return f"; if it is '{heading}', add --column '{heading}={meaning}'"
 
 
 def _log_files(logs: Sequence[Path]) -> list[Path]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.commands import command_guess, rudder_in_percent
-from seatrial.data.draft.naming import NameGuess, guess_by_name
+from seatrial.data.draft.naming import NameGuess, bracketed_unit, guess_by_name
 from seatrial.data.draft.survey import ColumnSummary, LogSurvey, TopicSummary
 from seatrial.data.draft.time_columns import column_values
 from seatrial.data.draft.unnamed import recognised_columns
@@ -36,7 +36,7 @@ def guess_columns(survey: LogSurvey) -> tuple[ColumnGuess, ...]:
         guesses += [((0.0,), guess) for guess in _without_names(survey, topic)]
         has_degrees = _has_latitude_in_degrees(survey, topic)
         for column in topic.columns:
-            named = guess_by_name(_topic_name(survey, topic), column.name, column.unit, survey.layout.format)
+            named = _named(survey, topic, column)
             if named is not None and not (column.is_constant and named.symbol.startswith("command_")):
                 rank = (column.is_constant, not named.unit, column.missing, -topic.rows)
                 guess = _first_guess(survey, topic, column, named)
@@ -66,12 +66,19 @@ def _without_names(survey: LogSurvey, topic: TopicSummary) -> list[ColumnGuess]:
 
 def _has_latitude_in_degrees(survey: LogSurvey, topic: TopicSummary) -> bool:
     """Whether a topic has a latitude that is too large for radians: its longitude, however small, is in degrees too."""
-    name = _topic_name(survey, topic)
     for column in topic.columns:
-        named = guess_by_name(name, column.name, column.unit, survey.layout.format)
+        named = _named(survey, topic, column)
         if named is not None and named.symbol == "lat" and not named.unit:
             return max(abs(column.low), abs(column.high)) > _LATITUDE_RAD
     return False
+
+
+def _named(survey: LogSurvey, topic: TopicSummary, column: ColumnSummary) -> NameGuess | None:
+    """What a column is as stated, else by its name."""
+    if column.name not in survey.stated:
+        return guess_by_name(_topic_name(survey, topic), column.name, column.unit, survey.layout.format)
+    stated = guess_by_name("", survey.stated[column.name], column.unit or bracketed_unit(column.name))
+    return None if stated is None else replace(stated, evidence="what was stated of it")
 
 
 def _topic_name(survey: LogSurvey, topic: TopicSummary) -> str:

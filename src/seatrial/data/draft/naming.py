@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from seatrial.core.values import InputError, si_unit
 from seatrial.core.values.units import UNIT_WORDS
+from seatrial.data.draft.languages import in_english, without_accents
 from seatrial.data.draft.stored_parameters import PX4_MAIN_OUTPUTS
 from seatrial.data.read.quantities import log_quantity
 
@@ -218,15 +219,19 @@ def guess_by_name(topic: str, name: str, stated_unit: str, log_format: str = "te
     last = topic if log_format != "text" else topic.rpartition("/")[2]  # folders are called as anybody likes
     if log_format in _KNOWN_LOGGERS or _ORDERS.search(last.lower()):
         return None
-    bracketed = _BRACKETS.search(name)
-    unit = _known_unit(stated_unit) or (_known_unit(bracketed[1]) if bracketed else "")
-    plain = re.sub(r"[^a-z0-9]+", "_", _BRACKETS.sub("", name).strip().lower()).strip("_")
+    unit = _known_unit(stated_unit) or bracketed_unit(name)
+    plain = re.sub(r"[^a-z0-9]+", "_", without_accents(_BRACKETS.sub("", name).strip())).strip("_")
     for text, word_unit in _readings(plain):
         for rule in _WORDS:
-            match = re.fullmatch(rule.pattern, text)
+            match = re.fullmatch(rule.pattern, in_english(text))
             if match:
                 return _guess(rule, match, unit or word_unit, "its name")
     return None
+
+
+def bracketed_unit(name: str) -> str:
+    """Return the unit that stands in brackets in a heading; empty where none does."""
+    return next((known for text in _BRACKETS.findall(name) if (known := _known_unit(text))), "")
 
 
 def _readings(plain: str) -> list[tuple[str, str]]:

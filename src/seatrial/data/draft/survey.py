@@ -1,11 +1,12 @@
 """What is in a log: topics, columns, rates, ranges, share missing."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
+from seatrial.data.draft.stated_columns import NOTHING_STATED, TIME, StatedColumns
 from seatrial.data.draft.text_layout import text_layout
 from seatrial.data.draft.time_columns import column_values, time_column
 from seatrial.data.read import ColumnSpec, Layout, Log, RawTable, format_of, read_log
@@ -61,12 +62,13 @@ class TopicSummary:
 
 @dataclass(frozen=True, eq=False)
 class LogSurvey:
-    """One log, what was read of it, and a summary of each topic."""
+    """One log, what was read of it, a summary of each topic, and what was stated of its columns."""
 
     path: Path
     layout: Layout
     log: Log
     topics: tuple[TopicSummary, ...]
+    stated: StatedColumns = field(default_factory=dict)
 
     @property
     def duration(self) -> float:
@@ -79,8 +81,8 @@ class LogSurvey:
         return (self.layout.format, *(table.names for table in self.log.tables))
 
 
-def survey_log(path: Path) -> LogSurvey:
-    """Read a log of any format and summarise its topics.
+def survey_log(path: Path, stated: StatedColumns = NOTHING_STATED) -> LogSurvey:
+    """Read a log of any format and summarise its topics; stated: what a person says of its columns.
 
     Raises:
         InputError: as `read_log`; a text file without rows of numbers.
@@ -91,7 +93,8 @@ def survey_log(path: Path) -> LogSurvey:
     kind = format_of(path)
     layout = text_layout(path) if kind == "text" else Layout(kind, ColumnSpec("time", "", "s"), ())
     log = read_log(path, layout)
-    return LogSurvey(path, layout, log, tuple(_topic_summary(table, layout) for table in log.tables))
+    time = next((heading for heading, meaning in stated.items() if meaning == TIME), "")
+    return LogSurvey(path, layout, log, tuple(_topic_summary(table, layout, time) for table in log.tables), stated)
 
 
 def with_common_ranges(surveys: Sequence[LogSurvey]) -> list[LogSurvey]:
@@ -119,8 +122,8 @@ def _ranged(column: ColumnSummary, ends: tuple[float, float]) -> ColumnSummary:
     return replace(column, low=ends[0], high=ends[1])
 
 
-def _topic_summary(table: RawTable, layout: Layout) -> TopicSummary:
-    time, note = time_column(table, layout)
+def _topic_summary(table: RawTable, layout: Layout, stated_time: str) -> TopicSummary:
+    time, note = time_column(table, layout, stated_time)
     seconds = np.full(len(table), np.nan)
     if time is not None:
         seconds = stamps(table, time).seconds

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.core.values import Array, InputError
+from seatrial.data.draft.languages import in_english, without_accents
 from seatrial.data.read.clock import stamps
 from seatrial.data.read.layout import ColumnSpec, Layout, TimeSpec
 from seatrial.data.read.raw_table import RawTable
@@ -14,10 +15,10 @@ from seatrial.data.read.raw_table import RawTable
 # names of time columns in the order of preference, without a unit behind; ours, from the logs of a dozen programs
 _TIME_NAMES = (
     "time", "t", "timestamp", "utc", "time_utc", "utc_time", "timestamp_utc", "utc_timestamp", "datetime", "date_time",
-    "original_timestamp", "timeus", "seconds", "sec", "clock", "zeit", "epoch", "unix", "unix_time", "epoch_time",
+    "original_timestamp", "timeus", "seconds", "sec", "clock", "epoch", "unix", "unix_time", "epoch_time",
     "time_of_day", "header_stamp_secs", "header_stamp", "stamp",
 )  # fmt: skip
-_DATE_NAMES = ("date", "day", "datum", "utc_date", "date_utc")
+_DATE_NAMES = ("date", "day", "utc_date", "date_utc")
 _WEEK_NAMES, _WEEK_SECONDS = ("gps_week", "gnss_week", "week"), ("tow", "gps_tow", "time_of_week", "seconds_of_week")
 _WHOLE_SECONDS = re.compile(r"(.*_)?(secs?|seconds)")
 _NANOSECONDS = ("nsecs", "nsec", "nanosecs", "nanosec", "nanoseconds")
@@ -38,14 +39,17 @@ _EXCEL_DAYS, _LARGEST_EXCEL_STEP = (2e4, 8e4), 2e-4  # days, of the years 1954 t
 _STEP_LIMITS = {"ns": 5e6, "us": 5e3, "ms": 5.0}
 
 
-def time_column(table: RawTable, layout: Layout) -> tuple[ColumnSpec | None, str]:
+def time_column(table: RawTable, layout: Layout, stated: str = "") -> tuple[ColumnSpec | None, str]:
     """Return the column of time stamps and how it was recognised: the format's own, by name, cells, or behaviour.
 
-    By its cells it is the only column of dates with times that increase; by behaviour the first column of numbers that
-    increases throughout in nearly equal steps.
+    stated: the name of the column that a person says is the time; empty: none.
+    By its cells it is the only column of dates with times, or else of times of day, that increase; by behaviour the
+    first column of numbers that increases throughout in nearly equal steps.
     """
     if table.time_name:
         return ColumnSpec("time", "", "s"), f"time of the {layout.format} log"
+    if stated in table.names and stated:
+        return _with_unit(table, stated, "")[0], "as stated"
     plain = {_plain_name(name): name for name in reversed(table.names) if name}
     completed = _of_two_columns(plain)
     if completed is not None:
@@ -56,10 +60,14 @@ def time_column(table: RawTable, layout: Layout) -> tuple[ColumnSpec | None, str
         spec, note = _with_unit(table, name, unit)
         if spec is not None:
             return _with_date(table, spec, plain), f"named '{name}', {note}"
-    dated = [index for index in range(len(table.names)) if _has_increasing_dates(table, index)]
+    daily = [index for index in range(len(table.names)) if _has_increasing_times_of_day(table, index)]
+    dated = [k for k in range(len(table.names)) if k not in daily and _has_increasing_dates(table, k)]
     if len(dated) == 1:
         source = table.names[dated[0]] or dated[0] + 1
         return ColumnSpec("time", source, "utc"), "the only column of dates and times"
+    if len(daily) == 1 and not dated:
+        source = table.names[daily[0]] or daily[0] + 1
+        return _with_date(table, ColumnSpec("time", source, "utc"), plain), "the only column of times of day"
     for index in range(len(table.names)):
         values = column_values(table, index)
         if values is not None and _is_clock(values):
@@ -124,8 +132,9 @@ def _backwards(table: RawTable, name: str) -> str:
 
 
 def _plain_name(name: str) -> str:
-    """A column's name in small letters without what stands in brackets."""
-    return re.sub(r"[ /.]", "_", name.partition("[")[0].partition("(")[0].strip().lower())
+    """A column's name in small letters without what stands in brackets, in English where it is in a known language."""
+    plain = re.sub(r"[ /.]", "_", without_accents(name.partition("[")[0].partition("(")[0].strip()))
+    return in_english(plain)
 
 
 def _with_unit(table: RawTable, source: str | int, stated: str) -> tuple[ColumnSpec | None, str]:
@@ -175,15 +184,28 @@ def column_values(table: RawTable, index: int) -> Array | None:
 
 def _has_increasing_dates(table: RawTable, index: int) -> bool:
     """Whether a column of text holds dates with their time of day that do not go back; a day alone is no stamp."""
-    if column_values(table, index) is not None:
-        return False
-    try:
-        seconds = stamps(table, ColumnSpec("time", index + 1, "utc")).seconds
-    except InputError:
-        return False
+    seconds = _text_stamps(table, index)
     dated = seconds[np.isfinite(seconds) & (seconds >= _DAY_S)]  # before: a time of day without a date
     has_times = bool(np.any(dated % _DAY_S > 0.0))
     return has_times and bool(np.all(np.diff(dated) >= 0.0)) and dated[0] < dated[-1]
+
+
+def _has_increasing_times_of_day(table: RawTable, index: int) -> bool:
+    """Whether a column of text holds times of day, none missing, that do not go back."""
+    seconds = _text_stamps(table, index)
+    if seconds.size < _FEWEST_STAMPS or not np.all(np.isfinite(seconds)):
+        return False
+    return bool(seconds[0] < _DAY_S and seconds[0] < seconds[-1] and np.all(np.diff(seconds) >= 0.0))
+
+
+def _text_stamps(table: RawTable, index: int) -> Array:
+    """The cells of a column of text as stamps [s]; none where it holds numbers, or something else."""
+    if column_values(table, index) is not None:
+        return np.empty(0)
+    try:
+        return stamps(table, ColumnSpec("time", index + 1, "utc")).seconds
+    except InputError:
+        return np.empty(0)
 
 
 def _is_clock(values: Array) -> bool:
