@@ -9,7 +9,7 @@ import numpy as np
 
 from seatrial.control.task import OUTPUT, TuningTask
 from seatrial.core.values import Array
-from seatrial.physics.loops import LoopSignal, Objective, Performance, TransferLoop
+from seatrial.physics.loops import LoopEvaluation, LoopSignal, Objective, Performance, TransferLoop
 from seatrial.physics.loops.objective import variance
 from seatrial.physics.loops.performance import distinct_variances
 
@@ -68,6 +68,17 @@ class GainEvaluator:
         return tuple(Performance(loop, met.exposure(loop), rows) for met, loop in loops)
 
     @cached_property
+    def _has_own_Ms(self) -> tuple[bool, ...]:
+        """Whether each performance's open loop is the first of its kind: Ms is the same where the plant is."""
+        plants = [p.loop.plant for p in self.performances]
+        return tuple(plant not in plants[:i] for i, plant in enumerate(plants))
+
+    def _of_each(self, gains: Array) -> list[LoopEvaluation]:
+        """Return the loops with the gains (n, g) in each disturbance; Ms is zero where another's is the same."""
+        pairs = zip(self.performances, self._has_own_Ms, strict=True)
+        return [performance.evaluate(gains, with_Ms=own) for performance, own in pairs]
+
+    @cached_property
     def uncontrolled_variance(self) -> float:
         """Mean variance of the motion that counts without control."""
         place = self._variance_indices[-1][0]
@@ -95,7 +106,7 @@ class GainEvaluator:
         return lru_cache(maxsize=_REMEMBERED)(lambda gains: self._slopes_at(np.frombuffer(gains).copy()))
 
     def _evaluated(self, gains: Array) -> GainEvaluation:
-        made = [performance.evaluate(gains) for performance in self.performances]
+        made = self._of_each(gains)
         places = self._variance_indices[-4:]
         variances = np.stack([e.variances[:, [p[0] for p in places]] for e in made], axis=1)
         peak = np.max([e.Ms for e in made], axis=0)
@@ -122,7 +133,7 @@ class GainEvaluator:
         return self._remembered_slopes(_bytes(gains))
 
     def _slopes_at(self, gains: Array) -> tuple[Array, Array]:
-        evaluated = [p.evaluate(gains) for p in self.performances]
+        evaluated = self._of_each(gains)
         made = [one.variances for one in evaluated]
         rows = [p.variance_gradients(gains) for p in self.performances]
         objectives = np.array([

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -145,8 +146,8 @@ class ClosedLoop:
         self, disturbance: Array, limits: ActuatorLimits, reference: Array, fed_forward: Array
     ) -> Array:
         """Return the memory of `linear_controller` for series (n,), checked by the caller."""
-        made, count = controller_state_space(self.loop, self.gains), len(disturbance)
-        n, place, disturbed = len(made.b), self._input_index(self.actuator), self._input_index(self.disturbance_input)
+        (n, laws), count = self._controller_laws, len(disturbance)
+        place, disturbed = self._input_index(self.actuator), self._input_index(self.disturbance_input)
         values = {
             kernel.CONTROLLER_ORDER: n,
             kernel.COUNT: count,
@@ -164,9 +165,15 @@ class ClosedLoop:
         head[list(values)] = list(values.values())
         trim = self.inputs[disturbed] if disturbed not in (-1, place) else 0.0
         met = trim + self._sign(disturbed) * hold_equivalent(np.asarray(disturbance, dtype=np.float64))
-        laws = (made.discretised(self.dt, is_holding=False), made.discretised(self.dt, is_holding=True))
         series = (reference, reference[-1:], met, fed_forward, fed_forward[-1:], np.zeros(count + 1))
-        return np.concatenate([head, *laws, made.slow_rate, np.zeros(2 * n), *series])
+        return np.concatenate([head, laws, np.zeros(2 * n), *series])
+
+    @cached_property
+    def _controller_laws(self) -> tuple[int, Array]:
+        """The controller's order and what `linear_controller` reads of it: free, with slow states held, their rate."""
+        made = controller_state_space(self.loop, self.gains)
+        laws = (made.discretised(self.dt, is_holding=held) for held in (False, True))
+        return len(made.b), np.concatenate([*laws, made.slow_rate])
 
     def _input_index(self, name: str) -> int:
         """Return the place of an input; -1 of none."""
