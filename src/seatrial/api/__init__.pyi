@@ -12,15 +12,8 @@ from seatrial.api.files import (
     write_record,
 )
 from seatrial.api.poster import poster, write_poster
-from seatrial.api.prediction import (
-    course_findings,
-    extrapolation,
-    measure_intervals,
-    measures,
-    predict,
-    rms_differences,
-)
-from seatrial.api.simulation import replay, rudder_rate_of, simulate, steering
+from seatrial.api.prediction import extrapolation, measure_intervals, measures, predict, rms_differences
+from seatrial.api.simulation import course_findings, replay, rudder_rate_of, simulate, steering
 from seatrial.api.studies import demo, list_models, model_guide, reproduce
 from seatrial.api.trials import (
     check,

@@ -1,18 +1,15 @@
 """What a simulated run is worth: predict, measures with their intervals, extrapolation."""
 
-import math
 from typing import TYPE_CHECKING
 
 from seatrial.api.simulation import as_model_file
 from seatrial.core.values import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from seatrial.api.simulation import Steering
     from seatrial.core.equations import Model
     from seatrial.core.results import Extrapolation, Fit, Prediction
-    from seatrial.core.values import Finding, Record
+    from seatrial.core.values import Record
     from seatrial.data.folder.model_file import ModelFile
 
 
@@ -83,37 +80,6 @@ def measure_intervals(model: "ModelFile", steer: "Steering") -> dict[str, tuple[
     if model.interval_basis is None or model.ship is None:
         return {}
     return measure_intervals(model.model, model.interval_basis, steer, model.ship.length)
-
-
-def course_findings(
-    model: "ModelFile", manoeuvre: str, inputs: "Mapping[str, float] | None" = None
-) -> "tuple[Finding, ...]":
-    """Return a note `course-unstable` where a straight run of a craft with thrusters is not one that it holds.
-
-    Empty for other manoeuvres, for ships with a rudder, and where the craft holds its course or may do so.
-
-    Args:
-        manoeuvre: as `simulate` takes it, ``straight:50``; inputs: other inputs held constant, by name, SI.
-    """
-    import numpy as np
-
-    from seatrial.estimation.identify.course_stability import course_finding, course_stability
-    from seatrial.physics.manoeuvres.thrust_programme import thrust_programme
-
-    if not model.model.equations.layout or not manoeuvre.startswith("straight:"):
-        return ()
-    ahead, basis = thrust_programme(manoeuvre).ahead or 0.0, model.interval_basis
-    approach = {**model.approach, **(inputs or {})}
-    count = len(model.model.parameters.free)
-    course = course_stability(
-        model.model,
-        np.zeros((count, count)) if basis is None else basis.covariance,
-        math.inf if basis is None else basis.degrees_of_freedom,
-        approach,
-        1.0 if model.ship is None else model.ship.particulars.get("L", 1.0),
-        ahead,
-    )
-    return course_finding(model.model, course, approach, ahead)
 
 
 def extrapolation(model: "ModelFile", record: "Record") -> "Extrapolation | None":

@@ -9,7 +9,7 @@ from seatrial.core.values import InputError
 if TYPE_CHECKING:
     from seatrial.core.equations import Model
     from seatrial.core.results import Fit
-    from seatrial.core.values import Record
+    from seatrial.core.values import Finding, Record
     from seatrial.data.folder.model_file import ModelFile
     from seatrial.physics.simulate.rudder_rate import RudderRate
 
@@ -212,3 +212,34 @@ def _with_seed(manoeuvre: str, seed: int) -> str:
     if kind != "prbs" or len(fields) > 2:
         return manoeuvre
     return ":".join(["prbs", *fields, *["20", ""][len(fields) :], str(seed)])
+
+
+def course_findings(
+    model: "ModelFile", manoeuvre: str, inputs: Mapping[str, float] | None = None
+) -> "tuple[Finding, ...]":
+    """Return a note `course-unstable` where a straight run of a craft with thrusters is not one that it holds.
+
+    Empty for other manoeuvres, for ships with a rudder, and where the craft holds its course or may do so.
+
+    Args:
+        manoeuvre: as `simulate` takes it, ``straight:50``; inputs: other inputs held constant, by name, SI.
+    """
+    import numpy as np
+
+    from seatrial.estimation.identify.course_stability import course_finding, course_stability
+    from seatrial.physics.manoeuvres.thrust_programme import thrust_programme
+
+    if not model.model.equations.layout or not manoeuvre.startswith("straight:"):
+        return ()
+    ahead, basis = thrust_programme(manoeuvre).ahead or 0.0, model.interval_basis
+    approach = {**model.approach, **(inputs or {})}
+    count = len(model.model.parameters.free)
+    course = course_stability(
+        model.model,
+        np.zeros((count, count)) if basis is None else basis.covariance,
+        math.inf if basis is None else basis.degrees_of_freedom,
+        approach,
+        1.0 if model.ship is None else model.ship.particulars.get("L", 1.0),
+        ahead,
+    )
+    return course_finding(model.model, course, approach, ahead)

@@ -5,13 +5,12 @@ from dataclasses import dataclass
 
 from seatrial.core.values import InputError
 from seatrial.data.trial.estimated_values import ESTIMATED
-from seatrial.physics.hydro.dispersion import G
+from seatrial.physics.hydro.dispersion import SEA_WATER, G
 from seatrial.physics.hydro.empirical import ZHOU, HullForm, added_mass, displacement, interaction_wake
 
 # L/B, B/d and C_b of a ship of which only the length is stated; chosen: in the middle of the forms of Zhou's regression
 _LENGTH_TO_BREADTH, _BREADTH_TO_DRAUGHT, _BLOCK = 6.0, 3.0, 0.65
 _BLOCKS = (0.2, 1.0)  # of anything that floats: a slender catamaran's hulls within L, B and d, a box
-_SEA_WATER = 1025.0  # kg/m^3 (ITTC 7.5-02-01-03, sea water at 15 degC: 1026)
 _SPAN = 0.75  # height of a rudder over the draught; chosen: between full ships' 0.7 and fine ships' 0.8
 _DIAMETERS = (0.35, 0.75)  # range of a propeller's diameter over the draught; chosen: small models, ferries
 _PITCH_RATIO = 0.75  # P/D, usual, and its range in the B series (Oosterveld & van Oossanen 1975)
@@ -51,7 +50,7 @@ class StatedSize:
     @property
     def form(self) -> HullForm:
         """The hull, with rules for what is not stated; the displacement is kept where it is stated."""
-        volume = self.mass / _SEA_WATER
+        volume = self.mass / SEA_WATER
         beam, draught = self.beam, self.draught
         if not beam and draught and volume:
             beam = volume / (self.length * draught * _BLOCK)
@@ -106,7 +105,7 @@ def main_dimensions(size: StatedSize) -> tuple[EstimatedValue, ...]:
 
 def mass_properties(size: StatedSize) -> tuple[EstimatedValue, ...]:
     """Return mass, centre of gravity, inertia [SI] and water density of a ship of this size."""
-    values = displacement(size.form, _SEA_WATER).values
+    values = displacement(size.form, SEA_WATER).values
     text = f"kg, of a hull with {size.rules}; write the displacement if you know it (init --mass)"
     return (
         EstimatedValue("m", size.mass or values["m"], "kg, as stated" if size.mass else text, bool(size.mass)),
@@ -118,7 +117,7 @@ def mass_properties(size: StatedSize) -> tuple[EstimatedValue, ...]:
 
 def water_density() -> EstimatedValue:
     """Return the density of sea water [kg/m^3]."""
-    return EstimatedValue("rho", _SEA_WATER, "kg/m^3, sea water; fresh water has 1000")
+    return EstimatedValue("rho", SEA_WATER, "kg/m^3, sea water; fresh water has 1000")
 
 
 def added_masses(size: StatedSize) -> tuple[EstimatedValue, ...]:

@@ -4,10 +4,10 @@ import math
 
 from seatrial.core.text.numbers import significant
 from seatrial.core.values import Finding, Severity, Ship
+from seatrial.physics.hydro.dispersion import SEA_WATER
 
 _GYRADII = (0.2, 0.3)  # of the length, in yaw and pitch; chosen: ITTC 7.5-02-07-02.1 takes 0.25 where nothing is known
 _USUAL_GYRADIUS = 0.25
-_SEA_WATER = 1025.0  # kg/m^3, where no density is stated; of the sea at 15 degC (ITTC 7.5-02-01-03: 1026)
 _FULLEST = 1.1  # C_b of a box, and a tenth for appendages and trim; chosen
 _INERTIAS = ("I_z", "I5")
 _DIGITS = 4  # significant, of an advised value
@@ -22,7 +22,7 @@ def hull_value_findings(ship: Ship) -> tuple[Finding, ...]:
     findings = [
         _gyradius_finding(name, values[name], mass, length) for name in _INERTIAS if values.get(name, 0.0) > 0.0
     ]
-    box = values.get("rho", _SEA_WATER) * length * values.get("B", math.inf) * values.get("d", math.inf)
+    box = values.get("rho", SEA_WATER) * length * values.get("B", math.inf) * values.get("d", math.inf)
     if mass > _FULLEST * box:
         water = significant(box, _DIGITS)
         message = f"m = {significant(mass, _DIGITS)} kg is more than the {water} kg of water in a box of L, B and d"

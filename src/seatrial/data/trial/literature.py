@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from seatrial.core.values import Finding, InputError, Severity, Ship, spelling_hint
+from seatrial.physics.hydro.dispersion import SEA_WATER
 from seatrial.physics.hydro.empirical import (
     EmpiricalEstimate,
     HullForm,
@@ -19,8 +20,6 @@ from seatrial.physics.models.published import PARAMETER_SETS, parameter_set
 
 USUAL_PROPELLER = {"pitch_ratio": 0.75, "area_ratio": 0.5, "blades": 4.0}
 """P/D, A_E/A_0 and blades where `[ship]` does not state them; chosen: a merchant ship's fixed propeller."""
-SEA_WATER = 1025.0
-"""kg/m^3 where `[ship]` states no rho (ITTC 7.5-02-01-03, sea water at 15 degC: 1026)."""
 
 
 @dataclass(frozen=True)

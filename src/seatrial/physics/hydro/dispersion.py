@@ -6,6 +6,8 @@ from numpy.typing import ArrayLike
 from seatrial.core.values import Array, InputError
 
 G = 9.81  # m/s^2, acceleration of gravity, rounded
+SEA_WATER = 1025.0
+"""Density where none is stated [kg/m^3] (ITTC 7.5-02-01-03, sea water at 15 degC: 1026)."""
 _ITERATIONS = 60  # Newton steps at most; chosen
 
 
