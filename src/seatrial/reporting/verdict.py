@@ -10,7 +10,7 @@ from seatrial.core.text.numbers import duration, significant
 from seatrial.core.text.words import counted, enumeration
 from seatrial.core.values import InputError, Record
 from seatrial.physics.manoeuvres import REACH_PERCENTILE, ManoeuvreKind, ObservedManoeuvre, initial_speed, to_starboard
-from seatrial.reporting.grades import Grade, largest_error_share
+from seatrial.reporting.grades import Grade, is_missed, largest_error_share
 from seatrial.reporting.repeats import MAX_NAMES, repeat_clause, repeated_runs
 from seatrial.reporting.runs import ERROR_LABELS
 from seatrial.reporting.summary import search_status
@@ -37,7 +37,7 @@ def unusable_sentence(fit: Fit) -> str:
     """Return that the coefficients must not be used, with the reason and a space behind it; empty where they can."""
     if has_converged(fit):
         return ""
-    tested = "What is tested are predictions alone. " if fit.validation else ""
+    tested = "What is tested are predictions alone. " if fit.validation and not is_missed(fit) else ""
     return f"Do not use the coefficients: the search did not converge ({search_status(fit)}). {tested}"
 
 

@@ -43,3 +43,12 @@ def test_slender_tracks_become_strips() -> None:
 def test_a_ship_heading_east_points_east() -> None:
     outline = hull_outline(0.0, 0.0, np.pi / 2, 10.0)
     assert np.isclose(outline[:, 1].max(), 5.0) and np.abs(outline[:, 0]).max() < 1.0
+
+
+def test_positions_of_a_national_grid_are_counted_from_a_round_number() -> None:
+    far = Track(5_312_370.0 + 40.0 * SHARE, 351_160.0 + 50.0 * SHARE, None, STROKE)
+    panel = track_panel([far], 0.0, Region(0.0, 0.0, 300.0, 300.0))
+    assert (panel.x.name, panel.y.name) == ("y₀, east of 351\u202f100 [m]", "x₀, north of 5\u202f312\u202f300 [m]")
+    for axis, base in ((panel.x, 351_100.0), (panel.y, 5_312_300.0)):
+        assert len(axis.tick_list()) >= 3
+        assert all(float(tick.text) == pytest.approx(tick.value - base) for tick in axis.tick_list())

@@ -9,10 +9,13 @@ import numpy as np
 from seatrial.core.figures.bands import track_envelope
 from seatrial.core.figures.chart import Axis, Panel, Region
 from seatrial.core.figures.marks import Area, Array, Line, Mark, Stroke
-from seatrial.core.figures.ticks import span, thinned
+from seatrial.core.figures.ticks import Tick, linear_ticks, span, thinned
+from seatrial.core.text.numbers import exact
 
 # hulls along a track; ratio of extents from which a track is long and narrow
 HULLS, SLENDER = 7, 2.5
+# m from which on positions do not fit beside an axis
+LONGEST_NUMBER = 1e5
 # free distance about a track: in lengths of the ship, and as a share of the extent
 FREE_LENGTHS, FREE_SHARE = 0.6, 0.03
 # points of a track; finer than hulls along it, coarser than the noise of positions
@@ -83,8 +86,8 @@ def track_panel(
     )
     scale = max((across[1] - across[0]) / box.width, (along[1] - along[0]) / box.height)
     names = ("x₀, north [m]", "y₀, east [m]") if is_rotated else ("y₀, east [m]", "x₀, north [m]")
-    x = Axis(_centred(across, scale * box.width), names[0], tick_count=x_ticks)
-    y = Axis(_centred(along, scale * box.height), names[1], tick_count=y_ticks)
+    x = _position_axis(_centred(across, scale * box.width), names[0], x_ticks)
+    y = _position_axis(_centred(along, scale * box.height), names[1], y_ticks)
     if not has_names:
         x, y = replace(x, name=""), replace(y, name="")
     marks = [
@@ -93,6 +96,17 @@ def track_panel(
         for mark in _marks(track, length if track in tracks else 0.0, is_rotated=is_rotated)
     ]
     return Panel(box, x, y, tuple(marks), title, is_y_down=is_rotated)
+
+
+def _position_axis(ends: tuple[float, float], name: str, tick_count: int) -> Axis:
+    """An axis of positions; those far from the origin, as a national grid has them, are counted from a round number."""
+    if max(map(abs, ends)) < LONGEST_NUMBER:
+        return Axis(ends, name, tick_count=tick_count)
+    step = 10.0 ** math.ceil(math.log10(ends[1] - ends[0]))
+    base = step * math.floor(ends[0] / step)
+    shifted = linear_ticks(ends[0] - base, ends[1] - base, tick_count)
+    ticks = tuple(Tick(tick.value + base, tick.text) for tick in shifted)
+    return Axis(ends, f"{name.removesuffix(' [m]')} of {exact(base)} [m]", ticks=ticks)
 
 
 def _widened(ends: tuple[float, float], length: float) -> tuple[float, float]:
