@@ -48,6 +48,7 @@ def test_what_is_stated_is_not_marked() -> None:
     ("sizes", "message"),
     [
         ({"length": -1.0}, "a length in m is positive"),
+        ({"mass": 165.0}, "say nothing without the length"),
         ({"length": 10.0, "mass": math.inf}, "a mass in kg is positive"),
         ({"length": 3.2, "beam": 0.5, "draught": 0.1, "mass": 900.0}, "block coefficient"),
     ],

@@ -41,6 +41,8 @@ class StatedSize:
         for name, unit in (("length", "m"), ("beam", "m"), ("draught", "m"), ("mass", "kg")):
             if not 0.0 <= getattr(self, name) < math.inf:
                 raise InputError(f"{name} = {getattr(self, name):g}: a {name} in {unit} is positive; correct it")
+        if not self.length and (self.beam or self.draught or self.mass):
+            raise InputError("beam, draught and mass say nothing without the length; state it as well (init --length)")
         if self.length and not _BLOCKS[0] <= self.form.C_b <= _BLOCKS[1]:
             raise InputError(
                 f"a mass of {self.mass:g} kg in L {self.length:g} m, B {self.form.B:.3g} m, d {self.form.d:.3g} m is a "
