@@ -176,6 +176,9 @@ def simulate(
     measures = api.measures(file, record, reference) if manoeuvre or "psi" in record else {}
     leaving = api.extrapolation(file, record)
     print_measures(measures, intervals, leaving)
+    print_lines(
+        ["no measures: the run shows none of a zigzag, turn, spin, stop or decay"] if manoeuvre and not measures else []
+    )
     rms = {} if measured is None else api.rms_differences(measured, record)
     if measured is not None and rms:
         print_lines([f"against {measured.name}: rms {errors_text(rms)}"])

@@ -1,9 +1,12 @@
 """Slews looked for backwards, and rudders of random orders."""
 
 import numpy as np
+import pytest
 
 from seatrial.core.values import Record
-from seatrial.physics.manoeuvres import ManoeuvreKind, ObservedManoeuvre, recognise_manoeuvre
+from seatrial.physics.manoeuvres import ManoeuvreKind, ObservedManoeuvre, programme, recognise_manoeuvre
+from seatrial.physics.models import nomoto
+from seatrial.physics.simulate import manoeuvre
 
 
 def ordered(seconds: float, count: int) -> Record:
@@ -26,3 +29,12 @@ def test_a_thousand_orders_are_a_programme_and_no_manoeuvre() -> None:
     record = ordered(6.0, 1100)
     assert ObservedManoeuvre.from_record(record).holds == ()
     assert recognise_manoeuvre(record) is ManoeuvreKind.OTHER
+
+
+def test_a_zigzag_is_known_though_its_rudder_slews_longer_than_it_holds() -> None:
+    """10 deg of heading are reached soon behind 20 deg of rudder; overshoot 1 counts from execute 2."""
+    ship = nomoto().with_values({"K": 0.2, "T": 3.0, "U": 5.0})
+    record = manoeuvre(ship, programme("zigzag:20/10"), slew_rate=np.radians(4.5))
+    seen = ObservedManoeuvre.from_record(record)
+    assert seen.kind is ManoeuvreKind.ZIGZAG and len(seen.holds) == 5
+    assert np.degrees(seen.psi_at(seen.executes[1])) == pytest.approx(10.0, abs=0.3)

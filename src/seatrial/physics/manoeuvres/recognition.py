@@ -13,9 +13,9 @@ from seatrial.core.values import Array, InputError, Record
 
 Mask = NDArray[np.bool_]
 
-# the rudder is "over" beyond a quarter of the record's largest angle; a stretch is a hold if half of it lies within
+# the rudder is "over" beyond a quarter of the record's largest angle; a stretch is a hold if 40 % of it lies within
 # 15 % of its level and it lasts a tenth of the median hold
-OVER_SHARE, HOLD_TOLERANCE, HOLD_SHARE, SHORTEST_HOLD = 0.25, 0.15, 0.5, 0.1
+OVER_SHARE, HOLD_TOLERANCE, HOLD_SHARE, SHORTEST_HOLD = 0.25, 0.15, 0.4, 0.1
 REACH_PERCENTILE = 99.5
 """Per cent of the samples within what angles and speeds of runs reach, so that a bad one does not count; chosen."""
 MINIMUM_RUDDER = float(np.radians(0.5))
