@@ -79,7 +79,10 @@ class Prediction:
     ] = field(default_factory=dict)
     noise_floor: Annotated[
         dict[str, Number],
-        Field(description="rms errors, keys as in `rms`, that process noise alone leaves; none above the error itself"),
+        Field(
+            description="rms errors, keys as in `rms`, that the process noise of the fit leaves by itself, model error "
+            "in it; none above the error itself"
+        ),
     ] = field(default_factory=dict)
     tied_spread: Annotated[
         dict[str, Number], Field(description="standard deviation over tied models, keys as in `measures` and `rms`")
