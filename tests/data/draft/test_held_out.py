@@ -62,6 +62,8 @@ def test_a_repeat_that_alone_can_be_held_out_is_called_one() -> None:
 def test_a_model_with_propeller_is_judged_by_the_circles_where_zigzags_of_half_their_rudder_train_it() -> None:
     zigzags = {"z10": zigzag("z10", 10.0), "z20": zigzag("z20", 20.0)}
     assert held(SHIP, zigzags | {"p": turn(-35.0), "s": turn(35.0)}) == ("p", "s")
+    twice = {"z20": zigzag("z20", 20.0), "again": zigzag("again", 20.0)}
+    assert held(SHIP, twice | {"p": turn(-35.0), "s": turn(35.0)}) == ("z20", "again")
     small = {"z12": zigzag("z12", 12.0), "z15": zigzag("z15", 15.0)}
     assert held(SHIP, small | {"p": turn(-35.0), "s": turn(35.0)}) == ("z12",)
 

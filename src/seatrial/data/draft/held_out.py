@@ -16,7 +16,7 @@ _HARDLY_STEERED = 0.3  # of the largest size of the inputs of a run, below which
 # no other run lies within; chosen
 _BEYOND, _FARTHER_BEYOND = 0.05, 0.25
 # rudder of turning circles over that of the zigzags that train, up to which a model of propeller and rudder is judged
-# by them, and the fewest zigzags that train it; chosen
+# by them, and the fewest zigzags of different orders that train it; chosen
 _CIRCLE_OVER_ZIGZAG, _FEWEST_ZIGZAGS = 2.0, 2
 
 
@@ -46,9 +46,9 @@ def held_out_runs(model: StartingModel, records: Mapping[str, Record]) -> HeldOu
     if not model.inputs:
         return NOTHING_HELD_OUT
     orders = {name: steered_orders(one) if "delta" in model.inputs else None for name, one in records.items()}
-    if model.has_propeller and (circles := _circles(orders)):
-        return HeldOutRuns(circles, "turning circles, of which none is fitted")
     groups = _repeats(orders)
+    if model.has_propeller and (circles := _circles([orders[group[0]] for group in groups], orders)):
+        return HeldOutRuns(circles, "turning circles, of which none is fitted")
     if middle := _middle(model, records, groups):
         return HeldOutRuns(middle)
     single = _middle(model, records, [(name,) for name in records])
@@ -58,9 +58,9 @@ def held_out_runs(model: StartingModel, records: Mapping[str, Record]) -> HeldOu
     return HeldOutRuns(single, f"a repeat of {enumeration(repeated)}: it tests no other manoeuvre, record one")
 
 
-def _circles(orders: Mapping[str, SteeredOrders | None]) -> tuple[str, ...]:
-    """The turning circles, where the zigzags determine the model without them; else nothing."""
-    zigzags = [abs(one.rudder) for one in orders.values() if one is not None and one.kind is ManoeuvreKind.ZIGZAG]
+def _circles(distinct: Sequence[SteeredOrders | None], orders: Mapping[str, SteeredOrders | None]) -> tuple[str, ...]:
+    """The turning circles, where zigzags of distinct orders determine the model without them; else nothing."""
+    zigzags = [abs(one.rudder) for one in distinct if one is not None and one.kind is ManoeuvreKind.ZIGZAG]
     circles = {name: abs(one.rudder) for name, one in orders.items() if one is not None and one.is_turn}
     if len(zigzags) < _FEWEST_ZIGZAGS or not circles:
         return ()
