@@ -34,6 +34,7 @@ from seatrial.control.task import (
     TuningTask,
     refuse_unstable,
 )
+from seatrial.control.track.track_task import refuse_impossible_track
 from seatrial.core.equations import Model
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import InputError, spelling_hint
@@ -100,7 +101,7 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant, home: Path) -> TuningTas
         refuse_wild_motion(met, loop, plant)
     objectives = tuple(objective(aim, plant, restriction, f"minimise[{i}]") for i, aim in enumerate(file.minimise, 1))
     _refuse_duplicates(file.minimise, objectives)
-    return TuningTask(
+    task = TuningTask(
         question=file.question,
         name=loop.name,
         plant=plant.description,
@@ -127,6 +128,9 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant, home: Path) -> TuningTas
         if file.controller.sample_s is None
         else positive_value(file.controller.sample_s, "s", "controller.sample_s"),
     )
+    if task.track is not None:
+        refuse_impossible_track(task, task.track)
+    return task
 
 
 def _wave_frequency(disturbances: Sequence[Seaway | SlowDisturbance], loop: TransferLoop) -> float | None:

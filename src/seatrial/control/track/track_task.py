@@ -13,22 +13,38 @@ from seatrial.physics.simulate.track_following import LineOfSight
 # crossover U KP of the outer loop over the mean pole of the heading loop: least, first, largest; chosen
 _SLOWEST, _START, _FASTEST = 0.003, 0.1, 1.0
 _INTEGRAL_SHARE = 0.2  # of the crossover, the largest KI / KP; chosen
+_STRONGEST = 2.0  # the strongest current in its rms: 95 % of a Gaussian's are weaker
 _SOURCE = "bandwidth of the heading loop"
 
 
-def heading_loop_of(task: TuningTask, loop: TransferLoop) -> HeadingLoop:
-    """Return the heading loop that a track is kept with.
-
-    Raises:
-        InputError: no model is behind the plant, or the model has no position.
-    """
+def refuse_impossible_track(task: TuningTask, track: TrackDemand) -> None:
+    """Refuse a track without an identified model of heading and position, or in a current as fast as the craft."""
     ship = task.trimmed_ship
-    if ship is None or loop.output != "psi" or EAST not in ship.model.states:
+    if ship is None or task.loop.output != "psi" or EAST not in ship.model.states:
         raise InputError(
             "track: a track is kept by a heading loop on an identified model with heading and position; give "
             "plant.model of such a model, or leave [track] out"
         )
-    return HeadingLoop(ship, loop)
+    if not largest_integral_gain(task, track) > 0.0:
+        raise InputError(
+            f"track.current = {track.current:.3g} m/s is at times {_STRONGEST * track.current:.3g} m/s, no less than "
+            f"the craft's {task.U:.3g} m/s: no track can be kept in it; give a slower one"
+        )
+
+
+def largest_integral_gain(task: TuningTask, track: TrackDemand) -> float:
+    """Return the speed of the craft less that of the strongest current [m/s].
+
+    Up to it sigma keeps the track stable from any distance (Caharija et al. 2016, IEEE Trans. Control Syst. Technol.
+    24, 1623-1642).
+    """
+    return task.U - _STRONGEST * track.current
+
+
+def heading_loop_of(task: TuningTask, loop: TransferLoop) -> HeadingLoop:
+    """Return the heading loop that a track is kept with, of a task that `refuse_impossible_track` accepts."""
+    assert task.trimmed_ship is not None
+    return HeadingLoop(task.trimmed_ship, loop)
 
 
 def track_disturbances(

@@ -12,13 +12,18 @@ from seatrial.control.ship.parameter_draws import DRAWS
 from seatrial.control.task import TrackDemand, TuningTask
 from seatrial.control.track.corner import CornerTrial
 from seatrial.control.track.simulate_track import TrackTrial
-from seatrial.control.track.track_task import heading_loop_of, line_of_sight, track_task
+from seatrial.control.track.track_task import (
+    heading_loop_of,
+    largest_integral_gain,
+    line_of_sight,
+    refuse_impossible_track,
+    track_task,
+)
 from seatrial.core.results.tuning import TrackKeeping
-from seatrial.core.values import Array, InputError
+from seatrial.core.values import Array
 from seatrial.physics.loops import TransferLoop, margins
 from seatrial.physics.simulate.closed_loop import ActuatorLimits
 
-_STRONGEST = 2.0  # the strongest current in its rms: 95 % of a Gaussian's are weaker
 _POINTS, _ROUNDS = 31, 4  # of a grid, and grids one after the other; chosen
 
 
@@ -39,15 +44,11 @@ def tune_track(
         InputError: the task has no model with heading and position, the current is as fast as the craft, or no
             guidance keeps the limit of Ms.
     """
-    if not _STRONGEST * demand.current < task.U:
-        raise InputError(
-            f"track.current = {demand.current:.3g} m/s is at times {_STRONGEST * demand.current:.3g} m/s, no less than "
-            f"the craft's {task.U:.3g} m/s: no track can be kept in it; give a slower one"
-        )
+    refuse_impossible_track(task, demand)
     heading = heading_loop_of(task, loop.with_gains(gains))
     outer = track_task(task, heading, demand)
     evaluator = gain_evaluator(outer)
-    best = _least_distance(evaluator, task.U - _STRONGEST * demand.current)
+    best = _least_distance(evaluator, largest_integral_gain(task, demand))
     if not evaluator.evaluate(best[None]).is_feasible[0]:
         refuse_infeasible(evaluator, seed)
     KP, KI = best.tolist()
@@ -75,9 +76,8 @@ def tune_track(
 def _least_distance(evaluator: GainEvaluator, largest_sigma: float) -> Array:
     """Return KP, KI (2,) of the least distance within the limit of Ms, sigma = KI / KP^2 up to `largest_sigma` [m/s].
 
-    With the speed of the craft less that of the current, sigma keeps the track stable from any distance (Caharija et
-    al. 2016, IEEE Trans. Control Syst. Technol. 24, 1623-1642). By grids, each about the best of the one before, of
-    sigma and at each sigma of Delta: Ms has kinks, which gradients do not pass.
+    By grids, each about the best of the one before, of sigma and at each sigma of Delta: Ms has kinks, which gradients
+    do not pass.
     """
     low, high, KP, sigma, place = 0.0, largest_sigma, np.empty(0), np.empty(0), 0
     for _ in range(_ROUNDS):
