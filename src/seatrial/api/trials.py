@@ -109,6 +109,7 @@ def draft_trial(
     beam: float = 0.0,
     draught: float = 0.0,
     mass: float = 0.0,
+    gear: float = 0.0,
     columns: "Sequence[str]" = (),
 ) -> "DraftTrial":
     """Draft a trial file from logs: channels, units, frames and signs by name and behaviour, each with its evidence.
@@ -119,6 +120,7 @@ def draft_trial(
         length: of the craft between perpendiculars [m]; 0: it is not stated, and the file asks for it.
         beam: breadth at the waterline [m]; 0: a rule by the length stands in for it, as for the next two.
         draught: m. mass: kg.
+        gear: turns of the engine over those of the propeller; 0: the rate of an engine is no input.
         columns: what columns are whose names say nothing: ``Klokke=time``, ``Kurs (gyro)=psi``.
 
     Returns:
@@ -130,7 +132,7 @@ def draft_trial(
     """
     from seatrial.data.draft import StatedSize, draft_trial, stated_columns
 
-    size = StatedSize(length, beam, draught, mass)
+    size = StatedSize(length, beam, draught, mass, gear)
     return draft_trial(*logs, folder=folder, size=size, stated=stated_columns(columns))
 
 

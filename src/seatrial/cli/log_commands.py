@@ -30,6 +30,9 @@ def init(
     beam: Annotated[float, typer.Option("--beam", metavar="METRES", help="Breadth, else estimated.")] = 0.0,
     draught: Annotated[float, typer.Option("--draught", metavar="METRES", help="Draught, else estimated.")] = 0.0,
     mass: Annotated[float, typer.Option("--mass", metavar="KG", help="Mass, displacement, else estimated.")] = 0.0,
+    gear: Annotated[
+        float, typer.Option("--gear", metavar="RATIO", help="Turns of the engine for each of the propeller.")
+    ] = 0.0,
     column: Annotated[
         list[str] | None,
         typer.Option("--column", metavar="HEADING=CHANNEL", help="What a column is whose heading says nothing."),
@@ -51,7 +54,14 @@ def init(
     if out.exists():
         raise InputError(f"--out '{out}' exists and is not overwritten; name another file, or remove it")
     draft = api.draft_trial(
-        *logs, folder=out.resolve().parent, length=length, beam=beam, draught=draught, mass=mass, columns=column or ()
+        *logs,
+        folder=out.resolve().parent,
+        length=length,
+        beam=beam,
+        draught=draught,
+        mass=mass,
+        gear=gear,
+        columns=column or (),
     )
     page = out.with_suffix(".html")
     if page.exists():

@@ -237,3 +237,11 @@ def test_ranges_are_those_of_all_files(tmp_path: Path) -> None:
         write(tmp_path / f"{name}.csv", {**BASE, "rudder": degrees * swing})
     guess = next(g for part in draft_trial(tmp_path).guesses for g in part if g.symbol == "delta")
     assert "from -35 to 35: degrees" in guess.evidence
+
+
+def test_the_rate_of_an_engine_is_the_propellers_where_its_gear_is_stated(tmp_path: Path) -> None:
+    write(tmp_path / "run.csv", {**BASE, "Engine rpm": 1500.0 + 0.0 * TRUTH["t"]})
+    stated = draft_trial(tmp_path, length=30.0, gear=3.0)
+    (guess,) = (g for part in stated.guesses for g in part if g.symbol == "n")
+    assert guess.is_used and guess.scale == 1.0 / 3.0 and guess.unit == "rpm"
+    assert not any(g.is_used for part in draft_trial(tmp_path).guesses for g in part if g.symbol == "n")

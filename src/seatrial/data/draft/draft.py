@@ -96,7 +96,7 @@ def draft_trial(
     runs = runs_of_logs(with_common_ranges(surveys))
     used = {survey.path for run in runs for survey in run.sources}
     left_out = {one.path: "it is of another kind than the runs" for one in surveys if one.path not in used}
-    named = [without_conflicts([guess_columns(one) for one in run.sources]) for run in runs]
+    named = [without_conflicts([guess_columns(one, size.gear) for one in run.sources]) for run in runs]
     _refuse_nothing_recognised(surveys, named)
     longest = sorted(range(len(runs)), key=lambda k: -runs[k].duration)[:_RUNS_EXAMINED]
     examined = [checked_by_behaviour(runs[k].sources, named[k]) for k in longest]

@@ -24,10 +24,11 @@ _LARGEST_RPS = 60.0  # 1/s; propellers of ships and models turn more slowly, tho
 _FOLDERS_READ = 3  # folders above a file whose names may be those of a topic; chosen
 
 
-def guess_columns(survey: LogSurvey) -> tuple[ColumnGuess, ...]:
+def guess_columns(survey: LogSurvey, gear: float = 0.0) -> tuple[ColumnGuess, ...]:
     """Return what the columns of a log are, one for each column whose name says something.
 
     Of several columns for one channel the one of the fastest topic with fewest missing samples is used.
+    gear: turns of the engine over those of the propeller; 0: not stated, and the rate of an engine is not used.
     """
     guesses: list[tuple[tuple[float, ...], ColumnGuess]] = []
     for topic in survey.topics:
@@ -42,6 +43,8 @@ def guess_columns(survey: LogSurvey) -> tuple[ColumnGuess, ...]:
                 guess = _first_guess(survey, topic, column, named)
                 if guess is not None and guess.symbol == "lon" and guess.is_open and has_degrees:
                     guess = replace(guess, unit="deg", other_reading="").with_evidence("degrees, as the latitude")
+                if guess is not None and guess.symbol == "n" and gear:
+                    guess = _of_propeller(guess, gear)
                 guesses += [] if guess is None else [(rank, guess)]
     best: dict[str, tuple[tuple[float, ...], ColumnGuess]] = {}
     for rank, guess in guesses:
@@ -49,6 +52,12 @@ def guess_columns(survey: LogSurvey) -> tuple[ColumnGuess, ...]:
             best[guess.symbol] = (rank, guess)
     chosen = [replace(guess, is_used=guess.symbol in best and best[guess.symbol][1] is guess) for _, guess in guesses]
     return without_conflicts([chosen])[0]
+
+
+def _of_propeller(guess: ColumnGuess, gear: float) -> ColumnGuess:
+    """The rate of an engine as that of the propeller behind its gear."""
+    text = f"an engine's, with {gear:g} turns for each of the propeller, as stated"
+    return replace(guess, scale=1.0 / gear, unused_because="", evidence=(guess.evidence[0].partition(":")[0], text))
 
 
 def _without_names(survey: LogSurvey, topic: TopicSummary) -> list[ColumnGuess]:

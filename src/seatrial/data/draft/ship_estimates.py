@@ -30,15 +30,17 @@ class StatedSize:
         beam: breadth at the waterline [m].
         draught: m.
         mass: kg.
+        gear: turns of the engine over those of the propeller.
     """
 
     length: float = 0.0
     beam: float = 0.0
     draught: float = 0.0
     mass: float = 0.0
+    gear: float = 0.0
 
     def __post_init__(self) -> None:
-        for name, unit in (("length", "m"), ("beam", "m"), ("draught", "m"), ("mass", "kg")):
+        for name, unit in (("length", "m"), ("beam", "m"), ("draught", "m"), ("mass", "kg"), ("gear", "turns")):
             if not 0.0 <= getattr(self, name) < math.inf:
                 raise InputError(f"{name} = {getattr(self, name):g}: a {name} in {unit} is positive; correct it")
         if not self.length and (self.beam or self.draught or self.mass):

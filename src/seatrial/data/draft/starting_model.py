@@ -117,7 +117,7 @@ def _steered_model(
             reason = "hull, wake, thrust and the flow at the rudder, held near formulas by priors of 50 per cent"
             return StartingModel(_MMG, why, _MMG_TERMS, reason, ("delta",), speed, particulars)
         if _is_rate_steady(records):
-            why = "forces over drift, yaw rate and rudder; mmg carries farther, if a propeller's rate is recorded"
+            why = "forces over drift, yaw rate, rudder; mmg goes farther with a propeller's rate (init --gear)"
             reason = f"the linear terms{', and the damping of fast turns, as rudder angles differ' if falls else ''}"
             free = (*_LINEAR_TERMS, "N_rrr") if falls else _LINEAR_TERMS
             return StartingModel(_SHIP, why, free, reason, ("delta",), speed)
