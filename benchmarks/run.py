@@ -31,6 +31,7 @@ import memory
 import montecarlo
 import numpy as np
 import population
+import proposals
 import roll_decay
 import simulation
 import tune
@@ -61,6 +62,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "autopilots": autopilots.run,
     "wave_observer": wave_observer.run,
     "verification": verification.run,
+    "proposals": proposals.run,
     "roll_decay": roll_decay.run,
     "follow": follow.run,
     "campaign": campaign.run,

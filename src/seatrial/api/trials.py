@@ -211,6 +211,7 @@ def follow(
     seed: int = 0,
     report_progress: "ProgressReporter | None" = None,
     method: str | None = None,
+    proposal_file: str | Path | None = None,
 ) -> "FollowResult":
     """Estimate while the record is being made, from the samples that the trial's table ``[follow]`` names.
 
@@ -224,6 +225,8 @@ def follow(
         report_progress: called with one line of text at each step.
         method: takes the place of the trial's ``[estimate] method``; a search such as ``iwho`` judges by one sample
             after the other and is compared with the package's own follower.
+        proposal_file: where gains are proposed in, as TOML, for a trial with a table ``[proposal]``; each proposal
+            takes the place of the one before.
 
     Raises:
         InputError: the trial has no ``[follow]``, lacks channels, its source cannot be opened, or the journal belongs
@@ -238,6 +241,7 @@ def follow(
     return follow(
         followed, source=source, once=once, journal=None if journal is None else Path(journal), show=show, stop=stop,
         seed=seed, report_progress=report_progress,
+        proposal_file=None if proposal_file is None else Path(proposal_file),
     )  # fmt: skip
 
 

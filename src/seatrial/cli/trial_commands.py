@@ -177,6 +177,7 @@ def follow(
             seed=seed,
             report_progress=report_progress,
             method=method,
+            proposal_file=None if out is None else out / "proposal.toml",
         )
     print_outcome(outcome)
     if outcome.fit is not None:

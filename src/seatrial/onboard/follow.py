@@ -22,6 +22,7 @@ from seatrial.estimation.identify.online import OnlineEstimator, SearchFollower,
 from seatrial.estimation.identify.strategies.published import own_estimate_progress, published_fit
 from seatrial.onboard.advice import ManoeuvreAdviser
 from seatrial.onboard.journal import Journal, journal_identity
+from seatrial.onboard.proposer import GainProposer
 from seatrial.onboard.required_channels import check_required_channels
 from seatrial.onboard.run_buffer import RunBuffer, with_training_records
 from seatrial.onboard.sample_order import StreamEvent
@@ -49,7 +50,8 @@ class FollowResult:
     Attributes:
         snapshot: the last one; None where no sample arrived.
         counts: of all samples, those of the journal included.
-        fit: of the samples accepted, as `identify` makes it; None unless they were followed to their end with `once`.
+        fit: of the samples accepted, as `identify` makes it; None unless they were followed to their end with `once`,
+            and where every coefficient is fixed.
         messages: errors of the journal and of the estimator, in words.
     """
 
@@ -75,6 +77,7 @@ def follow(
     estimator: StreamEstimator | None = None,
     seed: int = 0,
     report_progress: ProgressReporter | None = None,
+    proposal_file: Path | None = None,
 ) -> FollowResult:
     """Estimate the trial's model from the samples of its stream, until they end, `stop` returns True, or Ctrl-C.
 
@@ -91,7 +94,9 @@ def follow(
         # opened before the journal is read, so that samples that arrive meanwhile wait in the socket
         current = source or _open_stream(stack, stream, once=once)
         estimator = estimator or _estimator(trial, seed)
-        session, adviser = StreamSession(stream, estimator, log, buffer), ManoeuvreAdviser(trial, estimator)
+        proposer = None if trial.proposal is None else GainProposer(trial, trial.proposal, proposal_file, seed)
+        session = StreamSession(stream, estimator, log, buffer, proposer)
+        adviser = ManoeuvreAdviser(trial, estimator)
         display = _Display(session, adviser, show, stop)
         can_reopen = source is None and stream.source in _REOPENABLE
         reopen = partial(_open_stream, stack, stream, once=once) if can_reopen else None
@@ -110,13 +115,14 @@ def follow(
     latest = session.snapshot
     if latest is not None:
         latest = estimator.relinearise() if isinstance(estimator, OnlineEstimator | SearchFollower) else latest
-        latest = adviser.with_final_advice(latest)
+        latest = replace(adviser.with_final_advice(latest), proposal=session.proposal)
     if latest is not None and show is not None:
         show(latest, counts)
     fit = None
-    if buffer is not None and is_ended:
+    if buffer is not None and is_ended and trial.model.parameters.free_names:
         fit = _final_fit(with_training_records(trial, buffer.records()), estimator, seed, report_progress)
-    errors = (log.write_error,) if log is not None and log.write_error else ()
+    writers = [one for one in (log, proposer) if one is not None]
+    errors = tuple(one.write_error for one in writers if one.write_error)
     return FollowResult(latest, counts, fit, (*session.messages, *errors))
 
 
@@ -153,10 +159,12 @@ class _Display:
         return self._stop is None or not self._stop()
 
     def _with_run(self, snapshot: Snapshot) -> Snapshot:
-        """The snapshot with advice and the run so far; the same object for the same snapshot."""
+        """The snapshot with advice, the run so far and the gains proposed; the same object for the same snapshot."""
         advised = self._adviser.with_advice(snapshot)
-        if self._newest is None or advised is not self._advised:
-            self._advised, self._newest = advised, replace(advised, recent=self._session.recent_run.records())
+        proposal = self._session.proposal
+        if self._newest is None or advised is not self._advised or proposal is not self._newest.proposal:
+            records = self._session.recent_run.records()
+            self._advised, self._newest = advised, replace(advised, recent=records, proposal=proposal)
         return self._newest
 
 

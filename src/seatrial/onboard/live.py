@@ -11,6 +11,7 @@ from seatrial.core.text.numbers import DASH
 from seatrial.core.text.plain import ascii_text
 from seatrial.core.text.words import counted, enumeration, printable
 from seatrial.onboard.history import History, RecentHistory
+from seatrial.onboard.proposal_text import gains_text
 from seatrial.onboard.snapshot_text import change_sentence, estimate_rows, faults_text, time_text
 from seatrial.onboard.table import MAX_NAMES, TableContent, render_table
 
@@ -131,7 +132,9 @@ class _Lines:
 
 
 def log_line(snapshot: Snapshot, counts: SampleCounts) -> str:
-    """Return moment, phase, coefficients with half of their 95 % intervals, what is not identified, faults, change."""
+    """Return moment, phase, coefficients with half of their 95 % intervals, what is not identified, faults, change,
+    and the gains proposed.
+    """
     sizes = f"{counted(snapshot.samples, 'sample')} {counted(snapshot.runs, 'run')}"
     rows = [
         f"{row.name} {row.value}{f' +- {row.half_width}' if row.half_width != DASH else ''} {row.unit}".rstrip()
@@ -144,6 +147,7 @@ def log_line(snapshot: Snapshot, counts: SampleCounts) -> str:
         f"not identified: {enumeration(names, MAX_NAMES)}" if names else "",
         faults_text(counts),
         change_sentence(snapshot.change),
+        "" if snapshot.proposal is None else f"proposed gains: {gains_text(snapshot.proposal)}",
     ]
     return ascii_text(" | ".join(part for part in parts if part))
 

@@ -18,6 +18,7 @@ from seatrial.core.values.channel_text import (
 from seatrial.core.values.record_chart import has_track, is_constant
 from seatrial.onboard import snapshot_text
 from seatrial.onboard.history import HistoryPoint
+from seatrial.onboard.proposal_text import proposal_lines
 
 # digits of plotted points, letters of a finding; chosen: finer than a screen, longer than any sentence of ours
 JSON_DIGITS, MAX_LENGTH = 8, 1000
@@ -40,6 +41,7 @@ def snapshot_json(snapshot: Snapshot, counts: SampleCounts) -> dict[str, Any]:
         ],
         "unidentified": [printable(name) for name in snapshot.unidentified],
         "advice": printable(snapshot.advice),
+        "proposal": [] if snapshot.proposal is None else proposal_lines(snapshot.proposal),
         "change": snapshot_text.change_sentence(snapshot.change),
         "accepted": counts.accepted,
         "faults": snapshot_text.fault_counts(counts),

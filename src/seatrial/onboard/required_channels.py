@@ -25,7 +25,7 @@ def check_required_channels(trial: Trial) -> None:
     stream, model = require_stream(trial), trial.model
     where = f"{trial.path}: " if trial.path else ""
     _check_not_a_record(trial, where)
-    record = _rest_record(trial)
+    record = rest_record(trial)
     inputs = [i.name for i in model.inputs if i.name not in record and i.name not in ZERO_BY_DEFAULT]
     if stream.waves is not None:
         inputs += [] if "zeta" in record or set(_WAVE_FORCES) <= set(record.channels) else ["zeta (or F3 and M5)"]
@@ -54,8 +54,8 @@ def _check_not_a_record(trial: Trial, prefix: str) -> None:
             )
 
 
-def _rest_record(trial: Trial) -> Record:
-    """A record of the stream's channels, all zero, in canonical conventions."""
+def rest_record(trial: Trial) -> Record:
+    """Return a record of the stream's channels, all zero, in canonical conventions."""
     stream = require_stream(trial)
     time = np.arange(_REST_SAMPLES) / stream.rate
     rest = record_from_values("stream", stream.layout, time, np.zeros((_REST_SAMPLES, len(stream.layout.columns))))

@@ -6,10 +6,12 @@ from typing import Protocol
 import numpy as np
 
 from seatrial.core.results.online import Sample, SampleCounts, Snapshot
+from seatrial.core.results.proposal import Proposal
 from seatrial.core.text.words import counted
 from seatrial.core.values import InputError
 from seatrial.data.trial.stream import Stream
 from seatrial.onboard.journal import Journal, RunEntry
+from seatrial.onboard.proposer import GainProposer
 from seatrial.onboard.recent_run import RecentRun
 from seatrial.onboard.run_buffer import RunBuffer
 from seatrial.onboard.sample_order import RunStart, SampleOrder, StreamEvent, combined_counts
@@ -43,12 +45,18 @@ class StreamSession:
     """
 
     def __init__(
-        self, stream: Stream, estimator: StreamEstimator, journal: Journal | None, buffer: RunBuffer | None
+        self,
+        stream: Stream,
+        estimator: StreamEstimator,
+        journal: Journal | None,
+        buffer: RunBuffer | None,
+        proposer: GainProposer | None = None,
     ) -> None:
         self.snapshot: Snapshot | None = None
         self.last_journalled: Sample | None = None
         self.messages: list[str] = []
         self._name, self._estimator, self._journal, self._buffer = stream.name, estimator, journal, buffer
+        self._proposer = proposer
         self._stream, self._order, self._earlier_counts = stream, _sample_order(stream), SampleCounts()
         self._run_count, self._restarts = 0, False
         self.recent_run = RecentRun(stream.layout)
@@ -99,10 +107,17 @@ class StreamSession:
             if self._buffer is not None:
                 self._buffer.add(event)
             self.recent_run.add(event)
+            if self._proposer is not None:
+                self._proposer.add(event)
             self.snapshot = self._estimator.update(event)
         except (InputError, np.linalg.LinAlgError, ArithmeticError) as error:
             self._estimator_error = f"t = {event.time:g} s: {error}"
             self._add_message(str(error))
+
+    @property
+    def proposal(self) -> Proposal | None:
+        """Return the newest proposal of gains; None where none is required, or before the first."""
+        return None if self._proposer is None else self._proposer.proposal
 
     def restart(self) -> None:
         """Begin a run with the next sample, whatever its time: its positions may have another origin than before."""
@@ -127,6 +142,8 @@ class StreamSession:
         if self._buffer is not None:
             self._buffer.start_run(self._name if self._run_count == 1 else f"{self._name}_{self._run_count}")
         self.recent_run.start_run()
+        if self._proposer is not None:
+            self._proposer.start_run()
         self._estimator.begin_run()
 
     def _add_message(self, text: str) -> None:

@@ -12,6 +12,7 @@ from seatrial.core.text.words import counted, enumeration, printable
 from seatrial.core.values import Array, Severity, worst_first
 from seatrial.onboard import snapshot_text
 from seatrial.onboard.history import RecentHistory
+from seatrial.onboard.proposal_text import proposal_lines
 from seatrial.onboard.snapshot_text import NORMAL_95, EstimateRow, estimate_rows
 
 if TYPE_CHECKING:
@@ -151,6 +152,10 @@ def _foot(snapshot: Snapshot, counts: SampleCounts) -> "Table":
     return table
 
 
+def _proposal_lines(snapshot: Snapshot) -> list[tuple[str, str]]:
+    return [] if snapshot.proposal is None else proposal_lines(snapshot.proposal)
+
+
 def _foot_lines(snapshot: Snapshot, counts: SampleCounts) -> list[tuple[str, str, str]]:
     """Label, text and style of each line below the table; the text is empty where there is nothing to say."""
     residuals = [f"{name} {rms} {unit}".rstrip() for name, rms, unit in snapshot_text.residual_rms(snapshot)]
@@ -159,6 +164,7 @@ def _foot_lines(snapshot: Snapshot, counts: SampleCounts) -> list[tuple[str, str
         ("residuals", ", ".join(residuals), ""),
         ("not identified", enumeration([printable(name) for name in snapshot.unidentified], MAX_NAMES), "yellow"),
         ("would help" if snapshot.unidentified else "why not yet", printable(snapshot.advice), ""),
+        *((label, text, "") for label, text in _proposal_lines(snapshot)),
         ("change", snapshot_text.change_sentence(snapshot.change), "bold red"),
         ("samples", snapshot_text.faults_text(counts), "yellow"),
         ("last", printable(counts.last_problem), "dim"),

@@ -14,7 +14,7 @@ from tests.reporting.fabricated_tuning import fabricated_autopilot, fabricated_b
 
 from seatrial.core.results.tuning import Component, Tuning
 from seatrial.core.values import InputError
-from seatrial.data.folder.gains_file import gains_toml, read_gains, schedule_csv
+from seatrial.data.folder.gains_file import gains_toml, read_gains, read_schedule, schedule_csv
 from seatrial.data.folder.loop_mat import loop_mat
 from seatrial.physics.loops import TransferLoop, margins
 from seatrial.physics.loops.fin import fin_loop
@@ -154,3 +154,18 @@ def test_the_guidance_of_a_track_is_written_with_its_units() -> None:
     assert table["integral_gain_m_per_s"] == 1.5
     assert table["order_rate_deg_per_s"] == pytest.approx(1.1459, abs=1e-4)
     assert "track" not in tomllib.loads(gains_toml(fabricated_fin()))
+
+
+def test_the_schedule_comes_back(fin: Tuning, tmp_path: Path) -> None:
+    points = read_schedule(written(tmp_path, gains_toml(fin)))
+    assert [point.gains for point in points] == [point.gains for point in fin.schedule]
+    assert [point.beta for point in points] == pytest.approx([point.beta for point in fin.schedule])
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [("[gains]\nKP = 1.0\n", "has no"), ("[[schedule]]\nU = 9.0\n", "is incomplete"), ("U =", "is no TOML")],
+)
+def test_a_file_without_a_schedule_is_refused(text: str, sentence: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=sentence):
+        read_schedule(written(tmp_path, text))

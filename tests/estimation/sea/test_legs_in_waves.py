@@ -11,6 +11,7 @@ from seatrial.estimation.sea import (
     PLANT_FACTORS,
     LegPriors,
     LegsInWaves,
+    ObservedLeg,
     WaveLeg,
     altered_loop,
     encountered_sea,
@@ -40,7 +41,7 @@ def _leg(seed: int, sea: Array, ship: Array, *, is_controlled: bool, duration: f
     lines = np.stack([output, -controller * output], axis=1)
     series = np.fft.irfft(np.vstack([np.zeros((1, 2)), lines]) * count, axis=0)[:count]
     spectra = stretch_spectra(series, DT, SEGMENT).band_limited(0.2, 2.5).strong_band(0, 0.03)
-    return WaveLeg(spectra, encountered_sea(spectra.omega, U, BETA, HULL), fin_loop(), 8.0)
+    return WaveLeg(ObservedLeg(spectra, fin_loop()), encountered_sea(spectra.omega, U, BETA, HULL), 8.0)
 
 
 def test_altered_loop_moves_frequency_damping_and_gain_alone() -> None:
@@ -75,9 +76,10 @@ def test_expected_spectra_give_back_ship_and_seas() -> None:
 
 def _exact(leg: WaveLeg, ship: Array, sea: Array) -> WaveLeg:
     """The leg with its outputs scaled to the model's density, its actuator to the same controller."""
-    density = np.exp(leg.likelihood(ship, sea).log_controlled)
-    factor = np.sqrt(density / leg.spectra.cross_density(0, 0).real)
-    return replace(leg, spectra=replace(leg.spectra, transforms=leg.spectra.transforms * factor[None, :, None]))
+    density = np.exp(leg.likelihood(ship, sea).log_density)
+    factor = np.sqrt(density / leg.observed.output_density)
+    spectra = replace(leg.spectra, transforms=leg.spectra.transforms * factor[None, :, None])
+    return replace(leg, observed=replace(leg.observed, spectra=spectra))
 
 
 def test_simulated_legs_give_the_ship_within_its_errors() -> None:

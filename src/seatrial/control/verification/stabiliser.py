@@ -29,6 +29,7 @@ from seatrial.core.values.channel_text import channel_unit
 from seatrial.estimation.sea import (
     LegFit,
     LegPriors,
+    ObservedLeg,
     StretchSpectra,
     WaveLeg,
     altered_loop,
@@ -118,7 +119,7 @@ def _prepared(task: TuningTask, leg: LoggedLeg, loop: TransferLoop, seaway: Seaw
     strong = spectra.strong_band(0, _STRONG)
     sea = encountered_sea(strong.omega, leg.U, seaway.beta, seaway.effect)
     expected = 2.0 * math.pi / seaway.spectrum.modal_frequency
-    return _Leg(leg, at_speed, spectra, WaveLeg(strong, sea, at_speed, expected))
+    return _Leg(leg, at_speed, spectra, WaveLeg(ObservedLeg(strong, at_speed), sea, expected))
 
 
 def _verified_leg(leg: _Leg, fit: LegFit, place: int) -> VerifiedLeg:

@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import Field, computed_field
 
 from seatrial.core.results.fields import ListedArray, Number, ReportedFinding, StoredRecord
+from seatrial.core.results.proposal import Proposal
 from seatrial.core.values import Array
 
 
@@ -106,6 +107,9 @@ class Snapshot:
     counts: SampleCounts = SampleCounts()
     recent: Annotated[tuple[StoredRecord, ...], Field(exclude=True)] = ()
     """The run so far, thinned, for people to look at; empty: not kept."""
+    proposal: Annotated[
+        Proposal | None, Field(description="gains for the sea and the craft of the latest stretch; null: none required")
+    ] = None
 
     @computed_field
     @property

@@ -2,6 +2,7 @@
 
 import math
 import re
+from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -47,19 +48,42 @@ def read_gains(path: str | Path) -> dict[str, float]:
     Raises:
         InputError: the file cannot be read, is no TOML, or has no table [gains] of finite numbers.
     """
-    try:
-        table = parse_toml(read_table_text(Path(path)))
-    except OSError as error:
-        raise InputError(f"'{path}' cannot be read ({error.strerror}); give a gains.toml of 'seatrial tune'") from None
-    except ValueError as error:
-        raise InputError(f"'{path}' is no TOML ({error}); give a gains.toml of 'seatrial tune'") from None
-    gains = table.get("gains")
+    gains = _gains_table(Path(path)).get("gains")
     if not isinstance(gains, dict) or not gains:
         raise InputError(f"'{path}' has no table [gains] with a line for each gain, such as KP = 11.053")
     for name, value in gains.items():
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
             raise InputError(f"'{path}': gain {name} = {value!r} is no finite number; write one")
     return {name: float(value) for name, value in gains.items()}
+
+
+def read_schedule(path: str | Path) -> tuple[OperatingPoint, ...]:
+    """Return the schedule of a ``gains.toml``, without the costs of other gains.
+
+    Raises:
+        InputError: the file cannot be read, is no TOML, has no schedule, or an entry of it is incomplete.
+    """
+    entries = _gains_table(Path(path)).get("schedule")
+    if not isinstance(entries, list) or not entries:
+        raise InputError(
+            f"'{path}' has no [[schedule]]: add [schedule] to the loop file, run 'seatrial tune LOOP --out DIR' again"
+        )
+    try:
+        return tuple(_schedule_point(entry) for entry in entries)
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise InputError(
+            f"'{path}': an entry of [[schedule]] is incomplete ({error}); run 'seatrial tune LOOP --out DIR' again"
+        ) from None
+
+
+def _gains_table(path: Path) -> Mapping[str, Any]:
+    """Return the tables of a ``gains.toml``."""
+    try:
+        return parse_toml(read_table_text(path))
+    except OSError as error:
+        raise InputError(f"'{path}' cannot be read ({error.strerror}); give a gains.toml of 'seatrial tune'") from None
+    except ValueError as error:
+        raise InputError(f"'{path}' is no TOML ({error}); give a gains.toml of 'seatrial tune'") from None
 
 
 def schedule_csv(tuning: Tuning) -> str:
@@ -134,6 +158,19 @@ def _schedule_entry(point: OperatingPoint) -> dict[str, Any]:
         **_finite_numbers({"cost": point.cost, "Ms": point.Ms, "saturation": point.saturation}),
         "feasible": bool(point.is_feasible),
     }
+
+
+def _schedule_point(entry: Mapping[str, Any]) -> OperatingPoint:
+    """Return what `_schedule_entry` wrote; what it left out as infinite is infinite."""
+    gains = {str(name): float(value) for name, value in entry["gains"].items()}
+    beta = math.radians(float(entry["heading_deg"]))
+    cost, Ms, saturation = (float(entry.get(key, math.inf)) for key in ("cost", "Ms", "saturation"))
+    point = OperatingPoint(
+        float(entry["U"]), beta, float(entry["height"]), gains, cost, Ms, saturation, {}, bool(entry["feasible"])
+    )
+    if not all(map(math.isfinite, (point.U, point.beta, point.height, *gains.values()))):
+        raise ValueError("a number is not finite")
+    return point
 
 
 def _csv_cell(text: str) -> str:

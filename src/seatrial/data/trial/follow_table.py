@@ -8,6 +8,7 @@ from typing import Any
 from seatrial.core.values import InputError, spelling_hint
 from seatrial.data.trial.declared_channels import NO_DECLARED, Declared
 from seatrial.data.trial.excitation import wave_encounter
+from seatrial.data.trial.proposal_settings import ProposalSettings
 from seatrial.data.trial.run_data import run_name
 from seatrial.data.trial.runs import expand_variables, layout_of
 from seatrial.data.trial.schema import FollowTable
@@ -53,6 +54,20 @@ def stream_of(
         name=_stream_name(table.source, file),
         waves=wave_encounter(table.waves, excitation, length, "follow"),
     )
+
+
+def resolved_proposal(settings: ProposalSettings | None, stream: Stream | None, home: Path) -> ProposalSettings | None:
+    """Return the settings with their files counted from `home`.
+
+    Raises:
+        InputError: there is no stream to follow.
+    """
+    if settings is None:
+        return None
+    if stream is None:
+        raise InputError("proposal: gains are proposed while a stream is followed; add [follow]")
+    loop, gains = (home / expand_variables(str(path)) for path in (settings.loop, settings.gains))
+    return replace(settings, loop=loop, gains=gains)
 
 
 def with_source(trial: Trial, source: str) -> Trial:

@@ -17,7 +17,7 @@ from seatrial.data.trial.design_request import refuse_unsuitable
 from seatrial.data.trial.earlier_result import ResultReader, earlier_results
 from seatrial.data.trial.estimated_values import with_estimates_named
 from seatrial.data.trial.excitation import excitation_of
-from seatrial.data.trial.follow_table import stream_of
+from seatrial.data.trial.follow_table import resolved_proposal, stream_of
 from seatrial.data.trial.forces import read_force_points
 from seatrial.data.trial.ground_velocities import ground_velocity_findings
 from seatrial.data.trial.hull_values import hull_value_findings
@@ -147,6 +147,7 @@ def trial_of_tables(
         if runs and file.follow is None:
             require_training_run(runs)
         stream = None if file.follow is None else stream_of(file.follow, base, home, excitation, ship.length, declared)
+        proposal = resolved_proposal(file.proposal, stream, home)
         if file.design is not None:
             refuse_unsuitable(file.design, model, ship.length)
         forces = tuple(
@@ -171,6 +172,7 @@ def trial_of_tables(
         compare=file.compare,
         design_request=file.design,
         stream=stream,
+        proposal=proposal,
         feedback=file.feedback,
         joint_priors=tuple(p for r in results.values() if (p := r.joint_prior_of(model.parameters)).names),
         findings=(

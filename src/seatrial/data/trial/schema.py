@@ -13,6 +13,7 @@ from seatrial.data.trial.amounts import STRICT_FIELDS, Angle, Deviation, SiAmoun
 from seatrial.data.trial.compare_settings import CompareSettings
 from seatrial.data.trial.design_request import DesignRequest
 from seatrial.data.trial.feedback_table import Feedback
+from seatrial.data.trial.proposal_settings import ProposalSettings
 from seatrial.data.trial.sea_table import SeaTable
 from seatrial.data.trial.session import valid_session
 from seatrial.data.trial.settings import EstimateSettings, ModelFamily
@@ -387,6 +388,7 @@ class TrialFile(StrictTable):
     feedback: Feedback | None = None
     design: DesignRequest | None = None
     follow: FollowTable | None = None
+    proposal: ProposalSettings | None = None
 
 
 def trial_schema() -> dict[str, Any]:

@@ -12,6 +12,7 @@ from seatrial.data.trial.compare_settings import CompareSettings
 from seatrial.data.trial.design_request import DesignRequest
 from seatrial.data.trial.earlier_result import JointPrior
 from seatrial.data.trial.feedback_table import Feedback
+from seatrial.data.trial.proposal_settings import ProposalSettings
 from seatrial.data.trial.run_data import RecordFile, RecordSources
 from seatrial.data.trial.settings import EstimateSettings, ModelFamily
 from seatrial.data.trial.stream import Stream
@@ -113,7 +114,8 @@ class Trial:
         compare: settings of the regressions that a comparison sets beside the fit.
         feedback: the controller that was on in some runs; None: none is declared.
         design: the manoeuvre that is to be designed; None: none is.
-        follow: the stream that is to be followed; None: none is.
+        stream: the stream that is to be followed; None: none is.
+        proposal: for which loop gains are proposed meanwhile; None: for none.
         joint_priors: what earlier results say of several coefficients together, besides the priors of each.
         findings: what is odd about the trial itself: priors beyond their range, force points of unexpected sign.
         path: the trial file; None for a trial made in Python.
@@ -134,6 +136,7 @@ class Trial:
     compare: CompareSettings = field(default_factory=CompareSettings)
     design_request: DesignRequest | None = None
     stream: Stream | None = None
+    proposal: ProposalSettings | None = None
     findings: tuple[Finding, ...] = ()
     feedback: Feedback | None = None
     joint_priors: tuple[JointPrior, ...] = ()

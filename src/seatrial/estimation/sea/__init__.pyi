@@ -7,4 +7,6 @@ from seatrial.estimation.sea.legs_in_waves import LegsInWaves as LegsInWaves, fi
 from seatrial.estimation.sea.plant_factors import PLANT_FACTORS as PLANT_FACTORS, altered_loop as altered_loop
 from seatrial.estimation.sea.stretch_spectra import StretchSpectra as StretchSpectra
 from seatrial.estimation.sea.stretch_spectra import stretch_spectra as stretch_spectra
-from seatrial.estimation.sea.wave_leg import LegLikelihood as LegLikelihood, WaveLeg as WaveLeg
+from seatrial.estimation.sea.wave_leg import LegLikelihood as LegLikelihood, ObservedLeg as ObservedLeg
+from seatrial.estimation.sea.wave_leg import WaveLeg as WaveLeg
+from seatrial.estimation.sea.sea_posterior import ShipInSea as ShipInSea, draw_ship_in_sea as draw_ship_in_sea

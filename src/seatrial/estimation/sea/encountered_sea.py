@@ -9,6 +9,7 @@ Research 73, 1-14).
 
 import math
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -25,6 +26,8 @@ SEA_UNKNOWNS = ("height", "peak period", "peak")
 _WINDOW_POWER = 1.5  # mean of a Hann window's square over the square of its mean: the area under its leakage, in bins
 _NODES_A_BIN = 3.0  # nodes over the wave frequency for each bin of the transform, at least; chosen
 _LEAKAGE_BINS = 8.0  # bins beyond the band from which the window still shows power; chosen
+_PLACES_A_BIN = 64  # at which leakage is tabulated: within 1 % of a node's own, either way; chosen
+_KEPT = 8  # tables of leakage in memory; chosen
 _LONGEST, _SHORTEST = 0.5, 4.0  # wave frequencies over the ends of the band that are looked at; chosen
 
 
@@ -76,8 +79,19 @@ def encountered_sea(bins: Array, U: float, beta: float, effect: WaveEffect) -> E
     width = (highest - lowest) / count
     omega = np.asarray(lowest + width * (np.arange(count) + 0.5), dtype=np.float64)
     omega_e = np.abs(encounter_frequency(omega, U, beta))
-    leakage = hann_leakage((bins[:, None] - omega_e) / step) / _WINDOW_POWER / step
+    columns = _leakage_columns(len(bins))
+    places = np.rint(((omega_e - bins[0]) / step + _LEAKAGE_BINS) * _PLACES_A_BIN).astype(int)
+    is_near = (places >= 0) & (places < columns.shape[1])
+    leakage = np.where(is_near, columns[:, np.where(is_near, places, 0)], 0.0) / step
     return EncounteredSea(omega, omega_e, width, np.abs(effect.amplitude(omega, U, beta)) ** 2, leakage)
+
+
+@lru_cache(maxsize=_KEPT)
+def _leakage_columns(count: int) -> Array:
+    """Return what `count` bins show of energy at places from 8 bins below the first to 8 above the last, (count, p)."""
+    width = round((count + 2.0 * _LEAKAGE_BINS - 1.0) * _PLACES_A_BIN) + 1
+    places = np.arange(width) / _PLACES_A_BIN - _LEAKAGE_BINS
+    return hann_leakage(np.arange(count)[:, None] - places) / _WINDOW_POWER
 
 
 def _highest_wave(omega_e: float, q: float) -> float:

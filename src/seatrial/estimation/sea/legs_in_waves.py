@@ -11,7 +11,7 @@ from seatrial.estimation.sea.wave_leg import SEA_COUNT, SHIP_COUNT, STEP, WaveLe
 from seatrial.numerics.optimise import NormalEquations, Status, levenberg_marquardt
 
 # log(gamma - 1) before the records: gamma 1.2 to 5.5 within a standard deviation, about what JONSWAP's records have
-_PEAK_MEAN, _PEAK_DEVIATION = 0.0, 1.5
+PEAK_MEAN, PEAK_DEVIATION = 0.0, 1.5
 _WIDEST_SHIP = 1.6  # logarithm of a factor on the ship, either way: five times; chosen
 _LOWEST_SEA, _HIGHEST_SEA = np.array([-7.0, -3.0, -5.0]), np.array([4.0, 5.0, 3.0])
 """Bounds of a sea's unknowns: 1 mm to 55 m, 0.05 to 150 s, gamma 1.007 to 21; chosen."""
@@ -74,18 +74,18 @@ class LegsInWaves:
     def start(self) -> Array:
         """Return the ship as the model has it, in the sea that explains each leg best."""
         none = np.zeros(SHIP_COUNT)
-        return np.concatenate([none, *(leg.start(none, _PEAK_MEAN) for leg in self.legs)])
+        return np.concatenate([none, *(leg.start(none, PEAK_MEAN) for leg in self.legs)])
 
     @property
     def _prior_mean(self) -> Array:
-        return np.concatenate([np.zeros(SHIP_COUNT), *[[0.0, 0.0, _PEAK_MEAN]] * len(self.legs)])
+        return np.concatenate([np.zeros(SHIP_COUNT), *[[0.0, 0.0, PEAK_MEAN]] * len(self.legs)])
 
     @property
     def _precision(self) -> Array:
         """Return the inverse of the covariance before the legs; the first sea's height and period are not known."""
         is_held = self.priors.ship <= 0.0
         ship = np.where(is_held, 0.0, 1.0 / np.where(is_held, 1.0, self.priors.ship) ** 2)
-        precision = np.diag(np.concatenate([ship, *[[0.0, 0.0, 1.0 / _PEAK_DEVIATION**2]] * len(self.legs)]))
+        precision = np.diag(np.concatenate([ship, *[[0.0, 0.0, 1.0 / PEAK_DEVIATION**2]] * len(self.legs)]))
         change = np.diag(1.0 / self.priors.sea_change**2)
         for k in range(len(self.legs) - 1):
             one, other = (np.arange(_sea_slice(leg).start, _sea_slice(leg).start + len(change)) for leg in (k, k + 1))

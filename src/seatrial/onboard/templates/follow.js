@@ -218,8 +218,11 @@ function renderText(snapshot) {
   renew(byId("unidentified"), [snapshot.unidentified, snapshot.advice], () => [
     node("p", {}, snapshot.unidentified.length ? `The data so far do not identify ${listed(snapshot.unidentified)}.` : "No estimate yet."),
     node("p", {}, snapshot.advice)]);
+  renew(byId("proposal"), snapshot.proposal, () => snapshot.proposal.flatMap(([label, text]) => [node("dt", {}, label), node("dd", {}, text)]));
   byId("change").hidden = snapshot.change === "";
-  byId("next").hidden = snapshot.unidentified.length === 0 && snapshot.advice === "";
+  byId("proposal").hidden = snapshot.proposal.length === 0;
+  byId("unidentified").hidden = snapshot.unidentified.length === 0 && snapshot.advice === "";
+  byId("next").hidden = byId("unidentified").hidden && byId("proposal").hidden;
   byId("findings_section").hidden = snapshot.findings.length === 0;
   byId("residuals").hidden = snapshot.noise.length === 0;
   byId("last").textContent = snapshot.last ? `Latest fault: ${snapshot.last}` : "";

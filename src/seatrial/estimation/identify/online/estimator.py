@@ -32,6 +32,7 @@ from seatrial.estimation.identify.online.transitions import carried_phase, filte
 
 # samples before the first search: fewer leave more unknowns than a fit of a dozen coefficients and its start can bear
 _MIN_SAMPLES = 30
+_NOTHING_FREE = "every coefficient of the model is fixed: none is estimated"
 _NO_MODEL_YET = "the samples so far lead to no model that can be simulated"
 
 
@@ -54,6 +55,8 @@ class OnlineEstimator:
         self._phase: KeptPhase | RecursivePhase = WarmUp()
         self._progress = StreamProgress()
         self._snapshot = first_snapshot(trial.model)
+        if not trial.model.parameters.free_names:
+            self._snapshot = replace(self._snapshot, advice=_NOTHING_FREE)
 
     def begin_run(self) -> None:
         """Begin a new run with the next sample: after a gap, or a jump of the clock.
@@ -74,6 +77,9 @@ class OnlineEstimator:
         if not self._window.has_run:
             self.begin_run()
         self._progress = self._progress.with_sample(sample.time)
+        if not self._trial.model.parameters.free_names:
+            self._snapshot = at_progress(self._snapshot, self._progress)
+            return self._snapshot
         if isinstance(self._phase, RecursivePhase):
             self._filter(self._phase, sample)
         else:
@@ -85,6 +91,8 @@ class OnlineEstimator:
 
     def relinearise(self) -> Snapshot:
         """Search now over everything in the window; a filter takes in the samples that wait for later ones."""
+        if not self._trial.model.parameters.free_names:
+            return self._snapshot
         if isinstance(self._phase, RecursivePhase):
             self._phase.finish()
             self._snapshot = recursive_snapshot(self._snapshot, self._trial.model, self._phase)

@@ -1,0 +1,173 @@
+"""Gains proposed while a stream is followed: the latest stretch at one speed and heading, looked at now and then."""
+
+import math
+from collections import deque
+from pathlib import Path
+
+import numpy as np
+
+from seatrial.control.loopfile.load import tuning_task
+from seatrial.control.proposals.gain_schedule import gain_schedule, refuse_other_craft
+from seatrial.control.proposals.look import RATE, SHORTEST_PERIODS, Stretch, look, no_proposal
+from seatrial.control.task import Seaway, TuningTask
+from seatrial.control.verification.legs import natural_period
+from seatrial.core.results.online import Sample
+from seatrial.core.results.proposal import Proposal
+from seatrial.core.values import Array, InputError, Record
+from seatrial.core.values.files import write_atomically
+from seatrial.data.check import canonical_record
+from seatrial.data.folder.gains_file import read_schedule
+from seatrial.data.folder.proposal_file import proposal_toml
+from seatrial.data.read.assemble import record_from_values
+from seatrial.data.trial import Trial
+from seatrial.data.trial.follow_table import require_stream
+from seatrial.data.trial.proposal_settings import ProposalSettings
+from seatrial.onboard.required_channels import rest_record
+
+_SLOWEST_RATE = 6.0  # samples a natural period, below which the motion is not resolved; chosen
+_LONGEST_GAP = 0.25  # natural periods without a sample, above which a stretch has a gap; chosen
+_STEADY_SPEED = 0.1  # of the mean: rms of the speed up to which it is one speed; chosen
+_STEADY_HEADING = math.radians(10.0)  # rms of the heading up to which it is one heading: waves yaw a craft less; chosen
+
+
+class GainProposer:
+    """Takes samples in and holds the newest proposal; it has no thread and no clock of its own.
+
+    Attributes:
+        proposal: the newest; without gains before the first look.
+        write_error: why the newest could not be written, in words; empty if it was.
+    """
+
+    def __init__(self, trial: Trial, settings: ProposalSettings, file: Path | None = None, seed: int = 0) -> None:
+        """Read loop file and schedule; `file`: where each proposal is written.
+
+        Raises:
+            InputError: they cannot be read, are of two crafts, or the stream lacks the loop's channels.
+        """
+        self.write_error = ""
+        self._trial, self._settings, self._file, self._seed = trial, settings, file, seed
+        self._task = tuning_task(settings.loop)
+        points = read_schedule(settings.gains)
+        refuse_other_craft(self._task, points, f"'{settings.gains}'")
+        self._schedule = gain_schedule(points, self._task.loop.gains.names)
+        _refuse_unsuitable(self._task, settings, require_stream(trial).rate)
+        _refuse_missing_channels(self._task, rest_record(trial))
+        self._current: Array | None = None
+        self.start_run()
+        self.proposal = no_proposal(self._task, math.nan, math.nan, "no stretch of the stream has been looked at yet")
+        self._write(self.proposal)
+
+    def start_run(self) -> None:
+        """Begin a run with the next sample: a stretch does not reach over a break."""
+        self._samples: deque[Sample] = deque()
+        self._looked_at = -math.inf
+
+    def add(self, sample: Sample) -> None:
+        """Take in a sample, and look at the latest stretch where it is time to."""
+        self._samples.append(sample)
+        while self._samples[0].time < sample.time - self._settings.stretch_s:
+            self._samples.popleft()
+        is_due = sample.time - max(self._looked_at, self._samples[0].time) >= self._settings.every_s
+        if is_due:
+            self._looked_at = sample.time
+            self._look()
+
+    def _look(self) -> None:
+        try:
+            self.proposal = look(self._task, self._schedule, self._stretch(), self._current, self._seed)
+        except (InputError, np.linalg.LinAlgError, ArithmeticError) as error:
+            start, stop = self._samples[0].time, self._samples[-1].time
+            self.proposal = no_proposal(self._task, start, stop, str(error))
+        if self.proposal.has_gains:
+            self._current = np.array([self.proposal.gains[name] for name in self._schedule.names])
+        self._write(self.proposal)
+
+    def _write(self, proposal: Proposal) -> None:
+        if self._file is None:
+            return
+        try:
+            write_atomically(self._file, proposal_toml(proposal).encode())
+            self.write_error = ""
+        except InputError as error:
+            self.write_error = str(error)
+
+    def _stretch(self) -> Stretch:
+        """Return the stretch that is kept, evenly sampled.
+
+        Raises:
+            InputError: it has gaps, or speed or heading changed in it.
+        """
+        record = self._record()
+        _refuse_unsteady(record)
+        period = natural_period(self._task.loop)
+        rate = min(RATE / period, require_stream(self._trial).rate)
+        time = np.arange(record.time[0], record.time[-1], 1.0 / rate)
+        columns = [_evenly(record, name, time, _LONGEST_GAP * period) for name in _channels(self._task)]
+        U = float(np.nanmean(record["u"])) if "u" in record else self._task.U
+        return Stretch(float(time[0]), 1.0 / rate, np.column_stack(columns), U)
+
+    def _record(self) -> Record:
+        time = np.array([sample.time for sample in self._samples])
+        values = np.array([sample.values for sample in self._samples])
+        raw = record_from_values("stretch", require_stream(self._trial).layout, time, values)
+        return canonical_record(raw, self._trial.reference_point)
+
+
+def _channels(task: TuningTask) -> tuple[str, str]:
+    return task.loop.output, task.loop.actuator
+
+
+def _evenly(record: Record, name: str, time: Array, longest_gap: float) -> Array:
+    """Return a channel at times (n,), linear between its readings.
+
+    Raises:
+        InputError: there is none for longer than the gap [s].
+    """
+    is_read = np.isfinite(record[name])
+    read = record.time[is_read]
+    gap = float(np.max(np.diff(read, prepend=record.time[0], append=record.time[-1])))
+    if gap > longest_gap:
+        raise InputError(f"'{name}' has a gap of {gap:.2g} s in the stretch; {longest_gap:.2g} s are bridged")
+    return np.interp(time, read, record[name][is_read])
+
+
+def _refuse_unsteady(record: Record) -> None:
+    """Refuse a stretch in which speed or heading changed, as far as they are in the stream."""
+    if "u" in record:
+        mean, rms = float(np.nanmean(record["u"])), float(np.nanstd(record["u"]))
+        if rms > _STEADY_SPEED * abs(mean):
+            raise InputError(f"the speed is not steady, {mean:.3g} m/s with {rms:.2g} m/s rms in the stretch")
+    if "psi" in record:
+        psi = record["psi"][np.isfinite(record["psi"])]
+        rms = float(np.std(np.unwrap(psi)))
+        if rms > _STEADY_HEADING:
+            raise InputError(f"the craft turned in the stretch: its heading moved by {math.degrees(rms):.0f} deg rms")
+
+
+def _refuse_unsuitable(task: TuningTask, settings: ProposalSettings, rate: float) -> None:
+    """Refuse loops, stretches and rates of which no sea can be estimated."""
+    sea = next((met for met in task.disturbances if isinstance(met, Seaway)), None)
+    if task.demand is not None or sea is None or sea.path is not None:
+        raise InputError(
+            f"proposal.loop: gains are proposed for a roll stabiliser in a sea, not for the loop on "
+            f"'{task.loop.output}'; name the loop file of the fins"
+        )
+    period = natural_period(task.loop)
+    if settings.stretch_s < SHORTEST_PERIODS * period:
+        raise InputError(
+            f"proposal.stretch_s = {settings.stretch_s:g} s holds too few swings of {period:.3g} s; make it "
+            f"{math.ceil(SHORTEST_PERIODS * period):d} or more"
+        )
+    if rate * period < _SLOWEST_RATE:
+        raise InputError(
+            f"follow.rate = {rate:g} Hz does not resolve swings of {period:.3g} s; send {_SLOWEST_RATE / period:.2g} "
+            "Hz or more"
+        )
+
+
+def _refuse_missing_channels(task: TuningTask, rest: Record) -> None:
+    if missing := [name for name in _channels(task) if name not in rest]:
+        raise InputError(
+            f"[follow] lacks '{missing[0]}': gains of the loop from '{task.loop.actuator}' on '{task.loop.output}' are "
+            "proposed from both; add its column to [follow.channels]"
+        )
