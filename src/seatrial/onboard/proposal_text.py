@@ -61,7 +61,7 @@ def craft_text(proposal: Proposal) -> str:
 
 
 def margins_text(proposal: Proposal) -> str:
-    """Return the margins with their 95 % intervals over the seas and crafts allowed; nothing without gains."""
+    """Return the margins with their 95 % intervals over the draws of sea and craft; nothing without gains."""
     m = proposal.margins
     if m is None:
         return ""

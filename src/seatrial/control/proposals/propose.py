@@ -61,11 +61,11 @@ class _Judged:
         """Return which margin a candidate does not keep, in words; nothing where it keeps all."""
         lost = int(np.sum(~np.isfinite(self.Ms[:, k])))
         if lost:
-            return f"an unstable loop on {lost} of {len(self.Ms)} crafts that the motions allow"
+            return f"an unstable loop on {lost} of {len(self.Ms)} draws of the craft"
         frail, largest = float(np.quantile(self.Ms[:, k], _FRAILEST)), _MS_RATIO * task.constraints.Ms
         saturation = float(np.median(self.saturation[:, k]))
         if frail > largest:
-            return f"Ms {frail:.2f} on the frailest twentieth of the crafts allowed ({largest:.3g} at most)"
+            return f"Ms {frail:.2f} on the frailest twentieth of the draws of the craft ({largest:.3g} at most)"
         if saturation > task.constraints.saturation:
             allowed = 100.0 * task.constraints.saturation
             return f"{100.0 * saturation:.0f} % of the actuator's amplitudes beyond its limit ({allowed:.0f} % at most)"
@@ -164,7 +164,7 @@ def _reasons(judged: _Judged, chosen: int, had_gains: bool, short: list[str]) ->
     reasons = [
         f"Of {len(short)} sets of the schedule {kept} keep their margins; this one leaves {100.0 * left.value:.0f} % "
         f"[{100.0 * left.lower:.0f}, {100.0 * left.upper:.0f}] of the motion without control, over {len(judged.cost)} "
-        "seas and crafts that the stretch allows."
+        "draws of sea and craft that the stretch allows."
     ]
     if had_gains and chosen == 0:
         reasons.append(f"They were proposed before; no other set leaves {100.0 * _WORTHWHILE:.0f} % less.")

@@ -50,7 +50,7 @@ class CraftFactor:
 
 @dataclass(frozen=True)
 class GainMargins:
-    """Margins of the proposed gains, over the seas and crafts that the stretch allows."""
+    """Margins of the proposed gains, over the draws of sea and craft that the stretch allows."""
 
     Ms: Annotated[Estimated, Field(description="the largest |S|")]
     gain_margin: Annotated[Estimated, Field(description="factor by which the loop gain may grow; null: any")]
