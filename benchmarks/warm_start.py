@@ -142,6 +142,7 @@ def commands(folder: Path) -> dict[str, list[str]]:
         "design": ["design", f"{EXAMPLES}/waterjet_design.toml", "--out", f"{folder}/design"],
         "tune": ["tune", f"{EXAMPLES}/waterjet_autopilot.toml", "--from", f"{fit}/model.toml",
                  "--out", f"{folder}/tuning"],
+        "fins": ["tune", f"{EXAMPLES}/fin_stabiliser.toml", "--out", f"{folder}/fins"],
         "follow": ["follow", f"{EXAMPLES}/waterjet_follow.toml", "--once", "--out", f"{folder}/followed"],
     }  # fmt: skip
 
