@@ -42,7 +42,7 @@ def init(
 
     Example: seatrial init 00000042.BIN --length 2.6 --out trial.toml
 
-    A heading of one's own: --column "Klokke=time" --column "Ror [deg]=delta"
+    A heading of one's own: --column "Klokke=time" --column "Ror=delta"
     """
     from seatrial import api
     from seatrial.core.text.words import counted
@@ -104,6 +104,12 @@ def _after_draft(draft: "DraftTrial", out: Path) -> str:
         return f"{first}, seatrial check {in_shell(log)} lists all"
     steps = [f"decide what is OPEN in {out}"] if draft.open_questions else []
     steps += [f"put the length of the craft after 'L =' in {out} (init --length does)"] if draft.lacks_length else []
+    if draft.lacks_input and draft.unrecognised:
+        one = in_shell(f"{draft.unrecognised[0]}=CHANNEL")
+        return (
+            f"remove {out} and init again, saying which column is a rudder (delta), a thruster (command_1, "
+            f"command_2) or the roll angle (phi), as in --column {one}"
+        )
     steps += [f"name the column of rudder, thruster or roll angle in {out}"] if draft.lacks_input else []
     if steps:
         return f"{', '.join(steps)}, then seatrial check {in_shell(out)}"

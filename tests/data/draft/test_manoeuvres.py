@@ -165,3 +165,26 @@ def test_a_part_shows_the_approach_so_that_its_measures_are_those_of_the_log(del
 def test_names_of_several_runs_differ() -> None:
     one = LogStretch("zigzag", 0.0, 10.0, "")
     assert [[s.name for s in run] for run in numbered([[one, one], [one]])] == [["zigzag1", "zigzag2"], ["zigzag3"]]
+
+
+def test_the_only_log_of_a_craft_with_thrusters_is_cut_in_two_and_nothing_is_left_out(tmp_path: Path) -> None:
+    names = {"left": "cmd/port_percent", "right": "cmd/stbd_percent"}
+    craft = {
+        names.get(name, name): values * (100.0 if name in names else 1.0) for name, values in two_thrusters().items()
+    }
+    write(tmp_path / "session.csv", craft)
+    draft = draft_trial(tmp_path / "session.csv", length=2.0)
+    (parts,) = draft.parts
+    assert [one.name for one in parts] == ["first_part", "last_part"]
+    assert parts[0].stop == parts[1].start and parts[0].start == 0.0
+    assert len(draft.held_out.names) == 1 and "a third of the log" in draft.held_out.why
+    held = next(one for one in parts if one.name in draft.held_out.names)
+    total = parts[1].stop
+    assert (held.stop - held.start) / total == pytest.approx(1.0 / 3.0, abs=0.11)
+    record = draft.records[0]
+    assert record is not None
+    for name in ("command_1", "command_2"):
+        inside = (record.time - record.time[0] >= held.start) & (record.time - record.time[0] <= held.stop)
+        rest = record[name][~inside]
+        slack = 0.25 * np.ptp(rest)
+        assert rest.min() - slack <= record[name][inside].min() and record[name][inside].max() <= rest.max() + slack

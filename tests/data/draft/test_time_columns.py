@@ -57,7 +57,9 @@ def test_seconds_from_the_start_are_no_clock_of_digits_and_no_days(step: float, 
 @pytest.mark.parametrize(
     ("name", "symbol", "unit"),
     [("yaw_rate_deg_s", "r", "deg/s"), ("rot_deg_min", "r", "deg/min"), ("u_m_s", "u", "m/s"), ("v_ms", "v", "m/s"),
-     ("x_north_m", "x0", "m"), ("y_east_m", "y0", "m"), ("gyro_z_rad_s", "r", "rad/s"), ("sog_kn", "sog", "kn")],
+     ("x_north_m", "x0", "m"), ("y_east_m", "y0", "m"), ("gyro_z_rad_s", "r", "rad/s"), ("sog_kn", "sog", "kn"),
+     ("imu/gyro_z_rad_s", "r", "rad/s"), ("cmd/port_percent", "command_1", "percent"),
+     ("cmd/stbd_percent", "command_2", "percent")],
 )  # fmt: skip
 def test_units_behind_a_name_are_part_of_it(name: str, symbol: str, unit: str) -> None:
     guess = guess_by_name("", name, "")

@@ -13,8 +13,16 @@ from seatrial.data.draft.behaviour import checked_by_behaviour, run_record
 from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.draft_text import RecordsBlock, trial_text, unrecognised_columns
 from seatrial.data.draft.guess import guess_columns, without_conflicts
-from seatrial.data.draft.held_out import NOTHING_HELD_OUT, HeldOutRuns, held_out_runs
-from seatrial.data.draft.manoeuvres import find_stretches, is_decay, numbered, offered_parts, used_parts
+from seatrial.data.draft.held_out import NOTHING_HELD_OUT, HeldOutRuns, held_out_runs, third_to_hold_out
+from seatrial.data.draft.manoeuvres import (
+    find_stretches,
+    has_modes,
+    is_decay,
+    numbered,
+    offered_parts,
+    two_thirds_and_a_third,
+    used_parts,
+)
 from seatrial.data.draft.runs_of_logs import LogRun, runs_of_logs
 from seatrial.data.draft.session_text import session_line
 from seatrial.data.draft.ship_estimates import UNSTATED, StatedSize
@@ -111,6 +119,8 @@ def draft_trial(
     pieces = _pieces(runs, records, parts)
     model = starting_model(symbols, list(pieces.values()), size, has_jet=has_jet) if pieces else model
     held_out, session = held_out_runs(model, pieces), session_line(runs)
+    if model.has_thrusters and len(runs) == 1 and records[0] is not None and pieces:
+        parts, held_out = _in_two(model, runs, records[0], stretches[0]) or (parts, held_out)
     blocks = _blocks(runs, guesses, stretches, parts, longest[0])
     blocks = [_with_roles(block, model, held_out, session) for block in blocks]
     tables = tables_text(model, [g for _, columns in blocks[0].sources for g in columns], size)
@@ -162,6 +172,24 @@ def _pieces(
         cut = {one.name: record.between(origin + one.start, origin + one.stop) for one in used_parts(offered)}
         pieces |= cut or {run.name or run_name(run.sources[0].path): record}
     return pieces
+
+
+def _in_two(
+    model: StartingModel, runs: Sequence[LogRun], record: Record, stretches: Sequence[LogStretch]
+) -> tuple[tuple[tuple[LogStretch, ...], ...], HeldOutRuns] | None:
+    """Return the parts of the only log of a craft with thrusters, a third of it held out whose orders the rest holds.
+
+    Whatever such a craft does shows its thrusters, so that nothing is left out. None where no third can be held out, or
+    an autopilot's modes cut the log.
+    """
+    if has_modes(runs[0].sources, record):
+        return None
+    for is_last in (True, False):
+        parts = (two_thirds_and_a_third(record, stretches, is_last=is_last),)
+        name = parts[0][1 if is_last else 0].name
+        if third_to_hold_out(model, _pieces(runs, [record], parts), [name]):
+            return parts, HeldOutRuns((name,), "a third of the log; what is ordered in it the rest holds, too")
+    return None
 
 
 def _blocks(

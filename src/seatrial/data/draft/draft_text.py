@@ -217,7 +217,7 @@ def _part_lines(stretches: Mapping[str, Sequence[LogStretch]], parts: Sequence[S
     if not offered:
         return lines
     lines += [
-        "# Each of these manoeuvres is a run of its own; what lies between them is not used.",
+        "# Each of these parts is a run of its own; what lies between them is not used.",
         "parts = [",
     ]
     for name, part in offered.items():

@@ -8,7 +8,7 @@ import numpy as np
 
 from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.commands import command_guess, rudder_in_percent
-from seatrial.data.draft.naming import NameGuess, bracketed_unit, guess_by_name
+from seatrial.data.draft.naming import NameGuess, bracketed_unit, guess_by_name, named_side
 from seatrial.data.draft.survey import ColumnSummary, LogSurvey, TopicSummary
 from seatrial.data.draft.time_columns import column_values
 from seatrial.data.draft.unnamed import recognised_columns
@@ -87,7 +87,9 @@ def _named(survey: LogSurvey, topic: TopicSummary, column: ColumnSummary) -> Nam
     if column.name not in survey.stated:
         return guess_by_name(_topic_name(survey, topic), column.name, column.unit, survey.layout.format)
     stated = guess_by_name("", survey.stated[column.name], column.unit or bracketed_unit(column.name))
-    return None if stated is None else replace(stated, evidence="what was stated of it")
+    return None if stated is None else replace(
+        stated, evidence="what was stated of it", side=stated.side or named_side(column.name)
+    )  # fmt: skip
 
 
 def _topic_name(survey: LogSurvey, topic: TopicSummary) -> str:

@@ -20,6 +20,7 @@ from seatrial.data.draft.survey import LogSurvey
 from seatrial.data.draft.turns import turning_stretches
 
 _FILLED = 0.7  # share of a run that its manoeuvres cover, from which on it is taken whole; chosen
+_CUT_TOLERANCE = 0.1  # of a log, by which a cut into thirds moves to where a manoeuvre begins; chosen
 _MOST_STRETCHES = 12  # offered of one run; the longest
 # of a manoeuvre's time, and s at least, that its part shows of the approach: measures need the execute; chosen
 _APPROACH_SHARE, _APPROACH_S = 0.1, 10.0
@@ -60,6 +61,11 @@ def find_stretches(surveys: Sequence[LogSurvey], record: Record | None) -> tuple
     return tuple(sorted(longest, key=lambda one: one.start))
 
 
+def has_modes(surveys: Sequence[LogSurvey], record: Record) -> bool:
+    """Return whether the logs say in which mode an autopilot was."""
+    return bool(_modes(surveys, record))
+
+
 def numbered(runs: Sequence[Sequence[LogStretch]]) -> tuple[tuple[LogStretch, ...], ...]:
     """Return the stretches of several runs with names that differ: ``zigzag1``, ``zigzag2``."""
     counts: dict[str, int] = {}
@@ -83,6 +89,19 @@ def offered_parts(
     return tuple(
         () if record is not None and _is_whole(record, run, len(records)) else tuple(run)
         for record, run in zip(records, stretches, strict=True)
+    )
+
+
+def two_thirds_and_a_third(record: Record, stretches: Sequence[LogStretch], *, is_last: bool) -> tuple[LogStretch, ...]:
+    """Return a log in two parts of which the last or the first is a third, cut where a manoeuvre begins if one does."""
+    share = 2.0 / 3.0 if is_last else 1.0 / 3.0
+    wanted, begins = share * record.duration, [one.start for one in stretches if 0.0 < one.start < record.duration]
+    near = [start for start in begins if abs(start - wanted) < _CUT_TOLERANCE * record.duration]
+    cut = min(near, key=lambda start: abs(start - wanted)) if near else wanted
+    sizes = ("the first two thirds", "the last third") if is_last else ("the first third", "the last two thirds")
+    return (
+        LogStretch("first_part", 0.0, cut, f"{sizes[0]} of the log, nothing left out"),
+        LogStretch("last_part", cut, record.duration, sizes[1]),
     )
 
 

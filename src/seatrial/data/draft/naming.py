@@ -176,9 +176,7 @@ _KNOWN_LOGGERS = ("ulog", "ardupilot-bin", "ardupilot-tlog", "nmea0183", "nmea20
 # column of a table into which an autopilot's log was exported: ``ATT.Yaw``, ``XKF1[0].VN``
 _EXPORTED = re.compile(r"/?([A-Za-z]\w*(?:\[\d+\])?)[./](\w+(?:\[\d+\])?)")
 # words before a quantity that name an instrument, and words behind it that say how it was taken
-_INSTRUMENTS = re.compile(
-    r"((d?gps|gnss|rtk|imu|ahrs|ins|mru|gyro|vdr|nav|nmea|ais|doppler|dvl|sensor|ship|vessel)\d*_)+"
-)
+_INSTRUMENT = re.compile(r"(d?gps|gnss|rtk|imu|ahrs|ins|mru|gyro|vdr|nav|nmea|ais|doppler|dvl|sensor|ship|vessel)\d*_")
 _QUALIFIERS = re.compile(
     r"(_(true|t|filt(ered)?|meas(ured)?|actual|raw|avg|mean|value|deg_t|lcg|cg|mid(ships?)?|amidships|\d))+$"
 )
@@ -224,8 +222,9 @@ def guess_by_name(topic: str, name: str, stated_unit: str, log_format: str = "te
     for text, word_unit in _readings(plain):
         for rule in _WORDS:
             match = re.fullmatch(rule.pattern, in_english(text))
-            if match:
-                return _guess(rule, match, unit or word_unit, "its name")
+            guess = _guess(rule, match, unit or word_unit, "its name") if match else None
+            if guess is not None and (guess.unit or not word_unit):  # not heave for a ``z`` in rad/s
+                return guess
     return None
 
 
@@ -236,8 +235,10 @@ def bracketed_unit(name: str) -> str:
 
 def _readings(plain: str) -> list[tuple[str, str]]:
     """A name with the unit behind it: as it is, then without what only says from where it comes."""
-    bare = _QUALIFIERS.sub("", _INSTRUMENTS.sub("", plain))
-    names = [plain] if bare in ("", plain) else [plain, bare]
+    heads = [plain]
+    while instrument := _INSTRUMENT.match(heads[-1]):
+        heads.append(heads[-1][instrument.end() :])
+    names = list(dict.fromkeys(name for head in heads for name in (head, _QUALIFIERS.sub("", head)) if name))
     whole = [reading for name in names for reading in _with_unit_word(name)]
     cut = ((_QUALIFIERS.sub("", name), unit) for name, unit in whole if unit)
     return [*whole, *(reading for reading in cut if reading not in whole and reading[0])]
@@ -264,8 +265,12 @@ def _guess(rule: NameRule, match: re.Match[str], unit: str, evidence: str) -> Na
     is_share = symbol == "delta" and unit == "percent"
     if unit and unit != "us" and not is_share and si_unit(unit)[1] != expected:
         unit = ""
-    side = next((word for word, names in _SIDES.items() if re.search(names, match.string)), "")
-    return NameGuess(rule, symbol, unit, evidence, side)
+    return NameGuess(rule, symbol, unit, evidence, named_side(match.string))
+
+
+def named_side(name: str) -> str:
+    """Return the side of the craft that a heading names, port or starboard; empty where it names none."""
+    return next((word for word, names in _SIDES.items() if re.search(names, name.lower())), "")
 
 
 def _known_unit(text: str) -> str:
