@@ -50,6 +50,29 @@ def test_coverage_counts_values_and_samples(fit: Fit) -> None:
     assert rows(alone)["Inside 95 % intervals"].text == "1 of 1 measured manoeuvring values"
 
 
+def test_runs_simulated_whole_that_leave_their_bands_are_counted_beside_the_windows(fit: Fit) -> None:
+    kept = with_windows(fit, 1.0, 3.0)
+    (p,) = kept.validation
+    apart = np.abs(p.measured["psi"] - p.simulated["psi"])
+    for quantile, text in ((0.3, "simulated whole, 30 % of the heading of a run"), (0.7, "simulated whole, 70 % of")):
+        half = np.full(len(apart), float(np.quantile(apart, quantile)))
+        fact = rows(replace(kept, predictions=(replace(p, half_width={"psi": half}),)))["Inside 95 % intervals"]
+        assert text in fact.text and (fact.is_good is False) == (quantile < 0.5)
+    wide = replace(p, half_width={"psi": np.full(len(apart), 10.0)})
+    fact = rows(replace(kept, predictions=(wide,)))["Inside 95 % intervals"]
+    assert "simulated whole" not in fact.text and fact.is_good
+
+
+def test_a_fit_that_is_best_over_the_longest_windows_only_does_not_claim_all(fit: Fit) -> None:
+    kept = with_windows(fit, 1.0, 3.0)
+    (p,) = kept.validation
+    (longest,) = p.windows
+    rival = WindowBaseline("NARX", {"psi_deg": ChannelScore(0.5, 90.0, 0.9)})
+    short = replace(longest, window="1 L", seconds=12.0, baselines=(rival,))
+    both = replace(kept, predictions=(replace(p, windows=(short, longest)),))
+    assert "best in every quantity over the longest windows, not over all" in rows(both)["Closest baseline"].text
+
+
 def test_an_interval_that_cannot_fail_is_no_tick(fit: Fit) -> None:
     (p,) = fit.validation
     wide = {"overshoot_1_deg": Measure(8.0, 8.1, -30.0, 40.0)}

@@ -187,6 +187,6 @@ def test_a_coefficient_that_makes_the_run_diverge_is_reported(browser: "Browser"
 
 def test_a_run_that_the_page_cannot_repeat_is_not_drawn(browser: "Browser", tmp_path: Path) -> None:
     page, _ = page_with(browser, fabricated_fit(), tmp_path)
-    assert "cannot be simulated here" in page.locator(".resimulation .state").inner_text()
+    page.locator(".resimulation .state", has_text="cannot be simulated here").wait_for(timeout=PATIENCE)
     assert page.locator(".resimulation svg").count() == 0
     assert page.locator(".slider input:not([disabled])").count() == 0

@@ -8,7 +8,7 @@ import pytest
 from tests.reporting.fabricated import zigzag
 
 from seatrial.core.results import Divergence, Fit, Prediction
-from seatrial.core.values import Record
+from seatrial.core.values import Record, Severity
 from seatrial.reporting.verdict import error_text, extrapolation_limit, run_name, verdict, worst_errors
 
 ANGLE = math.radians(20.0)
@@ -27,6 +27,15 @@ def with_share(p: Prediction, share: float) -> Prediction:
 def with_runs(fit: Fit, *runs: Prediction) -> Fit:
     training = tuple(p for p in fit.predictions if p.role == "training")
     return replace(fit, predictions=(*training, *runs))
+
+
+def test_implausible_coefficients_stand_beside_a_good_score(fit: Fit) -> None:
+    odd = replace(fit.findings[0], code="unphysical-values", severity=Severity.WARNING)
+    assert "its coefficients are implausible, so rely on it for such runs only" in verdict(
+        replace(fit, findings=(odd,))
+    )
+    noted = replace(odd, severity=Severity.INFO)
+    assert "implausible" not in verdict(replace(fit, findings=(noted,)))
 
 
 def turned(record: Record) -> Record:

@@ -1,6 +1,9 @@
 """The five rows at the top of a fit's page: score, baseline, coverage, identifiability, warnings."""
 
 import math
+from collections.abc import Sequence
+
+import numpy as np
 
 from seatrial.core.results import Fit, Prediction, WindowScore
 from seatrial.core.results.fit_charts import has_band, headline_view
@@ -21,6 +24,9 @@ from seatrial.reporting.verdict import error_text, has_converged, verdict, worst
 
 # share of values inside their 95 % intervals that counts as kept; chosen between 0.95 and the scatter of few values
 LEAST_COVERAGE = 0.9
+# the same of a run simulated whole, whose errors last as long as the run: one run in twenty may leave its band
+# altogether, so that only a run more outside than inside counts; chosen
+LEAST_WHOLE_RUN = 0.5
 # what a prediction is for; velocities are compared with baselines too, but in a clause of their own
 _MAIN_CHANNELS = ("psi_deg", "position_m", "z", "theta_deg", "phi_deg")
 # names that a row holds, chosen
@@ -108,7 +114,8 @@ def _baseline(fit: Fit) -> KeyFact:
         f"{ERROR_LABELS[name][0]} by {rival}" for p in fit.validation if (w := _longest_windows(p))
         for name, rival in w.better_baselines.items() if name not in _MAIN_CHANNELS
     )  # fmt: skip
-    verdict = "this fit is best in every quantity compared"
+    elsewhere = any(w.better_baselines for p in fit.validation for w in p.windows)
+    verdict = "this fit is best in every quantity" + (" over the longest windows, not over all" if elsewhere else "")
     if ratio < 1.0 or rest:
         verdict = "; ".join([*(["better without this fit"] if ratio < 1.0 else []),
                              *([f"without this fit {enumeration(list(rest))} is better"] if rest else [])])  # fmt: skip
@@ -131,7 +138,7 @@ def _coverage(fit: Fit) -> KeyFact:
         sum(v is which for v in verdicts)
         for which in (IntervalVerdict.INSIDE, IntervalVerdict.OUTSIDE, IntervalVerdict.TOO_WIDE)
     )
-    texts, shares, untested = [], [], [counted(wide, "manoeuvring value")] if wide else []
+    texts, shares, untested = list[str](), list[float](), [counted(wide, "manoeuvring value")] if wide else []
     if inside + outside:
         texts.append(f"{inside} of {inside + outside} {fit.validation[0].reference_word} manoeuvring values")
         shares.append(inside / (inside + outside))
@@ -152,8 +159,31 @@ def _coverage(fit: Fit) -> KeyFact:
     has_bands = len(texts) > bool(inside + outside)
     over = f", in windows of {lengths.pop()}" if len(lengths) == 1 and has_bands else ""
     too_wide = [f"too wide to test anything: {enumeration(untested)}"] if untested else []
-    text = "; ".join([*([f"{enumeration(texts)}{over}"] if texts else []), *too_wide])
-    return KeyFact(name, text, "prediction", bool(shares) and min(shares) >= LEAST_COVERAGE)
+    whole = whole_run_shares(fit.validation)
+    text = "; ".join([*([f"{enumeration(texts)}{over}"] if texts else []), *_whole_run_text(whole), *too_wide])
+    is_kept = bool(shares) and min(shares) >= LEAST_COVERAGE and min(whole, default=1.0) >= LEAST_WHOLE_RUN
+    return KeyFact(name, text, "prediction", is_kept)
+
+
+def whole_run_shares(runs: Sequence[Prediction]) -> list[float]:
+    """Return which share of each run's heading, simulated from its start, lies inside the 95 % band of the pictures."""
+    shares = []
+    for p in runs:
+        if "psi" in p.half_width and "psi" in p.measured and "psi" in p.simulated:
+            apart = p.measured["psi"] - p.simulated["psi"]
+            apart = np.abs(np.angle(np.exp(1j * apart)))
+            judged = np.isfinite(apart) & np.isfinite(p.half_width["psi"])
+            if judged.any():
+                shares.append(float(np.mean(apart[judged] <= p.half_width["psi"][judged])))
+    return shares
+
+
+def _whole_run_text(shares: Sequence[float]) -> list[str]:
+    """What lies inside where runs are simulated whole; nothing where nearly all does."""
+    if min(shares, default=1.0) >= LEAST_COVERAGE:
+        return []
+    low, high = (fixed(100.0 * share, 0) for share in (min(shares), max(shares)))
+    return [f"simulated whole, {low if low == high else f'{low} to {high}'} % of the heading of a run"]
 
 
 def _identifiability(fit: Fit) -> KeyFact:

@@ -8,7 +8,7 @@ import numpy as np
 from seatrial.core.results import Fit, Prediction
 from seatrial.core.text.numbers import duration, significant
 from seatrial.core.text.words import counted, enumeration
-from seatrial.core.values import InputError, Record
+from seatrial.core.values import InputError, Record, Severity
 from seatrial.physics.manoeuvres import REACH_PERCENTILE, ManoeuvreKind, ObservedManoeuvre, initial_speed, to_starboard
 from seatrial.reporting.grades import Grade, is_missed, largest_error_share
 from seatrial.reporting.repeats import MAX_NAMES, repeat_clause, repeated_runs
@@ -29,8 +29,15 @@ _MAIN_ERRORS = ("psi_deg", "position_m", "z", "theta_deg", "phi_deg")
 
 def verdict(fit: Fit) -> str:
     """Return how well runs that were not fitted are predicted, and where the model extrapolates, in one sentence."""
-    clauses = [_score_clause(fit), extrapolation_limit(fit)]
+    clauses = [_score_clause(fit), _implausible_clause(fit), extrapolation_limit(fit)]
     return f"{unusable_sentence(fit)}{'; '.join(clause for clause in clauses if clause)}."
+
+
+def _implausible_clause(fit: Fit) -> str:
+    """That a good prediction was made by coefficients that no craft has; empty where none is called so."""
+    if not any(f.code == "unphysical-values" and f.severity is not Severity.INFO for f in fit.findings):
+        return ""
+    return "its coefficients are implausible, so rely on it for such runs only"
 
 
 def unusable_sentence(fit: Fit) -> str:

@@ -56,7 +56,7 @@ def test_a_prior_keeps_a_coefficient_free() -> None:
 def test_one_order_astern_does_not_separate_exponent_and_thrust() -> None:
     runs = [run(0.8, 0.2), run(0.5, 0.0), run(-0.4, 0.0), run(0.3, -0.4)]
     (finding,) = single_order_findings(thrusters(), runs)
-    assert finding.code == "single-order" and "only one order astern of port or starboard, 40 %" in finding.message
+    assert finding.code == "single-order" and "orders astern of port or starboard only near 40 %" in finding.message
     assert "k_b and p_b together" in finding.message and "full command is 2.5 times that order" in finding.consequence
     assert single_order_findings(thrusters(), [*runs, run(-0.8, 0.0)]) == ()
 
@@ -64,7 +64,7 @@ def test_one_order_astern_does_not_separate_exponent_and_thrust() -> None:
 def test_one_order_ahead_is_named_likewise_and_a_fixed_exponent_ends_it() -> None:
     model, runs = thrusters(), [run(0.5, 0.5), run(-0.4, -0.9)]
     (finding,) = single_order_findings(model, runs)
-    assert "only one order ahead" in finding.message and "k_f and p_f together" in finding.message
+    assert "orders ahead of" in finding.message and "k_f and p_f together" in finding.message
     assert single_order_findings(model.with_parameters(model.parameters.fixed("p_f")), runs) == ()
     known = model.with_parameters(model.parameters.with_priors({"p_f": Prior(2.0, 0.2)}))
     assert single_order_findings(known, runs) == ()

@@ -60,3 +60,11 @@ def test_directions_that_nothing_determines_are_left_out() -> None:
     assert joint_test(np.zeros(0), np.zeros((0, 0))) is None
     assert joint_test(np.ones(1), np.array([[np.inf]])) is None
     assert joint_test(np.ones(1), np.zeros((1, 1))) is None
+
+
+def test_values_that_differ_by_rounding_are_one() -> None:
+    """As of a speed that both fits have by definition, whose intervals have no width."""
+    (row,) = differences([quantity(6.1)], [quantity(6.1 * (1.0 + 2.2e-16))])
+    assert (row.difference, row.is_significant) == (0.0, False)
+    (row,) = differences([quantity(6.1)], [quantity(6.1001)])
+    assert row.is_significant

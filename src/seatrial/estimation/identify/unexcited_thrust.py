@@ -80,7 +80,7 @@ def single_order_findings(model: Model, records: Sequence[Record]) -> tuple[Find
 def _single_order(side: _Side, thrusters: str, names: Sequence[str], order: float) -> Finding:
     scale, exponent = names
     return Finding(
-        Severity.WARNING, "single-order", f"the training runs have only one order {side.name} of {thrusters}, "
+        Severity.WARNING, "single-order", f"the training runs hold orders {side.name} of {thrusters} only near "
         f"{percent(order)} % of full command: {scale} and {exponent} together give the thrust there, neither by itself",
         "", f"record a second order {side.name}, or fix {exponent} under [model.fixed]",
         f"thrust {side.name} at any other order is a guess: full command is {significant(1.0 / order, 2)} times that "

@@ -11,6 +11,7 @@ from scipy.special import chdtrc
 from seatrial.core.results.comparison import Difference, JointTest
 from seatrial.core.values import Array
 
+_ROUNDING = 1e-12  # relative, within which two values are one: a few roundings of double precision
 LEVEL = 0.95
 """Probability of intervals."""
 
@@ -42,6 +43,8 @@ def differences(first: Sequence[QuantityInterval], second: Sequence[QuantityInte
 
 def _difference(a: QuantityInterval, b: QuantityInterval) -> Difference:
     apart = None if a.value is None or b.value is None else b.value - a.value
+    if apart is not None and abs(apart) <= _ROUNDING * max(abs(a.value or 0.0), abs(b.value or 0.0)):
+        apart = 0.0
     row = Difference(a.name, a.unit, a.value, b.value, apart)
     if apart is None or a.lower is None or a.upper is None or b.lower is None or b.upper is None:
         return row
