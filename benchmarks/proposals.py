@@ -105,14 +105,18 @@ def stretch(task: TuningTask, loop: TransferLoop, weather: Weather, rng: np.rand
     size = np.sqrt(spectrum.density(omega) * (edges[1] - edges[0]))
     size = size * np.abs(seaway.effect.amplitude(omega, weather.U, weather.beta))
     slope = size * (rng.standard_normal(len(omega)) + 1j * rng.standard_normal(len(omega)))
-    controller = loop.gain_values @ loop.controller_terms(met)
-    roll = loop.disturbance.frequency_response(met) * slope / (1.0 + controller * loop.plant.frequency_response(met))
+    roll = loop.disturbance.frequency_response(met) * slope
     places = np.round(met * FINER * count * dt / (2.0 * math.pi)).astype(int)
     inside = places < FINER * count // 2
-    lines = np.zeros((FINER * count // 2 + 1, 2), dtype=np.complex128)
-    np.add.at(lines, places[inside], np.stack([roll, -controller * roll], axis=1)[inside])
-    values = np.fft.irfft(lines, axis=0)[:count] * (len(lines) - 1)
-    values[:, 0] += rng.normal(0.0, NOISE, count)
+    lines = np.zeros(FINER * count // 2 + 1, dtype=np.complex128)
+    np.add.at(lines, places[inside], (len(lines) - 1) * roll[inside])
+    grid = 2.0 * math.pi / (FINER * count * dt) * np.arange(len(lines))
+    grid[0] = grid[1]  # a controller may integrate; the mean does not count
+    read = lines + np.fft.rfft(rng.normal(0.0, NOISE, FINER * count))
+    controller = loop.gain_values @ loop.controller_terms(grid)
+    # what the sensor reads, noise and all, is what the fins follow: (D w + e) / (1 + P K)
+    read = read / (1.0 + controller * loop.plant.frequency_response(grid))
+    values = np.fft.irfft(np.stack([read, -controller * read], axis=1), axis=0)[:count]
     return Stretch(0.0, dt, values, weather.U)
 
 

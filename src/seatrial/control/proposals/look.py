@@ -28,9 +28,6 @@ RATE = 12.0  # samples a natural period that the spectra need; chosen
 _LOWEST, _HIGHEST = 0.25, 3.0  # frequencies over the natural one that are looked at; chosen
 _QUIET = 4.0  # frequency over the natural one above which there are sensors alone; chosen
 _LAST = 0.9  # of the highest frequency, above which there are sensors alone where the samples are slow; chosen
-_UNEXPLAINED = (
-    0.03  # of the largest density: below, what a window shows of stronger waves and of what is not linear; chosen
-)
 _LEAST_MOTION = math.radians(0.15)  # rms of a motion below which sensors and gusts are as large; chosen
 _STILL = 0.02  # of the output's rms, below which the actuator counts as still; chosen
 _LEAST_COHERENCE = 0.6  # of the actuator with what any gains of the loop order of the output; chosen
@@ -120,9 +117,8 @@ def _observed(task: TuningTask, stretch: Stretch) -> ObservedLeg:
     spectra = stretch_spectra(stretch.values, stretch.dt, SEGMENT_PERIODS * period)
     density = spectra.cross_density(0, 0).real
     quiet = density[spectra.omega > min(_QUIET * natural, _LAST * spectra.omega[-1])]
-    noise = max(float(np.median(quiet)), _UNEXPLAINED * float(np.max(density)))
     band = spectra.band_limited(_LOWEST * natural, _HIGHEST * natural)
-    return ObservedLeg(band, task.loop_at(stretch.U), noise)
+    return ObservedLeg(band, task.loop_at(stretch.U), float(np.median(quiet)))
 
 
 def sea_estimate(draws: ShipInSea) -> SeaEstimate:

@@ -28,7 +28,7 @@ from seatrial.physics.loops import TransferLoop
 _STEEPNESS_MEAN, _STEEPNESS_DEVIATION = math.log(0.02), 0.5
 _HEADINGS, _PERIODS, _SHIPS = 36, 24, 24  # cells of heading and period, and ships and peaks in each; chosen
 _SHORTEST, _LONGEST = 0.3, 3.0  # peak periods over the one expected that are looked at; chosen
-_MEMBERS = 64  # of the population; chosen: many times its six unknowns
+_MEMBERS = 384  # of the population; chosen: many times its six unknowns, so that none of several headings is lost
 _FIRST_POWER = 0.05  # of the likelihood, so that a narrow peak between the grid's points is not lost; chosen
 _RISING, _SETTLING, _KEPT = 12, 2, 6  # generations while the power rises, at one, and at one and kept; chosen
 _DIFFERENCE = 2.38  # times the difference of two members, over the root of twice the unknowns; ter Braak 2006, eq. (2)
