@@ -245,3 +245,12 @@ def test_the_rate_of_an_engine_is_the_propellers_where_its_gear_is_stated(tmp_pa
     (guess,) = (g for part in stated.guesses for g in part if g.symbol == "n")
     assert guess.is_used and guess.scale == 1.0 / 3.0 and guess.unit == "rpm"
     assert not any(g.is_used for part in draft_trial(tmp_path).guesses for g in part if g.symbol == "n")
+
+
+@pytest.mark.parametrize(("heading", "scale"), [("Shaft rpm", 1.0), ("Propellerturtall", 1.0), ("rpm", 1.0 / 3.0)])
+def test_the_rate_of_a_shaft_is_the_propellers_whatever_gear_is_stated(
+    heading: str, scale: float, tmp_path: Path
+) -> None:
+    write(tmp_path / "run.csv", {**BASE, heading: 500.0 + 0.0 * TRUTH["t"]})
+    (guess,) = (g for part in draft_trial(tmp_path, length=30.0, gear=3.0).guesses for g in part if g.symbol == "n")
+    assert guess.is_used and guess.scale == scale

@@ -32,6 +32,7 @@ def test_a_heading_is_known_in_its_language(heading: str, symbol: str, unit: str
 def test_letters_lose_their_accents_and_other_words_stay() -> None:
     assert without_accents("Rør Längd Größe Ángulo") == "ror langd grosse angulo"
     assert in_english("klokkeslett") == "time" and in_english("battery") == "battery"
+    assert in_english("stamp") == "stamp" and in_english("balance") == "balance"
 
 
 def log(path: Path, headings: str) -> Path:

@@ -13,7 +13,7 @@ from seatrial.data.draft.behaviour import checked_by_behaviour, run_record
 from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.draft_text import RecordsBlock, trial_text, unrecognised_columns
 from seatrial.data.draft.guess import guess_columns, without_conflicts
-from seatrial.data.draft.held_out import NOTHING_HELD_OUT, HeldOutRuns, held_out_runs, third_to_hold_out
+from seatrial.data.draft.held_out import NOTHING_HELD_OUT, HeldOutRuns, can_judge, held_out_runs
 from seatrial.data.draft.manoeuvres import (
     find_stretches,
     has_modes,
@@ -187,7 +187,7 @@ def _in_two(
     for is_last in (True, False):
         parts = (two_thirds_and_a_third(record, stretches, is_last=is_last),)
         name = parts[0][1 if is_last else 0].name
-        if third_to_hold_out(model, _pieces(runs, [record], parts), [name]):
+        if can_judge(model, name, _pieces(runs, [record], parts)):
             return parts, HeldOutRuns((name,), "a third of the log; what is ordered in it the rest holds, too")
     return None
 

@@ -1,6 +1,7 @@
 """What the columns of a log are by name and range; unsure stays open, with both readings."""
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -21,6 +22,8 @@ _LARGEST_RUDDER = math.pi / 2.0  # rad
 _LARGEST_TILT = math.pi / 2.0  # rad, of roll and pitch
 _LATITUDE_RAD = math.pi / 2.0  # rad, of a pole
 _LARGEST_RPS = 60.0  # 1/s; propellers of ships and models turn more slowly, those of small craft are in rpm
+# headings of the rate of a propeller or its shaft, which no gear stands before
+_SHAFT = re.compile("prop|shaft|welle|aksel|arbre|helice|hélice|elica", re.IGNORECASE)
 _FOLDERS_READ = 3  # folders above a file whose names may be those of a topic; chosen
 
 
@@ -28,7 +31,8 @@ def guess_columns(survey: LogSurvey, gear: float = 0.0) -> tuple[ColumnGuess, ..
     """Return what the columns of a log are, one for each column whose name says something.
 
     Of several columns for one channel the one of the fastest topic with fewest missing samples is used.
-    gear: turns of the engine over those of the propeller; 0: not stated, and the rate of an engine is not used.
+    gear: turns of the engine over those of the propeller; 0: not stated, and the rate of an engine is not used. A
+    column that is called after the propeller or its shaft is taken as it is.
     """
     guesses: list[tuple[tuple[float, ...], ColumnGuess]] = []
     for topic in survey.topics:
@@ -43,7 +47,7 @@ def guess_columns(survey: LogSurvey, gear: float = 0.0) -> tuple[ColumnGuess, ..
                 guess = _first_guess(survey, topic, column, named)
                 if guess is not None and guess.symbol == "lon" and guess.is_open and has_degrees:
                     guess = replace(guess, unit="deg", other_reading="").with_evidence("degrees, as the latitude")
-                if guess is not None and guess.symbol == "n" and gear:
+                if guess is not None and guess.symbol == "n" and gear and not _SHAFT.search(column.name):
                     guess = _of_propeller(guess, gear)
                 guesses += [] if guess is None else [(rank, guess)]
     best: dict[str, tuple[tuple[float, ...], ColumnGuess]] = {}

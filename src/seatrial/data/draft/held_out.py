@@ -58,15 +58,9 @@ def held_out_runs(model: StartingModel, records: Mapping[str, Record]) -> HeldOu
     return HeldOutRuns(single, f"a repeat of {enumeration(repeated)}: it tests no other manoeuvre, record one")
 
 
-def third_to_hold_out(model: StartingModel, records: Mapping[str, Record], names: Sequence[str]) -> str:
-    """Return which of two runs that make up a log judges the model: the first of `names` within the other's inputs.
-
-    Empty where neither is.
-    """
-    if not model.inputs:
-        return ""
-    within = (name for name in names if _lie_within(model, {name}, records, _FARTHER_BEYOND))
-    return next(within, "")
+def can_judge(model: StartingModel, name: str, records: Mapping[str, Record]) -> bool:
+    """Return whether a run can judge the model: what is ordered in it the other runs hold, too."""
+    return bool(model.inputs) and _lie_within(model, {name}, records, _FARTHER_BEYOND)
 
 
 def _circles(distinct: Sequence[SteeredOrders | None], orders: Mapping[str, SteeredOrders | None]) -> tuple[str, ...]:

@@ -39,9 +39,9 @@ _HEADINGS = {
     "engine_speed": "maskinturtall motorturtall motorvarvtal motordrehzahl motortoerental regime_moteur "
                     "revoluciones_del_motor giri_motore",
     "roll": "rull rulling rullevinkel krengning krangning rullning kraengning rulning krengningsvinkel slagside "
-            "rollwinkel krangung rolhoek helling roulis gite balance balanceo escora rollio sbandamento balanco",
+            "rollwinkel krangung rolhoek helling roulis gite balanceo escora rollio sbandamento balanco",
     "roll_rate": "rullhastighet rullehastighet rollrate rollgeschwindigkeit rolsnelheid vitesse_de_roulis",
-    "pitch": "stamp stamping stampvinkel nickwinkel stampfwinkel stampning stamphoek tangage cabeceo beccheggio "
+    "pitch": "stamping stampvinkel nickwinkel stampfwinkel stampning stamphoek tangage cabeceo beccheggio "
              "arfagem",
     "heave": "hiv hivning havning tauchbewegung dompen pilonnement sussulto",
 }  # fmt: skip
