@@ -13,6 +13,7 @@ from seatrial.core.text.numbers import fixed, significant
 from seatrial.core.text.words import counted, enumeration
 from seatrial.core.values import Severity
 from seatrial.reporting.correlations import MIN_VARIANCE_INFLATION
+from seatrial.reporting.course import course_facts, unstable_course
 from seatrial.reporting.first_screen import FirstScreen, KeyFact
 from seatrial.reporting.grades import largest_error_share, share_sentence, worst_share
 from seatrial.reporting.identifiability_chapter import determined_sentence
@@ -49,7 +50,8 @@ def first_screen(fit: Fit, length: float) -> FirstScreen:
 
 def key_facts(fit: Fit) -> tuple[KeyFact, ...]:
     """Return the rows; a search that did not converge comes first; what the fit does not contain is said to be so."""
-    rows = _score(fit), *_training_score(fit), _baseline(fit), _coverage(fit), _identifiability(fit)
+    rows = (_score(fit), *_training_score(fit), *course_facts(fit), _baseline(fit), _coverage(fit),
+            _identifiability(fit))  # fmt: skip
     return (*rows, _warnings(fit)) if has_converged(fit) else (_warnings(fit), *rows)
 
 
@@ -66,8 +68,9 @@ def _score(fit: Fit) -> KeyFact:
     floors = [error_text(key, max(p.noise_floor[key] for p in held if key in p.noise_floor))
               for key in ("psi_deg", "position_m") if any(key in p.noise_floor for p in held)]  # fmt: skip
     floor = f"; the process noise as estimated, model error in it, would leave {enumeration(floors)}" if floors else ""
-    share = f"; {share_sentence(held)}" if share_sentence(held) else ""
-    largest = worst_share(held)
+    course = unstable_course(fit)
+    share = f"; {sentence}" if (sentence := share_sentence(held, course)) else ""
+    largest = worst_share(held, course)
     is_marked = largest is not None and largest.needs_attention
     return KeyFact(name, f"{worst_errors(held)}{share}{floor}", "prediction", False if is_marked else None)
 
@@ -81,9 +84,16 @@ def _training_score(fit: Fit) -> tuple[KeyFact, ...]:
     worst = max(shares, key=lambda name: shares[name].share)
     runs = [p for p in fit.predictions if p.record == worst]
     names = enumeration(sorted(shares, key=lambda name: -shares[name].share), MAX_NAMES)
+    errors, is_one = f"{worst} by {worst_errors(runs)} ({shares[worst].grade})", len(shares) == 1
+    if unstable_course(fit) is not None:
+        text = (
+            f"simulated whole, the model leaves {names}, {errors}: no evidence of model error, as a deviation of a "
+            "course-unstable craft grows by itself; windows of held-out runs judge it"
+        )
+        return (KeyFact("Error, fitted (rms)", text, "training"),)
     text = (
-        f"{names} {'is' if len(shares) == 1 else 'are'} missed although fitted, {worst} by {worst_errors(runs)} "
-        f"({shares[worst].grade}): model error, not extrapolation; docs/bad-fit.md, By symptom"
+        f"{names} {'is' if is_one else 'are'} missed although fitted, {errors}: model error, not extrapolation; "
+        "docs/bad-fit.md, By symptom"
     )
     return (KeyFact("Error, fitted (rms)", text, "training", is_good=False),)
 

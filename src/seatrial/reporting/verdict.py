@@ -5,12 +5,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from seatrial.core.results import Fit, Prediction
+from seatrial.core.results import Fit, Prediction, Stability
 from seatrial.core.text.numbers import duration, significant
 from seatrial.core.text.words import counted, enumeration
 from seatrial.core.values import InputError, Record, Severity
 from seatrial.physics.manoeuvres import REACH_PERCENTILE, ManoeuvreKind, ObservedManoeuvre, initial_speed, to_starboard
-from seatrial.reporting.grades import Grade, is_missed, largest_error_share
+from seatrial.reporting.course import growth_clause, unstable_course
+from seatrial.reporting.grades import Grade, is_missed, judged_share, judging_course, judging_window
 from seatrial.reporting.repeats import MAX_NAMES, repeat_clause, repeated_runs
 from seatrial.reporting.runs import ERROR_LABELS
 from seatrial.reporting.summary import search_status
@@ -61,29 +62,56 @@ def _score_clause(fit: Fit) -> str:
         to_errors = f", to {worst_errors(fit.predictions)}" if worst_errors(fit.predictions) else ""
         fitted = counted(len(fit.predictions), "run")
         return f"Reproduces the {fitted} it was fitted to{to_errors}; no run was held out to test its predictions"
-    return _one_run_clause(held[0], fit.predictions) if len(held) == 1 else _several_runs_clause(held, fit.predictions)
+    course = judging_course(held, unstable_course(fit))
+    if len(held) == 1:
+        return _one_run_clause(held[0], fit.predictions, course)
+    return _several_runs_clause(held, fit.predictions, course)
 
 
-def _one_run_clause(p: Prediction, predictions: Sequence[Prediction]) -> str:
-    """How a single held-out run is predicted, as a grade and its errors, and what it repeats."""
+def _one_run_clause(p: Prediction, predictions: Sequence[Prediction], course: Stability | None) -> str:
+    """How a single held-out run is predicted, as a grade and its errors, and what it repeats.
+
+    course: because of which windows judge it; None: the whole run does.
+    """
     if p.divergence is not None:
         return (
             f"Does not predict {run_name(p)} that was not used: the simulation diverges after "
             f"{duration(p.divergence.seconds)} of {duration(p.measured.duration)}"
         )
-    largest, errors, repeat = largest_error_share(p), worst_errors([p]), repeat_clause(p, predictions)
+    largest, errors, repeat = judged_share(p, course), _judged_errors([p], course), repeat_clause(p, predictions)
     repeat = f"; it is {repeat}" if repeat else ""
     if largest is not None and largest.grade is Grade.NOT:
-        return f"Does not predict {run_name(p)} that was not used: {errors} {_over_time(p)}{repeat}"
+        over = "" if course is not None else f" {_over_time(p)}"
+        return f"Does not predict {run_name(p)} that was not used: {errors}{over}{repeat}"
     lasting = f"Predicts {run_name(p)} that was not used, {duration(p.measured.duration)},"
     if largest is None:
         return f"{lasting} to {errors}{repeat}" if errors else f"{lasting.rstrip(',')}{repeat}"
-    short = _short_windows(p) if largest.grade is Grade.POORLY else ""
+    short = _short_windows(p) if largest.grade is Grade.POORLY and course is None else ""
     return f"{lasting} {largest.grade}: to {errors}{f'; {short}' if short else ''}{repeat}"
 
 
-def _several_runs_clause(held: Sequence[Prediction], predictions: Sequence[Prediction]) -> str:
-    """How held-out runs are predicted: the worst of them counts, and is named where it is predicted poorly."""
+def _judged_errors(held: Sequence[Prediction], course: Stability | None) -> str:
+    """The largest errors by which runs are judged; of a course-unstable craft in windows, with those of whole runs."""
+    whole, worst = worst_errors(held), " at worst" if len(held) > 1 else ""
+    if course is None:
+        return f"{whole}{worst}" if whole else ""
+    windows = [w for p in held if (w := judging_window(p, course)) is not None]
+    names = [n for n in _MAIN_ERRORS if any(n in w.scores for w in windows)][:MAX_ERRORS]
+    worst_of = {n: max(w.scores[n].rms for w in windows if n in w.scores) for n in names}
+    errors = enumeration([f"{error_text(n, rms)} in {ERROR_LABELS[n][0]}" for n, rms in worst_of.items()])
+    lengths = enumeration(list(dict.fromkeys(w.window for w in windows)))
+    leaves = f"simulated whole, the model leaves {'them' if len(held) > 1 else 'it'} by {whole}"
+    reason = f"which does not count, as the craft is {growth_clause(course)}"
+    return f"{errors}{worst}, in windows of {lengths}; {leaves}, {reason}"
+
+
+def _several_runs_clause(
+    held: Sequence[Prediction], predictions: Sequence[Prediction], course: Stability | None
+) -> str:
+    """How held-out runs are predicted: the worst of them counts, and is named where it is predicted poorly.
+
+    course: because of which windows judge them; None: whole runs do.
+    """
     diverged = [p.record for p in held if p.divergence is not None]
     if diverged:
         return (
@@ -94,9 +122,9 @@ def _several_runs_clause(held: Sequence[Prediction], predictions: Sequence[Predi
     lasting = f"{shortest if shortest == longest else f'{shortest} to {longest}'} each"
     repeats = sum(bool(repeated_runs(p, predictions)) for p in held)
     repeat = f"; {repeats} of them {'repeats' if repeats == 1 else 'repeat'} a fitted manoeuvre" if repeats else ""
-    errors = worst_errors(held)
-    at_worst = f"to {errors} at worst{repeat}" if errors else repeat.removeprefix("; ")
-    grades = {p.record: share.grade for p in held if (share := largest_error_share(p)) is not None}
+    errors = _judged_errors(held, course)
+    at_worst = f"to {errors}{repeat}" if errors else repeat.removeprefix("; ")
+    grades = {p.record: share.grade for p in held if (share := judged_share(p, course)) is not None}
     worst = max(grades.values(), key=list(Grade).index, default=None)
     if worst in (Grade.POORLY, Grade.NOT):
         names = [name for name, grade in grades.items() if grade is worst]

@@ -1,0 +1,42 @@
+"""What is said of a craft that does not hold a straight course by itself: how fast it leaves one, and what follows."""
+
+import math
+
+from seatrial.core.results import Fit, Stability
+from seatrial.core.text.numbers import significant
+from seatrial.reporting.first_screen import KeyFact
+
+
+def unstable_course(fit: Fit) -> Stability | None:
+    """Return the course stability of a fit whose craft is course unstable beyond its interval; None of all others."""
+    course = fit.identifiability.stability if fit.identifiability else None
+    return course if course is not None and course.is_unstable else None
+
+
+def growth_time(course: Stability) -> float:
+    """Return the time [s] in which a deviation of an unstable craft grows by a factor e; infinite where not known."""
+    rate = course.growth_rate
+    return 1.0 / rate if rate is not None and rate > 0.0 else math.inf
+
+
+def growth_clause(course: Stability) -> str:
+    """Return that the craft is course unstable and how fast: ``course unstable, a deviation grows e-fold in 1.5 s``."""
+    seconds = growth_time(course)
+    if not math.isfinite(seconds):
+        return "course unstable"
+    low, high = course.growth_lower, course.growth_upper
+    ends = f" [{significant(1.0 / high, 2)}, {significant(1.0 / low, 2)}]" if low and high and low > 0.0 else ""
+    return f"course unstable: a deviation grows by a factor e in {significant(seconds, 2)} s{ends}"
+
+
+def course_facts(fit: Fit) -> tuple[KeyFact, ...]:
+    """Return the row that says the craft does not hold a straight course; no row where it may."""
+    course = unstable_course(fit)
+    if course is None:
+        return ()
+    speed = f" at {significant(course.speed, 2)} m/s" if course.speed is not None else ""
+    text = (
+        f"{growth_clause(course)}{speed}; without steering it leaves a straight course, and errors of runs simulated "
+        "whole grow as fast"
+    )
+    return (KeyFact("Straight course", text, "identifiability"),)
