@@ -90,3 +90,8 @@ def test_output_that_cannot_go_anywhere_is_no_traceback(target: str, codes: set[
     done = subprocess.run(["bash", "-c", program], capture_output=True, text=True, check=False)
     assert done.returncode in codes
     assert done.stderr.count("\n") == int(done.returncode == INPUT_EXIT_CODE)
+
+
+def test_the_module_is_the_command() -> None:
+    done = subprocess.run([sys.executable, "-m", "seatrial", "--version"], capture_output=True, text=True, check=False)
+    assert done.returncode == 0 and done.stdout.startswith("seatrial ")

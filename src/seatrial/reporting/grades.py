@@ -8,16 +8,13 @@ from enum import StrEnum
 import numpy as np
 
 from seatrial.core.results import Fit, Prediction, Stability, WindowScore
+from seatrial.core.results.motion_spread import HEADING_SPREAD, MOTIONS, motion_spread
 from seatrial.core.text.numbers import significant
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, Record
 from seatrial.reporting.course import growth_time, unstable_course
 from seatrial.reporting.runs import ERROR_LABELS
 
-_DEGREES = math.degrees(1.0)
-_MOTIONS = {"psi_deg": ("psi",), "position_m": ("x0", "y0"), "z": ("z",), "theta_deg": ("theta",), "phi_deg": ("phi",)}
-HEADING_SPREAD = math.pi / math.sqrt(3.0)
-"""rad, standard deviation of a heading that points anywhere alike: turns on and on spread it no further."""
 MAX_GROWTH = 100.0
 """Growth of a deviation over the windows that judge a course-unstable craft: a hundredth becomes the whole; chosen."""
 _ROUNDING = 1e-9  # of a window, by which time stamps are rounded
@@ -68,7 +65,7 @@ def error_shares(p: Prediction) -> tuple[ErrorShare, ...]:
     """Return the errors over a whole run as shares of its own motions; none where none can be compared."""
     return tuple(
         _error_share(name, p.rms[name], [p.measured[c] for c in channels])
-        for name, channels in _MOTIONS.items()
+        for name, channels in MOTIONS.items()
         if name in p.rms and all(c in p.measured for c in channels)
     )
 
@@ -78,17 +75,15 @@ def window_shares(p: Prediction, window: WindowScore) -> tuple[ErrorShare, ...]:
     return tuple(
         _error_share(name, window.scores[name].rms, _inside_windows(p.measured, channels, window.seconds),
                      window.window)
-        for name, channels in _MOTIONS.items()
+        for name, channels in MOTIONS.items()
         if name in window.scores and all(c in p.measured for c in channels)
     )  # fmt: skip
 
 
 def _error_share(name: str, rms: float, motions: Sequence[Array], window: str = "") -> ErrorShare:
     """An error as the share of the spread of its channels together, shape (n,) each, SI."""
-    spread = math.sqrt(sum(float(np.nanvar(motion)) for motion in motions))
-    is_turning = name == "psi_deg" and spread > HEADING_SPREAD
-    size = (HEADING_SPREAD if is_turning else spread) * (_DEGREES if name.endswith("_deg") else 1.0)
-    return ErrorShare(name, rms / size if size > 0.0 else math.inf, window, is_turning)
+    spread = motion_spread(name, motions)
+    return ErrorShare(name, rms / spread.size if spread.size > 0.0 else math.inf, window, spread.is_turning)
 
 
 def _inside_windows(record: Record, channels: Sequence[str], seconds: float) -> list[Array]:
@@ -160,7 +155,7 @@ def share_sentence(predictions: Sequence[Prediction], course: Stability | None =
     if worst is None:
         return ""
     largest = [max((one for one in every if one.name == name), key=lambda one: one.share)
-               for name in _MOTIONS if any(one.name == name for one in every)]  # fmt: skip
+               for name in MOTIONS if any(one.name == name for one in every)]  # fmt: skip
     parts = enumeration([f"{significant(one.share, 2)} in {ERROR_LABELS[one.name][0]}" for one in largest])
     over = f", over {worst.window}" if worst.window else ""
     turning = f"; of heading {math.degrees(HEADING_SPREAD):.0f}°, the most that directions scatter"

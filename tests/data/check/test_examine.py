@@ -108,6 +108,20 @@ def test_another_reference_point_shows_in_closure_and_nowhere_else(distance: flo
     assert codes(with_declaration(shifted, "v", reference_point=distance)) == []
 
 
+def test_velocities_over_ground_of_another_point_say_nothing_of_the_unit_of_the_heading() -> None:
+    """Positions stated to be of an antenna 6 m aft, velocities of the same receiver stated to be of midship."""
+    record, d = in_earth_axes(zigzag(noise=1.0)), -6.0
+    c, s = np.cos(record["psi"]), np.sin(record["psi"])
+    away = with_values(record, x0=record["x0"] + d * c, y0=record["y0"] + d * s,
+                       u=record["u"] - d * record["r"] * s, v=record["v"] + d * record["r"] * c)  # fmt: skip
+    for symbol in ("x0", "y0"):
+        away = with_declaration(away, symbol, reference_point=d)
+    assert errors(away) == ["closure"]
+    assert "m ahead" in found(away, "closure").message
+    both = with_declaration(with_declaration(away, "u", reference_point=d), "v", reference_point=d)
+    assert errors(both) == []
+
+
 def test_a_current_shows_in_closure() -> None:
     record = zigzag()
     finding = found(with_values(record, x0=record["x0"] + 0.1 * record.time), "closure")

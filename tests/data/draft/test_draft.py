@@ -130,7 +130,7 @@ def test_messages_of_loggers_are_known(tmp_path: Path) -> None:
     SAMPLES["run.nmea"].write(tmp_path / "run.nmea")
     by_source = {guess.source: guess for guess in guess_columns(survey_log(tmp_path / "run.bin"))}
     assert (by_source["XKF1/VN"].symbol, by_source["XKF1/VN"].frame) == ("u", "earth")
-    assert {guess.symbol for guess in guess_columns(survey_log(tmp_path / "run.nmea"))} >= {"psi", "u", "v"}
+    assert {guess.symbol for guess in guess_columns(survey_log(tmp_path / "run.nmea"))} >= {"psi", "sog", "cog"}
     assert guess_by_name("vehicle_rates_setpoint", "roll", "", "ulog") is None
     assert guess_by_name("speed_reference", "yaw", "", "rosbag") is None
 

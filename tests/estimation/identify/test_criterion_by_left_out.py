@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from seatrial.core.values import Record
 from seatrial.data.trial import EstimateSettings
 from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.estimate.criterion_choice import WHOLE_RUNS
@@ -54,7 +55,7 @@ def test_what_is_not_worse_is_kept_and_the_comparison_is_in_the_reasons(estimati
     assert estimation.criterion != WHOLE_RUNS
     kept = preferred_estimation(estimation, runs, SETTINGS, OPTIONS, START_S)
     assert kept.estimate is estimation.estimate
-    assert "no better beyond the scatter over runs" in kept.reasons[-1]
+    assert "is not better beyond the scatter over runs" in kept.reasons[-1]
     assert kept.reasons[-1] in kept.noise_model.text
 
 
@@ -77,23 +78,33 @@ def test_what_a_user_sets_is_not_compared(estimation: Estimation, runs: Runs) ->
         assert preferred_estimation(estimation, runs, settings, OPTIONS, START_S) is estimation
 
 
+def swinging(deg: float) -> list[Record]:
+    """Four runs whose heading has this standard deviation."""
+    time = np.arange(100) * 1.0
+    psi = np.radians(deg) * np.sqrt(2.0) * np.sin(2.0 * np.pi * time / 50.0)
+    return [Record.from_arrays(f"run {k}", time, {"psi": psi}) for k in range(4)]
+
+
 def test_better_is_judged_by_pairs() -> None:
-    rivals = [{"psi_deg": 2.0}, {"psi_deg": 4.0}, {"psi_deg": 1.0}, {"psi_deg": 9.0}]
-    assert is_better(
-        [{"psi_deg": 0.8 * e["psi_deg"] * f} for e, f in zip(rivals, (0.9, 1.1, 1.0, 1.0), strict=True)], rivals
-    )
-    assert not is_better(
-        [{"psi_deg": e["psi_deg"] * f} for e, f in zip(rivals, (0.5, 1.6, 1.0, 0.9), strict=True)], rivals
-    )
+    records, rivals = swinging(20.0), [{"psi_deg": 2.0}, {"psi_deg": 4.0}, {"psi_deg": 1.0}, {"psi_deg": 9.0}]
+    less = [{"psi_deg": 0.8 * e["psi_deg"] * f} for e, f in zip(rivals, (0.9, 1.1, 1.0, 1.0), strict=True)]
+    alike = [{"psi_deg": e["psi_deg"] * f} for e, f in zip(rivals, (0.5, 1.6, 1.0, 0.9), strict=True)]
+    assert is_better(less, rivals, records) and not is_better(alike, rivals, records)
 
 
 def test_fewer_runs_that_diverge_are_better() -> None:
-    lasting, one_lost = [{"psi_deg": 9.0}] * 4, [{}, *[{"psi_deg": 1.0}] * 3]
-    assert is_better(lasting, one_lost)
-    assert not is_better(one_lost, lasting)
-    assert not is_better(one_lost, one_lost)
+    records, lasting, one_lost = swinging(20.0), [{"psi_deg": 9.0}] * 4, [{}, *[{"psi_deg": 1.0}] * 3]
+    assert is_better(lasting, one_lost, records)
+    assert not is_better(one_lost, lasting, records) and not is_better(one_lost, one_lost, records)
     assert mean_text(one_lost) == "heading 1.00 deg and 1 diverged"
     assert mean_text([{}, {}]) == "all diverge"
+
+
+def test_a_simulation_that_is_further_off_than_the_mean_of_the_motion_counts_as_lost() -> None:
+    """Two circles missed by 200 deg beside two zigzags hit alike: no t-test of four sees the difference."""
+    good, poor = [{"psi_deg": e} for e in (3.0, 4.0, 3.0, 3.0)], [{"psi_deg": e} for e in (3.1, 3.6, 200.0, 160.0)]
+    assert is_better(good, poor, swinging(100.0)) and not is_better(poor, good, swinging(100.0))
+    assert not is_better(good, poor, swinging(1.0)), "all are lost by both, and the test has the word"
 
 
 def test_errors_are_named_with_their_units() -> None:

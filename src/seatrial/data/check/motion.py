@@ -88,11 +88,15 @@ class RecordedMotion:
 
     @property
     def conventions(self) -> list[VelocityConvention]:
-        """The declared reading first, then all others."""
+        """The declared reading first, then all others.
+
+        Earth-fixed velocities do not show how the heading is written: it turns the lever between two points alone.
+        """
         frames = (self.frame, "earth" if self.frame == "body" else "body")
         factors = (1.0, -1.0, DEGREES_PER_RADIAN, 1.0 / DEGREES_PER_RADIAN)
         return [VelocityConvention(frame, v_sign, factor, (frame != self.frame) + (v_sign < 0) + (factor != 1.0))
-                for frame, v_sign, factor in product(frames, (1.0, -1.0), factors)]  # fmt: skip
+                for frame, v_sign, factor in product(frames, (1.0, -1.0), factors)
+                if frame == "body" or factor == 1.0]  # fmt: skip
 
     def velocity(self, convention: VelocityConvention) -> tuple[Array, Array]:
         """Return the velocity of the position's reference point, north and east [m/s], as the reading has it."""

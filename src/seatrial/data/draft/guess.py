@@ -166,11 +166,24 @@ def without_conflicts(parts: Sequence[Sequence[ColumnGuess]]) -> list[tuple[Colu
     """Return the guesses of the sources of a run with one source for each channel, what is measured before the rest."""
     used: set[str] = set()
     first = []
-    for part in parts:
+    for part in _with_propeller(parts):
         first.append([_unused(g, f"another source has {g.symbol}") if g.symbol in used else g for g in part])
         used |= {g.symbol for g in first[-1] if g.is_used}
     reasons = _superfluous(used)
     return [tuple(_unused(g, reasons[g.symbol]) if g.symbol in reasons else g for g in part) for part in first]
+
+
+def _with_propeller(parts: Sequence[Sequence[ColumnGuess]]) -> list[Sequence[ColumnGuess]]:
+    """The guesses, where beside a rudder one shaft alone turns: its rate as that of the propeller."""
+    used = {one.symbol for part in parts for one in part if one.is_used}
+    shafts = {one for one in used if one.startswith("rpm_")}
+    if "delta" not in used or "n" in used or len(shafts) != 1:
+        return list(parts)
+    text = "the only shaft, beside a rudder: the propeller's"
+    return [
+        [replace(one, symbol="n").with_evidence(text) if one.symbol in shafts else one for one in part]
+        for part in parts
+    ]
 
 
 def _unused(guess: ColumnGuess, reason: str) -> ColumnGuess:

@@ -11,6 +11,7 @@ from seatrial.data.read.quantities import log_quantity
 
 _SCALED_DEGREE, _CENTI = 1e-7, 1e-2  # MAVLink and PX4: degrees as integers of 1e-7, centidegrees and cm/s
 
+_ENGINE = "rate of the engine: to use it, write it as channels.n with scale = propeller turns over engine turns"
 _AUXILIARY = "command_{} of AUX"  # the outputs of PX4's second bank, which are counted on from those of the first
 
 
@@ -74,9 +75,10 @@ _MESSAGES = [
     *_rules(
         "NMEA 0183",
         (r"(gga|rmc|gns|gll)/lat", "lat", "rad"), (r"(gga|rmc|gns|gll)/lon", "lon", "rad"),
-        (r"(vtg|rmc)/north", "u", "m/s", "earth"), (r"(vtg|rmc)/east", "v", "m/s", "earth"),
+        (r"(vtg|rmc)/speed", "sog", "m/s"), (r"(vtg|rmc)/course", "cog", "rad"),
         (r"(hdt|ths)/heading", "psi", "rad"), (r"hdm/heading", "psi_magnetic", "rad"), (r"rot/rate", "r", "rad/s"),
         (r"rsa/angle", "delta", "rad"), (r"(vhw|vbw)/speed", "stw", "m/s"), (r"rpm/s(\d)", "rpm_{}", "rps"),
+        (r"rpm/e\d", "n", "rps", "", "", 1.0, _ENGINE),
         (r"xdr/(roll|heel)", "phi", "rad"), (r"xdr/(ptch|pitch)", "theta", "rad"), (r"xdr/heave?", "z", "m"),
     ),
     *_rules(
@@ -113,7 +115,6 @@ _MESSAGES = [
 ]  # fmt: skip
 _FORWARD, _ACROSS = "(forward|fwd|ahead|longitudinal)", "(stbd|starboard|lateral|transverse)"
 _COMPASS = "a magnetic one is psi_magnetic, with variation"
-_ENGINE = "rate of the engine: to use it, write it as channels.n with scale = propeller turns over engine turns"
 _RATE = "taken for the shaft's; of an engine behind a gear add scale = propeller turns over engine turns"
 _WIND = "no model but mmg takes it: a comment in the file"
 _APPARENT_WIND = "no model takes an apparent wind: a comment in the file"

@@ -130,8 +130,11 @@ def _recommended_minimum(s: Sentence) -> dict[str, float]:
 
 
 def _over_ground(kind: str, speed: float, course: float) -> dict[str, float]:
+    if math.isnan(course):
+        return {}
     angle = math.radians(course)
-    return {f"{kind} north": speed * math.cos(angle), f"{kind} east": speed * math.sin(angle)}
+    parts = {"north": speed * math.cos(angle), "east": speed * math.sin(angle), "speed": speed, "course": angle}
+    return {f"{kind} {name}": value for name, value in parts.items()}
 
 
 def _fix(s: Sentence, first: int, *, is_valid: bool) -> dict[str, float]:

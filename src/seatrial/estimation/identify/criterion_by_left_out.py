@@ -12,8 +12,9 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import stdtrit
 
+from seatrial.core.results.motion_spread import is_lost
 from seatrial.core.text.numbers import significant
-from seatrial.core.values import InputError, ProgressReporter
+from seatrial.core.values import InputError, ProgressReporter, Record
 from seatrial.data.trial import EstimateMethod, EstimateSettings, FitCriterion
 from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.estimate.criterion_choice import SET_BY_TRIAL, WHOLE_RUNS
@@ -62,8 +63,8 @@ def preferred_estimation(
         "no disturbance makes the residuals white, so each run was predicted as a whole by the others: "
         f"{mean_text(rivals)} by {WHOLE_RUNS}, {mean_text(errors)} by {estimation.criterion}"
     )
-    if not is_better(rivals, errors):
-        reason = f"{reason}, which is no better beyond the scatter over runs"
+    if not is_better(rivals, errors, runs.records):
+        reason = f"{reason}; {WHOLE_RUNS} is not better beyond the scatter over runs, and is not used"
         noise_model = replace(estimation.noise_model, text=f"{estimation.noise_model.text}; {reason}")
         return replace(estimation, reasons=(*estimation.reasons, reason), noise_model=noise_model)
     noise_model = replace(
@@ -94,15 +95,20 @@ def left_out_errors(estimation: Estimation, runs: Runs, seconds: float) -> list[
     return errors
 
 
-def is_better(errors: Sequence[dict[str, float]], rivals: Sequence[dict[str, float]]) -> bool:
+def is_better(
+    errors: Sequence[dict[str, float]], rivals: Sequence[dict[str, float]], records: Sequence[Record]
+) -> bool:
     """Return whether errors are less than those of a rival beyond their scatter over runs, by a paired t-test.
 
     Compared are logarithms of ratios, averaged over what each run compares, so that no unit and no run prevails. Where
-    simulations diverge, fewer of them are better.
+    simulations diverge, or are further off than the mean of the motion, fewer of them are better: a few runs lost
+    among others scatter so much that no test would see them.
     """
-    diverged, by_rival = (sum(not e for e in each) for each in (errors, rivals))
-    if diverged != by_rival:
-        return diverged < by_rival
+    lost, by_rival = (
+        sum(is_lost(e, record) for e, record in zip(each, records, strict=True)) for each in (errors, rivals)
+    )
+    if lost != by_rival:
+        return lost < by_rival
     pairs = [(a, b) for a, b in zip(errors, rivals, strict=True) if a and b]
     if len(pairs) < RUNS_FOR_JACKKNIFE:
         return False

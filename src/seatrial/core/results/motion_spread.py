@@ -1,0 +1,44 @@
+"""How far the motions of a run spread: what errors of its prediction are compared with."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from seatrial.core.values import Array, Record
+
+MOTIONS = {"psi_deg": ("psi",), "position_m": ("x0", "y0"), "z": ("z",), "theta_deg": ("theta",), "phi_deg": ("phi",)}
+"""Name of an error, as in `Prediction.rms` -> the channels of that motion."""
+HEADING_SPREAD = math.pi / math.sqrt(3.0)
+"""rad, standard deviation of a heading that points anywhere alike: turns on and on spread it no further."""
+_DEGREES = math.degrees(1.0)
+
+
+@dataclass(frozen=True)
+class MotionSpread:
+    """Standard deviation of a motion in the unit of its error.
+
+    is_turning: the heading spreads further than all directions alike do, so that it is theirs.
+    """
+
+    size: float
+    is_turning: bool = False
+
+
+def motion_spread(name: str, motions: Sequence[Array]) -> MotionSpread:
+    """Return the spread of the channels of a motion together; name: of its error; motions: shape (n,) each, SI."""
+    spread = math.sqrt(sum(float(np.nanvar(motion)) for motion in motions))
+    is_turning = name == "psi_deg" and spread > HEADING_SPREAD
+    size = (HEADING_SPREAD if is_turning else spread) * (_DEGREES if name.endswith("_deg") else 1.0)
+    return MotionSpread(size, is_turning)
+
+
+def is_lost(errors: Mapping[str, float], measured: Record) -> bool:
+    """Return whether a simulation is further off than the mean of a motion, or diverges.
+
+    errors: rms errors as in `Prediction.rms`; empty: the simulation diverges.
+    """
+    compared = [name for name in errors if name in MOTIONS and all(c in measured for c in MOTIONS[name])]
+    beyond = (errors[n] > motion_spread(n, [measured[c] for c in MOTIONS[n]]).size for n in compared)
+    return not errors or any(beyond)

@@ -1,0 +1,31 @@
+"""The spread of a motion, and when a simulation is further off than that."""
+
+import math
+
+import numpy as np
+import pytest
+
+from seatrial.core.results.motion_spread import HEADING_SPREAD, is_lost, motion_spread
+from seatrial.core.values import Record
+
+TIME = np.arange(1000) * 0.1
+SWING = np.sin(2.0 * np.pi * TIME / 10.0)
+
+
+def test_the_spread_is_the_standard_deviation_in_the_unit_of_the_error() -> None:
+    spread = motion_spread("psi_deg", [math.radians(20.0) * SWING])
+    assert spread.size == pytest.approx(20.0 / math.sqrt(2.0)) and not spread.is_turning
+    assert motion_spread("position_m", [3.0 * SWING, 4.0 * SWING]).size == pytest.approx(5.0 / math.sqrt(2.0))
+
+
+def test_turns_on_and_on_spread_a_heading_no_further_than_all_directions_do() -> None:
+    spread = motion_spread("psi_deg", [0.5 * TIME])
+    assert spread.is_turning and spread.size == pytest.approx(math.degrees(HEADING_SPREAD)) == pytest.approx(
+        103.92, 1e-4
+    )
+
+
+def test_a_run_is_lost_where_an_error_is_beyond_its_motion_or_nothing_was_simulated() -> None:
+    record = Record.from_arrays("run", TIME, {"psi": math.radians(20.0) * SWING})
+    assert not is_lost({"psi_deg": 14.0, "u": 9.0}, record) and is_lost({"psi_deg": 14.3}, record)
+    assert is_lost({}, record) and not is_lost({"position_m": 1e6}, record), "positions that were not recorded"

@@ -1,0 +1,31 @@
+"""Beside a rudder the rate of the only shaft is the propeller's, whatever the logger numbers it."""
+
+from pathlib import Path
+
+import numpy as np
+from tests.onboard.sentences import sentence
+
+from seatrial.data.draft.column_guess import ColumnGuess
+from seatrial.data.draft.guess import guess_columns
+from seatrial.data.draft.survey import survey_log
+
+
+def guesses(path: Path, *rates: str) -> dict[str, ColumnGuess]:
+    lines = []
+    for k in range(60):
+        angle = 10.0 * np.sin(0.2 * k)
+        lines += [f"GPZDA,1000{k:02d}.00,14,09,2026,00,00", f"HEHDT,{40.0 + angle:.1f},T", f"AGRSA,{angle:.1f},A,,V"]
+        lines += [f"ERRPM,{one},{140.0 + 0.1 * k:.1f},100.0,A" for one in rates]
+    path.write_bytes(b"".join(map(sentence, lines)))
+    return {one.symbol: one for one in guess_columns(survey_log(path)) if one.is_used}
+
+
+def test_the_only_shaft_is_the_propellers(tmp_path: Path) -> None:
+    found = guesses(tmp_path / "day.nmea", "S,1")
+    assert {"delta", "n"} <= set(found) and "rpm_1" not in found
+    assert found["n"].unit == "rps" and any("the only shaft" in one for one in found["n"].evidence)
+
+
+def test_two_shafts_are_those_of_two_propellers_and_an_engine_is_none(tmp_path: Path) -> None:
+    assert {"rpm_1", "rpm_2"} <= set(guesses(tmp_path / "twin.nmea", "S,1", "S,2"))
+    assert not {"n", "rpm_1"} & set(guesses(tmp_path / "engine.nmea", "E,1"))
