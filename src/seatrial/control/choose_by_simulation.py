@@ -10,7 +10,7 @@ from scipy.special import stdtrit
 from seatrial.control.gain_choice import ON_BOUND, GainChoice, NamedGains, gains_on_bound, non_dominated_gains
 from seatrial.control.gain_evaluation import GainEvaluator, exceedance_share
 from seatrial.control.least_output import least_output_gains, spread_gains
-from seatrial.control.seaway_simulation import simulate_in_seaway
+from seatrial.control.seaway_simulation import seaway_reductions
 from seatrial.control.task import TuningTask
 from seatrial.core.results.tuning import ParetoFront
 from seatrial.core.values import Array
@@ -67,12 +67,12 @@ def choose_by_simulation(
     few = replace(task, simulation=replace(task.simulation, seeds=_SELECTION_SEEDS))
 
     def simulated(judge: GainEvaluator, front: ParetoFront, gains: Array) -> _Candidate:
-        made = simulate_in_seaway(few, judge.loop, "candidate", gains, seed + _SELECTION_SEED_OFFSET)
+        linear, limited, stalled = seaway_reductions(few, judge.loop, gains, seed + _SELECTION_SEED_OFFSET).T
         judged, loop = judge.evaluate(gains[None]), judge.loop
         speeds = dict.fromkeys(met.U for met in task.disturbances)
         delays = [margins(task.loop_at(U, loop).with_gains(gains)).delay for U in speeds]
         return _Candidate(
-            judge, gains, front.name, 0.5 * (made.limited + made.stalled), made.saturation_loss,
+            judge, gains, front.name, 0.5 * (limited + stalled), float(np.mean(linear - limited)),
             float(judged.variances[0, :, 2].mean()), float(judged.Ms[0]), bool(gains_on_bound(loop, gains)),
             min(delays) >= task.constraints.delay,
         )  # fmt: skip

@@ -97,10 +97,15 @@ def spread_points(values: Array, count: int) -> Index:
     scaled = np.log(np.maximum(values, _LEAST_OBJECTIVE))
     scaled = (scaled - scaled.min(axis=0)) / np.maximum(np.ptp(scaled, axis=0), _LEAST_RANGE)
     chosen = list(dict.fromkeys(int(i) for i in np.argmin(scaled, axis=0)))
-    distance = np.min([np.linalg.norm(scaled - scaled[i], axis=1) for i in chosen], axis=0)
+
+    def squared_distances(i: int) -> Array:
+        gap = scaled - scaled[i]
+        return np.einsum("ij,ij->i", gap, gap)
+
+    least = np.min([squared_distances(i) for i in chosen], axis=0)
     while len(chosen) < min(count, len(values)):
-        chosen.append(int(np.argmax(distance)))
-        distance = np.minimum(distance, np.linalg.norm(scaled - scaled[chosen[-1]], axis=1))
+        chosen.append(int(np.argmax(least)))
+        least = np.minimum(least, squared_distances(chosen[-1]))
     return np.array(chosen, dtype=np.int64)
 
 

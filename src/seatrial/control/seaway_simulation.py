@@ -37,7 +37,7 @@ _CONFIDENCE = 0.95  # level of the intervals of means over seeds
 
 
 def simulate_in_seaway(task: TuningTask, loop: TransferLoop, name: str, gains: Array, seed: int) -> SeawaySimulation:
-    """A controller in the task's first sea: reductions of the output's rms, of each seed against no control there.
+    """A controller in the task's first sea: reductions of the output's rms, and the first of the seas as a record.
 
     Args:
         loop: the structure that the gains (g,) belong to, on the task's plant at the task's speed.
@@ -47,29 +47,45 @@ def simulate_in_seaway(task: TuningTask, loop: TransferLoop, name: str, gains: A
         InputError: the task has no sea or no trials, or the sea does not move the ship.
         DivergedError: the loop runs away.
     """
-    seaway = next((met for met in task.disturbances if isinstance(met, Seaway)), None)
-    if seaway is None or task.simulation is None:
-        raise InputError("to simulate a stabiliser the tuning needs a sea and trials; give both, or leave trials out")
-    trials = task.simulation
-    steered = closed_loop(task, loop, gains, seaway.U, trials.dt)
-    r = task.constraints
-    everything = ActuatorLimits(r.limit, r.rate, r.stall)
-    met = disturbance_series(seaway, trials, seed)
+    reductions = seaway_reductions(task, loop, gains, seed)
+    seaway, trials = _sea_and_trials(task)
+    steered, everything = closed_loop(task, loop, gains, seaway.U, trials.dt), _actuator_limits(task)
+    met = disturbance_series(seaway, trials, seed)[0]
     first = round(RUN_IN_SECONDS / trials.dt)
+    shown = _without_run_in(_record(task, steered, f"{name}, first sea", met, seaway, everything), first)
+    still = replace(steered, gains=np.zeros(len(gains)))
+    alone = _without_run_in(_record(task, still, "without control", met, seaway, UNLIMITED), first)
+    uncontrolled = {f"{name}_{UNCONTROLLED}": alone.channel(name) for name in (loop.output, MOTION) if name in alone}
+    shown = replace(shown, channels={**shown.channels, **uncontrolled})
+    linear, limited, stalled = (frozen(column) for column in reductions.T)
+    return SeawaySimulation(name, linear, limited, stalled, shown)
+
+
+def seaway_reductions(task: TuningTask, loop: TransferLoop, gains: Array, seed: int) -> Array:
+    """Return reductions of the output's rms in each sea against no control there, (seeds, 3).
+
+    Columns: without limits, with those of angle and rate, with stall as well. Raises what `simulate_in_seaway` does.
+    """
+    seaway, trials = _sea_and_trials(task)
+    steered, everything = closed_loop(task, loop, gains, seaway.U, trials.dt), _actuator_limits(task)
 
     def of_one(sea: Array) -> list[float]:
         stages = (UNLIMITED, everything.without_stall, everything)
         return [_rms(task, steered, sea, seaway, limits) for limits in stages]
 
     free = np.array(_uncontrolled_rms(task, seaway, seed))
-    reductions = 1.0 - np.array(map_in_threads(of_one, list(met))) / free[:, None]
-    shown = _without_run_in(_record(task, steered, f"{name}, first sea", met[0], seaway, everything), first)
-    still = replace(steered, gains=np.zeros(len(gains)))
-    alone = _without_run_in(_record(task, still, "without control", met[0], seaway, UNLIMITED), first)
-    uncontrolled = {f"{name}_{UNCONTROLLED}": alone.channel(name) for name in (loop.output, MOTION) if name in alone}
-    shown = replace(shown, channels={**shown.channels, **uncontrolled})
-    linear, limited, stalled = (frozen(column) for column in reductions.T)
-    return SeawaySimulation(name, linear, limited, stalled, shown)
+    return 1.0 - np.array(map_in_threads(of_one, disturbance_series(seaway, trials, seed))) / free[:, None]
+
+
+def _sea_and_trials(task: TuningTask) -> tuple[Seaway, SimulationSettings]:
+    seaway = next((met for met in task.disturbances if isinstance(met, Seaway)), None)
+    if seaway is None or task.simulation is None:
+        raise InputError("to simulate a stabiliser the tuning needs a sea and trials; give both, or leave trials out")
+    return seaway, task.simulation
+
+
+def _actuator_limits(task: TuningTask) -> ActuatorLimits:
+    return ActuatorLimits(task.constraints.limit, task.constraints.rate, task.constraints.stall)
 
 
 @lru_cache(maxsize=_KEPT_SEAS)

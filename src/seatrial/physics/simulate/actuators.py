@@ -18,9 +18,12 @@ _SETTLING_S = 60.0
 def actuator_states(model: Model) -> tuple[str, ...]:
     """Return the states without a measured channel whose rates hold inputs, parameters and states of this kind only."""
     nx, nu = len(model.states), len(model.inputs)
+    unmeasured = {i for i, s in enumerate(model.states) if s not in NOTATION}
+    if not unmeasured:
+        return ()
     pattern = model.compiled.rates_pattern
     by_state = [{int(k) for i, k in pattern if i == row} for row in range(nx)]
-    kept = {i for i, s in enumerate(model.states) if s not in NOTATION and any(nx <= k < nx + nu for k in by_state[i])}
+    kept = {i for i in unmeasured if any(nx <= k < nx + nu for k in by_state[i])}
     while True:
         closed = {i for i in kept if all(k in kept for k in by_state[i] if k < nx)}
         if closed == kept:
