@@ -26,9 +26,10 @@ def with_windows(fit: Fit, own: float, other: float, inside: float = 0.96) -> Fi
     return replace(fit, predictions=runs)
 
 
-def test_there_are_five_rows_each_with_its_section(fit: Fit) -> None:
+def test_there_are_five_rows_and_what_is_missing_each_with_its_section(fit: Fit) -> None:
     facts = key_facts(fit)
-    assert len(facts) == 5 and {f.section for f in facts} <= {"prediction", "identifiability", "findings", "", "method"}
+    assert len(facts) == 6 and facts[-2].name == "Not in the training runs"
+    assert {f.section for f in facts} <= {"prediction", "identifiability", "findings", "", "method"}
 
 
 def test_a_baseline_that_is_better_is_a_warning(fit: Fit) -> None:

@@ -26,6 +26,7 @@ from seatrial.reporting.correlations import strong_partners
 from seatrial.reporting.disturbance_table import DisturbanceRow, disturbance_rows
 from seatrial.reporting.figures.directions import direction_chart, profile_chart
 from seatrial.reporting.posterior_part import PosteriorPart, posterior_part
+from seatrial.reporting.record_gaps import RecordGap, record_gaps
 from seatrial.reporting.tables import assumption
 
 # relative standard deviation up to which a combination is well determined, and up to which poorly
@@ -118,6 +119,7 @@ class IdentifiabilityChapter:
     structural: tuple[SymmetryRow, ...]
     determined_sentence: str
     meaning: tuple[tuple[str, str], ...]
+    gaps: tuple[RecordGap, ...]
     uses: tuple[CoefficientUse, ...]
     more_uses: tuple[CoefficientUse, ...]
     accuracy_classes: tuple[AccuracyClass, ...]
@@ -154,6 +156,7 @@ def identifiability_chapter(fit: Fit) -> IdentifiabilityChapter | None:
         structural=tuple(_symmetry_row(s, fit, names) for s in content.structural),
         determined_sentence=determined_sentence(fit),
         meaning=meaning_lines(fit, content, uses),
+        gaps=record_gaps(fit),
         uses=uses[:MAX_ROWS],
         more_uses=uses[MAX_ROWS:],
         accuracy_classes=_accuracy_classes(content.directions),

@@ -19,6 +19,7 @@ from seatrial.reporting.grades import largest_error_share, share_sentence, worst
 from seatrial.reporting.identifiability_chapter import determined_sentence
 from seatrial.reporting.measures import IntervalVerdict, interval_verdict
 from seatrial.reporting.operators import operators_sentence
+from seatrial.reporting.record_gaps import gap_facts
 from seatrial.reporting.runs import ERROR_LABELS, badness
 from seatrial.reporting.time_figures import run_figure
 from seatrial.reporting.verdict import error_text, has_converged, verdict, worst_errors
@@ -52,6 +53,7 @@ def key_facts(fit: Fit) -> tuple[KeyFact, ...]:
     """Return the rows; a search that did not converge comes first; what the fit does not contain is said to be so."""
     rows = (_score(fit), *_training_score(fit), *course_facts(fit), _baseline(fit), _coverage(fit),
             _identifiability(fit))  # fmt: skip
+    rows = (*rows, *gap_facts(fit))
     return (*rows, _warnings(fit)) if has_converged(fit) else (_warnings(fit), *rows)
 
 

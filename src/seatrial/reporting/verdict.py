@@ -130,7 +130,8 @@ def _several_runs_clause(
         names = [name for name, grade in grades.items() if grade is worst]
         verb = f"{'is' if len(names) == 1 else 'are'} {'not predicted' if worst is Grade.NOT else 'poorly predicted'}"
         return f"Of {len(held)} runs that were not used, {lasting}, {enumeration(names, MAX_NAMES)} {verb}, {at_worst}"
-    graded = f" {worst} or better:" if worst is not None else ""
+    better = "" if worst is Grade.CLOSELY else " or better"
+    graded = f" {worst}{better}:" if worst is not None else ""
     return f"Predicts {len(held)} runs that were not used, {lasting},{graded} {at_worst}"
 
 

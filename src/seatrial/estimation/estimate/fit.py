@@ -10,11 +10,13 @@ from seatrial.core.equations import Model
 from seatrial.core.results import NoiseModel, SearchAttempt
 from seatrial.core.values import Array, InputError, ProgressReporter, Record
 from seatrial.data.trial import EstimateMethod, EstimateSettings, FitCriterion
+from seatrial.estimation.estimate.angle_of_rest import with_slow_forces
 from seatrial.estimation.estimate.assemble import output_error_problem
 from seatrial.estimation.estimate.closed_loop import LoopEvidence, closed_loop, loop_evidence
 from seatrial.estimation.estimate.criterion_choice import PREDICTION_ERROR, CriterionChoice, choose_criterion
 from seatrial.estimation.estimate.disturbance_models import refuse_short_runs
 from seatrial.estimation.estimate.intervals import (
+    RUNS_FOR_JACKKNIFE,
     Uncertainty,
     estimate_uncertainty,
     innovations_uncertainty,
@@ -187,6 +189,9 @@ def estimate_model(
     criterion = f"{choice.criterion}, Huber loss" if settings.robust else choice.criterion
     uncertainty = _uncertainty(choice, options, report)
     estimate = choice.estimate
+    if _is_unforced(model, runs.records) and len(runs) < RUNS_FOR_JACKKNIFE and not choice.whiteness.is_white:
+        interval = with_slow_forces(uncertainty.interval, estimate, choice.residuals)
+        uncertainty = replace(uncertainty, interval=interval, information=inverse(interval.covariance))
     lost = implausible_coefficients(estimate, uncertainty.interval.standard_error)
     if lost and is_free:
         over_runs = replace(settings, method=EstimateMethod.OUTPUT_ERROR)
@@ -233,13 +238,18 @@ def _chosen(
             return shooting
         return _fit_whole_runs(shooting, model, runs, settings, options, report_progress)
 
-    is_unforced = is_pure_roll(model) and not moving_inputs(model, runs.records)
     choice = choose_criterion(
-        shooting, seconds, settings, runs.noise, whole_runs, report_progress, is_unforced=is_unforced,
+        shooting, seconds, settings, runs.noise, whole_runs, report_progress,
+        is_unforced=_is_unforced(model, runs.records),
         begun=_begun(shooting, begun.start),
         has_feedback=evidence.is_closed,
     )  # fmt: skip
     return begun, shooting, choice
+
+
+def _is_unforced(model: Model, records: Sequence[Record]) -> bool:
+    """Whether the ship rolls out from a release, and nothing that was recorded moves it."""
+    return is_pure_roll(model) and not moving_inputs(model, records)
 
 
 def segment_seconds(model: Model, settings: EstimateSettings, unit: float) -> float:

@@ -32,7 +32,7 @@ def process_noise_interval(estimate: PointEstimate, process_noise: ProcessNoise)
     intensity = np.array([process_noise.process_intensities.get(s, 0.0) for s in problem.model.states])
     for run, (a, b) in enumerate(pairwise(problem.data.offsets)):
         columns = problem.columns_of(int(problem.data.session[run]))
-        own = _eliminate_initial_state(slopes[a:b], len(columns), np.where(is_measured[a:b], trust, 0.0))
+        own = without_initial_state(slopes[a:b], len(columns), np.where(is_measured[a:b], trust, 0.0))
         moved, observation = process_noise.problem.transitions(run, estimate.common_parameters, estimate.optimum.local)
         carried = own.transpose(0, 2, 1)
         white = np.einsum("tky,y,tly->kl", carried, deviation**2, carried)
@@ -43,8 +43,8 @@ def process_noise_interval(estimate: PointEstimate, process_noise: ProcessNoise)
     return Interval(bread @ score @ bread, np.inf, MEANING)
 
 
-def _eliminate_initial_state(slopes: Array, count: int, weights: Array) -> Array:
-    """Weighted slopes W J, (rows, ny, count), of the first columns with the others (initial state) eliminated."""
+def without_initial_state(slopes: Array, count: int, weights: Array) -> Array:
+    """Return weighted slopes W J, (rows, ny, count), of the first columns, the others (initial state) eliminated."""
     weighted = slopes * weights[:, :, None]
     normal = np.einsum("tyk,tyl->kl", weighted, slopes)
     # rounding of a singular matrix; chosen

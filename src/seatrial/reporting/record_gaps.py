@@ -1,0 +1,173 @@
+"""What the training runs do not show, in plain words, each with the manoeuvre that would show it; nothing is fitted."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from statistics import median
+
+import numpy as np
+
+from seatrial.core.results import Fit
+from seatrial.core.text.numbers import significant
+from seatrial.core.values import Array, Record
+from seatrial.core.values.channel_text import channel_meaning, channel_unit, unit_text
+from seatrial.physics.manoeuvres import REACH_PERCENTILE, initial_speed, steered_orders, to_starboard
+from seatrial.physics.models.thruster_layout import ThrusterLayout
+from seatrial.reporting.first_screen import KeyFact
+
+# rad below which the rudder is not over; share of the other side's angle below which a side was not used; chosen
+LEAST_RUDDER, ONE_SIDED = math.radians(0.5), 0.1
+# share of their mean by which speeds, and rates of a propeller, differ that count as one; chosen
+ONE_SPEED, ONE_RATE = 0.1, 0.05
+# deg, of most ships' rudders (SOLAS II-1/29), and the share of it from which on it was reached; chosen
+FULL_RUDDER_DEG, REACHED = 35.0, 0.9
+# of the speed or rate of the runs: another one that shows how forces change with it; chosen
+ANOTHER = 0.75
+# share of full command from which on it was reached, and from which on a thruster drives; chosen
+FULL_COMMAND, LEAST_COMMAND = 0.9, 0.1
+# deg: a deck edge immerses at about that; factor of the largest roll that shows more of the damping; chosen
+LARGEST_RELEASE_DEG, LARGER = 35.0, 2.0
+_PROPULSION = ("n", "v_j")
+
+
+@dataclass(frozen=True)
+class RecordGap:
+    """Something that the training runs do not show: in short, in a sentence, and the options of `simulate` that do."""
+
+    name: str
+    text: str
+    options: str
+
+    @property
+    def command(self) -> str:
+        """What `seatrial simulate` takes, and what a crew can be asked for."""
+        return f"--manoeuvre {self.options}"
+
+
+def record_gaps(fit: Fit) -> tuple[RecordGap, ...]:
+    """Return what the training runs do not show of a craft that is steered, driven by thrusters, or rolls out."""
+    runs = [p.measured for p in fit.predictions if p.role == "training"]
+    if not runs:
+        return ()
+    if fit.model.equations.layout:
+        return tuple(gaps_of_thrusters(runs, ThrusterLayout.from_text(fit.model.equations.layout)))
+    if "delta" in fit.model.input_names:
+        return tuple(_of_steering(fit, [r for r in runs if "delta" in r]))
+    return tuple(gaps_of_rolling(runs)) if fit.roll is not None else ()
+
+
+def gap_facts(fit: Fit) -> tuple[KeyFact, ...]:
+    """Return the row that names them; no row where there is none."""
+    gaps = record_gaps(fit)
+    if not gaps:
+        return ()
+    text = "; ".join(f"{gap.name} ({gap.command})" for gap in gaps)
+    return (KeyFact("Not in the training runs", text, "identifiability" if fit.identifiability else ""),)
+
+
+def _of_steering(fit: Fit, runs: Sequence[Record]) -> Iterator[RecordGap]:
+    if not runs:
+        return
+    rudder = np.concatenate([to_starboard(r, "delta") for r in runs])
+    port, starboard = (_reach(side) for side in (-rudder, rudder))
+    over, zigzag = math.degrees(max(port, starboard)), _usual_zigzag(runs)
+    if max(port, starboard) >= LEAST_RUDDER:
+        yield from _of_sides(port, starboard)
+    if LEAST_RUDDER <= max(port, starboard) < math.radians(REACHED * FULL_RUDDER_DEG):
+        yield RecordGap(
+            f"rudder beyond {over:.0f}°", f"The rudder went to {over:.0f}° at most: forces beyond that, as in a hard "
+            "turn, are extrapolated.", f"turning-circle:{FULL_RUDDER_DEG:.0f}",
+        )  # fmt: skip
+    speeds = [speed for r in runs if math.isfinite(speed := initial_speed(r)) and speed > 0.0]
+    if "u" in fit.model.states and speeds and np.ptp(speeds) <= ONE_SPEED * np.mean(speeds):
+        speed = float(np.mean(speeds))
+        begin = "The only run begins" if len(runs) == 1 else f"All {len(runs)} runs begin"
+        yield RecordGap(
+            f"approach speeds other than {significant(speed, 2)} m/s", f"{begin} at {significant(speed, 2)} m/s: how "
+            "forces change with speed shows only as far as turning slows the ship.",
+            f"{zigzag} --speed {significant(ANOTHER * speed, 2)}",
+        )  # fmt: skip
+    for name in _PROPULSION:
+        if name in fit.model.input_names:
+            yield from _of_propulsion(name, [r for r in runs if name in r], zigzag)
+
+
+def _of_sides(port: float, starboard: float) -> Iterator[RecordGap]:
+    if min(port, starboard) >= ONE_SIDED * max(port, starboard):
+        return
+    used, other = ("starboard", "port") if starboard > port else ("port", "starboard")
+    angle = f"{math.degrees(max(port, starboard)):.0f}"
+    end = ":port" if other == "port" else ""
+    yield RecordGap(
+        f"turns to {other}", f"The rudder went to {used} only: whether the ship turns alike to both sides is assumed.",
+        f"turning-circle:{angle}{end}",
+    )  # fmt: skip
+
+
+def _of_propulsion(name: str, runs: Sequence[Record], zigzag: str) -> Iterator[RecordGap]:
+    """One rate of the propeller or one speed of the jet, within `ONE_RATE`."""
+    values = np.concatenate([r[name][np.isfinite(r[name])] for r in runs]) if runs else np.zeros(0)
+    centre = float(np.median(values)) if len(values) else 0.0
+    spread = float(np.ptp(np.percentile(values, [100.0 - REACH_PERCENTILE, REACH_PERCENTILE]))) if centre else math.inf
+    if spread > ONE_RATE * abs(centre):
+        return
+    value = f"{significant(centre, 3)} {unit_text(channel_unit(name))}".strip()
+    yield RecordGap(
+        "thrust apart from resistance", f"The {channel_meaning(name)} was {value} throughout: the runs show the "
+        "balance of thrust and resistance there, and neither by itself.",
+        f"{zigzag} --set {name}={float(f'{ANOTHER * centre:.2g}'):g}",
+    )  # fmt: skip
+
+
+def gaps_of_thrusters(runs: Sequence[Record], layout: ThrusterLayout) -> Iterator[RecordGap]:
+    """Yield what runs do not show of a craft with thrusters: a side, full command ahead, orders astern."""
+    rates = [to_starboard(r, "r") if "r" in r else np.gradient(to_starboard(r, "psi"), r.time)
+             for r in runs if "r" in r or "psi" in r]  # fmt: skip
+    port, starboard = (_reach(np.concatenate([sign * rate for rate in rates])) if rates else 0.0 for sign in (-1, 1))
+    if min(port, starboard) < ONE_SIDED * max(port, starboard):
+        used, other = ("starboard", "port") if starboard > port else ("port", "starboard")
+        yield RecordGap(
+            f"turns to {other}", f"The craft turned to {used} only: whether it turns alike to both sides is assumed.",
+            f"spin:50{':port' if other == 'port' else ''}",
+        )  # fmt: skip
+    orders = [
+        (r[t.command.channel] - t.command.zero) / t.command.span
+        for t in layout.thrusters for r in runs if t.command.channel in r
+    ]  # fmt: skip
+    if not orders:
+        return
+    ahead, astern = (_reach(sign * np.concatenate(orders)) for sign in (1.0, -1.0))
+    if LEAST_COMMAND <= ahead < FULL_COMMAND:
+        yield RecordGap(
+            f"orders beyond {100.0 * ahead:.0f} % ahead", f"No thruster had more than {100.0 * ahead:.0f} % of full "
+            "command ahead: thrust and top speed at full command are extrapolated.", "straight:100",
+        )  # fmt: skip
+    if astern < LEAST_COMMAND:
+        yield RecordGap(
+            "orders astern", "No thruster was driven astern: stopping and thrust astern are assumed.", "stop:50"
+        )
+
+
+def gaps_of_rolling(runs: Sequence[Record]) -> Iterator[RecordGap]:
+    """Yield the roll angles beyond those of the runs, where a ship can be heeled so far."""
+    rolls = [float(np.nanmax(np.abs(r["phi"]))) for r in runs if "phi" in r and np.isfinite(r["phi"]).any()]
+    largest = math.degrees(max(rolls, default=0.0))
+    if 0.0 < LARGER * largest <= LARGEST_RELEASE_DEG:
+        yield RecordGap(
+            f"roll beyond {largest:.0f}°", f"The ship rolled to {largest:.0f}° at most: how its damping goes on to "
+            "grow with the angle is extrapolated.", f"release:{LARGER * largest:.0f}",
+        )  # fmt: skip
+
+
+def _reach(values: Array) -> float:
+    """How far the values go to the positive side, but for a few of them."""
+    return float(np.nanpercentile(np.maximum(values, 0.0), REACH_PERCENTILE)) if np.isfinite(values).any() else 0.0
+
+
+def _usual_zigzag(runs: Sequence[Record]) -> str:
+    """The zigzag of the runs, by rudder and heading; 20/20 where there was none."""
+    orders = [o for r in runs if (o := steered_orders(r)) is not None and not o.is_turn]
+    if not orders:
+        return "zigzag:20/20"
+    rudder, heading = (math.degrees(median(getattr(o, name) for o in orders)) for name in ("rudder", "heading"))
+    return f"zigzag:{rudder:.0f}/{heading:.0f}"
