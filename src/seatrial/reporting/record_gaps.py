@@ -3,7 +3,6 @@
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from statistics import median
 
 import numpy as np
 
@@ -165,9 +164,9 @@ def _reach(values: Array) -> float:
 
 
 def _usual_zigzag(runs: Sequence[Record]) -> str:
-    """The zigzag of the runs, by rudder and heading; 20/20 where there was none."""
+    """The zigzag of the runs with the most rudder, by rudder and heading; 20/20 where there was none."""
     orders = [o for r in runs if (o := steered_orders(r)) is not None and not o.is_turn]
-    if not orders:
+    largest = max(orders, key=lambda o: o.rudder, default=None)
+    if largest is None:
         return "zigzag:20/20"
-    rudder, heading = (math.degrees(median(getattr(o, name) for o in orders)) for name in ("rudder", "heading"))
-    return f"zigzag:{rudder:.0f}/{heading:.0f}"
+    return f"zigzag:{math.degrees(largest.rudder):.0f}/{math.degrees(largest.heading):.0f}"

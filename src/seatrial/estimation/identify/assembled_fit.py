@@ -15,6 +15,7 @@ from seatrial.estimation.identify.antenna_place import antenna_findings
 from seatrial.estimation.identify.box_scale import stands_on_box
 from seatrial.estimation.identify.closed_loop_findings import closed_loop_findings
 from seatrial.estimation.identify.course_stability import course_finding
+from seatrial.estimation.identify.estimated_values_effect import with_effects
 from seatrial.estimation.identify.held_couplings import held_couplings
 from seatrial.estimation.identify.identifiability import identifiability
 from seatrial.estimation.identify.identification import Identification
@@ -74,7 +75,8 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         residuals=fit_result.residuals(estimation),
         predictions=predicted.predictions,
         findings=(
-            *task.findings, *selected.findings, *findings, *fit_result.open_signs(estimation.model, coefficients),
+            *with_effects(task.findings, estimation),
+            *selected.findings, *findings, *fit_result.open_signs(estimation.model, coefficients),
             *unphysical_finding(estimation.model, runs.records), *fit_result.bounds_hit(estimation),
             *fit_result.unconverged(estimation), *other_optima(estimation),
             *abandoned_criterion_finding(estimation, runs.records),

@@ -1,20 +1,19 @@
 """What the records determine of a fitted model and what they do not, put together for the report."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.results import Consequence, Identifiability, Sensitivity, Symmetry
-from seatrial.core.values import Array, Prior
+from seatrial.core.values import Array
 from seatrial.data.trial.model_table import COMMON_PARTICULARS
 from seatrial.estimation.estimate.fit import Estimation
-from seatrial.estimation.estimate.point_estimate import PointEstimate
+from seatrial.estimation.identify.assumed_information import assumed_information, output_error_estimate
 from seatrial.estimation.identify.box_scale import box_scale
 from seatrial.estimation.identify.course_stability import course_stability
 from seatrial.estimation.information.collinearity import collinearity, condition_number
-from seatrial.estimation.information.consequences import consequence_text, estimate_shifts
+from seatrial.estimation.information.consequences import consequence_text
 from seatrial.estimation.information.directions import directions, effective_parameters, relative_information
 from seatrial.estimation.problem.output_error import OutputError
 
@@ -67,11 +66,6 @@ def _signed_scales(estimation: Estimation) -> Array:
     return np.array([np.copysign(p.characteristic_scale, p.value) for p in parameters])
 
 
-def _output_error_estimate(estimation: Estimation) -> PointEstimate:
-    """The estimate whose outputs are simulated from initial states: under prediction error that over segments."""
-    return estimation.shooting if estimation.has_process_noise else estimation.estimate
-
-
 def data_information(estimation: Estimation) -> tuple[Array, Array]:
     """Information of the records on the free coefficients, and that of priors and force points, both (n, n).
 
@@ -93,7 +87,7 @@ def _eliminate_nuisances(hessian: Array, count: int) -> Array:
 
 def sensitivities(estimation: Estimation) -> tuple[Sensitivity, ...]:
     """What a change of 10 % of each coefficient does to each output, initial states held."""
-    estimate = _output_error_estimate(estimation)
+    estimate = output_error_estimate(estimation)
     problem = estimate.problem
     slopes = (
         problem.sensitivities(estimate.common_parameters, estimate.optimum.local)
@@ -113,31 +107,24 @@ def consequences(estimation: Estimation, is_on_box: bool = False) -> tuple[Conse
 
     is_on_box: whether the wave forces are those of a box, which change with the stated stiffness.
     """
-    estimate, model = _output_error_estimate(estimation), estimation.model
+    problem, model = output_error_estimate(estimation).problem, estimation.model
     scaled_by_box = box_scale(model) if is_on_box else None
-    inertia = scaled_by_box.held if scaled_by_box else ()
-    problem, names = _with_assumed_free(estimate.problem, model, inertia)
-    free, size = estimate.problem.free, len(problem.free)
-    place = {n: i for i, n in enumerate(problem.free)}
-    fitted = [place[n] for n in free]
-    shared = np.concatenate([problem.start()[:size], estimate.common_parameters[len(free) :]])
-    shared[fitted] = estimate.common_parameters[: len(free)]
-    information = problem.normal(shared, estimate.optimum.local).without_local()[1]
-    moving = np.array([*fitted, *range(size, len(shared))])
+    free, names = problem.free, _assumed_names(problem, model)
+    known = assumed_information(estimation, names, scaled_by_box.held if scaled_by_box else ())
     deviation = np.maximum(estimation.interval.standard_error[: len(free)], 1e-300)  # above zero, for a division
-    sizes = _signed_scales(estimation)
-    felt = _MIN_INFLUENCE * np.max(np.diag(information)[fitted] * sizes**2)
-    chi_squared = 2.0 * problem.cost(shared, estimate.optimum.local)
+    sizes, fitted = _signed_scales(estimation), known.moving[: len(free)]
+    felt = _MIN_INFLUENCE * np.max(np.diag(known.information)[fitted] * sizes**2)
     ranked: list[tuple[float, Consequence]] = []
-    changes = {n: _unit(len(shared), place[n]) * RELATIVE_CHANGE * model.parameters[n].value for n in names}
+    changes = {n: known.unit(n) * RELATIVE_CHANGE * model.parameters[n].value for n in names}
     if scaled_by_box:
-        changes = scaled_by_box.changes(changes, place, _with_final_values(shared, place, model, free), RELATIVE_CHANGE)
+        final = _with_final_values(known.point, known.place, model, free)
+        changes = scaled_by_box.changes(changes, known.place, final, RELATIVE_CHANGE)
     for name, change in changes.items():
-        if change @ information @ change < felt * RELATIVE_CHANGE**2:
+        if change @ known.information @ change < felt * RELATIVE_CHANGE**2:
             continue
-        moves, misfit = estimate_shifts(information, moving, change)
-        worst = float(np.max(np.abs(moves[: len(free)]) / deviation))
-        ranked.append((worst, _consequence(name, moves[: len(free)] / sizes, free, misfit, chi_squared)))
+        moves, misfit = known.shifts(change)
+        worst = float(np.max(np.abs(moves) / deviation))
+        ranked.append((worst, _consequence(name, moves / sizes, free, misfit, known.chi_squared)))
     ranked.sort(key=lambda pair: -pair[0])
     return tuple(one for _, one in ranked[:_MAX_CONSEQUENCES])
 
@@ -150,22 +137,13 @@ def _with_final_values(values: Array, place: Mapping[str, int], model: Model, fr
     return final
 
 
-def _unit(size: int, place: int) -> Array:
-    return np.eye(1, size, place)[0]
-
-
-def _with_assumed_free(
-    problem: OutputError, model: Model, held: Sequence[str] = ()
-) -> tuple[OutputError, list[str]]:  # fmt: skip
-    """The problem with the assumed values free too, their priors put aside, and which they are; held: further ones."""
+def _assumed_names(problem: OutputError, model: Model) -> list[str]:
+    """Fixed parameters that were assumed: no conventions, no dimensions, and not zero."""
     own = {n for n, _ in problem.session_parameters}
     known = {*_CONVENTIONS, *own, *(n for n in COMMON_PARTICULARS if n not in _ASSUMED_PARTICULARS)}
     if problem.extra_terms:  # measured forces may have been corrected with it
         known.add("x_G")
-    names = [p.name for p in model.parameters if not p.free and p.value and p.name not in known]
-    loose = {n: Prior(0.0, np.inf) for n in {*names, *held}}
-    freed = model.parameters.freed(*names, *(n for n in held if n not in names)).with_priors(loose)
-    return replace(problem, model=model.with_parameters(freed)), names
+    return [p.name for p in model.parameters if not p.free and p.value and p.name not in known]
 
 
 def _consequence(

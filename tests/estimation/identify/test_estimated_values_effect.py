@@ -1,0 +1,94 @@
+"""What is said of estimated values is what another fit with other ones does."""
+
+import math
+
+import numpy as np
+import pytest
+
+from seatrial.core.equations import Model
+from seatrial.core.values import NOT_MEASURED, Finding, Record, Severity
+from seatrial.data.example_series.series import simulate_run, true_model, with_sensor_noise
+from seatrial.data.trial import EstimateMethod, EstimateSettings
+from seatrial.data.trial.estimated_values import ESTIMATED_VALUES
+from seatrial.estimation.estimate.fit import Estimation
+from seatrial.estimation.identify import EstimatorOptions, Runs, estimate_model
+from seatrial.estimation.identify.estimated_values_effect import (
+    EstimatedValueEffect,
+    estimated_value_effects,
+    finding_with_effects,
+    with_effects,
+)
+
+FOUND = Finding(Severity.WARNING, ESTIMATED_VALUES, f"m_y is {NOT_MEASURED}", "marked", "measure", "only as far")
+OTHER = Finding(Severity.WARNING, "lag", "another one")
+
+
+def model() -> Model:
+    """Few coefficients are free, so that a wrong added mass shows in them."""
+    one = true_model()
+    return one.with_parameters(one.parameters.only_free(["Y_v", "N_v", "N_r", "N_rr"]))
+
+
+def estimated(name: str, factor: float = 1.0) -> Model:
+    value = model().parameters[name].value
+    return model().with_values({name: factor * value}, source=f"{NOT_MEASURED}: a rule")
+
+
+@pytest.fixture(scope="module")
+def record() -> Record:
+    return with_sensor_noise(simulate_run(true_model(), "zigzag:20/20").resampled(1.0), np.random.default_rng(3), 3)
+
+
+def fitted(one: Model, record: Record) -> Estimation:
+    settings = EstimateSettings(method=EstimateMethod.OUTPUT_ERROR)
+    return estimate_model(one, Runs.one_session_each([record], 9.8), settings, EstimatorOptions(workers=1))
+
+
+def test_the_change_is_that_of_a_fit_with_the_other_value(record: Record) -> None:
+    (effect,) = estimated_value_effects(fitted(estimated("m_y"), record))
+    assert effect.name == "m_y" and effect.error == 0.1
+    before, after = (fitted(estimated("m_y", f), record).model.parameters for f in (0.995, 1.005))
+    centre = fitted(estimated("m_y"), record)
+    change = (after[effect.coefficient].value - before[effect.coefficient].value) / 0.01 * 0.1
+    place = centre.estimate.problem.free.index(effect.coefficient)
+    assert effect.share_of_interval == pytest.approx(abs(change) / centre.interval.half_width[place], rel=0.1)
+    assert effect.relative_change == pytest.approx(change / centre.model.parameters[effect.coefficient].value, rel=0.1)
+
+
+def test_without_estimated_values_no_information_is_computed(record: Record) -> None:
+    assert estimated_value_effects(fitted(model(), record)) == ()
+
+
+def effects(*shares: float) -> tuple[EstimatedValueEffect, ...]:
+    return tuple(EstimatedValueEffect(f"m_{k}", 0.1, "Y_v", 0.2, share, 0.02) for k, share in enumerate(shares))
+
+
+@pytest.mark.parametrize(("share", "prediction", "matters"), [
+    (0.9, 0.9, False), (1.1, 0.0, True), (0.0, 1.1, True),
+])  # fmt: skip
+def test_a_value_matters_by_a_coefficient_or_by_predictions(share: float, prediction: float, *, matters: bool) -> None:
+    assert EstimatedValueEffect("m", 0.1, "Y_v", 0.2, share, prediction).matters is matters
+
+
+def test_what_matters_is_named_the_worst_first() -> None:
+    warned = finding_with_effects(FOUND, effects(5.0, 4.0, 3.0, 2.0, 0.5, 0.1))
+    assert warned.severity is Severity.WARNING and warned.message == FOUND.message
+    assert warned.evidence.startswith("m_0 10 % larger moves Y_v by +20 % (5.0 of half its interval), and predictions")
+    assert warned.evidence.endswith("; m_3 too; m_4 and m_5 matter less") and warned.advice.startswith("measure m_0")
+
+
+def test_where_none_matters_it_is_a_note() -> None:
+    noted = finding_with_effects(FOUND, effects(0.5, 0.1))
+    assert noted.severity is Severity.INFO and noted.evidence.startswith("none of them matters much: m_0 10 % larger")
+    unheld = finding_with_effects(FOUND, ())
+    assert unheld.severity is Severity.INFO and "holds none of them" in unheld.evidence
+
+
+def test_other_findings_pass_unchanged(record: Record) -> None:
+    other, of_values = with_effects((OTHER, FOUND), fitted(model(), record))
+    assert other is OTHER and of_values == finding_with_effects(FOUND, ())
+
+
+def test_of_an_open_sign_no_share_is_given() -> None:
+    text = EstimatedValueEffect("D_P", 0.1, "w_P0", math.nan, 1.6, 0.018).sentence
+    assert "moves w_P0 by 1.6 of half its interval, and" in text and "nan" not in text
