@@ -31,6 +31,18 @@ def test_a_craft_with_thrusters_makes_turns_and_stops(fit: Fit) -> None:
     assert operators_sentence(replace(fit, thruster_craft=replace(CRAFT, measures={}))) == ""
 
 
+def test_what_rests_on_a_guessed_thrust_is_no_headline(fit: Fit) -> None:
+    stops = CraftMeasure(1.7, 1.6, 1.8, "stop:100")
+    craft = replace(CRAFT, measures={"top_speed": CraftMeasure(2.5, 2.4, 2.6, "straight:100"),
+                                     "stopping_distance_m": stops})  # fmt: skip
+    whole = replace(fit, thruster_craft=craft)
+    assert operators_sentence(whole).endswith(" and stops within 1.70 m (1.60 to 1.80 m).")
+    ahead_only = replace(whole, findings=(replace(fit.findings[0], code="no-thrust-astern"),))
+    assert "makes 2.50 m/s" in operators_sentence(ahead_only) and "stops" not in operators_sentence(ahead_only)
+    one_order = replace(whole, findings=(replace(fit.findings[0], code="single-order"),))
+    assert operators_sentence(one_order) == ""
+
+
 def test_motions_in_waves_have_the_sea_and_the_heading(fit: Fit) -> None:
     curve = (0.0, 1.0)
     sea = Seakeeping("run", 9.26, 180.0, "a sea of 3 m", curve, curve, curve, curve, curve, curve, curve, curve, curve,

@@ -1,6 +1,7 @@
 """What a fit means to those who operate the craft, in a sentence: roll, thrusters, motions in waves."""
 
 import math
+from collections.abc import Set
 
 from seatrial.core.results import Fit, RollCharacteristics, Seakeeping
 from seatrial.core.results.ship_motions import IntervalEstimate
@@ -29,7 +30,7 @@ def operators_sentence(fit: Fit) -> str:
     if fit.roll is not None:
         return f"{_roll(fit.roll)}{_at_one_speed(fit)}"
     if fit.thruster_craft is not None:
-        return _craft(fit.thruster_craft)
+        return _craft(fit.thruster_craft, _guessed_measures(fit))
     return "" if fit.seakeeping is None else _waves(fit.seakeeping)
 
 
@@ -69,10 +70,19 @@ def _estimate(e: IntervalEstimate, unit: str) -> str:
     return f"{text.value}{unit} ({text.lower} to {text.upper}{unit})"
 
 
-def _craft(craft: ThrusterCraft) -> str:
-    clauses = [f"{verb} {_measure(craft.measures[name], unit)}" for name, (verb, unit) in _CRAFT_MEASURES.items()
-               if name in craft.measures]  # fmt: skip
-    is_far = any(is_extrapolated(craft.measures[name]) for name in _CRAFT_MEASURES if name in craft.measures)
+def _guessed_measures(fit: Fit) -> Set[str]:
+    """Measures that rest on a thrust that no training run shows: at full command by one order alone, or astern."""
+    codes = {finding.code for finding in fit.findings}
+    if "single-order" in codes:
+        return set(_CRAFT_MEASURES)
+    return {"stopping_distance_m"} if "no-thrust-astern" in codes else set()
+
+
+def _craft(craft: ThrusterCraft, guessed: Set[str]) -> str:
+    names = [name for name in _CRAFT_MEASURES if name in craft.measures and name not in guessed]
+    clauses = [f"{_CRAFT_MEASURES[name][0]} {_measure(craft.measures[name], _CRAFT_MEASURES[name][1])}"
+               for name in names]  # fmt: skip
+    is_far = any(is_extrapolated(craft.measures[name]) for name in names)
     place = "At full command, beyond the training runs," if is_far else "At full command"
     return f"{place} it {enumeration(clauses)}." if clauses else ""
 

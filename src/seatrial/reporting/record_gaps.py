@@ -13,11 +13,12 @@ from seatrial.core.values.channel_text import channel_meaning, channel_unit, uni
 from seatrial.physics.manoeuvres import REACH_PERCENTILE, initial_speed, steered_orders, to_starboard
 from seatrial.physics.models.thruster_layout import ThrusterLayout
 from seatrial.reporting.first_screen import KeyFact
+from seatrial.reporting.verdict import LEAST_RUDDER, ONE_SPEED
 
-# rad below which the rudder is not over; share of the other side's angle below which a side was not used; chosen
-LEAST_RUDDER, ONE_SIDED = math.radians(0.5), 0.1
-# share of their mean by which speeds, and rates of a propeller, differ that count as one; chosen
-ONE_SPEED, ONE_RATE = 0.1, 0.05
+# share of the other side's rudder angle below which a side was not used; chosen
+ONE_SIDED = 0.1
+# share of their mean by which rates of a propeller differ that count as one; chosen
+ONE_RATE = 0.05
 # deg, of most ships' rudders (SOLAS II-1/29), and the share of it from which on it was reached; chosen
 FULL_RUDDER_DEG, REACHED = 35.0, 0.9
 # of the speed or rate of the runs: another one that shows how forces change with it; chosen
@@ -39,7 +40,7 @@ class RecordGap:
 
     @property
     def command(self) -> str:
-        """What `seatrial simulate` takes, and what a crew can be asked for."""
+        """The option of `seatrial simulate`, and the order to a crew."""
         return f"--manoeuvre {self.options}"
 
 

@@ -142,6 +142,7 @@ def test_lags_are_measured(samples: int) -> None:
     late = with_values(record, r=np.roll(record["r"], samples)).rows(slice(20, -20))
     finding = found(late, "lag")
     assert ("lags behind" in finding.message) == (samples > 0)
+    assert ("earlier into the file" in finding.advice) == (samples > 0) and "write r " in finding.advice
     assert float(finding.message.split("about ")[1].split(" s")[0]) == pytest.approx(abs(samples) * 0.1, abs=0.06)
 
 

@@ -91,20 +91,25 @@ def _step(values: Array) -> float | None:
 def lag_findings(record: Record, motion: RecordedMotion | None) -> tuple[Finding, ...]:
     """Lags of u, v behind the positions and of r behind the heading, of a clean, signed record as declared."""
     of_rate = _lag_finding(
-        record, yaw_rate_lag(record), "r lags behind the heading", "r leads the heading, or the heading is late,"
+        record, yaw_rate_lag(record), "r", "r lags behind the heading", "r leads the heading, or the heading is late,"
     )
     # velocities are turned by the heading: where that is late they seem so
-    of_velocity = _lag_finding(record, velocity_lag(motion), "u, v lag behind the positions", "u, v lead the positions")
+    of_velocity = _lag_finding(
+        record, velocity_lag(motion), "u, v", "u, v lag behind the positions", "u, v lead the positions"
+    )
     return of_rate or of_velocity
 
 
-def _lag_finding(record: Record, lag: tuple[float, float] | None, late: str, early: str) -> tuple[Finding, ...]:
+def _lag_finding(
+    record: Record, lag: tuple[float, float] | None, names: str, late: str, early: str
+) -> tuple[Finding, ...]:
     delay, error = lag or (0.0, 0.0)
     if abs(delay) <= max(LAG_SAMPLES * record.dt, LAG_STANDARD_ERRORS * error):
         return ()
     text = f"record '{record.name}': {late if delay > 0 else early} by about {abs(delay):.2g} s"
     evidence = f"{abs(delay) / record.dt:.1f} samples, standard error {error:.2g} s"
-    advice = "shift the channel, or estimate the delay as a nuisance"
+    moved = f"{abs(delay):.2g} s {'earlier' if delay > 0 else 'later'}"
+    advice = f"write {names} {moved} into the file, or leave {names} out of channels under [estimate]"
     return (Finding(Severity.WARNING, "lag", text, evidence, advice),)
 
 

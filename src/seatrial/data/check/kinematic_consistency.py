@@ -13,6 +13,7 @@ from seatrial.data.check.signal import cumulative_integral, least_squares, sampl
 
 ESTIMATE_CURRENT = "if the speed is through water, estimate a current for the run: [estimate] current = 0.3"
 """What to do where a current explains how far velocities and positions are apart; 0.3 m/s: an example."""
+_WITHOUT_VELOCITIES = 'channels = ["x0", "y0", "psi"] under [estimate]'
 # factors by which another reading must reduce the residual to be certain, or possible, ours
 CERTAIN_GAIN, DOUBTFUL_GAIN = 4.0, 2.0
 # ratio of residuals up to which two causes explain an error alike, and both are named; chosen
@@ -76,7 +77,10 @@ def kinematic_consistency_findings(motion: RecordedMotion) -> tuple[Finding, ...
     message = f"record '{record.name}': integrated velocity leaves the position"
     evidence = f"{rms:.3g} m rms over {motion.path_length:.4g} m travelled"
     if gain < DOUBTFUL_GAIN and not is_significant:
-        advice = "check frame, reference point, lag and bias of u, v against the positions"
+        advice = (
+            "check u, v against the positions: frame, reference_point and offset of u and v under [records.channels]; "
+            f"if none is wrong, fit without them, {_WITHOUT_VELOCITIES}"
+        )
         return (Finding(Severity.WARNING, "closure", message, evidence, advice),)
     alike = [one for one in ranked if one.residual_rms <= AMBIGUOUS_RATIO * best.residual_rms]
     message += f"; {' or '.join(one.text for one in alike[:MOST_CAUSES])} would explain it"
@@ -91,7 +95,9 @@ def kinematic_consistency_findings(motion: RecordedMotion) -> tuple[Finding, ...
     is_certain = best.name == "point" and gain > CERTAIN_GAIN and is_distinct
     severity = Severity.ERROR if is_certain else Severity.WARNING
     edits = best.edits if is_distinct else ()
-    return (Finding(severity, "closure", message, evidence, best.advice, edits=edits),)
+    written = "; ".join(str(edit) for edit in best.edits)
+    advice = best.advice if edits or not written else f"{best.advice}; if it is the first, write {written}"
+    return (Finding(severity, "closure", message, evidence, advice, edits=edits),)
 
 
 def _residuals_text(ranked: Sequence[ErrorCause]) -> str:
@@ -175,6 +181,10 @@ def _exact_misalignment(integrated: ComplexArray, position: ComplexArray) -> tup
     return (angle,), float(np.sqrt(0.5 * np.mean(np.abs(track * np.exp(-1j * angle) - truth) ** 2)))
 
 
+def _shifted(lag: float) -> str:
+    return f"{abs(lag):.2g} s {'earlier' if lag > 0.0 else 'later'}"
+
+
 def _cause_text(
     name: str, coefficients: tuple[float, ...], motion: RecordedMotion
 ) -> tuple[str, str, tuple[TrialEdit, ...]]:
@@ -190,9 +200,10 @@ def _cause_text(
             text = f"a lever of {size:+.3g} m not turned with the heading"
             return text, "give the velocities as they were measured, and reference_point", ()
         case "lag of velocity":
-            return f"a lag of {size:.2g} s of the velocities", "shift u, v by the lag, or estimate it", ()
+            advice = f"write u, v {_shifted(size)} into the file, or fit without them, {_WITHOUT_VELOCITIES}"
+            return f"a lag of {size:.2g} s of the velocities", advice, ()
         case "lag of heading":
-            return f"a lag of {size:.2g} s of the heading", "shift psi by the lag", ()
+            return f"a lag of {size:.2g} s of the heading", f"write psi {_shifted(size)} into the file", ()
         case "current":
             speed = np.hypot(coefficients[0], coefficients[1])
             text = f"a current or velocity bias of {speed:.3g} m/s"

@@ -129,7 +129,8 @@ def added_masses(size: StatedSize) -> tuple[EstimatedValue, ...]:
     form = size.form
     estimate = added_mass(form)
     names = {"X_udot": "m_x_prime", "Y_vdot": "m_y_prime", "N_rdot": "J_z_prime"}
-    text = f"{ZHOU}, for {estimate.limits}; of other forms a guess"
+    outside = "" if estimate.valid else ", which this form is not"
+    text = f"{ZHOU}, for {estimate.limits}{outside}; of other forms a guess"
     return tuple(EstimatedValue(key, -estimate.values[one] * form.d / form.L, text) for key, one in names.items())
 
 
