@@ -90,6 +90,28 @@ def test_a_model_without_its_input_in_the_records_cannot_start_yet(tmp_path: Pat
     )
 
 
+@pytest.mark.parametrize(("channels", "is_ready"), [("xy", False), ("psi", False), ("xy psi", True)])
+def test_check_refuses_a_model_of_forces_whose_speeds_nothing_implies(
+    tmp_path: Path, channels: str, *, is_ready: bool
+) -> None:
+    north, east = (np.cumsum(f(TRUTH["psi"]) * TRUTH["u"]) for f in (np.cos, np.sin))
+    columns = {"xy": {"x0": north, "y0": east}, "psi": {"psi": TRUTH["psi"]}}
+    write(tmp_path / "run.csv", {"time": TRUTH["t"], "delta": TRUTH["delta"]} | {
+        name: values for key in channels.split() for name, values in columns[key].items()})  # fmt: skip
+    units = {"x0": "m", "y0": "m", "psi": "rad"}
+    names = [name for key in channels.split() for name in columns[key]]
+    tables = "".join(f'{name} = {{ column = "{name}", unit = "{units[name]}" }}\n' for name in names)
+    (tmp_path / "trial.toml").write_text(
+        '[ship]\nname = "s"\nL = 100.0\nm = 1e6\nI_z = 6e8\nx_G = 0.0\nrho = 1025.0\n[model]\nname = "abkowitz"\n'
+        "[model.fixed]\nU_n = 5.0\nX_udot = -0.001\nY_vdot = -0.01\nN_rdot = -0.0005\n"
+        '[[records]]\nfiles = ["run.csv"]\ntime = { column = "time" }\n[records.channels]\n'
+        f'delta = {{ column = "delta", unit = "rad", positive = "starboard" }}\n{tables}', encoding="utf-8",
+    )  # fmt: skip
+    text = " ".join(output("check", str(tmp_path / "trial.toml")).split())
+    refusal = "neither holds nor implies 'u', which model 'abkowitz' needs; add the channel, or positions and heading"
+    assert (refusal in text) is not is_ready
+
+
 def test_the_next_command_quotes_a_path_with_spaces(tmp_path: Path) -> None:
     folder = tmp_path / "[2024] trials"
     folder.mkdir()

@@ -71,19 +71,33 @@ def check(trial: "Trial | str | Path") -> "tuple[Finding, ...]":
 
 
 def _checked(trial: "Trial") -> "tuple[Finding, ...]":
-    """The findings of the records, and one where a record has no channel for an input of the model."""
+    """The findings of the records, and one where they lack an input of the model, or a state that nothing implies."""
     from seatrial.core.values import Finding, InputError, Severity
-    from seatrial.data.trial import load_records
+    from seatrial.data.trial import Role, load_records
     from seatrial.physics.simulate.channels import require_inputs
 
     records, findings = load_records(trial)
     try:
         for record in records:
             require_inputs(trial.model, record.record)
+        _require_motion(trial.model, [r.record for r in records if r.role is Role.TRAIN])
     except InputError as error:
         what = "'seatrial identify' cannot start yet"
         return (*findings, Finding(Severity.INFO, "model", what, "", str(error)))
     return findings
+
+
+def _require_motion(model: "Model", records: "Sequence[Record]") -> None:
+    """Refuse records of a steered craft from which its states cannot begin.
+
+    Raises:
+        InputError: a state is neither measured nor implied by another channel.
+    """
+    from seatrial.physics.simulate.states import hidden_states, measured_states
+
+    if "delta" in model.input_names and not hidden_states(model, records):
+        for record in records:
+            measured_states(model, record)
 
 
 def correct_trial(trial: "str | Path") -> "Correction":

@@ -11,6 +11,7 @@ from seatrial.physics.sensors.measured_outputs import is_late
 from seatrial.physics.simulate.actuators import actuator_motion, actuator_states
 from seatrial.physics.simulate.channels import inputs_of
 
+_WITH_HEADING = ", or positions and heading"  # from which u and v are derived
 _SMOOTHING_SAMPLES = 15  # window of the local polynomials, samples; chosen
 
 
@@ -45,7 +46,7 @@ def measured_states(model: Model, record: Record) -> Array:
     if missing:
         raise InputError(
             f"record '{record.name}' neither holds nor implies '{missing[0]}', "
-            f"which model '{model.name}' needs; add the channel"
+            f"which model '{model.name}' needs; add the channel{_WITH_HEADING if missing[0] in 'uv' else ''}"
         )
     columns = np.stack([found[s] for s in model.states], axis=1)
     return np.ascontiguousarray(np.where(np.isfinite(columns), columns, 0.0))
