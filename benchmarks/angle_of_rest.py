@@ -41,7 +41,7 @@ def decays(seed: int, count: int, memory: float) -> list[Record]:
         start = np.array([RELEASE * (-1.0) ** k * (1.0 - 0.1 * k), 0.0])
         phi = trajectory(model, inputs, STEP, start)[0][:, model.states.index("phi")]
         measured = phi + NOISE * rng.standard_normal(ROWS)
-        records.append(Record.from_arrays(f"decay_{k + 1}", STEP * np.arange(ROWS), {"phi": measured}))
+        records.append(Record.from_arrays(f"decay_{k + 1}", STEP * np.arange(0.0, ROWS), {"phi": measured}))
     return records
 
 

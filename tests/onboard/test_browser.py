@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 from tests.onboard.fabricated import faulty_counts, heave_pitch, mmg
 from tests.reporting.fabricated import zigzag
+from tests.reporting.test_browser import MOST_EMPTY, RULES, empty_shares
 
 from seatrial.core.results.online import SampleCounts
 from seatrial.core.values import Finding, Severity
@@ -86,6 +87,32 @@ def test_track_rudder_heading_and_what_to_do_next_stand_on_the_first_screen(brow
             assert box is not None and box["y"] + box["height"] < 900
         window.set_viewport_size({"width": 390, "height": 844})
         assert window.evaluate("document.documentElement.scrollWidth") <= 390
+        assert said == []
+
+
+OUTSIDE = """() => [...document.querySelectorAll('figure svg text')].filter(text => {
+    const box = text.getBoundingClientRect(), figure = text.closest('figure').getBoundingClientRect();
+    return box.width > 0 && (box.left < figure.left - 1 || box.right > figure.right + 1);
+}).map(text => text.textContent)"""
+
+
+@pytest.mark.parametrize("count", [1, 20])
+def test_its_plots_fit_a_telephone_from_the_first_estimate_on_and_its_sheets_are_filled(
+    browser: "Browser", page: Page, count: int
+) -> None:
+    for snapshot in list(mmg(40.0))[-count:]:
+        page.show(replace(snapshot, recent=(zigzag("z", 20.0),)), faulty_counts())
+    with opened(browser, page) as (window, said):
+        window.locator("#values path.course").last.wait_for(state="attached")
+        window.set_viewport_size({"width": 390, "height": 844})
+        assert window.evaluate("document.documentElement.scrollWidth") <= 390
+        assert window.evaluate(OUTSIDE) == []
+        assert [window.evaluate(f"({RULES}).{rule}()") for rule in ("faint", "cut", "unnamed")] == [[], [], []]
+        ticks = window.locator("#values figure").first.locator(".tick").all_text_contents()
+        assert len(set(ticks)) == len(ticks)
+        window.set_viewport_size({"width": 1400, "height": 900})
+        shares = empty_shares(window.pdf(format="A4", prefer_css_page_size=True))
+        assert max(shares[:-1]) <= MOST_EMPTY and shares[-1] < 1.0
         assert said == []
 
 

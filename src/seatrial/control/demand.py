@@ -56,7 +56,7 @@ def simulate_manoeuvres(
     """The task's change of the output, and a zigzag about the trim of half of it to either side, with the gains (g,).
 
     Ships are drawn from the covariance of the fit; one that has no trim counts as not stable. Where one is not, or
-    runs away, the worst overshoot is infinite. A task without a model behind its plant is simulated from its transfer
+    diverges, the worst overshoot is infinite. A task without a model behind its plant is simulated from its transfer
     functions.
     """
     ship = task.trimmed_ship or plant_as_model(loop)
@@ -80,7 +80,7 @@ def shortfall(task: TuningTask, loop: TransferLoop, gains: Array, *, draws: int 
     try:
         change = simulate_manoeuvres(task, loop, "", gains, 0, draws=0)[0]
     except DivergedError:
-        return 100.0 + lost, "the identified ship runs away"
+        return 100.0 + lost, "the simulation of the identified ship diverges"
     beyond = max(change.overshoot - asked.overshoot, 0.0)
     is_slow = not change.settling <= asked.settling
     why = [f"{lost} of {drawn} ships that the fit allows are not stable"] if lost else []
@@ -244,7 +244,7 @@ def _trim(ship: TrimmedShip) -> float:
 def _output_about_trim(
     ship: TrimmedShip, loop: TransferLoop, gains: Array, limits: ActuatorLimits, programme: _Programme
 ) -> Array | None:
-    """Return the output about the trim (n,); None where the ship runs away."""
+    """Return the output about the trim (n,); None where the simulation diverges."""
     try:
         answer = simulate_tracking(ship, loop, gains, limits, programme.dt, programme.reference, programme.fed_forward)
         return answer[0] - _trim(ship)

@@ -25,7 +25,8 @@ def corner_sentence(track: TrackKeeping) -> str:
         f"{significant(c.overshoot, 3)} m beyond the new leg"
     )
     if c.draws:
-        worst = "one runs away" if math.isinf(c.worst_overshoot) else f"{significant(c.worst_overshoot, 3)} m at most"
+        most = f"{significant(c.worst_overshoot, 3)} m at most"
+        worst = "the simulation of one diverges" if math.isinf(c.worst_overshoot) else most
         known = "" if math.isnan(c.worst_overshoot) else f" ({worst})"
         text += f"; {c.stable_draws} of {c.draws} ships that the fit allows keep a track{known}"
     return f"{text}."

@@ -26,7 +26,7 @@ def decay(name: str, start: float, heel: Array | float, seed: int) -> Record:
     inputs[:, 0] = heel  # a constant slope of the water heels the ship by as much
     phi = trajectory(model().with_values(TRUE), inputs, DT, np.array([start, 0.0]))[0][:, 0]
     noise = NOISE * np.random.default_rng(seed).standard_normal(ROWS)
-    return Record.from_arrays(name, DT * np.arange(ROWS), {"phi": phi + noise})
+    return Record.from_arrays(name, DT * np.arange(0.0, ROWS), {"phi": phi + noise})
 
 
 def fitted(*heels: Array | float) -> Estimation:

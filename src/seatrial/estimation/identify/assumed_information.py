@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from seatrial.core.values import Array, Prior
+from seatrial.core.values import Array, Index, Prior
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.information.consequences import estimate_shifts
@@ -28,7 +28,7 @@ class AssumedInformation:
     place: Mapping[str, int]
     point: Array
     information: Array
-    moving: Array
+    moving: Index
     count: int
     chi_squared: float
     samples: int

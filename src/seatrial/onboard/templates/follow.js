@@ -56,7 +56,9 @@ function thinned(points) {
 function path(xs, ys) {
   let words = "", pen = "M";
   xs.forEach((x, k) => {
-    if (Number.isFinite(ys[k])) { words += `${pen}${x.toFixed(1)} ${ys[k].toFixed(1)}`; pen = "L"; } else pen = "M";
+    if (!Number.isFinite(ys[k])) { pen = "M"; return; }
+    words += `${pen}${x.toFixed(1)} ${ys[k].toFixed(1)}${pen === "M" ? "h0" : ""}`;  // h0: a single point is a dot
+    pen = "L";
   });
   return words;
 }
@@ -79,7 +81,7 @@ function bandPath(xs, lows, highs) {
 function panel(width, height, box, xs, range, labels) {
   const svg = svgNode("svg", { viewBox: `0 0 ${width} ${height}`, role: "img" });
   const [left, top, right, bottom] = box;
-  const first = xs[0] ?? 0, last = Math.max(xs.at(-1) ?? 1, first + 1e-9), [size, unit] = clock(last);
+  const first = xs[0] ?? 0, end = xs.at(-1) ?? 1, last = end > first ? end : first + 1, [size, unit] = clock(last);
   const X = x => left + (x - first) / (last - first) * (right - left);
   const Y = y => bottom - (y - range[0]) / (range[1] - range[0]) * (bottom - top);
   const onX = ticks(first / size, last / size, Math.max(3, (right - left) / 90));
