@@ -44,7 +44,8 @@ STEEPNESS, SPREAD = math.log(0.02), 0.5  # logarithm of 2 pi H / (g T^2) of the 
 FIRST_HEIGHTS = math.log(1.5), math.log(5.0)  # of a voyage's first sea, m
 DRIFT = 0.2, 0.2  # deviations of the logarithms of height and steepness from one look to the next
 TURNS = 0.3  # share of the looks before which course and speed were changed
-LINES = 3000  # of a simulated sea
+LINES = 12000  # of a simulated sea, several in each step of a transform of the stretch
+LONGEST = 0.4  # times the frequency of the peak: the longest waves of a simulated sea
 FINER = 8  # times the frequencies of a transform of the stretch, on which its lines stand
 
 
@@ -98,9 +99,9 @@ def stretch(task: TuningTask, loop: TransferLoop, weather: Weather, rng: np.rand
     dt = natural_period(task.loop) / 12.0
     count = round(STRETCH_S / dt)
     spectrum, seaway = sea_spectrum(weather.sea), next(met for met in task.disturbances if isinstance(met, Seaway))
-    edges = np.linspace(0.4, 4.5, LINES + 1) * spectrum.modal_frequency
+    # up to the shortest waves that move the ship: those of following seas are met at frequencies of the roll, too
+    edges = np.linspace(LONGEST * spectrum.modal_frequency, seaway.effect.frequency_range[1], LINES + 1)
     omega = edges[:-1] + np.diff(edges) * rng.random(LINES)
-    omega = omega[omega < seaway.effect.frequency_range[1]]
     met = np.abs(encounter_frequency(omega, weather.U, weather.beta))
     size = np.sqrt(spectrum.density(omega) * (edges[1] - edges[0]))
     size = size * np.abs(seaway.effect.amplitude(omega, weather.U, weather.beta))
@@ -169,7 +170,7 @@ def _cost(task: TuningTask, loop: TransferLoop, weather: Weather) -> float:
     if float(loop.closed_loop_poles.real.max()) >= 0.0:
         return math.inf
     spectrum, seaway = sea_spectrum(weather.sea), next(met for met in task.disturbances if isinstance(met, Seaway))
-    omega = np.linspace(0.4, 4.5, LINES) * spectrum.modal_frequency
+    omega = np.linspace(LONGEST * spectrum.modal_frequency, seaway.effect.frequency_range[1], LINES)
     met = np.abs(encounter_frequency(omega, weather.U, weather.beta))
     slope = np.abs(seaway.effect.amplitude(omega, weather.U, weather.beta)) ** 2 * spectrum.density(omega)
     free = np.abs(loop.disturbance.frequency_response(met)) ** 2 * slope

@@ -56,11 +56,11 @@ def test_no_gains_from_a_stretch_that_says_too_little(values: np.ndarray, reason
 
 
 def test_two_ranges_of_headings_are_two() -> None:
-    headings = np.radians(np.concatenate([np.full(70, 31.0), np.full(30, 92.0)]))
+    headings = np.radians(np.concatenate([np.full(70, 31.5), np.full(30, 92.5)]))
     first, second = likeliest_headings(headings)
-    assert (math.degrees(first.lower), math.degrees(first.upper)) == pytest.approx((30.0, 35.0))
+    assert (math.degrees(first.lower), math.degrees(first.upper)) == pytest.approx((31.0, 32.0))
     assert first.probability == pytest.approx(0.7)
-    assert math.degrees(second.lower) == pytest.approx(90.0)
+    assert math.degrees(second.lower) == pytest.approx(92.0)
 
 
 def test_looks_are_counted(proposal: Proposal) -> None:

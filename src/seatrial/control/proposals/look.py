@@ -1,7 +1,6 @@
 """A stretch of steady speed and heading in, a proposal out: sea, craft and gains, or why there are none."""
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,16 +12,18 @@ from seatrial.control.verification.legs import natural_period
 from seatrial.control.verification.stabiliser import prior_deviations
 from seatrial.core.results.proposal import CraftFactor, HeadingRange, Proposal, SeaEstimate
 from seatrial.core.values import Array
+from seatrial.estimation.problem.spectral_likelihood import hann_transform
 from seatrial.estimation.sea import (
+    EVERY,
+    MotionSpectrum,
     ObservedLeg,
+    SeaLikelihood,
     ShipInSea,
-    WaveLeg,
     draw_ship_in_sea,
-    encountered_sea,
     stretch_spectra,
 )
 
-SEGMENT_PERIODS = 24.0  # natural periods in a segment: following seas gather in a few bins; chosen
+SEGMENT_PERIODS = 24.0  # natural periods in a segment of those by which gains are regressed; chosen
 SHORTEST_PERIODS = 80.0  # natural periods that a stretch must hold: five segments and more; chosen
 RATE = 12.0  # samples a natural period that the spectra need; chosen
 _LOWEST, _HIGHEST = 0.25, 3.0  # frequencies over the natural one that are looked at; chosen
@@ -31,7 +32,8 @@ _LAST = 0.9  # of the highest frequency, above which there are sensors alone whe
 _LEAST_MOTION = math.radians(0.15)  # rms of a motion below which sensors and gusts are as large; chosen
 _STILL = 0.02  # of the output's rms, below which the actuator counts as still; chosen
 _LEAST_COHERENCE = 0.6  # of the actuator with what any gains of the loop order of the output; chosen
-_CELLS = 36  # of headings from following to head seas; chosen
+_CELLS = 180  # of headings from following to head seas: degrees, as those of the likelihood; chosen
+_GAP = 3  # cells that ranges of headings may lie apart and count as one; chosen
 _PROBABILITY = 0.95  # of the headings that are given
 _NARROW = math.radians(45.0)  # width of a range of headings up to which the heading is determined; chosen
 _NAMES = ("gain of the actuator", "natural frequency", "damping")
@@ -72,7 +74,7 @@ def look(
         )
         return no_proposal(task, stretch.start, stretch.stop, reason, stretch.U)
     rng = np.random.default_rng(seed)
-    draws = draw_ship_in_sea(leg_by_heading(task, stretch), prior_deviations(task), rng)
+    draws = draw_ship_in_sea(sea_likelihood(task, stretch), rng)
     choice = propose_gains(task, schedule, draws, stretch.U, current)
     is_chosen = isinstance(choice, ChosenGains)
     return Proposal(
@@ -97,28 +99,39 @@ def no_proposal(task: TuningTask, start: float, stop: float, reason: str, U: flo
     return Proposal(task.name, start, stop, {}, (reason,), U=U)
 
 
-def leg_by_heading(task: TuningTask, stretch: Stretch) -> Callable[[float], WaveLeg]:
-    """Return a function of the heading [rad] that gives the stretch as met at it."""
+def sea_likelihood(task: TuningTask, stretch: Stretch) -> SeaLikelihood:
+    """Return the likelihood of the stretch in the sea of the task whose height, period and heading are not known."""
     seaway = next(met for met in task.disturbances if isinstance(met, Seaway))
-    observed = _observed(task, stretch)
     expected = 2.0 * math.pi / seaway.spectrum.modal_frequency
-
-    def leg_at(beta: float) -> WaveLeg:
-        sea = encountered_sea(observed.spectra.omega, stretch.U, beta, seaway.effect)
-        return WaveLeg(observed, sea, expected)
-
-    return leg_at
+    motion = _motion_spectrum(task, stretch, _observed(task, stretch))
+    return SeaLikelihood(motion, task.loop_at(stretch.U), stretch.U, seaway.effect, expected, prior_deviations(task))
 
 
 def _observed(task: TuningTask, stretch: Stretch) -> ObservedLeg:
-    """Return the band of the spectra in which the craft answers waves, with the density of what else is in it."""
+    """Return the spectra of segments, by which gains are regressed."""
     period = natural_period(task.loop)
-    natural = 2.0 * math.pi / period
     spectra = stretch_spectra(stretch.values, stretch.dt, SEGMENT_PERIODS * period)
-    density = spectra.cross_density(0, 0).real
-    quiet = density[spectra.omega > min(_QUIET * natural, _LAST * spectra.omega[-1])]
-    band = spectra.band_limited(_LOWEST * natural, _HIGHEST * natural)
-    return ObservedLeg(band, task.loop_at(stretch.U), float(np.median(quiet)))
+    natural = 2.0 * math.pi / period
+    return ObservedLeg(spectra.band_limited(_LOWEST * natural, _HIGHEST * natural), task.loop_at(stretch.U))
+
+
+def _motion_spectrum(task: TuningTask, stretch: Stretch, observed: ObservedLeg) -> MotionSpectrum:
+    """Return the band of the whole stretch's transform in which the craft answers waves, and the noise above it."""
+    natural = 2.0 * math.pi / natural_period(task.loop)
+    omega, transforms = hann_transform(stretch.values, stretch.dt)
+    density = np.abs(transforms[:, 0]) ** 2
+    kept = np.flatnonzero((omega >= _LOWEST * natural) & (omega <= _HIGHEST * natural))[::EVERY]
+    quiet = omega > min(_QUIET * natural, _LAST * float(omega[-1]))
+    followed = observed.controller_at(omega[quiet]) * observed.loop.plant.frequency_response(omega[quiet])
+    band = omega[kept]
+    return MotionSpectrum(
+        omega=band,
+        step=float(omega[1] - omega[0]),
+        density=density[kept],
+        controller=observed.controller_at(band),
+        independent_actuator=np.interp(band, observed.spectra.omega, observed.independent_actuator),
+        noise=float(np.mean(density[quiet] * np.abs(1.0 + followed) ** 2)),
+    )
 
 
 def sea_estimate(draws: ShipInSea) -> SeaEstimate:
@@ -134,16 +147,17 @@ def sea_estimate(draws: ShipInSea) -> SeaEstimate:
 
 
 def likeliest_headings(headings: Array) -> tuple[HeadingRange, ...]:
-    """Return the fewest cells of headings that hold 95 % of draws (n,), neighbours together, the likeliest range first.
+    """Return the fewest degrees of heading that hold 95 % of draws (n,) as ranges, the likeliest first.
 
-    Cells are five degrees wide.
+    Ranges up to three degrees apart are one.
     """
     edges = np.linspace(0.0, math.pi, _CELLS + 1)
     shares = np.histogram(headings, edges)[0] / len(headings)
     order = np.argsort(-shares, kind="stable")
     cells = np.sort(order[: int(np.searchsorted(np.cumsum(shares[order]), _PROBABILITY)) + 1])
-    runs = np.split(cells, np.flatnonzero(np.diff(cells) > 1) + 1)
-    ranges = [HeadingRange(float(edges[run[0]]), float(edges[run[-1] + 1]), float(np.sum(shares[run]))) for run in runs]
+    runs = np.split(cells, np.flatnonzero(np.diff(cells) > _GAP) + 1)
+    ends = [(int(run[0]), int(run[-1]) + 1) for run in runs]
+    ranges = [HeadingRange(float(edges[i]), float(edges[j]), float(np.sum(shares[i:j]))) for i, j in ends]
     return tuple(sorted(ranges, key=lambda one: -one.probability))
 
 

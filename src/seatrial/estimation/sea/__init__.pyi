@@ -10,3 +10,7 @@ from seatrial.estimation.sea.stretch_spectra import stretch_spectra as stretch_s
 from seatrial.estimation.sea.wave_leg import LegLikelihood as LegLikelihood, ObservedLeg as ObservedLeg
 from seatrial.estimation.sea.wave_leg import WaveLeg as WaveLeg
 from seatrial.estimation.sea.sea_posterior import ShipInSea as ShipInSea, draw_ship_in_sea as draw_ship_in_sea
+from seatrial.estimation.sea.encounter_matrix import TransformBins as TransformBins, band_edges as band_edges
+from seatrial.estimation.sea.encounter_matrix import encounter_matrix as encounter_matrix
+from seatrial.estimation.sea.sea_likelihood import EVERY as EVERY
+from seatrial.estimation.sea.sea_likelihood import MotionSpectrum as MotionSpectrum, SeaLikelihood as SeaLikelihood

@@ -47,12 +47,10 @@ class ObservedLeg:
     Attributes:
         spectra: of output and actuator, in that order.
         loop: its plant and disturbance are those at the leg's speed; of its gains the values do not count.
-        noise: density of the output that no sea explains, besides the least that is always assumed.
     """
 
     spectra: StretchSpectra
     loop: TransferLoop
-    noise: float = 0.0
 
     @cached_property
     def gains(self) -> Array:
@@ -117,15 +115,12 @@ class WaveLeg:
 
     def responses(self, ship: Array) -> ShipResponses:
         """Return the responses of the ship with these factors (3,)."""
-        return self.responses_of(altered_loop(self.observed.loop, ship))
-
-    def responses_of(self, loop: TransferLoop) -> ShipResponses:
-        """Return the responses of a loop's plant and disturbance."""
+        loop = altered_loop(self.observed.loop, ship)
         closed = 1.0 + loop.plant.frequency_response(self.sea.omega_e) * self._node_controller
         gain = np.abs(loop.disturbance.frequency_response(self.sea.omega_e) / closed) ** 2
         P = loop.plant.frequency_response(self.spectra.omega)
         moved = np.abs(P / (1.0 + P * self.observed.controller)) ** 2 * self.observed.independent_actuator
-        return ShipResponses(gain, moved + self.observed.noise + _FLOOR * float(np.max(self.observed.output_density)))
+        return ShipResponses(gain, moved + _FLOOR * float(np.max(self.observed.output_density)))
 
     def _likelihood(self, ship: ShipResponses, energy: Array) -> LegLikelihood:
         """Return the likelihood of a ship met by waves of that energy at each node, (n,)."""
