@@ -6,6 +6,15 @@ from dataclasses import replace
 
 import numpy as np
 
+from seatrial.core.results.station import (
+    StationCapability,
+    StationFront,
+    StationKeeping,
+    StationMargins,
+    StationPrecision,
+    StationThruster,
+    StationTrial,
+)
 from seatrial.core.results.tuning import (
     Component,
     Controller,
@@ -113,7 +122,7 @@ def fabricated_autopilot() -> Tuning:
         manoeuvres=(_course_change(rng, "course change of 20 deg", "chosen", 1.7, 60.0),
                     replace(_course_change(rng, "course change of 20 deg", "given", 1.0, 12.0), draws=0, stable_draws=0,
                             worst_overshoot=math.nan, sampled_outputs=np.empty((0, 0)), settling=math.nan)),
-        findings=(), reasons=(), track=fabricated_track(),
+        findings=(), reasons=(), track=fabricated_track(), station=fabricated_station(),
     )  # fmt: skip
 
 
@@ -128,6 +137,26 @@ def fabricated_track() -> TrackKeeping:
                                  {"output": 0.2, "actuator": 3e-4, "actuator_rate": 3e-5})  # fmt: skip
     corner = CornerResponse(turn, 200.0, 0.3, record, 41.0, 55.0, 99, 100)
     return TrackKeeping(300.0, 1.5, 0.02, 7.0, 1.6, 4.0, math.radians(48.0), 35.0, (kept,), corner)
+
+
+def fabricated_station() -> StationKeeping:
+    """Two thrusters, the current held from every quarter, one draw lost."""
+    t, units = np.linspace(0.0, 100.0, 200), (("N/m", "N/m", "N/rad"),) * 3
+    record = Record.from_arrays(
+        "station", t, {"x0": np.sin(t), "y0": 0.5 * np.cos(t), "psi": 0.1 * np.sin(t)}, RecordKind.SIMULATED
+    )
+    quarters, thrust = 0.5 * math.pi * np.arange(4), np.array([-40.0, 0.0, 60.0])
+    share, inverse = np.array([-1.0, 0.0, 1.0]), np.array([[0.5, 0.0, 0.4]])
+    return StationKeeping(
+        0.4, 0.7, 1.0, 0.1, np.diag([13.0, 19.5, 5.2]), np.diag([0.46, 0.69, 0.3]), np.diag([45.0, 60.0, 0.0]),
+        dict.fromkeys(("KP", "KI", "KD"), units), np.array([0.2, 0.2, 0.15]), 0.1, 0.15, "N", 0.3, ("gusts of 5 N",),
+        StationMargins(1.59, 1.42, 1.58, 1.92, 0.92), StationPrecision(0.42, 0.2, 0.05),
+        StationFront(*(np.array([0.3, 0.4]) for _ in range(4)), evaluations=99),
+        (StationThruster("bow", inverse, share, thrust), StationThruster("stern", inverse, share, thrust)),
+        StationCapability(quarters, np.array([2.0, 1.1, 1.5, 1.1]), np.array([2.0, 1.0, 1.4, 1.0]), np.full(4, 90.0),
+                          (("bow",), ("bow", "stern"), (), ())),
+        StationTrial(quarters, 0.44, 0.78, 0.26, 0.09, 0.01, np.array([0.08, 0.1]), record, 100, 99, 0.93),
+    )  # fmt: skip
 
 
 def _kept_in_a_slow_disturbance() -> DisturbanceSimulation:

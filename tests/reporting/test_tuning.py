@@ -13,6 +13,14 @@ from tests.reporting.test_page import HOSTILE, parsed
 from seatrial.core.results.tuning import PairedDifference, Tuning
 from seatrial.core.values import Finding, Severity
 from seatrial.reporting.first_screen import KeyFact
+from seatrial.reporting.station_part import (
+    capability_figure,
+    footprint_figure,
+    gain_rows,
+    precision_sentence,
+    station_sentences,
+    thruster_rows,
+)
 from seatrial.reporting.track_part import corner_figure, corner_sentence, track_rows
 from seatrial.reporting.tuning import TITLES, html
 from seatrial.reporting.tuning_rows import (
@@ -33,8 +41,8 @@ from seatrial.reporting.tuning_text import (
 LARGEST = 600_000
 MADE = {"fin": fabricated_fin, "autopilot": fabricated_autopilot, "bare": fabricated_bare}
 SECTIONS = {
-    "fin": set(TITLES) - {"disturbances", "manoeuvres", "search", "track"},
-    "autopilot": {"controllers", "disturbances", "margins", "manoeuvres", "track", "loop", "method"},
+    "fin": set(TITLES) - {"disturbances", "manoeuvres", "search", "station", "track"},
+    "autopilot": {"controllers", "disturbances", "margins", "manoeuvres", "station", "track", "loop", "method"},
     "bare": {"controllers", "method"},
 }
 
@@ -77,6 +85,28 @@ def test_disturbances_are_shown_predicted_and_simulated() -> None:
     ]
     assert [count for *_, count in disturbance_headings(autopilot)] == [3, 2, 2]
     assert "0.591 ± 0.02" in html(autopilot)
+
+
+def test_a_station_is_shown_with_its_precision_margins_and_capability() -> None:
+    autopilot = fabricated_autopilot()
+    station = autopilot.station
+    assert station is not None
+    assert station_sentences(station) == (
+        "In 0.3 m/s of current from 4 directions the craft stays within 0.780 m 95 % of the time (0.440 m rms, 0.420 m "
+        "by linear theory), its heading to 15° rms (11°), with 9.0 % of full thrust (rms); 99 of 100 craft that "
+        "the fit allows keep it (0.930 m at most).",
+        "Natural frequencies: 0.40 rad/s of position, 0.70 rad/s of heading. Ms of surge, sway and yaw 1.59, 1.42 and "
+        "1.58, of all together 1.92; delay margin 0.92 s beyond 0.15 s of dead time.",
+        "The thrusters hold a steady current of 1.10 m/s from any direction (least from 90° off the bow, where bow and "
+        "stern are at their limits), 2.00 m/s from 0°; shared out as the controller does, 1.00 m/s from any direction.",
+    )
+    assert gain_rows(station)[0] == ("K_p", "surge of the error in surge", "13.00", "N/m")
+    assert len(gain_rows(station)) == 8
+    assert thruster_rows(station)[1] == ("stern", "−40.0", "60.0", "10")
+    page = html(autopilot)
+    assert footprint_figure(station) in page and capability_figure(station) in page
+    assert rows(autopilot)["Station"].text == precision_sentence(station)
+    assert not rows(autopilot)["Station"].is_good
 
 
 def test_a_track_is_shown_with_its_guidance_and_corner() -> None:

@@ -33,6 +33,7 @@ def print_tuning(tuning: "Tuning") -> None:
     _print_disturbances(tuning)
     _print_manoeuvres(tuning)
     _print_track(tuning)
+    _print_station(tuning)
     print_warnings(tuning.findings)
     print_lines([_effort_text(tuning)])
 
@@ -173,6 +174,19 @@ def _print_track(tuning: "Tuning") -> None:
         header = ("distance from the track, rms [m]", "predicted", "simulated", "with limits")
         print_table([header, *(row[:4] for row in track_rows(tuning, tuning.track))])
         print_lines([corner_sentence(tuning.track)], "  ")
+
+
+def _print_station(tuning: "Tuning") -> None:
+    from seatrial.reporting.station_part import gain_rows, station_sentences, thruster_rows
+
+    station = tuning.station
+    if station is not None:
+        print_heading("Station keeping")
+        print_lines(station_sentences(station), "  ")
+        print_table([("gain", "force from", "value", "unit"), *gain_rows(station)], flush_left=(0, 1, 3))
+        unit = station.force_unit
+        header = ("thruster", f"full astern [{unit}]", f"full ahead [{unit}]", "used, rms [%]")
+        print_table([header, *thruster_rows(station)])
 
 
 def _print_manoeuvres(tuning: "Tuning") -> None:

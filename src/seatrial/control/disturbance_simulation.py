@@ -108,11 +108,16 @@ def disturbance_realisation(
     """
     rng = np.random.default_rng(number)
     if isinstance(met, SlowDisturbance):
-        stay = math.exp(-met.bandwidth * clock.dt)
-        kicks = met.rms * math.sqrt(1.0 - stay**2) * rng.standard_normal(clock.count)
-        return np.fromiter(accumulate(kicks.tolist(), lambda now, kick: stay * now + kick), np.float64, clock.count)
+        return met.rms * gauss_markov(met.bandwidth, clock.dt, clock.count, rng)
     lines = wave_components(met, rng, frequency_band(met, response or (lambda omega: _response(loop, omega))))
     return sum_harmonics(lines.omega_e, effect_amplitudes(lines, met.effect), clock.dt, clock.count)
+
+
+def gauss_markov(bandwidth: float, dt: float, count: int, rng: np.random.Generator) -> Array:
+    """Return exact steps of a first-order Gauss-Markov process of unit rms (Gelb 1974, section 3.8), (count,)."""
+    stay = math.exp(-bandwidth * dt)
+    kicks = math.sqrt(1.0 - stay**2) * rng.standard_normal(count)
+    return np.fromiter(accumulate(kicks.tolist(), lambda now, kick: stay * now + kick), np.float64, count)
 
 
 def _mean_squares(run: ClosedLoop, disturbance: Array, clock: DisturbanceClock, limits: ActuatorLimits) -> Array:

@@ -9,7 +9,9 @@ from seatrial.control.choose_by_simulation import MAX_SATURATION_LOSS
 from seatrial.control.gain_choice import ON_BOUND, gains_on_bound
 from seatrial.control.gain_evaluation import GainEvaluator
 from seatrial.control.schedule import Schedule
+from seatrial.control.station.tune_station import STATION_DIRECTIONS
 from seatrial.control.task import Demand
+from seatrial.core.results.station import StationKeeping
 from seatrial.core.results.tuning import (
     Controller,
     DisturbanceSimulation,
@@ -27,6 +29,7 @@ _NO_RESTRICTIONS = (
     "the genetic search knows no restriction: run without --method, or take 'own front' (reference in tuning.json)"
 )
 MAX_LIMITED_RATIO = 1.1  # of the output's rms with limits over that without; chosen
+MAX_STATION_CUT = 0.05  # share of the time in which limits cut the force ordered on station; chosen
 _LEAST_COVERAGE = 0.97  # share of the hypervolume of the checking grid; chosen
 
 
@@ -41,6 +44,7 @@ class Checks:
     schedule: Schedule = field(default_factory=Schedule)
     bounds: tuple[PerformanceBound, ...] = ()
     track: TrackKeeping | None = None
+    station: StationKeeping | None = None
     is_interrupted: bool = False
 
 
@@ -68,6 +72,7 @@ def findings(
         if s.limited["output"] > MAX_LIMITED_RATIO * s.unlimited["output"]
     ]  # fmt: skip
     found += _track_findings(checks.track)
+    found += _station_findings(checks.station)
     if front.hypervolume < _LEAST_COVERAGE:
         found.append(_warning("coarse-front", f"the front covers {100.0 * front.hypervolume:.1f} % of what a grid of "
                               "all gains does", "give it another seed"))  # fmt: skip
@@ -144,6 +149,25 @@ def _track_findings(track: TrackKeeping | None) -> list[Finding]:
     if held > MAX_LIMITED_RATIO * free:
         text = f"the distance from the track is {held / free:.2g} times as large with the actuator's limits as without"
         found.append(_warning("track-lost-to-limits", text, "allow the actuator more, or less Ms"))
+    return found
+
+
+def _station_findings(station: StationKeeping | None) -> list[Finding]:
+    if station is None:
+        return []
+    found, trial = [], station.trial
+    if trial.stable_draws < trial.draws:
+        text = f"{trial.draws - trial.stable_draws} of {trial.draws} craft that the fit allows do not keep the station"
+        found.append(_warning("station-lost", text, "more trials, or more margin (less Ms)"))
+    if len(trial.directions) < STATION_DIRECTIONS:
+        text = (
+            f"the station was tried in a current from {len(trial.directions)} of {STATION_DIRECTIONS} directions: from "
+            "the others the thrusters do not hold its strongest"
+        )
+        found.append(_warning("station-not-held", text, "turn the bow into the current, or give a slower one"))
+    if trial.cut > MAX_STATION_CUT:
+        text = f"the thrusters' limits cut the force ordered {100.0 * trial.cut:.2g} % of the time on station"
+        found.append(_warning("station-limited", text, "a slower current, or more of full command (station.limit)"))
     return found
 
 

@@ -17,6 +17,7 @@ from seatrial.physics.loops import (
     ActuatorDrive,
     Block,
     EncounterSpectrum,
+    HullFactor,
     LoopSignal,
     Objective,
     TransferLoop,
@@ -195,6 +196,32 @@ class TrackDemand:
     acceptance: float
 
 
+@dataclass(frozen=True, eq=False)
+class StationDemand:
+    """A place and heading to be kept in a steady `current` [m/s] from any direction, and in what varies.
+
+    Attributes:
+        model: of a craft with thrusters, driven by its commands; covariance: of its free parameters, (k, k) or (0, 0).
+        current_rms, current_bandwidth: how the current varies [m/s, rad/s].
+        gust_rms, gust_bandwidth: of forces from outside ahead and to the side, in the model's unit of force, rad/s.
+        limit: share of full command that may be used; dead_time: of the thrusters [s].
+        joint_Ms: the largest singular value allowed of the sensitivity of all three loops.
+        hull: over which waves are averaged; None where there are no seas.
+    """
+
+    model: Model
+    covariance: Array
+    current: float
+    current_rms: float
+    current_bandwidth: float
+    gust_rms: float
+    gust_bandwidth: float
+    limit: float
+    dead_time: float
+    joint_Ms: float
+    hull: HullFactor | None
+
+
 @dataclass(frozen=True)
 class PlantUncertainty:
     """How far a ship may differ from the model: shares of the plant's gain and time constants, dead time [s], draws."""
@@ -239,6 +266,7 @@ class TuningTask:
         drive: of the actuator, for its energy; None where no inertia is known.
         uncertainty: of the ships that the controllers are tried on.
         track: to be kept around the heading loop; None where none is.
+        station: to be kept beside it; None where none is.
 
     Raises:
         InputError: nothing disturbs the loop, a plant with poles right of the axis, gains of other names.
@@ -264,6 +292,7 @@ class TuningTask:
     sample_s: float | None = None
     uncertainty: PlantUncertainty = PlantUncertainty()
     track: TrackDemand | None = None
+    station: StationDemand | None = None
 
     def __post_init__(self) -> None:
         if not self.disturbances or not self.objectives:

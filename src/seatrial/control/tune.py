@@ -19,6 +19,7 @@ from seatrial.control.published_search import OWN_CHOICE, published_search
 from seatrial.control.robustness import robustness
 from seatrial.control.schedule import schedule
 from seatrial.control.seaway_simulation import compare_pairwise, simulate_in_seaway
+from seatrial.control.station.tune_station import tune_station
 from seatrial.control.task import OUTPUT, TuningTask
 from seatrial.control.track.tune_track import tune_track
 from seatrial.core.results.tuning import (
@@ -116,6 +117,7 @@ def tune(
         motion="" if task.motion is OUTPUT else task.motion.name.removeprefix("variance of the "),
         robustness=_robustness(task, choice, own.designs, rivals),
         track=checks.track,
+        station=checks.station,
         discrete=discrete_controller(choice.evaluator.loop.with_gains(choice.gains), task.sample_s),
     )
 
@@ -178,6 +180,8 @@ def _run_checks(
         if task.track is not None:
             report_progress("track: lookahead distance")
             made.track = tune_track(task, task.track, loop, choice.gains, seed, report_progress)
+        if task.station is not None:
+            made.station = tune_station(task, task.station, seed, report_progress)
         if task.simulation is not None and task.demand is None:
             made.simulations, made.comparisons = _simulate_controllers(task, choice, compared, seed, report_progress)
         if task.schedule_grid is not None:

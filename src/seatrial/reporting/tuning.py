@@ -7,10 +7,12 @@ from seatrial.core.figures.bars import bars_chart
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results.front_chart import degree_unit, front_chart
 from seatrial.core.results.loop_charts import bode_chart, nyquist_chart, sensitivity_chart, styled_controllers
+from seatrial.core.results.station import StationKeeping
 from seatrial.core.results.tuning import ManoeuvreResponse, Tuning
-from seatrial.core.text.numbers import fixed
+from seatrial.core.text.numbers import exact, fixed
+from seatrial.core.text.words import enumeration
 from seatrial.core.values.channel_text import channel_meaning
-from seatrial.reporting import gain_search, track_part, tuning_rows, tuning_text
+from seatrial.reporting import gain_search, station_part, track_part, tuning_rows, tuning_text
 from seatrial.reporting.document import page_text
 from seatrial.reporting.figures.controlled_runs import manoeuvre_view, seaway_view
 from seatrial.reporting.figures.loop_diagram import loop_diagram, signal_order
@@ -32,6 +34,7 @@ TITLES = {
     "disturbances": "Kept in simulated disturbances",
     "manoeuvres": "Response to demands",
     "track": "Track keeping",
+    "station": "Station keeping",
     "schedule": "Schedule",
     "bounds": "Lower bounds of any linear controller",
     "loop": "The loop",
@@ -63,6 +66,7 @@ def html(tuning: Tuning) -> str:
         "disturbances": bool(tuning.disturbance_simulations),
         "manoeuvres": bool(tuning.manoeuvres),
         "track": tuning.track is not None,
+        "station": tuning.station is not None,
         "schedule": bool(tuning.schedule),
         "bounds": bool(tuning.bounds),
         "loop": bool(tuning.components),
@@ -108,6 +112,7 @@ def html(tuning: Tuning) -> str:
         "disturbance_heads": tuning_rows.disturbance_headings(tuning),
         "manoeuvres": [(m, _manoeuvre_figure(m, tuning), tuning_text.demand_sentence(m)) for m in tuning.manoeuvres],
         "track": _track_context(tuning),
+        "station": {} if tuning.station is None else _station_context(tuning.station),
         "maps": Markup(svg(schedule_chart(tuning.schedule))),
         "schedule": tuning_rows.schedule_table(tuning.schedule),
         "trades": [(tuning_text.step_text(t.largest_step), fixed(t.cost, 3)) for t in tuning.schedule_trades],
@@ -141,6 +146,21 @@ def _track_context(tuning: Tuning) -> dict[str, object]:
         "rows": track_part.track_rows(tuning, tuning.track),
         "figure": track_part.corner_figure(tuning.track),
         "caption": track_part.CAPTION,
+    }
+
+
+def _station_context(station: StationKeeping) -> dict[str, object]:
+    """What the chapter on station keeping shows."""
+    return {
+        "sentences": station_part.station_sentences(station),
+        "footprint": station_part.footprint_figure(station),
+        "footprint_caption": station_part.FOOTPRINT_CAPTION,
+        "capability": station_part.capability_figure(station),
+        "capability_caption": station_part.CAPABILITY_CAPTION,
+        "gains": station_part.gain_rows(station),
+        "thrusters": station_part.thruster_rows(station),
+        "sample": exact(station.sample_s, 3),
+        "varying": enumeration(station.disturbances),
     }
 
 

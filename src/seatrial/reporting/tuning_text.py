@@ -11,6 +11,7 @@ from seatrial.core.values import Severity
 from seatrial.core.values.channel_text import channel_meaning
 from seatrial.data.folder.orders import channel_display_unit
 from seatrial.reporting.first_screen import KeyFact
+from seatrial.reporting.station_part import precision_sentence
 
 _SIMULATION_LABELS = {"limited": "with angle and rate limits", "stalled": "with stall, too", "linear": "without limits"}
 
@@ -39,6 +40,8 @@ def key_facts(tuning: Tuning) -> tuple[KeyFact, ...]:
         KeyFact("Demands", " ".join(demands), "manoeuvres"),
         KeyFact("Track", guidance_sentence(tuning.track) if tuning.track else "", "track",
                 tuning.track is None or tuning.track.corner.stable_draws == tuning.track.corner.draws),
+        KeyFact("Station", precision_sentence(tuning.station) if tuning.station else "", "station",
+                tuning.station is None or tuning.station.trial.stable_draws == tuning.station.trial.draws),
         KeyFact("Schedule", _schedule(tuning), "schedule", all(s.is_feasible for s in tuning.schedule)),
     )  # fmt: skip
     text = " ".join(_on_bounds(tuning)) or enumeration(warned) or "none"

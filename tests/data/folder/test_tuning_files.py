@@ -148,6 +148,15 @@ def test_the_schedule_is_a_table(fin: Tuning) -> None:
     assert schedule_csv(fabricated_bare()) == ""
 
 
+def test_a_station_keeper_is_written_with_gains_units_and_thrusters() -> None:
+    table = tomllib.loads(gains_toml(fabricated_autopilot()))["station"]
+    assert table["KP"] == [[13.0, 0.0, 0.0], [0.0, 19.5, 0.0], [0.0, 0.0, 5.2]]
+    assert table["gain_units"]["KP"][0] == ["N/m", "N/m", "N/rad"]
+    assert table["thrusters"][0]["inverse"] == [[0.5, 0.0, 0.4]]
+    assert (table["sample_s"], table["Ms_joint"]) == (0.1, 1.92)
+    assert "station" not in tomllib.loads(gains_toml(fabricated_fin()))
+
+
 def test_the_guidance_of_a_track_is_written_with_its_units() -> None:
     table = tomllib.loads(gains_toml(fabricated_autopilot()))["track"]
     assert table["lookahead_m"] == 300.0

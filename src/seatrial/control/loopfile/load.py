@@ -11,7 +11,7 @@ from seatrial.control.loopfile.disturbances import loop_disturbances, refuse_cal
 from seatrial.control.loopfile.extended_structures import extended_structure
 from seatrial.control.loopfile.loop import loop_from_tables
 from seatrial.control.loopfile.objectives import objective, objective_places
-from seatrial.control.loopfile.plant import LoopPlant, plant_from_table
+from seatrial.control.loopfile.plant import LoopPlant, hull_factor, plant_from_table
 from seatrial.control.loopfile.plausibility import refuse_reversed_plant, refuse_reversed_servo, refuse_wild_motion
 from seatrial.control.loopfile.quantities import angle_value, positive_value, rate_value, si_value, symbol_unit
 from seatrial.control.loopfile.schema import (
@@ -21,15 +21,18 @@ from seatrial.control.loopfile.schema import (
     ObjectiveTable,
     PlantTable,
     SimulationTable,
+    StationTable,
     TrackTable,
 )
 from seatrial.control.loopfile.wave_paths import point_motions
+from seatrial.control.station.tune_station import station_craft
 from seatrial.control.task import (
     Demand,
     PlantUncertainty,
     Seaway,
     SimulationSettings,
     SlowDisturbance,
+    StationDemand,
     TrackDemand,
     TuningTask,
     refuse_unstable,
@@ -41,6 +44,7 @@ from seatrial.core.values import InputError, spelling_hint
 from seatrial.core.values.tables import parse_toml, read_table_text, refuse_absurd_numbers
 from seatrial.data.trial.schema_errors import schema_error
 from seatrial.physics.loops import ActuatorDrive, Block, Objective, TransferLoop
+from seatrial.physics.models.thruster_layout import ThrusterLayout
 
 _TIME_CONSTANTS = 30.0  # duration of a demand where none is given, in its time constants; chosen
 _DELAY_OVER_DEAD_TIME = 2.0  # least delay margin over the declared dead time; chosen
@@ -124,12 +128,15 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant, home: Path) -> TuningTas
         drive=_drive(file.actuator),
         uncertainty=_uncertainty(file),
         track=None if file.track is None else _track(file.track, plant, demand),
+        station=None if file.station is None else _station(file.station, file, plant),
         sample_s=None
         if file.controller.sample_s is None
         else positive_value(file.controller.sample_s, "s", "controller.sample_s"),
     )
     if task.track is not None:
         refuse_impossible_track(task, task.track)
+    if task.station is not None:
+        station_craft(task.station)
     return task
 
 
@@ -253,6 +260,34 @@ def _track(table: TrackTable, plant: LoopPlant, demand: Demand | None) -> TrackD
         positive_value(table.bandwidth, "rad/s", "track.bandwidth"),
         turn,
         acceptance,
+    )
+
+
+def _station(table: StationTable, file: LoopFile, plant: LoopPlant) -> StationDemand:
+    """Return the station, its forces in the unit of the model: N, or N for each kg."""
+    if plant.craft is None or plant.output != "psi":
+        raise InputError(
+            "station: a station is kept by the thrusters of an identified craft beside its heading loop; give "
+            'plant.model of a craft with thrusters and leave plant.output out (or "psi"), or leave [station] out'
+        )
+    layout = ThrusterLayout.from_text(plant.craft.model.equations.layout)
+    gust = 0.0
+    if table.gust is not None:
+        gust = positive_value(table.gust, "N" if layout.has_bollard else "m/s^2", "station.gust")
+    return StationDemand(
+        model=plant.craft.model,
+        covariance=plant.craft.covariance,
+        current=positive_value(table.current, "m/s", "station.current"),
+        current_rms=positive_value(table.current_rms, "m/s", "station.current_rms"),
+        current_bandwidth=positive_value(table.bandwidth, "rad/s", "station.bandwidth"),
+        gust_rms=gust,
+        gust_bandwidth=0.0
+        if table.gust_bandwidth is None
+        else positive_value(table.gust_bandwidth, "rad/s", "station.gust_bandwidth"),
+        limit=table.limit,
+        dead_time=_dead_time(file.actuator),
+        joint_Ms=table.joint_Ms,
+        hull=hull_factor(file.hull, plant.ship),
     )
 
 

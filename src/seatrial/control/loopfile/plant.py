@@ -34,6 +34,7 @@ class LoopPlant:
     Attributes:
         response: actuator to output; disturbance: what disturbs to output.
         description: where it comes from; trimmed_ship, ship: of a model file, else none.
+        craft: model file of a craft with thrusters, by its commands instead of orders; None of any other.
     """
 
     response: Block
@@ -46,6 +47,7 @@ class LoopPlant:
     description: str
     trimmed_ship: TrimmedShip | None = None
     ship: Ship | None = None
+    craft: ModelFile | None = None
 
 
 def plant_from_table(
@@ -135,7 +137,8 @@ def _plant_of_model(table: PlantTable, path: Path, own_model: Model | None) -> L
     file = read_model_file(path, own_model)
     if table.scale is not None:
         file = model_at_scale(file, table.scale)
-    if file.model.equations.layout:
+    craft = file if file.model.equations.layout else None
+    if craft is not None:
         file = replace(file, model=with_orders(file.model), approach={})
         table = _by_orders(table)
     output, actuator, disturbance = _signal_names(table, file, path)
@@ -159,7 +162,7 @@ def _plant_of_model(table: PlantTable, path: Path, own_model: Model | None) -> L
     return LoopPlant(
         response, disturbed, output, actuator, disturbance or actuator,
         _trim_speed(ship, file) if speed is None else speed, law,
-        ", ".join(part for part in (plant_text(ship), about, words) if part), ship, file.ship,
+        ", ".join(part for part in (plant_text(ship), about, words) if part), ship, file.ship, craft,
     )  # fmt: skip
 
 

@@ -340,6 +340,29 @@ class TrackTable(StrictTable):
     acceptance: Metres | None = None
 
 
+class StationTable(StrictTable):
+    """`[station]`: a place and heading to be kept by a craft with thrusters, beside its heading loop.
+
+    `current` is steady, from any direction, and varies by `current_rms` below `bandwidth`; `gust`: rms of a force ahead
+    and of one to the side, below `gust_bandwidth`; `limit`: share of full command that may be used; `joint_Ms`: the
+    largest singular value of the sensitivity of surge, sway and yaw together.
+    """
+
+    current: SiAmount
+    current_rms: SiAmount
+    bandwidth: RadiansPerSecond
+    gust: SiAmount | None = None
+    gust_bandwidth: RadiansPerSecond | None = None
+    limit: Annotated[float, Field(gt=0, le=1)] = 1.0
+    joint_Ms: Annotated[float, Field(gt=1)] = 3.0  # tolerates a factor of 1.5 in all loops at once; chosen
+
+    @model_validator(mode="after")
+    def _gust_with_its_bandwidth(self) -> Self:
+        if (self.gust is None) != (self.gust_bandwidth is None):
+            raise ValueError("gust and gust_bandwidth go together; give both or neither")
+        return self
+
+
 class UncertaintyTable(StrictTable):
     """`[uncertainty]`: shares by which the plant's gain and time constants may differ, dead time, ships to draw."""
 
@@ -372,6 +395,7 @@ class LoopFile(StrictTable):
     simulation: SimulationTable | None = None
     demand: DemandTable | None = None
     track: TrackTable | None = None
+    station: StationTable | None = None
     uncertainty: UncertaintyTable = UncertaintyTable()
     genetic: GeneticTuning = GeneticTuning()
 

@@ -19,6 +19,7 @@ from seatrial.core.results.fields import (
     named_by,
 )
 from seatrial.core.results.gain_search import GainSearch
+from seatrial.core.results.station import StationKeeping
 from seatrial.core.results.summary import Summarised, Summary
 from seatrial.core.values import Array, InputError
 
@@ -366,6 +367,7 @@ class Tuning(Summarised):
         tuple[Robustness, ...], Field(description="of the stable controllers compared, the chosen one first")
     ] = ()
     track: Annotated[TrackKeeping | None, Field(description="guidance along a track; null: none")] = None
+    station: Annotated[StationKeeping | None, Field(description="a place kept by thrusters; null: none")] = None
 
     @property
     def compared(self) -> tuple[Controller, ...]:

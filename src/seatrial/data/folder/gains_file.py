@@ -9,12 +9,14 @@ from typing import Any
 
 import tomli_w
 
+from seatrial.core.results.station import StationKeeping
 from seatrial.core.results.tuning import Controller, OperatingPoint, TrackKeeping, Tuning
 from seatrial.core.values import InputError
 from seatrial.core.values.tables import parse_toml, read_table_text
 from seatrial.data.folder.orders import channel_display_unit
 
 FORMAT = 1
+_EVERY = 5  # of the points of a table of thrust one is written: 41 of 201; chosen
 
 
 def gains_toml(tuning: Tuning) -> str:
@@ -37,6 +39,8 @@ def gains_toml(tuning: Tuning) -> str:
                              "blocks": [asdict(block) for block in tuning.discrete.blocks]}  # fmt: skip
     if tuning.track is not None:
         table["track"] = _track_table(tuning.track)
+    if tuning.station is not None:
+        table["station"] = _station_table(tuning.station)
     if tuning.schedule:
         table["schedule"] = [_schedule_entry(point) for point in tuning.schedule]
     return tomli_w.dumps(table)
@@ -133,6 +137,30 @@ def _track_table(track: TrackKeeping) -> dict[str, float]:
         "speed_m_per_s": track.speed,
         "Ms": track.Ms,
     })  # fmt: skip
+
+
+def _station_table(station: StationKeeping) -> dict[str, Any]:
+    """Return the station keeper: gains, filter and sample time, and of each thruster its share of the force."""
+    return {
+        "sample_s": station.sample_s,
+        "filter_lag_s": station.filter_lag.tolist(),
+        **{name: getattr(station, name).tolist() for name in ("KP", "KI", "KD")},
+        "gain_units": {name: [list(row) for row in units] for name, units in station.gain_units.items()},
+        "force_unit": station.force_unit,
+        "thrusters": [
+            {"name": one.name, "inverse": one.inverse.tolist(), "thrust": one.thrust[::_EVERY].tolist(),
+             "share": one.share[::_EVERY].tolist()}
+            for one in station.thrusters
+        ],
+        **_finite_numbers({
+            "Ms_surge": station.margins.surge,
+            "Ms_sway": station.margins.sway,
+            "Ms_yaw": station.margins.yaw,
+            "Ms_joint": station.margins.joint,
+            "delay_margin_s": station.margins.delay_margin,
+            "radius_m": station.trial.radius,
+        }),
+    }  # fmt: skip
 
 
 def _constraint_table(tuning: Tuning) -> dict[str, float]:

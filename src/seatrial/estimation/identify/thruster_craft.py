@@ -24,6 +24,7 @@ from seatrial.estimation.predict.measure_intervals import measure_intervals, per
 from seatrial.physics.manoeuvres import measures
 from seatrial.physics.manoeuvres.thrust_programme import thrust_programme
 from seatrial.physics.models.thruster_layout import AngleInput, Thruster, ThrusterLayout
+from seatrial.physics.models.thruster_matrices import coefficient_or_zero, inertia_matrix, thrust_configuration
 from seatrial.physics.simulate.thrust import thrust_manoeuvre
 
 _PROGRAMMES: Mapping[str, Mapping[str, str]] = {
@@ -172,15 +173,10 @@ def _compass(model: Model, records: Sequence[Record], basis: IntervalBasis) -> C
     )  # fmt: skip
 
 
-def _value(model: Model, name: str) -> float:
-    return model.parameters[name].value if name in model.parameters else 0.0
-
-
 def _inertia(model: Model) -> FossenMatrix:
     """Mass and added mass (Fossen 2021, eqs. (6.14) and (6.40), surge, sway and yaw)."""
-    M_u, M_v, M_r, M_c = (_value(model, f"M_{x}") for x in "uvrc")
     units = tuple(tuple(_inertia_unit(i, j) for j in range(3)) for i in range(3))
-    values = ((M_u, 0.0, 0.0), (0.0, M_v, M_c), (0.0, M_c, M_r))
+    values = tuple(_floats(row) for row in inertia_matrix(model))
     return FossenMatrix("M", "mass and added mass", values, units)
 
 
@@ -192,7 +188,7 @@ def _damping(model: Model) -> list[FossenMatrix]:
     """D and its parts with |u|, |v| and |r|, as far as they are not zero; the forces are minus these times nu."""
     parts = {name: np.zeros((3, 3)) for name in _MEANINGS}
     for coefficient, (name, row, column) in _DAMPING.items():
-        parts[name][row, column] = 0.0 - _value(model, coefficient)  # not -0
+        parts[name][row, column] = 0.0 - coefficient_or_zero(model, coefficient)  # not -0
     return [
         FossenMatrix(name, _MEANINGS[name], tuple(_floats(row) for row in part), _damping_units(name))
         for name, part in parts.items()
@@ -210,9 +206,7 @@ def _damping_units(name: str) -> tuple[tuple[str, ...], ...]:
 def _configuration(model: Model, layout: ThrusterLayout) -> FossenMatrix:
     """B: rows of (cos a, sin a, x sin a - y cos a), the side force of the wash with them (Fossen 2021, section 9.2)."""
     angles = [0.0 if isinstance(t.angle, AngleInput) else t.angle for t in layout.thrusters]
-    X, Y = np.cos(angles), np.sin(angles)
-    N = np.array([t.x for t in layout.thrusters]) * Y - np.array([t.y for t in layout.thrusters]) * X
-    Y = Y + _value(model, "Y_T") * X + _value(model, "Y_NT") * N
+    X, Y, N = thrust_configuration(model, layout.thrusters, angles)
     units = tuple(tuple(unit for _ in layout.thrusters) for unit in ("1", "1", "m"))
     azimuth = any(isinstance(t.angle, AngleInput) for t in layout.thrusters)
     meaning = "forces over thrusts" + (", azimuth thrusters ahead" if azimuth else "")

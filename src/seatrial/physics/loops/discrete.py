@@ -44,7 +44,11 @@ def difference_equation(block: Block, sample_s: float) -> DifferenceEquation:
 def default_sample_time(loop: TransferLoop) -> float:
     """Return the largest of 1, 2, 5 times a power of ten [s] that samples the frailest frequency 60 times a period."""
     _, omega = sensitivity_peak(loop)
-    longest = 2.0 * math.pi / omega / _SAMPLES_A_PERIOD
+    return round_sample_time(2.0 * math.pi / omega / _SAMPLES_A_PERIOD)
+
+
+def round_sample_time(longest: float) -> float:
+    """Return the largest of 1, 2, 5 times a power of ten up to `longest` [s]."""
     power = 10.0 ** math.floor(math.log10(longest))
     return max(step * power for step in _STEPS if step * power <= longest)
 

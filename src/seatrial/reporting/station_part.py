@@ -1,0 +1,126 @@
+"""Station keeping on the page of a tuning: precision, margins, gains, thrusters, footprint, capability."""
+
+import math
+
+import numpy as np
+from markupsafe import Markup
+
+from seatrial.core.figures.curves import NamedCurve, curves_chart
+from seatrial.core.figures.svg_text import svg
+from seatrial.core.results.station import StationKeeping
+from seatrial.core.text.numbers import exact, fixed, significant
+from seatrial.core.text.words import enumeration
+from seatrial.core.values import Array
+
+AXES = ("surge", "sway", "yaw")
+FOOTPRINT_CAPTION = (
+    "Where the craft is for five minutes, north up and the station in the middle, with the current from the direction "
+    "in which it moves most; dashed: the circle that holds it 95 % of the time over all directions and minutes."
+)
+CAPABILITY_CAPTION = (
+    "The fastest steady current that the thrusters hold, by the direction from which it comes, bow up: by the best use "
+    "of them and as the controller shares forces out. Static, without a reserve for what varies."
+)
+_CIRCLE = 73  # points of a closed circle, every 5 degrees; chosen
+
+
+def station_sentences(station: StationKeeping) -> tuple[str, ...]:
+    """Return precision, margins and capability, a sentence each."""
+    return precision_sentence(station), margin_sentence(station), capability_sentence(station)
+
+
+def precision_sentence(station: StationKeeping) -> str:
+    """Return how well the place is kept by the nonlinear craft, beside linear theory, and by craft of the fit."""
+    t, expected = station.trial, station.predicted
+    text = (
+        f"In {exact(station.current, 3)} m/s of current from {len(t.directions)} directions the craft stays within "
+        f"{significant(t.radius, 3)} m 95 % of the time ({significant(t.position, 3)} m rms, "
+        f"{significant(expected.position, 3)} m by linear theory), its heading to "
+        f"{significant(math.degrees(t.heading), 2)}° rms ({significant(math.degrees(expected.heading), 2)}°), with "
+        f"{significant(100.0 * t.thrust, 2)} % of full thrust (rms)"
+    )
+    if t.draws:
+        known = f" ({significant(t.worst_radius, 3)} m at most)" if t.stable_draws else ""
+        text += f"; {t.stable_draws} of {t.draws} craft that the fit allows keep it{known}"
+    return f"{text}."
+
+
+def margin_sentence(station: StationKeeping) -> str:
+    """Return bandwidths and margins of the three loops."""
+    m = station.margins
+    delay = f"{significant(m.delay_margin, 2)} s" if math.isfinite(m.delay_margin) else "unlimited"
+    return (
+        f"Natural frequencies: {significant(station.position_bandwidth, 2)} rad/s of position, "
+        f"{significant(station.heading_bandwidth, 2)} rad/s of heading. Ms of surge, sway and yaw "
+        f"{fixed(m.surge, 2)}, {fixed(m.sway, 2)} and {fixed(m.yaw, 2)}, of all together {fixed(m.joint, 2)}; delay "
+        f"margin {delay} beyond {significant(station.dead_time, 2)} s of dead time."
+    )
+
+
+def capability_sentence(station: StationKeeping) -> str:
+    """Return the slowest and the fastest of the largest currents, and what limits the former."""
+    c = station.capability
+    worst, best = int(np.argmin(c.current)), int(np.argmax(c.current))
+    return (
+        f"The thrusters hold a steady current of {significant(c.current[worst], 3)} m/s from any direction (least from "
+        f"{_degrees(c.direction[worst])}° off the bow, where {_limiting(c.limiting[worst])}), "
+        f"{significant(c.current[best], 3)} m/s from {_degrees(c.direction[best])}°; shared out as the controller "
+        f"does, {significant(float(c.current_shared_out.min()), 3)} m/s from any direction."
+    )
+
+
+def gain_rows(station: StationKeeping) -> list[tuple[str, ...]]:
+    """Return a row for each gain that is not zero: name, axis of the force, of the error, value, unit."""
+    rows = []
+    for name, meaning in (("KP", "error"), ("KI", "integral"), ("KD", "velocity")):
+        matrix, units = getattr(station, name), station.gain_units[name]
+        rows += [
+            (f"{name[0]}_{name[1].lower()}", f"{AXES[i]} of the {meaning} in {AXES[j]}", significant(matrix[i][j], 4),
+             units[i][j])
+            for i in range(3) for j in range(3) if matrix[i][j]
+        ]  # fmt: skip
+    return rows
+
+
+def thruster_rows(station: StationKeeping) -> list[tuple[str, ...]]:
+    """Return a row for each thruster: name, thrust full astern and ahead, rms used in per cent."""
+    return [
+        (one.name, significant(one.thrust[0], 3), significant(one.thrust[-1], 3), significant(100.0 * used, 2))
+        for one, used in zip(station.thrusters, station.trial.used, strict=True)
+    ]
+
+
+def footprint_figure(station: StationKeeping) -> Markup:
+    """Return where the craft is on station as SVG."""
+    record, angles = station.trial.record, np.linspace(0.0, 2.0 * math.pi, _CIRCLE)
+    radius = station.trial.radius
+    curves = (
+        NamedCurve("craft", record["y0"], record["x0"]),
+        NamedCurve("95 % of the time", radius * np.sin(angles), radius * np.cos(angles)),
+    )
+    return Markup(svg(curves_chart("footprint", curves, "y₀, east [m]", "x₀, north [m]", is_map=True)))
+
+
+def capability_figure(station: StationKeeping) -> Markup:
+    """Return the largest current by direction as SVG, bow up."""
+    c = station.capability
+    curves = (
+        _polar("thrusters", c.direction, c.current),
+        _polar("shared out by the controller", c.direction, c.current_shared_out),
+    )
+    return Markup(svg(curves_chart("capability", curves, "from starboard [m/s]", "from ahead [m/s]", is_map=True)))
+
+
+def _polar(name: str, direction: Array, size: Array) -> NamedCurve:
+    a, r = np.append(direction, direction[0]), np.append(size, size[0])
+    return NamedCurve(name, r * np.sin(a), r * np.cos(a))
+
+
+def _degrees(angle: float) -> str:
+    return f"{math.degrees(angle):.0f}"
+
+
+def _limiting(names: tuple[str, ...]) -> str:
+    if not names:
+        return "none is at its limit"
+    return f"{enumeration(names)} {'is at its limit' if len(names) == 1 else 'are at their limits'}"
