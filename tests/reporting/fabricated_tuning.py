@@ -151,7 +151,7 @@ def fabricated_station() -> StationKeeping:
         0.4, 0.7, 1.0, 0.1, np.diag([13.0, 19.5, 5.2]), np.diag([0.46, 0.69, 0.3]), np.diag([45.0, 60.0, 0.0]),
         dict.fromkeys(("KP", "KI", "KD"), units), np.array([0.2, 0.2, 0.15]), 0.1, 0.15, "N", 0.3, ("gusts of 5 N",),
         StationMargins(1.59, 1.42, 1.58, 1.92, 0.92), StationPrecision(0.42, 0.2, 0.05),
-        StationFront(*(np.array([0.3, 0.4]) for _ in range(4)), evaluations=99),
+        StationFront(*(np.array([0.3, 0.4]) for _ in range(3)), np.array([0.06, 0.05]), 99),
         (StationThruster("bow", inverse, share, thrust), StationThruster("stern", inverse, share, thrust)),
         StationCapability(quarters, np.array([2.0, 1.1, 1.5, 1.1]), np.array([2.0, 1.0, 1.4, 1.0]), np.full(4, 90.0),
                           (("bow",), ("bow", "stern"), (), ())),

@@ -16,6 +16,7 @@ from seatrial.reporting.first_screen import KeyFact
 from seatrial.reporting.station_part import (
     capability_figure,
     footprint_figure,
+    front_figure,
     gain_rows,
     precision_sentence,
     station_sentences,
@@ -104,7 +105,7 @@ def test_a_station_is_shown_with_its_precision_margins_and_capability() -> None:
     assert len(gain_rows(station)) == 8
     assert thruster_rows(station)[1] == ("stern", "−40.0", "60.0", "10")
     page = html(autopilot)
-    assert footprint_figure(station) in page and capability_figure(station) in page
+    assert all(figure(station) in page for figure in (footprint_figure, capability_figure, front_figure))
     assert rows(autopilot)["Station"].text == precision_sentence(station)
     assert not rows(autopilot)["Station"].is_good
 

@@ -17,6 +17,10 @@ FOOTPRINT_CAPTION = (
     "Where the craft is for five minutes, north up and the station in the middle, with the current from the direction "
     "in which it moves most; dashed: the circle that holds it 95 % of the time over all directions and minutes."
 )
+FRONT_CAPTION = (
+    "Rms error at the ends of the hull over rms thrust, by linear theory, of the bandwidths that keep the limits of Ms "
+    "and dead time; the chosen ones have the least product of both."
+)
 CAPABILITY_CAPTION = (
     "The fastest steady current that the thrusters hold, by the direction from which it comes, bow up: by the best use "
     "of them and as the controller shares forces out. Static, without a reserve for what varies."
@@ -109,6 +113,19 @@ def capability_figure(station: StationKeeping) -> Markup:
         _polar("shared out by the controller", c.direction, c.current_shared_out),
     )
     return Markup(svg(curves_chart("capability", curves, "from starboard [m/s]", "from ahead [m/s]", is_map=True)))
+
+
+def front_figure(station: StationKeeping) -> Markup:
+    """Return error over thrust of the front as SVG, the chosen bandwidths marked."""
+    front = station.front
+    if len(front.error) < 2:
+        return Markup()
+    best = int(np.argmin(front.error * front.thrust))
+    curves = (
+        NamedCurve("front", 100.0 * front.thrust, front.error),
+        NamedCurve("chosen", 100.0 * np.repeat(front.thrust[best], 2), np.array([0.0, front.error[best]])),
+    )
+    return Markup(svg(curves_chart("station front", curves, "rms thrust that varies [%]", "rms error [m]")))
 
 
 def _polar(name: str, direction: Array, size: Array) -> NamedCurve:

@@ -157,6 +157,8 @@ def _station_context(station: StationKeeping) -> dict[str, object]:
         "footprint_caption": station_part.FOOTPRINT_CAPTION,
         "capability": station_part.capability_figure(station),
         "capability_caption": station_part.CAPABILITY_CAPTION,
+        "front": station_part.front_figure(station),
+        "front_caption": station_part.FRONT_CAPTION,
         "gains": station_part.gain_rows(station),
         "thrusters": station_part.thruster_rows(station),
         "sample": exact(station.sample_s, 3),

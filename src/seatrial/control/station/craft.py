@@ -17,6 +17,7 @@ _SHARES = 201  # of full command at which thrust is tabled; chosen
 _ACROSS = 0.5 * np.pi  # rad: direction of the second component of an azimuth thruster's thrust
 _WEAKEST = 0.02  # of the largest singular value of B, scaled, below which a direction counts as not driven; chosen
 _AXES = ("surge", "sway", "yaw")
+_OWN_CURRENT = ("current_north", "current_east")
 _VELOCITIES = ("u", "v", "r")
 
 
@@ -145,7 +146,7 @@ class StationCraft:
 
     def with_values(self, values: dict[str, float]) -> "StationCraft":
         """Return the craft with other parameters."""
-        return replace(self, model=self.model.with_values(values))
+        return replace(self, model=without_current(self.model.with_values(values)))
 
     def _coefficient(self, thruster: Thruster, symbol: str) -> float:
         return coefficient_or_zero(self.model, symbol + self.layout.suffix(thruster))
@@ -164,6 +165,11 @@ class StationCraft:
         command = thruster.command
         inputs[:, model.input_names.index(command.channel)] = command.zero + command.span * share
         return ThrustTable(share, np.maximum.accumulate(model.forces(states, inputs)[f"T_{thruster.name}"]))
+
+
+def without_current(model: Model) -> Model:
+    """Return the model in water at rest: on station the water's motion is that of the demand."""
+    return model.with_values({name: 0.0 for name in _OWN_CURRENT if name in model.parameters})
 
 
 def refuse_under_actuated(craft: StationCraft) -> None:

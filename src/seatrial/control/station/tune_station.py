@@ -11,7 +11,7 @@ from seatrial.control.ship.trimmed_ship import rate_response
 from seatrial.control.station.allocation import generalised_inverse
 from seatrial.control.station.capability import capability
 from seatrial.control.station.choose_bandwidth import StationDesign, StationLimits, choose_bandwidth, margin_frequencies
-from seatrial.control.station.craft import StationCraft, refuse_under_actuated
+from seatrial.control.station.craft import StationCraft, refuse_under_actuated, without_current
 from seatrial.control.station.disturbances import SlowPush, StationDisturbance, WavePush, joined
 from seatrial.control.station.station_loop import DAMPING, INTEGRAL_SHARE, StationLoop, station_point
 from seatrial.control.station.trial import StationSetting, StationSimulator, sampled_controller
@@ -34,7 +34,7 @@ def station_craft(demand: StationDemand) -> StationCraft:
     Raises:
         InputError: its thrusters do not push in all directions.
     """
-    craft = StationCraft(demand.model, demand.covariance, demand.limit)
+    craft = StationCraft(without_current(demand.model), demand.covariance, demand.limit)
     refuse_under_actuated(craft)
     return craft
 
