@@ -4,7 +4,7 @@
 
 The craft has a thruster at each corner, set at 45 degrees to the bow; its coefficients are chosen, and its runs are
 steps of all commands with a small craft's noise: those of examples/station, which --write makes anew. Printed are the
-circle that holds the craft 95 % of the time and the rms of its heading: as linear theory predicts the latter two, by the
+circle that holds the craft 95 % of the time, its rms distance and that of its heading: by linear theory, by the
 identified craft, by the true one under the same controller, and by the true one under the controller tuned on it.
 """
 

@@ -42,7 +42,7 @@ def tune(
     json: Json = None,
     seed: Seed = 0,
 ) -> None:
-    """Tune a fin stabiliser, an autopilot or a speed control: gains with their margins, front, schedule, simulation.
+    """Tune fins, an autopilot, a speed or station control: gains with their margins, front, schedule, simulation.
 
     Example: seatrial tune examples/fin_stabiliser.toml --out results/fins
 

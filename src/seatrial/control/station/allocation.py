@@ -1,7 +1,7 @@
 """Forces shared out over thrusters: by a weighted generalised inverse in the loop; what is possible by programming.
 
 A force tau is B T with least sum (T_i / T_max,i)^2 for T = W^-1 B' (B W^-1 B')^-1 tau, W = diag(1 / T_max,i^2) (Fossen
-2021, section 11.2, generalised inverse).
+2021, section 11.2.2, generalised inverse).
 """
 
 from dataclasses import dataclass

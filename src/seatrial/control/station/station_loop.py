@@ -5,7 +5,7 @@ About the heading kept, with x = (eta, nu) of the model's Jacobian, thrusters' l
     eta = S (P d + P_w w),   S = (I + P A C)^-1,   A = B H B+ e^(-s T)
 
 P from forces d, P_w from the water's velocity w (Fossen 2021, section 15.3, linearised; Skogestad & Postlethwaite 2005,
-section 3.3, sensitivity of several loops). A current turns with the craft's heading: P has its moment, C what the force
+section 3.2, sensitivity of several loops). A current turns with the craft's heading: P has its moment, C what the force
 that the integral has gathered does when the craft turns.
 """
 
