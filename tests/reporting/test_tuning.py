@@ -101,7 +101,7 @@ def test_a_station_is_shown_with_its_precision_margins_and_capability() -> None:
         "The thrusters hold a steady current of 1.10 m/s from any direction (least from 90° off the bow, where bow and "
         "stern are at their limits), 2.00 m/s from 0°; shared out as the controller does, 1.00 m/s from any direction.",
     )
-    assert gain_rows(station)[0] == ("K_p", "surge of the error in surge", "13.00", "N/m")
+    assert gain_rows(station)[0] == ("K_p", "in surge, from the error in surge", "13.00", "N/m")
     assert len(gain_rows(station)) == 8
     assert thruster_rows(station)[1] == ("stern", "−40.0", "60.0", "10")
     page = html(autopilot)

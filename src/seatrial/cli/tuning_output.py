@@ -183,7 +183,7 @@ def _print_station(tuning: "Tuning") -> None:
     if station is not None:
         print_heading("Station keeping")
         print_lines(station_sentences(station), "  ")
-        print_table([("gain", "force from", "value", "unit"), *gain_rows(station)], flush_left=(0, 1, 3))
+        print_table([("gain", "force", "value", "unit"), *gain_rows(station)], flush_left=(0, 1, 3))
         unit = station.force_unit
         header = ("thruster", f"full astern [{unit}]", f"full ahead [{unit}]", "used, rms [%]")
         print_table([header, *thruster_rows(station)])

@@ -74,13 +74,13 @@ def capability_sentence(station: StationKeeping) -> str:
 
 
 def gain_rows(station: StationKeeping) -> list[tuple[str, ...]]:
-    """Return a row for each gain that is not zero: name, axis of the force, of the error, value, unit."""
+    """Return a row for each gain that is not zero: name, force in an axis from what in which, value, unit."""
     rows = []
     for name, meaning in (("KP", "error"), ("KI", "integral"), ("KD", "velocity")):
         matrix, units = getattr(station, name), station.gain_units[name]
         rows += [
-            (f"{name[0]}_{name[1].lower()}", f"{AXES[i]} of the {meaning} in {AXES[j]}", significant(matrix[i][j], 4),
-             units[i][j])
+            (f"{name[0]}_{name[1].lower()}", f"in {AXES[i]}, from the {meaning} in {AXES[j]}",
+             significant(matrix[i][j], 4), units[i][j])
             for i in range(3) for j in range(3) if matrix[i][j]
         ]  # fmt: skip
     return rows

@@ -38,6 +38,15 @@ def test_the_integral_removes_a_steady_current_and_force() -> None:
     assert run.thrust[-1] == pytest.approx(expected, rel=5e-4)  # of the table by which a thrust becomes a command
 
 
+def test_a_dead_band_is_jumped() -> None:
+    """The least thrust needs a command beyond the band; a steady current is held as exactly as without it."""
+    own = craft(cross_drive().with_values({"dead": 0.1}))
+    table = own.tables[0]
+    assert np.interp([-0.01, 0.01], table.thrust, table.share) == pytest.approx([-0.1, 0.1], abs=0.02)
+    run = run_of(own, 0.3, (4.0, -9.0, 2.0), 20_000, 0.5)
+    assert max(abs(run.north[-1]), abs(run.east[-1]), abs(run.heading[-1])) < 1e-6
+
+
 def test_limits_cut_all_thrusts_alike() -> None:
     """A force beyond the limits: one thruster gives all it has, the others as much less of what they were ordered."""
     own = craft(cross_drive())
