@@ -1,4 +1,10 @@
-"""The end of a search for prediction error: Newton steps by the exact gradient, within the bounds."""
+"""The end of a search for prediction error: quasi-Newton steps by the exact gradient, within the bounds.
+
+The expected information begins as the curvature. Of weak disturbances the cost curves otherwise, and steps by it alone go
+to and fro across the valley; what two gradients say of the curvature between their points is taken over into it
+(Broyden, Fletcher, Goldfarb, Shanno; Nocedal & Wright 2006, Numerical Optimization, eq. (6.19)), damped so that it stays
+positive (Powell 1978; eqs (18.15), (18.16)).
+"""
 
 from dataclasses import dataclass, replace
 
@@ -12,6 +18,7 @@ _MAX_DECREMENT = 1e-3  # decrease of the cost that a Newton step still promises 
 # most steps by the exact gradient, and shares of one of which the best is taken, ours: intensity and memory of a weak
 # disturbance are far from quadratic, so that whole steps overshoot, and each costs as much as fifty evaluations
 _NEWTON_STEPS, _STEP_SHARES = 30, (1.0, 0.5, 0.25, 0.125)
+_LEAST_CURVATURE = 0.2  # of the believed curvature along a step (Powell 1978)
 # the filter eliminates initial states: there are no local unknowns
 _NO_INITIAL_STATES = np.zeros((0, 0))
 
@@ -21,23 +28,44 @@ def refine_by_newton(problem: PredictionError, optimum: Optimum) -> tuple[Predic
     point, count = optimum.solution.point, optimum.solution.evaluations
     exact = replace(problem, steps=problem.difference_steps(point, optimum.normal.hessian))
     normal = exact.normal(point, _NO_INITIAL_STATES)
+    curved = normal
     for _ in range(_NEWTON_STEPS):
-        step, slope = _newton_step(exact, point, normal)
+        step, slope = _newton_step(exact, point, curved)
         if slope <= _MAX_DECREMENT:
             break
         trials = [np.clip(point + share * step, exact.lower, exact.upper) for share in _STEP_SHARES]
         costs = [exact.cost(trial, _NO_INITIAL_STATES) for trial in trials]
         best = int(np.argmin(costs))
         if not costs[best] < normal.cost:
-            break
+            if curved is normal:
+                break
+            curved = normal  # once more by the expected information
+            continue
+        before, moved = normal, trials[best] - point
         point, normal, count = (trials[best], exact.normal(trials[best], _NO_INITIAL_STATES), count + 1)
-    slope = _newton_step(exact, point, normal)[1]
+        hessian = with_curvature(curved.hessian, moved, normal.gradient - before.gradient)
+        curved = replace(normal, hessian=hessian)
+    slope = _newton_step(exact, point, curved)[1]
     status = Status.CONVERGED if slope <= _MAX_DECREMENT else Status.STALLED
     history = (*optimum.solution.history, normal.cost)
     solution = replace(
         optimum.solution, point=point, value=normal.cost, status=status, evaluations=count, history=history
     )
     return exact, Optimum(solution, _NO_INITIAL_STATES, normal), slope
+
+
+def with_curvature(hessian: Array, moved: Array, gradient_change: Array) -> Array:
+    """Return a positive curvature (k, k) that agrees with the change of the gradient, (k,), over a step, (k,).
+
+    Where the cost curves by less than `_LEAST_CURVATURE` of what is believed, with that much.
+    """
+    pull = hessian @ moved
+    believed, found = float(moved @ pull), float(moved @ gradient_change)
+    if believed <= 0.0:
+        return hessian
+    share = 1.0 if found >= _LEAST_CURVATURE * believed else (1.0 - _LEAST_CURVATURE) * believed / (believed - found)
+    change = share * gradient_change + (1.0 - share) * pull
+    return hessian - np.outer(pull, pull) / believed + np.outer(change, change) / float(moved @ change)
 
 
 @dataclass(frozen=True, eq=False)

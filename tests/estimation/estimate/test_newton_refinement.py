@@ -1,0 +1,40 @@
+"""The curvature that quasi-Newton steps take over from two gradients."""
+
+import numpy as np
+import pytest
+from scipy.optimize import BFGS
+
+from seatrial.core.values import Array
+from seatrial.estimation.estimate.newton_refinement import with_curvature
+
+BELIEVED = np.array([[4.0, 1.0, 0.0], [1.0, 3.0, 0.5], [0.0, 0.5, 2.0]])
+STEP = np.array([0.3, -0.2, 0.1])
+
+
+def by_scipy(change: Array) -> Array:
+    known = BFGS(exception_strategy="damp_update", min_curvature=0.2)
+    known.initialize(3, "hess")
+    known.first_iteration = False  # its own scale of the first matrix is not used
+    known.B = BELIEVED.copy()
+    known.update(STEP, change)
+    return np.asarray(known.get_matrix())
+
+
+@pytest.mark.parametrize("factor", [3.0, 1.0, 0.25, 0.1, -2.0])
+def test_it_is_that_of_scipy_damped_where_the_cost_hardly_curves(factor: float) -> None:
+    change = factor * BELIEVED @ STEP + np.array([0.02, 0.0, -0.01])
+    curvature = with_curvature(BELIEVED, STEP, change)
+    np.testing.assert_allclose(curvature, by_scipy(change), rtol=1e-12)
+    assert np.linalg.eigvalsh(curvature)[0] > 0.0
+
+
+def test_of_a_quadratic_cost_it_becomes_the_true_one() -> None:
+    """k conjugate steps give the Hessian (Nocedal & Wright 2006, theorem 6.4)."""
+    true, curvature = np.diag([1.0, 5.0, 30.0]), BELIEVED
+    for step in np.eye(3):  # conjugate for a diagonal one
+        curvature = with_curvature(curvature, step, true @ step)
+    np.testing.assert_allclose(curvature, true, atol=1e-12)
+
+
+def test_a_step_that_is_none_teaches_nothing() -> None:
+    np.testing.assert_array_equal(with_curvature(BELIEVED, np.zeros(3), np.zeros(3)), BELIEVED)
