@@ -174,5 +174,5 @@ def test_fitted_runs_that_are_missed_are_a_row_of_their_own(fit: Fit) -> None:
     missed = replace(first, rms={"psi_deg": 0.8 * spread})
     fact = rows(replace(fit, predictions=(missed, *close)))["Error, fitted (rms)"]
     assert fact.is_good is False and fact.section == "training"
-    assert fact.text.startswith(f"{first.record} is missed although fitted, {first.record} by ")
+    assert fact.text.startswith(f"{first.record} is missed although fitted, by ")
     assert fact.text.endswith("(poorly): model error, not extrapolation; docs/bad-fit.md, By symptom")

@@ -86,7 +86,8 @@ def _training_score(fit: Fit) -> tuple[KeyFact, ...]:
     worst = max(shares, key=lambda name: shares[name].share)
     runs = [p for p in fit.predictions if p.record == worst]
     names = enumeration(sorted(shares, key=lambda name: -shares[name].share), MAX_NAMES)
-    errors, is_one = f"{worst} by {worst_errors(runs)} ({shares[worst].grade})", len(shares) == 1
+    is_one = len(shares) == 1
+    errors = f"{'' if is_one else f'{worst} '}by {worst_errors(runs)} ({shares[worst].grade})"
     if unstable_course(fit) is not None:
         text = (
             f"simulated whole, the model leaves {names}, {errors}: no evidence of model error, as a deviation of a "

@@ -81,7 +81,7 @@ def _of_steering(fit: Fit, runs: Sequence[Record]) -> Iterator[RecordGap]:
     speeds = [speed for r in runs if math.isfinite(speed := initial_speed(r)) and speed > 0.0]
     if "u" in fit.model.states and speeds and np.ptp(speeds) <= ONE_SPEED * np.mean(speeds):
         speed = float(np.mean(speeds))
-        begin = "The only run begins" if len(runs) == 1 else f"All {len(runs)} runs begin"
+        begin = {1: "The only run begins", 2: "Both runs begin"}.get(len(runs), f"All {len(runs)} runs begin")
         yield RecordGap(
             f"approach speeds other than {significant(speed, 2)} m/s", f"{begin} at {significant(speed, 2)} m/s: how "
             "forces change with speed shows only as far as turning slows the ship.",

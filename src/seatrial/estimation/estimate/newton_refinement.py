@@ -1,9 +1,9 @@
 """The end of a search for prediction error: quasi-Newton steps by the exact gradient, within the bounds.
 
-The expected information begins as the curvature. Of weak disturbances the cost curves otherwise, and steps by it alone go
-to and fro across the valley; what two gradients say of the curvature between their points is taken over into it
-(Broyden, Fletcher, Goldfarb, Shanno; Nocedal & Wright 2006, Numerical Optimization, eq. (6.19)), damped so that it stays
-positive (Powell 1978; eqs (18.15), (18.16)).
+The expected information begins as the curvature. Of weak disturbances the cost curves otherwise, and steps by it alone
+go to and fro across the valley; what two gradients say of the curvature between their points is taken over into it
+(Broyden, Fletcher, Goldfarb, Shanno; Nocedal & Wright 2006, Numerical Optimization, eq. (6.19)), damped so that it
+stays positive (Powell 1978; eqs (18.15), (18.16)).
 """
 
 from dataclasses import dataclass, replace
