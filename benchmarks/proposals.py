@@ -33,7 +33,7 @@ from seatrial.physics.loops import TransferLoop
 from seatrial.physics.loops.fin import PUBLISHED_GAINS
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "fin_stabiliser.toml"
-HOURS = 1000  # simulated
+HOURS = 200  # simulated: four minutes of a core; 1000 take twenty
 VOYAGE_H, LOOK_H, STRETCH_S = 10.0, 2.0, 1200.0  # h, h, s
 NOISE = 1e-3  # rad, of a roll sensor
 SEED = 22

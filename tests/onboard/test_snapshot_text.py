@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from seatrial.core.results.online import CoefficientChange, EstimatorPhase, Snapshot
-from seatrial.onboard.snapshot_text import change_sentence, estimate_rows, residual_rms, time_text
+from seatrial.onboard.snapshot_text import change_sentence, estimate_rows, phase_meaning, residual_rms, time_text
 
 
 def one(value: float, error: float, unit: str = "1") -> Snapshot:
@@ -60,3 +60,10 @@ def test_a_change_is_stated_only_when_it_is_one() -> None:
         change_sentence(CoefficientChange(300.0, 7.0, 8, 0.5, is_significant=False, most_changed="b33")) == ""
         and change_sentence(None) == ""
     )
+
+
+def test_a_model_without_free_coefficients_does_not_wait_for_samples() -> None:
+    waiting = Snapshot(0.0, 9, 1, EstimatorPhase.WAITING, ("c",), ("1",), np.ones(1), np.array([np.inf]))
+    assert "too few samples" in phase_meaning(waiting)
+    fixed = Snapshot(0.0, 9, 1, EstimatorPhase.WAITING, (), (), np.ones(0), np.ones(0))
+    assert phase_meaning(fixed) == "every coefficient is fixed: nothing to estimate"

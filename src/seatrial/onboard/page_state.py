@@ -30,7 +30,7 @@ def snapshot_json(snapshot: Snapshot, counts: SampleCounts) -> dict[str, Any]:
     """Return the newest snapshot as text: facts, table rows, findings."""
     return {
         "phase": snapshot.phase.value,
-        "meaning": snapshot_text.PHASE_MEANINGS[snapshot.phase],
+        "meaning": snapshot_text.phase_meaning(snapshot),
         "time": snapshot_text.time_text(snapshot.time),
         "samples": snapshot.samples,
         "runs": snapshot.runs,

@@ -14,11 +14,12 @@ from seatrial.core.values.channel_text import channel_unit, unit_text
 NORMAL_95 = 1.96
 # s: a clock that shows more counts from 1970; chosen: three years later, longer than any stream from its own start
 FIRST_UNIX_TIME = 1e8
-PHASE_MEANINGS = {
+_PHASE_MEANINGS = {
     EstimatorPhase.WAITING: "too few samples for an estimate yet",
     EstimatorPhase.WINDOW: "fit over all samples, repeated as they grow",
     EstimatorPhase.RECURSIVE: "filter that continues the fit, sample by sample",
 }
+_NOTHING_FREE = "every coefficient is fixed: nothing to estimate"
 _FAULT_NAMES = {
     "late": "late", "repeated": "repeated", "not_finite": "not a number", "missing": "missing", "jumps": "clock jumps",
     "garbled": "garbled", "checksum": "wrong checksum", "dropped": "dropped", "truncated": "file truncated",
@@ -41,6 +42,11 @@ class EstimateRow:
     power: int
     error_percent: str
     is_identified: bool
+
+
+def phase_meaning(snapshot: Snapshot) -> str:
+    """Return what the phase means, in words."""
+    return _PHASE_MEANINGS[snapshot.phase] if snapshot.names else _NOTHING_FREE
 
 
 def estimate_rows(snapshot: Snapshot) -> list[EstimateRow]:

@@ -101,7 +101,7 @@ def _head(content: TableContent) -> "RenderableType":
     if content.silence > SILENCE_S:
         head.append(f"no samples for {duration(content.silence)}", "yellow")
     else:
-        head.append(snapshot_text.PHASE_MEANINGS[snapshot.phase], "dim")
+        head.append(snapshot_text.phase_meaning(snapshot), "dim")
     return Group(*([Text(printable(content.heading), "bold")] if content.heading else []), head, Text())
 
 

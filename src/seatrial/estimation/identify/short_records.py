@@ -42,9 +42,9 @@ def short_record_findings(estimation: Estimation, profiles: tuple[Profile, ...])
                 "a disturbance with a memory as long as the runs is the model's misfit rather than the sea: free more "
                 "coefficients or take a richer model"
             )
-        findings.append(Finding(Severity.WARNING, "few-memories", "the records last few memories of the disturbance: "
-                                f"{consequence}", f"{seconds:.0f} s, memory {memory:.3g} s",
-                                advice))  # fmt: skip
+        text = f"the records are short compared with the memory of the disturbance: {consequence}"
+        evidence = f"{seconds:.0f} s, memory {memory:.3g} s"
+        findings.append(Finding(Severity.WARNING, "few-memories", text, evidence, advice))
     if steps is not None and steps < FEWEST_REFERENCE_STEPS:
         findings.append(Finding(Severity.WARNING, "few-reference-steps", f"the reference changes seldom: {consequence}",
                                 f"{steps} times in all runs",

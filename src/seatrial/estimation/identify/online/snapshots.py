@@ -47,7 +47,7 @@ def first_snapshot(model: Model) -> Snapshot:
         units=tuple(p.unit for p in free),
         value=np.array([p.value for p in free]),
         standard_error=np.full(len(free), np.inf),
-        advice="too few samples yet",
+        advice="too few samples yet" if free else "",
     )
 
 
