@@ -147,11 +147,6 @@ def test_units_follow_that_of_force() -> None:
     assert gain_units("N/kg")["KD"][1] == ("N s/(kg m)", "N s/(kg m)", "N s/(kg rad)")
 
 
-def test_a_current_that_no_thrusters_hold_is_refused(task: TuningTask, demand: StationDemand) -> None:
-    with pytest.raises(InputError, match=r"at times 3.08 m/s; the thrusters hold 2\.2"):
-        tune_station(task, replace(demand, current=3.0), 0, lambda _: None, draws=0)
-
-
 def test_limits_that_no_bandwidth_keeps_are_refused_with_what_is_possible() -> None:
     own = craft(cross_drive())
     spectrum, limits = SlowPush("gusts", (0.01,) * 6, 0.2).spectrum(), StationLimits(1.6, 1.01)
@@ -168,6 +163,7 @@ def test_limits_that_no_bandwidth_keeps_are_refused_with_what_is_possible() -> N
             [("gust = 5", 'gust = { value = 5, unit = "m/s" }')],
             "station.gust: 'm/s' is no unit of what is",
         ),
+        ([("current = 0.25", "current = 3")], r"at times 3.08 m/s; the thrusters hold 2\.2"),
         ([("current = 0.25", "current = -1")], "station.current = -1 is not positive"),
         ([('model = "model.toml"', 'model = "model.toml"\noutput = "u"\nspeed = 1.0')], "beside its heading loop"),
     ],

@@ -25,7 +25,7 @@ from seatrial.control.loopfile.schema import (
     TrackTable,
 )
 from seatrial.control.loopfile.wave_paths import point_motions
-from seatrial.control.station.tune_station import station_craft
+from seatrial.control.station.tune_station import refuse_impossible_station
 from seatrial.control.task import (
     Demand,
     PlantUncertainty,
@@ -136,7 +136,7 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant, home: Path) -> TuningTas
     if task.track is not None:
         refuse_impossible_track(task, task.track)
     if task.station is not None:
-        station_craft(task.station)
+        refuse_impossible_station(task.station)
     return task
 
 

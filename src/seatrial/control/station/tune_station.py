@@ -39,6 +39,16 @@ def station_craft(demand: StationDemand) -> StationCraft:
     return craft
 
 
+def refuse_impossible_station(demand: StationDemand) -> None:
+    """Refuse a station that thrusters do not hold: none pushes in some direction, or the current is too strong.
+
+    Raises:
+        InputError: which of them, and what the thrusters hold.
+    """
+    craft = station_craft(demand)
+    _held_directions(capability(craft, generalised_inverse(craft)), demand)
+
+
 def station_disturbances(
     task: TuningTask, demand: StationDemand, craft: StationCraft
 ) -> tuple[StationDisturbance, ...]:
