@@ -22,7 +22,8 @@ from seatrial.data.example_series.series import JET_VELOCITY, SAMPLE_RATE, SENSO
 from seatrial.data.trial.design_request import DesignRequest, InputRange
 from seatrial.estimation.design.design import CONFIRMATION_RUNS, design
 from seatrial.estimation.design.manoeuvre_information import ManoeuvreEvaluator, leaves_limits
-from seatrial.estimation.design.search import GENERATIONS, search_step
+from seatrial.estimation.design.search import GENERATIONS
+from seatrial.estimation.design.search_step import search_step
 from seatrial.estimation.design.ships import PriorShips, draw_ships
 from seatrial.estimation.design.standard_manoeuvres import StandardManoeuvre, standard_manoeuvres
 from seatrial.estimation.design.task import DesignTask
@@ -103,7 +104,8 @@ def outcome(
     began = time.process_time()
     made = design(given, seed, confirmation_runs=confirming, generations=generations)
     cpu = time.process_time() - began
-    test = ManoeuvreEvaluator(given, draw_ships(given, TEST_SEED + seed, TEST_SHIPS), search_step(given))
+    ships = draw_ships(given, TEST_SEED + seed, TEST_SHIPS)
+    test = ManoeuvreEvaluator(given, ships, search_step(given, ships))
     standard = standard_manoeuvres(test)
     plan = inputs_of(given.model, made.plan)
     errors = {r.name: worst_standard_errors(test, r) for r in standard}

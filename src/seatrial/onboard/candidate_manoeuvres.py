@@ -12,7 +12,7 @@ from seatrial.data.trial import Trial
 from seatrial.data.trial.design_request import DesignRequest, InputRange
 from seatrial.data.trial.follow_table import require_stream
 from seatrial.estimation.design.manoeuvre_information import ManoeuvreEvaluator
-from seatrial.estimation.design.search import search_step
+from seatrial.estimation.design.search_step import search_step
 from seatrial.estimation.design.ships import PriorShips
 from seatrial.estimation.design.standard_manoeuvres import standard_manoeuvres
 from seatrial.estimation.design.task import DesignTask
@@ -66,9 +66,8 @@ def candidate_manoeuvres(
     if is_pure_roll(model) and not model.is_affine:
         return _roll_releases(model, records)
     task = _design_task(trial, model, records, noise)
-    evaluator = ManoeuvreEvaluator(
-        task, PriorShips(model.parameters.values[None], np.zeros(len(model.parameters.free))), search_step(task)
-    )
+    ship = PriorShips(model.parameters.values[None], np.zeros(len(model.parameters.free)))
+    evaluator = ManoeuvreEvaluator(task, ship, search_step(task, ship))
     candidates = []
     for item in standard_manoeuvres(evaluator):
         inputs = item.inputs_for(evaluator)

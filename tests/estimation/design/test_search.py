@@ -12,7 +12,8 @@ from seatrial.data.trial.design_request import DesignCriterion
 from seatrial.estimation.design.design import design
 from seatrial.estimation.design.manoeuvre_information import ManoeuvreEvaluator, ManoeuvreInformation, leaves_limits
 from seatrial.estimation.design.orders import input_series, orders_at
-from seatrial.estimation.design.search import DesignObjective, criterion_errors, search_orders, search_step
+from seatrial.estimation.design.search import DesignObjective, criterion_errors, search_orders
+from seatrial.estimation.design.search_step import search_step
 from seatrial.estimation.design.ships import draw_ships
 from seatrial.estimation.design.standard_manoeuvres import standard_manoeuvres
 from seatrial.estimation.design.task import DesignTask
@@ -22,7 +23,8 @@ GENERATIONS = 12
 
 
 def bench(task: DesignTask) -> ManoeuvreEvaluator:
-    return ManoeuvreEvaluator(task, draw_ships(task, 0), search_step(task))
+    ships = draw_ships(task, 0)
+    return ManoeuvreEvaluator(task, ships, search_step(task, ships))
 
 
 def quiet(_: str) -> None: ...

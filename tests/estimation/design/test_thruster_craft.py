@@ -26,7 +26,7 @@ def task(drift: float | None = None) -> DesignTask:
 
 
 def test_half_a_minute_identifies_all_coefficients_better_than_sequences_and_single_steps() -> None:
-    result = design(task(), 0, confirmation_runs=0, generations=15)
+    result = design(task(), 0, confirmation_runs=0, generations=25)
     assert result.designed.executed["u"][0] == 0.0
     assert result.designed.worst < 0.5
     assert result.designed.worst < min(m.worst for m in result.baselines)

@@ -14,7 +14,8 @@ from seatrial.estimation.design.confirm import confirm_design
 from seatrial.estimation.design.findings import findings, refuse_violated_limits
 from seatrial.estimation.design.manoeuvre_information import ManoeuvreEvaluator, assess_manoeuvre, simulate_plan
 from seatrial.estimation.design.orders import input_series, order_table, orders_at, planned_record, sample_count
-from seatrial.estimation.design.search import GENERATIONS, DesignObjective, at_sensor_rate, search_orders, search_step
+from seatrial.estimation.design.search import GENERATIONS, DesignObjective, at_sensor_rate, search_orders
+from seatrial.estimation.design.search_step import search_step
 from seatrial.estimation.design.ships import draw_ships, relative_spread
 from seatrial.estimation.design.standard_manoeuvres import StandardManoeuvre, standard_manoeuvres
 from seatrial.estimation.design.task import DesignTask
@@ -44,7 +45,8 @@ def design(
     began = time.perf_counter()
     refuse_unidentifiable(task.model, tuple(task.sensors), ())
     seeds = np.random.SeedSequence(seed).generate_state(3)
-    bench = ManoeuvreEvaluator(task, draw_ships(task, int(seeds[0])), search_step(task))
+    ships = draw_ships(task, int(seeds[0]))
+    bench = ManoeuvreEvaluator(task, ships, search_step(task, ships))
     report_progress("standard manoeuvres")
     standard = standard_manoeuvres(bench)
     _refuse_impossible_limits(bench, standard)

@@ -17,6 +17,8 @@ from seatrial.physics.simulate.replay import replay
 _TRACK_CHANNELS = ("u", "v", "x0", "y0")
 # ridge on the information matrix of unit diagonal: the size of rounding
 _REGULARISATION = 1e-13
+# slopes that are worked out at a time, 1 MB of float64, so that they stay in the processor's cache; chosen
+_CACHED_NUMBERS = 2**17
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,30 +80,32 @@ class ManoeuvreEvaluator:
         count, width = self.ships.count, len(self.task.model.inputs)
         each = np.broadcast_to(model_inputs, (count, *model_inputs.shape[-2:])).reshape(-1, width)
         batch = replace(self._batch_without_inputs, inputs=np.array(each))
-        tracks, information = zip(*(self._of_ship(batch, ship) for ship in range(count)), strict=True)
-        y, k = np.stack(tracks), len(self.task.model.parameters.free)
+        slopes = len(each) // count * len(self.outputs) * batch.column_count
+        some = max(1, _CACHED_NUMBERS // slopes)
+        blocks = [self._of_ships(batch, first, min(first + some, count)) for first in range(0, count, some)]
+        y, information = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
         lost = np.any(~np.isfinite(y), axis=(1, 2))
-        errors = np.array([_standard_errors(one, k) for one in information]) / self._magnitudes
+        errors = _standard_errors(information)[:, : len(self.task.model.parameters.free)] / self._magnitudes
         relative = np.where(lost[:, None], np.nan, errors)
         return ManoeuvreInformation(relative, *self._drift_and_distance(np.where(lost[:, None, None], 0.0, y)))
 
-    def _of_ship(self, batch: SegmentBatch, ship: int) -> tuple[Array, Array]:
-        """Return outputs (rows, ny), not finite where the ship is lost, and the information that its sensors give.
+    def _of_ships(self, batch: SegmentBatch, first: int, last: int) -> tuple[Array, Array]:
+        """Return outputs (ships, rows, ny), not finite where one is lost, and the information of the sensors' records.
 
-        One ship at a time: its slopes stay in the processor's cache.
+        As many ships at a time as leave their slopes in the processor's cache.
         """
         seen, k = len(self.task.sensors), len(self.task.model.parameters.free)
-        noise = np.array(list(self.task.sensors.values()))
         y, slopes, failed = batch.differentiate(
-            ship, ship + 1, self._initial_states, self.ships.parameters, np.zeros((self.ships.count, 0))
+            first, last, self._initial_states, self.ships.parameters, np.zeros((self.ships.count, 0))
         )
-        scaled = slopes[:, :seen]
-        if failed[0] >= 0 or not np.isfinite(y).all():
-            y, scaled = np.full_like(y, np.nan), np.zeros_like(scaled)
-        scaled /= noise[:, None]
-        flat = scaled.reshape(-1, scaled.shape[2])
-        information = (flat.T @ flat) * (self.task.request.rate * self.dt)
-        information[range(k), range(k)] += self.ships.precision
+        y, slopes = (part.reshape(last - first, -1, *part.shape[1:]) for part in (y, slopes))
+        lost = (failed >= 0) | ~np.isfinite(y).all(axis=(1, 2))
+        y[lost], slopes[lost] = np.nan, 0.0
+        scaled = slopes[:, :, :seen]
+        scaled /= np.array(list(self.task.sensors.values()))[:, None]
+        flat = scaled.reshape(last - first, -1, batch.column_count)
+        information = np.stack([one.T @ one for one in flat]) * (self.task.request.rate * self.dt)
+        information[:, range(k), range(k)] += self.ships.precision
         return y, information
 
     def _drift_and_distance(self, y: Array) -> tuple[Array, Array]:
@@ -153,12 +157,12 @@ def simulate_plan(task: DesignTask, planned: Record, name: str) -> Record:
     return replay(task.model, planned, start).renamed(name)
 
 
-def _standard_errors(information: Array, k: int) -> Array:
-    """Return standard errors of the first k unknowns; huge for those that nothing determines."""
-    scale = np.sqrt(information.diagonal())
+def _standard_errors(information: Array) -> Array:
+    """Return standard errors (ships, n) of all unknowns; huge for those that nothing determines."""
+    scale = np.sqrt(np.diagonal(information, axis1=1, axis2=2))
     is_informative = scale > 0.0
-    unit = information[np.ix_(is_informative, is_informative)] / np.outer(scale[is_informative], scale[is_informative])
-    variance = np.full(len(scale), np.inf)
-    inverse = np.linalg.inv(unit + _REGULARISATION * np.eye(len(unit)))
-    variance[is_informative] = np.abs(inverse.diagonal()) / scale[is_informative] ** 2
-    return np.sqrt(np.minimum(variance[:k], 1e30))  # a finite number for what is not identified; chosen
+    size, unity = np.where(is_informative, scale, 1.0), np.eye(scale.shape[1])
+    unit = information / (size[:, :, None] * size[:, None, :]) + unity * (~is_informative)[:, None, :]
+    inverse = np.linalg.inv(unit + _REGULARISATION * unity)
+    variance = np.where(is_informative, np.abs(np.diagonal(inverse, axis1=1, axis2=2)) / size**2, np.inf)
+    return np.sqrt(np.minimum(variance, 1e30))  # a finite number for what is not identified; chosen
