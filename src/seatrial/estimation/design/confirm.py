@@ -1,5 +1,6 @@
 """A design tried on simulated trials: noisy records of ships the prior allows, fitted by output error."""
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -22,6 +23,8 @@ from seatrial.physics.simulate.replay import replay
 WINDOW_PER_HOLD = 1.5
 # of the criterion: a move of some 1e-4 standard errors
 NEGLIGIBLE_DECREASE = 1e-8
+# of chi squared: what is left beyond is no noise, ours
+NOISE_DEVIATIONS = 5.0
 
 
 def confirm_design(
@@ -57,16 +60,23 @@ def confirm_design(
 
 
 def _fit_record(task: DesignTask, record: Record) -> Solution:
-    """Return the output error from the weak form's start and from the model's own values; the better of the two."""
+    """Return the output error from the weak form's start; the better one from the model's own values, too, if need be.
+
+    There is need where more is left than the sensors' noise explains.
+    """
     outputs = tuple(task.sensors)
     problem = OutputError(
         task.model, cut_segments(task.model, [record], outputs, None), np.array(list(task.sensors.values())), workers=1
     )
     local = np.array([[task.initial_state[task.model.states.index(s)] for s in problem.starts]])
-    solutions = [
-        levenberg_marquardt(problem, shared, local, negligible=NEGLIGIBLE_DECREASE).solution
-        for shared in (*_weak_form_start(task, problem, record), problem.start())
-    ]
+    count = len(record) * len(outputs)
+    # half of chi squared of as many values: its mean and some standard deviations
+    noise = 0.5 * (count + NOISE_DEVIATIONS * math.sqrt(2.0 * count))
+    solutions: list[Solution] = []
+    for shared in (*_weak_form_start(task, problem, record), problem.start()):
+        solutions.append(levenberg_marquardt(problem, shared, local, negligible=NEGLIGIBLE_DECREASE).solution)
+        if solutions[-1].status.is_success and solutions[-1].value <= noise:
+            break
     return min(solutions, key=lambda solution: solution.value)
 
 

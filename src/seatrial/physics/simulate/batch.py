@@ -2,15 +2,18 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index
+from seatrial.numerics.kernels.compiled_function import TangentPointer
 from seatrial.numerics.kernels.integrate import replay
 from seatrial.numerics.kernels.sensitivity import DELAY, GAIN, OFFSET, replay_tangent
 
+# one pointer for each compiled function: numba needs more time to look one up than a short segment takes
+_tangent_pointer = cache(TangentPointer)
 INPUT_KINDS = {"zero": OFFSET, "gain": GAIN, "delay": DELAY}
 
 
@@ -117,10 +120,11 @@ class SegmentBatch:
             column[self.model.states.index(state)] = len(self.parameters) + len(self.corrections) + m
         s = np.empty((len(y), len(self.outputs), self.column_count))
         compiled = self.model.compiled
-        replay_tangent(compiled.rates_tangent, compiled.outputs_tangent, inputs, offsets, 0, last - first, self.dt,
-                       self.substeps, np.ascontiguousarray(start[first:last]),
-                       np.ascontiguousarray(parameters[first:last]), gain, zero, delay, *self._links, column,
-                       self._output_columns, len(self.model.outputs), y, s, failed)  # fmt: skip
+        rates, seen = _tangent_pointer(compiled.rates_tangent), _tangent_pointer(compiled.outputs_tangent)
+        replay_tangent(rates, seen, inputs, offsets, 0, last - first, self.dt, self.substeps,
+                       np.ascontiguousarray(start[first:last]), np.ascontiguousarray(parameters[first:last]),
+                       gain, zero, delay, *self._links, column, self._output_columns, len(self.model.outputs),
+                       y, s, failed)  # fmt: skip
         return y, s, failed
 
     def _segment_rows(self, first: int, last: int) -> tuple[Index, Array, Index, Array]:
