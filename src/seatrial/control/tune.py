@@ -37,7 +37,7 @@ from seatrial.physics.loops import margins
 
 FRONT_POINTS = 300  # points of a front that are kept in the result; chosen
 PARAMETER_DRAWS = 100  # ships drawn from the fit that follow a demand; chosen
-_GRID = {1: 2000, 2: 400, 3: 100}  # free gains -> points a gain of the grid that the front is checked against; chosen
+_GRID = {1: 2000, 2: 200, 3: 60}  # free gains -> points a gain of the grid that the front is checked against; chosen
 
 
 def tune(
