@@ -5,10 +5,11 @@ from typing import Any
 
 import tomli_w
 
-from seatrial.core.results.proposal import Estimated, Proposal
+from seatrial.core.results.proposal import Estimated, HeadingRange, Proposal
 
 FORMAT = 1
 PROPOSAL = "proposal.toml"
+_DIGITS = 6  # of what is estimated: finer than any interval, short enough to be read; chosen
 
 
 def proposal_toml(proposal: Proposal) -> str:
@@ -31,10 +32,7 @@ def proposal_toml(proposal: Proposal) -> str:
             "peak_period": _interval(sea.period),
             "heading_deg": _interval(sea.heading, math.degrees(1.0)),
             "is_heading_determined": sea.is_heading_determined,
-            "headings": [
-                {"from_deg": math.degrees(one.lower), "to_deg": math.degrees(one.upper), "probability": one.probability}
-                for one in sea.headings
-            ],
+            "headings": [_heading_range(one) for one in sea.headings],
         }
     if proposal.craft:
         table["craft"] = {one.name: _interval(one.factor) for one in proposal.craft}
@@ -54,9 +52,20 @@ def proposal_toml(proposal: Proposal) -> str:
 
 
 def _interval(estimated: Estimated, factor: float = 1.0) -> dict[str, float]:
-    return _finite({
-        "value": factor * estimated.value, "lower": factor * estimated.lower, "upper": factor * estimated.upper,
-    })  # fmt: skip
+    ends = {"value": estimated.value, "lower": estimated.lower, "upper": estimated.upper}
+    return _finite({name: _rounded(factor * value) for name, value in ends.items()})
+
+
+def _heading_range(one: HeadingRange) -> dict[str, float]:
+    return {
+        "from_deg": _rounded(math.degrees(one.lower)),
+        "to_deg": _rounded(math.degrees(one.upper)),
+        "probability": _rounded(one.probability),
+    }
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.{_DIGITS}g}")
 
 
 def _finite(values: dict[str, float]) -> dict[str, float]:
