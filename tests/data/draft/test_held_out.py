@@ -59,13 +59,13 @@ def test_a_repeat_that_alone_can_be_held_out_is_called_one() -> None:
     assert answer.names == ("z20",) and answer.why.startswith("a repeat of again")
 
 
-def test_a_model_with_propeller_is_judged_by_the_circles_where_zigzags_of_half_their_rudder_train_it() -> None:
+def test_a_model_with_propeller_is_judged_by_the_circles_to_one_side_where_the_others_and_a_zigzag_train_it() -> None:
     zigzags = {"z10": zigzag("z10", 10.0), "z20": zigzag("z20", 20.0)}
-    assert held(SHIP, zigzags | {"p": turn(-35.0), "s": turn(35.0)}) == ("p", "s")
-    twice = {"z20": zigzag("z20", 20.0), "again": zigzag("again", 20.0)}
-    assert held(SHIP, twice | {"p": turn(-35.0), "s": turn(35.0)}) == ("z20", "again")
-    small = {"z12": zigzag("z12", 12.0), "z15": zigzag("z15", 15.0)}
-    assert held(SHIP, small | {"p": turn(-35.0), "s": turn(35.0)}) == ("z12",)
+    circles = {"p": turn(-35.0), "s": turn(35.0)}
+    assert held(SHIP, zigzags | circles) == ("p",)
+    assert held(SHIP, zigzags | circles | {"again": turn(-35.0)}) == ("s",), "the side of fewer"
+    assert held(SHIP, {"z20": zigzags["z20"]} | circles) == ("p",)
+    assert held(SHIP, zigzags | {"s": turn(35.0)}) == ("z20",), "the only circle goes farthest, so that it trains"
 
 
 def test_the_smaller_of_two_decays_is_held_out_to_whichever_side_it_starts() -> None:

@@ -10,10 +10,14 @@ from seatrial.data.trial import EstimateSettings
 from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.estimate.criterion_choice import WHOLE_RUNS
 from seatrial.estimation.identify.criterion_by_left_out import (
+    WholeRunErrors,
     is_better,
+    is_preferred,
     left_out_errors,
+    lost_count,
     mean_text,
     preferred_estimation,
+    whole_run_errors,
 )
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto
@@ -105,6 +109,22 @@ def test_a_simulation_that_is_further_off_than_the_mean_of_the_motion_counts_as_
     good, poor = [{"psi_deg": e} for e in (3.0, 4.0, 3.0, 3.0)], [{"psi_deg": e} for e in (3.1, 3.6, 200.0, 160.0)]
     assert is_better(good, poor, swinging(100.0)) and not is_better(poor, good, swinging(100.0))
     assert not is_better(good, poor, swinging(1.0)), "all are lost by both, and the test has the word"
+
+
+def test_what_loses_fitted_runs_gives_way_to_what_reproduces_them() -> None:
+    records, good, lost = swinging(20.0), [{"psi_deg": 3.0}] * 4, [{"psi_deg": 2.0}] * 3 + [{"psi_deg": 120.0}]
+    assert lost_count(good, records) == 0 and lost_count(lost, records) == 1
+    assert is_preferred(WholeRunErrors(good, []), WholeRunErrors(lost, []), records), "however few the runs"
+    assert not is_preferred(WholeRunErrors(lost, []), WholeRunErrors(good, []), records)
+    worse = [{"psi_deg": 9.0 + k} for k in range(4)]
+    assert not is_preferred(WholeRunErrors(good, worse), WholeRunErrors(lost, good), records), "left out, it is worse"
+    assert is_preferred(WholeRunErrors(good, good), WholeRunErrors(good, worse), records)
+
+
+def test_fitted_runs_are_simulated_with_their_own_offsets(estimation: Estimation, runs: Runs) -> None:
+    errors = whole_run_errors(estimation, runs, START_S)
+    assert [0.0 < e["psi_deg"] < 10.0 for e in errors.fitted] == [True] * 5
+    assert errors.left_out == left_out_errors(estimation, runs, START_S)
 
 
 def test_errors_are_named_with_their_units() -> None:

@@ -15,9 +15,6 @@ _HARDLY_STEERED = 0.3  # of the largest size of the inputs of a run, below which
 # of the range of an input in the other runs, by which a run may leave it and still lie within; by which one may where
 # no other run lies within; chosen
 _BEYOND, _FARTHER_BEYOND = 0.05, 0.25
-# rudder of turning circles over that of the zigzags that train, up to which a model of propeller and rudder is judged
-# by them, and the fewest zigzags of different orders that train it; chosen
-_CIRCLE_OVER_ZIGZAG, _FEWEST_ZIGZAGS = 2.0, 2
 
 
 @dataclass(frozen=True)
@@ -35,8 +32,8 @@ NOTHING_HELD_OUT = HeldOutRuns()
 def held_out_runs(model: StartingModel, records: Mapping[str, Record]) -> HeldOutRuns:
     """Return the runs to judge the model by.
 
-    A model with propeller and rudder is judged by the turning circles where zigzags of half their rudder angle train
-    it. Else it is the upper middle one by size of the manoeuvres whose inputs lie within the others', with its repeats;
+    A model with propeller and rudder is judged by the turning circles to one side where those to the other and a zigzag
+    train it: what no run steers it hardly predicts. Else it is the upper middle one by size of the manoeuvres whose inputs lie within the others', with its repeats;
     of two the smaller one, since the larger one shows more to the estimate. Where nothing but a repeat can be held out,
     that is said.
 
@@ -47,8 +44,8 @@ def held_out_runs(model: StartingModel, records: Mapping[str, Record]) -> HeldOu
         return NOTHING_HELD_OUT
     orders = {name: steered_orders(one) if "delta" in model.inputs else None for name, one in records.items()}
     groups = _repeats(orders)
-    if model.has_propeller and (circles := _circles([orders[group[0]] for group in groups], orders)):
-        return HeldOutRuns(circles, "turning circles, of which none is fitted")
+    if model.has_propeller and (circles := _circles_to_one_side(orders)):
+        return HeldOutRuns(circles, "circles to one side; those to the other are fitted")
     if middle := _middle(model, records, groups):
         return HeldOutRuns(middle)
     single = _middle(model, records, [(name,) for name in records])
@@ -63,13 +60,14 @@ def can_judge(model: StartingModel, name: str, records: Mapping[str, Record]) ->
     return bool(model.inputs) and _lie_within(model, {name}, records, _FARTHER_BEYOND)
 
 
-def _circles(distinct: Sequence[SteeredOrders | None], orders: Mapping[str, SteeredOrders | None]) -> tuple[str, ...]:
-    """The turning circles, where zigzags of distinct orders determine the model without them; else nothing."""
-    zigzags = [abs(one.rudder) for one in distinct if one is not None and one.kind is ManoeuvreKind.ZIGZAG]
-    circles = {name: abs(one.rudder) for name, one in orders.items() if one is not None and one.is_turn}
-    if len(zigzags) < _FEWEST_ZIGZAGS or not circles:
+def _circles_to_one_side(orders: Mapping[str, SteeredOrders | None]) -> tuple[str, ...]:
+    """The turning circles to the side of fewer, else to port, where there are others and a zigzag; else nothing."""
+    port = tuple(name for name, one in orders.items() if one is not None and one.is_turn and one.rudder < 0.0)
+    starboard = tuple(name for name, one in orders.items() if one is not None and one.is_turn and one.rudder > 0.0)
+    has_zigzag = any(one is not None and one.kind is ManoeuvreKind.ZIGZAG for one in orders.values())
+    if not has_zigzag or not port or not starboard:
         return ()
-    return tuple(circles) if max(circles.values()) <= _CIRCLE_OVER_ZIGZAG * max(zigzags) else ()
+    return port if len(port) <= len(starboard) else starboard
 
 
 def _repeats(orders: Mapping[str, SteeredOrders | None]) -> list[tuple[str, ...]]:

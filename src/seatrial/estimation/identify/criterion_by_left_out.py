@@ -1,13 +1,14 @@
-"""Where no disturbance explains the residuals, runs left out decide between the criterion and output error.
+"""Where no disturbance explains the residuals, whole runs decide between the criterion and output error.
 
 Prediction error is efficient where a disturbance makes its innovations white. Where none does, model error is taken for
 a disturbance that each sample or segment corrects, and what the coefficients predict without corrections is judged by
-nothing. So the training runs are predicted as a whole, each by the estimate without it (Stone 1974, J. R. Stat. Soc. B
-36, 111), and output error over whole runs is used where it predicts them better.
+nothing. So the training runs are simulated as a whole: by the estimate itself, which must not lose runs that output
+error over whole runs reproduces, and each by the estimate without it (Stone 1974, J. R. Stat. Soc. B 36, 111). Output
+error is used where it does better.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import stdtrit
@@ -21,6 +22,7 @@ from seatrial.estimation.estimate.criterion_choice import SET_BY_TRIAL, WHOLE_RU
 from seatrial.estimation.estimate.intervals import RUNS_FOR_JACKKNIFE
 from seatrial.estimation.predict.open_loop import rms_errors, simulate_open_loop
 from seatrial.estimation.predict.prediction_intervals import holdout_model
+from seatrial.estimation.predict.session_offsets import session_offsets
 
 _LEVEL = 0.95
 """One-sided level at which output error must predict better, 1; chosen."""
@@ -48,8 +50,8 @@ def preferred_estimation(
     is_free = settings.criterion is FitCriterion.AUTO and settings.segment_s is None and not settings.robust
     if not is_free or estimation.whiteness.is_white or estimation.criterion == WHOLE_RUNS:
         return estimation
-    errors = left_out_errors(estimation, runs, seconds)
-    if not errors:
+    own = whole_run_errors(estimation, runs, seconds)
+    if not own.left_out and not lost_count(own.fitted, runs.records):
         return estimation
     model = estimation.estimate.problem.model
     try:
@@ -58,12 +60,9 @@ def preferred_estimation(
         )
     except InputError:  # whole runs diverge from every start: there is nothing to compare
         return estimation
-    rivals = left_out_errors(other, runs, seconds)
-    reason = (
-        "no disturbance makes the residuals white, so each run was predicted as a whole by the others: "
-        f"{mean_text(rivals)} by {WHOLE_RUNS}, {mean_text(errors)} by {estimation.criterion}"
-    )
-    if not is_better(rivals, errors, runs.records):
+    rival = whole_run_errors(other, runs, seconds)
+    reason = _comparison_text(rival, own, estimation.criterion, runs.records)
+    if not is_preferred(rival, own, runs.records):
         reason = f"{reason}; {WHOLE_RUNS} is not better beyond the scatter over runs, and is not used"
         noise_model = replace(estimation.noise_model, text=f"{estimation.noise_model.text}; {reason}")
         return replace(estimation, reasons=(*estimation.reasons, reason), noise_model=noise_model)
@@ -74,6 +73,47 @@ def preferred_estimation(
     )
     why = (reason, *(r for r in other.reasons if r != SET_BY_TRIAL))
     return replace(other, reasons=why, noise_model=noise_model)
+
+
+@dataclass(frozen=True)
+class WholeRunErrors:
+    """Errors of the training runs, each simulated as a whole from its inputs; a run without errors diverges.
+
+    Attributes:
+        fitted: by the estimate itself.
+        left_out: by the estimates without them, as `left_out_errors`.
+    """
+
+    fitted: list[dict[str, float]]
+    left_out: list[dict[str, float]]
+
+
+def whole_run_errors(estimation: Estimation, runs: Runs, seconds: float) -> WholeRunErrors:
+    """Return the errors of the training runs by an estimate; seconds: of a beginning, for the initial state."""
+    problem, fitted = estimation.estimate.problem, []
+    for session, record in zip(runs.sessions, runs.records, strict=True):
+        nuisances = session_offsets(estimation, session, record).expected
+        try:
+            run = simulate_open_loop(problem, estimation.model, record, nuisances, seconds)
+            fitted.append(rms_errors(record, run.record))
+        except InputError:
+            fitted.append({})
+    return WholeRunErrors(fitted, left_out_errors(estimation, runs, seconds))
+
+
+def is_preferred(rival: WholeRunErrors, own: WholeRunErrors, records: Sequence[Record]) -> bool:
+    """Return whether a rival loses fewer of the runs that it is fitted to and none more left out, or predicts better.
+
+    Coefficients that miss a run although it was fitted, where others reproduce it, are none of that craft.
+    """
+    if lost_count(rival.fitted, records) < lost_count(own.fitted, records):
+        return not (own.left_out and rival.left_out and is_better(own.left_out, rival.left_out, records))
+    return bool(own.left_out and rival.left_out) and is_better(rival.left_out, own.left_out, records)
+
+
+def lost_count(errors: Sequence[dict[str, float]], records: Sequence[Record]) -> int:
+    """Return how many runs are lost: they diverge, or are further off than the mean of their motion."""
+    return sum(is_lost(each, record) for each, record in zip(errors, records, strict=True))
 
 
 def left_out_errors(estimation: Estimation, runs: Runs, seconds: float) -> list[dict[str, float]]:
@@ -104,9 +144,7 @@ def is_better(
     simulations diverge, or are further off than the mean of the motion, fewer of them are better: a few runs lost
     among others scatter so much that no test would see them.
     """
-    lost, by_rival = (
-        sum(is_lost(e, record) for e, record in zip(each, records, strict=True)) for each in (errors, rivals)
-    )
+    lost, by_rival = lost_count(errors, records), lost_count(rivals, records)
     if lost != by_rival:
         return lost < by_rival
     pairs = [(a, b) for a, b in zip(errors, rivals, strict=True) if a and b]
@@ -127,3 +165,20 @@ def mean_text(errors: Sequence[dict[str, float]]) -> str:
     means = {k: float(np.mean([e[k] for e in lasting])) for k in shown}
     texts = [_WORDS.get(k, f"{k} {{}}").format(significant(mean)) for k, mean in means.items()]
     return " and ".join([*texts, *([f"{len(errors) - len(lasting)} diverged"] if len(lasting) < len(errors) else [])])
+
+
+def _comparison_text(rival: WholeRunErrors, own: WholeRunErrors, criterion: str, records: Sequence[Record]) -> str:
+    """What was compared, and the errors: of runs left out where there are enough, else of those that were fitted."""
+    lost, by_rival = lost_count(own.fitted, records), lost_count(rival.fitted, records)
+    texts = []
+    if lost or by_rival:
+        texts.append(
+            f"simulated as a whole, {lost} of the {len(records)} runs that were fitted are missed by more than their "
+            f"own motion by {criterion}, {by_rival} by {WHOLE_RUNS}"
+        )
+    if own.left_out and rival.left_out:
+        texts.append(
+            f"each run was predicted as a whole by the others: {mean_text(rival.left_out)} by {WHOLE_RUNS}, "
+            f"{mean_text(own.left_out)} by {criterion}"
+        )
+    return f"no disturbance makes the residuals white, so whole runs were compared: {'; '.join(texts)}"
