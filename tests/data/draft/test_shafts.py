@@ -1,13 +1,15 @@
-"""Beside a rudder the rate of the only shaft is the propeller's, whatever the logger numbers it."""
+"""What drives a craft that steers by one angle: a shaft ahead of a rudder, or a thruster that is turned."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from tests.onboard.sentences import sentence
 
 from seatrial.data.draft.column_guess import ColumnGuess
-from seatrial.data.draft.guess import guess_columns
+from seatrial.data.draft.guess import guess_columns, with_turned_thruster
 from seatrial.data.draft.survey import survey_log
+from seatrial.data.draft.tables_text import thruster_tables
 
 
 def guesses(path: Path, *rates: str) -> dict[str, ColumnGuess]:
@@ -29,3 +31,17 @@ def test_the_only_shaft_is_the_propellers(tmp_path: Path) -> None:
 def test_two_shafts_are_those_of_two_propellers_and_an_engine_is_none(tmp_path: Path) -> None:
     assert {"rpm_1", "rpm_2"} <= set(guesses(tmp_path / "twin.nmea", "S,1", "S,2"))
     assert not {"n", "rpm_1"} & set(guesses(tmp_path / "engine.nmea", "E,1"))
+
+
+def test_an_angle_that_turns_the_only_thruster_is_the_direction_of_its_thrust() -> None:
+    """One that turns the craft to starboard pushes the stern to port."""
+    steering = ColumnGuess("steering_deg", "delta", "deg", evidence=("a positive one turns to starboard",))
+    throttle, other = ColumnGuess("throttle_pct", "command_1", "percent"), ColumnGuess("thr_2", "command_2", "percent")
+    ((turned, _),) = with_turned_thruster([(steering, throttle)])
+    assert (turned.symbol, turned.positive) == ("alpha_1", "port")
+    ((back, _),) = with_turned_thruster([(replace(steering, positive="port"), throttle)])
+    assert (back.symbol, back.positive) == ("alpha_1", "")
+    for kept in ([(steering, throttle, other)], [(steering,)], [(replace(steering, source="rudder"), throttle)]):
+        assert with_turned_thruster(kept) == tuple(kept), "which is turned is not known, or nothing is"
+    lines = thruster_tables([turned, throttle], 5.6)
+    assert 'angle = { channel = "alpha_1" }' in lines and any(line.startswith("x = -2.80") for line in lines)

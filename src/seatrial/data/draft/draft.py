@@ -12,7 +12,7 @@ from seatrial.data.draft.agreement import agreed_guesses
 from seatrial.data.draft.behaviour import checked_by_behaviour, run_record
 from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.draft_text import RecordsBlock, trial_text, unrecognised_columns
-from seatrial.data.draft.guess import guess_columns, without_conflicts
+from seatrial.data.draft.guess import guess_columns, with_turned_thruster, without_conflicts
 from seatrial.data.draft.held_out import NOTHING_HELD_OUT, HeldOutRuns, can_judge, held_out_runs
 from seatrial.data.draft.manoeuvres import (
     find_stretches,
@@ -111,6 +111,7 @@ def draft_trial(
     guesses = [agreed_guesses(parts, examined) for parts in named]
     records = [run_record(run.sources, parts) for run, parts in zip(runs, guesses, strict=True)]
     stretches = numbered([find_stretches(run.sources, one) for run, one in zip(runs, records, strict=True)])
+    guesses = [with_turned_thruster(parts) for parts in guesses]
     symbols = {g.symbol for one in guesses[longest[0]] for g in one if g.is_used}
     has_jet = any(_NOZZLE.search(str(g.source)) for one in guesses[longest[0]] for g in one if g.symbol == "delta")
     model = starting_model(symbols, records, size, has_jet=has_jet)

@@ -22,6 +22,8 @@ _LARGEST_RUDDER = math.pi / 2.0  # rad
 _LARGEST_TILT = math.pi / 2.0  # rad, of roll and pitch
 _LATITUDE_RAD = math.pi / 2.0  # rad, of a pole
 _LARGEST_RPS = 60.0  # 1/s; propellers of ships and models turn more slowly, those of small craft are in rpm
+# headings of the angle of a thruster that is turned; chosen
+_TURNED = re.compile("steer|outboard|azimuth", re.IGNORECASE)
 # headings of the rate of a propeller or its shaft, which no gear stands before
 _SHAFT = re.compile("prop|shaft|welle|aksel|arbre|helice|hélice|elica", re.IGNORECASE)
 _FOLDERS_READ = 3  # folders above a file whose names may be those of a topic; chosen
@@ -184,6 +186,22 @@ def _with_propeller(parts: Sequence[Sequence[ColumnGuess]]) -> list[Sequence[Col
         [replace(one, symbol="n").with_evidence(text) if one.symbol in shafts else one for one in part]
         for part in parts
     ]
+
+
+def with_turned_thruster(parts: Sequence[Sequence[ColumnGuess]]) -> tuple[tuple[ColumnGuess, ...], ...]:
+    """Return the guesses, where what steers is the only thruster, turned: its angle is the direction of the thrust.
+
+    An angle that turns the craft to starboard is a thrust to port, at the stern.
+    """
+    used = {one.symbol: one for part in parts for one in part if one.is_used}
+    commands = [one for one in used if one.startswith(("command_", "rpm_"))]
+    steers = used.get("delta")
+    if steers is None or steers.is_open or len(commands) != 1 or not _TURNED.search(str(steers.source)):
+        return tuple(map(tuple, parts))
+    turned = replace(
+        steers, symbol=f"alpha_{commands[0].rpartition('_')[2]}", positive="" if steers.positive == "port" else "port"
+    ).with_evidence("turns the only thruster; that of a rudder behind a fixed one is channels.delta, its sign reversed")
+    return tuple(tuple(turned if one is steers else one for one in part) for part in parts)
 
 
 def _unused(guess: ColumnGuess, reason: str) -> ColumnGuess:

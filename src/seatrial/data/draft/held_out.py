@@ -32,10 +32,10 @@ NOTHING_HELD_OUT = HeldOutRuns()
 def held_out_runs(model: StartingModel, records: Mapping[str, Record]) -> HeldOutRuns:
     """Return the runs to judge the model by.
 
-    A model with propeller and rudder is judged by the turning circles to one side where those to the other and a zigzag
-    train it: what no run steers it hardly predicts. Else it is the upper middle one by size of the manoeuvres whose inputs lie within the others', with its repeats;
-    of two the smaller one, since the larger one shows more to the estimate. Where nothing but a repeat can be held out,
-    that is said.
+    A model with propeller and rudder is judged by the turning circles to one side where those to the other and a
+    zigzag train it: what no run steers it hardly predicts. Else it is the upper middle one by size of the manoeuvres
+    whose inputs lie within the others', with its repeats; of two the smaller one, since the larger one shows more to
+    the estimate. Where nothing but a repeat can be held out, that is said.
 
     Empty where there is none: a model is not judged beyond the runs that it is fitted to, nor by one that hardly
     steers.

@@ -82,13 +82,20 @@ def thruster_tables(guesses: Sequence[ColumnGuess], length: float) -> list[str]:
         unit = ', unit = "rpm" }    # add span = the rpm at full ahead' if is_rate else " }"
         lines += [
             "", "[[thruster]]", f'name = "{name}"',
-            "x = 0.0    # m forward of midship; counts where thrust can act sideways",
+            _place_line(length, is_turned=angle in used),
             _lever_line(sign, length),
             *([f'angle = {{ channel = "{angle}" }}'] if angle in used else []),
             f'command = {{ channel = "{guess.symbol}"{unit}',
             *(['same_as = "starboard"    # the same coefficients'] if is_pair and name == "port" else []),
         ]  # fmt: skip
     return lines
+
+
+def _place_line(length: float, *, is_turned: bool) -> str:
+    """Where a thruster lies along the craft: of one that is turned at the transom, from which its moment follows."""
+    if not is_turned:
+        return "x = 0.0    # m forward of midship; counts where thrust can act sideways"
+    return f"x = {-0.5 * length:.2f}    # {ESTIMATED}: m forward of midship, of an outboard at the transom; measure it"
 
 
 def _lever_line(sign: float, length: float) -> str:

@@ -50,8 +50,8 @@ def preferred_estimation(
     is_free = settings.criterion is FitCriterion.AUTO and settings.segment_s is None and not settings.robust
     if not is_free or estimation.whiteness.is_white or estimation.criterion == WHOLE_RUNS:
         return estimation
-    own = whole_run_errors(estimation, runs, seconds)
-    if not own.left_out and not lost_count(own.fitted, runs.records):
+    incumbent = whole_run_errors(estimation, runs, seconds)
+    if not incumbent.left_out and not lost_count(incumbent.fitted, runs.records):
         return estimation
     model = estimation.estimate.problem.model
     try:
@@ -61,8 +61,8 @@ def preferred_estimation(
     except InputError:  # whole runs diverge from every start: there is nothing to compare
         return estimation
     rival = whole_run_errors(other, runs, seconds)
-    reason = _comparison_text(rival, own, estimation.criterion, runs.records)
-    if not is_preferred(rival, own, runs.records):
+    reason = _comparison_text(rival, incumbent, estimation.criterion, runs.records)
+    if not is_preferred(rival, incumbent, runs.records):
         reason = f"{reason}; {WHOLE_RUNS} is not better beyond the scatter over runs, and is not used"
         noise_model = replace(estimation.noise_model, text=f"{estimation.noise_model.text}; {reason}")
         return replace(estimation, reasons=(*estimation.reasons, reason), noise_model=noise_model)
@@ -101,14 +101,14 @@ def whole_run_errors(estimation: Estimation, runs: Runs, seconds: float) -> Whol
     return WholeRunErrors(fitted, left_out_errors(estimation, runs, seconds))
 
 
-def is_preferred(rival: WholeRunErrors, own: WholeRunErrors, records: Sequence[Record]) -> bool:
+def is_preferred(rival: WholeRunErrors, incumbent: WholeRunErrors, records: Sequence[Record]) -> bool:
     """Return whether a rival loses fewer of the runs that it is fitted to and none more left out, or predicts better.
 
     Coefficients that miss a run although it was fitted, where others reproduce it, are none of that craft.
     """
-    if lost_count(rival.fitted, records) < lost_count(own.fitted, records):
-        return not (own.left_out and rival.left_out and is_better(own.left_out, rival.left_out, records))
-    return bool(own.left_out and rival.left_out) and is_better(rival.left_out, own.left_out, records)
+    if lost_count(rival.fitted, records) < lost_count(incumbent.fitted, records):
+        return not (incumbent.left_out and rival.left_out and is_better(incumbent.left_out, rival.left_out, records))
+    return bool(incumbent.left_out and rival.left_out) and is_better(rival.left_out, incumbent.left_out, records)
 
 
 def lost_count(errors: Sequence[dict[str, float]], records: Sequence[Record]) -> int:
@@ -167,18 +167,20 @@ def mean_text(errors: Sequence[dict[str, float]]) -> str:
     return " and ".join([*texts, *([f"{len(errors) - len(lasting)} diverged"] if len(lasting) < len(errors) else [])])
 
 
-def _comparison_text(rival: WholeRunErrors, own: WholeRunErrors, criterion: str, records: Sequence[Record]) -> str:
+def _comparison_text(
+    rival: WholeRunErrors, incumbent: WholeRunErrors, criterion: str, records: Sequence[Record]
+) -> str:
     """What was compared, and the errors: of runs left out where there are enough, else of those that were fitted."""
-    lost, by_rival = lost_count(own.fitted, records), lost_count(rival.fitted, records)
+    lost, by_rival = lost_count(incumbent.fitted, records), lost_count(rival.fitted, records)
     texts = []
     if lost or by_rival:
         texts.append(
             f"simulated as a whole, {lost} of the {len(records)} runs that were fitted are missed by more than their "
             f"own motion by {criterion}, {by_rival} by {WHOLE_RUNS}"
         )
-    if own.left_out and rival.left_out:
+    if incumbent.left_out and rival.left_out:
         texts.append(
             f"each run was predicted as a whole by the others: {mean_text(rival.left_out)} by {WHOLE_RUNS}, "
-            f"{mean_text(own.left_out)} by {criterion}"
+            f"{mean_text(incumbent.left_out)} by {criterion}"
         )
     return f"no disturbance makes the residuals white, so whole runs were compared: {'; '.join(texts)}"
