@@ -91,6 +91,13 @@ def test_a_dead_command_and_readings_out_of_range_are_named() -> None:
     assert "correct unit, zero and span" in finding.advice
 
 
+def test_shares_that_a_thruster_takes_for_per_cent_are_scaled_twice() -> None:
+    percent = layout(lambda t: replace(t, command=CommandInput("command_1", 0.0, 100.0)), as_it_is)
+    (finding,) = thruster_findings(percent, RECORDS)
+    assert finding.code == "command-range" and finding.severity is Severity.ERROR
+    assert "scaled twice" in finding.message and "channels.command_1" in finding.advice
+
+
 def test_a_direction_in_degrees_is_seen() -> None:
     pod = Thruster("pod", -0.5, 0.0, CommandInput("command_1"), AngleInput("alpha_1"))
     degrees = Record.from_arrays("pod", RECORDS[0].time, {

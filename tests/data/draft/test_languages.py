@@ -74,6 +74,7 @@ def test_what_is_stated_wrongly_is_refused(columns: tuple[str, ...], sentence: s
 
 def test_headings_have_the_last_equals_sign_behind_them() -> None:
     assert stated_columns(["a = b=psi", "Klokke = time"]) == {"a = b": "psi", "Klokke": "time"}
+    assert stated_columns(["steering=alpha_1"]) == {"steering": "alpha_1"}, "the direction of a thruster"
 
 
 def test_a_folder_without_a_time_says_how_one_is_stated(tmp_path: Path) -> None:

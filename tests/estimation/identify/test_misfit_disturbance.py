@@ -1,5 +1,7 @@
 """A disturbance larger than the motion is called the model's misfit, or, where the model fits, not determined."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -33,3 +35,8 @@ def test_a_disturbance_that_the_model_does_not_miss_is_not_determined() -> None:
 
 def test_gusts_of_a_sea_and_states_of_no_run_are_none() -> None:
     assert misfit_disturbance({"u": 0.05, "r": 0.05, "v": 1.0}, [run(u=0.4)], 1.4) == ()
+
+
+def test_states_of_instruments_and_thrusters_are_no_motion() -> None:
+    late = Record.from_arrays("run", TIME, {"u": RUN["u"]})
+    assert misfit_disturbance({"v_late": 9.0, "order_port": 9.0}, [replace(run(), simulated=late)], 1.4) == ()

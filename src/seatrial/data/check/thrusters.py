@@ -76,6 +76,14 @@ def _orders(thruster: Thruster, record: Record) -> Array:
 def _command_findings(thruster: Thruster, records: Sequence[Record]) -> list[Finding]:
     orders = np.concatenate([_orders(thruster, r) for r in records])
     where, channel = f"thruster '{thruster.name}'", thruster.command.channel
+    readings = np.concatenate([r[channel] for r in records])
+    is_of_percent = thruster.command.zero == 0.0 and abs(thruster.command.span) > 1.0
+    if is_of_percent and 0.0 < float(np.max(np.abs(readings))) <= 1.0:
+        return [Finding(
+            Severity.ERROR, "command-range", f"{where}: '{channel}' is scaled twice, to {np.max(orders):.2g} of full",
+            f"readings {np.min(readings):.3g} to {np.max(readings):.3g}, which are shares of full command already",
+            f"take unit, zero and span out of its command, or out of channels.{channel}",
+        )]  # fmt: skip
     if np.ptp(orders) < _STILL:
         return [Finding(
             Severity.WARNING, "dead-thruster", f"{where}: its command '{channel}' never moves in any run",
@@ -84,7 +92,6 @@ def _command_findings(thruster: Thruster, records: Sequence[Record]) -> list[Fin
     worst = float(np.max(np.abs(orders)))
     if worst <= _SPAN_MARGIN:
         return []
-    readings = np.concatenate([r[channel] for r in records])
     return [Finding(
         Severity.ERROR, "command-range", f"{where}: '{channel}' goes to {worst:.3g} of full command",
         f"readings {np.min(readings):.6g} to {np.max(readings):.6g}, zero {thruster.command.zero:g}, span "
@@ -119,6 +126,8 @@ def _side_findings(layout: ThrusterLayout, records: Sequence[Record]) -> list[Fi
         other = "astern" if thruster.command.span > 0 else "ahead"
         inverted = f'set command.positive = "{other}" for it'
         sides = "exchange the channels of port and starboard, or the signs of their y"
+        if isinstance(thruster.angle, AngleInput):
+            sides = f"state the other side as positive for channels.{thruster.angle.channel}"
         if effect.surge < -SURE_EFFECT and effect.yaw < -SURE_EFFECT:
             what, advice = "works inverted: more command drives and turns the craft the other way", inverted
         elif effect.surge < -SURE_EFFECT and effect.yaw > SURE_EFFECT:

@@ -146,7 +146,7 @@ _WORDS = [
         (r"sway_(dot|acc(eleration)?)", "v_dot", "", "body"),
         (r"rudder(_(angle|pos(ition)?|feedback|act(ual)?))?|rud|delta(_rudder)?|rsa|helm|nozzle(_angle)?", "delta", ""),
         (r"(steer(ing)?|outboard|azimuth)(_(angle|pos(ition)?|feedback))?", "delta", ""),
-        (r"throttle", "command_1", ""),
+        (r"throttle", "command_1", ""), (r"alpha_(\d+)", "alpha_{}", ""),
         (r"(main_|port_|stbd_)?eng(ine)?(_(rate|speed|revs?))?", "n", "", "", "", 1.0, _ENGINE),
         (r"n_prop|(prop(eller)?|shaft)_(rate|rpm|rps|speed)|shaft", "n", ""),
         (r"rpm|rps|n", "n", "", "", "", 1.0, "", _RATE),

@@ -71,7 +71,8 @@ def misfit_disturbance(
 
 
 def _excesses(intensities: Mapping[str, float], trained: Sequence[Prediction], seconds: float) -> Iterator[_Excess]:
-    for state, intensity in intensities.items():
+    moving = {state: intensity for state, intensity in intensities.items() if state in NOTATION}  # no instrument's own
+    for state, intensity in moving.items():
         runs = [p for p in trained if state in p.simulated]
         samples = [p.simulated[state][np.isfinite(p.simulated[state])] for p in runs]
         spread = float(np.std(np.concatenate(samples))) if samples else math.nan
