@@ -1,5 +1,7 @@
 """Wave forces from an elevation: against those of the lines themselves; records that cannot give them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -21,6 +23,23 @@ def test_forces_from_the_elevation_equal_those_of_the_lines(heading: int) -> Non
     known = made.between(float(felt.time[0]), float(felt.time[-1]))
     for name in ("F3", "M5"):
         assert np.std(felt[name] - known[name]) < 0.01 * np.std(known[name])
+
+
+@pytest.mark.parametrize("heading", [90, 150, 180])
+def test_a_probe_ahead_of_midship_sees_waves_from_ahead_earlier(heading: int) -> None:
+    """Long-crested waves of five lines, their elevation written down at midship and 12 m ahead of it."""
+    beta, ahead, time = np.radians(heading), 12.0, np.arange(4000) * 0.1
+    omega, phase = np.array([0.5, 0.61, 0.74, 0.83, 0.97]), np.array([0.1, 2.0, 4.1, 5.0, 3.3])
+    k = omega**2 / 9.81
+    met = omega - k * SPEED * np.cos(beta)
+    elevations = [np.cos(np.outer(time, met) - k * x * np.cos(beta) + phase).sum(axis=1) for x in (0.0, ahead)]
+    at_midship, there = (Record.from_arrays("run", time, {"zeta": zeta}) for zeta in elevations)
+    there = there.with_channel("zeta", replace(there.channel("zeta"), reference_point=ahead))
+    expected, found = (with_wave_forces(one, box_hull(), SPEED, beta) for one in (at_midship, there))
+    middle = slice(500, -500)  # the ends are continued by prediction, each by its own
+    for name in ("F3", "M5"):
+        difference = found[name][middle] - expected[name][: len(found[name])][middle]
+        assert np.std(difference) < 0.01 * np.std(expected[name])
 
 
 def test_a_record_with_forces_keeps_them() -> None:

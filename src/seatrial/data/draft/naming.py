@@ -119,7 +119,7 @@ _RATE = "taken for the shaft's; of an engine behind a gear add scale = propeller
 _WIND = "no model but mmg takes it: a comment in the file"
 _APPARENT_WIND = "no model takes an apparent wind: a comment in the file"
 _APPARENT, _ANGLE = "app(arent)?", "(dir(ection)?|angle)"
-_PROBE = "counts as the elevation at midship"
+_PROBE = "counts as at midship; of a probe on the craft elsewhere add reference_point, m forward of midship"
 _PORT, _STARBOARD = "(left|port)", "(right|starboard|stbd)"
 _SIDES = {"port": _PORT, "starboard": _STARBOARD}
 _THRUSTER, _PULSE = "(thr(ottle|uster)?|motor|esc|pwm|command|cmd)", "(_(pwm|us|out|output|raw|cmd))?"

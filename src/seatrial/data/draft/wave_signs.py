@@ -22,9 +22,11 @@ def wave_motion_signs(record: Record) -> Changes:
         return {}
     changes: Changes = {}
     if "z" in record:
-        changes["z"] = _decided(-_in_phase(record, "z"), "up", "down", "rises with long waves")
+        changes["z"] = _decided(
+            -_in_phase(record, "z"), "up", "down", "follows long waves, if their probe stands at midship"
+        )
     if "theta" in record:
-        text = "rises on the front of long waves, if they come from ahead"
+        text = "follows the slope of long waves, if they come from ahead and their probe stands at midship"
         changes["theta"] = _decided(_in_phase(record, "theta", of_slope=True), "bow down", "bow up", text)
     return changes
 

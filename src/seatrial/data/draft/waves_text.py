@@ -33,7 +33,7 @@ def wave_lines() -> list[str]:
         "",
         "[records.waves]",
         'heading = { value = 180, unit = "deg" }    # ASSUMED: head seas; 0 is following, 90 beam',
-        "speed = 0.0    # ASSUMED: m/s of the craft; { column = ..., unit = ... } where it was recorded",
+        "speed = 0.0    # ASSUMED: m/s of the craft, or of the carriage that tows it",
     ]
 
 

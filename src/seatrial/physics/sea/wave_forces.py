@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatrial.core.values import Array, Channel, InputError, Record, frozen
+from seatrial.physics.hydro.dispersion import G
 from seatrial.physics.hydro.excitation import Complex, Excitation, encounter_frequency
 from seatrial.physics.sea.encounter import speed_factor, wave_frequency
 from seatrial.physics.sea.spectrum import Spectrum
@@ -23,8 +24,10 @@ _STEPS_PER_PERIOD = 5.0  # of the predictor, in the shortest period; chosen
 def with_wave_forces(record: Record, excitation: Excitation, U: float, beta: float) -> Record:
     """Return the record with F3 [N, up] and M5 [N m, bow down] computed from its channel zeta [m, up].
 
-    U in m/s, beta in rad (0 following, pi head). The ends, where the filter knows only half of what it needs, are cut
-    off. A record that has F3 and M5 already keeps them. Speed and mean frequency of encounter come along as channels.
+    U in m/s, beta in rad (0 following, pi head). A probe that moves with the ship, `reference_point` of zeta ahead of
+    midship, sees waves from ahead earlier by their way to midship. The ends, where the filter knows only half of what
+    it needs, are cut off. A record that has F3 and M5 already keeps them. Speed and mean frequency of encounter come
+    along as channels.
 
     Raises:
         InputError: no elevation, gaps in it, a following sea (one frequency of encounter has three waves there), or a
@@ -51,7 +54,7 @@ def with_wave_forces(record: Record, excitation: Excitation, U: float, beta: flo
             f"record '{record.name}' of {record.duration:.3g} s is too short for its longest waves, met every "
             f"{2.0 * np.pi / band[0]:.3g} s; record at least {_NEEDED_PERIODS * lost:.0f} s"
         )
-    forces = _filtered_forces(level, record.dt, band, excitation, U, beta)
+    forces = _filtered_forces(level, record.dt, band, excitation, U, beta, record.channel("zeta").reference_point)
     made = {name: Channel.from_notation(name, frozen(forces[:, j])) for j, name in enumerate(("F3", "M5"))}
     whole = Record(
         record.name, record.time, {**record.channels, **made}, record.kind,
@@ -88,9 +91,13 @@ def _band(level: Array, dt: float) -> tuple[float, float]:
 
 
 def _filtered_forces(
-    level: Array, dt: float, band: tuple[float, float], excitation: Excitation, U: float, beta: float
+    level: Array, dt: float, band: tuple[float, float], excitation: Excitation, U: float, beta: float, place: float
 ) -> Array:
-    """Return F3 and M5 along the record, (n, 2); both ends continued as the waves would have gone on, and faded out."""
+    """Return F3 and M5 along the record, (n, 2); both ends continued as the waves would have gone on, and faded out.
+
+    place: of the probe, m ahead of midship; the elevation a exp(i omega_e t) at midship is a exp(i (omega_e t
+    - k x cos beta)) there, k = omega^2 / g (deep water; Lloyd 1989, section 7.2).
+    """
     n, more = len(level), round(_EXTRAPOLATED_PERIODS * 2.0 * np.pi / band[0] / dt)
     fade = np.cos(np.linspace(0.0, 0.5 * np.pi, more)) ** 2
     after = linear_prediction(level, more, band, dt) * fade
@@ -99,8 +106,10 @@ def _filtered_forces(
     omega_e = 2.0 * np.pi * np.fft.rfftfreq(len(padded), dt)
     inside = (omega_e >= _MARGINS[0] * band[0]) & (omega_e <= _MARGINS[1] * band[1])
     transfer: NDArray[np.complex128] = np.zeros((len(omega_e), 2), dtype=np.complex128)
-    F3, M5 = excitation.forces(wave_frequency(omega_e[inside], U, beta), U, beta)
-    transfer[inside, 0], transfer[inside, 1] = F3, M5
+    omega = wave_frequency(omega_e[inside], U, beta)
+    to_midship = np.exp(1j * omega**2 / G * place * np.cos(beta))
+    F3, M5 = excitation.forces(omega, U, beta)
+    transfer[inside, 0], transfer[inside, 1] = to_midship * F3, to_midship * M5
     made = np.fft.irfft(np.fft.rfft(padded)[:, None] * transfer, len(padded), axis=0)
     return made[more : more + n]
 
