@@ -23,10 +23,10 @@ def wave_motion_signs(record: Record) -> Changes:
     changes: Changes = {}
     if "z" in record:
         changes["z"] = _decided(
-            -_in_phase(record, "z"), "up", "down", "follows long waves, if their probe stands at midship"
+            -_in_phase(record, "z"), "up", "down", "a craft rises with long waves, here those of a probe at midship"
         )
     if "theta" in record:
-        text = "follows the slope of long waves, if they come from ahead and their probe stands at midship"
+        text = "its bow rises on their front, if they come from ahead"
         changes["theta"] = _decided(_in_phase(record, "theta", of_slope=True), "bow down", "bow up", text)
     return changes
 
@@ -38,7 +38,7 @@ def _decided(share: float, other: str, standard: str, text: str) -> Callable[[Co
             evidence = f"in phase with long waves by only {abs(share):.2f}"
             return replace(guess, other_reading=f'positive = "{other}"').with_evidence(evidence)
         positive = guess.positive if share > 0.0 else opposite
-        return replace(guess, positive=positive).with_evidence(f"{text}: positive {positive or standard}")
+        return replace(guess, positive=positive).with_evidence(f"{text}: the column is positive {positive or standard}")
 
     return decided
 
