@@ -62,6 +62,12 @@ prior_sd_percent = 10
     assert (prior.mean, prior.standard_deviation) == (-0.2, pytest.approx(0.02))
 
 
+def test_the_zero_of_what_is_compared_is_no_offset(trial_file: Path) -> None:
+    wrong = changed(trial_file, "[model]\n", '[estimate]\noffsets = ["psi"]\n\n[model]\n')
+    with pytest.raises(InputError, match=r"estimate\.offsets: 'psi' is no input of model .* state its zero as zero"):
+        load_trial(wrong)
+
+
 def test_estimate_settings_are_in_si(trial_file: Path) -> None:
     extra = """[noise]
 psi = { sd = 0.2, unit = "deg" }

@@ -37,6 +37,7 @@ CONSEQUENCES: dict[str, str] = {
     "closure": "what the channels contradict one another by goes into the coefficients as bias",
     "speed-scale": "every coefficient of a force is wrong by the factor or its square",
     "approach": "overshoots, advance and approach speed are those of a craft that is still settling",
+    "resting-level": "waves do not explain it: the run is missed by that much, and stiffness is bent to it",
     "held-roll": "what holds the ship is no part of the model: the decay is fitted with a motion that it is not",
     "dead-thruster": "its coefficients cannot be estimated",
     "no-excitation": "the coefficients of steering cannot be estimated",

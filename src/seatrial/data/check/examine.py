@@ -15,6 +15,7 @@ from seatrial.data.check.kinematic_consistency import kinematic_consistency_find
 from seatrial.data.check.motion import recorded_motion
 from seatrial.data.check.possible_sizes import require_possible_sizes
 from seatrial.data.check.repair import repair
+from seatrial.data.check.resting_level import resting_level_findings
 from seatrial.data.check.rudder import rudder_findings
 from seatrial.data.check.run_phases import phase_findings
 from seatrial.data.check.sentinels import without_sentinels
@@ -71,6 +72,7 @@ def _comparison_findings(record: Record) -> list[Finding]:
         *phase_findings(record),
         *approach_findings(record),
         *feedback_findings(record),
+        *resting_level_findings(record),
     ]
 
 

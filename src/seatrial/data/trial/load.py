@@ -124,6 +124,7 @@ def trial_of_tables(
         symbols = {*NOTATION, *declared}
         _refuse_unknown_names("noise", list(file.noise), symbols)
         _refuse_unknown_names("estimate.channels", list(file.estimate.channels), set(model.observables))
+        _refuse_measured_offsets(list(file.estimate.offsets), model)
         _refuse_unknown_names("estimate.offsets", list(file.estimate.offsets), symbols)
         _refuse_unknown_names("estimate.gains", list(file.estimate.gains), symbols)
         _refuse_unknown_names("estimate.delays", list(file.estimate.delays), set(model.input_names))
@@ -206,6 +207,16 @@ def _reference_force(model: Model, ship: Ship) -> float | None:
     """rho/2 L d [kg/m^2], where ship or model know them."""
     known = {p.name: p.value for p in model.parameters} | dict(ship.particulars)
     return known["rho"] / 2 * known["L"] * known["d"] if {"rho", "L", "d"} <= set(known) else None
+
+
+def _refuse_measured_offsets(names: list[str], model: Model) -> None:
+    """Refuse the zero of what the model is compared with: it is no input, whose zero is estimated."""
+    for name in names:
+        if name in model.observables and name not in model.input_names:
+            raise InputError(
+                f"estimate.offsets: '{name}' is no input of model '{model.name}'; state its zero as zero = ... in "
+                f"channels.{name}"
+            )
 
 
 def _refuse_unknown_names(
