@@ -73,7 +73,7 @@ def test_turning_on_the_spot_hides_no_error_of_heading(fit: Fit) -> None:
     (share,) = error_shares(p)
     anywhere = 360.0 / math.sqrt(12.0)  # std. dev. of a uniform distribution over a turn
     assert share.share == pytest.approx(80.0 / anywhere) and share.grade is Grade.POORLY
-    assert "of heading 104°, the most that directions scatter: 0.77 in heading, poorly" in share_sentence([p])
+    assert "(104° for a heading that turns on and on): 0.77 in heading, poorly" in share_sentence([p])
 
 
 def test_both_heading_and_position_are_named_where_a_run_has_them(fit: Fit) -> None:

@@ -158,7 +158,7 @@ def share_sentence(predictions: Sequence[Prediction], course: Stability | None =
                for name in MOTIONS if any(one.name == name for one in every)]  # fmt: skip
     parts = enumeration([f"{significant(one.share, 2)} in {ERROR_LABELS[one.name][0]}" for one in largest])
     over = f", over {worst.window}" if worst.window else ""
-    turning = f"; of heading {math.degrees(HEADING_SPREAD):.0f}°, the most that directions scatter"
+    turning = f" ({math.degrees(HEADING_SPREAD):.0f}° for a heading that turns on and on)"
     capped = turning if any(one.is_turning for one in largest) else ""
     noun = "share" if len(largest) == 1 else "shares"
     return f"{noun} of the standard deviation of the motion itself{over}{capped}: {parts}, {worst.grade} ({SCALE})"
