@@ -22,6 +22,8 @@ def test_the_orders_are_those_of_the_run() -> None:
     straight = Record.from_arrays("s", time, {"delta": 0.0 * time, "psi": 0.0 * time})
     assert steered_orders(straight) is None
     assert not orders.is_repeated_by(replace(orders, heading=0.5 * orders.heading)), "a zigzag 20/10"
+    thirty, thirty_five = (SteeredOrders(orders.kind, math.radians(a), 0.1, 1.2) for a in (30.0, 35.0))
+    assert not thirty.is_repeated_by(thirty_five) and not thirty_five.is_repeated_by(thirty)
     assert SteeredOrders(orders.kind, 0.1, 0.1, math.nan).is_repeated_by(SteeredOrders(orders.kind, 0.11, 0.1, 1.0))
 
 

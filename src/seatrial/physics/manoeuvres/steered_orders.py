@@ -9,7 +9,7 @@ from seatrial.core.values import InputError, Record
 from seatrial.physics.manoeuvres.recognition import ManoeuvreKind, ObservedManoeuvre
 
 # share by which orders and speeds of repeats differ at most; chosen: below the steps in which people order angles
-_TOLERANCE = 0.15
+_TOLERANCE = 0.1
 _LEAST_ANGLE = math.radians(1.0)  # of a difference of angles that counts; chosen
 _TURNS = (ManoeuvreKind.TURNING_CIRCLE, ManoeuvreKind.PULL_OUT)  # in which the rudder is held over once, for long
 _APPROACH = 5.0  # s at the start of a run whose mean is its speed; chosen
