@@ -8,7 +8,7 @@ from enum import StrEnum
 import numpy as np
 
 from seatrial.core.results import Fit, Prediction, Stability, WindowScore
-from seatrial.core.results.motion_spread import HEADING_SPREAD, MOTIONS, motion_spread
+from seatrial.core.results.motion_spread import HEADING_SPREAD, MOTIONS, MotionSpread, motion_spread, motion_spreads
 from seatrial.core.text.numbers import significant
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, Record
@@ -63,26 +63,21 @@ class ErrorShare:
 
 def error_shares(p: Prediction) -> tuple[ErrorShare, ...]:
     """Return the errors over a whole run as shares of its own motions; none where none can be compared."""
-    return tuple(
-        _error_share(name, p.rms[name], [p.measured[c] for c in channels])
-        for name, channels in MOTIONS.items()
-        if name in p.rms and all(c in p.measured for c in channels)
-    )
+    return tuple(_error_share(name, p.rms[name], spread) for name, spread in motion_spreads(p.rms, p.measured).items())
 
 
 def window_shares(p: Prediction, window: WindowScore) -> tuple[ErrorShare, ...]:
     """Return the errors over windows as shares of the motions inside such windows."""
     return tuple(
-        _error_share(name, window.scores[name].rms, _inside_windows(p.measured, channels, window.seconds),
-                     window.window)
+        _error_share(name, window.scores[name].rms,
+                     motion_spread(name, _inside_windows(p.measured, channels, window.seconds)), window.window)
         for name, channels in MOTIONS.items()
         if name in window.scores and all(c in p.measured for c in channels)
     )  # fmt: skip
 
 
-def _error_share(name: str, rms: float, motions: Sequence[Array], window: str = "") -> ErrorShare:
-    """An error as the share of the spread of its channels together, shape (n,) each, SI."""
-    spread = motion_spread(name, motions)
+def _error_share(name: str, rms: float, spread: MotionSpread, window: str = "") -> ErrorShare:
+    """An error as the share of the spread of its motion."""
     return ErrorShare(name, rms / spread.size if spread.size > 0.0 else math.inf, window, spread.is_turning)
 
 

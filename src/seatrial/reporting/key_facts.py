@@ -1,4 +1,4 @@
-"""The five rows at the top of a fit's page: score, baseline, coverage, identifiability, warnings."""
+"""The rows at the top of a fit's page: score, baseline, coverage, identifiability, gaps, warnings."""
 
 import math
 from collections.abc import Sequence

@@ -28,6 +28,7 @@ FULL_COMMAND, LEAST_COMMAND = 0.9, 0.1
 # deg: a deck edge immerses at about that; factor of the largest roll that shows more of the damping; chosen
 LARGEST_RELEASE_DEG, LARGER = 35.0, 2.0
 _PROPULSION = ("n", "v_j")
+_OTHER = {"port": "starboard", "starboard": "port"}
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,7 @@ class RecordGap:
 
     @property
     def command(self) -> str:
-        """The option of `seatrial simulate`, and the order to a crew."""
+        """The option of `seatrial simulate`."""
         return f"--manoeuvre {self.options}"
 
 
@@ -93,13 +94,14 @@ def _of_steering(fit: Fit, runs: Sequence[Record]) -> Iterator[RecordGap]:
 
 
 def _of_sides(port: float, starboard: float) -> Iterator[RecordGap]:
-    if min(port, starboard) >= ONE_SIDED * max(port, starboard):
+    other = _unused_side(port, starboard)
+    if not other:
         return
-    used, other = ("starboard", "port") if starboard > port else ("port", "starboard")
     angle = f"{math.degrees(max(port, starboard)):.0f}"
     end = ":port" if other == "port" else ""
     yield RecordGap(
-        f"turns to {other}", f"The rudder went to {used} only: whether the ship turns alike to both sides is assumed.",
+        f"turns to {other}",
+        f"The rudder went to {_OTHER[other]} only: whether the ship turns alike to both sides is assumed.",
         f"turning-circle:{angle}{end}",
     )  # fmt: skip
 
@@ -124,10 +126,10 @@ def gaps_of_thrusters(runs: Sequence[Record], layout: ThrusterLayout) -> Iterato
     rates = [to_starboard(r, "r") if "r" in r else np.gradient(to_starboard(r, "psi"), r.time)
              for r in runs if "r" in r or "psi" in r]  # fmt: skip
     port, starboard = (_reach(np.concatenate([sign * rate for rate in rates])) if rates else 0.0 for sign in (-1, 1))
-    if min(port, starboard) < ONE_SIDED * max(port, starboard):
-        used, other = ("starboard", "port") if starboard > port else ("port", "starboard")
+    if other := _unused_side(port, starboard):
         yield RecordGap(
-            f"turns to {other}", f"The craft turned to {used} only: whether it turns alike to both sides is assumed.",
+            f"turns to {other}",
+            f"The craft turned to {_OTHER[other]} only: whether it turns alike to both sides is assumed.",
             f"spin:50{':port' if other == 'port' else ''}",
         )  # fmt: skip
     orders = [
@@ -157,6 +159,13 @@ def gaps_of_rolling(runs: Sequence[Record]) -> Iterator[RecordGap]:
             f"roll beyond {largest:.0f}°", f"The ship rolled to {largest:.0f}° at most: how its damping goes on to "
             "grow with the angle is extrapolated.", f"release:{LARGER * largest:.0f}",
         )  # fmt: skip
+
+
+def _unused_side(port: float, starboard: float) -> str:
+    """The side to which it went by less than `ONE_SIDED` of the other; empty: to both."""
+    if min(port, starboard) >= ONE_SIDED * max(port, starboard):
+        return ""
+    return "port" if starboard > port else "starboard"
 
 
 def _reach(values: Array) -> float:

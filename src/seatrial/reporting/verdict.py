@@ -101,7 +101,7 @@ def _judged_errors(held: Sequence[Prediction], course: Stability | None) -> str:
     errors = enumeration([f"{error_text(n, rms)} in {ERROR_LABELS[n][0]}" for n, rms in worst_of.items()])
     lengths = enumeration(list(dict.fromkeys(w.window for w in windows)))
     leaves = f"simulated whole, the model leaves {'them' if len(held) > 1 else 'it'} by {whole}"
-    reason = f"which does not count, as the craft is {growth_clause(course)}"
+    reason = f"where small errors grow by themselves, as the craft is {growth_clause(course)}"
     return f"{errors}{worst}, in windows of {lengths}; {leaves}, {reason}"
 
 

@@ -62,9 +62,10 @@ prior_sd_percent = 10
     assert (prior.mean, prior.standard_deviation) == (-0.2, pytest.approx(0.02))
 
 
-def test_the_zero_of_what_is_compared_is_no_offset(trial_file: Path) -> None:
-    wrong = changed(trial_file, "[model]\n", '[estimate]\noffsets = ["psi"]\n\n[model]\n')
-    with pytest.raises(InputError, match=r"estimate\.offsets: 'psi' is no input of model .* state its zero as zero"):
+@pytest.mark.parametrize(("key", "name"), [("offsets", "psi"), ("offsets", "zeta"), ("gains", "r")])
+def test_only_inputs_have_corrections(trial_file: Path, key: str, name: str) -> None:
+    wrong = changed(trial_file, "[model]\n", f'[estimate]\n{key} = ["{name}"]\n\n[model]\n')
+    with pytest.raises(InputError, match=rf"estimate\.{key}: unknown name '{name}'; inputs .* in channels\.{name}"):
         load_trial(wrong)
 
 

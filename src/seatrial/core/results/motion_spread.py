@@ -1,7 +1,7 @@
 """How far the motions of a run spread: what errors of its prediction are compared with."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,11 +34,16 @@ def motion_spread(name: str, motions: Sequence[Array]) -> MotionSpread:
     return MotionSpread(size, is_turning)
 
 
+def motion_spreads(names: Container[str], measured: Record) -> dict[str, MotionSpread]:
+    """Return the spreads of a run's motions for the errors of these names, as far as it holds their channels."""
+    compared = (name for name, channels in MOTIONS.items() if name in names and all(c in measured for c in channels))
+    return {name: motion_spread(name, [measured[c] for c in MOTIONS[name]]) for name in compared}
+
+
 def is_lost(errors: Mapping[str, float], measured: Record) -> bool:
     """Return whether a simulation is further off than the mean of a motion, or diverges.
 
     errors: rms errors as in `Prediction.rms`; empty: the simulation diverges.
     """
-    compared = [name for name in errors if name in MOTIONS and all(c in measured for c in MOTIONS[name])]
-    beyond = (errors[n] > motion_spread(n, [measured[c] for c in MOTIONS[n]]).size for n in compared)
-    return not errors or any(beyond)
+    spreads = motion_spreads(errors, measured)
+    return not errors or any(errors[name] > spread.size for name, spread in spreads.items())

@@ -124,9 +124,8 @@ def trial_of_tables(
         symbols = {*NOTATION, *declared}
         _refuse_unknown_names("noise", list(file.noise), symbols)
         _refuse_unknown_names("estimate.channels", list(file.estimate.channels), set(model.observables))
-        _refuse_measured_offsets(list(file.estimate.offsets), model)
-        _refuse_unknown_names("estimate.offsets", list(file.estimate.offsets), symbols)
-        _refuse_unknown_names("estimate.gains", list(file.estimate.gains), symbols)
+        for key, names in (("offsets", file.estimate.offsets), ("gains", file.estimate.gains)):
+            _refuse_unknown_names(f"estimate.{key}", list(names), set(model.input_names), _correction_hint)
         _refuse_unknown_names("estimate.delays", list(file.estimate.delays), set(model.input_names))
         if file.feedback is not None:
             _refuse_unknown_names("feedback.input", [file.feedback.input], set(model.input_names))
@@ -209,14 +208,10 @@ def _reference_force(model: Model, ship: Ship) -> float | None:
     return known["rho"] / 2 * known["L"] * known["d"] if {"rho", "L", "d"} <= set(known) else None
 
 
-def _refuse_measured_offsets(names: list[str], model: Model) -> None:
-    """Refuse the zero of what the model is compared with: it is no input, whose zero is estimated."""
-    for name in names:
-        if name in model.observables and name not in model.input_names:
-            raise InputError(
-                f"estimate.offsets: '{name}' is no input of model '{model.name}'; state its zero as zero = ... in "
-                f"channels.{name}"
-            )
+def _correction_hint(name: str, inputs: list[str]) -> str:
+    """What may be corrected in each session, and what is stated in the channel instead."""
+    stated = f"; state the zero and the scale of '{name}' in channels.{name}" if name in NOTATION else ""
+    return f"; inputs of the model are {', '.join(inputs)}{stated}"
 
 
 def _refuse_unknown_names(
