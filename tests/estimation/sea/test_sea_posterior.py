@@ -8,7 +8,7 @@ import pytest
 
 from seatrial.core.values import Array
 from seatrial.estimation.sea import (
-    EVERY,
+    BIN_STRIDE,
     MotionSpectrum,
     SeaLikelihood,
     ShipInSea,
@@ -32,10 +32,10 @@ def likelihood(*, is_random: bool = True) -> SeaLikelihood:
     """A stretch without control whose spectrum is that of the truth, with random phases or as it is on average."""
     loop, rng = altered_loop(fin_loop(), SHIP_FACTORS), np.random.default_rng(5)
     sea = encountered_sea(FINE, U, BETA, HULL)
-    density = sea.density(SEA, np.abs(loop.disturbance.frequency_response(sea.omega_e)) ** 2)[::EVERY]
+    density = sea.density(SEA, np.abs(loop.disturbance.frequency_response(sea.omega_e)) ** 2)[::BIN_STRIDE]
     noise, none = 1e-3 * float(np.max(density)), np.zeros(len(density))
     observed = (density + noise) * (rng.exponential(size=len(none)) if is_random else 1.0)
-    motion = MotionSpectrum(FINE[::EVERY], STEP, observed, 1j * none, none, noise)
+    motion = MotionSpectrum(FINE[::BIN_STRIDE], STEP, observed, 1j * none, none, noise)
     return SeaLikelihood(motion, fin_loop(), U, HULL, 9.0, DEVIATIONS)
 
 

@@ -14,7 +14,8 @@ from seatrial.core.results.proposal import CraftFactor, HeadingRange, Proposal, 
 from seatrial.core.values import Array
 from seatrial.estimation.problem.spectral_likelihood import hann_transform
 from seatrial.estimation.sea import (
-    EVERY,
+    BIN_STRIDE,
+    HEADING_CELL,
     MotionSpectrum,
     ObservedLeg,
     SeaLikelihood,
@@ -32,8 +33,8 @@ _LAST = 0.9  # of the highest frequency, above which there are sensors alone whe
 _LEAST_MOTION = math.radians(0.15)  # rms of a motion below which sensors and gusts are as large; chosen
 _STILL = 0.02  # of the output's rms, below which the actuator counts as still; chosen
 _LEAST_COHERENCE = 0.6  # of the actuator with what any gains of the loop order of the output; chosen
-_CELLS = 180  # of headings from following to head seas: degrees, as those of the likelihood; chosen
-_GAP = 3  # cells that ranges of headings may lie apart and count as one; chosen
+_CELLS = round(math.pi / HEADING_CELL)  # of headings from following to head seas
+_GAP = 3  # from a cell to the next of the same range at most, in cells: two between them may be empty; chosen
 _PROBABILITY = 0.95  # of the headings that are given
 _NARROW = math.radians(45.0)  # width of a range of headings up to which the heading is determined; chosen
 _NAMES = ("gain of the actuator", "natural frequency", "damping")
@@ -74,7 +75,7 @@ def look(
         )
         return no_proposal(task, stretch.start, stretch.stop, reason, stretch.U)
     rng = np.random.default_rng(seed)
-    draws = draw_ship_in_sea(sea_likelihood(task, stretch), rng)
+    draws = draw_ship_in_sea(_sea_likelihood(task, stretch, observed), rng)
     choice = propose_gains(task, schedule, draws, stretch.U, current)
     is_chosen = isinstance(choice, ChosenGains)
     return Proposal(
@@ -99,11 +100,11 @@ def no_proposal(task: TuningTask, start: float, stop: float, reason: str, U: flo
     return Proposal(task.name, start, stop, {}, (reason,), U=U)
 
 
-def sea_likelihood(task: TuningTask, stretch: Stretch) -> SeaLikelihood:
+def _sea_likelihood(task: TuningTask, stretch: Stretch, observed: ObservedLeg) -> SeaLikelihood:
     """Return the likelihood of the stretch in the sea of the task whose height, period and heading are not known."""
     seaway = next(met for met in task.disturbances if isinstance(met, Seaway))
     expected = 2.0 * math.pi / seaway.spectrum.modal_frequency
-    motion = _motion_spectrum(task, stretch, _observed(task, stretch))
+    motion = _motion_spectrum(task, stretch, observed)
     return SeaLikelihood(motion, task.loop_at(stretch.U), stretch.U, seaway.effect, expected, prior_deviations(task))
 
 
@@ -120,7 +121,7 @@ def _motion_spectrum(task: TuningTask, stretch: Stretch, observed: ObservedLeg) 
     natural = 2.0 * math.pi / natural_period(task.loop)
     omega, transforms = hann_transform(stretch.values, stretch.dt)
     density = np.abs(transforms[:, 0]) ** 2
-    kept = np.flatnonzero((omega >= _LOWEST * natural) & (omega <= _HIGHEST * natural))[::EVERY]
+    kept = np.flatnonzero((omega >= _LOWEST * natural) & (omega <= _HIGHEST * natural))[::BIN_STRIDE]
     quiet = omega > min(_QUIET * natural, _LAST * float(omega[-1]))
     followed = observed.controller_at(omega[quiet]) * observed.loop.plant.frequency_response(omega[quiet])
     band = omega[kept]
@@ -149,7 +150,7 @@ def sea_estimate(draws: ShipInSea) -> SeaEstimate:
 def likeliest_headings(headings: Array) -> tuple[HeadingRange, ...]:
     """Return the fewest degrees of heading that hold 95 % of draws (n,) as ranges, the likeliest first.
 
-    Ranges up to three degrees apart are one.
+    Ranges up to two degrees apart are one.
     """
     edges = np.linspace(0.0, math.pi, _CELLS + 1)
     shares = np.histogram(headings, edges)[0] / len(headings)

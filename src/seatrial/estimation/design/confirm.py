@@ -23,7 +23,7 @@ from seatrial.physics.simulate.replay import replay
 WINDOW_PER_HOLD = 1.5
 # of the criterion: a move of some 1e-4 standard errors
 NEGLIGIBLE_DECREASE = 1e-8
-# of chi squared: what is left beyond is no noise, ours
+# standard deviations above the mean of chi squared, beyond which a fit is taken to be a wrong one; chosen
 NOISE_DEVIATIONS = 5.0
 
 
@@ -60,9 +60,9 @@ def confirm_design(
 
 
 def _fit_record(task: DesignTask, record: Record) -> Solution:
-    """Return the output error from the weak form's start; the better one from the model's own values, too, if need be.
+    """Return the fit from the weak form's start; where it leaves more than noise, the better of it and another start.
 
-    There is need where more is left than the sensors' noise explains.
+    The other start is the model's own values.
     """
     outputs = tuple(task.sensors)
     problem = OutputError(
@@ -70,7 +70,7 @@ def _fit_record(task: DesignTask, record: Record) -> Solution:
     )
     local = np.array([[task.initial_state[task.model.states.index(s)] for s in problem.starts]])
     count = len(record) * len(outputs)
-    # half of chi squared of as many values: its mean and some standard deviations
+    # half of chi squared, whose mean is its degrees of freedom, and its variance twice these
     noise = 0.5 * (count + NOISE_DEVIATIONS * math.sqrt(2.0 * count))
     solutions: list[Solution] = []
     for shared in (*_weak_form_start(task, problem, record), problem.start()):

@@ -81,8 +81,8 @@ class ManoeuvreEvaluator:
         each = np.broadcast_to(model_inputs, (count, *model_inputs.shape[-2:])).reshape(-1, width)
         batch = replace(self._batch_without_inputs, inputs=np.array(each))
         slopes = len(each) // count * len(self.outputs) * batch.column_count
-        some = max(1, _CACHED_NUMBERS // slopes)
-        blocks = [self._of_ships(batch, first, min(first + some, count)) for first in range(0, count, some)]
+        width = max(1, _CACHED_NUMBERS // slopes)
+        blocks = [self._of_ships(batch, first, min(first + width, count)) for first in range(0, count, width)]
         y, information = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
         lost = np.any(~np.isfinite(y), axis=(1, 2))
         errors = _standard_errors(information)[:, : len(self.task.model.parameters.free)] / self._magnitudes

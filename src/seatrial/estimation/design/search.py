@@ -29,7 +29,7 @@ LIMIT_PENALTY = 20.0
 LIMIT_MARGIN = 0.02
 # random orders tried before the evolution strategy, ours
 RANDOM_STARTS = 96
-# of the evolution strategy, and points of each; chosen: 3000 points of 10 a generation end lower than of 6 on one craft
+# of the evolution strategy, and points of each; chosen: at equal evaluations 10 end lower than 6 on one craft
 GENERATIONS, POPULATION = 360, 10
 # the search's box: a point beyond an end means that end, so that full deflection is no corner to be hit
 BOX_LOWER, BOX_UPPER, INITIAL_STEP = -1.0, 2.0, 0.2

@@ -26,7 +26,7 @@ _ROUNDING = 1e-6
 def search_step(task: DesignTask, ships: PriorShips) -> float:
     """Return the step [s], a whole number of samples that divides every hold; the sensors' own where none is good.
 
-    Orders that change between steps put errors a tenth off, however short the steps.
+    Steps that divide no hold are none: orders that change between steps put the errors off.
     """
     few = PriorShips(ships.parameters[:_SHIPS_TRIED], ships.precision)
     fine = ManoeuvreEvaluator(task, few, 1.0 / task.request.rate)

@@ -48,18 +48,21 @@ def with_slow_forces(interval: Interval, estimate: PointEstimate, residuals: Arr
 
 
 def _influence(estimate: PointEstimate, residuals: Array, place: int) -> Array:
-    """What every sample of the only run adds to the error of a coefficient, rad, (rows,)."""
+    """Return what every sample of the only run adds to the error of a coefficient, rad, (rows,)."""
     problem = estimate.problem
     row = inverse(estimate.optimum.normal.without_local()[1])[place]
     slopes = problem.slopes(estimate.common_parameters, estimate.optimum.local)
     trust = 1.0 / problem.noise**2 if problem.inflation is None else 1.0 / (problem.noise**2 * problem.inflation)
     weights = np.where(np.isfinite(problem.data.measured), trust, 0.0)
-    own = without_initial_state(slopes, len(row), weights)
-    return np.einsum("tyk,k,ty->t", own, row, np.nan_to_num(residuals))
+    eliminated = without_initial_state(slopes, len(row), weights)
+    return np.einsum("tyk,k,ty->t", eliminated, row, np.nan_to_num(residuals))
 
 
 def _within_run(part: Array) -> float:
-    """Standard deviation of their sum by the slowest cosines over the run, each with the variance that the sum has."""
+    """Return the standard deviation of the sum of these, (rows,), from the slowest cosines over the run.
+
+    Each cosine's coefficient has the variance of the sum where the parts change more slowly than the cosines.
+    """
     phase = np.pi * (np.arange(len(part)) + 0.5) / len(part)
     sums = [np.sqrt(2.0) * part @ np.cos(k * phase) for k in range(1, COSINES + 1)]
     return float(np.sqrt(np.mean(np.square(sums))))

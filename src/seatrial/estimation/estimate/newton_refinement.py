@@ -1,9 +1,8 @@
 """The end of a search for prediction error: quasi-Newton steps by the exact gradient, within the bounds.
 
 The expected information begins as the curvature. Of weak disturbances the cost curves otherwise, and steps by it alone
-go to and fro across the valley; what two gradients say of the curvature between their points is taken over into it
-(Broyden, Fletcher, Goldfarb, Shanno; Nocedal & Wright 2006, Numerical Optimization, eq. (6.19)), damped so that it
-stays positive (Powell 1978; eqs (18.15), (18.16)).
+go to and fro across the valley; each step's change of the gradient corrects it (Broyden, Fletcher, Goldfarb, Shanno),
+damped so that it stays positive (Powell 1978; Nocedal & Wright 2006, Numerical Optimization, procedure 18.2).
 """
 
 from dataclasses import dataclass, replace
@@ -24,7 +23,7 @@ _NO_INITIAL_STATES = np.zeros((0, 0))
 
 
 def refine_by_newton(problem: PredictionError, optimum: Optimum) -> tuple[PredictionError, Optimum, float]:
-    """Newton steps by the exact gradient, none where it vanishes already; with the decrement that is left."""
+    """Take quasi-Newton steps by the exact gradient, none where it vanishes already; with the decrement that is left."""
     point, count = optimum.solution.point, optimum.solution.evaluations
     exact = replace(problem, steps=problem.difference_steps(point, optimum.normal.hessian))
     normal = exact.normal(point, _NO_INITIAL_STATES)
@@ -60,10 +59,11 @@ def with_curvature(hessian: Array, moved: Array, gradient_change: Array) -> Arra
     Where the cost curves by less than `_LEAST_CURVATURE` of what is believed, with that much.
     """
     pull = hessian @ moved
-    believed, found = float(moved @ pull), float(moved @ gradient_change)
+    believed, actual = float(moved @ pull), float(moved @ gradient_change)
     if believed <= 0.0:
         return hessian
-    share = 1.0 if found >= _LEAST_CURVATURE * believed else (1.0 - _LEAST_CURVATURE) * believed / (believed - found)
+    # Nocedal & Wright 2006, eqs (18.15) and (18.16)
+    share = 1.0 if actual >= _LEAST_CURVATURE * believed else (1.0 - _LEAST_CURVATURE) * believed / (believed - actual)
     change = share * gradient_change + (1.0 - share) * pull
     return hessian - np.outer(pull, pull) / believed + np.outer(change, change) / float(moved @ change)
 

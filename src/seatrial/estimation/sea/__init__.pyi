@@ -12,5 +12,5 @@ from seatrial.estimation.sea.wave_leg import WaveLeg as WaveLeg
 from seatrial.estimation.sea.sea_posterior import ShipInSea as ShipInSea, draw_ship_in_sea as draw_ship_in_sea
 from seatrial.estimation.sea.encounter_matrix import TransformBins as TransformBins, band_edges as band_edges
 from seatrial.estimation.sea.encounter_matrix import encounter_matrix as encounter_matrix
-from seatrial.estimation.sea.sea_likelihood import EVERY as EVERY
+from seatrial.estimation.sea.sea_likelihood import BIN_STRIDE as BIN_STRIDE, HEADING_CELL as HEADING_CELL
 from seatrial.estimation.sea.sea_likelihood import MotionSpectrum as MotionSpectrum, SeaLikelihood as SeaLikelihood

@@ -1,8 +1,8 @@
 """What the transform of a whole stretch shows of waves: a matrix from bands of wave frequency, for each heading.
 
-Two waves that share one frequency of encounter meet in one row, so that following seas are as any other; no Jacobian of
+Waves that share one frequency of encounter add up in one row, so that following seas are as any other; no Jacobian of
 the encounter appears. Each band's energy is spread over nodes so close that the largest frequency of encounter, where
-waves of many frequencies gather, stands where it is.
+waves of many frequencies gather, is resolved to a fraction of a bin.
 """
 
 import math
@@ -25,8 +25,8 @@ BAND = 0.01  # relative width of a band: a seventh of the width of JONSWAP's pea
 _LONGEST, _SHORTEST = 0.5, 4.0  # wave frequencies over the ends of the transform's that are looked at; chosen
 _NODES_A_BIN = 3.0  # nodes for each bin of the transform that a band covers, at least; chosen
 _WINDOW_POWER = 1.5  # mean of a Hann window's square over the square of its mean: the area under its leakage, in bins
-_PLACES_A_BIN = 256  # at which leakage is tabulated: within 1 % of a node's own, 30 dB down; chosen
-_LEAKAGE_BINS = 6  # bins either way in which a node shows: beyond them less than 1e-7 of its energy
+_PLACES_A_BIN = 256  # at which leakage is tabulated: within 1 % of a node's own down to a tenth of the largest; chosen
+_LEAKAGE_BINS = 6  # bins either way in which a node shows: beyond them less than 3e-6 of its energy; chosen
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,11 +40,11 @@ class _Nodes:
 
 @dataclass(frozen=True, eq=False)
 class TransformBins:
-    """Bins of a stretch's transform: omega (k,) [rad/s], `every` so many of its steps [rad/s] apart."""
+    """Bins of a stretch's transform: omega (k,) [rad/s], `stride` of the transform's steps [rad/s] apart."""
 
     omega: Array
     step: float
-    every: int
+    stride: int
 
 
 def band_edges(omega: Array, effect: WaveEffect) -> Array:
@@ -68,7 +68,7 @@ def encounter_matrix(bins: TransformBins, edges: Array, U: float, headings: Arra
     from scipy.sparse import csr_array
 
     step, leakage = bins.step, _leakage()
-    last = bins.every * (len(bins.omega) - 1)
+    last = bins.stride * (len(bins.omega) - 1)
     rows, columns, values = [], [], []
     for beta in headings.tolist():
         speed_factor(U, beta)  # refuses what is out of sense
@@ -81,17 +81,17 @@ def encounter_matrix(bins: TransformBins, edges: Array, U: float, headings: Arra
         row = near[shows, None] + np.arange(-_LEAKAGE_BINS, _LEAKAGE_BINS + 1)
         part = np.rint((places - near + 0.5)[shows] * _PLACES_A_BIN).astype(int)
         value = leakage[part] * energy[shows, None]
-        inside = (row >= 0) & (row <= last) & (row % bins.every == 0)
-        rows.append(row[inside] // bins.every)
+        inside = (row >= 0) & (row <= last) & (row % bins.stride == 0)
+        rows.append(row[inside] // bins.stride)
         columns.append(np.broadcast_to(nodes.band[shows, None], row.shape)[inside])
         values.append(value[inside])
-    places = np.concatenate(rows), np.concatenate(columns)
-    return csr_array((np.concatenate(values), places), shape=(len(bins.omega), len(edges) - 1))
+    cells = np.concatenate(rows), np.concatenate(columns)
+    return csr_array((np.concatenate(values), cells), shape=(len(bins.omega), len(edges) - 1))
 
 
 @cache
 def _leakage() -> Array:
-    """Return what bins about the nearest show of a node, from half a bin before that to half a bin behind, (p, 13)."""
+    """Return what the bins about the nearest one show of a node, half a bin below that to half a bin above, (p, 13)."""
     places = np.arange(_PLACES_A_BIN + 1) / _PLACES_A_BIN - 0.5
     return hann_leakage(np.arange(-_LEAKAGE_BINS, _LEAKAGE_BINS + 1) - places[:, None])
 

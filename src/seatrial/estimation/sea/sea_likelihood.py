@@ -34,16 +34,17 @@ _STEEPNESS_MEAN, _STEEPNESS_DEVIATION = math.log(0.02), 0.5
 # before the stretch: 95 % from 1e-8 to 1e-2; chosen
 _REST_MEAN, _REST_DEVIATION = math.log(1e-5), 1.5 * math.log(10.0)
 _SHORTEST, _LONGEST = 0.3, 3.0  # peak periods over the one expected that are looked at; chosen
-CELL = math.pi / 180.0  # rad, of headings that are not told apart: about what a helmsman keeps; chosen
+HEADING_CELL = math.pi / 180.0  # rad, within which headings are not distinguished: what a helmsman keeps; chosen
 _HEADINGS_A_CELL = 3  # from edge to edge, whose mean a cell shows: no craft keeps its heading to a tenth; chosen
 _SEARCH_STEPS = 6  # of the height's optimum, from the energy of the motion; chosen
 _HEIGHTS = math.log(1e-3), math.log(100.0)  # logarithms of heights [m] that are looked at; chosen: more than seas have
 _TABLE = np.exp(BAND * np.arange(-140, 301))  # frequencies over the peak's of tabulated spectra: 0.25 to 20; chosen
 _PEAKS = np.linspace(-5.0, 5.0, 101)  # log(gamma - 1) of tabulated spectra, in deviations from the mean; chosen
 
-EVERY = 2
-"""Bins that are looked at: of a Hann window's, every second is nearly independent of the next, and holds as much."""
-# squared correlation of those is (1/6)^2, so that sums over them have this times the variance of independent ones
+BIN_STRIDE = 2
+"""Every second bin of the transform is looked at: with a Hann window these are nearly independent of each other."""
+# a Hann window correlates bins two apart by 1/6 (Harris 1978, Proc. IEEE 66, 51-83), so that sums over them have this
+# times the variance of independent ones: 1 + 2 (1/6)^2
 _CORRELATION = 1.0 + 2.0 / 36.0
 
 HEADING, PERIOD, SHIP, PEAK, REST = 0, 1, slice(2, 5), 5, 6
@@ -111,10 +112,10 @@ class SeaLikelihood:
         inside = (beta > 0.0) & (beta < math.pi) & (period > low) & (period < high)
         kept = points[inside]
         heights = self._heights(*self._densities(kept), kept[:, PERIOD])
-        made = [np.full(len(points), missing) for missing in (0.0, 1.0, -np.inf)]
-        for whole, part in zip(made, (heights.optimum, heights.deviation, heights.evidence), strict=True):
-            whole[inside] = part
-        return Heights(*made)
+        columns = [np.full(len(points), missing) for missing in (0.0, 1.0, -np.inf)]
+        for column, part in zip(columns, (heights.optimum, heights.deviation, heights.evidence), strict=True):
+            column[inside] = part
+        return Heights(*columns)
 
     def _densities(self, points: Array) -> tuple[Array, Array]:
         """Return the density of the output in waves of 1 m, and that which is not of the waves, (m, k) each."""
@@ -129,7 +130,7 @@ class SeaLikelihood:
     def _shown_waves(self, points: Array) -> Array:
         """Return the density of the disturbance in waves of 1 m, (m, k)."""
         waves, shown = self._wave_density(points), np.empty((len(points), len(self.motion.omega)))
-        cells = (points[:, HEADING] / CELL).astype(int)
+        cells = (points[:, HEADING] / HEADING_CELL).astype(int)
         order = np.argsort(cells, kind="stable")
         for group in np.split(order, np.flatnonzero(np.diff(cells[order])) + 1):
             shown[group] = (self._matrix(int(cells[group[0]])) @ waves[group].T).T
@@ -141,7 +142,7 @@ class SeaLikelihood:
 
     @cached_property
     def _bins(self) -> TransformBins:
-        return TransformBins(self.motion.omega, self.motion.step, EVERY)
+        return TransformBins(self.motion.omega, self.motion.step, BIN_STRIDE)
 
     @cached_property
     def _matrices(self) -> dict[int, "csr_array"]:
@@ -150,7 +151,7 @@ class SeaLikelihood:
     def _matrix(self, cell: int) -> "csr_array":
         """Return what transforms show of the waves at the headings of a cell; made when it is first needed."""
         if cell not in self._matrices:
-            headings = np.linspace(cell, cell + 1.0, _HEADINGS_A_CELL) * CELL
+            headings = np.linspace(cell, cell + 1.0, _HEADINGS_A_CELL) * HEADING_CELL
             self._matrices[cell] = encounter_matrix(self._bins, self._edges, self.U, headings, self.effect)
         return self._matrices[cell]
 

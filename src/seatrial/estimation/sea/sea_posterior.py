@@ -17,8 +17,8 @@ import numpy as np
 from seatrial.core.values import Array, Index
 from seatrial.estimation.sea.legs_in_waves import PEAK_DEVIATION, PEAK_MEAN
 from seatrial.estimation.sea.sea_likelihood import (
-    CELL,
     HEADING,
+    HEADING_CELL,
     NORMAL,
     NORMAL_SIZE,
     PEAK,
@@ -88,12 +88,12 @@ class _Population:
         heights = likelihood.heights(there)
         gain = power * (heights.evidence - self.evidence[movers])
         gain += 0.5 * (np.sum(here[:, NORMAL] ** 2, axis=1) - np.sum(there[:, NORMAL] ** 2, axis=1))
-        taken = np.log(rng.random(count)) < gain
-        made = _Population(*(part.copy() for part in vars(self).values()))
-        made.points[movers[taken]] = there[taken]
+        accepted = np.log(rng.random(count)) < gain
+        moved = _Population(*(part.copy() for part in vars(self).values()))
+        moved.points[movers[accepted]] = there[accepted]
         for name in ("evidence", "optimum", "deviation"):
-            getattr(made, name)[movers[taken]] = getattr(heights, name)[taken]
-        return made
+            getattr(moved, name)[movers[accepted]] = getattr(heights, name)[accepted]
+        return moved
 
 
 def draw_ship_in_sea(likelihood: SeaLikelihood, rng: np.random.Generator) -> ShipInSea:
@@ -115,7 +115,7 @@ def draw_ship_in_sea(likelihood: SeaLikelihood, rng: np.random.Generator) -> Shi
     height = optimum + deviation * rng.standard_normal(len(points))
     seas = np.column_stack([height, points[:, PERIOD], PEAK_MEAN + PEAK_DEVIATION * points[:, PEAK]])
     # a cell of headings is all that the likelihood resolves: the truth may lie half a cell to either side
-    headings = np.clip(points[:, HEADING] + CELL * (rng.random(len(points)) - 0.5), 0.0, math.pi)
+    headings = np.clip(points[:, HEADING] + HEADING_CELL * (rng.random(len(points)) - 0.5), 0.0, math.pi)
     return ShipInSea(headings, likelihood.deviations * points[:, SHIP], seas)
 
 
