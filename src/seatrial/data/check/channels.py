@@ -3,6 +3,7 @@
 import numpy as np
 
 from seatrial.core.values import Array, Finding, Record, Severity
+from seatrial.data.check.kinematic_consistency import shift_text
 from seatrial.data.check.motion import RecordedMotion
 from seatrial.data.check.repair import INPUT_CHANNELS
 from seatrial.data.check.run_clock import moment
@@ -108,8 +109,7 @@ def _lag_finding(
         return ()
     text = f"record '{record.name}': {late if delay > 0 else early} by about {abs(delay):.2g} s"
     evidence = f"{abs(delay) / record.dt:.1f} samples, standard error {error:.2g} s"
-    moved = f"{abs(delay):.2g} s {'earlier' if delay > 0 else 'later'}"
-    advice = f"write {names} {moved} into the file, or leave {names} out of channels under [estimate]"
+    advice = f"write {names} {shift_text(delay)} into the file, or leave {names} out of channels under [estimate]"
     return (Finding(Severity.WARNING, "lag", text, evidence, advice),)
 
 

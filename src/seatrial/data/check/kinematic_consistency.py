@@ -181,7 +181,8 @@ def _exact_misalignment(integrated: ComplexArray, position: ComplexArray) -> tup
     return (angle,), float(np.sqrt(0.5 * np.mean(np.abs(track * np.exp(-1j * angle) - truth) ** 2)))
 
 
-def _shifted(lag: float) -> str:
+def shift_text(lag: float) -> str:
+    """Return how a channel is written that lags by this [s], or leads by its negative: ``0.3 s earlier``."""
     return f"{abs(lag):.2g} s {'earlier' if lag > 0.0 else 'later'}"
 
 
@@ -200,10 +201,10 @@ def _cause_text(
             text = f"a lever of {size:+.3g} m not turned with the heading"
             return text, "give the velocities as they were measured, and reference_point", ()
         case "lag of velocity":
-            advice = f"write u, v {_shifted(size)} into the file, or fit without them, {_WITHOUT_VELOCITIES}"
+            advice = f"write u, v {shift_text(size)} into the file, or fit without them, {_WITHOUT_VELOCITIES}"
             return f"a lag of {size:.2g} s of the velocities", advice, ()
         case "lag of heading":
-            return f"a lag of {size:.2g} s of the heading", f"write psi {_shifted(size)} into the file", ()
+            return f"a lag of {size:.2g} s of the heading", f"write psi {shift_text(size)} into the file", ()
         case "current":
             speed = np.hypot(coefficients[0], coefficients[1])
             text = f"a current or velocity bias of {speed:.3g} m/s"

@@ -12,7 +12,7 @@ from seatrial.estimation.estimate.runs import training_runs
 from seatrial.estimation.estimate.settings import INITIAL_STATE_SHIP_LENGTHS
 from seatrial.estimation.estimate.time_scale import characteristic_time
 from seatrial.estimation.identify.box_scale import box_scale, stands_on_box
-from seatrial.estimation.identify.criterion_by_left_out import preferred_estimation
+from seatrial.estimation.identify.criterion_by_whole_runs import preferred_estimation
 from seatrial.estimation.information.symmetries import refuse_unidentifiable, structural_symmetries
 from seatrial.estimation.problem.segments import compared_outputs
 from seatrial.estimation.problem.static_forces import StaticForces

@@ -9,7 +9,7 @@ from seatrial.core.values import Record
 from seatrial.data.trial import EstimateSettings
 from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.estimate.criterion_choice import WHOLE_RUNS
-from seatrial.estimation.identify.criterion_by_left_out import (
+from seatrial.estimation.identify.criterion_by_whole_runs import (
     WholeRunErrors,
     is_better,
     is_preferred,

@@ -13,9 +13,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import stdtrit
 
+from seatrial.core.equations import Model
 from seatrial.core.results.motion_spread import is_lost
 from seatrial.core.text.numbers import significant
-from seatrial.core.values import InputError, ProgressReporter, Record
+from seatrial.core.values import Array, InputError, ProgressReporter, Record
 from seatrial.data.trial import EstimateMethod, EstimateSettings, FitCriterion
 from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.estimate.criterion_choice import SET_BY_TRIAL, WHOLE_RUNS
@@ -23,6 +24,7 @@ from seatrial.estimation.estimate.intervals import RUNS_FOR_JACKKNIFE
 from seatrial.estimation.predict.open_loop import rms_errors, simulate_open_loop
 from seatrial.estimation.predict.prediction_intervals import holdout_model
 from seatrial.estimation.predict.session_offsets import session_offsets
+from seatrial.estimation.problem.output_error import OutputError
 
 _LEVEL = 0.95
 """One-sided level at which output error must predict better, 1; chosen."""
@@ -38,7 +40,7 @@ def preferred_estimation(
     seconds: float,
     report_progress: ProgressReporter | None = None,
 ) -> Estimation:
-    """Return the estimate, or that by output error over whole runs where it predicts runs left out better.
+    """Return the estimate, or that by output error over whole runs where it reproduces or predicts them better.
 
     Args:
         estimation: by the decision table; one whose residuals are white, or over whole runs, is returned as it is.
@@ -93,11 +95,7 @@ def whole_run_errors(estimation: Estimation, runs: Runs, seconds: float) -> Whol
     problem, fitted = estimation.estimate.problem, []
     for session, record in zip(runs.sessions, runs.records, strict=True):
         nuisances = session_offsets(estimation, session, record).expected
-        try:
-            run = simulate_open_loop(problem, estimation.model, record, nuisances, seconds)
-            fitted.append(rms_errors(record, run.record))
-        except InputError:
-            fitted.append({})
+        fitted.append(_errors_of_run(problem, estimation.model, nuisances, record, seconds))
     return WholeRunErrors(fitted, left_out_errors(estimation, runs, seconds))
 
 
@@ -127,12 +125,19 @@ def left_out_errors(estimation: Estimation, runs: Runs, seconds: float) -> list[
     errors = []
     for point, session, record in zip(points, runs.sessions, runs.records, strict=True):
         without = holdout_model(problem, point, session, record)
-        try:
-            run = simulate_open_loop(problem, without.model, record, without.nuisances, seconds)
-            errors.append(rms_errors(record, run.record))
-        except InputError:
-            errors.append({})
+        errors.append(_errors_of_run(problem, without.model, without.nuisances, record, seconds))
     return errors
+
+
+def _errors_of_run(
+    problem: OutputError, model: Model, nuisances: Array, record: Record, seconds: float
+) -> dict[str, float]:
+    """The rms errors of a run simulated from its inputs; none where the simulation diverges."""
+    try:
+        run = simulate_open_loop(problem, model, record, nuisances, seconds)
+    except InputError:
+        return {}
+    return rms_errors(record, run.record)
 
 
 def is_better(
