@@ -23,7 +23,7 @@ _NO_INITIAL_STATES = np.zeros((0, 0))
 
 
 def refine_by_newton(problem: PredictionError, optimum: Optimum) -> tuple[PredictionError, Optimum, float]:
-    """Take quasi-Newton steps by the exact gradient, none where it vanishes already; with the decrement that is left."""
+    """Take quasi-Newton steps by the exact gradient, none where it vanishes; return the decrement that is left, too."""
     point, count = optimum.solution.point, optimum.solution.evaluations
     exact = replace(problem, steps=problem.difference_steps(point, optimum.normal.hessian))
     normal = exact.normal(point, _NO_INITIAL_STATES)
