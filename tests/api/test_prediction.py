@@ -8,7 +8,8 @@ import pytest
 
 import seatrial as st
 from seatrial.api import course_findings, replay
-from seatrial.core.values import RecordKind
+from seatrial.core.results import SessionOffset
+from seatrial.core.values import InputError, RecordKind
 from seatrial.data.folder.model_file import ModelFile
 from seatrial.physics.models import model_named
 
@@ -91,3 +92,26 @@ def test_a_straight_run_that_is_not_held_is_said_to_be_so() -> None:
     assert course_findings(unstable, "spin:90") == ()
     stable = ModelFile(craft.with_values({"M_v": 1.5, "N_r": -5.0}))
     assert course_findings(stable, "straight:90") == ()
+
+
+def test_inputs_of_a_log_are_corrected_by_what_its_session_was_off(craft: ModelFile, zigzag: st.Record) -> None:
+    # the log shows 3 deg less than the nozzle's angle in the model's sign, opposite to the record's; then 1 deg more
+    assert craft.model.inputs[0].positive != zigzag.channel("delta").positive
+    zeros = {"1 May": np.radians(3.0), "2 May": -np.radians(1.0)}
+    fitted = replace(craft, offsets=(SessionOffset("delta zero", "rad", 0.0, zeros),))
+    for day, zero in zeros.items():
+        shown = zigzag.channel("delta").with_values(zigzag["delta"] + zero)
+        logged = replace(zigzag, kind=RecordKind.MEASURED, channels={**zigzag.channels, "delta": shown})
+        error = np.degrees(np.abs(st.simulate(fitted, logged, session=day)["psi"] - zigzag["psi"]).max())
+        assert error < 0.1
+        assert st.predict(fitted, logged, day).rms["psi_deg"] < 0.1
+        as_new = st.simulate(fitted, logged)["psi"]
+        np.testing.assert_allclose(as_new, st.simulate(craft, logged)["psi"], atol=1e-6)  # 0 is expected of a new one
+        assert np.degrees(np.abs(as_new - zigzag["psi"]).max()) > 10.0 * error
+    with pytest.raises(InputError, match="no session '3 May' was fitted"):
+        st.simulate(fitted, zigzag_measured(zigzag), session="3 May")
+
+
+def zigzag_measured(zigzag: st.Record) -> st.Record:
+    """The zigzag as a log would hold it."""
+    return replace(zigzag, kind=RecordKind.MEASURED)

@@ -13,58 +13,43 @@ if TYPE_CHECKING:
     from seatrial.data.folder.model_file import ModelFile
 
 
-def predict(model: "Fit | ModelFile | Model", record: "Record") -> "Prediction":
+def predict(model: "Fit | ModelFile | Model", record: "Record", session: str | None = None) -> "Prediction":
     """Predict a measured run open loop from its inputs and its initial state, and compare it with the measurement.
 
     The initial state is estimated by output error from the first seconds of the run, as `identify` does for the runs
-    held out; a simulated or planned record has no noise and is started at its first sample.
+    held out, and what the fit found its session's inputs to be off by is corrected; a simulated or planned record has
+    neither, and is started at its first sample.
+
+    Args:
+        model: a fit or model file, or a model, of which no offsets are known.
+        record: the run.
+        session: that it belongs to, of those fitted, or ``new``; without it the only one that was fitted, or a new one.
 
     Returns:
         the prediction: both records, root-mean-square differences, manoeuvring measures where the ship's length is
         known, and how far the run leaves the training runs where the model file states them.
 
     Raises:
-        InputError: an input channel is missing, no channel can be compared, or the simulation diverges.
+        InputError: an input channel is missing, no channel can be compared, no such session was fitted, or the
+            simulation diverges.
     """
     from seatrial.core.results import Prediction
     from seatrial.core.values import RecordKind
+    from seatrial.estimation.predict.measured_run import simulate_measured
     from seatrial.estimation.predict.open_loop import compare_measures, is_steered, rms_errors
     from seatrial.physics.simulate import replay
 
     file = as_model_file(model)
     length = 0.0 if file.ship is None else file.ship.particulars.get("L", 0.0)
     is_measured = record.kind is RecordKind.MEASURED
-    start, seconds = _initial_state(file.model, record, length) if is_measured else ({}, 0.0)
-    simulated = replay(file.model, record, start)
+    simulated, seconds = (
+        simulate_measured(file.model, record, length, file.offsets, session)
+        if is_measured
+        else (replay(file.model, record), 0.0)
+    )
     pairs = compare_measures(record, simulated, length) if length and is_steered(record, file.model) else {}
     rms, leaving = rms_errors(record, simulated), extrapolation(file, simulated)
     return Prediction(record.name, "validation", record, simulated, rms, pairs, seconds, extrapolation=leaving)
-
-
-def _initial_state(model: "Model", record: "Record", length: float) -> "tuple[dict[str, float], float]":
-    """Return the state at the start of a measured run, SI, and the seconds of the run that it is estimated from."""
-    import numpy as np
-
-    from seatrial.data.check import sample_noise
-    from seatrial.estimation.estimate.settings import INITIAL_STATE_SHIP_LENGTHS
-    from seatrial.estimation.estimate.time_scale import characteristic_time
-    from seatrial.estimation.predict.start_states import start_states
-    from seatrial.estimation.predict.windows import Windows
-    from seatrial.estimation.problem.output_error import OutputError
-    from seatrial.estimation.problem.segments import compared_outputs, cut_segments
-
-    outputs = compared_outputs(model, [record])
-    # a channel without noise is no better known than to a millionth of its largest value; chosen
-    noise = [np.nanmax([sample_noise(record[name]), 1e-6 * np.nanmax(np.abs(record[name])), 1e-12]) for name in outputs]
-    held = model.with_parameters(model.parameters.fixed(*model.parameters.names))
-    template = OutputError(held, cut_segments(held, [record], outputs, None), np.array(noise))
-    try:
-        seconds = INITIAL_STATE_SHIP_LENGTHS * characteristic_time(model, [record], length)
-    except InputError:  # neither speed nor positions were recorded
-        seconds = 0.0
-    seconds = seconds or 0.1 * record.duration  # where the ship's length is not known; chosen
-    state = start_states(template, held, Windows.of_record(record), np.zeros((1, 0)), seconds).values[0]
-    return dict(zip(model.states, state.tolist(), strict=True)), seconds
 
 
 def measure_intervals(model: "ModelFile", steer: "Steering") -> dict[str, tuple[float, float] | None]:

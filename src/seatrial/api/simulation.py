@@ -134,6 +134,7 @@ def simulate(
     duration: float | None = None,
     rudder_rate: float | None = None,
     seed: int = 0,
+    session: str | None = None,
 ) -> "Record":
     """Simulate a manoeuvre, or the inputs of a record, with a model and return the record of it.
 
@@ -143,7 +144,8 @@ def simulate(
             one from the state that its first seconds show, as `identify` predicts it, a simulated one from its first
             sample, a planned one from a straight run.
         speed: approach speed, m/s; without it the speed at which surge balances.
-        inputs, duration, rudder_rate, seed: of a manoeuvre, as in `steering`.
+        inputs, duration, rudder_rate, seed: of a manoeuvre, as in `steering`; its angles and commands are true ones.
+        session: of a measured record, as in `predict`: what the fit found its inputs to be off by is corrected.
 
     Raises:
         InputError: unknown manoeuvre, a rudder that cannot move, an input or speed that nothing states, or a simulation
@@ -152,7 +154,7 @@ def simulate(
     file = as_model_file(model)
     _refuse_no_number(speed)
     if not isinstance(manoeuvre, str):
-        return _replayed(file, manoeuvre, speed)
+        return _replayed(file, manoeuvre, speed, session)
     steer = steering(file, manoeuvre, speed=speed, inputs=inputs, duration=duration, rudder_rate=rudder_rate, seed=seed)
     return steer(file.model)
 
@@ -165,14 +167,20 @@ def _refuse_no_number(speed: float | None) -> None:
         raise InputError(f"the approach speed {speed:g} m/s is no finite number; state it in m/s, or leave it out")
 
 
-def _replayed(model: "ModelFile", record: "Record", speed: float | None) -> "Record":
+def _replayed(model: "ModelFile", record: "Record", speed: float | None, session: str | None) -> "Record":
     """The run by its inputs; a measured motion is noisy, so that its start is estimated."""
     from seatrial.api.prediction import predict
+
+    if is_measured_motion(model, record):
+        return predict(model, record, session).simulated
+    return replay(model, record, speed)
+
+
+def is_measured_motion(model: "ModelFile", record: "Record") -> bool:
+    """Return whether a record was measured and shows states of the model, so that it is simulated as a logged run."""
     from seatrial.core.values import RecordKind
 
-    if record.kind is RecordKind.MEASURED and set(model.model.states) & set(record.channels):
-        return predict(model, record).simulated
-    return replay(model, record, speed)
+    return record.kind is RecordKind.MEASURED and bool(set(model.model.states) & set(record.channels))
 
 
 def replay(model: "ModelFile", record: "Record", speed: float | None = None) -> "Record":

@@ -17,6 +17,8 @@ from seatrial.cli.tuning_output import print_tuning
 
 if TYPE_CHECKING:
     from seatrial.control.task import TuningTask
+    from seatrial.core.values import Record
+    from seatrial.data.folder.model_file import ModelFile
 
 
 @app.command()
@@ -117,6 +119,10 @@ def simulate(
     rudder_rate: Annotated[
         float | None, typer.Option(help="deg/s; default: the fastest of the training runs, at least SOLAS's.")
     ] = None,
+    session: Annotated[
+        str | None,
+        typer.Option(help="Fitted session whose offsets the record has, or new; default: the run's, or the only one."),
+    ] = None,
     model: OwnModelPath = None,
     json: Json = None,
     seed: Seed = 0,
@@ -130,9 +136,10 @@ def simulate(
     An exported FMU, as a check: seatrial simulate ship.fmu --inputs turn.csv --out back.csv
     """
     from seatrial import api
+    from seatrial.core.results import fitted_session
     from seatrial.core.values import InputError
     from seatrial.core.values.files import writable_folder
-    from seatrial.data.read import read_record_csv, write_record_csv
+    from seatrial.data.read import write_record_csv
 
     if (manoeuvre is None) == (inputs is None):
         raise InputError("give either --manoeuvre or --inputs")
@@ -140,7 +147,7 @@ def simulate(
     if model_file.suffix == ".fmu":
         if inputs is None:
             raise InputError("an FMU is run with the inputs of a record: give --inputs, such as a simulated manoeuvre")
-        measured = read_record_csv(Path(inputs)) if trial is None else api.prepared_run(trial, inputs)
+        measured, _ = _measured_run(inputs, trial)
         record = api.replay_fmu(model_file, measured)
         write_record_csv(record, out)
         rms = api.rms_differences(measured, record)
@@ -152,8 +159,9 @@ def simulate(
     measured, rate, intervals = None, None, dict[str, tuple[float, float] | None]()
     constant = dict(_name_and_value(text) for text in constant_inputs or [])
     if inputs is not None:
-        measured = read_record_csv(Path(inputs)) if trial is None else api.prepared_run(trial, inputs)
-        record = api.simulate(file, measured, speed=speed)
+        measured, own = _measured_run(inputs, trial)
+        session = session or (own and fitted_session(file.offsets, own))
+        record = api.simulate(file, measured, speed=speed, session=session)
     else:
         given_rate = None if rudder_rate is None else math.radians(rudder_rate)
         rate = api.rudder_rate_of(file, given_rate) if "delta" in file.model.input_names else None
@@ -184,6 +192,7 @@ def simulate(
         print_lines([f"against {measured.name}: rms {errors_text(rms)}"])
     if rate is not None:
         print_lines([rate.text])
+    print_lines(_offset_lines(file, measured, session))
     for text in file.provenance.warnings:
         print_finding("warning", f"of the fit: {text}")
     for finding in api.course_findings(file, manoeuvre or "", constant):
@@ -201,6 +210,30 @@ def simulate(
         },
     )
     print_file("record", out)
+
+
+def _measured_run(name: str, trial: Path | None) -> "tuple[Record, str | None]":
+    """Return a record that is named on the command line, and the session of a trial's run."""
+    from seatrial import api
+    from seatrial.data.read import read_record_csv
+
+    if trial is None:
+        return read_record_csv(Path(name)), None
+    loaded = api.load_trial(trial)
+    return api.prepared_run(loaded, name), next(run.session for run in loaded.runs if run.name == name)
+
+
+def _offset_lines(file: "ModelFile", measured: "Record | None", session: str | None) -> list[str]:
+    """Say whether offsets of the fit's sessions were corrected in a record's inputs, or that orders have none."""
+    from seatrial.api.simulation import is_measured_motion
+    from seatrial.core.results import offsets_text
+
+    if not file.offsets:
+        return []
+    text = offsets_text(file.offsets, session)
+    if measured is not None and is_measured_motion(file, measured):
+        return [f"inputs corrected as the fit found: {text}"]
+    return [f"inputs are true values; in logs the fit found {text}"]
 
 
 @app.command()

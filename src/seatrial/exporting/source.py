@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from seatrial.core.equations import Model
+from seatrial.core.results import offsets_text
 from seatrial.core.text.words import printable
 from seatrial.core.values import NOTATION, InputError, Record
 from seatrial.data.folder.model_file import CONVENTIONS, ModelFile
@@ -136,6 +137,8 @@ def provenance_lines(source: ExportSource) -> list[str]:
         lines.append(f"Ship: {plain(file.ship.name)}, scale 1:{file.ship.scale:g}; {plain(file.ship.source)}")
     if file.provenance.method:
         lines.append(f"Method: {plain(file.provenance.method)}")
+    if file.offsets:
+        lines.append(f"Inputs are true values; in logs the fit found {plain(offsets_text(file.offsets, None))}.")
     lines += [f"Data: {plain(r.name)} ({r.role}), SHA-256 {r.sha256[:_HASH_DIGITS]}" for r in file.provenance.records]
     versions = file.provenance.versions or {}
     if versions:

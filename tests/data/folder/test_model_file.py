@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from seatrial.core.equations import Model, Sheet
-from seatrial.core.results import IntervalBasis
+from seatrial.core.results import IntervalBasis, SessionOffset
 from seatrial.core.values import InputError, Prior, Ship
 from seatrial.data.folder.model_file import (
     ModelFile,
@@ -46,6 +46,7 @@ def whole_file() -> ModelFile:
         ),
         Ship("craft", {"L": 9.8}, "paper", 2.0),
         {"u": 0.8, "v_j": 1.866},
+        offsets=(SessionOffset("delta zero", "rad", 0.03, {"1 May": 0.1 / 3.0, "2 May": 0.02}),),
     )
 
 
@@ -55,7 +56,14 @@ def test_everything_reads_back_to_the_last_bit() -> None:
     assert back.model.parameters == file.model.parameters
     assert np.array_equal(back.covariance, file.covariance)
     assert back.provenance == file.provenance
-    assert (back.ship, back.approach) == (file.ship, file.approach)
+    assert (back.ship, back.approach, back.offsets) == (file.ship, file.approach, file.offsets)
+
+
+@pytest.mark.parametrize("name", ["rudder zero", "delta bias", "K"])
+def test_an_offset_of_nothing_in_the_model_is_refused(name: str) -> None:
+    text = model_text(whole_file()).replace('"delta zero"', f'"{name}"')
+    with pytest.raises(InputError, match=f"offset '{name}' is of no input or parameter of the model"):
+        parse_model(text, "model.toml")
 
 
 @given(numbers)

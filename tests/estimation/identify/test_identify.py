@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from tests.estimation.identify.conftest import NOISE, TRUTH, WriteTrial
 
+import seatrial
 from seatrial.core.values import Record
+from seatrial.data.folder.result_folder import model_of_fit
 from seatrial.data.trial import FitCriterion, load_trial
 from seatrial.estimation.estimate.fit import with_segment_seconds
 from seatrial.estimation.estimate.runs import Runs
@@ -54,6 +56,12 @@ def test_runs_of_one_session_share_their_zero(trial_of: WriteTrial) -> None:
     fit = identify(load_trial(trial_of(runs, layout="session = '*_{day}_*'", more=OFFSETS)))
     assert [o.group for o in fit.offsets] == ["day1", "day2"]
     np.testing.assert_allclose([o.estimate for o in fit.offsets], [0.03, -0.02], atol=0.002)
+    # the model file holds them: the held-out run of a fitted day is simulated as the report shows it
+    (unseen,) = fit.validation
+    again = seatrial.predict(model_of_fit(fit), unseen.measured, "day1").simulated
+    np.testing.assert_allclose(again["psi"], unseen.simulated["psi"], atol=2e-3)
+    other = seatrial.predict(model_of_fit(fit), unseen.measured, "day2").simulated
+    assert np.abs(other["psi"] - unseen.simulated["psi"]).max() > 0.1
 
 
 def test_nothing_of_a_validation_run_is_fitted(trial_of: WriteTrial) -> None:

@@ -31,6 +31,7 @@ from seatrial.core.results.prediction import (
 )
 from seatrial.core.results.search_attempts import SearchAttempt
 from seatrial.core.results.ship_motions import IntervalEstimate, PointMotion, RollCharacteristics, Seakeeping
+from seatrial.core.results.session_offset import SessionOffset, fitted_session, offsets_text, session_offsets_of
 from seatrial.core.results.study import Bars, Check, CheckStatus, Claim, Curve, Figure, Matrix, Study, Table, Verdict
 from seatrial.core.results.published_method import ReferenceEstimate, Search, SearchRestart, SearchTrack
 from seatrial.core.results.summary import Summary
@@ -105,6 +106,7 @@ __all__ = [
     "SearchRestart",
     "SearchTrack",
     "Sensitivity",
+    "SessionOffset",
     "Solution",
     "Stability",
     "Status",
@@ -118,4 +120,7 @@ __all__ = [
     "Verdict",
     "WindowBaseline",
     "WindowScore",
-]  # fmt: skip
+    "fitted_session",
+    "offsets_text",
+    "session_offsets_of",
+]

@@ -12,7 +12,7 @@ import numpy as np
 import tomli_w
 
 from seatrial.core.equations import Model
-from seatrial.core.results import IntervalBasis
+from seatrial.core.results import IntervalBasis, SessionOffset
 from seatrial.core.values import Array, InputError, Parameters, Ship, frozen
 from seatrial.core.values.files import write_atomically
 from seatrial.core.values.tables import parse_toml, read_table_text
@@ -57,6 +57,7 @@ class ModelFile:
         ship: the ship of the trials; None where the model is of no ship.
         approach: steady state and inputs from which a manoeuvre starts by default, symbol -> SI value.
         interval_basis: what intervals of predictions are made of; None where none were estimated.
+        offsets: by which the inputs of the fit's sessions were logged wrong, and parameters that each session has.
     """
 
     model: Model
@@ -65,6 +66,7 @@ class ModelFile:
     ship: Ship | None = None
     approach: Mapping[str, float] = field(default_factory=dict)
     interval_basis: IntervalBasis | None = None
+    offsets: tuple[SessionOffset, ...] = ()
 
     @property
     def rudder_rate(self) -> RudderRate:
@@ -89,6 +91,8 @@ def model_text(file: ModelFile) -> str:
     table["parameters"] = {p.name: model_tables.parameter_table(p) for p in model.parameters}
     if covariance.size:
         table["covariance"] = {"parameters": list(free), "rows": matrix_rows(covariance)}
+    if file.offsets:
+        table["offsets"] = [model_tables.offset_table(one) for one in file.offsets]
     if file.interval_basis is not None:
         table["interval_basis"] = interval_basis_table(file.interval_basis)
     return tomli_w.dumps(table | {"provenance": model_tables.provenance_table(file.provenance)})
@@ -164,6 +168,7 @@ def _model_file(table: Mapping[str, Any], where: str, own_model: Model | None) -
         model_tables.ship(table.get("ship")),
         number_table(table["approach"]),
         interval_basis(table, where, parameters),
+        tuple(model_tables.session_offset(one, model.input_names, parameters) for one in table.get("offsets", ())),
     )
 
 

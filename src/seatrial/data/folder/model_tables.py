@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from seatrial.core.results import IntervalBasis
+from seatrial.core.results import IntervalBasis, SessionOffset
+from seatrial.core.results.session_offset import KINDS
 from seatrial.core.values import Array, InputError, Parameter, Parameters, Prior, Ship, frozen
 
 ROUNDING = 1e-8
@@ -80,6 +81,32 @@ def interval_basis(table: Mapping[str, Any], where: str, parameters: Parameters)
     keys = EARLIER_KEYS if "interval_basis" not in table else {}
     tables = {name: number_table(entry[keys.get(name, name)]) for name in VALUE_TABLES}
     return IntervalBasis(covariance, degrees, float(entry["factor"]), tied=tied, **tables)
+
+
+def offset_table(offset: SessionOffset) -> dict[str, Any]:
+    """Return one table of ``offsets`` of a model file."""
+    return {
+        "name": offset.name,
+        "unit": offset.unit,
+        "expected": finite_number(offset.expected, offset.name),
+        "sessions": number_table(offset.by_session),
+    }
+
+
+def session_offset(entry: Mapping[str, Any], inputs: Sequence[str], parameters: Parameters) -> SessionOffset:
+    """Return an offset of a model file with these inputs and parameters.
+
+    Raises:
+        ValueError: it corrects no input in a way that is known, and is no parameter; or a value is not finite.
+    """
+    offset = SessionOffset(
+        str(entry["name"]), str(entry["unit"]), finite_number(entry["expected"], "expected"),
+        number_table(entry["sessions"]),
+    )  # fmt: skip
+    symbol, kind = offset.correction
+    if offset.name not in parameters and not (symbol in inputs and kind in KINDS):
+        raise ValueError(f"offset '{offset.name}' is of no input or parameter of the model")
+    return offset
 
 
 def covariance_matrix(rows: Sequence[Sequence[float]], where: str) -> Array:

@@ -12,7 +12,7 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.results import Comparison, Design, Fit, Study
+from seatrial.core.results import Comparison, Design, Fit, Study, session_offsets_of
 from seatrial.core.results.online import Snapshot
 from seatrial.core.results.tuning import Tuning
 from seatrial.core.results.verification import Verification
@@ -82,7 +82,8 @@ def model_of_fit(fit: Fit) -> ModelFile:
     warnings = tuple(f"[{f.code}] {f.message}" for f in fit.findings if f.code in LASTING_WARNINGS)
     provenance = ModelProvenance(sources, fit.method.criterion, fit.seed, dict(fit.versions), warnings)
     approach = approach_condition([r for r, role in roles if role == "training"], fit.model)
-    return ModelFile(fit.model, fit.covariance, provenance, fit.ship, approach, fit.interval_basis)
+    offsets = session_offsets_of(fit.offsets, fit.offset_populations)
+    return ModelFile(fit.model, fit.covariance, provenance, fit.ship, approach, fit.interval_basis, offsets)
 
 
 def _fields_of_fit(file: ModelFile) -> dict[str, Any]:
