@@ -1,4 +1,4 @@
-"""Slopes of the cubic spline through evenly spaced samples: its pieces as one step needs them."""
+"""The cubic spline through evenly spaced samples: its slopes, of which each piece is made, and points between."""
 
 import numpy as np
 from numba import void
@@ -41,3 +41,28 @@ def spline_slopes(u):
     slope = np.empty_like(u)
     _slopes(u, slope, np.empty(len(u)))
     return slope
+
+
+@kernel(void(MATRIX, MATRIX, VECTOR, MATRIX, MATRIX), **LEAN)
+def _points(u, slope, place, value, rise):
+    last = max(u.shape[0] - 2, 0)
+    for k in range(len(place)):
+        i = min(int(place[k]), last)
+        following, s = min(i + 1, u.shape[0] - 1), place[k] - i
+        for j in range(u.shape[1]):
+            step = u[following, j] - u[i, j]
+            c2 = 3.0 * step - 2.0 * slope[i, j] - slope[following, j]
+            c3 = slope[i, j] + slope[following, j] - 2.0 * step
+            value[k, j] = u[i, j] + s * (slope[i, j] + s * (c2 + s * c3))
+            rise[k, j] = slope[i, j] + s * (2.0 * c2 + s * 3.0 * c3)
+
+
+def spline_points(u, slope, place):
+    """Return the spline through u (n, columns) with these slopes per sample at each place, and its rate per sample.
+
+    place: counted in samples, within 0 and n - 1, (k,). Both results are (k, columns); cubic Hermite pieces (de Boor
+    1978, chapter IV, eq. 2).
+    """
+    value, rise = np.empty((len(place), u.shape[1])), np.empty((len(place), u.shape[1]))
+    _points(u, slope, place, value, rise)
+    return value, rise

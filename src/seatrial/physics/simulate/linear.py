@@ -8,7 +8,6 @@ flattened (FOH at the record's rate).
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,10 +16,8 @@ from seatrial.core.values import Array, Index
 from seatrial.numerics.kernels.linear import affine_matrices, replay, replay_tangent
 from seatrial.numerics.kernels.propagate import propagators
 from seatrial.numerics.kernels.sensitivity import DELAY, GAIN
+from seatrial.numerics.kernels.spline import spline_points, spline_slopes
 from seatrial.physics.simulate.batch import INPUT_KINDS, SegmentBatch
-
-if TYPE_CHECKING:
-    from scipy.interpolate import CubicSpline
 
 SUBSTEPS = 8  # straight pieces of a spline in one sample; chosen
 
@@ -152,34 +149,40 @@ class LinearBatch(SegmentBatch):
     def _recorded_inputs(self) -> list[tuple[Array, Array]]:
         """Inputs as recorded at the fine step, for each segment."""
         made = []
-        for s in range(self.segment_count):
-            columns = [self._delayed_input(s, j, 0.0)[0] for j in range(len(self.model.inputs))]
-            rows = (int(self.offsets[s + 1] - self.offsets[s]) - 1) * self._steps_per_sample + 1
-            made.append((np.stack([*columns, np.ones(rows)], axis=1), np.empty((rows, len(self.corrections)))))
+        for segment, (samples, slopes) in enumerate(zip(self._samples, self._slopes, strict=True)):
+            place = np.arange((len(samples) - 1) * self._steps_per_sample + 1) / self._steps_per_sample
+            fine = np.ones((len(place), samples.shape[1] + 1))
+            fine[:, :-1] = spline_points(samples, slopes, place)[0]
+            for j in self._held_inputs:
+                fine[:, j] = self._delayed_input(segment, j, 0.0)[0]
+            made.append((fine, np.empty((len(place), len(self.corrections)))))
         return made
 
     def _delayed_input(self, segment: int, j: int, delay: float) -> tuple[Array, Array]:
         """Return input j at the fine step, late by `delay` [s], and its rate of change; clamped to the segment."""
-        samples = self.inputs[self.offsets[segment] : self.offsets[segment + 1], j]
+        samples, slopes = (np.ascontiguousarray(a[segment][:, j : j + 1]) for a in (self._samples, self._slopes))
         place = np.arange((len(samples) - 1) * self._steps_per_sample + 1) / self._steps_per_sample - delay / self.dt
         inside = (place >= 0.0) & (place <= len(samples) - 1.0)
         place = np.clip(place, 0.0, len(samples) - 1.0)
-        if self.model.inputs[j].is_held:
+        if j in self._held_inputs:
             # samples of rounding; chosen
-            return samples[np.minimum(np.floor(place + 1e-9).astype(int), len(samples) - 1)], np.zeros(len(place))
-        if not np.any(samples):
-            return np.zeros(len(place)), np.zeros(len(place))
-        spline = self._splines[segment][j]
-        return spline(place), np.where(inside, spline(place, 1) / self.dt, 0.0)
+            return samples[np.minimum(np.floor(place + 1e-9).astype(int), len(samples) - 1), 0], np.zeros(len(place))
+        value, rise = spline_points(samples, slopes, place)
+        return value[:, 0], np.where(inside, rise[:, 0] / self.dt, 0.0)
 
     @cached_property
-    def _splines(self) -> "list[list[CubicSpline]]":
-        from scipy.interpolate import CubicSpline
+    def _held_inputs(self) -> list[int]:
+        return [j for j, i in enumerate(self.model.inputs) if i.is_held]
 
-        edges = pairwise(self.offsets)
-        return [
-            [CubicSpline(np.arange(b - a), self.inputs[a:b, j]) for j in range(self.inputs.shape[1])] for a, b in edges
-        ]
+    @cached_property
+    def _samples(self) -> list[Array]:
+        """Inputs of each segment, (samples, inputs)."""
+        return [np.ascontiguousarray(self.inputs[a:b]) for a, b in pairwise(self.offsets)]
+
+    @cached_property
+    def _slopes(self) -> list[Array]:
+        """Slopes of the spline through the inputs of each segment, in units of the input a sample."""
+        return [spline_slopes(samples) for samples in self._samples]
 
 
 def batch_class(model: Model) -> type[SegmentBatch]:
