@@ -197,7 +197,8 @@ def determined_sentence(fit: Fit) -> str:
         held = [c.name for c in fit.coefficients if c.fixed and c.name in tied]
         given = f", given {_held_text(fit, held)}, which no manoeuvre identifies apart from them" if held else ""
         together = f" together{given}, but {alone}" if vague else given
-        return f"The records determine all {len(free)} free coefficients{together}."
+        all_of_them = f"all {len(free)} free coefficients" if len(free) > 1 else "the free coefficient"
+        return f"The records determine {all_of_them}{together}."
     rest = "; the rest comes from the priors" if any(c.prior_mean is not None for c in free) else ""
     single = f", and {alone.replace(' one by one', f' of the {len(free)} coefficients one by one', 1)}" if vague else ""
     return f"The records determine about {number} of {len(free)} combinations of the free coefficients{rest}{single}."

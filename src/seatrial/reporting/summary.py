@@ -40,7 +40,8 @@ def _significance(fit: Fit) -> str:
         return _published_sentence(fit, fit.reference)
     vague = [c.name for c in free if c.is_sign_open]
     if not vague:
-        return f"All {len(free)} free coefficients differ from zero at the 95 % level."
+        differ = f"All {len(free)} free coefficients differ" if len(free) > 1 else "The free coefficient differs"
+        return f"{differ} from zero at the 95 % level."
     return (
         f"{len(vague)} of {len(free)} free coefficients do not differ significantly from zero at the 95 % level "
         f"({enumeration(vague)})."

@@ -59,6 +59,12 @@ def _score_clause(fit: Fit) -> str:
     if not held and not fit.predictions:
         return "Nothing is said of predictions: no run was simulated with this fit"
     if not held:
+        lost = [p.record for p in fit.predictions if p.divergence is not None]
+        if lost:
+            return (
+                f"Does not reproduce {enumeration(lost, MAX_NAMES)} of {counted(len(fit.predictions), 'run')} that it "
+                "was fitted to: the simulation diverges; no run was held out to test its predictions"
+            )
         to_errors = f", to {worst_errors(fit.predictions)}" if worst_errors(fit.predictions) else ""
         fitted = counted(len(fit.predictions), "run")
         return f"Reproduces the {fitted} it was fitted to{to_errors}; no run was held out to test its predictions"

@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 
 from seatrial.core.results import Coefficient
-from seatrial.core.values import DivergedError, InputError, Prior
+from seatrial.core.values import InputError, Prior
 from seatrial.estimation.identify.fit_result import (
     bounds_hit,
-    divergence_message,
     open_signs,
     refuse_unidentified,
     unconverged,
@@ -67,14 +66,6 @@ def test_nothing_stated_is_refused_with_names_and_noise() -> None:
     """All eleven."""
     with pytest.raises(InputError, match=r"determine none of the free coefficients X_uu, .*N_rr: .*u 1, r 0\.09"):
         refuse_unidentified(found(dict.fromkeys(COEFFICIENTS, 5.0)))
-
-
-def test_a_model_that_cannot_be_sailed_names_its_coefficients() -> None:
-    """The reason without the advice that belongs to a simulation."""
-    said = divergence_message(found({}), DivergedError("the simulation of run 'a' diverges; take a smaller step"))
-    assert "simulation of run 'a' diverges)" in said
-    assert "smaller step" not in said
-    assert all(name in said for name in COEFFICIENTS)
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,7 @@
-"""Validation runs that diverge or cannot be simulated: the fit is kept, and the run scored as long as it lasts."""
+"""Runs that diverge or cannot be simulated: the fit is kept, and the run scored as long as it lasts."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,7 @@ from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.simulate.channels import inputs_of
 from seatrial.physics.simulate.divergence import first_row_outside
 from seatrial.physics.simulate.replay import trajectory
+from seatrial.reporting.verdict import verdict
 
 UNSTABLE = {"alpha": -200.0}
 """Cubic coefficient [s^2/rad^2] with which r = K delta has no solution beyond |K delta| = 2/3 / sqrt(3 * 200)."""
@@ -61,6 +63,22 @@ def test_the_warning_names_the_terms_and_a_cure(diverged: Fit) -> None:
     assert "'v' diverges in 'r'" in warning.message
     assert "alpha" in warning.message
     assert warning.advice == "train on a run of this amplitude; or correct the fixed value of alpha"
+
+
+def test_a_fit_is_kept_whose_own_run_diverges(rng: np.random.Generator, tmp_path: Path) -> None:
+    # beyond the angle up to which the model has a solution: segments of a second last, the whole run does not
+    runs = [TrialRun(run(name, rudder, rng), Role.TRAIN) for name, rudder in (("a", GENTLE), ("b", HARD))]
+    quick = nomoto().with_values(UNSTABLE | {"T": 1.5})
+    model = quick.with_parameters(quick.parameters.fixed("T").bounded("K", 0.14, 0.16))
+    trial = Trial(Ship("craft", {"L": 8.0}), tuple(runs), model)
+    fit = identify(replace(trial, estimate=replace(trial.estimate, segment_s=1.0)))
+    assert [p.divergence is not None for p in fit.predictions] == [False, True]
+    (warning,) = [f for f in fit.findings if f.code == "diverged"]
+    assert warning.message.startswith("training run 'b' diverges in 'r'")
+    assert "train on a run" not in warning.advice
+    assert verdict(fit).startswith("Does not reproduce b of 2 runs that it was fitted to: the simulation diverges")
+    save_result(fit, tmp_path)
+    assert load_fit(tmp_path).predictions[1].divergence == fit.predictions[1].divergence
 
 
 def test_the_folder_of_a_fit_with_a_diverged_run_is_written_and_read(diverged: Fit, tmp_path: Path) -> None:

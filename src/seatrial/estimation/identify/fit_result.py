@@ -9,7 +9,7 @@ from seatrial.core.equations import Model
 from seatrial.core.results import Coefficient, Method, Noise, Offset, OffsetPopulation, Residuals
 from seatrial.core.results.identifiability import NOT_CONVERGED, SIGN_OPEN
 from seatrial.core.text.words import enumeration
-from seatrial.core.values import NOTATION, Array, DivergedError, Finding, InputError, Parameter, Parameters, Severity
+from seatrial.core.values import NOTATION, Array, Finding, InputError, Parameter, Parameters, Severity
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import split_segments
 from seatrial.estimation.estimate.time_scale import is_pure_roll
@@ -219,16 +219,6 @@ def _unidentified_names(estimation: Estimation) -> list[str]:
     estimates, errors = estimation.estimate.common_parameters, estimation.interval.standard_error
     without_prior = [i for i, name in enumerate(problem.free) if problem.model.parameters[name].prior is None]
     return [problem.free[i] for i in without_prior if errors[i] > abs(estimates[i])]
-
-
-def divergence_message(estimation: Estimation, error: DivergedError) -> str:
-    """What to say where the fitted model cannot sail the records' own runs."""
-    problem, values = estimation.estimate.problem, estimation.estimate.common_parameters
-    named = ", ".join(f"{name} {values[i]:.2g}" for i, name in enumerate(problem.free))
-    return (
-        f"the records lead to no model that can be simulated ({str(error).partition(';')[0]}): too noisy, too short or "
-        f"too calm to determine {named}; fix or give priors for some of these, or take other records"
-    )
 
 
 def unconverged(estimation: Estimation) -> list[Finding]:

@@ -17,6 +17,8 @@ from seatrial.physics.simulate.divergence import first_row_outside, state_limits
 MEASURED_FACTOR = 10.0
 """A diverging run is scored until a state exceeds its largest measured magnitude this many times; chosen."""
 MAX_TERMS = 4  # terms that are named; chosen: those behind them are small
+DIVERGED = "diverged"
+"""Code of the finding that a run's simulation leaves all bounds."""
 _LEAST_TERM_SHARE = 0.05  # of the strongest term, below which a term is not named; chosen
 
 
@@ -75,11 +77,12 @@ def without_diverged_rows(record: Record, inputs: Sequence[str], divergence: Div
 
 
 def divergence_finding(model: Model, prediction: Prediction, divergence: Divergence) -> Finding:
-    """Return the warning that a validation run diverges: when, by which terms, and what to do."""
+    """Return the warning that a run diverges: when, by which terms, and what to do."""
     free = [name for name in divergence.terms if model.parameters[name].free]
     named = enumeration(divergence.terms) if divergence.terms else "no single term"
     index = prediction.extrapolation.index if prediction.extrapolation else 1.0
-    cures = ["train on a run of this amplitude"] if index > 1.0 else []
+    is_beyond = index > 1.0 and prediction.role == "validation"
+    cures = ["train on a run of this amplitude"] if is_beyond else []
     cures += [f"give priors for {enumeration(free)} or fix them"] if free else []
     cures += (
         [f"correct the fixed value of {enumeration([n for n in divergence.terms if n not in free])}"]
@@ -88,8 +91,8 @@ def divergence_finding(model: Model, prediction: Prediction, divergence: Diverge
     )
     return Finding(
         Severity.WARNING,
-        "diverged",
-        f"validation run '{prediction.record}' diverges in '{divergence.state}' after {divergence.seconds:g} s, "
+        DIVERGED,
+        f"{prediction.role} run '{prediction.record}' diverges in '{divergence.state}' after {divergence.seconds:g} s, "
         f"driven by the terms of {named}; it is scored up to then",
         f"{divergence.seconds:g} of {prediction.measured.duration:g} s",
         "; or ".join(cures) or "check the model's coefficients and the run's inputs",

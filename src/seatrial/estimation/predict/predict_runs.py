@@ -157,11 +157,10 @@ def predict_runs(
     Runs that were not fitted get intervals, for which `tied` models are asked as well; all are compared with the ground
     the training runs cover. seconds: of a run's beginning, from which its initial state is taken.
 
-    A validation run that diverges is scored as long as it lasts; one that cannot be simulated is left out. Both are
+    A run that diverges is scored as long as it lasts; a validation run that cannot be simulated is left out. Both are
     findings.
 
     Raises:
-        DivergedError: the simulation of a training run diverges.
         InputError: a training run cannot be simulated.
     """
     report = report_progress or (lambda _: None)
@@ -169,27 +168,28 @@ def predict_runs(
     items, runs, offsets, findings = [], [], [], []
     for number, item in enumerate(records, 1):
         report(f"prediction: {number} of {len(records)}, {item.record.name}")
-        if item.role is Role.TRAIN:
+        try:
             own = session_offsets(estimation, item.session, item.record)
-            run = simulate_open_loop(problem, estimation.model, item.record, own.expected, seconds)
-        else:
-            try:
-                own = session_offsets(estimation, item.session, item.record)
-                if offsets_from_start and item.session not in problem.data.sessions:
-                    own = updated_by_start(problem, estimation.model, own, item.record, seconds)
-                run = simulate_while_bounded(problem, estimation.model, item.record, own.expected, seconds)
-            except InputError as error:
-                findings.append(not_predicted_finding(item.record, error))
-                continue
+            if offsets_from_start and item.session not in problem.data.sessions:
+                own = updated_by_start(problem, estimation.model, own, item.record, seconds)
+            run = simulate_while_bounded(problem, estimation.model, item.record, own.expected, seconds)
+        except InputError as error:
+            if item.role is Role.TRAIN:
+                raise
+            findings.append(not_predicted_finding(item.record, error))
+            continue
         items.append(item)
         runs.append(run)
         offsets.append(own)
     train = [item for item in items if item.role is Role.TRAIN]
-    fitted = [run.record for run, item in zip(runs, items, strict=True) if item.role is Role.TRAIN]
+    moved_as = [  # a runaway simulation says nothing of what the run reached
+        item.record if run.divergence is not None else with_recorded_speed(run.record, item.record)
+        for run, item in zip(runs, items, strict=True)
+    ]
+    fitted = [record for record, item in zip(moved_as, items, strict=True) if item.role is Role.TRAIN]
     layout = estimation.model.equations.layout
     moved = [
-        i.record if layout and set(i.record.channels) >= _MOTION else with_recorded_speed(r, i.record)
-        for i, r in zip(train, fitted, strict=True)
+        i.record if layout and set(i.record.channels) >= _MOTION else r for i, r in zip(train, fitted, strict=True)
     ]
     covered = motion_envelope(moved, layout)
     report("intervals of predictions: runs left out")
@@ -200,12 +200,10 @@ def predict_runs(
     held_out = [item for item in items if item.role is not Role.TRAIN]
     baselines = window_baselines(problem, estimation.model, [i.record for i in train], seconds) if held_out else {}
     predictions = []
-    for item, run, own, stream in zip(items, runs, offsets, streams, strict=True):
+    for item, run, reached, own, stream in zip(items, runs, moved_as, offsets, streams, strict=True):
         role = "training" if item.role is Role.TRAIN else "validation"
         one = predict_run(estimation.model, item.record, role, run, seconds, length)
         one = replace(one, offsets=dict(zip(problem.session_unknowns, map(float, own.expected), strict=True)))
-        # a runaway simulation says nothing of what the run reached
-        reached = item.record if run.divergence is not None else with_recorded_speed(run.record, item.record)
         one = replace(one, extrapolation=extrapolation(reached, covered, layout))
         if run.divergence is not None:
             findings.append(divergence_finding(estimation.model, one, run.divergence))
