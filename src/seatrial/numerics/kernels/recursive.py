@@ -10,6 +10,7 @@ from numba import njit
 from seatrial.numerics.kernels.integrate import DIVERGED
 from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.sensitivity import rk4_tangent_step
+from seatrial.numerics.kernels.simd import LANES
 from seatrial.numerics.kernels.square_root import forget, update_sample
 from seatrial.numerics.kernels.types import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, TABLE, TANGENT, VECTOR
 
@@ -129,26 +130,29 @@ def filter_linear(
 
 @kernel(
     I8(
-        *(TANGENT, TANGENT, F8, I8, VECTOR, INDEX, TABLE, TABLE, TABLE, INDEX),
+        *(TANGENT, TANGENT, F8, I8, VECTOR, INDEX, INDEX),
         *(*_GAUSSIAN_STATE, *_SAMPLES, *_NOISE, *_FORGETTING, *_SCRATCH),
-        *(MATRIX, CUBE, MATRIX, MATRIX, MATRIX, MATRIX, VECTOR),
+        *(TABLE, TABLE, TABLE, VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, VECTOR, MATRIX, VECTOR),
     ),
     **LEAN,
 )
 def filter_runge_kutta(
-    f, g, dt, substeps, p, coefficient_index, chain, link_p, link_u, select, z, root, inputs, measured, first_row,
+    f, g, dt, substeps, p, coefficient_index, select, z, root, inputs, measured, first_row,
     is_run_start, variance, limit, memory, running_means, counts, floor_root, forgetting_factor, forget_every,
-    samples_since, v, z_reference, predicted, h, step, work, work_x, work_s, work_u, work_w, jac, g_jac, g_value
+    samples_since, v, z_reference, predicted, h, step, work, chain, direct, link_u, w, s,
+    work_x, work_u, work_w, jac, entries, g_jac, g_value,
 ):  # fmt: skip
     """Process rows of any model by Runge-Kutta steps, inputs running straight between samples, as `sensitivity` has it.
 
     coefficient_index: of the coefficients in p, whose other values stay. No model depends on time itself: it counts as
-    0. links as in `simulate.batch`, columns [coefficients | state]; select: outputs, states first, then those of g.
+    0. select: outputs, states first, then those of g; chain .. s, entries: as of `rk4_tangent_step`, columns
+    [coefficients | state].
     """
     k, nx, nu = coefficient_index.size, jac.shape[0], inputs.shape[1]
     ny = select.size
     x, rate, y, acc = work_x[0], work_x[1], work_x[2], work_x[3]
     u0, um, ub, u1 = work_u[0], work_u[1], work_u[2], work_u[3]
+    w0, wm, w1 = work_w[0], work_w[1], work_w[2]
     length = dt / substeps
     for row in range(first_row, measured.shape[0]):
         for c in range(k):
@@ -157,8 +161,8 @@ def filter_runge_kutta(
             x[i] = z[k + i]
         if row > first_row or is_run_start == 0:
             for i in range(nx):
-                for c in range(k + nx):
-                    work_s[0, i, c] = 1.0 if c == k + i else 0.0
+                for c in range(s.shape[1]):
+                    s[i, c] = 1.0 if c == k + i else 0.0
             for j in range(nu):
                 u0[j], u1[j] = inputs[row - 1, j], inputs[row, j]
             size = 0.0
@@ -167,15 +171,14 @@ def filter_runge_kutta(
                     half = 0.5 * (u1[j] - u0[j]) / (substeps - m)
                     um[j] = u0[j] + half
                     ub[j] = um[j] + half
-                size += rk4_tangent_step(f, chain, link_p, link_u, 0.0, x, work_s[0], u0, um, ub,
-                                         work_w[0], work_w[1], work_w[2], p, length, jac, rate, y, acc,
-                                         work_s[1], work_s[2], work_s[3])  # fmt: skip
+                size += rk4_tangent_step(f, chain, direct, link_u, 0.0, x, w, s.shape[1] // LANES, u0, um, ub,
+                                         w0, wm, w1, p, length, jac, entries, rate, y, acc)  # fmt: skip
                 for j in range(nu):
                     u0[j] = ub[j]
             for i in range(nx):
                 z[k + i] = x[i]
                 for c in range(k + nx):
-                    step[i, c] = work_s[0, i, c]
+                    step[i, c] = s[i, c]
             _propagate_root(root, step, k, work)
             if not size < DIVERGED:
                 return row

@@ -11,9 +11,13 @@ from numba import njit, void
 
 from seatrial.numerics.kernels.integrate import DIVERGED, effective_input
 from seatrial.numerics.kernels.kernel import kernel
+from seatrial.numerics.kernels.simd import LANES, add_multiple, aligned_scratch, gather_scaled
 from seatrial.numerics.kernels.types import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, TABLE, TANGENT, VECTOR
 
 OFFSET, GAIN, DELAY = 0, 1, 2
+# parts of the slots of a step, each with the columns of every state: sensitivities, then the rates of a stage, their
+# weighted sum, the sensitivities at the next stage, and what parameters and corrections add directly
+_RATES, _SUM, _AHEAD, _ADDED, _PARTS = 1, 2, 3, 4, 5
 
 
 @njit(inline="always", **OPTIONS)
@@ -48,56 +52,78 @@ def propagate_tangent(jac, chain, link_p, link_u, w, s, out):
 
 
 @njit(inline="always", **OPTIONS)
-def rk4_tangent_step(f, chain, link_p, link_u, t, x, s, u0, um, u1, w0, wm, w1, p, h, jac, k, y, acc, sk, sy, sacc):
-    """Advance state x and sensitivities s, both in place; the rest is scratch. Return the stages' summed size."""
-    nx, ncol = s.shape
+def _sensitivity_rates(chain, direct, link_u, weights, jac, entries, w, blocks, source, out):
+    """Set the slots from `out` on to jac_x s + jac_p + jac_u weights, s being those from `source` on."""
+    nx = jac.shape[0]
+    added = _ADDED * nx * blocks
+    for m in range(direct.shape[1]):
+        w[direct[1, m]] = entries[direct[0, m]]
+    for m in range(link_u.shape[0]):
+        place = (added + link_u[m, 0] * blocks) * LANES + link_u[m, 3]
+        w[place] = jac[link_u[m, 0], link_u[m, 1]] * weights[link_u[m, 2]]
+    starts, entry_at, slot_at = chain[0], chain[1], chain[2]
+    for i in range(nx):
+        row = i * blocks
+        gather_scaled(w, out + row, blocks, source, entries, entry_at, slot_at, starts[i], starts[i + 1], added + row)
+
+
+@njit(inline="always", **OPTIONS)
+def rk4_tangent_step(f, chain, direct, link_u, t, x, w, blocks, u0, um, u1, w0, wm, w1, p, h, jac, entries, k, y, acc):
+    """Advance state x and the sensitivities in the first slots of w, both in place. Return the stages' summed size.
+
+    chain, direct: `step_tables`; w, blocks: `step_scratch`; entries: jac, laid out in one row. k, y, acc are scratch.
+    """
+    nx = x.size
+    n = nx * blocks
     size = 0.0
-    f(t, x, u0, p, k, jac)
-    propagate_tangent(jac, chain, link_p, link_u, w0, s, sk)
     for i in range(nx):
-        acc[i] = k[i]
-        y[i] = x[i] + 0.5 * h * k[i]
-        size += abs(y[i])
-        for j in range(ncol):
-            sacc[i, j] = sk[i, j]
-            sy[i, j] = s[i, j] + 0.5 * h * sk[i, j]
-    for stage in range(2):
-        c = 0.5 * h if stage == 0 else h
-        f(t + 0.5 * h, y, um, p, k, jac)
-        propagate_tangent(jac, chain, link_p, link_u, wm, sy, sk)
+        y[i], acc[i] = x[i], 0.0
+    for stage in range(4):
+        u = u0 if stage == 0 else (u1 if stage == 3 else um)
+        weights = w0 if stage == 0 else (w1 if stage == 3 else wm)
+        weight = 1.0 if stage == 0 or stage == 3 else 2.0  # of the classical scheme, in sixths
+        f(t + 0.5 * h * ((stage + 1) // 2), y, u, p, k, jac)
         for i in range(nx):
-            acc[i] += 2.0 * k[i]
-            y[i] = x[i] + c * k[i]
+            acc[i] += weight * k[i]
+        source = 0 if stage == 0 else _AHEAD * n
+        out = _SUM * n if stage == 0 else _RATES * n
+        _sensitivity_rates(chain, direct, link_u, weights, jac, entries, w, blocks, source, out)
+        if stage > 0:
+            for c in range(n):
+                add_multiple(w, _SUM * n + c, _SUM * n + c, weight, out + c)
+        if stage == 3:
+            break
+        ahead = h if stage == 2 else 0.5 * h
+        for i in range(nx):
+            y[i] = x[i] + ahead * k[i]
             size += abs(y[i])
-            for j in range(ncol):
-                sacc[i, j] += 2.0 * sk[i, j]
-                sy[i, j] = s[i, j] + c * sk[i, j]
-    f(t + h, y, u1, p, k, jac)
-    propagate_tangent(jac, chain, link_p, link_u, w1, sy, sk)
+        for c in range(n):
+            add_multiple(w, _AHEAD * n + c, c, ahead, out + c)
+    sixth = h / 6.0  # of the weights of the classical scheme
     for i in range(nx):
-        x[i] += h / 6.0 * (acc[i] + k[i])  # weights of the classical scheme
+        x[i] += sixth * acc[i]
         size += abs(x[i])
-        for j in range(ncol):
-            s[i, j] += h / 6.0 * (sacc[i, j] + sk[i, j])  # as those of the state
+    for c in range(n):
+        add_multiple(w, c, c, sixth, _SUM * n + c)
     return size
 
 
 @kernel(
     void(
         *(TANGENT, TANGENT, MATRIX, INDEX, I8, I8, F8, I8, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX),
-        *(TABLE, TABLE, TABLE, TABLE, TABLE, TABLE, INDEX, INDEX, MATRIX, CUBE, INDEX),
-        *(MATRIX, CUBE, MATRIX, MATRIX, MATRIX, MATRIX, VECTOR, MATRIX),
+        *(TABLE, TABLE, TABLE, TABLE, INDEX, INDEX, MATRIX, CUBE, INDEX),
+        *(MATRIX, VECTOR, MATRIX, TABLE, TABLE, MATRIX, MATRIX, MATRIX, VECTOR, MATRIX, VECTOR, MATRIX),
     ),
     **LEAN,
 )
 def _replay_tangent(
     f, g, inputs, offsets, seg_from, seg_to, dt, substeps, x0, p, gain, offset, delay,
-    chain, link_p, link_u, g_chain, g_link_p, g_link_u, start_column, select, y_out, s_out, failed,
-    work_x, work_s, work_u, work_w, jac, g_jac, g_value, g_s,
+    link_u, g_chain, g_link_p, g_link_u, start_column, select, y_out, s_out, failed,
+    work_x, w, s, chain, direct, work_u, work_w, jac, entries, g_jac, g_value, g_s,
 ):  # fmt: skip
     nx, nu, ncol = x0.shape[1], inputs.shape[1], s_out.shape[2]
     x, k, y, acc = work_x[0], work_x[1], work_x[2], work_x[3]
-    s, sk, sy, sacc = work_s[0], work_s[1], work_s[2], work_s[3]
+    blocks = s.shape[1] // LANES
     u0, u1, um, ub = work_u[0], work_u[1], work_u[2], work_u[3]
     w0, w1, wm, wb = work_w[0], work_w[1], work_w[2], work_w[3]
     h = dt / substeps
@@ -111,7 +137,7 @@ def _replay_tangent(
         gain_s, offset_s, delay_s = gain[seg], offset[seg], delay[seg]
         for i in range(nx):
             x[i] = x0[seg, i]
-            for j in range(ncol):
+            for j in range(s.shape[1]):
                 s[i, j] = 1.0 if j == start_column[i] else 0.0
         effective_input(inputs, first, last, first, gain_s, offset_s, delay_s, dt, u0)
         if needs_w:
@@ -122,10 +148,15 @@ def _replay_tangent(
                 g(t, x, u0, par, g_value, g_jac)
                 propagate_tangent(g_jac, g_chain, g_link_p, g_link_u, w0, s, g_s)
             for i in range(select.size):
-                is_state = select[i] < nx
-                y_out[row, i] = x[select[i]] if is_state else g_value[select[i] - nx]
-                for j in range(ncol):
-                    s_out[row, i, j] = s[select[i], j] if is_state else g_s[select[i] - nx, j]
+                here = select[i]
+                if here < nx:
+                    y_out[row, i] = x[here]
+                    for j in range(ncol):
+                        s_out[row, i, j] = s[here, j]
+                else:
+                    y_out[row, i] = g_value[here - nx]
+                    for j in range(ncol):
+                        s_out[row, i, j] = g_s[here - nx, j]
             if row == last - 1:
                 break
             effective_input(inputs, first, last, row + 1, gain_s, offset_s, delay_s, dt, u1)
@@ -142,8 +173,8 @@ def _replay_tangent(
                         half = 0.5 * (w1[j] - w0[j]) / (substeps - m)
                         wm[j] = w0[j] + half
                         wb[j] = wm[j] + half
-                size += rk4_tangent_step(f, chain, link_p, link_u, t + m * h, x, s, u0, um, ub, w0, wm, wb, par, h,
-                                         jac, k, y, acc, sk, sy, sacc)  # fmt: skip
+                size += rk4_tangent_step(f, chain, direct, link_u, t + m * h, x, w, blocks, u0, um, ub,
+                                         w0, wm, wb, par, h, jac, entries, k, y, acc)  # fmt: skip
                 for j in range(nu):
                     u0[j] = ub[j]
                 if needs_w:
@@ -169,10 +200,38 @@ def replay_tangent(
     """
     nx, nu, ncol = x0.shape[1], inputs.shape[1], s_out.shape[2]
     width, rows = nx + nu + p.shape[1], max(ng, 1)
+    w, s = step_scratch(nx, ncol)
+    jac = np.zeros((nx, width))
     _replay_tangent(f, g, inputs, offsets, seg_from, seg_to, dt, substeps, x0, p, gain, offset, delay,
-                    chain, link_p, link_u, g_chain, g_link_p, g_link_u, start_column, select, y_out, s_out, failed,
-                    np.empty((4, nx)), np.empty((4, nx, ncol)), np.empty((4, nu)), np.zeros((4, 3 * nu)),
-                    np.zeros((nx, width)), np.zeros((rows, width)), np.empty(rows), np.empty((rows, ncol)))  # fmt: skip
+                    link_u, g_chain, g_link_p, g_link_u, start_column, select, y_out, s_out, failed,
+                    np.empty((4, nx)), w, s, *step_tables(chain, link_p, s, width), np.empty((4, nu)),
+                    np.zeros((4, 3 * nu)), jac, jac.reshape(-1), np.zeros((rows, width)), np.empty(rows),
+                    np.empty((rows, ncol)))  # fmt: skip
+
+
+def step_scratch(nx, ncol):
+    """Return zeroed slots of `rk4_tangent_step`, and the sensitivities in them, (nx, ncol or more: whole slots)."""
+    blocks = -(-ncol // LANES)
+    slots = aligned_scratch(_PARTS * nx * blocks)
+    slots[:] = 0.0
+    return slots, slots[: nx * blocks * LANES].reshape(nx, blocks * LANES)
+
+
+def step_tables(chain, link_p, s, width):
+    """Return what `rk4_tangent_step` looks up, from tables as `propagate_tangent` has them, rows ascending.
+
+    First where the entries of each rate start (and the last ones end), their places in the Jacobian of that width, and
+    the first slots of the states that they belong to; then of each parameter's entry its place there and in the slots.
+    """
+    nx, columns = s.shape
+    gathered = np.zeros((3, max(len(chain), nx + 1)), dtype=np.int64)
+    gathered[0, : nx + 1] = np.searchsorted(chain[:, 0], np.arange(nx + 1))
+    gathered[1, : len(chain)] = chain[:, 0] * width + chain[:, 1]
+    gathered[2, : len(chain)] = chain[:, 1] * (columns // LANES)
+    direct = np.empty((2, len(link_p)), dtype=np.int64)
+    direct[0] = link_p[:, 0] * width + link_p[:, 1]
+    direct[1] = (_ADDED * nx + link_p[:, 0]) * columns + link_p[:, 2]
+    return gathered, direct
 
 
 @kernel(void(TANGENT, MATRIX, MATRIX, MATRIX, F8, MATRIX, CUBE), **OPTIONS)

@@ -15,6 +15,8 @@ from numba.extending import intrinsic
 LANES = 8  # numbers of float64 in a register of 512 bits
 _VECTOR = ir.VectorType(ir.DoubleType(), LANES)
 _CONTRACT = ("contract",)
+# slots that are summed side by side; chosen: more columns than 32 are rare
+_TOGETHER = 4
 _ALIGNMENT = 8  # bytes of a float64, which is all that is promised of an array
 
 
@@ -94,6 +96,67 @@ def add_scaled(_context, w, out, a, a_stride, numbers, first, stride, count):  #
         return context.get_dummy_value()
 
     return types.void(w, *[types.int64] * 3, numbers, *[types.int64] * 3), generate
+
+
+@_instruction
+def add_multiple(_context, w, out, a, number, b):  # noqa: ARG001
+    """Set w[out] = w[a] + number w[b]."""
+
+    def generate(context, builder, signature, arguments):
+        _, out, a, number, b = arguments
+        slots = _SlotAccess(context, builder, signature, arguments)
+        product = builder.fmul(slots.broadcast(number), slots.load(b), flags=_CONTRACT)
+        slots.store(builder.fadd(slots.load(a), product, flags=_CONTRACT), out)
+        return context.get_dummy_value()
+
+    return types.void(w, types.int64, types.int64, types.float64, types.int64), generate
+
+
+@_instruction
+def gather_scaled(_context, w, out, count, a, numbers, number_at, slot_at, first, last, b):  # noqa: ARG001
+    """Set w[out + c] = sum over first <= m < last of numbers[number_at[m]] w[a + slot_at[m] + c] + w[b + c], c < count.
+
+    m ascending, w[b + c] last. Up to `_TOGETHER` values of c are worked out at a time, which share their loads.
+    """
+
+    def generate(context, builder, signature, arguments):
+        _, out, count, a, numbers, number_at, slot_at, first, last, b = arguments
+        slots = _SlotAccess(context, builder, signature, arguments)
+        data, number_at, slot_at = (
+            context.make_array(kind)(context, builder, array).data
+            for kind, array in zip(signature.args, arguments, strict=True)
+            if array in (numbers, number_at, slot_at)
+        )
+        zero, one, together = (ir.Constant(count.type, number) for number in (0, 1, _TOGETHER))
+
+        def sums(c, width):
+            each = [ir.Constant(count.type, offset) for offset in range(width)]
+            totals = [cgutils.alloca_once(builder, _VECTOR) for _ in each]
+            for total in totals:
+                builder.store(ir.Constant(_VECTOR, [0.0] * LANES), total)
+            start = builder.add(a, c)
+            with cgutils.for_range_slice(builder, first, last, one, first.type) as (m, _):
+                number = builder.load(builder.gep(data, [builder.load(builder.gep(number_at, [m]))]))
+                left = slots.broadcast(number)
+                slot = builder.add(start, builder.load(builder.gep(slot_at, [m])))
+                for offset, total in zip(each, totals, strict=True):
+                    product = builder.fmul(left, slots.load(builder.add(slot, offset)), flags=_CONTRACT)
+                    builder.store(builder.fadd(builder.load(total), product, flags=_CONTRACT), total)
+            for offset, total in zip(each, totals, strict=True):
+                here = builder.add(c, offset)
+                last_term = slots.load(builder.add(b, here))
+                slots.store(builder.fadd(builder.load(total), last_term, flags=_CONTRACT), builder.add(out, here))
+
+        remaining = builder.srem(count, together)
+        whole = builder.sub(count, remaining)
+        with cgutils.for_range_slice(builder, zero, whole, together, count.type) as (c, _):
+            sums(c, _TOGETHER)
+        for width in range(1, _TOGETHER):
+            with builder.if_then(builder.icmp_signed("==", remaining, ir.Constant(count.type, width))):
+                sums(whole, width)
+        return context.get_dummy_value()
+
+    return types.void(w, *[types.int64] * 3, numbers, number_at, slot_at, *[types.int64] * 3), generate
 
 
 @_instruction

@@ -10,6 +10,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index
 from seatrial.numerics.kernels.compiled_function import TangentPointer
 from seatrial.numerics.kernels.recursive import filter_linear, filter_runge_kutta
+from seatrial.numerics.kernels.sensitivity import step_scratch, step_tables
 from seatrial.numerics.kernels.spline import spline_slopes
 from seatrial.physics.simulate.batch import SegmentBatch
 from seatrial.physics.simulate.linear import SUBSTEPS, DiscreteMatrices, discrete_matrices
@@ -78,11 +79,12 @@ class RungeKuttaStepper:
         places = np.array([parameters.index(n) for n in names], dtype=np.int64)
         ng = len(model.outputs) if np.any(select >= nx) else 0
         width = nx + nu + len(parameters)
+        (w, s), jac = step_scratch(nx, k + nx), np.zeros((nx, width))
         self._rates_and_step = (TangentPointer(code.rates_tangent), TangentPointer(code.outputs_tangent), dt, substeps)
-        self._model_arguments = (np.array(parameters.values), places, chain, link_p, link_u, select)
+        self._model_arguments = (np.array(parameters.values), places, select)
         self._scratch_arrays = (
-            *_scratch(nx, k, len(outputs)), np.empty((4, nx)), np.empty((4, nx, k + nx)), np.empty((4, nu)),
-            np.zeros((2, 3 * nu)), np.zeros((nx, width)), np.zeros((ng, width)), np.empty(ng),
+            *_scratch(nx, k, len(outputs)), *step_tables(chain, link_p, s, width), link_u, w, s, np.empty((4, nx)),
+            np.empty((4, nu)), np.zeros((3, 3 * nu)), jac, jac.reshape(-1), np.zeros((ng, width)), np.empty(ng),
         )  # fmt: skip
 
     def run(self, filter_state: FilterState, inputs: Array, measured: Array, first: int, is_run_start: int) -> int:
