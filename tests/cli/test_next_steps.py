@@ -1,5 +1,6 @@
 """The last line of a command names what to type next."""
 
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,6 +12,8 @@ from seatrial.core.results import Divergence
 from seatrial.core.results.campaign import CampaignStatus
 from seatrial.core.values import Finding, Record, Severity, TrialEdit
 from seatrial.physics.models import heave_pitch, roll
+from seatrial.physics.models.thruster_layout import CATAMARAN, AngleInput, ThrusterLayout
+from seatrial.physics.models.thrusters import thrusters
 
 TRIAL, OUT = Path("my trial.toml"), Path("results")
 
@@ -37,6 +40,20 @@ def test_after_a_fit_a_run_is_held_out_or_a_manoeuvre_simulated() -> None:
     )
     trained = replace(fit, predictions=tuple(replace(p, role="training") for p in fit.predictions))
     assert after_fit(trained, OUT, TRIAL).startswith("name a run to hold out in 'my trial.toml'")
+
+
+def test_after_a_fit_of_a_craft_with_thrusters_it_turns_as_it_can() -> None:
+    fit, port = fabricated_fit(), CATAMARAN.thrusters[0]
+    turned = replace(port, y=0.0, same_as="", angle=AngleInput("alpha_1"))
+    run = Record.from_arrays("run", np.arange(50.0), {"alpha_1": np.full(50, math.radians(-22.0))})
+    runs = tuple(replace(fit.predictions[0], measured=run, role=role) for role in ("training", "validation"))
+    commands = [
+        after_fit(replace(fit, model=thrusters(ThrusterLayout(of_craft)), predictions=runs), OUT)
+        for of_craft in ((turned,), CATAMARAN.thrusters, (replace(turned, angle=0.0),))
+    ]
+    assert [command.split("--manoeuvre ")[1] for command in commands] == [
+        "turning-circle:22 --out circle.csv", "spin:50 --out spin.csv", "straight:50 --out straight.csv",
+    ]  # fmt: skip
 
 
 def test_after_a_fit_that_misses_the_page_on_bad_fits_is_named() -> None:

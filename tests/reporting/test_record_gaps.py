@@ -11,7 +11,8 @@ from seatrial.core.values import Array, Record
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.manoeuvres.release import release_angle
 from seatrial.physics.manoeuvres.thrust_programme import thrust_programme
-from seatrial.physics.models.thruster_layout import CATAMARAN
+from seatrial.physics.models.thruster_layout import CATAMARAN, AngleInput, CommandInput, Thruster, ThrusterLayout
+from seatrial.physics.simulate.craft_manoeuvre import craft_programme
 from seatrial.reporting.key_facts import key_facts
 from seatrial.reporting.record_gaps import RecordGap, gap_facts, gaps_of_rolling, gaps_of_thrusters, record_gaps
 
@@ -93,6 +94,18 @@ def test_a_craft_with_thrusters_lacks_a_side_orders_astern_and_full_command() ->
     }  # fmt: skip
     assert [g.name for g in thruster_gaps(-0.2 * (1.0 + SQUARE), SQUARE)] == ["turns to starboard"]
     assert thruster_gaps(0.2 * SQUARE, SQUARE) == []
+
+
+@pytest.mark.parametrize(("x", "end"), [(-2.0, ":port"), (2.0, "")])
+def test_a_craft_whose_thruster_turns_lacks_a_side_and_larger_angles_of_it(x: float, end: str) -> None:
+    """Thrust to port, at the stern, turns to starboard, at the bow to port."""
+    turned = Thruster("pod", x, 0.0, CommandInput("command_1"), angle=AngleInput("alpha_1"))
+    angle = -math.radians(10.0) * (1.0 + SQUARE)
+    channels = {"psi": 0.0 * TIME, "alpha_1": angle, "command_1": SQUARE}
+    gaps = list(gaps_of_thrusters([Record.from_arrays("run", TIME, channels)], ThrusterLayout((turned,))))
+    assert [g.options for g in gaps] == [f"turning-circle:20{end}", "turning-circle:35"]
+    assert gaps[1].name == "steering angle beyond 20°"
+    assert all(craft_programme(ThrusterLayout((turned,)), g.options) for g in gaps)
 
 
 def test_a_larger_release_is_named_up_to_the_deck_edge() -> None:

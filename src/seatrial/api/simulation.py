@@ -30,12 +30,13 @@ def steering(
 
     Args:
         model: a model; or a fit or model file, with their ship and approach condition.
-        manoeuvre: e.g. ``zigzag:20/20`` (see `seatrial.manoeuvres`); of a craft with thrusters ``straight:50``,
-            ``spin:50``, ``stop:50``, ``zigzag:30/20`` (per cent of full command; switching heading in degrees); of a
-            model that only rolls ``release:15`` (degrees).
+        manoeuvre: e.g. ``zigzag:20/20`` (see `seatrial.manoeuvres`), of a craft with thrusters that turn by their
+            angle; of any craft with thrusters ``straight:50``, ``spin:50``, ``stop:50`` (per cent of full command),
+            where all are fixed ``zigzag:30/20`` (the same; switching heading in degrees); of a model that only rolls
+            ``release:15`` (degrees).
         speed: approach speed, m/s; without it the speed at which surge balances.
         inputs: constant inputs besides the rudder, SI; without them those of the trials. ``ahead``: order ahead of a
-            zigzag by thrusters, share of full command.
+            manoeuvre that thrusters steer, share of full command; by default 0.5, or that of the speed.
         duration: s at most.
         rudder_rate: rad/s; without it that of `rudder_rate_of`.
         seed: of a random binary sequence.
@@ -48,7 +49,7 @@ def steering(
     file = as_model_file(model)
     _refuse_no_number(speed)
     if file.model.equations.layout:
-        return _by_thrusters(manoeuvre, speed, inputs, duration, rudder_rate)
+        return _by_thrusters(file, _with_seed(manoeuvre, seed), speed, inputs, duration, rudder_rate)
     if rolls_only(file.model):
         return _by_release(file.model, manoeuvre, speed, inputs, duration, rudder_rate)
     from seatrial.physics.manoeuvres.programme import programme
@@ -94,18 +95,23 @@ def rudder_rate_of(model: "Fit | ModelFile | Model", given: float | None = None)
 
 
 def _by_thrusters(
+    file: "ModelFile",
     manoeuvre: str,
     speed: float | None,
     inputs: Mapping[str, float] | None,
     duration: float | None,
     rudder_rate: float | None,
 ) -> Steering:
-    from seatrial.physics.manoeuvres.thrust_programme import thrust_programme
-    from seatrial.physics.simulate.thrust import refuse_rudder_options, thrust_manoeuvre
+    from seatrial.physics.manoeuvres.thrust_programme import ThrustProgramme
+    from seatrial.physics.models.thruster_layout import ThrusterLayout
+    from seatrial.physics.simulate.craft_manoeuvre import craft_manoeuvre, craft_programme
+    from seatrial.physics.simulate.thrust import refuse_rudder_options
 
-    refuse_rudder_options(speed, rudder_rate)
-    orders = thrust_programme(manoeuvre)
-    return lambda craft: thrust_manoeuvre(craft, orders, duration=duration, inputs=inputs)
+    orders = craft_programme(ThrusterLayout.from_text(file.model.equations.layout), manoeuvre)
+    if isinstance(orders, ThrustProgramme):
+        refuse_rudder_options(orders, speed, rudder_rate)
+    rate = rudder_rate_of(file, rudder_rate).value
+    return lambda craft: craft_manoeuvre(craft, orders, duration=duration, speed=speed, inputs=inputs, slew_rate=rate)
 
 
 def _by_release(

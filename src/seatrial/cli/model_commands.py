@@ -101,8 +101,8 @@ def simulate(
         str | None,
         typer.Option(
             "--manoeuvre",
-            help="zigzag:20/20, turning-circle:35, spiral, pull-out or prbs; by thrusters straight:50, spin:50, "
-            "stop:50 or zigzag:30/20 (per cent); of a roll model release:15; add :port.",
+            help="zigzag:20/20, turning-circle:35, spiral, pull-out or prbs; by thrust straight:50, spin:50, stop:50 "
+            "(per cent), of fixed thrusters zigzag:30/20 (per cent); of a roll model release:15; add :port.",
         ),
     ] = None,
     inputs: Annotated[
@@ -164,7 +164,6 @@ def simulate(
         record = api.simulate(file, measured, speed=speed, session=session)
     else:
         given_rate = None if rudder_rate is None else math.radians(rudder_rate)
-        rate = api.rudder_rate_of(file, given_rate) if "delta" in file.model.input_names else None
         steer = api.steering(
             file,
             manoeuvre or "",
@@ -175,6 +174,7 @@ def simulate(
             seed=seed,
         )
         record = steer(file.model)
+        rate = api.rudder_rate_of(file, given_rate) if "delta" in record else None
         try:
             intervals = api.measure_intervals(file, steer)
         except InputError as error:

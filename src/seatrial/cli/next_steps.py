@@ -43,7 +43,7 @@ def after_fit(fit: "Fit", folder: Path, trial: Path | None = None) -> str:
         return "docs/bad-fit.md, By symptom: the held-out run is not predicted, so correct the fit before it is used"
     model = in_shell(folder / "model.toml")
     if fit.model.equations.layout:
-        return f"seatrial simulate {model} --manoeuvre spin:50 --out spin.csv"
+        return _craft_step(fit, model)
     if "delta" in fit.model.input_names and "psi" in fit.model.states:
         circle = f"seatrial simulate {model} --manoeuvre turning-circle:{_recorded_rudder(fit):.0f} --out circle.csv"
         return f"{circle}{_design_step(fit, model, trial)}"
@@ -57,13 +57,29 @@ def after_fit(fit: "Fit", folder: Path, trial: Path | None = None) -> str:
     )
 
 
+def _craft_step(fit: "Fit", model: str) -> str:
+    """The command that turns a craft with thrusters: by its steering angle, by difference of thrust, or not at all."""
+    from seatrial.physics.models.thruster_layout import ThrusterLayout
+    from seatrial.physics.simulate.craft_manoeuvre import craft_programmes
+
+    kind = craft_programmes(ThrusterLayout.from_text(fit.model.equations.layout))[0].partition(":")[0]
+    if kind in ("spin", "straight"):
+        return f"seatrial simulate {model} --manoeuvre {kind}:50 --out {kind}.csv"
+    return f"seatrial simulate {model} --manoeuvre turning-circle:{_recorded_rudder(fit):.0f} --out circle.csv"
+
+
 def _recorded_rudder(fit: "Fit") -> float:
-    """The largest rudder angle [deg] of the runs that were fitted, at most 35: beyond it the model extrapolates."""
+    """The largest rudder angle [deg] of the runs that were fitted, at most 35: beyond it the model extrapolates.
+
+    Of a craft with thrusters that turn it is the order of their angle.
+    """
     import numpy as np
 
     from seatrial.physics.manoeuvres import REACH_PERCENTILE
+    from seatrial.physics.models.thruster_steering import with_order_of
 
-    runs = [p.measured for p in fit.predictions if p.role == "training" and "delta" in p.measured]
+    training = [with_order_of(fit.model, p.measured) for p in fit.predictions if p.role == "training"]
+    runs = [run for run in training if "delta" in run]
     reaches = [float(np.degrees(np.nanpercentile(np.abs(run["delta"]), REACH_PERCENTILE))) for run in runs]
     return min(max(reaches, default=FULL_RUDDER_DEG), FULL_RUDDER_DEG)
 

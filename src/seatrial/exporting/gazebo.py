@@ -21,10 +21,11 @@ from seatrial.exporting.target import Export
 from seatrial.exporting.target_structure import ForceTerm, TargetStructure, unsuitable_hull
 from seatrial.exporting.templating import rendered
 from seatrial.physics.manoeuvres.programme import programme
-from seatrial.physics.manoeuvres.thrust_programme import thrust_programme
+from seatrial.physics.models.thruster_layout import ThrusterLayout
+from seatrial.physics.models.thruster_steering import steering_angles
+from seatrial.physics.simulate.craft_manoeuvre import craft_manoeuvre, craft_programme
 from seatrial.physics.simulate.replay import replay
 from seatrial.physics.simulate.steer import manoeuvre
-from seatrial.physics.simulate.thrust import thrust_manoeuvre
 
 VRX = TargetStructure(
     (
@@ -95,8 +96,10 @@ def training_motions(source: ExportSource) -> list[Record]:
         InputError: the model cannot be taken through them.
     """
     model, file = source.model, source.file
-    if "delta" not in model.input_names:
-        return [thrust_manoeuvre(model, thrust_programme(text)) for text in THRUST_MOTIONS]
+    if model.equations.layout:
+        layout = ThrusterLayout.from_text(model.equations.layout)
+        texts = RUDDER_MOTIONS if steering_angles(layout) else THRUST_MOTIONS
+        return [craft_manoeuvre(model, craft_programme(layout, text)) for text in texts]
     held = {name: value for name, value in file.approach.items() if name in model.input_names}
     return [manoeuvre(model, programme(text), inputs=held, slew_rate=file.rudder_rate.value) for text in RUDDER_MOTIONS]
 

@@ -11,7 +11,9 @@ from seatrial.core.text.numbers import significant
 from seatrial.core.values import Array, Record
 from seatrial.core.values.channel_text import channel_meaning, channel_unit, unit_text
 from seatrial.physics.manoeuvres import REACH_PERCENTILE, initial_speed, steered_orders, to_starboard
+from seatrial.physics.models.thrust_orders import work_shares
 from seatrial.physics.models.thruster_layout import ThrusterLayout
+from seatrial.physics.models.thruster_steering import steering_angles, with_steering_order
 from seatrial.reporting.first_screen import KeyFact
 from seatrial.reporting.verdict import LEAST_RUDDER, ONE_SPEED
 
@@ -29,6 +31,17 @@ FULL_COMMAND, LEAST_COMMAND = 0.9, 0.1
 LARGEST_RELEASE_DEG, LARGER = 35.0, 2.0
 _PROPULSION = ("n", "v_j")
 _OTHER = {"port": "starboard", "starboard": "port"}
+
+
+@dataclass(frozen=True)
+class _SteeringWords:
+    """What steers and what is steered, in a sentence."""
+
+    angle: str
+    craft: str
+
+
+_RUDDER, _TURNED = _SteeringWords("rudder", "ship"), _SteeringWords("steering angle", "craft")
 
 
 @dataclass(frozen=True)
@@ -69,16 +82,8 @@ def gap_facts(fit: Fit) -> tuple[KeyFact, ...]:
 def _of_steering(fit: Fit, runs: Sequence[Record]) -> Iterator[RecordGap]:
     if not runs:
         return
-    rudder = np.concatenate([to_starboard(r, "delta") for r in runs])
-    port, starboard = (_reach(side) for side in (-rudder, rudder))
-    over, zigzag = math.degrees(max(port, starboard)), _usual_zigzag(runs)
-    if max(port, starboard) >= LEAST_RUDDER:
-        yield from _of_sides(port, starboard)
-    if LEAST_RUDDER <= max(port, starboard) < math.radians(REACHED * FULL_RUDDER_DEG):
-        yield RecordGap(
-            f"rudder beyond {over:.0f}°", f"The rudder went to {over:.0f}° at most: forces beyond that, as in a hard "
-            "turn, are extrapolated.", f"turning-circle:{FULL_RUDDER_DEG:.0f}",
-        )  # fmt: skip
+    yield from _of_angles(runs, _RUDDER)
+    zigzag = _usual_zigzag(runs)
     speeds = [speed for r in runs if math.isfinite(speed := initial_speed(r)) and speed > 0.0]
     if "u" in fit.model.states and speeds and np.ptp(speeds) <= ONE_SPEED * np.mean(speeds):
         speed = float(np.mean(speeds))
@@ -93,17 +98,25 @@ def _of_steering(fit: Fit, runs: Sequence[Record]) -> Iterator[RecordGap]:
             yield from _of_propulsion(name, [r for r in runs if name in r], zigzag)
 
 
-def _of_sides(port: float, starboard: float) -> Iterator[RecordGap]:
-    other = _unused_side(port, starboard)
-    if not other:
+def _of_angles(runs: Sequence[Record], words: _SteeringWords) -> Iterator[RecordGap]:
+    """Yield a side to which the rudder, or what turns instead, was not put over, and larger angles than in the runs."""
+    angles = np.concatenate([to_starboard(r, "delta") for r in runs]) if runs else np.zeros(1)
+    port, starboard = (_reach(side) for side in (-angles, angles))
+    over = math.degrees(max(port, starboard))
+    if max(port, starboard) < LEAST_RUDDER:
         return
-    angle = f"{math.degrees(max(port, starboard)):.0f}"
-    end = ":port" if other == "port" else ""
-    yield RecordGap(
-        f"turns to {other}",
-        f"The rudder went to {_OTHER[other]} only: whether the ship turns alike to both sides is assumed.",
-        f"turning-circle:{angle}{end}",
-    )  # fmt: skip
+    if other := _unused_side(port, starboard):
+        yield RecordGap(
+            f"turns to {other}",
+            f"The {words.angle} went to {_OTHER[other]} only: whether the {words.craft} turns alike to both sides is "
+            "assumed.",
+            f"turning-circle:{over:.0f}{':port' if other == 'port' else ''}",
+        )  # fmt: skip
+    if over < REACHED * FULL_RUDDER_DEG:
+        yield RecordGap(
+            f"{words.angle} beyond {over:.0f}°", f"The {words.angle} went to {over:.0f}° at most: forces beyond that, "
+            "as in a hard turn, are extrapolated.", f"turning-circle:{FULL_RUDDER_DEG:.0f}",
+        )  # fmt: skip
 
 
 def _of_propulsion(name: str, runs: Sequence[Record], zigzag: str) -> Iterator[RecordGap]:
@@ -122,7 +135,17 @@ def _of_propulsion(name: str, runs: Sequence[Record], zigzag: str) -> Iterator[R
 
 
 def gaps_of_thrusters(runs: Sequence[Record], layout: ThrusterLayout) -> Iterator[RecordGap]:
-    """Yield what runs do not show of a craft with thrusters: a side, full command ahead, orders astern."""
+    """Yield what runs do not show of a craft with thrusters: a side, larger angles, full command, orders astern."""
+    if steering_angles(layout):
+        ordered = [with_steering_order(r, layout) for r in runs]
+        yield from _of_angles([r for r in ordered if "delta" in r], _TURNED)
+    elif any(share.yaw for share in work_shares(layout)):
+        yield from _of_spins(runs)
+    yield from _of_commands(runs, layout)
+
+
+def _of_spins(runs: Sequence[Record]) -> Iterator[RecordGap]:
+    """Yield a side to which a craft that is steered by difference of thrust did not turn."""
     rates = [to_starboard(r, "r") if "r" in r else np.gradient(to_starboard(r, "psi"), r.time)
              for r in runs if "r" in r or "psi" in r]  # fmt: skip
     port, starboard = (_reach(np.concatenate([sign * rate for rate in rates])) if rates else 0.0 for sign in (-1, 1))
@@ -132,6 +155,9 @@ def gaps_of_thrusters(runs: Sequence[Record], layout: ThrusterLayout) -> Iterato
             f"The craft turned to {_OTHER[other]} only: whether it turns alike to both sides is assumed.",
             f"spin:50{':port' if other == 'port' else ''}",
         )  # fmt: skip
+
+
+def _of_commands(runs: Sequence[Record], layout: ThrusterLayout) -> Iterator[RecordGap]:
     orders = [
         (r[t.command.channel] - t.command.zero) / t.command.span
         for t in layout.thrusters for r in runs if t.command.channel in r

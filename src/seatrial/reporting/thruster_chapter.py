@@ -16,13 +16,16 @@ from seatrial.reporting.text_tables import TextTable
 MEASURE_LABELS = {
     "top_speed": "top speed, m/s", "surge_time_constant_s": "time constant of surge (63 % of top speed), s",
     "yaw_rate_deg_s": "yaw rate of a spin, deg/s", "yaw_time_constant_s": "time constant of yaw (63 % of that rate), s",
-    "time_360_s": "time of a full turn, s", "stopping_distance_m": "stopping distance, m",
+    "time_360_s": "time of a full turn, s", "circle_yaw_rate_deg_s": "yaw rate of a circle at 35 deg, deg/s",
+    "tactical_diameter_L": "tactical diameter at 35 deg, craft lengths",
+    "time_90_s": "time to 90 deg change of heading at 35 deg, s", "stopping_distance_m": "stopping distance, m",
     "stopping_time_s": "stopping time, s",
 }  # fmt: skip
-_MEASURES_NOTE = (
-    "Simulated with the estimate: straight from rest with full command ahead, a spin from rest with full opposite "
-    "commands, full astern at full speed."
-)
+_PROGRAMME_TEXTS = {
+    "straight": "straight from rest with full command ahead", "spin": "a spin from rest with full opposite commands",
+    "turning-circle": "a circle with what steers turned by 35 deg at full command, in still water",
+    "stop": "full astern at full speed",
+}  # fmt: skip
 FAR_NOTE = "* beyond the training runs: read the interval as a lower limit."
 _PER_MASS = (
     "No thrust is known in newtons, so that only ratios to m + m_x are determined: M, D and thrusts are those on each "
@@ -80,7 +83,9 @@ def _measures_table(measures: dict[str, CraftMeasure]) -> TextTable:
         text = estimate_text(m.value, error, m.lower, m.upper)
         star = " *" if is_extrapolated(m) else ""
         rows.append((f"{label}{star}", text.value, text.lower or DASH, text.upper or DASH))
-    note = f"{_MEASURES_NOTE}{f' {FAR_NOTE}' if far else ''}"
+    done = {m.programme.partition(":")[0] for m in measures.values()}
+    texts = ", ".join(text for kind, text in _PROGRAMME_TEXTS.items() if kind in done)
+    note = f"Simulated with the estimate: {texts}.{f' {FAR_NOTE}' if far else ''}"
     return TextTable(
         "What the craft does at full command", ("", "estimate", "95 % from", "to"), (False, True, True, True),
         tuple(rows), note,

@@ -11,6 +11,8 @@ from seatrial.control.ship.trim import steering_input
 from seatrial.core.equations import Model
 from seatrial.physics.models import model_named
 from seatrial.physics.models.thrust_orders import AHEAD, YAW
+from seatrial.physics.models.thruster_layout import AngleInput, CommandInput, Thruster, ThrusterLayout
+from seatrial.physics.models.thrusters import thrusters
 
 LOOP = """
 [plant]
@@ -44,6 +46,20 @@ def test_the_heading_is_steered_by_a_yaw_order_about_half_ahead(tmp_path: Path, 
     assert pytest.approx(2.0 * 0.5) == task.U
     s = 1j * np.geomspace(0.1, 10.0, 20)
     expected = 2.0 * 0.3 * 2.0 * 1.6 * 0.5 / (s * (0.15 * s + 0.2) * (0.3 * s + 1.0))
+    assert np.allclose(task.loop.plant.frequency_response(s.imag), expected, rtol=1e-6)
+
+
+def test_the_heading_of_an_outboard_is_steered_by_its_angle_thrust_held(tmp_path: Path) -> None:
+    """psi over order, M_v = M_u, no sway coupling: |x| T over s (M_r s - N_r), to starboard; the lag is thrust's."""
+    turned = Thruster("outboard", -2.0, 0.0, CommandInput("command_1"), angle=AngleInput("alpha_1"))
+    values = dict.fromkeys(("X_u", "N_rr", "N_ur", "N_uv", "Y_uv", "Y_NT", "k_J"), 0.0)
+    model_file(tmp_path, thrusters(ThrusterLayout((turned,), length=4.0)).with_values(
+        values | {"k_f": 0.8, "p_f": 2.0, "X_uu": -0.1, "N_r": -1.5, "M_v": 1.0, "M_r": 2.0}
+    ))  # fmt: skip
+    task = tuning_task(write_loop_file(tmp_path, LOOP.replace("[plant]", "[plant]\nspeed = 2.0")))
+    assert (task.loop.output, task.loop.actuator) == ("psi", "delta")
+    s, thrust = 1j * np.geomspace(0.1, 10.0, 20), 0.1 * 2.0**2
+    expected = 2.0 * thrust / (s * (2.0 * s + 1.5))
     assert np.allclose(task.loop.plant.frequency_response(s.imag), expected, rtol=1e-6)
 
 

@@ -9,7 +9,7 @@ import pytest
 from seatrial.core.values import InputError
 from seatrial.physics.models import model_named
 from seatrial.physics.models.thrust_orders import AHEAD, YAW, WorkShare, with_orders, work_shares
-from seatrial.physics.models.thruster_layout import AngleInput, CommandInput, Thruster, ThrusterLayout
+from seatrial.physics.models.thruster_layout import CATAMARAN, AngleInput, CommandInput, Thruster, ThrusterLayout
 from seatrial.physics.models.thrusters import thrusters
 
 
@@ -34,8 +34,20 @@ def test_orders_move_the_craft_as_the_commands_that_they_stand_for() -> None:
     assert np.allclose(by_order, by_command, rtol=1e-12, atol=0.0)
 
 
-def test_azimuth_thrusters_point_ahead() -> None:
-    thruster = Thruster("pod", -0.5, 0.3, CommandInput("command_1"), angle=AngleInput("alpha_1"), lag=0.0)
+def test_a_craft_with_its_sides_exchanged_turns_by_the_same_orders() -> None:
+    """Places are parameters: the equations with commands are the same, those with orders are not."""
+    port, starboard = CATAMARAN.thrusters
+    exchanged = ThrusterLayout((replace(port, y=starboard.y), replace(starboard, y=port.y)))
+    state, row = np.zeros(8), np.array([0.0, 1.0])
+    state[6:] = 0.5
+    for layout in (CATAMARAN, exchanged):
+        ordered, rates = with_orders(thrusters(layout)), np.empty(8)
+        ordered.compiled.rates(0.0, state, row, ordered.parameters.values, rates)
+        assert np.sign(rates[6:]).tolist() == [-np.sign(t.y) for t in layout.thrusters]  # port ahead
+
+
+def test_azimuth_thrusters_amidships_point_ahead() -> None:
+    thruster = Thruster("pod", 0.0, 0.3, CommandInput("command_1"), angle=AngleInput("alpha_1"), lag=0.0)
     ordered = with_orders(thrusters(ThrusterLayout((thruster, replace(thruster, name="other", y=-0.3)))))
     assert ordered.input_names == (AHEAD, YAW)
 

@@ -103,9 +103,9 @@ def test_a_tunnel_thruster_only_turns_and_an_azimuth_points_ahead() -> None:
 
 def test_options_of_ships_are_refused(craft: Model) -> None:
     with pytest.raises(InputError, match="leave --speed out"):
-        refuse_rudder_options(1.0, None)
+        refuse_rudder_options(thrust_programme("stop:50"), 1.0, None)
     with pytest.raises(InputError, match="leave --rudder-rate out"):
-        refuse_rudder_options(None, 0.1)
+        refuse_rudder_options(thrust_programme("zigzag:30/20"), 1.0, 0.1)
     with pytest.raises(InputError, match="ahead 2 is no share"):
         thrust_manoeuvre(craft, thrust_programme("zigzag:30/20"), inputs={"ahead": 2.0})
     with pytest.raises(InputError, match="'n' cannot be set in the manoeuvre 'spin:50'; nothing can"):

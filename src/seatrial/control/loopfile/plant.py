@@ -8,6 +8,7 @@ from seatrial.control.loopfile.blocks import block, block_text
 from seatrial.control.loopfile.quantities import angle_value, positive_value, si_value, symbol_unit
 from seatrial.control.loopfile.schema import BlockTable, FinTable, HullTable, PlantTable
 from seatrial.control.ship.model_at_scale import model_at_scale
+from seatrial.control.ship.trim import steering_input
 from seatrial.control.ship.trimmed_ship import plant_and_disturbance, plant_text, rate_response, trim_ship
 from seatrial.control.task import Effectiveness, TrimmedShip
 from seatrial.core.equations import Model
@@ -22,8 +23,6 @@ from seatrial.physics.simulate.thrust import DEFAULT_AHEAD
 
 FINS = ("phi", "alpha_f", "alpha_w")
 STEERING = ("psi", "delta", "")
-ORDERS = {"psi": YAW, "u": AHEAD}
-"""Outputs of a craft with thrusters that are controlled -> the order by which they are."""
 _KNOTS = 3600.0 / 1852.0  # kn in 1 m/s: 1 kn is 1852 m an hour (exact)
 
 
@@ -140,7 +139,7 @@ def _plant_of_model(table: PlantTable, path: Path, own_model: Model | None) -> L
     craft = file if file.model.equations.layout else None
     if craft is not None:
         file = replace(file, model=with_orders(file.model), approach={})
-        table = _by_orders(table)
+        table = _by_orders(table, file.model)
     output, actuator, disturbance = _signal_names(table, file, path)
     words, law, speed = "", Effectiveness.CONSTANT, None if table.speed is None else _speed(table)
     if table.fin is not None:
@@ -166,10 +165,13 @@ def _plant_of_model(table: PlantTable, path: Path, own_model: Model | None) -> L
     )  # fmt: skip
 
 
-def _by_orders(table: PlantTable) -> PlantTable:
-    """The table of a craft with thrusters, with what is steered by which order, and the order ahead about which."""
+def _by_orders(table: PlantTable, ordered: Model) -> PlantTable:
+    """The table of a craft with thrusters, with what is steered by which order, and the order ahead about which.
+
+    The heading is steered by the angle of its thrusters where they turn, else by the yaw order.
+    """
     output = table.output or "psi"
-    actuator = table.actuator or ORDERS.get(output)
+    actuator = table.actuator or {"psi": steering_input(ordered), "u": AHEAD}.get(output)
     held = {AHEAD: Amount(value=DEFAULT_AHEAD)} if table.speed is None else {}
     return table.model_copy(
         update={"output": output, "actuator": actuator, "inputs": held | {YAW: Amount(value=0.0)} | dict(table.inputs)}

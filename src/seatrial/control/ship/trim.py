@@ -9,14 +9,13 @@ from seatrial.core.values import Array, InputError
 from seatrial.numerics.kernels.sensitivity import evaluate_tangent
 from seatrial.physics.models.thrust_orders import YAW
 from seatrial.physics.simulate.actuators import settled_actuators
-from seatrial.physics.simulate.approach import RUDDER, approach_speed, held_inputs
+from seatrial.physics.simulate.approach import RUDDER, approach_speed, balancing_input, held_inputs
 from seatrial.physics.simulate.channels import ZERO_BY_DEFAULT
 
 _ITERATIONS = 30  # Newton steps at most; chosen
 _MOST_RUDDER = 0.6  # rad, 34 deg: largest mean rudder of a trim; of a yaw command a share of the full one; chosen
 # relative, of a speed that inputs balance, and of the speed a model was identified at; chosen
 _SPEED_TOLERANCE, _NOMINAL_TOLERANCE = 1e-3, 1e-2
-_SEARCHED = np.geomspace(1e-3, 1e3, 121)  # propulsion over speed, m/s or rps: twenty a decade; chosen
 _RATE_TOLERANCE, _STEP_TOLERANCE = 1e-9, 1e-13  # SI, of the rates at a trim, and of the last relative step: rounding
 _POSE = ("psi", "x0", "y0")
 
@@ -47,7 +46,7 @@ def held_inputs_at_speed(
             )
         return model, held
     held = held_inputs(model, known | {free[0]: known.get(free[0], 0.0)}, RUDDER)
-    held[names.index(free[0])] = _balancing_input(model, held, free[0], speed)
+    held[names.index(free[0])] = balancing_input(model, held, free[0], speed)
     return model, held
 
 
@@ -61,28 +60,6 @@ def _at_nominal_speed(model: Model, speed: float) -> Model:
             "leave the speed out, or take a model with surge"
         )
     return model.with_values({"U": speed})
-
-
-def _balancing_input(model: Model, held: Array, name: str, speed: float) -> float:
-    """Return the input at which surge is in balance on a straight course at u = `speed`."""
-    place, k = model.input_names.index(name), model.states.index("u")
-    inputs, rates = held.copy(), np.empty(len(model.states))
-
-    def surge(value: float) -> float:
-        inputs[place] = value
-        state = settled_actuators(model, inputs)
-        state[k] = speed
-        model.compiled.rates(0.0, state, inputs, model.parameters.values, rates)
-        return float(rates[k])
-
-    tried = _SEARCHED * speed
-    least = next((i for i, value in enumerate(tried) if surge(value) > 0.0), 0)
-    if least == 0:
-        raise InputError(f"model '{model.name}' has no '{name}' that drives the ship at {speed:.4g} m/s; take another "
-                         "speed")  # fmt: skip
-    from scipy.optimize import brentq
-
-    return float(brentq(surge, tried[least - 1], tried[least], xtol=1e-12))  # of the propulsion: rounding
 
 
 def steering_input(model: Model) -> str:

@@ -87,6 +87,7 @@ class ThrusterCraft:
         dict[str, CraftMeasure],
         Field(
             description="top_speed [m/s], surge_time_constant_s, yaw_rate_deg_s, time_360_s, yaw_time_constant_s, "
+            "circle_yaw_rate_deg_s, tactical_diameter_L and time_90_s of a circle at 35 deg of the steering angle, "
             "stopping_distance_m, stopping_time_s, at full command; those that the simulation shows"
         ),
     ]

@@ -22,15 +22,22 @@ from seatrial.estimation.information.extrapolation import extrapolation
 from seatrial.estimation.information.thruster_conditions import thruster_conditions
 from seatrial.estimation.predict.measure_intervals import measure_intervals, perturbed_models
 from seatrial.physics.manoeuvres import measures
-from seatrial.physics.manoeuvres.thrust_programme import thrust_programme
 from seatrial.physics.models.thruster_layout import AngleInput, Thruster, ThrusterLayout
 from seatrial.physics.models.thruster_matrices import coefficient_or_zero, inertia_matrix, thrust_configuration
-from seatrial.physics.simulate.thrust import thrust_manoeuvre
+from seatrial.physics.simulate.craft_manoeuvre import craft_manoeuvre, craft_programme
+from seatrial.physics.simulate.rudder_rate import RUDDER_RATE, rudder_rate
+from seatrial.physics.simulate.thrust import AHEAD
 
+CIRCLE = "turning-circle:35"
+"""Of a craft that is steered by an angle, with full command ahead; 35 deg as of a rudder (IMO MSC.137(76)); chosen."""
 _PROGRAMMES: Mapping[str, Mapping[str, str]] = {
     "straight:100": {"top_speed": "steady_speed", "surge_time_constant_s": "time_constant_s"},
     "spin:100": {
         "yaw_rate_deg_s": "steady_yaw_rate_deg_s", "time_360_s": "time_360_s", "yaw_time_constant_s": "time_constant_s",
+    },
+    CIRCLE: {
+        "circle_yaw_rate_deg_s": "steady_yaw_rate_deg_s", "tactical_diameter_L": "tactical_diameter_L",
+        "time_90_s": "time_90_s",
     },
     "stop:100": {"stopping_distance_m": "stopping_distance_m", "stopping_time_s": "stopping_time_s"},
 }  # fmt: skip
@@ -80,12 +87,16 @@ def thruster_craft(
 def craft_measures(model: Model, basis: IntervalBasis, length: float) -> dict[str, CraftMeasure]:
     """Return what the craft does at full command: speed, turn and stop, with 95 % intervals; SI, turn rate in deg/s.
 
-    A programme through which it cannot be simulated has no measure.
+    A programme through which it cannot be simulated, or not by its thrusters, has no measure.
     """
     found: dict[str, CraftMeasure] = {}
+    layout = ThrusterLayout.from_text(model.equations.layout)
+    rate = rudder_rate(1.0, basis.training_envelope.get(RUDDER_RATE)).value
     for text, names in _PROGRAMMES.items():
-        steer = partial(thrust_manoeuvre, programme=thrust_programme(text))
         try:
+            orders = craft_programme(layout, text)
+            full = {AHEAD: 1.0} if text == CIRCLE else {}
+            steer = partial(craft_manoeuvre, orders=orders, inputs=full, slew_rate=rate)
             run = steer(model)
             values, intervals = measures(run, length), measure_intervals(model, basis, steer, length)
         except InputError:

@@ -8,6 +8,8 @@ from seatrial.core.results import Extrapolation
 from seatrial.core.values import Array, Record
 from seatrial.estimation.information.thruster_conditions import thruster_conditions
 from seatrial.physics.manoeuvres import REACH_PERCENTILE, to_starboard
+from seatrial.physics.models.thruster_layout import ThrusterLayout
+from seatrial.physics.models.thruster_steering import with_steering_order
 from seatrial.physics.simulate.rudder_rate import RUDDER_RATE, sustained_rudder_rate
 
 SIDES = ("port", "starboard")
@@ -25,8 +27,10 @@ COMMAND_GAIN = 1.0
 def motion_envelope(records: Sequence[Record], layout: str = "") -> dict[str, float]:
     """What the records cover, SI: ranges of motion, rudder and commands, and the rate of the rudder's fastest move.
 
-    That rate (`sustained_rudder_rate`) is no limit of a prediction. What no record holds is absent.
+    That rate (`sustained_rudder_rate`) is no limit of a prediction. What no record holds is absent. Of a craft
+    whose `layout` has thrusters that turn, the rudder is the order of their angle.
     """
+    records = _with_orders(records, layout)
     rates = [rate for r in records if (rate := sustained_rudder_rate(r)) is not None]
     return _ranges(records, layout) | ({RUDDER_RATE: max(rates)} if rates else {})
 
@@ -40,6 +44,7 @@ def _ranges(records: Sequence[Record], layout: str) -> dict[str, float]:
     astern`` and so on, largest share times speed along it in that quadrant [m/s].
     """
     made: dict[str, float] = {}
+    records = _with_orders(records, layout)
     for name, samples in (
         ("yaw_rate", [np.abs(r["r"]) for r in records if "r" in r]),
         ("drift", [np.abs(np.arctan2(-r["v"], r["u"])) for r in records if {"u", "v"} <= set(r.channels)]),
@@ -64,6 +69,11 @@ def _ranges(records: Sequence[Record], layout: str) -> dict[str, float]:
         for kind, samples in ranges.items():
             made[f"{COMMAND}{name} {kind}"] = float(np.percentile(np.maximum(samples, 0.0), REACH_PERCENTILE))
     return made
+
+
+def _with_orders(records: Sequence[Record], layout: str) -> Sequence[Record]:
+    """Records of a craft that thrusters steer by their angle, with the order of it as that of a rudder."""
+    return [with_steering_order(r, ThrusterLayout.from_text(layout)) for r in records] if layout else records
 
 
 def _speed(record: Record) -> Array:

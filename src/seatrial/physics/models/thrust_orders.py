@@ -1,17 +1,20 @@
 """Orders of a craft with thrusters: how far it is to go ahead and to turn, shared out over the thrusters.
 
-Each thruster works for the order ahead to the side its thrust drives the craft, and for yaw to the side it turns it;
-azimuth thrusters point ahead. An autopilot or a speed control gives such orders.
+Each thruster works for the order ahead to the side its thrust drives the craft, and for yaw to the side it turns it.
+Azimuth thrusters and outboards point ahead, but for an order of their angle to starboard, which is that of a rudder. An
+autopilot or a speed control gives such orders.
 """
 
 import math
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 from seatrial.core.equations import Model
 from seatrial.core.equations.bindings import Binding, Input, ModelEquations
 from seatrial.core.equations.manifest import stored_equations
 from seatrial.core.values import InputError
 from seatrial.physics.models.thruster_layout import AngleInput, Thruster, ThrusterLayout
+from seatrial.physics.models.thruster_steering import ORDER, steering_angles
 
 AHEAD, YAW = "order_ahead", "order_yaw"
 """Inputs of `with_orders`: shares of full command, positive ahead and to starboard."""
@@ -42,9 +45,10 @@ def work_shares(layout: ThrusterLayout) -> tuple[WorkShare, ...]:
 
 
 def with_orders(model: Model) -> Model:
-    """Return a craft with thrusters driven by `AHEAD` and `YAW` in place of its commands; azimuth thrusters at 0.
+    """Return a craft with thrusters driven by `AHEAD` and `YAW` in place of its commands.
 
-    A thruster's share of full command is the sum of what it does of both; it is not limited here.
+    A thruster's share of full command is the sum of what it does of both; it is not limited here. A craft that is
+    steered by angles has the input `ORDER` in place of these, too; other azimuth thrusters stay at 0.
 
     Raises:
         InputError: the model has no thrusters.
@@ -54,7 +58,10 @@ def with_orders(model: Model) -> Model:
             f"model '{model.name}' has no thrusters; orders ahead and to starboard are for craft with them"
         )
     layout = ThrusterLayout.from_text(model.equations.layout)
-    return replace(model, equations=stored_equations((model.equation_hash, "orders"), lambda: _ordered(model, layout)))
+    # places are parameters, which the equations' hash does not hold, and decide who turns the craft to which side
+    key = (model.equation_hash, "orders", work_shares(layout), steering_angles(layout))
+    equations = stored_equations(key, lambda: _ordered(model, layout), (Path(__file__).parent,))
+    return replace(model, equations=equations)
 
 
 def _ordered(model: Model, layout: ThrusterLayout) -> ModelEquations:
@@ -68,14 +75,16 @@ def _ordered(model: Model, layout: ThrusterLayout) -> ModelEquations:
         f"order_{t.name}": share.ahead * ahead + share.yaw * yaw
         for t, share in zip(layout.thrusters, work_shares(layout), strict=True)
     }
-    still = {sp.Symbol(name, real=True): sp.Integer(0) for name in angles}
+    steers = {angle.channel: angle.sign * sp.Symbol(ORDER, real=True) for angle in steering_angles(layout)}
+    turned = {sp.Symbol(name, real=True): steers.get(name, sp.Integer(0)) for name in {*angles, *steers}}
 
     def rewritten(binding: Binding) -> Binding:
-        return binding.bound_to(orders.get(binding.name, binding.expression).subs(list(still.items())))
+        return binding.bound_to(orders.get(binding.name, binding.expression).xreplace(turned))
 
-    kept = tuple(i for i in old.inputs if i.name not in commands | angles)
+    kept = tuple(i for i in old.inputs if i.name not in {*commands, *angles, *steers})
+    steering = (Input(ORDER),) if steers else ()
     return replace(
-        old, name=f"{old.name} by orders", inputs=(Input(AHEAD), Input(YAW), *kept), layout="",
+        old, name=f"{old.name} by orders", inputs=(Input(AHEAD), Input(YAW), *steering, *kept), layout="",
         bindings=tuple(map(rewritten, old.bindings)), rates=tuple(map(rewritten, old.rates)),
     )  # fmt: skip
 

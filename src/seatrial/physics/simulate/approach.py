@@ -12,6 +12,7 @@ from seatrial.physics.simulate.channels import ZERO_BY_DEFAULT, inputs_of
 
 RUDDER = "delta"
 _MAX_SPEED = 100.0  # m/s; guards against a wrong unit
+_SEARCHED = np.geomspace(1e-3, 1e3, 121)  # propulsion over speed, m/s or rps: twenty a decade; chosen
 
 
 def held_inputs(model: Model, values_by_name: Mapping[str, float], rudder: str) -> Array:
@@ -52,6 +53,33 @@ def approach_speed(model: Model, held: Array) -> float:
     raise InputError(f"model '{model.name}' has no steady speed ahead with these inputs; give the approach speed")
 
 
+def balancing_input(model: Model, held: Array, name: str, speed: float) -> float:
+    """Return the input at which surge is in balance on a straight course at u = `speed` [m/s], the others as held.
+
+    Raises:
+        InputError: there is none.
+    """
+    from scipy.optimize import brentq
+
+    place, k = model.input_names.index(name), model.states.index("u")
+    inputs, rates = held.copy(), np.empty(len(model.states))
+
+    def surge(value: float) -> float:
+        inputs[place] = value
+        state = settled_actuators(model, inputs)
+        state[k] = speed
+        model.compiled.rates(0.0, state, inputs, model.parameters.values, rates)
+        return float(rates[k])
+
+    tried = _SEARCHED * speed
+    least = next((i for i, value in enumerate(tried) if surge(value) > 0.0), 0)
+    if least == 0:
+        raise InputError(
+            f"model '{model.name}' has no '{name}' that drives the ship at {speed:.4g} m/s; take another speed"
+        )
+    return float(brentq(surge, tried[least - 1], tried[least], xtol=1e-12))  # of the propulsion: rounding
+
+
 def straight_run(model: Model, plan: Record, speed: float | None = None) -> dict[str, float]:
     """Return where a planned record starts: on a straight course at u = `speed`, thrusters at rest, all else zero.
 
@@ -68,10 +96,13 @@ def straight_run(model: Model, plan: Record, speed: float | None = None) -> dict
     return start
 
 
-def characteristic_time(model: Model, start: Array, given_speed: float | None) -> float:
-    """L/U [s] from the start's u, the speed given, or the model's parameter U; else a Nomoto model's time constant."""
+def characteristic_time(model: Model, start: Array, given_speed: float | None, length: float = 0.0) -> float:
+    """L/U [s] from the start's u, the speed given, or the model's parameter U; else a Nomoto model's time constant.
+
+    length: L [m] where it is no parameter of the model.
+    """
     names = model.parameters.names
-    length = model.parameters["L"].value if "L" in names else 0.0
+    length = model.parameters["L"].value if "L" in names else length
     if "u" in model.states:
         speed = float(start[model.states.index("u")])
     else:

@@ -12,6 +12,7 @@ from seatrial.core.values.record import MAX_SAMPLES
 from seatrial.numerics.kernels.feedback import steer
 from seatrial.physics.manoeuvres.helmsman import FINISHED, NOT_FINISHED, Steering, rudder_angles
 from seatrial.physics.manoeuvres.programme import Programme
+from seatrial.physics.simulate.actuators import settled_actuators
 from seatrial.physics.simulate.approach import RUDDER, approach_speed, characteristic_time, held_inputs
 from seatrial.physics.simulate.channels import record_of
 from seatrial.physics.simulate.divergence import require_bounded
@@ -31,6 +32,7 @@ def manoeuvre(
     inputs: Mapping[str, float] | None = None,
     slew_rate: float = SOLAS_SLEW_RATE,
     approach: float = 0.0,
+    length: float = 0.0,
 ) -> Record:
     """Steer `programme` from a straight run.
 
@@ -46,6 +48,7 @@ def manoeuvre(
         inputs: the other inputs, held constant, by name in SI units and notation signs (``n``, ``v_j``); wind is zero.
         slew_rate: of the rudder [rad/s]; by default SOLAS's for ships at full scale.
         approach: s before the first execute.
+        length: of a craft [m] whose model has no parameter ``L``.
 
     Returns:
         A simulated record of states, outputs and inputs from the start of the approach.
@@ -55,10 +58,10 @@ def manoeuvre(
     """
     _require_steerable(model, dt, slew_rate)
     held = held_inputs(model, inputs or {}, RUDDER)
-    start = np.zeros(len(model.states))
+    start = settled_actuators(model, held)
     if "u" in model.states:
         start[model.states.index("u")] = approach_speed(model, held) if speed is None else speed
-    unit = characteristic_time(model, start, given_speed=speed)
+    unit = characteristic_time(model, start, given_speed=speed, length=length)
     longest = approach + programme.maximum_lengths * unit if duration is None else duration
     rudder = model.input_names.index(RUDDER)
     steering = Steering(

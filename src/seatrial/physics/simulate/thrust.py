@@ -1,6 +1,6 @@
 """Craft that are steered by thrusters taken through a programme: who works how much, and the run that follows."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -42,6 +42,12 @@ class StraightRun:
     speed: float
     inputs: Array
 
+    def state(self, model: Model) -> Array:
+        """Return the state (nx,) of it: thrusters settled, at this speed, at the origin."""
+        state = settled_actuators(model, self.inputs)
+        state[model.states.index("u")] = self.speed
+        return state
+
 
 def straight_by_thrusters(
     model: Model, ahead: float = DEFAULT_AHEAD, inputs: Mapping[str, float] | None = None
@@ -69,8 +75,8 @@ def settled_yaw_rate(model: Model, run: StraightRun) -> float:
     Raises:
         InputError: the simulation diverges.
     """
-    start = settled_actuators(model, run.inputs)
-    start[model.states.index("u")], start[model.states.index("r")] = run.speed, _NUDGE
+    start = run.state(model)
+    start[model.states.index("r")] = _NUDGE
     steps = round(LONGEST_S / STEP_S)
     states, _ = trajectory(model, np.tile(run.inputs, (steps + 1, 1)), STEP_S, start)
     require_bounded(model, frozen(STEP_S * np.arange(steps + 1)), states, "a straight run")
@@ -99,10 +105,9 @@ def thrust_manoeuvre(
         InputError: an input is missing or unknown, the duration is no time, or the simulation diverges.
     """
     layout, given = ThrusterLayout.from_text(model.equations.layout), dict(inputs or {})
-    ahead = given.pop(AHEAD, DEFAULT_AHEAD) if programme.ahead is None else programme.ahead
-    if not 0.0 <= ahead <= 1.0:
-        raise InputError(f"the order ahead {ahead:g} is no share of full command; give 0 to 1")
-    _refuse_driven_inputs(model, layout, programme, given)
+    takes_ahead = programme.ahead is None
+    ahead = require_share(given.pop(AHEAD, DEFAULT_AHEAD)) if programme.ahead is None else programme.ahead
+    undriven_inputs(model, layout, programme.text, given, takes_ahead=takes_ahead)
     thrusters = _allocation(model, layout)
     longest = LONGEST_S if duration is None else duration
     held = held_inputs(model, {**_at_rest(layout), **given}, "")
@@ -123,33 +128,56 @@ def thrust_manoeuvre(
     return replace(simulated, provenance=Provenance(source, steps=(f"ahead {ahead:g}", ending)))
 
 
-def _refuse_driven_inputs(
-    model: Model, layout: ThrusterLayout, programme: ThrustProgramme, given: Mapping[str, float]
-) -> None:
-    commands = [t.command.channel for t in layout.thrusters]
-    free = [name for name in model.input_names if name not in commands]
-    allowed = [*free, *([AHEAD] if programme.ahead is None else [])]
-    for name in given:
-        if name in commands:
-            raise InputError(f"the manoeuvre '{programme.text}' gives the command '{name}' itself; do not set it")
-        if name not in free:
-            hint = spelling_hint(name, allowed) if allowed else "; nothing can"
-            raise InputError(f"'{name}' cannot be set in the manoeuvre '{programme.text}'{hint}")
-
-
-def refuse_rudder_options(speed: float | None, rudder_rate: float | None) -> None:
-    """Refuse what only craft with a rudder have.
+def require_share(ahead: float) -> float:
+    """Return an order ahead that is a share of full command.
 
     Raises:
-        InputError: an approach speed or a rudder rate is given.
+        InputError: it is none.
     """
-    if speed is not None:
+    if not 0.0 <= ahead <= 1.0:
+        raise InputError(f"the order ahead {ahead:g} is no share of full command; give 0 to 1")
+    return ahead
+
+
+def undriven_inputs(
+    model: Model, layout: ThrusterLayout, text: str, given: Mapping[str, float], *, driven: Sequence[str] = (),
+    takes_ahead: bool = True,
+) -> Mapping[str, float]:  # fmt: skip
+    """Return inputs that are given for a manoeuvre, none of which it orders itself.
+
+    Args:
+        text: the manoeuvre; driven: angles that it orders besides the commands; takes_ahead: whether `AHEAD` may be
+            given with it.
+
+    Raises:
+        InputError: one of them is ordered by the manoeuvre or no input of the model.
+    """
+    commands = [t.command.channel for t in layout.thrusters]
+    free = [name for name in model.input_names if name not in {*commands, *driven}]
+    allowed = [*free, *([AHEAD] if takes_ahead else [])]
+    for name in given:
+        if name in commands or name in driven:
+            kind = "angle" if name in driven else "command"
+            raise InputError(f"the manoeuvre '{text}' gives the {kind} '{name}' itself; do not set it")
+        if name not in free:
+            hint = spelling_hint(name, allowed) if allowed else "; nothing can"
+            raise InputError(f"'{name}' cannot be set in the manoeuvre '{text}'{hint}")
+    return given
+
+
+def refuse_rudder_options(programme: ThrustProgramme, speed: float | None, rudder_rate: float | None) -> None:
+    """Refuse what a programme by thrust alone does not have.
+
+    Raises:
+        InputError: a rudder rate is given, or an approach speed where the programme orders the thrust itself.
+    """
+    if speed is not None and programme.ahead is not None:
         raise InputError(
-            "the speed of a craft with thrusters follows from their commands; leave --speed out and give the order "
-            f"ahead, as in --set {AHEAD}=0.5 or {EXAMPLES['stop']}"
+            f"the speed of the manoeuvre '{programme.text}' follows from its commands; leave --speed out and change "
+            f"these, as in {EXAMPLES['stop']}"
         )
     if rudder_rate is not None:
-        raise InputError("a craft with thrusters has no rudder; leave --rudder-rate out")
+        raise InputError(f"the manoeuvre '{programme.text}' turns no rudder and no thruster; leave --rudder-rate out")
 
 
 def _at_rest(layout: ThrusterLayout) -> dict[str, float]:
