@@ -79,7 +79,9 @@ def _ordered(model: Model, layout: ThrusterLayout) -> ModelEquations:
     turned = {sp.Symbol(name, real=True): steers.get(name, sp.Integer(0)) for name in {*angles, *steers}}
 
     def rewritten(binding: Binding) -> Binding:
-        return binding.bound_to(orders.get(binding.name, binding.expression).xreplace(turned))
+        return binding.bound_to(
+            orders.get(binding.name, binding.expression).subs(list(turned.items()), simultaneous=True)
+        )
 
     kept = tuple(i for i in old.inputs if i.name not in {*commands, *angles, *steers})
     steering = (Input(ORDER),) if steers else ()
