@@ -76,9 +76,12 @@ def _recorded_rudder(fit: "Fit") -> float:
     import numpy as np
 
     from seatrial.physics.manoeuvres import REACH_PERCENTILE
-    from seatrial.physics.models.thruster_steering import with_order_of
+    from seatrial.physics.models.thruster_layout import ThrusterLayout
+    from seatrial.physics.models.thruster_steering import with_steering_order
 
-    training = [with_order_of(fit.model, p.measured) for p in fit.predictions if p.role == "training"]
+    training, layout = [p.measured for p in fit.predictions if p.role == "training"], fit.model.equations.layout
+    if layout:
+        training = [with_steering_order(run, ThrusterLayout.from_text(layout)) for run in training]
     runs = [run for run in training if "delta" in run]
     reaches = [float(np.degrees(np.nanpercentile(np.abs(run["delta"]), REACH_PERCENTILE))) for run in runs]
     return min(max(reaches, default=FULL_RUDDER_DEG), FULL_RUDDER_DEG)

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from seatrial.core.equations import Model
 from seatrial.core.values import Channel, Record
 from seatrial.core.values.notation import OPPOSITE
 from seatrial.physics.models.thruster_layout import AngleInput, ThrusterLayout
@@ -62,12 +61,6 @@ def with_steering_order(record: Record, layout: ThrusterLayout) -> Record:
         return record
     turned = [angle.sign * _to_starboard(record.channel(angle.channel)) for angle in angles]
     return record.with_channel(ORDER, Channel.from_notation(ORDER, np.mean(turned, axis=0)))
-
-
-def with_order_of(model: Model, record: Record) -> Record:
-    """Return `with_steering_order` of a craft with thrusters; the record as it is with any other model."""
-    layout = model.equations.layout
-    return with_steering_order(record, ThrusterLayout.from_text(layout)) if layout else record
 
 
 def _to_starboard(channel: Channel) -> np.ndarray:
