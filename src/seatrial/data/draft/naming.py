@@ -38,6 +38,8 @@ def _rules(logger: str, *rows: tuple) -> list[NameRule]:
     return [NameRule(*row, logger=logger) for row in rows]
 
 
+_WIND = "no model but mmg takes it: a comment in the file"
+_APPARENT_WIND = "no model takes an apparent wind: a comment in the file"
 _MESSAGES = [
     *_rules(
         "ArduPilot",
@@ -79,6 +81,8 @@ _MESSAGES = [
         (r"(hdt|ths)/heading", "psi", "rad"), (r"hdm/heading", "psi_magnetic", "rad"), (r"rot/rate", "r", "rad/s"),
         (r"rsa/angle", "delta", "rad"), (r"(vhw|vbw)/speed", "stw", "m/s"), (r"rpm/s(\d)", "rpm_{}", "rps"),
         (r"rpm/e\d", "n", "rps", "", "", 1.0, _ENGINE),
+        (r"mwv/speed", "wind_speed_relative", "m/s", "", "", 1.0, "", _APPARENT_WIND),
+        (r"mwv/angle", "wind_direction_relative", "rad", "", "", 1.0, "", _APPARENT_WIND),
         (r"xdr/(roll|heel)", "phi", "rad"), (r"xdr/(ptch|pitch)", "theta", "rad"), (r"xdr/heave?", "z", "m"),
     ),
     *_rules(
@@ -116,8 +120,6 @@ _MESSAGES = [
 _FORWARD, _ACROSS = "(forward|fwd|ahead|longitudinal)", "(stbd|starboard|lateral|transverse)"
 _COMPASS = "a magnetic one is psi_magnetic, with variation"
 _RATE = "taken for the shaft's; of an engine behind a gear add scale = propeller turns over engine turns"
-_WIND = "no model but mmg takes it: a comment in the file"
-_APPARENT_WIND = "no model takes an apparent wind: a comment in the file"
 _APPARENT, _ANGLE = "app(arent)?", "(dir(ection)?|angle)"
 _PROBE = "counts as at midship; of a probe on the craft elsewhere add reference_point, m forward of midship"
 _PORT, _STARBOARD = "(left|port)", "(right|starboard|stbd)"

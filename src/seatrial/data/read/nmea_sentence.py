@@ -20,6 +20,8 @@ _TIME = re.compile(r"(\d\d)(\d\d)(\d\d(?:\.\d*)?)")
 _ANGLE = re.compile(r"(\d{1,3})(\d\d(?:\.\d*)?)")
 # m/s: a nautical mile an hour
 _KNOT = 1852.0 / 3600.0
+# letter of a wind's unit -> m/s: knots, metres a second, kilometres an hour, statute miles an hour
+_WIND_UNITS = {"N": _KNOT, "M": 1.0, "K": 1.0 / 3.6, "S": 1609.344 / 3600.0}
 
 
 class SentenceFault(StrEnum):
@@ -183,6 +185,15 @@ def _revolutions(s: Sentence) -> dict[str, float]:
     return {f"RPM {s.text(1)}{s.text(2)}": _if_valid(s.number(3) / 60.0, s.text(5))}  # fields 3, 5: rev/min, validity
 
 
+def _wind(s: Sentence) -> dict[str, float]:
+    """MWV: angle off the bow and speed of the apparent wind (R), or of the true one with an angle off the bow (T)."""
+    kind = {"R": "MWV", "T": "MWV true"}.get(s.text(2))
+    factor = _WIND_UNITS.get(s.text(4), math.nan)
+    if kind is None or s.text(5) != "A":  # field 5: validity
+        return {}
+    return {f"{kind} angle": math.radians(s.number(1)), f"{kind} speed": s.number(3) * factor}
+
+
 def _transducers(s: Sentence) -> dict[str, float]:
     """XDR: groups of type, value, unit, name; angles in degrees, displacements in metres, others left out."""
     values = {}
@@ -207,5 +218,5 @@ _READERS: dict[str, Callable[[Sentence], dict[str, float]]] = {
     "RMC": _recommended_minimum, "GGA": lambda s: _fix(s, 2, is_valid=s.text(6) not in ("", "0")),
     "GNS": lambda s: _fix(s, 2, is_valid=s.text(6).strip("N") != ""),
     "GLL": lambda s: _fix(s, 1, is_valid=s.text(6) != "V"), "VHW": _through_water, "VBW": _dual_speed,
-    "RPM": _revolutions, "XDR": _transducers,
+    "RPM": _revolutions, "XDR": _transducers, "MWV": _wind,
 }  # fmt: skip
