@@ -275,17 +275,15 @@ class OutputError:
         """Effective over actual number of samples, by channel."""
         return np.ones(len(self.noise)) if self.inflation is None else 1.0 / self.inflation
 
-    def _loss(self, scaled: Array) -> tuple[float, Array]:
-        """Return half the robust sum of squares of effective samples, and the weight of each residual (Huber 1964)."""
+    def _loss(self, scaled: Array) -> tuple[Array, Array]:
+        """Return half the robust square of each residual, of effective samples, and its weight (Huber 1964)."""
         size = np.abs(scaled)
         if np.isinf(self.huber) or not np.any(size > self.huber):
-            return 0.5 * float(np.sum(self._effective_share * scaled**2)), np.broadcast_to(
-                self._effective_share, scaled.shape
-            )
+            return 0.5 * self._effective_share * scaled**2, np.broadcast_to(self._effective_share, scaled.shape)
         inside = size <= self.huber
         loss = np.where(inside, 0.5 * scaled**2, self.huber * (size - 0.5 * self.huber))
         weight = np.where(inside, 1.0, self.huber / np.maximum(size, 1e-300))  # above zero, for a division
-        return float(np.sum(self._effective_share * loss)), self._effective_share * weight
+        return self._effective_share * loss, self._effective_share * weight
 
     def _prior_cost(self, shared: Array) -> float:
         mean, weight = self.priors
@@ -332,7 +330,7 @@ class OutputError:
         """Return the cost of simulated outputs, (rows, ny), and of the shared unknowns behind them."""
         if not np.all(np.isfinite(simulated)):
             return np.inf
-        loss = self._loss(self._scaled_residuals(simulated, slice(None)))[0]
+        loss = float(np.sum(self._loss(self._scaled_residuals(simulated, slice(None)))[0]))
         return loss + self.prior_cost(shared)
 
     def prior_cost(self, shared: Array) -> float:
@@ -354,14 +352,15 @@ class OutputError:
             y, s = self._differentiate(bounds, start, values, corrections, by_actuator)
             base = self.data.offsets[bounds[0]]
             scaled = self._scaled_residuals(y, slice(base, base + len(y)))
+            losses, weight = self._loss(scaled)
+            root = np.sqrt(weight) * np.isfinite(self.data.measured[base : base + len(y)])
+            slopes, residuals = s * (root / self.noise)[:, :, None], root * scaled
             costs, gradients, hessians = [], [], []
             for k in range(*bounds):
                 rows = slice(self.data.offsets[k] - base, self.data.offsets[k + 1] - base)
-                cost, weight = self._loss(scaled[rows])
-                root = np.sqrt(weight) * np.isfinite(self.data.measured[rows.start + base : rows.stop + base])
-                jacobian = (s[rows] * (root / self.noise)[:, :, None]).reshape(-1, n + m)
-                costs.append(cost)
-                gradients.append(jacobian.T @ (root * scaled[rows]).ravel())
+                jacobian = slopes[rows].reshape(-1, n + m)
+                costs.append(np.sum(losses[rows]))
+                gradients.append(jacobian.T @ residuals[rows].ravel())
                 hessians.append(jacobian.T @ jacobian)
             return np.array(costs), np.array(gradients), np.array(hessians)
 
