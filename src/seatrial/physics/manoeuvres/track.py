@@ -125,6 +125,8 @@ def peak(time: Array, heading: Array, start: float, stop: float) -> tuple[float,
     if len(about) < 4:
         return sampled
     t = time[about] - time[highest]
-    c, b, a = np.polynomial.polynomial.polyfit(t, heading[about], 2)
+    scale = float(np.max(np.abs(t)))
+    columns = np.vander(t / scale, 3, increasing=True)
+    c, b, a = np.linalg.lstsq(columns, heading[about], rcond=None)[0] / scale ** np.arange(3)
     at = -b / (2.0 * a) if a < 0.0 else 0.0
     return (sampled[0] + float(at), float(c + at * (b + at * a))) if t[0] <= at <= t[-1] else sampled
