@@ -5,11 +5,11 @@ import numpy as np
 
 from seatrial.estimation.estimate.settings import IntervalMethod
 
-SERIES = 3
+SERIES = 2
 
 
 def test_intervals_hold_what_is_measured() -> None:
-    """Some 70 values of four ships: .85 is three standard deviations below .95 if a ship's values go together."""
+    """Some 30 values of two ships: .85 is two standard deviations below .95 if a ship's values go together."""
     turns_and_zigzags = coverage.series(SERIES, 3, IntervalMethod.AUTO)
     assert len(turns_and_zigzags) > 12 * SERIES
     assert {t.kind for t in turns_and_zigzags} >= {"overshoot_deg", "tactical_diameter_L", "advance_L"}

@@ -1,13 +1,13 @@
-"""A dozen repeats of the Monte-Carlo benchmark on a short series: near the Cramer-Rao bound, intervals that cover.
+"""Eight repeats of the Monte-Carlo benchmark on a short series: near the Cramer-Rao bound, intervals that cover.
 
-Limits are the 0.1 % quantiles of a dozen Gaussian errors; the benchmark holds two hundred to narrow ones.
+Limits are the 0.1 % quantiles of eight Gaussian errors; the benchmark holds two hundred to narrow ones.
 """
 
 import montecarlo
 import numpy as np
 from scipy import stats
 
-RUNS = 12
+RUNS = 8
 
 
 def test_errors_keep_to_the_bound() -> None:

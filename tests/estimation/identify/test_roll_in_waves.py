@@ -109,7 +109,7 @@ def test_a_trial_of_roll_alone_becomes_a_fit_with_its_reason(tmp_path: Path) -> 
 def test_waves_without_energy_at_the_natural_frequency_are_refused(tmp_path: Path) -> None:
     """They tell their own period, not the ship's."""
     with pytest.raises(InputError, match="waves have next to no energy at the natural frequency"):
-        trial_of(tmp_path, simulate_roll_record(bretschneider(2.0, 6.5), 2))
+        trial_of(tmp_path, simulate_roll_record(bretschneider(2.0, 6.5), 2, duration=600.0))
 
 
 def test_a_record_of_a_few_samples_has_no_spectrum() -> None:

@@ -155,7 +155,8 @@ def test_waves_out_of_sense_are_one_sentence(tmp_path: Path, change: tuple[str, 
 
 
 def test_unmeasured_disturbances_beside_measured_waves_become_process_noise(tmp_path: Path) -> None:
-    path, rng = write_wave_trial(tmp_path, [SeawayScenario(135)], FORCES), np.random.default_rng(0)
+    voyage, rng = SeawayScenario(135, duration=100.0), np.random.default_rng(0)
+    path = write_wave_trial(tmp_path, [voyage], FORCES)
     table = np.loadtxt(tmp_path / "run0.csv", delimiter=",", skiprows=1)
     model, count = ship(135), len(table)
     pushed = np.zeros((count, 4))

@@ -16,7 +16,7 @@ from seatrial.physics.simulate import replay
 from seatrial.physics.simulate.steer import manoeuvre
 from seatrial_studies.alexandersson2022.window_bands import band_coverage, holdout_windows
 
-K, T, RUNS, REPEATS, ZERO = 0.15, 8.0, 7, 14, 0.01
+K, T, RUNS, REPEATS, ZERO = 0.15, 8.0, 7, 9, 0.01
 ANGLES = (10, 12, 14, 16, 18, 20, 15)
 SETTINGS = EstimateSettings(segment_s=20.0)
 
@@ -50,7 +50,7 @@ def predicted_runs(model: Model, number: int) -> RunPredictions:
 
 
 def test_bands_and_intervals_hold_what_happens(model: Model) -> None:
-    """Fourteen runs: gross errors show, no more; the coverage benchmark counts a hundred series."""
+    """Nine runs: gross errors show, no more; the coverage benchmark counts a hundred series."""
     inside, measures = [], []
     for number in range(REPEATS):
         p = predicted_runs(model, number).predictions[-1]
