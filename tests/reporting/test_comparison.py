@@ -19,7 +19,7 @@ def test_the_summary_names_what_differs() -> None:
     assert outcome(comparison) == [
         "Taken together, the 2 coefficients differ (χ² 18.2 with 2 degrees of freedom, p < 0.001).",
         "Significant one by one: K 0.15 → 0.19.",
-        "Turning circle with 35° to port: tactical diameter over ground 3.1 → 2.8.",
+        "Turning circle with 35° to port: tactical diameter in still water 3.1 → 2.8.",
     ]
     alike = replace(comparison, coefficients=(), joint_test=None, manoeuvres=())
     assert outcome(alike) == ["No single quantity differs significantly."]

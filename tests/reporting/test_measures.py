@@ -3,12 +3,20 @@
 import pytest
 
 from seatrial.core.results import Measure
-from seatrial.reporting.measures import interval_verdict, manoeuvre_name, measure_decimals, measure_label
+from seatrial.reporting.measures import (
+    interval_verdict,
+    manoeuvre_name,
+    measure_decimals,
+    measure_label,
+    simulated_measure_label,
+)
 
 
 def test_names_and_units() -> None:
     assert measure_label("overshoot_2_deg") == ("2nd overshoot", "deg")
     assert measure_label("advance_L") == ("advance over ground", "L")
+    assert simulated_measure_label("advance_L") == ("advance in still water", "L")
+    assert simulated_measure_label("period_s") == measure_label("period_s")
     assert measure_label("new_thing_L") == ("new thing", "L") and measure_label("another") == ("another", "")
 
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from seatrial.cli.finding_output import print_warnings
-from seatrial.cli.run_errors import quantity_label
+from seatrial.cli.run_errors import simulated_label
 from seatrial.cli.screen import print_heading, print_lines, print_table
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ def print_comparison(comparison: "Comparison") -> None:
     for m in comparison.manoeuvres:
         if m.measures:
             print_heading(manoeuvre_name(m.manoeuvre))
-            _print_differences(m.measures, quantity_label)
+            _print_differences(m.measures, simulated_label)
         else:
             print_lines([f"{manoeuvre_name(m.manoeuvre)}: {m.note or 'no measure in common'}"], "  ")
     print_warnings(comparison.findings)

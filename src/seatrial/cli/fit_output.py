@@ -1,6 +1,6 @@
 """What `identify` prints of a fit: verdict and key figures, coefficients, held-out runs, findings."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from seatrial.cli.finding_output import print_warnings
@@ -13,7 +13,7 @@ from seatrial.cli.fit_details import (
     print_model_selection,
     print_windows,
 )
-from seatrial.cli.run_errors import ERROR_DIGITS, error_text, label_and_unit, quantity_label
+from seatrial.cli.run_errors import ERROR_DIGITS, error_text, label_and_unit, quantity_label, simulated_label
 from seatrial.cli.screen import is_quiet, is_verbose, print_heading, print_lines, print_table
 from seatrial.cli.summary_output import print_summary
 
@@ -246,9 +246,18 @@ def print_measures(
     measures: Mapping[str, float],
     intervals: Mapping[str, tuple[float, float] | None],
     extrapolation: "Extrapolation | None",
+    *,
+    is_manoeuvre: bool,
 ) -> None:
-    """Print measures of a simulated manoeuvre with their 95 % intervals, and how far it leaves the training runs."""
-    rows = [_simulated_measure(name, value, name in intervals, intervals.get(name)) for name, value in measures.items()]
+    """Print measures of a simulation with their 95 % intervals, and how far it leaves the training runs.
+
+    is_manoeuvre: it was steered through one, in still water; else it repeats a run.
+    """
+    label = simulated_label if is_manoeuvre else quantity_label
+    rows = [
+        _simulated_measure(name, value, name in intervals, intervals.get(name), label)
+        for name, value in measures.items()
+    ]
     if rows:
         head = ["", "", "95 % from", "to"] if intervals else ["", ""]
         print_table([head, *(row[: len(head)] for row in rows)], indent="  ")
@@ -256,8 +265,10 @@ def print_measures(
         _print_extrapolation(extrapolation)
 
 
-def _simulated_measure(name: str, value: float, is_judged: bool, pair: Iterable[float] | None) -> list[str]:
+def _simulated_measure(
+    name: str, value: float, is_judged: bool, pair: Iterable[float] | None, label: Callable[[str], str]
+) -> list[str]:
     from seatrial.core.text.numbers import exact
 
     ends = [exact(end, 4) for end in pair] if pair is not None else [NOT_DETERMINED if is_judged else "", ""]
-    return [quantity_label(name), exact(value, 4), *ends]
+    return [label(name), exact(value, 4), *ends]

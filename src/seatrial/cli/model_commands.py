@@ -183,7 +183,7 @@ def simulate(
     reference = measured if measured is not None and {"psi", "delta"} <= set(measured.channels) else None
     measures = api.measures(file, record, reference) if manoeuvre or "psi" in record else {}
     leaving = api.extrapolation(file, record)
-    print_measures(measures, intervals, leaving)
+    print_measures(measures, intervals, leaving, is_manoeuvre=manoeuvre is not None)
     print_lines(
         ["no measures: the run shows none of a zigzag, turn, spin, stop or decay"] if manoeuvre and not measures else []
     )

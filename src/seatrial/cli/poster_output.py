@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from seatrial.cli.fit_output import NOT_DETERMINED
-from seatrial.cli.run_errors import quantity_label
+from seatrial.cli.run_errors import quantity_label, simulated_label
 from seatrial.cli.screen import print_heading, print_lines, print_table
 
 if TYPE_CHECKING:
@@ -15,6 +15,7 @@ DIGITS = 4
 
 def print_poster(poster: "Poster") -> None:
     """Print each manoeuvre with its quantities, intervals and what they rest on."""
+    from seatrial.core.results.poster import Basis
     from seatrial.core.text.numbers import exact
     from seatrial.reporting.measures import manoeuvre_name
 
@@ -27,6 +28,7 @@ def print_poster(poster: "Poster") -> None:
         for q in m.quantities:
             value = exact(q.value, DIGITS) if q.is_determined else NOT_DETERMINED
             ends = ("" if v is None else exact(v, DIGITS) for v in (q.lower, q.upper))
-            rows.append([quantity_label(q.name), value, *ends, q.basis.value])
+            label = quantity_label if q.basis is Basis.MEASURED else simulated_label
+            rows.append([label(q.name), value, *ends, q.basis.value])
         print_table(rows, flush_left=(0, len(rows[0]) - 1), indent="  ")
     print_lines([poster.rudder_rate])

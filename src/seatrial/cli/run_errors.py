@@ -30,6 +30,13 @@ def quantity_label(name: str) -> str:
     return ", ".join(part for part in measure_label(name) if part)
 
 
+def simulated_label(name: str) -> str:
+    """Return name and unit of a measure of a simulated manoeuvre: ``advance in still water, L``."""
+    from seatrial.reporting.measures import simulated_measure_label
+
+    return ", ".join(part for part in simulated_measure_label(name) if part)
+
+
 def error_text(key: str, value: float) -> str:
     """Return the number of an error of `Prediction.rms` in the unit of `label_and_unit`."""
     from seatrial.core.text.numbers import exact

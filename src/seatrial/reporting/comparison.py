@@ -17,7 +17,7 @@ from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import Severity
 from seatrial.reporting.document import page_text
 from seatrial.reporting.first_screen import FirstScreen, KeyFact
-from seatrial.reporting.measures import manoeuvre_name, measure_label
+from seatrial.reporting.measures import manoeuvre_name, simulated_measure_label
 from seatrial.reporting.tables import finding_groups
 from seatrial.reporting.text_tables import TextTable
 
@@ -91,7 +91,8 @@ def outcome(comparison: Comparison) -> list[str]:
     if apart:
         sentences.append(f"Significant one by one: {enumeration([_clause(d) for d in apart])}.")
     for m in comparison.manoeuvres:
-        names = [f"{measure_label(d.name)[0]} {_clause(d, name='')}".strip() for d in m.measures if d.is_significant]
+        differing = [d for d in m.measures if d.is_significant]
+        names = [f"{simulated_measure_label(d.name)[0]} {_clause(d, name='')}".strip() for d in differing]
         if names:
             sentences.append(f"{_title(m)}: {enumeration(names)}.")
     if not sentences or (not apart and not any(d.is_significant for m in comparison.manoeuvres for d in m.measures)):
@@ -112,7 +113,7 @@ def coefficient_table(rows: Sequence[Difference]) -> TextTable:
 
 def manoeuvre_table(m: ManoeuvreDifferences) -> TextTable:
     """Return the differences of a manoeuvre's measures as text."""
-    rows = tuple(_row(d, measure_label(d.name)) for d in m.measures)
+    rows = tuple(_row(d, simulated_measure_label(d.name)) for d in m.measures)
     return TextTable(_title(m), _HEADER, _NUMERIC, rows, m.note)
 
 

@@ -9,12 +9,14 @@ from seatrial.core.results import CraftMeasure, Extrapolation, Measure
 from seatrial.core.text.numbers import ratio_text
 from seatrial.core.text.words import counted, enumeration, ordinal
 
+_MEASURED_TRACK, _SIMULATED_TRACK = "over ground", "in still water"
+"""What distances of a run refer to: whatever current there was is in those of a measured one."""
 _MEASURES = {
     "rudder_deg": ("rudder angle", "deg"),
     "approach_speed": ("approach speed", "m/s"),
-    "advance_L": ("advance over ground", "L"),
-    "transfer_L": ("transfer over ground", "L"),
-    "tactical_diameter_L": ("tactical diameter over ground", "L"),
+    "advance_L": (f"advance {_MEASURED_TRACK}", "L"),
+    "transfer_L": (f"transfer {_MEASURED_TRACK}", "L"),
+    "tactical_diameter_L": (f"tactical diameter {_MEASURED_TRACK}", "L"),
     "steady_diameter_L": ("steady turning diameter, 2 U/r", "L"),
     "steady_yaw_rate_deg_s": ("steady yaw rate", "deg/s"),
     "steady_drift_deg": ("steady drift angle", "deg"),
@@ -41,6 +43,12 @@ def measure_label(name: str) -> tuple[str, str]:
         if name.endswith(ending):
             return name.removesuffix(ending).replace("_", " "), unit
     return name.replace("_", " "), ""
+
+
+def simulated_measure_label(name: str) -> tuple[str, str]:
+    """Return `measure_label` of a manoeuvre that was steered through a model: its distances are in still water."""
+    label, unit = measure_label(name)
+    return label.replace(_MEASURED_TRACK, _SIMULATED_TRACK), unit
 
 
 def manoeuvre_name(text: str) -> str:

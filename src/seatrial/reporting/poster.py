@@ -104,6 +104,7 @@ def manoeuvre_title(m: PosterManoeuvre) -> str:
 
 def _label(name: str) -> str:
     label, unit = measure_label(name)
+    label = label.removesuffix(" over ground")  # of measured cells; the note says what those of the others refer to
     if name == "speed_loss":
         return "speed lost in the turn, %"
     return f"{label}, {'m' if unit == 'L' else unit}"
