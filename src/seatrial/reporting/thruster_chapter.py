@@ -23,7 +23,7 @@ MEASURE_LABELS = {
 }  # fmt: skip
 _PROGRAMME_TEXTS = {
     "straight": "straight from rest with full command ahead", "spin": "a spin from rest with full opposite commands",
-    "turning-circle": "a circle with what steers turned by 35 deg at full command, in still water",
+    "turning-circle": "a circle with a steering angle of 35 deg and full command, in still water",
     "stop": "full astern at full speed",
 }  # fmt: skip
 FAR_NOTE = "* beyond the training runs: read the interval as a lower limit."
