@@ -57,7 +57,7 @@ def test_the_heading_of_an_outboard_is_steered_by_its_angle_thrust_held(tmp_path
         values | {"k_f": 0.8, "p_f": 2.0, "X_uu": -0.1, "N_r": -1.5, "M_v": 1.0, "M_r": 2.0}
     ))  # fmt: skip
     task = tuning_task(write_loop_file(tmp_path, LOOP.replace("[plant]", "[plant]\nspeed = 2.0")))
-    assert (task.loop.output, task.loop.actuator) == ("psi", "delta")
+    assert (task.loop.output, task.loop.actuator) == ("psi", "delta") and "alpha_1 = -delta" in task.plant
     s, thrust = 1j * np.geomspace(0.1, 10.0, 20), 0.1 * 2.0**2
     expected = 2.0 * thrust / (s * (2.0 * s + 1.5))
     assert np.allclose(task.loop.plant.frequency_response(s.imag), expected, rtol=1e-6)

@@ -16,7 +16,13 @@ from seatrial.physics.models.thruster_layout import (
     Thruster,
     ThrusterLayout,
 )
-from seatrial.physics.models.thruster_steering import ORDER, SteeringAngle, steering_angles, with_steering_order
+from seatrial.physics.models.thruster_steering import (
+    ORDER,
+    SteeringAngle,
+    order_text,
+    steering_angles,
+    with_steering_order,
+)
 from seatrial.physics.models.thrusters import thrusters
 
 
@@ -28,6 +34,7 @@ def pod(k: int, x: float, channel: str = "") -> Thruster:
 def test_thrust_astern_turns_to_the_other_side_and_amidships_to_none() -> None:
     layout = ThrusterLayout((pod(1, 2.0), pod(2, 0.0), pod(3, -2.0)))
     assert steering_angles(layout) == (SteeringAngle("alpha_1", 1.0), SteeringAngle("alpha_3", -1.0))
+    assert order_text(layout) == "alpha_1 = delta, alpha_3 = -delta"
     assert steering_angles(CATAMARAN) == () and steering_angles(ThrusterLayout((pod(1, 0.0),))) == ()
 
 
@@ -38,6 +45,7 @@ def test_two_outboards_on_one_bar_are_one_angle_and_rudders_are_positive_to_star
         rudder=Rudder("delta", -2.2, 0.05, 0.3),
     )  # fmt: skip
     assert steering_angles(ThrusterLayout((screw,))) == (SteeringAngle("delta", 1.0),)
+    assert order_text(ThrusterLayout((screw,))) == ""
 
 
 @pytest.mark.parametrize(("positive", "sign"), [("starboard", -1.0), ("port", 1.0)])
@@ -47,6 +55,8 @@ def test_the_order_in_a_record_is_positive_to_starboard(positive: str, sign: flo
     record = record.with_channel("alpha_1", replace(record.channel("alpha_1"), positive=positive))
     np.testing.assert_allclose(with_steering_order(record, layout)[ORDER], sign * 0.1 * time)
     assert with_steering_order(record, CATAMARAN) is record
+    turning = Record.from_arrays("azimuth", time, {"alpha_1": time})
+    assert with_steering_order(turning, layout) is turning, "thrust ahead and astern is no steering"
     assert with_steering_order(record.without("alpha_1"), layout).channels.keys() == set()
 
 

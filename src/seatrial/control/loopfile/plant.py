@@ -19,6 +19,8 @@ from seatrial.data.trial.runs import expand_variables
 from seatrial.physics.loops import Block, HullFactor
 from seatrial.physics.loops.fin import K_alpha_at
 from seatrial.physics.models.thrust_orders import AHEAD, YAW, with_orders
+from seatrial.physics.models.thruster_layout import ThrusterLayout
+from seatrial.physics.models.thruster_steering import ORDER, order_text
 from seatrial.physics.simulate.thrust import DEFAULT_AHEAD
 
 FINS = ("phi", "alpha_f", "alpha_w")
@@ -157,11 +159,14 @@ def _plant_of_model(table: PlantTable, path: Path, own_model: Model | None) -> L
         _demand_known(name, file.model.input_names, f"plant.inputs.{name}", file.model, "input")
     ship = trim_ship(file, output=output, actuator=actuator, disturbance=disturbance, speed=speed, inputs=inputs)
     response, disturbed = plant_and_disturbance(ship, amplitude)
+    turned = ""
+    if craft is not None and actuator == ORDER:
+        turned = order_text(ThrusterLayout.from_text(craft.model.equations.layout))
     about = "" if amplitude is None else f"linearised at a roll of {math.degrees(amplitude):.3g} deg"
     return LoopPlant(
         response, disturbed, output, actuator, disturbance or actuator,
         _trim_speed(ship, file) if speed is None else speed, law,
-        ", ".join(part for part in (plant_text(ship), about, words) if part), ship, file.ship, craft,
+        ", ".join(part for part in (plant_text(ship), turned, about, words) if part), ship, file.ship, craft,
     )  # fmt: skip
 
 

@@ -19,6 +19,8 @@ ORDER = "delta"
 _NO_ARM = 0.05
 """Arm along the craft over the longest one below which a thruster does not steer by its angle; chosen."""
 
+_ABEAM = 0.5 * math.pi + 1e-6  # rad: thrust across the craft, and rounding
+
 
 @dataclass(frozen=True)
 class SteeringAngle:
@@ -51,15 +53,25 @@ def _arms(layout: ThrusterLayout) -> Iterator[tuple[str, float]]:
             yield thruster.rudder.channel, -thruster.rudder.x  # lift of a positive angle is to port
 
 
+def order_text(layout: ThrusterLayout) -> str:
+    """Return what an order stands for: ``alpha_1 = -delta``; empty where the order is the angle itself."""
+    signs = {1.0: "", -1.0: "-"}
+    angles = [angle for angle in steering_angles(layout) if (angle.channel, angle.sign) != (ORDER, 1.0)]
+    return ", ".join(f"{angle.channel} = {signs[angle.sign]}{ORDER}" for angle in angles)
+
+
 def with_steering_order(record: Record, layout: ThrusterLayout) -> Record:
     """Return the record with `ORDER`, the mean of what its steering angles stand for, where it has all of these.
 
-    A record that has the channel, and one of a craft without such angles, is returned as it is.
+    A record that has the channel, one of a craft without such angles, and one in which an azimuth thruster turns beyond
+    abeam, where it is no rudder any more, is returned as it is.
     """
     angles = steering_angles(layout)
     if not angles or ORDER in record or any(angle.channel not in record for angle in angles):
         return record
     turned = [angle.sign * _to_starboard(record.channel(angle.channel)) for angle in angles]
+    if np.nanmax(np.abs(turned), initial=0.0) > _ABEAM:
+        return record
     return record.with_channel(ORDER, Channel.from_notation(ORDER, np.mean(turned, axis=0)))
 
 
