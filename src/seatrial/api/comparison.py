@@ -58,7 +58,9 @@ def compare(
 
 
 def _is_steered(fit: "Fit") -> bool:
-    return "psi" in fit.model.states and "delta" in fit.model.input_names
+    from seatrial.physics.simulate.craft_manoeuvre import is_steered_by_angle
+
+    return is_steered_by_angle(fit.model)
 
 
 def _manoeuvre(first: "Fit", second: "Fit", manoeuvre: str, speed: float | None) -> "ManoeuvreDifferences":

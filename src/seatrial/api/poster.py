@@ -59,8 +59,9 @@ def poster(
     from seatrial.api.simulation import rudder_rate_of
     from seatrial.core.results.poster import Poster
     from seatrial.core.values.versions import versions
+    from seatrial.physics.simulate.craft_manoeuvre import is_steered_by_angle
 
-    if not {"psi"} <= set(fit.model.states) or "delta" not in fit.model.input_names:
+    if not is_steered_by_angle(fit.model):
         raise InputError(
             f"model '{fit.model.name}' has no rudder or no heading: a wheelhouse poster shows turning circles and "
             "zigzags; take a fit of a steered ship"

@@ -10,9 +10,15 @@ from scipy.integrate import solve_ivp
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Record
 from seatrial.physics.manoeuvres.measures import measures
+from seatrial.physics.models import model_named
 from seatrial.physics.models.thruster_layout import CATAMARAN, AngleInput, CommandInput, Thruster, ThrusterLayout
 from seatrial.physics.models.thrusters import thrusters
-from seatrial.physics.simulate.craft_manoeuvre import craft_manoeuvre, craft_programme, order_at_speed
+from seatrial.physics.simulate.craft_manoeuvre import (
+    craft_manoeuvre,
+    craft_programme,
+    is_steered_by_angle,
+    order_at_speed,
+)
 from seatrial.physics.simulate.replay import replay
 
 X, FULL, DRAG, YAW_DRAG = -2.0, 0.8, 0.1, 1.5
@@ -113,6 +119,11 @@ def test_the_thruster_has_settled_at_its_order_and_a_replay_repeats_the_run(outb
 def test_what_a_craft_cannot_do_is_refused_with_what_it_can(text: str, layout: ThrusterLayout, message: str) -> None:
     with pytest.raises(InputError, match=message):
         craft_programme(layout, text)
+
+
+def test_a_rudder_or_a_thruster_that_turns_takes_the_manoeuvres_of_ships(outboard: Model) -> None:
+    assert is_steered_by_angle(outboard) and is_steered_by_angle(model_named("waterjet"))
+    assert not is_steered_by_angle(thrusters(CATAMARAN)) and not is_steered_by_angle(model_named("roll"))
 
 
 def test_the_angle_that_is_ordered_cannot_be_set(outboard: Model) -> None:

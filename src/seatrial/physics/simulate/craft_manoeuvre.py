@@ -57,6 +57,14 @@ def craft_programmes(layout: ThrusterLayout) -> tuple[str, ...]:
     return (*(["spin:50", "zigzag:30/20"] if turns_by_thrust else []), *_DRIVEN)
 
 
+def is_steered_by_angle(model: Model) -> bool:
+    """Return whether a model goes through the manoeuvres of ships: by a rudder, or by thrusters that turn."""
+    if "psi" not in model.states:
+        return False
+    layout = model.equations.layout
+    return bool(steering_angles(ThrusterLayout.from_text(layout))) if layout else ORDER in model.input_names
+
+
 def _kind(text: str) -> str:
     return text.strip().partition(":")[0]
 
