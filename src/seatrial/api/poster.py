@@ -108,9 +108,14 @@ def _orders(rudder_deg: float) -> tuple[_Order, ...]:
 
 
 def _approach_speed(fit: "Fit", speed: float | None) -> float:
+    """That of the simulated manoeuvres [m/s]: craft with thrusters begin at half command, as their runs do at rest."""
     from seatrial.api.simulation import as_model_file
+    from seatrial.physics.simulate.thrust import straight_by_thrusters
 
-    return as_model_file(fit).approach.get("u", 0.0) if speed is None else speed
+    if speed is not None:
+        return speed
+    file = as_model_file(fit)
+    return straight_by_thrusters(file.model).speed if file.model.equations.layout else file.approach.get("u", 0.0)
 
 
 def _manoeuvre(fit: "Fit", order: _Order, speed: float | None) -> "PosterManoeuvre":
