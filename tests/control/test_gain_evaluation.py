@@ -10,6 +10,7 @@ from tests.control.fin_tasks import PAPER_OBJECTIVES, PUBLISHED, VARIANCES, fin_
 from seatrial.control.gain_evaluation import gain_evaluator
 from seatrial.control.task import Effectiveness
 from seatrial.core.results.tuning import ControllerConstraints
+from seatrial.physics.loops import Performance
 from seatrial.physics.loops.fin import Preamplifier
 
 
@@ -46,6 +47,20 @@ def test_gradient_over_several_seas_and_speeds():
     np.testing.assert_allclose(
         one.slopes(gains)[0], _differences(lambda k: one.evaluate(k[None]).objectives[0], gains), rtol=2e-6
     )
+
+
+def test_value_and_slopes_of_one_set_of_gains_rest_on_one_evaluation_of_the_loops(monkeypatch):
+    calls, evaluate = [], Performance.evaluate
+
+    def counted(performance, gains, *, with_Ms=True):
+        calls.append(performance)
+        return evaluate(performance, gains, with_Ms=with_Ms)
+
+    monkeypatch.setattr(Performance, "evaluate", counted)
+    one, gains = gain_evaluator(fin_task()), np.array([5.0, 3.0, 20.0])
+    one.evaluate(gains[None])
+    one.slopes(gains)
+    assert calls == list(one.performances)
 
 
 def test_an_unstable_loop_is_never_good():

@@ -14,7 +14,7 @@ from seatrial.control.seaway_simulation import seaway_reductions
 from seatrial.control.task import TuningTask
 from seatrial.core.results.tuning import ParetoFront
 from seatrial.core.values import Array
-from seatrial.physics.loops import margins
+from seatrial.physics.loops import delay_margin
 
 CANDIDATE_COUNT = 8  # gains of a front that are simulated; chosen
 MAX_SATURATION_LOSS = 0.03  # reduction lost to the actuator's limits, as a share of one; chosen
@@ -70,7 +70,7 @@ def choose_by_simulation(
         linear, limited, stalled = seaway_reductions(few, judge.loop, gains, seed + _SELECTION_SEED_OFFSET).T
         judged, loop = judge.evaluate(gains[None]), judge.loop
         speeds = dict.fromkeys(met.U for met in task.disturbances)
-        delays = [margins(task.loop_at(U, loop).with_gains(gains)).delay for U in speeds]
+        delays = [delay_margin(task.loop_at(U, loop).with_gains(gains)) for U in speeds]
         return _Candidate(
             judge, gains, front.name, 0.5 * (limited + stalled), float(np.mean(linear - limited)),
             float(judged.variances[0, :, 2].mean()), float(judged.Ms[0]), bool(gains_on_bound(loop, gains)),

@@ -29,9 +29,9 @@ _POINTS = 400  # frequencies of the curves in the result, evenly in the logarith
 def describe_controller(evaluator: GainEvaluator, name: str, gains: Array) -> Controller:
     """Return all that linear theory says of gains (g,) in what the task meets; the frailest speed gives the margins."""
     evaluation = evaluator.evaluate(gains[None])
-    loops = [evaluator.task.loop_at(one.U, evaluator.loop).with_gains(gains) for one in evaluator.task.disturbances]
-    frailest = max(loops, key=lambda loop: margins(loop).Ms)
-    frail = margins(frailest)
+    speeds = dict.fromkeys(one.U for one in evaluator.task.disturbances)
+    loops = [evaluator.task.loop_at(U, evaluator.loop).with_gains(gains) for U in speeds]
+    frail, frailest = max(((margins(loop), loop) for loop in loops), key=lambda pair: pair[0].Ms)
     variances, limits = evaluation.variances[0], evaluator.task.constraints
     rms = np.sqrt(variances.mean(axis=0))
     names = _RMS_NAMES[:3] if evaluator.task.motion is OUTPUT else _RMS_NAMES

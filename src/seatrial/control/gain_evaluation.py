@@ -93,27 +93,34 @@ class GainEvaluator:
 
     def evaluate(self, gains: Array) -> GainEvaluation:
         """Return all of the gains (n, g)."""
-        return self._evaluated(gains) if len(gains) != 1 else self._remembered_evaluation(_bytes(gains))
+        if len(gains) != 1:
+            return self._evaluated(self._of_each(gains))
+        return self._remembered_evaluation(_bytes(gains))
 
     @cached_property
     def _remembered_evaluation(self) -> Callable[[bytes], GainEvaluation]:
         """Evaluate one set of gains, given as bytes; searches return to the last few for value, slope and limits."""
-        return lru_cache(maxsize=_REMEMBERED)(lambda gains: self._evaluated(np.frombuffer(gains)[None].copy()))
+        return lru_cache(maxsize=_REMEMBERED)(lambda gains: self._evaluated(self._remembered_loops(gains)))
+
+    @cached_property
+    def _remembered_loops(self) -> Callable[[bytes], list[LoopEvaluation]]:
+        """Return the loops with one set of gains, given as bytes, which its evaluation and its slopes rest on."""
+        return lru_cache(maxsize=_REMEMBERED)(lambda gains: self._of_each(np.frombuffer(gains)[None].copy()))
 
     @cached_property
     def _remembered_slopes(self) -> Callable[[bytes], tuple[Array, Array]]:
         """Return `slopes` at one set of gains, given as bytes."""
         return lru_cache(maxsize=_REMEMBERED)(lambda gains: self._slopes_at(np.frombuffer(gains).copy()))
 
-    def _evaluated(self, gains: Array) -> GainEvaluation:
-        made = self._of_each(gains)
+    def _evaluated(self, loops: list[LoopEvaluation]) -> GainEvaluation:
+        """Return the judgement of loops, those of each disturbance."""
         places = self._variance_indices[-4:]
-        variances = np.stack([e.variances[:, [p[0] for p in places]] for e in made], axis=1)
-        peak = np.max([e.Ms for e in made], axis=0)
+        variances = np.stack([e.variances[:, [p[0] for p in places]] for e in loops], axis=1)
+        peak = np.max([e.Ms for e in loops], axis=0)
         worst = variances[:, :, 1:3].max(axis=1)
         over = np.where(np.isfinite(worst), worst, _UNSTABLE) / self.allowed_variances - 1.0
         excess = np.column_stack([peak / self.task.constraints.Ms - 1.0, over])
-        return GainEvaluation(self._mean_objectives([e.variances for e in made]), excess, peak, variances)
+        return GainEvaluation(self._mean_objectives([e.variances for e in loops]), excess, peak, variances)
 
     def objective_values(self, gains: Array) -> Array:
         """Return objectives (n, m) of the gains (n, g), means over what disturbs the loop; infinite where unstable."""
@@ -133,7 +140,7 @@ class GainEvaluator:
         return self._remembered_slopes(_bytes(gains))
 
     def _slopes_at(self, gains: Array) -> tuple[Array, Array]:
-        evaluated = self._of_each(gains)
+        evaluated = self._remembered_loops(_bytes(gains))
         made = [one.variances for one in evaluated]
         rows = [p.variance_gradients(gains) for p in self.performances]
         objectives = np.array([

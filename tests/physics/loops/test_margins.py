@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from tests.physics.loops.example_loops import second_order
 
-from seatrial.physics.loops import TransferLoop, margins
+from seatrial.physics.loops import TransferLoop, delay_margin, margins
 from seatrial.physics.loops.fin import Preamplifier, fin_loop
 from seatrial.physics.loops.margins import frequency_band, sensitivity_magnitude
 from seatrial.physics.loops.python_control import open_loop_transfer_function
@@ -91,6 +91,13 @@ def test_phase_and_gain_keep_the_bounds_that_the_peak_sets() -> None:
         found = margins(loop)
         assert found.gain >= found.Ms / (found.Ms - 1.0) - 1e-9
         assert found.phase >= 2.0 * math.asin(0.5 / found.Ms) - 1e-9
+
+
+def test_the_delay_margin_alone_is_that_of_all_margins() -> None:
+    without_gain, unstable = (fin_loop().with_gains(np.full(3, gain)) for gain in (0.0, 1e4))
+    for loop in (*PUBLISHED, without_gain):
+        assert delay_margin(loop) == margins(loop).delay
+    assert math.isnan(delay_margin(unstable))
 
 
 @pytest.mark.parametrize("loop", PUBLISHED, ids=lambda loop: loop.name)

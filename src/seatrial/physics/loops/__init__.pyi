@@ -13,7 +13,8 @@ from seatrial.physics.loops.encounter_spectrum import sea_disturbance as sea_dis
 from seatrial.physics.loops.fin import fin_loop as fin_loop, K_alpha_at as K_alpha_at, Preamplifier as Preamplifier
 from seatrial.physics.loops.loop import Term as Term, TransferLoop as TransferLoop
 from seatrial.physics.loops.loop_states import StateSpace as StateSpace, state_space as state_space
-from seatrial.physics.loops.margins import StabilityMargins as StabilityMargins, margins as margins
+from seatrial.physics.loops.margins import delay_margin as delay_margin, margins as margins
+from seatrial.physics.loops.margins import StabilityMargins as StabilityMargins
 from seatrial.physics.loops.objective import LoopSignal as LoopSignal, Objective as Objective
 from seatrial.physics.loops.objective import WeightedVariance as WeightedVariance
 from seatrial.physics.loops.objective import squared_deviation as squared_deviation, variance as variance

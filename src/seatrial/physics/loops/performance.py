@@ -100,6 +100,17 @@ class Performance:
         wide = self.loop.open_loop_terms(np.geomspace(*frequency_band(self.loop), _MS_SAMPLES))
         return tuple(np.ascontiguousarray(part) for part in (seen.real, seen.imag, wide.real, wide.imag))  # type: ignore[return-value]
 
+    @cached_property
+    def _no_frequencies(self) -> Array:
+        """The open loop without frequencies, (g, 0): no peak is looked for."""
+        return np.empty((len(self.loop.terms), 0))
+
+    @cached_property
+    def _polynomials(self) -> tuple[Array, Array]:
+        """Those of the loop, as arrays that compiled code takes: it knows none that are frozen."""
+        d, n = self.loop.polynomials
+        return np.array(d), np.array(n)
+
     def evaluate(self, gains: Array, *, with_Ms: bool = True) -> LoopEvaluation:
         """Return loops with the gains (m, g); without the peak, `peak` only states whether a loop is stable (zero).
 
@@ -109,12 +120,11 @@ class Performance:
         k = np.ascontiguousarray(np.atleast_2d(gains), dtype=np.float64)
         if k.shape[1] != len(self.loop.terms):
             raise InputError(f"loop '{self.loop.name}' has {len(self.loop.terms)} gains, not {k.shape[1]}")
-        d, n = self.loop.polynomials
         re, im, wide_re, wide_im = self._open_loop_tables
         if not with_Ms:
-            wide_re, wide_im = wide_re[:, :0].copy(), wide_im[:, :0].copy()
+            wide_re = wide_im = self._no_frequencies
         peak, out = np.zeros(len(k)), np.empty((len(k), len(self.variances)))
-        evaluate_loops(k, np.array(d), np.array(n), re, im, *self._node_weights, wide_re, wide_im, peak, out)
+        evaluate_loops(k, *self._polynomials, re, im, *self._node_weights, wide_re, wide_im, peak, out)
         return LoopEvaluation(out, peak)
 
     def variance_gradients(self, gains: Array) -> Array:
