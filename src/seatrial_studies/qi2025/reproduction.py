@@ -39,7 +39,7 @@ from seatrial_studies.swarm_search import (
 # iterations of a search, runs of a setting in the quick version
 ITERATIONS, QUICK_RUNS = 200, 5
 # how often the ten runs are made again, for the scatter of what they give
-TEN_RUN_REPEATS, QUICK_TEN_RUN_REPEATS = 10, 3
+TEN_RUN_REPEATS, QUICK_TEN_RUN_REPEATS = 10, 2
 # runs of IWHO with parts left out, at each heading; our choice
 ABLATION_RUNS, QUICK_ABLATION_RUNS = 10, 2
 # the heading of the paper's figures, whose coefficients it does not print
