@@ -61,7 +61,8 @@ def test_once_writes_what_identify_writes(tmp_path: Path, run_command: Callable[
 
 def test_what_was_amiss_is_counted_and_said(tmp_path: Path, run_command: Callable[..., int], capsys) -> None:
     lines = [*LINES[:400], "rubbish\n", LINES[390], *LINES[400:420], *LINES[430:], LINES[-1]]
-    assert run_command("follow", trial_at(tmp_path, lines), "--once") == 0
+    plain = ("[follow]\n", '[estimate]\nmethod = "output-error"\n\n[follow]\n')
+    assert run_command("follow", trial_at(tmp_path, lines, plain), "--once") == 0
     said = capsys.readouterr().out
     assert "1491 samples accepted; 1 late, 1 repeated, 10 missing, 1 garbled" in said
     assert "latest fault: " in said
