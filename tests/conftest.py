@@ -4,7 +4,8 @@ import gc
 import os
 import shutil
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import nullcontext
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ import pytest
 from hypothesis import settings
 
 from seatrial import cli
+from seatrial.numerics.workers import limited_workers
 
 REPOSITORY = Path(__file__).parents[1]
 
@@ -34,6 +36,13 @@ BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stab
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Put the longest files first; the others keep their order."""
     items.sort(key=lambda item: LONGEST_FIRST.isdisjoint(item.path.relative_to(REPOSITORY).parts))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def one_thread_a_worker() -> Iterator[None]:
+    """Workers of a parallel run share the cores: a map takes one thread where its number is not stated."""
+    with limited_workers(1) if "PYTEST_XDIST_WORKER" in os.environ else nullcontext():
+        yield
 
 
 @pytest.fixture(scope="session")
