@@ -124,6 +124,8 @@ def draft_trial(
     draught: float = 0.0,
     mass: float = 0.0,
     gear: float = 0.0,
+    rho: float = 0.0,
+    scale: float = 0.0,
     columns: "Sequence[str]" = (),
 ) -> "DraftTrial":
     """Draft a trial file from logs: channels, units, frames and signs by name and behaviour, each with its evidence.
@@ -135,6 +137,8 @@ def draft_trial(
         beam: breadth at the waterline [m]; 0: a rule by the length stands in for it, as for the next two.
         draught: m. mass: kg.
         gear: turns of the engine over those of the propeller; 0: the rate of an engine is no input.
+        rho: density of the water [kg/m^3]; 0: that of sea water.
+        scale: 40 for a model 1:40; 0: not stated.
         columns: what columns are whose names say nothing: ``Klokke=time``, ``Kurs (gyro)=psi``.
 
     Returns:
@@ -146,7 +150,7 @@ def draft_trial(
     """
     from seatrial.data.draft import StatedSize, draft_trial, stated_columns
 
-    size = StatedSize(length, beam, draught, mass, gear)
+    size = StatedSize(length, beam, draught, mass, gear, rho, scale)
     return draft_trial(*logs, folder=folder, size=size, stated=stated_columns(columns))
 
 

@@ -33,6 +33,10 @@ def init(
     gear: Annotated[
         float, typer.Option("--gear", metavar="RATIO", help="Turns of the engine for each of the propeller.")
     ] = 0.0,
+    rho: Annotated[
+        float, typer.Option("--rho", metavar="KG/M^3", help="Density of the water, else sea water's; fresh has 1000.")
+    ] = 0.0,
+    scale: Annotated[float, typer.Option("--scale", metavar="RATIO", help="Scale of a model: 40 for 1:40.")] = 0.0,
     column: Annotated[
         list[str] | None,
         typer.Option("--column", metavar="HEADING=CHANNEL", help="What a column is whose heading says nothing."),
@@ -61,6 +65,8 @@ def init(
         draught=draught,
         mass=mass,
         gear=gear,
+        rho=rho,
+        scale=scale,
         columns=column or (),
     )
     page = out.with_suffix(".html")

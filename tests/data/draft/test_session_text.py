@@ -35,6 +35,12 @@ def test_a_day_in_the_name_counts_and_a_time_of_day_is_none(tmp_path: Path) -> N
     assert session_line([_run(tmp_path, k, "07:30:") for k in "ab"]) == ""
 
 
+def test_runs_of_one_model_in_a_basin_share_its_rudder(tmp_path: Path) -> None:
+    runs = [_run(tmp_path, k, "07:30:") for k in "ab"]
+    assert session_line(runs, is_in_basin=True).startswith('session = "all"    # of one model in a basin')
+    assert session_line(runs[:1], is_in_basin=True) == ""
+
+
 def test_clocks_without_a_date_that_go_on_are_of_one_day(tmp_path: Path) -> None:
     later = [_run(tmp_path, name, first) for name, first in (("a", "07:30:"), ("b", "08:10:"))]
     assert session_line(later).startswith('session = "all"    # clocks without a date go on')

@@ -12,6 +12,7 @@ from seatrial.data.draft.ship_estimates import (
     hull_rudder_propeller,
     main_dimensions,
     mass_properties,
+    stated_values,
     water_density,
 )
 
@@ -41,13 +42,14 @@ def test_what_is_stated_is_not_marked() -> None:
     stated, estimated = (one.line for one in main_dimensions(StatedSize(62.0, 13.0)))
     assert stated == "B = 13.0    # m, breadth, as stated" and "ESTIMATED: m, draught, from the length" in estimated
     assert EstimatedValue("m", 1800000.0, "kg", is_stated=True).line == "m = 1800000.0    # kg"
-    assert water_density().value == RHO
+    assert water_density(StatedSize()).value == RHO
 
 
 @pytest.mark.parametrize(
     ("sizes", "message"),
     [
         ({"length": -1.0}, "a length in m is positive"),
+        ({"length": 3.0, "rho": -1.0}, r"a rho in kg/m\^3 is positive"),
         ({"mass": 165.0}, "say nothing without the length"),
         ({"length": 10.0, "mass": math.inf}, "a mass in kg is positive"),
         ({"length": 3.2, "beam": 0.5, "draught": 0.1, "mass": 900.0}, "block coefficient"),
@@ -62,8 +64,18 @@ def test_the_formulas_for_kvlcc2_come_near_its_rudder_and_propeller() -> None:
     """KVLCC2 in full scale (SIMMAN 2008): H_R 15.8 m, A_R 112.5 m^2, D_P 9.86 m, P/D 0.721; 15.5 kn."""
     size = StatedSize(320.0, 58.0, 20.8, 0.81 * 320.0 * 58.0 * 20.8 * RHO)
     value = {one.key: one.value for one in hull_rudder_propeller(size, 7.97, 7.97 / 1.73)}
-    published = {"C_b": 0.81, "H_R": 15.8, "A_R": 112.5, "D_P": 9.86, "pitch_ratio": 0.721}
+    published = {"H_R": 15.8, "A_R": 112.5, "D_P": 9.86, "pitch_ratio": 0.721}
     assert value == pytest.approx(value | published, rel=0.35)  # what an estimate of a propeller is good for
+
+
+@pytest.mark.parametrize("rho", [1000.0, 1025.0])
+def test_a_stated_mass_is_kept_in_water_of_any_density(rho: float) -> None:
+    size = StatedSize(3.4, 0.58, 0.21, 265.0, rho=rho)
+    lines = [one.line for one in hull_rudder_propeller(size, 1.03, 1.03 / 12.6)]
+    assert lines[2].startswith("m = 265.0    # kg, as stated: C_b 0.6") and not any("C_b = " in one for one in lines)
+    assert lines[3] == f"rho = {rho}    # kg/m^3, as stated"
+    assert size.form.C_b == pytest.approx(265.0 / (rho * 3.4 * 0.58 * 0.21))
+    assert [one.key for one in stated_values(size)] == ["B", "d", "m", "rho"] and not stated_values(StatedSize(3.4))
 
 
 def test_no_propeller_is_estimated_for_what_turns_otherwise() -> None:

@@ -67,7 +67,7 @@ def test_a_ship_of_stated_length_whose_drift_is_recorded_has_a_model_of_forces()
     model = starting_model(SHIP, runs, LENGTH)
     assert (model.name, model.speed, model.free[-1]) == ("abkowitz", 6.0, "N_rrr")
     assert starting_model(SHIP, runs).name == "nomoto"  # no length
-    assert starting_model(SHIP - {"v"}, runs, LENGTH).name == "nomoto"
+    assert starting_model(SHIP - {"v", "psi"}, runs, LENGTH).name == "nomoto"
     engine = [trial_run(10.0, 25.0), trial_run(20.0, 40.0)]
     assert starting_model(SHIP, engine, LENGTH).name == "nomoto"  # what turns is no propeller, and not steadily
 
@@ -80,6 +80,28 @@ def test_a_recorded_propeller_gives_the_model_with_propeller_and_rudder() -> Non
     assert starting_model(SHIP, runs, StatedSize(6.0)).name == "nomoto"  # a Froude number of 0.78
     steady = [trial_run(10.0, 4.0), trial_run(20.0, 4.0)]
     assert starting_model(SHIP, steady, LENGTH, has_jet=True).name == "abkowitz"
+
+
+def track_run(rate: float = 0.0, north: float = 1.0) -> Record:
+    """A straight run at 6 m/s of which the track and the heading are recorded, in a small arc of the rudder."""
+    delta, way = np.radians(10.0) * np.sign(np.sin(0.2 * TIME)), 6.0 * TIME
+    propeller = {"n": np.full(400, rate)} if rate else {}
+    motion = {"x0": north * way, "y0": np.sqrt(1.0 - north**2) * way, "psi": np.full(400, np.arccos(north))}
+    return Record.from_arrays("run", TIME, {"delta": delta, **motion, **propeller})
+
+
+@pytest.mark.parametrize(
+    ("positions", "rate", "name"),
+    [(("x0", "y0"), 4.0, "mmg"), (("lat", "lon"), 4.0, "mmg"), (("x0", "y0"), 0.0, "abkowitz")],
+)
+def test_a_track_with_the_heading_shows_drift_and_approach_speed(
+    positions: tuple[str, str], rate: float, name: str
+) -> None:
+    symbols, runs = {"delta", "r", "psi", *positions}, [track_run(rate, 0.6)]
+    model = starting_model(symbols, runs, LENGTH)
+    assert (model.name, model.speed) == (name, pytest.approx(6.0))
+    assert model.particulars == starting_model(SHIP, [trial_run(10.0, 4.0)], LENGTH).particulars or not rate
+    assert starting_model(symbols - {"psi"}, runs, LENGTH).name == "nomoto"
 
 
 def test_a_run_that_starts_slowly_has_the_speed_that_it_reaches() -> None:

@@ -65,6 +65,17 @@ def test_a_ship_without_beam_is_refused() -> None:
         HullForm.from_ship(Ship("raft", {"L": 3.0, "d": 0.2}))
 
 
+@pytest.mark.parametrize("rho", [1000.0, 1025.0])
+def test_the_block_coefficient_follows_from_a_stated_mass(rho: float) -> None:
+    known = {"L": 3.0, "B": 0.5, "d": 0.2, "m": 210.0, "rho": rho}
+    form = HullForm.from_ship(Ship("model", known))
+    assert form.C_b == pytest.approx(210.0 / (rho * 0.3))
+    assert displacement(form, rho).values["m"] == pytest.approx(210.0)
+    assert HullForm.from_ship(Ship("model", known | {"C_b": 0.6})).C_b == 0.6
+    with pytest.raises(InputError, match="lacks B for"):
+        HullForm.from_ship(Ship("model", {"L": 3.0, "d": 0.2, "m": 210.0}))
+
+
 def test_the_stated_scatter_is_that_of_two_published_tankers() -> None:
     ships = [(HullForm.from_ship(one.ship), one) for one in (kvlcc2_l7(), esso_osaka())]
     squares: dict[str, list[float]] = {}

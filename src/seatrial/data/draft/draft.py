@@ -9,6 +9,7 @@ from seatrial.core.values import InputError, Record
 from seatrial.core.values.errors import listed
 from seatrial.core.values.files import is_folder
 from seatrial.data.draft.agreement import agreed_guesses
+from seatrial.data.draft.basin import is_in_basin
 from seatrial.data.draft.behaviour import checked_by_behaviour, run_record
 from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.draft_text import RecordsBlock, trial_text, unrecognised_columns
@@ -119,7 +120,9 @@ def draft_trial(
     parts = tuple(() for _ in runs) if model.has_thrusters and len(runs) > 1 else offered_parts(records, stretches)
     pieces = _pieces(runs, records, parts)
     model = starting_model(symbols, list(pieces.values()), size, has_jet=has_jet) if pieces else model
-    held_out, session = held_out_runs(model, pieces), session_line(runs)
+    held_out = held_out_runs(model, pieces)
+    is_model_test = model.has_forces_of_a_ship and is_in_basin((g for one in guesses[longest[0]] for g in one), size)
+    session = session_line(runs, is_in_basin=is_model_test)
     if model.has_thrusters and len(runs) == 1 and records[0] is not None and pieces:
         parts, held_out = _in_two(model, runs, records[0], stretches[0]) or (parts, held_out)
     blocks = _blocks(runs, guesses, stretches, parts, longest[0])

@@ -10,15 +10,21 @@ from seatrial.data.draft.runs_of_logs import LogRun
 from seatrial.data.trial.session import date_in
 
 _ONE_CLOCK = "clocks without a date go on from run to run: of one day they share its current and zeros"
+_ONE_SETUP = 'of one model in a basin: they share the zero of its rudder; write "run" where it was set anew'
 _DAY_S = 86400.0  # s of a day
 _EPOCH_CLOCK_S = 1e8  # s beyond which a clock counts from 1970 or the like, three years; as in the parts of a run
 
 
-def session_line(runs: Sequence[LogRun]) -> str:
-    """Return ``session = ...`` with its reason; empty where a run has no date, or all days differ."""
+def session_line(runs: Sequence[LogRun], *, is_in_basin: bool = False) -> str:
+    """Return ``session = ...`` with its reason; empty where a run has no date, or all days differ.
+
+    is_in_basin: whether they are of one model in a basin: without dates they are then taken for those of one setup.
+    """
     days = [_day_of(run) for run in runs]
     if len(runs) > 1 and not any(days) and _is_one_clock(runs):
         return f'session = "all"    # {_ONE_CLOCK}'
+    if len(runs) > 1 and not any(days) and is_in_basin:
+        return f'session = "all"    # {_ONE_SETUP}'
     if len(runs) < 2 or not all(days):
         return ""
     if len(set(days)) == 1:

@@ -19,6 +19,10 @@ _PITCH_RATIOS = (0.5, 1.4)
 _ADVANCE, _ADVANCES = 0.5, (0.25, 1.2)
 _FASTEST = 0.4  # Froude number beyond which a hull no longer displaces its way as those of the regressions; chosen
 _DIGITS = 4  # significant ones of an estimate; those of sea water
+_STATED_UNITS = {
+    "length": "m", "beam": "m", "draught": "m", "mass": "kg", "gear": "turns", "rho": "kg/m^3",
+    "scale": "model lengths",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -31,6 +35,8 @@ class StatedSize:
         draught: m.
         mass: kg.
         gear: turns of the engine over those of the propeller.
+        rho: density of the water [kg/m^3].
+        scale: ship length over that of a model, 40 for a model 1:40.
     """
 
     length: float = 0.0
@@ -38,9 +44,11 @@ class StatedSize:
     draught: float = 0.0
     mass: float = 0.0
     gear: float = 0.0
+    rho: float = 0.0
+    scale: float = 0.0
 
     def __post_init__(self) -> None:
-        for name, unit in (("length", "m"), ("beam", "m"), ("draught", "m"), ("mass", "kg"), ("gear", "turns")):
+        for name, unit in _STATED_UNITS.items():
             if not 0.0 <= getattr(self, name) < math.inf:
                 raise InputError(f"{name} = {getattr(self, name):g}: a {name} in {unit} is positive; correct it")
         if not self.length and (self.beam or self.draught or self.mass):
@@ -52,9 +60,14 @@ class StatedSize:
             )
 
     @property
+    def density(self) -> float:
+        """Of the water [kg/m^3]; of sea water where it is not stated."""
+        return self.rho or SEA_WATER
+
+    @property
     def form(self) -> HullForm:
         """The hull, with rules for what is not stated; the displacement is kept where it is stated."""
-        volume = self.mass / SEA_WATER
+        volume = self.mass / self.density
         beam, draught = self.beam, self.draught
         if not beam and draught and volume:
             beam = volume / (self.length * draught * _BLOCK)
@@ -107,21 +120,37 @@ def main_dimensions(size: StatedSize) -> tuple[EstimatedValue, ...]:
     )
 
 
+def stated_values(size: StatedSize) -> tuple[EstimatedValue, ...]:
+    """Return what is stated of hull and water besides the length, whether or not a model asks for it."""
+    values = (*main_dimensions(size), EstimatedValue("m", size.mass, "kg, as stated", bool(size.mass)))
+    return tuple(one for one in (*values, water_density(size)) if one.is_stated)
+
+
 def mass_properties(size: StatedSize) -> tuple[EstimatedValue, ...]:
     """Return mass, centre of gravity, inertia [SI] and water density of a ship of this size."""
-    values = displacement(size.form, SEA_WATER).values
+    values = displacement(size.form, size.density).values
     text = f"kg, of a hull with {size.rules}; write the displacement if you know it (init --mass)"
     return (
         EstimatedValue("m", size.mass or values["m"], "kg, as stated" if size.mass else text, bool(size.mass)),
         EstimatedValue("x_G", values["x_G"], "m forward of midship"),
         EstimatedValue("I_z", values["I_z"], "kg m^2, gyradius L/4 (Yasukawa & Yoshimura 2015)"),
-        water_density(),
+        water_density(size),
     )
 
 
-def water_density() -> EstimatedValue:
-    """Return the density of sea water [kg/m^3]."""
-    return EstimatedValue("rho", SEA_WATER, "kg/m^3, sea water; fresh water has 1000")
+def fullness(size: StatedSize) -> EstimatedValue:
+    """Return the mass where it is stated, which it stays in water of any density; else the block coefficient."""
+    if not size.mass:
+        return EstimatedValue("C_b", size.form.C_b, "block coefficient")
+    block = f"C_b {size.form.C_b:.{_DIGITS}g}, which follows from it with L, B, d and rho"
+    return EstimatedValue("m", size.mass, f"kg, as stated: {block}", is_stated=True)
+
+
+def water_density(size: StatedSize) -> EstimatedValue:
+    """Return the density of the water [kg/m^3]: of sea water where it is not stated."""
+    if size.rho:
+        return EstimatedValue("rho", size.rho, "kg/m^3, as stated", is_stated=True)
+    return EstimatedValue("rho", SEA_WATER, "kg/m^3, sea water; fresh water has 1000 (init --rho)")
 
 
 def added_masses(size: StatedSize) -> tuple[EstimatedValue, ...]:
@@ -153,8 +182,8 @@ def hull_rudder_propeller(size: StatedSize, speed: float, advance: float) -> tup
     area = form.L * form.d / 100.0 * (1.0 + 50.0 * form.C_b**2 * (form.B / form.L) ** 2)
     return (
         *main_dimensions(size),
-        EstimatedValue("C_b", form.C_b, "block coefficient" + (", from the stated mass" if size.mass else "")),
-        water_density(),
+        fullness(size),
+        water_density(size),
         EstimatedValue("H_R", _SPAN * form.d, f"m, height of the rudder: {_SPAN:g} d"),
         EstimatedValue("A_R", area, "m^2, area of the rudder: DNV's least area for L, B, d and C_b"),
         EstimatedValue(

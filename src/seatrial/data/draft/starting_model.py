@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from seatrial.core.values import Record
+from seatrial.core.values import Array, Record
+from seatrial.data.check.signal import smoothed_derivative, window_length
 from seatrial.data.draft.ship_estimates import UNSTATED, EstimatedValue, StatedSize, hull_rudder_propeller
 
 _THRUSTERS, _ROLL, _SHIP, _MMG, _WAVES = "thrusters", "roll", "abkowitz", "mmg", "heave_pitch"
@@ -21,7 +22,8 @@ _MMG_TERMS = (
     "R_0", "X_vv", "X_vr", "X_rr", "X_vvvv", "Y_v", "Y_r", "Y_vvv", "Y_vvr", "Y_vrr", "Y_rrr", "N_v", "N_r", "N_vvv",
     "N_vvr", "N_vrr", "N_rrr", "t_P", "w_P0", "gamma_R_plus", "gamma_R_minus",
 )  # fmt: skip
-_VELOCITIES = (frozenset({"u", "v"}), frozenset({"sog", "cog", "psi"}))  # either shows how a ship drifts
+# each of them shows how a ship drifts
+_DRIFT = tuple(map(frozenset, (("u", "v"), ("sog", "cog", "psi"), ("x0", "y0", "psi"), ("lat", "lon", "psi"))))
 _APPROACH_S = 5.0  # s from the start of a run whose mean speed is that of the approach; chosen
 _SLOW_START = 0.7  # of the speed that a run reaches, below which its start is no approach; chosen
 _STEADY_RATE = 0.1  # of its median, by which the rate of a propeller may vary that is steady; chosen
@@ -85,8 +87,9 @@ def starting_model(
 ) -> StartingModel:
     """Return the simplest model for the channels that are used, its free coefficients as the runs can show them.
 
-    A ship with a rudder whose speeds ahead and across are recorded has one of forces where its length is stated: with
-    its propeller where the rate of one is recorded, else where nothing speaks of an engine that is not steady.
+    A ship with a rudder whose speeds ahead and across are recorded, or its track and heading, has one of forces where
+    its length is stated: with its propeller where the rate of one is recorded, else where nothing speaks of an engine
+    that is not steady.
 
     has_jet: whether the rudder is the nozzle of a jet.
     """
@@ -110,7 +113,7 @@ def _steered_model(
     peaks = [_peak(one["delta"]) for one in records if one is not None and "delta" in one]
     falls = len(peaks) > 1 and max(peaks) > _AMPLITUDE_RATIO * min(peaks)
     speed = _approach_speed(records)
-    if size.length and speed and any(one <= symbols for one in _VELOCITIES):
+    if size.length and speed and any(one <= symbols for one in _DRIFT):
         particulars = () if has_jet else hull_rudder_propeller(size, speed, _advance(records))
         if particulars:
             why = "forces of hull, propeller and rudder; abkowitz, without the last two, holds within the runs only"
@@ -134,12 +137,23 @@ def _approach_speed(records: Sequence[Record | None]) -> float:
 
 def _speed_ahead(record: Record) -> float:
     """The mean speed of a run at its start; of one that starts slowly what it reaches; 0 where it is not recorded."""
-    if not {"u", "v"} <= set(record.channels):
+    speed, time = _speed(record)
+    if not speed.size:
         return 0.0
-    speed = np.hypot(record["u"], record["v"])
     reached = float(np.percentile(speed, _PEAK_PERCENTILE))
-    start = float(np.mean(speed[record.time - record.time[0] <= _APPROACH_S]))
+    start = float(np.mean(speed[time - time[0] <= _APPROACH_S]))
     return start if start > _SLOW_START * reached else reached
+
+
+def _speed(record: Record) -> tuple[Array, Array]:
+    """Speed [m/s] as recorded, else along the smoothed track, and its time [s], each (n,); empty where neither is."""
+    if {"u", "v"} <= set(record.channels):
+        return np.hypot(record["u"], record["v"]), record.time
+    length = window_length(len(record))
+    if not {"x0", "y0"} <= set(record.channels) or len(record) < length:
+        return np.empty(0), np.empty(0)
+    north, east = (smoothed_derivative(record[one], record.dt, length) for one in ("x0", "y0"))
+    return np.hypot(north, east), record.time[: len(north)]
 
 
 def _advance(records: Sequence[Record | None]) -> float:

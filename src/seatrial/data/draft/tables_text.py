@@ -2,8 +2,9 @@
 
 from collections.abc import Sequence
 
+from seatrial.data.draft.basin import is_in_basin
 from seatrial.data.draft.column_guess import ColumnGuess
-from seatrial.data.draft.ship_estimates import StatedSize, added_masses, mass_properties
+from seatrial.data.draft.ship_estimates import StatedSize, added_masses, mass_properties, stated_values
 from seatrial.data.draft.starting_model import StartingModel
 from seatrial.data.draft.waves_text import excitation_lines, ship_in_waves
 from seatrial.data.trial.estimated_values import ESTIMATED
@@ -15,6 +16,9 @@ _PRIOR_LINES = [
     "prior_sd_percent = 50    # of coefficients whose scatter is not known",
 ]
 _CURRENT = 0.3  # m/s, standard deviation of an unknown current; as the advice of the checks
+_NO_CURRENT = (
+    f"# current = {_CURRENT:g}    # m/s: taken for a model in a basin, where none runs; uncomment it for open water"
+)
 
 
 def tables_text(model: StartingModel, guesses: Sequence[ColumnGuess], size: StatedSize) -> list[str]:
@@ -43,14 +47,16 @@ def tables_text(model: StartingModel, guesses: Sequence[ColumnGuess], size: Stat
         "",
         *(excitation_lines() if model.has_waves else []),
         *_sensor_lines(model, guesses),
-        *_offset_lines(model, guesses),
+        *_offset_lines(model, guesses, size),
     ]
 
 
 def _ship_lines(model: StartingModel, size: StatedSize) -> list[str]:
     stated = f"L = {size.length:g}    # m, length of the craft, as stated"
     missing = "L = 0.0    # MISSING: m, length of the craft, the one number that this file lacks"
-    lines = [stated if size.length else missing, *(one.line for one in model.particulars)]
+    lines = [stated if size.length else missing]
+    lines += [f"scale = {size.scale:g}    # a model 1:{size.scale:g}, as stated"] if size.scale else []
+    lines += [one.line for one in model.particulars]
     if model.has_derivatives:
         lines += [one.line for one in mass_properties(size)]
         lines.append(f"U_n = {model.speed:.2f}    # m/s, speed at which the runs begin, as recorded")
@@ -64,7 +70,8 @@ def _ship_lines(model: StartingModel, size: StatedSize) -> list[str]:
         breadth = f"B = {size.beam:g}    # m, breadth, as stated" if size.beam else "# B = 0.0    # m, breadth"
         lines.append(f"{breadth}: with it GM follows from the period, within some 40 %")
         lines.append("# GM = 0.0    # m, metacentric height, if known: the period then gives the radius of gyration")
-    return lines
+    written = {line.partition(" =")[0] for line in lines}
+    return [*lines, *(one.line for one in stated_values(size) if one.key not in written)]
 
 
 def thruster_tables(guesses: Sequence[ColumnGuess], length: float) -> list[str]:
@@ -113,12 +120,17 @@ def _sensor_lines(model: StartingModel, guesses: Sequence[ColumnGuess]) -> list[
     return ["[sensors]", 'velocity = "ground"    # of a receiver, over ground: a current is in them', ""]
 
 
-def _offset_lines(model: StartingModel, guesses: Sequence[ColumnGuess]) -> list[str]:
+def _offset_lines(model: StartingModel, guesses: Sequence[ColumnGuess], size: StatedSize) -> list[str]:
     """What differs from day to day: a current, where positions or velocities show it, and the zero of the rudder."""
     if not (model.has_forces_of_a_ship or model.has_thrusters):
         return []
     shows_current = _is_over_ground(guesses) or any(g.is_used and g.symbol in ("lat", "x0") for g in guesses)
-    current = f"current = {_CURRENT:g}    # m/s, of which nothing is known but that it is of this size"
+    is_still = model.has_forces_of_a_ship and is_in_basin(guesses, size)
+    current = (
+        _NO_CURRENT
+        if is_still
+        else f"current = {_CURRENT:g}    # m/s, of which nothing is known but that it is of this size"
+    )
     zero = 'offsets = ["delta"]    # the zero of the rudder\'s indicator'
     lines = [*([current] if shows_current else []), *([zero] if model.has_forces_of_a_ship else [])]
     return ["[estimate]", *lines, ""] if lines else []

@@ -11,6 +11,7 @@ import math
 from dataclasses import dataclass, field
 
 from seatrial.core.values import InputError, Ship
+from seatrial.physics.hydro.dispersion import SEA_WATER
 from seatrial.physics.hydro.propeller_series import OOSTERVELD, thrust_quadratic
 
 ZHOU = "Zhou et al. 1983, regression on Motora's charts"
@@ -43,15 +44,22 @@ class HullForm:
     def from_ship(cls, ship: Ship) -> "HullForm":
         """Return the form of a ship.
 
+        The block coefficient of a ship that states its mass alone follows from that.
+
         Raises:
             InputError: L, B, d or C_b is not among its particulars.
         """
-        missing = [n for n in ("L", "B", "d", "C_b") if not ship.particulars.get(n, 0.0) > 0.0]
+        known = ship.particulars
+        missing = [n for n in ("L", "B", "d") if not known.get(n, 0.0) > 0.0]
+        block, mass = known.get("C_b", 0.0), known.get("m", 0.0)
+        if not block > 0.0 and mass > 0.0 and not missing:
+            # m = rho C_b L B d (Archimedes)
+            block = mass / (known.get("rho", SEA_WATER) * known["L"] * known["B"] * known["d"])
+        missing += [] if block > 0.0 or mass > 0.0 else ["C_b"]
         if missing:
             names = ", ".join(missing)
             raise InputError(f"ship '{ship.name}' lacks {names} for empirical coefficients; add them under [ship]")
-        p = ship.particulars
-        return cls(p["L"], p["B"], p["d"], p["C_b"], p.get("x_G", 0.0) / p["L"])
+        return cls(known["L"], known["B"], known["d"], block, known.get("x_G", 0.0) / known["L"])
 
     @property
     def aspect_ratio(self) -> float:

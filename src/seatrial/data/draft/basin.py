@@ -1,0 +1,21 @@
+"""Whether logs are of a free-running model in a basin, where no current runs and one model has one rudder zero."""
+
+from collections.abc import Iterable
+
+from seatrial.data.draft.column_guess import ColumnGuess
+from seatrial.data.draft.ship_estimates import StatedSize
+
+_LONGEST_MODEL = 10.0  # m; chosen: the largest free-running models of ships have 7 to 8
+_SATELLITES = frozenset({"lat", "lon", "sog", "cog"})  # what a receiver of satellites logs
+
+
+def is_in_basin(guesses: Iterable[ColumnGuess], size: StatedSize) -> bool:
+    """Return whether a craft is a model whose place was measured from the shore: x0, y0, and nothing of a receiver.
+
+    guesses: of all sources of a run, used or not.
+    """
+    known = list(guesses)
+    is_model = size.scale > 1.0 or 0.0 < size.length < _LONGEST_MODEL
+    has_track = any(one.symbol == "x0" and one.is_used and one.frame != "enu" for one in known)
+    is_over_ground = any(one.is_used and one.symbol == "u" and one.frame in ("earth", "enu") for one in known)
+    return is_model and has_track and not is_over_ground and not any(one.symbol in _SATELLITES for one in known)
