@@ -88,7 +88,8 @@ def test_the_stated_scatter_is_that_of_two_published_tankers() -> None:
                 squares.setdefault(name, []).append((estimate.values[name] - one.values[name]) ** 2)
     sides = squares.pop("gamma_R_plus") + squares.pop("gamma_R_minus")
     assert np.sqrt(np.mean(sides)) == pytest.approx(stated["gamma_R_plus"], abs=0.005)
-    assert np.sqrt(np.mean(squares.pop("t_P"))) < stated["t_P"]
+    for name in ("t_P", "R_0"):  # whose scatter among ships is chosen, and larger
+        assert np.sqrt(np.mean(squares.pop(name))) < stated[name]
     for name, values in squares.items():
         assert np.sqrt(np.mean(values)) == pytest.approx(stated[name], abs=0.01), name
 

@@ -126,7 +126,8 @@ class IntervalBasis:
         degrees_of_freedom: of Student's t.
         factor: multiplies a predicted standard deviation where no training run shows that kind of measure.
         measure_deviation: kind of measure -> standard deviation that is added, in its unit.
-        offsets: offset (``delta zero``) -> standard deviation between sessions, SI.
+        offsets: offset (``delta zero``) -> standard deviation between sessions, SI; empty where one session alone was
+            recorded, which shows nothing of it.
         process: state -> intensity of process noise, SI over the root of a second.
         training_envelope: what the training runs cover, SI (see `estimation.information.motion_envelope`).
         tied: parameter -> value of each tied model.

@@ -3,20 +3,31 @@
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from seatrial.core.values import InputError
 from seatrial.data.trial.estimated_values import ESTIMATED
+from seatrial.data.trial.literature import USUAL_PROPELLER
 from seatrial.physics.hydro.dispersion import SEA_WATER, G
-from seatrial.physics.hydro.empirical import ZHOU, HullForm, added_mass, displacement, interaction_wake
+from seatrial.physics.hydro.empirical import (
+    RESISTANCE,
+    ZHOU,
+    HullForm,
+    added_mass,
+    displacement,
+    interaction_wake,
+    propulsion,
+)
+from seatrial.physics.hydro.propeller_series import thrust_coefficient
 
 # L/B, B/d and C_b of a ship of which only the length is stated; chosen: in the middle of the forms of Zhou's regression
 _LENGTH_TO_BREADTH, _BREADTH_TO_DRAUGHT, _BLOCK = 6.0, 3.0, 0.65
 _BLOCKS = (0.2, 1.0)  # of anything that floats: a slender catamaran's hulls within L, B and d, a box
 _SPAN = 0.75  # height of a rudder over the draught; chosen: between full ships' 0.7 and fine ships' 0.8
 _DIAMETERS = (0.35, 0.75)  # range of a propeller's diameter over the draught; chosen: small models, ferries
-_PITCH_RATIO = 0.75  # P/D, usual, and its range in the B series (Oosterveld & van Oossanen 1975)
-_PITCH_RATIOS = (0.5, 1.4)
-# advance ratio over P/D of a ship under way, and range of advance ratios beyond which nothing drives a ship; chosen
-_ADVANCE, _ADVANCES = 0.5, (0.25, 1.2)
+_THRUST = 0.18  # thrust coefficient of a ship's propeller under way; chosen: KVLCC2's is 0.20, of faster ships less
+_PITCH_RATIOS = np.linspace(0.5, 1.4, 91)  # P/D of the B series (Oosterveld & van Oossanen 1975)
+_ADVANCES = (0.25, 1.2)  # range of advance ratios beyond which nothing drives a ship; chosen
 _FASTEST = 0.4  # Froude number beyond which a hull no longer displaces its way as those of the regressions; chosen
 _DIGITS = 4  # significant ones of an estimate; those of sea water
 _STATED_UNITS = {
@@ -174,10 +185,12 @@ def hull_rudder_propeller(size: StatedSize, speed: float, advance: float) -> tup
         return ()
     flow = advance * (1.0 - interaction_wake(form))  # m in a turn: J = u (1 - w) / (n D)
     smallest, largest = (share * form.d for share in _DIAMETERS)
-    diameter = min(max(flow / (_ADVANCE * _PITCH_RATIO), smallest), largest)
+    # thrust over rho n^2: (1 - t_P) rho n^2 D^4 K_T = rho/2 L d U^2 R_0, n = U / advance
+    thrust = 0.5 * form.L * form.d * advance**2 * RESISTANCE / (1.0 - _thrust_deduction(form))
+    diameter = min(max((thrust / _THRUST) ** 0.25, smallest), largest)
     if not _ADVANCES[0] <= flow / diameter <= _ADVANCES[1]:
         return ()
-    pitch_ratio = min(max(flow / (_ADVANCE * diameter), _PITCH_RATIOS[0]), _PITCH_RATIOS[1])
+    pitch_ratio = _pitch_ratio(flow / diameter, thrust / diameter**4)
     # DNV rules for ships, part 3 chapter 14: least area of a rudder in the propeller's slipstream
     area = form.L * form.d / 100.0 * (1.0 + 50.0 * form.C_b**2 * (form.B / form.L) ** 2)
     return (
@@ -187,10 +200,22 @@ def hull_rudder_propeller(size: StatedSize, speed: float, advance: float) -> tup
         EstimatedValue("H_R", _SPAN * form.d, f"m, height of the rudder: {_SPAN:g} d"),
         EstimatedValue("A_R", area, "m^2, area of the rudder: DNV's least area for L, B, d and C_b"),
         EstimatedValue(
-            "D_P", diameter, "m, diameter of the propeller, from its rate and the speed: R_0 and t_P go with it"
+            "D_P", diameter, "m, diameter of the propeller that drives such a hull at its rate: R_0 and t_P go with it"
         ),
         EstimatedValue("pitch_ratio", pitch_ratio, "P/D, from the same"),
     )
+
+
+def _thrust_deduction(form: HullForm) -> float:
+    usual = USUAL_PROPELLER
+    return propulsion(form, usual["pitch_ratio"], usual["area_ratio"], round(usual["blades"])).values["t_P"]
+
+
+def _pitch_ratio(J: float, thrust: float) -> float:
+    """Return the P/D with which a B series propeller has a thrust coefficient at an advance ratio, or comes nearest."""
+    area_ratio, blades = USUAL_PROPELLER["area_ratio"], round(USUAL_PROPELLER["blades"])
+    thrusts = [thrust_coefficient(np.array([J]), ratio, area_ratio, blades)[0] for ratio in _PITCH_RATIOS.tolist()]
+    return float(_PITCH_RATIOS[np.argmin(np.abs(np.array(thrusts) - thrust))])
 
 
 def _as_float(number: str) -> str:

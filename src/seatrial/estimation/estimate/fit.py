@@ -25,7 +25,7 @@ from seatrial.estimation.estimate.intervals import (
 )
 from seatrial.estimation.estimate.large_records import choice_over_all, choice_runs
 from seatrial.estimation.estimate.plausibility import implausible_coefficients, refuse_implausible
-from seatrial.estimation.estimate.point_estimate import PointEstimate, fit_output_error
+from seatrial.estimation.estimate.point_estimate import PointEstimate, fit_output_error, refuse_unstarted
 from seatrial.estimation.estimate.process_noise import ProcessNoise
 from seatrial.estimation.estimate.process_noise_interval import process_noise_interval
 from seatrial.estimation.estimate.runs import Runs
@@ -232,6 +232,8 @@ def _chosen(
         evaluations=options.evaluations,
         report_progress=report_progress,
     )
+
+    refuse_unstarted(shooting)
 
     def whole_runs() -> PointEstimate | None:
         if np.isinf(seconds):

@@ -8,13 +8,13 @@ from itertools import pairwise
 import numpy as np
 
 from seatrial.core.text.words import counted
-from seatrial.core.values import Array, ProgressReporter
+from seatrial.core.values import Array, InputError, ProgressReporter
 from seatrial.estimation.estimate.settings import WHITE_INFLATION
 from seatrial.estimation.information.autocorrelation import autocorrelation, variance_inflation
 from seatrial.estimation.information.covariance import inverse
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.population import SessionPopulation
-from seatrial.numerics.optimise import Optimum, levenberg_marquardt
+from seatrial.numerics.optimise import Optimum, Status, levenberg_marquardt
 
 # promised decrease of the cost at which a search ends, ours
 _NEGLIGIBLE = 1e-8
@@ -125,6 +125,8 @@ def fit_output_error(
     problem = replace(problem, noise=np.where(np.isfinite(stated_noise), stated_noise, problem.noise))
     estimate = _search(problem, common_parameters, initial_states, min(_FEW_EVALUATIONS, evaluations), report_progress)
     spent, settled = estimate.optimum.solution.evaluations, False
+    if estimate.optimum.solution.status is Status.FAILED:
+        return estimate
     for k in range(rounds):
         noise = np.where(
             np.isfinite(stated_noise), stated_noise, residual_spread(estimate.problem, estimate.residuals())
@@ -165,6 +167,26 @@ def _is_settled(before: OutputError, after: OutputError) -> bool:
     slow = np.concatenate([np.log(colours[1] / colours[0]), np.log(deviations[1] / deviations[0])])
     # noise settled to 2 %, its colour and what differs between sessions to 10 %; chosen
     return bool(np.max(np.abs(ratio)) < 0.02 and np.max(np.abs(slow)) < 0.1)
+
+
+def refuse_unstarted(estimate: PointEstimate) -> None:
+    """Accept an estimate whose search could begin.
+
+    Raises:
+        InputError: the model diverges on the records with the values from which it was to begin; which run, and when.
+    """
+    if estimate.optimum.solution.status is not Status.FAILED:
+        return
+    problem = estimate.problem
+    data, y = problem.data, problem.simulated_outputs(estimate.common_parameters, estimate.optimum.local)
+    row = int(np.argmax(~np.isfinite(y).all(axis=1)))
+    segment = int(np.searchsorted(data.offsets, row, side="right")) - 1
+    seconds = data.dt * (row - int(data.offsets[segment]))
+    raise InputError(
+        f"the search cannot begin: with the start values, model '{problem.model.name}' diverges in run "
+        f"'{data.runs[data.run[segment]]}', {seconds:.3g} s after the start of a segment of it; give start values "
+        "nearer the craft's under [model.start], priors or other fixed values, or leave that run out"
+    )
 
 
 def _search(

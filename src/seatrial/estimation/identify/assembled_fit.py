@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from seatrial.core.results import Fit, Identifiability, Posterior, Profile
-from seatrial.core.values import Finding, InputError
+from seatrial.core.values import Finding
 from seatrial.core.values.versions import versions
 from seatrial.data.trial.approach import approach_condition
 from seatrial.estimation.estimate import Estimation, IntervalMethod
@@ -34,11 +34,9 @@ from seatrial.estimation.identify.short_records import default_profiles, short_r
 from seatrial.estimation.identify.thruster_craft import thruster_craft
 from seatrial.estimation.identify.varying_gain import varying_gain_finding
 from seatrial.estimation.information.frequency_response import frequency_responses
-from seatrial.estimation.predict.divergence import DIVERGED
 from seatrial.estimation.predict.k_step import horizon_list, k_step_errors
 from seatrial.estimation.predict.predict_runs import RunPredictions, predict_runs
 from seatrial.estimation.predict.window_scores import window_lengths
-from seatrial.numerics.optimise import Status
 
 
 def assembled_fit(task: Identification, selected: SelectedModel, findings: Sequence[Finding] = ()) -> Fit:
@@ -48,7 +46,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         findings: on the estimate, from the strategy.
 
     Raises:
-        InputError: a training run cannot be simulated, or diverges before the search has moved any coefficient.
+        InputError: a training run cannot be simulated with the estimated coefficients.
     """
     trial, runs = task.trial, task.runs
     selected, posterior = _with_sampling(task, selected)
@@ -137,23 +135,12 @@ def interval_ends(
 
 
 def _predictions(task: Identification, selected: SelectedModel) -> RunPredictions:
-    """Return all runs predicted with the model that is used, intervals without the spread of tied models.
-
-    Raises:
-        InputError: a training run cannot be simulated, or the search could not begin as one diverges.
-    """
-    predicted = predict_runs(
+    """Return all runs predicted with the model that is used, intervals without the spread of tied models."""
+    return predict_runs(
         selected.estimation, task.records, task.initial_seconds, task.runs.length, task.options.seed,
         task.report_progress, selected.tied, window_lengths(task.options.windows),
         offsets_from_start=task.trial.estimate.offsets_from_start,
     )  # fmt: skip
-    if selected.estimation.estimate.optimum.solution.status is Status.FAILED:
-        for finding in (f for f in predicted.findings if f.code == DIVERGED):
-            reason = finding.message.partition(";")[0]  # it is not scored
-            raise InputError(
-                f"the search cannot begin: {reason}; give start values under [model.start], or {finding.advice}"
-            )
-    return predicted
 
 
 def _identifiability(task: Identification, estimation: Estimation, approach: Mapping[str, float]) -> Identifiability:

@@ -17,8 +17,6 @@ from seatrial.physics.simulate.divergence import first_row_outside, state_limits
 MEASURED_FACTOR = 10.0
 """A diverging run is scored until a state exceeds its largest measured magnitude this many times; chosen."""
 MAX_TERMS = 4  # terms that are named; chosen: those behind them are small
-DIVERGED = "diverged"
-"""Code of the finding that a run's simulation leaves all bounds."""
 _LEAST_TERM_SHARE = 0.05  # of the strongest term, below which a term is not named; chosen
 
 
@@ -91,7 +89,7 @@ def divergence_finding(model: Model, prediction: Prediction, divergence: Diverge
     )
     return Finding(
         Severity.WARNING,
-        DIVERGED,
+        "diverged",
         f"{prediction.role} run '{prediction.record}' diverges in '{divergence.state}' after {divergence.seconds:g} s, "
         f"driven by the terms of {named}; it is scored up to then",
         f"{divergence.seconds:g} of {prediction.measured.duration:g} s",

@@ -256,12 +256,13 @@ def _interval_basis(
     problem, scatter = estimation.estimate.problem, calibration.uncertainty
     base = estimation.model.parameters
     changed = [{p.name: p.value for p in t.model.parameters if p.value != base[p.name].value} for t in tied]
+    between = dict(zip(problem.session_unknowns, np.sqrt(np.diag(scatter.offsets)).tolist(), strict=True))
     return IntervalBasis(
         scatter.coefficients,
         scatter.degrees_of_freedom,
         calibration.discrepancy.factor,
         calibration.discrepancy.sd_by_kind,
-        dict(zip(problem.session_unknowns, np.sqrt(np.diag(scatter.offsets)).tolist(), strict=True)),
+        between if len(problem.data.sessions) > 1 else {},
         {s: float(q) for s, q in zip(estimation.model.states, scatter.process, strict=True) if q > 0},
         covered,
         tuple(changed),

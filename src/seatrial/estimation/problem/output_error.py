@@ -7,18 +7,17 @@ Whole runs give the classical output-error method (Maine & Iliff 1985), pieces o
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index, Prior
+from seatrial.estimation.problem.initial_states import measured_initial_states
 from seatrial.estimation.problem.population import SessionPopulation
 from seatrial.estimation.problem.segments import Segments
 from seatrial.numerics.optimise import NormalEquations
 from seatrial.numerics.workers import map_in_threads
-from seatrial.physics.sensors.measured_outputs import is_late
 from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch
 from seatrial.physics.simulate.linear import batch_class
 
@@ -200,17 +199,8 @@ class OutputError:
         return np.concatenate([np.arange(len(self.free)), own + np.arange(self.unknowns_per_session)])
 
     def measured_initial_states(self) -> Array:
-        """Initial states from each segment's first measured samples, (segments, len(starts)); zero if unmeasured."""
-        local = np.zeros((self.data.count, len(self.starts)))
-        for m, state in enumerate(self.starts):
-            channel = state.split("_")[0] if is_late(state) else state
-            if channel in self.data.outputs:
-                column = self.data.measured[:, self.data.outputs.index(channel)]
-                for s, (a, b) in enumerate(pairwise(self.data.offsets)):
-                    good = np.flatnonzero(np.isfinite(column[a:b]))
-                    if len(good):
-                        local[s, m] = column[a + good[0]]
-        return local
+        """Return the initial states of each segment as measured, (segments, len(starts)), SI."""
+        return measured_initial_states(self.data, self.starts)
 
     def unpack(self, shared: Array, local: Array) -> tuple[Array, Array, Array]:
         """Return full initial states, model parameters and corrections of each segment."""

@@ -26,8 +26,10 @@ _INTERACTION_DEVIATIONS = {
     "w_P0": 0.18, "t_R": 0.14, "a_H": 0.04, "x_H_prime": 0.01, "l_R_prime": 0.19, "gamma_R_plus": 0.11,
     "gamma_R_minus": 0.11, "epsilon": 0.31, "kappa": 0.18, "f_alpha": 0.20,
 }  # fmt: skip
-# the same of the thrust; t_P differs by 0.01 from those two, and by 0.05 among ships (chosen)
-_PROPULSION_DEVIATIONS = {"t_P": 0.05, "k_0": 0.02, "k_1": 0.06, "k_2": 0.03}
+# the same of the thrust; t_P differs by 0.01 from those two, and by 0.05 among ships (chosen), R_0 by its half (chosen)
+_PROPULSION_DEVIATIONS = {"t_P": 0.05, "k_0": 0.02, "k_1": 0.06, "k_2": 0.03, "R_0": 0.011}
+RESISTANCE = 0.022
+"""Resistance over rho/2 L d U^2 of KVLCC2 (Yasukawa & Yoshimura 2015, table 3); of Esso Osaka 0.021."""
 
 
 @dataclass(frozen=True)
@@ -205,12 +207,15 @@ def interaction_coefficients(form: HullForm, aspect_ratio: float) -> EmpiricalEs
 
 
 def propulsion(form: HullForm, pitch_ratio: float, area_ratio: float, blades: int) -> EmpiricalEstimate:
-    """Return thrust deduction and open-water thrust of a single screw whose own curve nobody knows."""
+    """Return thrust deduction, open-water thrust of a single screw whose own curve nobody knows, and resistance."""
     wake = interaction_wake(form)
     k_0, k_1, k_2 = thrust_quadratic(pitch_ratio, area_ratio, blades)
     # t = 0.60 w + 0.01: Harvald 1983, single screw
-    values = {"t_P": 0.60 * wake + 0.01, "k_0": k_0, "k_1": k_1, "k_2": k_2}
-    source = f"t_P {HARVALD}; k_0, k_1, k_2 {OOSTERVELD}, P/D {pitch_ratio:g}, A_E/A_0 {area_ratio:g}, {blades} blades"
+    values = {"t_P": 0.60 * wake + 0.01, "k_0": k_0, "k_1": k_1, "k_2": k_2, "R_0": RESISTANCE}
+    source = (
+        f"t_P {HARVALD}; k_0, k_1, k_2 {OOSTERVELD}, P/D {pitch_ratio:g}, A_E/A_0 {area_ratio:g}, {blades} blades; "
+        "R_0 of KVLCC2"
+    )
     valid, limits = _validity(form, (0.5, 0.85), (4.0, 8.0), (2.0, 4.5))  # of merchant ships, as of the wake
     return EmpiricalEstimate(values, source, valid, limits, dict(_PROPULSION_DEVIATIONS))
 
