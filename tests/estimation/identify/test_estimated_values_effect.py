@@ -15,8 +15,10 @@ from seatrial.estimation.identify import EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.identify.estimated_values_effect import (
     EstimatedValueEffect,
     estimated_value_effects,
+    estimated_value_shifts,
     finding_with_effects,
     with_effects,
+    with_estimated_values,
 )
 
 FOUND = Finding(Severity.WARNING, ESTIMATED_VALUES, f"m_y is {NOT_MEASURED}", "marked", "measure", "only as far")
@@ -45,10 +47,10 @@ def fitted(one: Model, record: Record) -> Estimation:
 
 
 def test_the_change_is_that_of_a_fit_with_the_other_value(record: Record) -> None:
-    (effect,) = estimated_value_effects(fitted(estimated("m_y"), record))
+    centre = fitted(estimated("m_y"), record)
+    (effect,) = estimated_value_effects(centre, estimated_value_shifts(centre))
     assert effect.name == "m_y" and effect.error == 0.1
     before, after = (fitted(estimated("m_y", f), record).model.parameters for f in (0.995, 1.005))
-    centre = fitted(estimated("m_y"), record)
     change = (after[effect.coefficient].value - before[effect.coefficient].value) / 0.01 * 0.1
     place = centre.estimate.problem.free.index(effect.coefficient)
     assert effect.share_of_interval == pytest.approx(abs(change) / centre.interval.half_width[place], rel=0.1)
@@ -56,7 +58,19 @@ def test_the_change_is_that_of_a_fit_with_the_other_value(record: Record) -> Non
 
 
 def test_without_estimated_values_no_information_is_computed(record: Record) -> None:
-    assert estimated_value_effects(fitted(model(), record)) == ()
+    found = fitted(model(), record)
+    assert estimated_value_shifts(found) == () and with_estimated_values(found, ()) is found
+
+
+def test_intervals_of_coefficients_hold_the_error_of_an_estimated_value(record: Record) -> None:
+    """With the value 10 % off, the truth is two half intervals away at the value stated, and inside with its error."""
+    found = fitted(estimated("m_y", 1.1), record)
+    widened = with_estimated_values(found, estimated_value_shifts(found))
+    truth = np.array([true_model().parameters[name].value for name in found.estimate.problem.free])
+    away = np.abs(found.estimate.common_parameters[: len(truth)] - truth)
+    assert np.max(away / found.interval.half_width[: len(truth)]) > 2.0
+    assert np.all(away < widened.interval.half_width[: len(truth)])
+    assert widened.interval.meaning.endswith("with m_y wrong by 10 % (standard deviation)")
 
 
 def effects(*shares: float) -> tuple[EstimatedValueEffect, ...]:
@@ -73,7 +87,9 @@ def test_a_value_matters_by_a_coefficient_or_by_predictions(share: float, predic
 def test_what_matters_is_named_the_worst_first() -> None:
     warned = finding_with_effects(FOUND, effects(5.0, 4.0, 3.0, 2.0, 0.5, 0.1))
     assert warned.severity is Severity.WARNING and warned.message == FOUND.message
-    assert warned.evidence.startswith("m_0 10 % larger moves Y_v by +20 % (5.0 of half its interval), and predictions")
+    assert warned.evidence.startswith(
+        "m_0 10 % larger moves Y_v by +20 % (5.0 of half its interval by the records alone), and predictions"
+    )
     assert warned.evidence.endswith("; m_3 too; m_4 and m_5 matter less") and warned.advice.startswith("measure m_0")
 
 
@@ -85,10 +101,10 @@ def test_where_none_matters_it_is_a_note() -> None:
 
 
 def test_other_findings_pass_unchanged(record: Record) -> None:
-    other, of_values = with_effects((OTHER, FOUND), fitted(model(), record))
+    other, of_values = with_effects((OTHER, FOUND), fitted(model(), record), ())
     assert other is OTHER and of_values == finding_with_effects(FOUND, ())
 
 
 def test_of_an_open_sign_no_share_is_given() -> None:
     text = EstimatedValueEffect("D_P", 0.1, "w_P0", math.nan, 1.6, 0.018).sentence
-    assert "moves w_P0 by 1.6 of half its interval, and" in text and "nan" not in text
+    assert "moves w_P0 by 1.6 of half its interval by the records alone, and" in text and "nan" not in text

@@ -38,7 +38,8 @@ if TYPE_CHECKING:
 class Fit(Summarised):
     """An estimated model with everything a report shows.
 
-    `ship`, `covariance` (of the free coefficients in the order of `model.parameters.free_names`, shape (n, n)) and
+    `ship`, `covariance` (of the free coefficients in the order of `model.parameters.free_names`, shape (n, n), with
+    the fixed values as they stand, while intervals of coefficients hold what estimated ones may be wrong by) and
     `interval_basis` (what intervals of further predictions are made of) are kept in model.toml.
     """
 

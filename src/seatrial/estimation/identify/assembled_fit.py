@@ -15,7 +15,11 @@ from seatrial.estimation.identify.antenna_place import antenna_findings
 from seatrial.estimation.identify.box_scale import stands_on_box
 from seatrial.estimation.identify.closed_loop_findings import closed_loop_findings
 from seatrial.estimation.identify.course_stability import course_finding
-from seatrial.estimation.identify.estimated_values_effect import with_effects
+from seatrial.estimation.identify.estimated_values_effect import (
+    estimated_value_shifts,
+    with_effects,
+    with_estimated_values,
+)
 from seatrial.estimation.identify.held_couplings import held_couplings
 from seatrial.estimation.identify.identifiability import identifiability
 from seatrial.estimation.identify.identification import Identification
@@ -54,7 +58,9 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
     estimation = with_model_spread(selected.estimation, selected.tied)
     approach = approach_condition(runs.records, trial.model)
     assessment = _identifiability(task, estimation, approach)
-    coefficients = fit_result.coefficients(estimation, trial.truth, interval_ends(assessment.profiles, posterior))
+    shifts = estimated_value_shifts(estimation)
+    widened = with_estimated_values(estimation, shifts)
+    coefficients = fit_result.coefficients(widened, trial.truth, interval_ends(assessment.profiles, posterior))
     free = estimation.estimate.problem.free
     responses = frequency_responses(estimation.model, predicted.predictions, task.outputs)
     predicted_runs = {p.record for p in predicted.predictions}
@@ -68,14 +74,14 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         coefficients=coefficients,
         covariance=estimation.interval.covariance[: len(free), : len(free)],
         solution=estimation.estimate.optimum.solution,
-        method=fit_result.method(estimation, has_profiles=bool(assessment.profiles)),
+        method=fit_result.method(widened, has_profiles=bool(assessment.profiles)),
         offsets=fit_result.offsets(estimation),
         offset_populations=fit_result.offset_populations(estimation),
         channel_noise=fit_result.noise(estimation),
         residuals=fit_result.residuals(estimation),
         predictions=predicted.predictions,
         findings=(
-            *with_effects(task.findings, estimation),
+            *with_effects(task.findings, estimation, shifts),
             *selected.findings, *findings, *fit_result.open_signs(estimation.model, coefficients),
             *unphysical_finding(estimation.model, runs.records), *fit_result.bounds_hit(estimation),
             *fit_result.unconverged(estimation), *other_optima(estimation),

@@ -1,4 +1,4 @@
-"""Which of the values that a trial file marks as estimated matters: the coefficients and predictions that it moves."""
+"""What estimated values of a trial file may be wrong by, and the coefficients and predictions that they move."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -8,7 +8,7 @@ import numpy as np
 
 from seatrial.core.text.numbers import percent, signed_percent, significant
 from seatrial.core.text.words import enumeration
-from seatrial.core.values import NOT_MEASURED, Finding, Severity
+from seatrial.core.values import NOT_MEASURED, Array, Finding, Severity
 from seatrial.data.trial.estimated_values import ESTIMATED_VALUES
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.identify.assumed_information import assumed_information
@@ -18,9 +18,25 @@ MATTERS = 1.0
 """Change of a coefficient over half its interval, and of predictions over the noise, from which a value matters: an
 interval that is right but for this value would no longer hold the truth; chosen."""
 PLAUSIBLE_ERROR = {"rho": 0.025}
-"""Relative error of values that are known better than to `RELATIVE_CHANGE`: water between fresh and salt."""
+"""Standard deviation of values that are known better than to `RELATIVE_CHANGE`: water between fresh and salt."""
 MAX_NAMED = 3
 """Values of which a warning says what they do; chosen."""
+
+
+@dataclass(frozen=True, eq=False)
+class EstimatedValueShift:
+    """How the free coefficients move, (k,), SI, where an estimated value is too small by a share of it.
+
+    Attributes:
+        name: of the value; error: the share, a standard deviation.
+        moves: of the free coefficients.
+        prediction: rms change of everything compared over the training runs, over the noise.
+    """
+
+    name: str
+    error: float
+    moves: Array
+    prediction: float
 
 
 @dataclass(frozen=True)
@@ -49,8 +65,8 @@ class EstimatedValueEffect:
 
     @property
     def sentence(self) -> str:
-        """``m 10 % larger moves Y_v by +12 % (3.1 of half its interval), and predictions by 0.020 of the noise``."""
-        times = f"{significant(self.share_of_interval, 2)} of half its interval"
+        """Return what it moves: ``m 10 % larger moves Y_v by +12 % (3.1 of half …), and predictions …``."""
+        times = f"{significant(self.share_of_interval, 2)} of half its interval by the records alone"
         is_signed = math.isfinite(self.relative_change)
         how_far = f"{signed_percent(self.relative_change)} ({times})" if is_signed else times
         return (
@@ -59,32 +75,59 @@ class EstimatedValueEffect:
         )
 
 
-def estimated_value_effects(estimation: Estimation) -> tuple[EstimatedValueEffect, ...]:
-    """Return what each estimated value does that the model holds and that is not zero; the most first."""
+def estimated_value_shifts(estimation: Estimation) -> tuple[EstimatedValueShift, ...]:
+    """Return what each estimated value does that the model holds and that is not zero."""
     model = estimation.model
     names = [p.name for p in model.parameters if not p.free and p.value and p.source.startswith(NOT_MEASURED)]
     if not names:
         return ()
-    known, free = assumed_information(estimation, names), estimation.estimate.problem.free
-    half = np.maximum(estimation.interval.half_width[: known.count], 1e-300)  # above zero, for a division
-    effects = []
+    known, shifts = assumed_information(estimation, names), []
     for name in names:
         error = PLAUSIBLE_ERROR.get(name, RELATIVE_CHANGE)
         moves, growth = known.shifts(known.unit(name) * error * model.parameters[name].value)
-        most = int(np.argmax(np.abs(moves) / half))
-        value = model.parameters[free[most]].value
-        relative = float(moves[most] / value) if abs(value) > half[most] else math.nan
-        rms = float(np.sqrt(growth / known.samples))
-        share = float(abs(moves[most]) / half[most])
-        effects.append(EstimatedValueEffect(name, error, free[most], relative, share, rms))
+        shifts.append(EstimatedValueShift(name, error, moves, float(np.sqrt(growth / known.samples))))
+    return tuple(shifts)
+
+
+def with_estimated_values(estimation: Estimation, shifts: Sequence[EstimatedValueShift]) -> Estimation:
+    """Return the estimation whose intervals hold what estimated values may be wrong by, independently of one another.
+
+    The covariance is of coefficients beside other values than the model's: for their intervals, not for other craft.
+    """
+    if not shifts:
+        return estimation
+    moves, interval = np.array([shift.moves for shift in shifts]), estimation.interval
+    count, covariance = moves.shape[1], interval.covariance.copy()
+    covariance[:count, :count] += moves.T @ moves
+    errors = sorted({shift.error for shift in shifts})
+    shares = " or ".join(f"{percent(error)} %" for error in errors)
+    meaning = f"{interval.meaning}, with {enumeration([s.name for s in shifts])} wrong by {shares} (standard deviation)"
+    widened = replace(interval, covariance=covariance, meaning=meaning)
+    return replace(estimation, uncertainty=replace(estimation.uncertainty, interval=widened))
+
+
+def estimated_value_effects(
+    estimation: Estimation, shifts: Sequence[EstimatedValueShift]
+) -> tuple[EstimatedValueEffect, ...]:
+    """Return what each estimated value does to the coefficient that it moves most; the most first."""
+    free, effects = estimation.estimate.problem.free, []
+    half = np.maximum(estimation.interval.half_width[: len(free)], 1e-300)  # above zero, for a division
+    for shift in shifts:
+        most = int(np.argmax(np.abs(shift.moves) / half))
+        value = estimation.model.parameters[free[most]].value
+        relative = float(shift.moves[most] / value) if abs(value) > half[most] else math.nan
+        share = float(abs(shift.moves[most]) / half[most])
+        effects.append(EstimatedValueEffect(shift.name, shift.error, free[most], relative, share, shift.prediction))
     return tuple(sorted(effects, key=lambda e: -max(e.share_of_interval, e.prediction)))
 
 
-def with_effects(findings: Sequence[Finding], estimation: Estimation) -> Iterator[Finding]:
+def with_effects(
+    findings: Sequence[Finding], estimation: Estimation, shifts: Sequence[EstimatedValueShift]
+) -> Iterator[Finding]:
     """Yield the findings of a trial, that on estimated values with what these do: a note where none matters."""
+    effects = estimated_value_effects(estimation, shifts)
     for finding in findings:
-        is_of_values = finding.code == ESTIMATED_VALUES
-        yield finding_with_effects(finding, estimated_value_effects(estimation)) if is_of_values else finding
+        yield finding_with_effects(finding, effects) if finding.code == ESTIMATED_VALUES else finding
 
 
 def finding_with_effects(finding: Finding, effects: Sequence[EstimatedValueEffect]) -> Finding:
@@ -101,5 +144,6 @@ def finding_with_effects(finding: Finding, effects: Sequence[EstimatedValueEffec
     ]
     return replace(
         finding, evidence="; ".join(parts),
+        consequence="the intervals of coefficients hold these errors, those of predictions do not",
         advice=f"measure {worst[0].name} first, write it in place of the estimate, and remove the mark",
     )  # fmt: skip
