@@ -64,3 +64,15 @@ def test_seconds_from_the_start_are_no_clock_of_digits_and_no_days(step: float, 
 def test_units_behind_a_name_are_part_of_it(name: str, symbol: str, unit: str) -> None:
     guess = guess_by_name("", name, "")
     assert guess is not None and (guess.symbol, guess.unit) == (symbol, unit)
+
+
+@pytest.mark.parametrize(("cell", "is_read"), [("08/10/2026", False), ("8.10.2026", True), ("2026-10-08", True)])
+@pytest.mark.parametrize(("date", "time"), [("Fecha", "Hora"), ("Dato", "Klokke"), ("Data", "Ora")])
+def test_a_date_that_is_not_read_is_named(date: str, time: str, cell: str, is_read: bool, tmp_path: Path) -> None:
+    rows = "\n".join(f"{cell};09:12:{k:02d};{k}" for k in range(40))
+    (tmp_path / "run.csv").write_text(f"{date};{time};surge\n{rows}\n", encoding="utf-8")
+    (topic,) = survey_log(tmp_path / "run.csv").topics
+    assert topic.time is not None and topic.time.source == time and topic.text_columns == ()
+    assert getattr(topic.time, "date", "") == (date if is_read else "")
+    assert topic.faults == (() if is_read else (f"'{date}': '{cell}' is no date that is read; as 2026-10-08 or "
+                                                "8.10.2026 it would be",))  # fmt: skip

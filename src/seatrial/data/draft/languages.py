@@ -9,7 +9,7 @@ import unicodedata
 _HEADINGS = {
     "time": "tid tidspunkt klokke klokken klokkeslett klokkeslet klockslag zeit uhrzeit zeitstempel tijd tijdstip "
             "heure temps horodatage hora tiempo ora orario tempo",
-    "date": "dato datum fecha",
+    "date": "dato datum fecha data",
     "latitude": "bredde breddegrad latitud breite breitengrad breedte breedtegraad latitudine",
     "longitude": "lengde lengdegrad laengde laengdegrad langd longitud laenge lange langengrad laengengrad lengte "
                  "lengtegraad longitudine",

@@ -8,7 +8,7 @@ import numpy as np
 
 from seatrial.data.draft.stated_columns import NOTHING_STATED, TIME, StatedColumns
 from seatrial.data.draft.text_layout import text_layout
-from seatrial.data.draft.time_columns import column_values, time_column
+from seatrial.data.draft.time_columns import column_values, date_fault, is_date_column, time_column
 from seatrial.data.read import ColumnSpec, Layout, Log, RawTable, format_of, read_log
 from seatrial.data.read.clock import stamps
 from seatrial.data.read.layout import TimeSpec
@@ -138,8 +138,9 @@ def _topic_summary(table: RawTable, layout: Layout, stated_time: str) -> TopicSu
         if table.names[index] not in own and (summary := _column_summary(table, index)) is not None
     ]
     textual = [k for k, name in enumerate(table.names) if name not in own and column_values(table, k) is None]
-    texts = tuple(table.names[k] or f"{k + 1}" for k in textual)
-    faults = tuple(fault for k in textual if (fault := _fault(table, k)))
+    dates = [k for k in textual if is_date_column(table, k)]
+    texts = tuple(table.names[k] or f"{k + 1}" for k in textual if k not in dates)
+    faults = tuple(fault for k in textual if (fault := date_fault(table, k) if k in dates else _fault(table, k)))
     duration = float(known[-1] - known[0]) if known.size > 1 else float("nan")
     start = float(known[0]) if known.size else float("nan")
     return TopicSummary(table.topic, time, len(table), 1.0 / step, start, duration, tuple(columns), note, texts, faults)

@@ -19,6 +19,8 @@ _TIME_NAMES = (
     "time_of_day", "header_stamp_secs", "header_stamp", "stamp",
 )  # fmt: skip
 _DATE_NAMES = ("date", "day", "utc_date", "date_utc")
+_DATE_LIKE = re.compile(r"\d{1,4}[-/. ]\w{1,3}[-/. ]\d{1,4}")
+_LONGEST_DATE = 20  # characters of a cell that a message quotes; chosen
 _WEEK_NAMES, _WEEK_SECONDS = ("gps_week", "gnss_week", "week"), ("tow", "gps_tow", "time_of_week", "seconds_of_week")
 _WHOLE_SECONDS = re.compile(r"(.*_)?(secs?|seconds)")
 _NANOSECONDS = ("nsecs", "nsec", "nanosecs", "nanosec", "nanoseconds")
@@ -118,6 +120,22 @@ def _with_date(table: RawTable, spec: ColumnSpec, plain: dict[str, str]) -> Colu
         return spec
     known = seconds[np.isfinite(seconds)]
     return dated if known.size and np.all(np.diff(known) >= 0.0) else spec
+
+
+def is_date_column(table: RawTable, index: int) -> bool:
+    """Return whether a column of text is called as dates are, in any language, and holds what looks like one."""
+    is_called = _plain_name(table.names[index]) in _DATE_NAMES
+    return is_called and len(table) > 0 and _DATE_LIKE.match(str(table.cells[index][0]).strip()) is not None
+
+
+def date_fault(table: RawTable, index: int) -> str:
+    """Return why the dates of a column of them cannot be read; empty where they can."""
+    try:
+        stamps(table, ColumnSpec("time", index + 1, "utc"))
+    except InputError:
+        cell = str(table.cells[index][0]).strip()[:_LONGEST_DATE]
+        return f"'{table.names[index]}': '{cell}' is no date that is read; as 2026-10-08 or 8.10.2026 it would be"
+    return ""
 
 
 def _backwards(table: RawTable, name: str) -> str:
