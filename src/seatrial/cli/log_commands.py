@@ -79,6 +79,9 @@ def init(
     if ignored:
         more = f" and {len(ignored) - COLUMNS_SHOWN} more" if len(ignored) > COLUMNS_SHOWN else ""
         print_lines([f"NOTE not recognised, not used: {', '.join(ignored[:COLUMNS_SHOWN])}{more}"])
+    if draft.header_sizes:
+        says = ", ".join(one.text for one in draft.header_sizes)
+        print_lines([f"NOTE the header says {says}, not used: {' '.join(one.option for one in draft.header_sizes)}"])
     for run, stretches, parts in zip(draft.runs, draft.stretches, draft.parts, strict=True):
         name = run.name or run.sources[0].path.name
         print_lines(f"{name}: {one.name}, {one.start:.4g} to {one.stop:.4g} s: {one.evidence}" for one in parts)

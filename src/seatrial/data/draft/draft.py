@@ -14,6 +14,7 @@ from seatrial.data.draft.behaviour import checked_by_behaviour, run_record
 from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.draft_text import RecordsBlock, trial_text, unrecognised_columns
 from seatrial.data.draft.guess import guess_columns, with_turned_thruster, without_conflicts
+from seatrial.data.draft.header_sizes import HeaderSize, sizes_in_header
 from seatrial.data.draft.held_out import NOTHING_HELD_OUT, HeldOutRuns, can_judge, held_out_runs
 from seatrial.data.draft.manoeuvres import (
     find_stretches,
@@ -54,6 +55,7 @@ class DraftTrial:
         held_out: the runs that judge the model; empty: none can.
         unrecognised: columns of the longest run that stand for no channel.
         session: the line that says which runs share their offsets; empty: each has its own.
+        header_sizes: what the header of the longest run says of the craft and what is not stated.
         lacks_length: whether the length of the craft is to be stated.
         lacks_input: whether no column is an input of a model.
     """
@@ -68,6 +70,7 @@ class DraftTrial:
     held_out: HeldOutRuns = NOTHING_HELD_OUT
     unrecognised: tuple[str, ...] = ()
     session: str = ""
+    header_sizes: tuple[HeaderSize, ...] = ()
     lacks_length: bool = False
     lacks_input: bool = False
 
@@ -132,7 +135,7 @@ def draft_trial(
     return DraftTrial(
         text, tuple(surveys), tuple(runs), guesses[longest[0]], tuple(records), stretches, parts, held_out,
         tuple(name for one in blocks[0].sources for name in unrecognised_columns(*one)), session,
-        bool(model.name) and not size.length, not model.name,
+        sizes_in_header(runs[longest[0]].sources[0], size), bool(model.name) and not size.length, not model.name,
     )  # fmt: skip
 
 
