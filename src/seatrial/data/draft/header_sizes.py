@@ -38,7 +38,7 @@ def sizes_in_header(survey: LogSurvey, size: StatedSize) -> tuple[HeaderSize, ..
         return ()
     header = "\n".join(text.splitlines()[:lines])
     stated = {one.name for one in fields(size) if getattr(size, one.name)}
-    return tuple(one for name, one in _found(header).items() if name not in stated)
+    return tuple(one for name, one in _sizes(header).items() if name not in stated)
 
 
 def _found(header: str) -> dict[str, HeaderSize]:
