@@ -41,7 +41,7 @@ def sizes_in_header(survey: LogSurvey, size: StatedSize) -> tuple[HeaderSize, ..
     return tuple(one for name, one in _sizes(header).items() if name not in stated)
 
 
-def _found(header: str) -> dict[str, HeaderSize]:
+def _sizes(header: str) -> dict[str, HeaderSize]:
     """Each size that is named once in a header."""
     sizes = dict[str, HeaderSize]()
     for name, (words, unit) in _NAMES.items():
