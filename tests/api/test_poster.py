@@ -11,12 +11,15 @@ from typer.testing import CliRunner
 
 import seatrial as st
 from seatrial import api
+from seatrial.api.measured_runs import measured_quantity, readings_of
+from seatrial.api.poster import _Order, _shows
 from seatrial.cli import app
-from seatrial.core.results import IntervalBasis, Prediction
+from seatrial.core.results import IntervalBasis, Offset, Prediction
 from seatrial.core.results.poster import Basis, Poster
 from seatrial.core.values import RecordKind
 from seatrial.estimation.information.extrapolation import motion_envelope
 from seatrial.estimation.predict.open_loop import compare_measures
+from seatrial.physics.manoeuvres import ObservedManoeuvre
 from seatrial.reporting.poster import TO_BE_FILLED_IN, html, particulars
 
 
@@ -51,24 +54,65 @@ def test_each_number_says_what_it_rests_on(poster: Poster, fit: st.Fit) -> None:
     measured = {q.name: q.value for q in poster.manoeuvres[3].quantities}
     shown = fit.predictions[0].measures
     assert measured == {name: shown[name].measured for name in measured}
-    assert poster.manoeuvres[3].run == "zigzag"
+    assert names(poster)[3] == ["zigzag"]
     for quantity in (q for m in poster.manoeuvres[:3] for q in m.quantities if q.is_determined):
         assert quantity.lower is not None and quantity.upper is not None
         assert quantity.lower < quantity.value < quantity.upper
 
 
+def test_a_zigzag_first_to_port_counts_and_the_larger_of_two_is_given(fit: st.Fit) -> None:
+    (run,) = readings_of(fit)
+    psi, delta = run.measured.channel("psi"), run.measured.channel("delta")
+    mirrored = run.measured.with_channel("psi", psi.with_values(-1.05 * psi.values))
+    mirrored = mirrored.with_channel("delta", delta.with_values(-delta.values))
+    other = replace(run, measured=mirrored, manoeuvre=ObservedManoeuvre.from_record(mirrored))
+    zigzag, speed = _Order("zigzag:20/20", 20.0, 1, (), 20.0), run.values["approach_speed"]
+    assert _shows(run, zigzag, speed) and _shows(other, zigzag, speed)
+    both = run.values["overshoot_1_deg"], other.values["overshoot_1_deg"]
+    assert both[1] == pytest.approx(1.05 * both[0], rel=1e-9)
+    quantity = measured_quantity("overshoot_1_deg", [run, other])
+    assert quantity is not None and quantity.value == both[1] and quantity.repeats == both
+
+
+def test_a_run_of_positions_without_speeds_is_read(fit: st.Fit) -> None:
+    (p,) = fit.predictions
+    bare = replace(fit, predictions=(replace(p, measured=without_u(p.measured), measures={}),))
+    (run,) = readings_of(bare)
+    for name in ("approach_speed", "initial_turning_L"):
+        assert run.values[name] == pytest.approx(p.measures[name].measured, rel=0.01)
+
+
+def test_the_interval_holds_the_error_of_the_current(fit: st.Fit) -> None:
+    """An error of the current of 0.1 m/s is one of 0.1 m/s of the speed through the water, towards the course."""
+    (p,) = fit.predictions
+    errors = {"current_north": 0.1, "current_east": 0.0}  # m/s
+    offsets = tuple(Offset(name, "day 1", "m/s", 0.0, error) for name, error in errors.items())
+    run = replace(p, measured=without_u(p.measured), offsets={o.name: o.estimate for o in offsets})
+    (reading,) = readings_of(replace(fit, predictions=(run,), offsets=offsets))
+    assert reading.run.current == 0.0
+    assert reading.half_widths["approach_speed"] == pytest.approx(1.96 * 0.1, rel=0.01)
+
+
+def without_u(record: st.Record) -> st.Record:
+    return replace(record, channels={name: c for name, c in record.channels.items() if name not in ("u", "v")})
+
+
 def test_a_run_of_another_speed_or_side_or_a_simulated_one_is_no_measurement(fit: st.Fit) -> None:
     faster = 1.2 * poster_speed(fit)
-    assert not any(m.run for m in api.poster(fit, speed=faster).manoeuvres)
+    assert not any(names(api.poster(fit, speed=faster)))
     circle = fit_of_runs("turning-circle:35")
-    assert [m.run for m in api.poster(circle).manoeuvres] == ["", "turning-circle", "", ""]
-    assert [m.run for m in api.poster(circle, rudder_deg=30.0).manoeuvres] == ["", "", "", ""]
+    assert names(api.poster(circle)) == [[], ["turning-circle"], [], []]
+    assert not any(names(api.poster(circle, rudder_deg=30.0)))
     simulated = replace(
         fit, predictions=tuple(
             replace(p, measured=replace(p.measured, kind=RecordKind.SIMULATED)) for p in fit.predictions
         ),
     )  # fmt: skip
-    assert not any(m.run for m in api.poster(simulated).manoeuvres)
+    assert not any(names(api.poster(simulated)))
+
+
+def names(sheet: Poster) -> list[list[str]]:
+    return [[run.name for run in m.runs] for m in sheet.manoeuvres]
 
 
 def poster_speed(fit: st.Fit) -> float:

@@ -1,10 +1,13 @@
 """Cells of the wheelhouse poster: an interval is shown with as many figures as it needs."""
 
+import math
+from dataclasses import replace
+
 import pytest
 
-from seatrial.core.results.poster import Basis, Poster, PosterManoeuvre, PosterQuantity
+from seatrial.core.results.poster import Basis, MeasuredRun, Poster, PosterManoeuvre, PosterQuantity
 from seatrial.core.text.numbers import DASH
-from seatrial.reporting.poster import html, poster_table
+from seatrial.reporting.poster import PosterCell, html, poster_table, rudder_rate_text
 
 
 @pytest.mark.parametrize(
@@ -22,14 +25,14 @@ def test_interval_is_not_rounded_away(value: float, lower: float | None, upper: 
     quantity = PosterQuantity("overshoot_1_deg", value, lower, upper, Basis.MEASURED)
     manoeuvre = PosterManoeuvre("zigzag:10/10", (quantity,))
     sheet = Poster("ship", {"L": 100.0}, 1.0, "mmg", 5.0, 35.0, (manoeuvre,))
-    assert poster_table([manoeuvre], sheet).rows[0].cells == ((text, "measured"),)
+    assert poster_table([manoeuvre], sheet).rows[0].cells == (PosterCell(text, "measured"),)
 
 
 def test_missing_value_is_a_dash() -> None:
     quantity = PosterQuantity("advance_L", float("nan"), None, None, Basis.PREDICTED)
     manoeuvre = PosterManoeuvre("turning-circle:35", (quantity,))
     sheet = Poster("ship", {"L": 100.0}, 1.0, "mmg", 5.0, 35.0, (manoeuvre,))
-    assert poster_table([manoeuvre], sheet).rows[0].cells == ((DASH, "predicted"),)
+    assert poster_table([manoeuvre], sheet).rows[0].cells == (PosterCell(DASH, "predicted"),)
 
 
 def test_the_poster_is_a_page_like_the_others_and_runs_nothing() -> None:
@@ -38,3 +41,29 @@ def test_the_poster_is_a_page_like_the_others_and_runs_nothing() -> None:
     text = html(Poster("ship", {"L": 100.0}, 1.0, "mmg", 5.0, 35.0, (circle,)))
     assert "script-src 'none'" in text and "<script" not in text and "unsafe" not in text
     assert "Turning circle 35° to starboard" in text and "prefers-color-scheme: dark" in text
+
+
+def test_the_larger_of_two_runs_is_given_with_the_range_of_both() -> None:
+    quantity = PosterQuantity("overshoot_1_deg", 21.03, 20.44, 21.65, Basis.MEASURED, repeats=(18.4, 21.03))
+    sheet = Poster("ship", {"L": 31.0}, 1.0, "mmg", 6.0, 35.0, ())
+    (cell,) = poster_table([PosterManoeuvre("zigzag:20/20", (quantity,))], sheet).rows[0].cells
+    assert cell == PosterCell("21.0 [20.4, 21.6]", "measured", "largest of 2 runs, 18.4 to 21.0")
+
+
+def test_measured_columns_say_what_their_distances_refer_to_at_full_scale() -> None:
+    """0.05 m/s in trials at 1:25 are 0.25 m/s at full scale by Froude's law."""
+    sheet = Poster("ship", {"L": 4.0}, 25.0, "mmg", 1.0, 35.0, ())
+    drifting, still = MeasuredRun("a", 0.05), MeasuredRun("b")
+    circles = [PosterManoeuvre("turning-circle:35", (), runs=runs) for runs in ((drifting,), (still,), ())]
+    assert [one.measured for one in poster_table(circles, sheet).header] == [
+        "measured, corrected for the estimated current of 0.25 m/s", "measured, over ground", ""
+    ]  # fmt: skip
+
+
+def test_the_rudder_rate_is_that_of_the_ship() -> None:
+    """SOLAS's 65 deg in 28 s, 2.32 deg/s, are 14.7 deg/s of a model at 1:40."""
+    rate = math.radians(65.0 / 28.0)
+    model = Poster("ship", {"L": 3.4}, 40.0, "mmg", 1.0, 35.0, (), rate * math.sqrt(40.0), "as SOLAS requires")
+    assert rudder_rate_text(model) == "rudder rate 2.32 deg/s, as SOLAS requires"
+    assert "14.7" not in html(model)
+    assert rudder_rate_text(replace(model, scale=1.0)) == "rudder rate 14.7 deg/s, as SOLAS requires"

@@ -1,5 +1,6 @@
 """Wheelhouse poster and pilot card from a fit."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -7,7 +8,8 @@ from typing import TYPE_CHECKING
 from seatrial.core.values import InputError
 
 if TYPE_CHECKING:
-    from seatrial.core.results import Fit, Prediction
+    from seatrial.api.measured_runs import Reading
+    from seatrial.core.results import Fit
     from seatrial.core.results.poster import Poster, PosterManoeuvre
     from seatrial.core.values import ProgressReporter
 
@@ -48,7 +50,8 @@ def poster(
     """Return the manoeuvring characteristics of a fit for the wheelhouse (IMO A.601(15)): circles and zigzags.
 
     Each number is measured (a run of the trials is that manoeuvre at that speed), predicted, or extrapolated (the model
-    leaves what its training runs cover), and has its 95 % interval.
+    leaves what its training runs cover), and has its 95 % interval. What runs measured is corrected for the current
+    where the fit estimated one for their session; of several runs the largest value is given.
 
     Args:
         rudder_deg: of the turning circles; speed: approach speed, m/s; without it that of the trials.
@@ -56,6 +59,7 @@ def poster(
     Raises:
         InputError: the model has no rudder or heading, the ship no length, or no manoeuvre can be steered.
     """
+    from seatrial.api.measured_runs import readings_of
     from seatrial.api.simulation import rudder_rate_of
     from seatrial.core.results.poster import Poster
     from seatrial.core.values.versions import versions
@@ -69,16 +73,16 @@ def poster(
     if not 0.0 < rudder_deg <= 90.0:
         raise InputError(f"a rudder angle of {rudder_deg:g} deg turns no ship; give one such as 35")
     report = report_progress or (lambda _: None)
-    manoeuvres, orders = [], _orders(rudder_deg)
+    manoeuvres, orders, readings = [], _orders(rudder_deg), readings_of(fit)
     for number, order in enumerate(orders, 1):
         report(f"manoeuvres: {number} of {len(orders)}, {order.manoeuvre}")
-        manoeuvres.append(_manoeuvre(fit, order, speed))
+        manoeuvres.append(_manoeuvre(fit, order, speed, readings))
     if not any(m.quantities for m in manoeuvres):
         raise InputError(f"no manoeuvre of the poster can be steered with this fit: {manoeuvres[0].note}")
-    held_out = {p.record for p in fit.validation}
+    held_out, rate = {p.record for p in fit.validation}, rudder_rate_of(fit)
     return Poster(
-        fit.ship.name, dict(fit.ship.particulars), fit.ship.scale, fit.model.name, _approach_speed(fit, speed),
-        rudder_deg, tuple(manoeuvres), rudder_rate_of(fit).text,
+        fit.ship.name, dict(fit.ship.particulars), fit.ship.scale, fit.model.name,
+        _approach_speed(fit, speed, manoeuvres), rudder_deg, tuple(manoeuvres), rate.value, rate.origin,
         tuple(r.name for r in fit.records if r.name not in held_out), fit.intervals,
         versions(),
     )  # fmt: skip
@@ -107,23 +111,31 @@ def _orders(rudder_deg: float) -> tuple[_Order, ...]:
     )
 
 
-def _approach_speed(fit: "Fit", speed: float | None) -> float:
-    """That of the simulated manoeuvres [m/s]: craft with thrusters begin at half command, as their runs do at rest."""
+def _approach_speed(fit: "Fit", speed: float | None, manoeuvres: "Sequence[PosterManoeuvre]") -> float:
+    """That of the simulated manoeuvres through the water [m/s]: where none is given, where surge balances.
+
+    Craft with thrusters begin at half command, as their runs do at rest; a model without surge at that of the trials.
+    """
+    from seatrial.api.prediction import measures
     from seatrial.api.simulation import as_model_file
     from seatrial.physics.simulate.thrust import straight_by_thrusters
 
     if speed is not None:
         return speed
     file = as_model_file(fit)
+    begun = (measures(file, record) for m in manoeuvres for record in m.simulated)
+    balanced = next((one["approach_speed"] for one in begun if "approach_speed" in one), None)
+    if balanced is not None:
+        return balanced
     return straight_by_thrusters(file.model).speed if file.model.equations.layout else file.approach.get("u", 0.0)
 
 
-def _manoeuvre(fit: "Fit", order: _Order, speed: float | None) -> "PosterManoeuvre":
-    """The model steered through it; what a run of the trials measured of it takes the predictions' place."""
+def _manoeuvre(fit: "Fit", order: _Order, speed: float | None, readings: "Sequence[Reading]") -> "PosterManoeuvre":
+    """The model steered through it; what runs of the trials measured of it takes the predictions' place."""
+    from seatrial.api.measured_runs import measured_quantity
     from seatrial.api.prediction import extrapolation, measure_intervals, measures
     from seatrial.api.simulation import as_model_file, steering
     from seatrial.core.results.poster import Basis, PosterManoeuvre, PosterQuantity
-    from seatrial.physics.manoeuvres import bounded_interval
     from seatrial.reporting.measures import EDGE_INDEX
 
     file = as_model_file(fit)
@@ -135,57 +147,38 @@ def _manoeuvre(fit: "Fit", order: _Order, speed: float | None) -> "PosterManoeuv
         return PosterManoeuvre(order.manoeuvre, (), note=str(error))
     left = extrapolation(file, simulated)
     basis = Basis.EXTRAPOLATED if left is not None and left.index > EDGE_INDEX else Basis.PREDICTED
-    run = _measured_run(fit, order, values.get("approach_speed"))
-    readings = {} if run is None else _readings(fit, run)
+    runs = [one for one in readings if _shows(one, order, values.get("approach_speed"))]
 
     def quantity(name: str) -> PosterQuantity:
-        measured = None if run is None or name not in run.measures else run.measures[name].measured
+        measured = measured_quantity(name, runs)
         if measured is not None:
-            ends = bounded_interval(name, measured, readings[name]) if name in readings else None
-            return PosterQuantity(name, measured, *(ends or (None, None)), Basis.MEASURED)
+            return measured
         lower, upper = intervals.get(name) or (None, None)
         is_open = name in intervals and intervals[name] is None
         return PosterQuantity(name, values[name], lower, upper, basis, is_determined=not is_open)
 
     present = [n for n in order.names if n in values]
     quantities = tuple(quantity(n) for n in present)
-    return PosterManoeuvre(order.manoeuvre, quantities, (simulated,), "" if run is None else run.record)
+    shown = tuple(one.run for one in runs) if any(q.basis is Basis.MEASURED for q in quantities) else ()
+    return PosterManoeuvre(order.manoeuvre, quantities, (simulated,), shown)
 
 
-def _readings(fit: "Fit", run: "Prediction") -> dict[str, float]:
-    """Half width of the 95 % interval with which each measure of a run was read."""
+def _shows(run: "Reading", order: _Order, speed: float | None) -> bool:
+    """Whether a run is this manoeuvre at this approach speed; a zigzag begins to either side."""
     import numpy as np
 
-    from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
-    from seatrial.estimation.predict.reading_error import reading_errors
+    from seatrial.physics.manoeuvres import ManoeuvreKind
 
-    level = two_sided_quantile(STORED_LEVEL, np.inf)
-    errors = reading_errors(run.measured, fit.ship.particulars["L"], np.random.default_rng(fit.seed))
-    return {name: level * error for name, error in errors.items()}
-
-
-def _measured_run(fit: "Fit", order: _Order, speed: float | None) -> "Prediction | None":
-    """The first measured run of the trials that is this manoeuvre at this approach speed."""
-    return next((p for p in fit.predictions if not p.is_reference_simulated and _shows(p, order, speed)), None)
-
-
-def _shows(prediction: "Prediction", order: _Order, speed: float | None) -> bool:
-    import numpy as np
-
-    from seatrial.physics.manoeuvres import ManoeuvreKind, ObservedManoeuvre
-
-    approach = prediction.measures["approach_speed"].measured if "approach_speed" in prediction.measures else None
+    approach = run.values.get("approach_speed")
     if approach is None or not speed or abs(approach / speed - 1.0) > _SPEED_TOLERANCE:
         return False
-    observed = ObservedManoeuvre.from_record(prediction.measured)
-    is_zigzag = order.switching_deg is not None
+    observed, is_zigzag = run.manoeuvre, order.switching_deg is not None
     kinds = {ManoeuvreKind.ZIGZAG} if is_zigzag else {ManoeuvreKind.TURNING_CIRCLE, ManoeuvreKind.PULL_OUT}
     if observed.kind not in kinds:
         return False
     angle = np.degrees((observed.holds[0] if is_zigzag else observed.longest_hold[0]).angle)
-    if abs(angle - order.side * order.rudder_deg) > _RUDDER_TOLERANCE_DEG:
-        return False
     if order.switching_deg is None:
-        return True
+        return bool(abs(angle - order.side * order.rudder_deg) <= _RUDDER_TOLERANCE_DEG)
     turned = np.degrees(abs(observed.psi_at(observed.executes[1]) - observed.psi_at(observed.executes[0])))
-    return bool(abs(turned - order.switching_deg) <= _HEADING_TOLERANCE_DEG)
+    is_angle = abs(abs(angle) - order.rudder_deg) <= _RUDDER_TOLERANCE_DEG
+    return bool(is_angle and abs(turned - order.switching_deg) <= _HEADING_TOLERANCE_DEG)

@@ -117,7 +117,11 @@ def simulate(
         list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="A constant input in SI units.")
     ] = None,
     rudder_rate: Annotated[
-        float | None, typer.Option(help="deg/s; default: the fastest of the training runs, at least SOLAS's.")
+        float | None,
+        typer.Option(
+            help="deg/s; default: SOLAS's at the ship's scale, or the fastest of the training runs where that is at "
+            "least 1.2 times as fast."
+        ),
     ] = None,
     session: Annotated[
         str | None,

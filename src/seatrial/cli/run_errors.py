@@ -30,6 +30,13 @@ def quantity_label(name: str) -> str:
     return ", ".join(part for part in measure_label(name) if part)
 
 
+def corrected_label(name: str) -> str:
+    """Return name and unit of a measure of a run that is corrected for the current: ``advance, L``."""
+    from seatrial.reporting.measures import bare_measure_label
+
+    return ", ".join(part for part in bare_measure_label(name) if part)
+
+
 def simulated_label(name: str) -> str:
     """Return name and unit of a measure of a simulated manoeuvre: ``advance in still water, L``."""
     from seatrial.reporting.measures import simulated_measure_label

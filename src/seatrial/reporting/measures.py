@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from enum import StrEnum
 
 from seatrial.core.results import CraftMeasure, Extrapolation, Measure
-from seatrial.core.text.numbers import ratio_text
+from seatrial.core.text.numbers import fixed, ratio_text
 from seatrial.core.text.words import counted, enumeration, ordinal
 
 _MEASURED_TRACK, _SIMULATED_TRACK = "over ground", "in still water"
@@ -49,6 +49,25 @@ def simulated_measure_label(name: str) -> tuple[str, str]:
     """Return `measure_label` of a manoeuvre that was steered through a model: its distances are in still water."""
     label, unit = measure_label(name)
     return label.replace(_MEASURED_TRACK, _SIMULATED_TRACK), unit
+
+
+def current_words(speed: float | None) -> str:
+    """Return what distances of a measured run refer to; speed: m/s of the current they are corrected for, or None."""
+    if speed is None:
+        return _MEASURED_TRACK
+    return f"corrected for the estimated current of {fixed(speed, 2)} m/s"
+
+
+def bare_measure_label(name: str) -> tuple[str, str]:
+    """Return `measure_label` without what a distance refers to, where another line says that."""
+    label, unit = measure_label(name)
+    return label.removesuffix(f" {_MEASURED_TRACK}"), unit
+
+
+def corrected_measure_label(name: str, speed: float | None) -> tuple[str, str]:
+    """Return `measure_label` of a run that is corrected for an estimated current [m/s], or of one that is not: None."""
+    label, unit = measure_label(name)
+    return (label if speed is None else label.replace(f" {_MEASURED_TRACK}", f", {current_words(speed)}")), unit
 
 
 def manoeuvre_name(text: str) -> str:

@@ -81,7 +81,7 @@ def html(fit: Fit) -> str:
         "noise": tables.noise(fit.channel_noise),
         "offsets": tables.offsets(fit.offsets),
         # they are for ships of 100 m and more
-        "standards": runs.standards(shown, length, fit.ship.scale) if is_steered and not has_thrusters
+        "standards": runs.standards(shown, fit, length) if is_steered and not has_thrusters
         else {"rows": [], "notes": []},
         "fixed": tables.fixed_parameters(fit.coefficients, citations),
         "priors": tables.priors(fit.coefficients, fit.model, citations),

@@ -14,9 +14,10 @@ from seatrial.core.figures.svg_text import svg
 from seatrial.core.figures.tracks import track_panel
 from seatrial.core.results.poster import Basis, Poster, PosterManoeuvre, PosterQuantity
 from seatrial.core.text.numbers import DASH, exponent, fixed, significant
+from seatrial.core.text.words import counted, enumeration
 from seatrial.core.values.record_chart import has_track, record_track
 from seatrial.reporting.document import page_text
-from seatrial.reporting.measures import measure_label
+from seatrial.reporting.measures import bare_measure_label, current_words
 
 RESOLUTION = "IMO resolution A.601(15)"
 TO_BE_FILLED_IN = (
@@ -34,18 +35,35 @@ _MORE_DECIMALS = 2  # than usual, for an interval narrower than these show; chos
 
 
 @dataclass(frozen=True)
+class PosterHeading:
+    """A manoeuvre, and what the distances that were measured of it refer to; empty: none was."""
+
+    title: str
+    measured: str = ""
+
+
+@dataclass(frozen=True)
+class PosterCell:
+    """Value with interval, what it rests on, and the range of the runs of which it is the largest value."""
+
+    text: str
+    basis: str = ""
+    repeats: str = ""
+
+
+@dataclass(frozen=True)
 class PosterRow:
-    """A quantity in each of several manoeuvres: value with interval, and what it rests on."""
+    """A quantity in each of several manoeuvres."""
 
     name: str
-    cells: tuple[tuple[str, str], ...]
+    cells: tuple[PosterCell, ...]
 
 
 @dataclass(frozen=True)
 class PosterTable:
     """Quantities in rows, manoeuvres in columns."""
 
-    header: tuple[str, ...]
+    header: tuple[PosterHeading, ...]
     rows: tuple[PosterRow, ...]
     notes: tuple[str, ...]
 
@@ -54,7 +72,7 @@ def html(poster: Poster) -> str:
     """Return the page as text."""
     circles = [m for m in poster.manoeuvres if m.manoeuvre.startswith("turning-circle")]
     others = [m for m in poster.manoeuvres if m not in circles]
-    runs = [m.run for m in poster.manoeuvres if m.run]
+    runs = [run for m in poster.manoeuvres for run in m.runs]
     context = {
         "poster": poster,
         "resolution": RESOLUTION,
@@ -64,7 +82,9 @@ def html(poster: Poster) -> str:
         "chart": Markup(svg(turning_chart(circles, poster))),
         "particulars": particulars(poster),
         "missing": TO_BE_FILLED_IN,
-        "measured_runs": ", ".join(dict.fromkeys(runs)),
+        "measured_runs": ", ".join(dict.fromkeys(run.name for run in runs)),
+        "is_corrected": any(run.current is not None for run in runs),
+        "rudder_rate": rudder_rate_text(poster),
         "is_extrapolated": any(q.basis is Basis.EXTRAPOLATED for m in poster.manoeuvres for q in m.quantities),
     }
     return page_text("poster.html", context)
@@ -91,7 +111,24 @@ def poster_table(manoeuvres: list[PosterManoeuvre], poster: Poster) -> PosterTab
     by_name = [{q.name: q for q in m.quantities} for m in manoeuvres]
     rows = tuple(PosterRow(_label(name), tuple(_cell(one.get(name), poster) for one in by_name)) for name in names)
     notes = tuple(f"{manoeuvre_title(m)}: {m.note}" for m in manoeuvres if m.note)
-    return PosterTable(tuple(manoeuvre_title(m) for m in manoeuvres), rows, notes)
+    header = tuple(PosterHeading(manoeuvre_title(m), measured_words(m, poster.scale)) for m in manoeuvres)
+    return PosterTable(header, rows, notes)
+
+
+def measured_words(m: PosterManoeuvre, scale: float) -> str:
+    """Return how the runs that show a manoeuvre were measured, at full scale; empty where none does."""
+    if not m.runs:
+        return ""
+    words = (current_words(None if run.current is None else run.current * math.sqrt(scale)) for run in m.runs)
+    return f"measured, {enumeration(list(dict.fromkeys(words)))}"
+
+
+def rudder_rate_text(poster: Poster) -> str:
+    """Return the rate of the rudder at full scale, a rate falling with the root of the scale, and where it is from."""
+    if not poster.rudder_rate:
+        return ""
+    rate = math.degrees(poster.rudder_rate) / math.sqrt(poster.scale)
+    return f"rudder rate {significant(rate, 3)} deg/s, {poster.rudder_rate_origin}"
 
 
 def manoeuvre_title(m: PosterManoeuvre) -> str:
@@ -103,27 +140,34 @@ def manoeuvre_title(m: PosterManoeuvre) -> str:
 
 
 def _label(name: str) -> str:
-    label, unit = measure_label(name)
-    label = label.removesuffix(" over ground")  # of measured cells; the note says what those of the others refer to
+    label, unit = bare_measure_label(name)  # the heads of the columns and the note say what each cell refers to
     if name == "speed_loss":
         return "speed lost in the turn, %"
     return f"{label}, {'m' if unit == 'L' else unit}"
 
 
-def _cell(q: PosterQuantity | None, poster: Poster) -> tuple[str, str]:
-    """Value with interval at full scale, and the basis."""
+def _cell(q: PosterQuantity | None, poster: Poster) -> PosterCell:
+    """Value with interval at full scale, the basis, and the range of several runs."""
     if q is None:
-        return DASH, ""
+        return PosterCell(DASH)
     if not q.is_determined:
-        return "not determined", q.basis.value
+        return PosterCell("not determined", q.basis.value)
     factor, decimals = _display(q.name, poster)
     if q.lower is None or q.upper is None:
-        return fixed(factor * q.value, decimals), q.basis.value
+        return PosterCell(fixed(factor * q.value, decimals), q.basis.value, _repeats(q, factor, decimals))
     value, lower, upper = factor * q.value, factor * q.lower, factor * q.upper
     decimals = _decimals_of(0.5 * (upper - lower), decimals)
     ends = (fixed(lower, decimals), fixed(upper, decimals))
     within = f"within {10.0**-decimals:g}" if ends[0] == ends[1] else "{}, {}".format(*ends)
-    return f"{fixed(value, decimals)} [{within}]", q.basis.value
+    return PosterCell(f"{fixed(value, decimals)} [{within}]", q.basis.value, _repeats(q, factor, decimals))
+
+
+def _repeats(q: PosterQuantity, factor: float, decimals: int) -> str:
+    """``largest of 2 runs, 18.4 to 21.0``; empty for a single run."""
+    if len(q.repeats) < 2:
+        return ""
+    ends = (fixed(factor * end, decimals) for end in (min(q.repeats), max(q.repeats)))
+    return f"largest of {counted(len(q.repeats), 'run')}, {' to '.join(ends)}"
 
 
 def _decimals_of(half_width: float, usual: int) -> int:
@@ -138,7 +182,9 @@ def _display(name: str, poster: Poster) -> tuple[float, int]:
     length = poster.particulars.get("L", 1.0) * poster.scale
     if name.endswith("_L"):
         return length, 0 if length >= 20.0 else 1  # m, from which on a metre is fine enough; chosen
-    if name.endswith("_s") and not name.endswith("_deg_s"):
+    if name.endswith("_deg_s"):
+        return 1.0 / math.sqrt(poster.scale), 2
+    if name.endswith("_s"):
         return math.sqrt(poster.scale), 0 if length >= 20.0 else 1  # m, as above
     return (100.0, 0) if name == "speed_loss" else (1.0, 1)
 

@@ -6,15 +6,18 @@ from dataclasses import dataclass, replace
 
 from markupsafe import Markup
 
-from seatrial.core.results import Divergence, Extrapolation, Measure, Prediction
+from seatrial.core.results import Divergence, Extrapolation, Fit, Measure, Prediction
+from seatrial.core.results.estimated_current import estimated_current
 from seatrial.core.results.fit_charts import has_band, has_modelled_position, prediction_view
 from seatrial.core.text.numbers import DASH, column_texts, duration, fixed, interval, ratio_text, significant
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import InputError, Record
 from seatrial.core.values.record_chart import has_track
 from seatrial.physics.manoeuvres import ImoCriterion, imo_criteria
+from seatrial.physics.sensors.current_correction import shows_ground_velocity, without_current
 from seatrial.reporting.measures import (
     IntervalVerdict,
+    corrected_measure_label,
     extrapolation_text,
     extrapolation_zone,
     interval_verdict,
@@ -33,6 +36,10 @@ ERROR_LABELS = {"psi_deg": ("heading", "deg"), "position_m": ("position", "m"), 
 _DEGREES = math.degrees(1.0)
 # runs up to which all are drawn; beyond, how many of the worst ones of each role
 MAX_DRAWN, WORST_DRAWN = 15, 12
+CURRENT_NOTE = (
+    "runs in a current that the fit estimated are corrected for it, measured and simulated alike: track minus current "
+    "times time, speeds through the water (IMO MSC/Circ.1053, 3.4.2.5; ITTC 7.5-04-02-01, 5.1.1)"
+)
 # overshoots in the table; later ones are folded
 MAX_OVERSHOOTS = 6
 
@@ -294,14 +301,22 @@ def _signed(value: float, digits: int) -> str:
     return text if value < 0 or float(round(value, digits)) == 0.0 else f"+{text}"
 
 
-def standards(predictions: Sequence[Prediction], length: float, scale: float) -> dict[str, object]:
-    """Return rows of the criteria that apply to the records, and the notes on them."""
-    rows, notes = [], []
+def standards(predictions: Sequence[Prediction], fit: Fit, length: float) -> dict[str, object]:
+    """Return rows of the criteria that apply to the records, and the notes on them.
+
+    A run and its simulation in the same current are both corrected for it, where the fit estimated it.
+    """
+    rows, notes, scale = [], [], fit.ship.scale
+    has_ground_velocity = shows_ground_velocity(fit.model)
     for p in predictions:
-        measured = _applicable_criteria(p.measured, length, scale, p.measured)
-        simulated = {c.name: c for c in _applicable_criteria(p.simulated, length, scale, p.measured)}
+        current = estimated_current(p, fit.offsets)
+        run, model = (without_current(one, current, has_ground_velocity) for one in (p.measured, p.simulated))
+        measured = _applicable_criteria(run, length, scale, run)
+        simulated = {c.name: c for c in _applicable_criteria(model, length, scale, run)}
+        if current is not None and measured:
+            notes.append(CURRENT_NOTE)
         for c in measured:
-            label, unit = measure_label(c.name)
+            label, unit = corrected_measure_label(c.name, None if current is None else current.speed)
             other = simulated.get(c.name)
             digits = 1 if unit == "deg" else 2
             rows.append({

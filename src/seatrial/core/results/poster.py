@@ -35,6 +35,24 @@ class PosterQuantity:
         ),
     ]
     is_determined: Annotated[bool, Field(description="false: the records leave the value open")] = True
+    repeats: Annotated[
+        tuple[Number, ...],
+        Field(description="value of each measured run, of which `value` is the largest; empty: fewer than two runs"),
+    ] = ()
+
+
+@dataclass(frozen=True)
+class MeasuredRun:
+    """A run of the trials that shows a manoeuvre of a poster."""
+
+    name: str
+    current: Annotated[
+        Number | None,
+        Field(
+            description="m/s at the scale of the trials: speed of the estimated current that its measures are "
+            "corrected for; null: none was estimated, and its distances are over ground"
+        ),
+    ] = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +62,9 @@ class PosterManoeuvre:
     manoeuvre: Annotated[str, Field(description="as `seatrial simulate` takes it")]
     quantities: tuple[PosterQuantity, ...]
     simulated: Annotated[tuple[StoredRecord, ...], Field(description="the model's run; empty: it has none")] = ()
-    run: Annotated[str, Field(description="run of the trials that shows it; empty: none does")] = ""
+    runs: Annotated[
+        tuple[MeasuredRun, ...], Field(description="runs of the trials that show it; empty: none does")
+    ] = ()
     note: Annotated[str, Field(description="why there are no values; empty where there are")] = ""
 
 
@@ -59,7 +79,10 @@ class Poster:
     approach_speed: Annotated[Number, Field(description="m/s at the scale of the trials")]
     rudder_deg: Annotated[Number, Field(description="angle of the turning circles")]
     manoeuvres: tuple[PosterManoeuvre, ...]
-    rudder_rate: Annotated[str, Field(description="rate of the rudder in all manoeuvres, and where it is from")] = ""
+    rudder_rate: Annotated[
+        Number, Field(description="rad/s at the scale of the trials: of the rudder in all manoeuvres; 0: not known")
+    ] = 0.0
+    rudder_rate_origin: Annotated[str, Field(description="where the rudder's rate is from")] = ""
     training_runs: tuple[str, ...] = ()
     intervals: Annotated[str, Field(description="method of the coefficients' intervals")] = ""
     versions: Annotated[dict[str, str], Field(description="package -> version")] = field(default_factory=dict)

@@ -26,7 +26,8 @@ def measures(
     Args:
         record: needs ``psi`` and ``delta``; of a craft with thrusters see `thrust_measures`, of a
             decay of roll `roll_measures`.
-            ``x0``, ``y0`` for distances, ``u``, ``v``, ``r`` for speeds and rates. A
+            ``x0``, ``y0`` for distances, ``u``, ``v``, ``r`` for speeds and rates; speeds of a measured record without
+            ``u`` come from its positions. A
             simulated record without ``u`` is that of a model without surge, whose distances mean nothing.
         length: of the ship [m], the unit of names ending in ``_L``.
         switching: switching heading [rad] of a zigzag where it is known; overshoots are counted from it. By default

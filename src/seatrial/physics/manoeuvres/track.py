@@ -5,12 +5,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.values import Array, Record, RecordKind
+from seatrial.numerics.local_polynomials import smoothed_locally
 from seatrial.physics.manoeuvres.recognition import ObservedManoeuvre
 
 _TURN_TOLERANCE = 1e-3  # rad by which a full turn may fall short: rounding
 
 PEAK_HALF_WIDTH = 0.04  # of the swing's samples, over which its peak is fitted; chosen
 _FEWEST_SAMPLES = 5  # of a swing that has a peak; chosen
+# a speed from positions: its standard deviation as a share of the typical one; samples of the narrowest window, which
+# a parabola does not pass through; stretches of a run over which the typical speed is taken; chosen
+_SPEED_ERROR, _NARROWEST, _STRETCHES = 0.01, 5, 20
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,11 +73,45 @@ def has_track(record: Record) -> bool:
 
 
 def speed(record: Record) -> Array | None:
-    """Speed [m/s] over the samples, shape (n,), from u and v (through water or over ground, as recorded), or None."""
+    """Speed [m/s] over the samples, shape (n,), or None.
+
+    From u and v (through water or over ground, as recorded); without u from the positions, over ground.
+    """
     if "u" not in record:
-        return None
+        return _speed_of_track(record) if has_track(record) else None
     sway = record["v"] if "v" in record else np.zeros(len(record))
     return np.hypot(record["u"], sway)
+
+
+def _speed_of_track(record: Record) -> Array | None:
+    """Speed [m/s] from positions: slope of parabolas over as many samples as their noise calls for, shape (n,)."""
+    known = np.isfinite(record["x0"]) & np.isfinite(record["y0"])
+    count = len(record)
+    if np.count_nonzero(known) < count // 2 or count < _NARROWEST:
+        return None
+    even = np.linspace(record.time[0], record.time[-1], count)
+    place = np.column_stack([np.interp(even, record.time[known], record[s][known]) for s in ("x0", "y0")])
+    step = float(even[1] - even[0])
+    width = _slope_window(place, step)
+    if width > count:
+        return None
+    velocity = smoothed_locally(place, width, 2, derivative=1, step=step)
+    return np.interp(record.time, even, np.hypot(velocity[:, 0], velocity[:, 1]))
+
+
+def _slope_window(place: Array, step: float) -> int:
+    """Samples, odd, over which a line's slope is known to a share of the typical speed; place: (n, 2) [m].
+
+    The standard deviation of a slope over n samples is sigma sqrt(12 / n^3) / step; sigma from third differences, whose
+    variance is 20 sigma^2.
+    """
+    noise = float(np.std(np.diff(place, 3, axis=0)) / np.sqrt(20.0))
+    apart = max(1, len(place) // _STRETCHES)
+    typical = float(np.median(np.hypot(*(place[apart:] - place[:-apart]).T))) / (apart * step)
+    if not typical > 0.0:
+        return len(place) + 1
+    samples = np.cbrt(12.0 * (noise / (_SPEED_ERROR * typical * step)) ** 2)
+    return max(_NARROWEST, 2 * int(np.ceil(0.5 * (samples - 1.0))) + 1)
 
 
 def mean_between(record: Record, values: Array, start: float, stop: float) -> float | None:
