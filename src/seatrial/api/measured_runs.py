@@ -1,5 +1,6 @@
 """Runs of the trials that a poster shows: their measures, corrected for the estimated current, and how exactly read."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -60,14 +61,12 @@ class Reading:
 
     def _shifts_of_the_current(self) -> dict[str, float]:
         """What one standard error of the current changes of each measure, both components added in squares."""
-        import numpy as np
-
         if self.current is None:
             return {}
         c = self.current
-        others = [self._values_in(one) for one in
-                  (replace(c, north=c.north + c.north_error), replace(c, east=c.east + c.east_error))]  # fmt: skip
-        return {name: float(np.hypot(*(other.get(name, value) - value for other in others)))
+        north, east = (self._values_in(one) for one in
+                       (replace(c, north=c.north + c.north_error), replace(c, east=c.east + c.east_error)))  # fmt: skip
+        return {name: math.hypot(north.get(name, value) - value, east.get(name, value) - value)
                 for name, value in self.values.items()}  # fmt: skip
 
     def _values_in(self, current: "EstimatedCurrent | None") -> dict[str, float]:
