@@ -127,14 +127,16 @@ def test_coefficients_that_are_determined_only_together_are_named(full: Fit) -> 
     assert known is not None
     whole = replace(full, coefficients=vague, identifiability=replace(known, effective_parameters=11.0, structural=()))
     assert determined_sentence(whole) == (
-        f"The records determine all 11 free coefficients together, but 9 one by one (the 95 % intervals of "
+        f"The records determine all 11 free coefficients together, but the signs of only 9 (the 95 % intervals of "
         f"{first.name} and {second.name} contain 0)."
     )
     fewer = replace(whole, coefficients=(vague[0], second, *rest))
-    assert determined_sentence(fewer).endswith(f"but 10 one by one (the 95 % interval of {first.name} contains 0).")
+    assert determined_sentence(fewer).endswith(
+        f"but the signs of only 10 (the 95 % interval of {first.name} contains 0)."
+    )
     part = replace(whole, identifiability=replace(known, effective_parameters=9.2, structural=()))
     assert determined_sentence(part).startswith("The records determine about 9 of 11 combinations of the free coeffi")
-    assert ", and 9 of the 11 coefficients one by one (" in determined_sentence(part)
+    assert ", and the signs of 9 of the 11 coefficients (" in determined_sentence(part)
 
 
 def test_a_tanker_with_many_coefficients_folds_what_is_long() -> None:

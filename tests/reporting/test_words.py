@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from seatrial.core.results import Fit, OffsetPopulation
+from seatrial.core.results import Coefficient, Fit, OffsetPopulation
 from seatrial.numerics.optimise import Status
 from seatrial.reporting import summary
 from seatrial.reporting.citations import Citations
@@ -83,7 +83,22 @@ def test_residuals_and_search_are_stated_where_they_stand(fit: Fit) -> None:
 def test_the_spread_of_offsets_over_one_session_is_called_assumed(fit: Fit) -> None:
     population = OffsetPopulation("delta zero", "rad", 0.0, 0.01, 0.02)
     several = replace(fit, offset_populations=(population,))
-    assert summary.offset_sentences(several) == (population.sentence,)
+    assert summary.offset_sentences(several)[0] == population.sentence
+    assert not any("One session" in text for text in summary.offset_sentences(several))
     one = replace(several, offsets=several.offsets[:1])
     assert summary.offset_sentences(one)[-1].startswith("One session was recorded: ")
     assert summary.offset_sentences(replace(one, offset_populations=())) == ()
+
+
+def test_a_rudder_zero_is_said_to_look_like_an_asymmetric_hull(fit: Fit) -> None:
+    fitted = replace(fit, offset_populations=(OffsetPopulation("delta zero", "rad", 0.0, 0.01, 0.02),))
+    asymmetry = replace(fit.coefficients[0], name="Y_0", estimate=0.0, fixed=True)
+
+    def said(*more: Coefficient) -> str:
+        return " ".join(summary.offset_sentences(replace(fitted, coefficients=(*fit.coefficients, *more))))
+
+    assert "asymmetric hull, which this model does not have, would look the same" in said()
+    assert "asymmetric hull, held at zero here (Y_0), would look the same" in said(asymmetry)
+    assert "asymmetric" not in said(replace(asymmetry, fixed=False))
+    currents = replace(fitted, offsets=tuple(replace(o, name="current_north") for o in fit.offsets))
+    assert "asymmetric" not in " ".join(summary.offset_sentences(currents))

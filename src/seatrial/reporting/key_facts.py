@@ -212,7 +212,7 @@ def _identifiability(fit: Fit) -> KeyFact:
 
 
 def _determination_limits(fit: Fit) -> list[str]:
-    """What keeps the coefficients from being used one by one further: no optimum, collinearity."""
+    """What keeps the coefficients from being used by themselves further: no optimum, collinearity."""
     limits = [] if has_converged(fit) else ["but the search did not converge, and this holds at no optimum"]
     collinear = fit.identifiability.collinearity if fit.identifiability else ()
     inflated = [c for c in collinear if c.variance_inflation >= MIN_VARIANCE_INFLATION]

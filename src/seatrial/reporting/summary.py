@@ -7,6 +7,8 @@ from seatrial.core.text.words import counted, enumeration
 
 # distance of an estimate from its prior's mean, in the prior's standard deviations, from which on they disagree
 PRIOR_DISAGREEMENT = 3.0
+# offset of a rudder or nozzle, and the coefficients of models that have the same effect: hull, side forces of a screw
+_STEERING_ZERO, _ASYMMETRIES = "delta zero", ("Y_0", "N_0", "Y_T", "N_T")
 
 
 def facts(fit: Fit) -> list[str]:
@@ -110,11 +112,31 @@ def search_status(fit: Fit) -> str:
 
 
 def offset_sentences(fit: Fit) -> tuple[str, ...]:
-    """Return what is expected of a new session's offsets; of one recorded session, that their spread is assumed."""
+    """Return what is expected of a new session's offsets; of one recorded session, that their spread is assumed.
+
+    Of a rudder's or nozzle's zero also what else would look the same.
+    """
     sentences = tuple(population.sentence for population in fit.offset_populations)
-    if not sentences or len({offset.group for offset in fit.offsets}) > 1:
+    if not sentences:
+        return ()
+    if any(offset.name == _STEERING_ZERO for offset in fit.offsets):
+        sentences = (*sentences, *_steering_zero_sentence(fit))
+    if len({offset.group for offset in fit.offsets}) > 1:
         return sentences
     return (*sentences, "One session was recorded: how these differ between sessions is assumed, not estimated.")
+
+
+def _steering_zero_sentence(fit: Fit) -> tuple[str, ...]:
+    """What else a rudder or nozzle amidships that turns the ship may come from; none where all of that is free."""
+    present = [c for c in fit.coefficients if c.name in _ASYMMETRIES]
+    held = [c.name for c in present if c.fixed and c.estimate == 0.0]
+    if present and not held:
+        return ()
+    where = f"held at zero here ({enumeration(held)})" if held else "which this model does not have"
+    return (
+        f"{_STEERING_ZERO} is known only as the angle at which the ship goes straight: a side force of the propeller "
+        f"or an asymmetric hull, {where}, would look the same.",
+    )
 
 
 def _search_end(search: Search) -> str:

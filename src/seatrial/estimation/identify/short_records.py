@@ -4,6 +4,7 @@ import numpy as np
 
 from seatrial.core.equations.augment import MEMORY_PREFIX
 from seatrial.core.results import Profile
+from seatrial.core.text.numbers import significant
 from seatrial.core.values import Finding, ProgressReporter, Severity
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.identify.profile import innovation_profiles
@@ -36,7 +37,8 @@ def short_record_findings(estimation: Estimation, profiles: tuple[Profile, ...])
     findings, seconds, steps = [], _seconds(estimation), _reference_steps(estimation)
     if _has_few_memories(estimation):
         memory = _longest_memory(estimation)
-        advice = f"record at least {FEWEST_MEMORIES * memory:.0f} s"
+        missing = FEWEST_MEMORIES * memory - seconds
+        advice = f"record at least {significant(missing, 2)} s more, {FEWEST_MEMORIES * memory:.0f} s in all"
         if FEWEST_MEMORIES * memory > LONGEST_ADVICE * seconds:
             advice = (
                 "a disturbance with a memory as long as the runs is the model's misfit rather than the sea: free more "

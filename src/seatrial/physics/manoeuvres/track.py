@@ -105,12 +105,12 @@ def _slope_window(place: Array, step: float) -> int:
     The standard deviation of a slope over n samples is sigma sqrt(12 / n^3) / step; sigma from third differences, whose
     variance is 20 sigma^2.
     """
-    noise = float(np.std(np.diff(place, 3, axis=0)) / np.sqrt(20.0))
+    noise = float(np.std(np.diff(place, 3, axis=0)) / np.sqrt(20.0))  # 1 + 9 + 9 + 1: squares of their weights
     apart = max(1, len(place) // _STRETCHES)
     typical = float(np.median(np.hypot(*(place[apart:] - place[:-apart]).T))) / (apart * step)
     if not typical > 0.0:
         return len(place) + 1
-    samples = np.cbrt(12.0 * (noise / (_SPEED_ERROR * typical * step)) ** 2)
+    samples = np.cbrt(12.0 * (noise / (_SPEED_ERROR * typical * step)) ** 2)  # 12: as above, solved for n
     return max(_NARROWEST, 2 * int(np.ceil(0.5 * (samples - 1.0))) + 1)
 
 
