@@ -6,7 +6,10 @@ import pytest
 from seatrial.core.results.estimated_current import EstimatedCurrent
 from seatrial.core.values import Record
 from seatrial.physics.manoeuvres import measures
-from seatrial.physics.sensors.current_correction import without_current
+from seatrial.physics.models.published import kvlcc2
+from seatrial.physics.sensors import Sensors, with_sensors
+from seatrial.physics.sensors.current_correction import shows_ground_velocity, without_current
+from seatrial.physics.sensors.settings import VelocityReference
 
 RADIUS, SPEED, LENGTH = 20.0, 2.0, 10.0
 """m, m/s, m: the circle's tactical diameter is 4 L, its half turn lasts pi 20 m / 2 m/s = 31.4 s."""
@@ -57,3 +60,10 @@ def test_a_track_alone_gives_the_speed_through_the_water() -> None:
     assert found["approach_speed"] == pytest.approx(SPEED, rel=0.02)
     assert found["steady_diameter_L"] == pytest.approx(4.0, rel=0.02)
     assert found["speed_loss"] == pytest.approx(0.0, abs=0.02)
+
+
+def test_a_trial_that_declares_velocities_over_ground_has_the_current_in_them() -> None:
+    model = kvlcc2()
+    assert not shows_ground_velocity(model)
+    assert not shows_ground_velocity(with_sensors(model, Sensors(yaw_rate_bias=True)))
+    assert shows_ground_velocity(with_sensors(model, Sensors(velocity=VelocityReference.GROUND)))
