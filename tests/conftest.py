@@ -24,6 +24,9 @@ settings.load_profile("untimed")
 # texts are as in a pipe, uncut, though workers of a parallel run are given a terminal's width
 os.environ.pop("COLUMNS", None)
 
+# commands that tests start would each parse the whole source again where a container forbids bytecode
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
 # as the command line, for the same reason
 gc.set_threshold(cli.COLLECTION_THRESHOLD)
 
