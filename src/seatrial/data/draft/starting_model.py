@@ -20,7 +20,7 @@ _LINEAR_TERMS = ("X_u", "X_rr", "Y_v", "Y_r", "Y_d", "N_v", "N_r", "N_d")  # the
 # those of the hull that the model itself frees, and what else its formulas know badly
 _MMG_TERMS = (
     "R_0", "X_vv", "X_vr", "X_rr", "X_vvvv", "Y_v", "Y_r", "Y_vvv", "Y_vvr", "Y_vrr", "Y_rrr", "N_v", "N_r", "N_vvv",
-    "N_vvr", "N_vrr", "N_rrr", "t_P", "w_P0", "gamma_R_plus", "gamma_R_minus",
+    "N_vvr", "N_vrr", "N_rrr", "t_P", "w_P0", "epsilon", "gamma_R_plus", "gamma_R_minus",
 )  # fmt: skip
 # each of them shows how a ship drifts
 _DRIFT = tuple(map(frozenset, (("u", "v"), ("sog", "cog", "psi"), ("x0", "y0", "psi"), ("lat", "lon", "psi"))))
