@@ -136,7 +136,16 @@ def test_coefficients_that_are_determined_only_together_are_named(full: Fit) -> 
     )
     part = replace(whole, identifiability=replace(known, effective_parameters=9.2, structural=()))
     assert determined_sentence(part).startswith("The records determine about 9 of 11 combinations of the free coeffi")
-    assert ", and the signs of 9 of the 11 coefficients (" in determined_sentence(part)
+    assert "; of 9 of the 11 coefficients the sign is determined (" in determined_sentence(part)
+
+
+def test_counts_that_differ_are_explained(full: Fit) -> None:
+    known = full.identifiability
+    assert known is not None
+    exact = sum(d.standard_deviation < 1.0 for d in known.directions)
+    for number, is_explained in ((float(exact), False), (exact - 2.0, True), (math.nan, False)):
+        chapter = identifiability_chapter(replace(full, identifiability=replace(known, effective_parameters=number)))
+        assert chapter is not None and bool(chapter.accuracy_note) is is_explained
 
 
 def test_a_tanker_with_many_coefficients_folds_what_is_long() -> None:

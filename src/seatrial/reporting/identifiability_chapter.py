@@ -123,6 +123,7 @@ class IdentifiabilityChapter:
     uses: tuple[CoefficientUse, ...]
     more_uses: tuple[CoefficientUse, ...]
     accuracy_classes: tuple[AccuracyClass, ...]
+    accuracy_note: str
     directions: Markup
     weakest: tuple[str, ...]
     weaker: tuple[str, ...]
@@ -160,6 +161,7 @@ def identifiability_chapter(fit: Fit) -> IdentifiabilityChapter | None:
         uses=uses[:MAX_ROWS],
         more_uses=uses[MAX_ROWS:],
         accuracy_classes=_accuracy_classes(content.directions),
+        accuracy_note=_accuracy_note(content),
         directions=Markup(svg(direction_chart(content.directions[:MAX_DIRECTIONS]))),
         weakest=texts[:MAX_TEXTS],
         weaker=texts[MAX_TEXTS:],
@@ -201,7 +203,11 @@ def determined_sentence(fit: Fit) -> str:
         all_of_them = f"all {len(free)} free coefficients" if len(free) > 1 else "the free coefficient"
         return f"The records determine {all_of_them}{together}."
     rest = "; the rest comes from the priors" if any(c.prior_mean is not None for c in free) else ""
-    single = f", and the signs of {len(free) - len(vague)} of the {len(free)} coefficients {because}" if vague else ""
+    single = (
+        f"; of {len(free) - len(vague)} of the {len(free)} coefficients the sign is determined {because}"
+        if vague
+        else ""
+    )
     return f"The records determine about {number} of {len(free)} combinations of the free coefficients{rest}{single}."
 
 
@@ -233,6 +239,17 @@ def _accuracy_classes(items: Sequence[Direction]) -> tuple[AccuracyClass, ...]:
         AccuracyClass("not", "Not determined", f"{counted(rest, 'combination')}, to no better than 100 %"
              + (": their values come from priors or assumptions" if rest else "")),
     )  # fmt: skip
+
+
+def _accuracy_note(content: Identifiability) -> str:
+    """Return why classes and first sentence count differently; empty where they agree."""
+    known = sum(d.standard_deviation < POORLY_DETERMINED for d in content.directions)
+    if not math.isfinite(content.effective_parameters) or known == round(content.effective_parameters):
+        return ""
+    return (
+        "Counted by how exactly the records have them, without the priors; the first sentence of this chapter counts "
+        "of each the share that comes from the records and not from its prior (MacKay 1992), and so differs."
+    )
 
 
 def _more_directions(rest: Sequence[Direction]) -> str:
