@@ -70,3 +70,10 @@ def test_each_segment_has_its_own_correction() -> None:
 def test_states_that_reach_an_output() -> None:
     of = batch((plan(),))
     assert of.influential_states() == ("u", "v", "r", "psi", "y0")
+
+
+def test_states_whose_initial_value_is_added_to_them_and_shows_nowhere_else() -> None:
+    assert batch((plan(),)).offset_states() == ("x0", "y0")
+    shifted = replay(waterjet(), plan(), {**START, "y0": START["y0"] + 3.0}).matrix(OUTPUTS)
+    offset = shifted - replay(waterjet(), plan(), START).matrix(OUTPUTS)
+    np.testing.assert_allclose(offset, np.broadcast_to([0.0, 0.0, 3.0], offset.shape), atol=1e-12)

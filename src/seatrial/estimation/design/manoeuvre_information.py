@@ -67,13 +67,25 @@ class ManoeuvreEvaluator:
         return np.maximum(values, [p.scale for p in parameters.free])
 
     @cached_property
+    def _weights(self) -> Array:
+        """1 / standard deviation of each sensor's noise, once for each column of its slopes."""
+        return np.repeat(1.0 / np.array(list(self.task.sensors.values())), self._batch_without_inputs.column_count)
+
+    @cached_property
     def _batch_without_inputs(self) -> SegmentBatch:
         model = self.task.model
         nothing = np.zeros((int(self._offsets[-1]), len(model.inputs)))
         batch = batch_class(model)(
             model, nothing, self._offsets, self.dt, self.outputs, model.parameters.free_names, (), ()
         )
-        return replace(batch, initial_states=batch.influential_states())
+        offsets = batch.offset_states()
+        return replace(batch, initial_states=tuple(s for s in batch.influential_states() if s not in offsets))
+
+    @cached_property
+    def _offset_sensors(self) -> list[int]:
+        """Places of the sensors of states whose unknown initial value is an offset of that sensor and no more."""
+        offsets = self._batch_without_inputs.offset_states()
+        return [place for place, name in enumerate(self.task.sensors) if name in offsets]
 
     def evaluate(self, model_inputs: Array) -> ManoeuvreInformation:
         """Return the precision from inputs (rows, nu), or (ships, rows, nu) for one each, in the model's signs."""
@@ -94,19 +106,25 @@ class ManoeuvreEvaluator:
 
         As many ships at a time as leave their slopes in the processor's cache.
         """
-        seen, k = len(self.task.sensors), len(self.task.model.parameters.free)
         y, slopes, failed = batch.differentiate(
             first, last, self._initial_states, self.ships.parameters, np.zeros((self.ships.count, 0))
         )
         y, slopes = (part.reshape(last - first, -1, *part.shape[1:]) for part in (y, slopes))
         lost = (failed >= 0) | ~np.isfinite(y).all(axis=(1, 2))
         y[lost], slopes[lost] = np.nan, 0.0
-        scaled = slopes[:, :, :seen]
-        scaled /= np.array(list(self.task.sensors.values()))[:, None]
-        flat = scaled.reshape(last - first, -1, batch.column_count)
-        information = np.stack([one.T @ one for one in flat]) * (self.task.request.rate * self.dt)
+        return y, self._information(slopes[:, :, : len(self.task.sensors)])
+
+    def _information(self, slopes: Array) -> Array:
+        """Return the information (ships, n, n) of slopes (ships, rows, sensors, n), which may be overwritten."""
+        (ships, rows, seen, n), k = slopes.shape, len(self.ships.precision)
+        scaled = slopes.reshape(ships, rows, seen * n)
+        scaled *= self._weights
+        # an unknown offset takes from a sensor's slopes their mean (Frisch & Waugh 1933, Econometrica 1(4), 387-401)
+        sums = (np.ones(rows) @ scaled).reshape(ships, seen, n)[:, self._offset_sensors]
+        information = _products(scaled.reshape(ships, rows * seen, n)) - _products(sums) / rows
+        information *= self.task.request.rate * self.dt
         information[:, range(k), range(k)] += self.ships.precision
-        return y, information
+        return information
 
     def _drift_and_distance(self, y: Array) -> tuple[Array, Array]:
         at = {name: y[:, :, self.outputs.index(name)] for name in _TRACK_CHANNELS if name in self.outputs}
@@ -155,6 +173,11 @@ def simulate_plan(task: DesignTask, planned: Record, name: str) -> Record:
     """Return the model driven by a planned record from the task's start."""
     start = dict(zip(task.model.states, task.initial_state.tolist(), strict=True))
     return replay(task.model, planned, start).renamed(name)
+
+
+def _products(slopes: Array) -> Array:
+    """Return J^T J of each ship's slopes J (ships, rows, n)."""
+    return np.matmul(slopes.transpose(0, 2, 1), slopes)
 
 
 def _standard_errors(information: Array) -> Array:

@@ -146,6 +146,15 @@ class SegmentBatch:
                 return tuple(s for i, s in enumerate(self.model.states) if i in reached)
             reached |= more
 
+    def offset_states(self) -> tuple[str, ...]:
+        """Return states that nothing else depends on: their initial value is added to them, and shows nowhere else."""
+        nx = len(self.model.states)
+        compiled = self.model.compiled
+        selected = {int(i) - nx for i in self._output_columns if i >= nx}
+        used = {int(k) for _, k in compiled.rates_pattern}
+        used |= {int(k) for row, k in compiled.outputs_pattern if row in selected}
+        return tuple(s for i, s in enumerate(self.model.states) if i not in used)
+
 
 def _table(rows: Sequence[Sequence[int]], width: int) -> Index:
     return np.array(rows, dtype=np.int64).reshape(-1, width)
