@@ -13,7 +13,7 @@ from seatrial.core.figures.marks import ACCENT, SECOND, Stroke
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.figures.tracks import track_panel
 from seatrial.core.results.poster import Basis, Poster, PosterManoeuvre, PosterQuantity
-from seatrial.core.text.numbers import DASH, exponent, fixed, significant
+from seatrial.core.text.numbers import DASH, exact, exponent, fixed, significant
 from seatrial.core.text.words import counted, enumeration
 from seatrial.core.values.record_chart import has_track, record_track
 from seatrial.reporting.document import page_text
@@ -101,7 +101,7 @@ def particulars(poster: Poster) -> list[tuple[str, str]]:
         known.append(("approach speed", f"{fixed(speed / _KNOT, 1)} kn ({fixed(speed, 2)} m/s)"))
     known.append(("rudder in turning circles", f"{poster.rudder_deg:g}°"))
     if poster.scale != 1.0:
-        known.append(("scale of the trials", f"1:{significant(poster.scale, 4)}"))
+        known.append(("scale of the trials", f"1:{exact(poster.scale)}"))
     return known
 
 
