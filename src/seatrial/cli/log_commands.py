@@ -116,8 +116,8 @@ def _after_draft(draft: "DraftTrial", out: Path) -> str:
     if draft.lacks_input and draft.unrecognised:
         one = in_shell(f"{draft.unrecognised[0]}=CHANNEL")
         return (
-            f"remove {out} and init again, saying which column is a rudder (delta), a thruster (command_1, "
-            f"command_2) or the roll angle (phi), as in --column {one}"
+            f"remove {out} and {out.with_suffix('.html')}, and init again, saying which column is a rudder (delta), a "
+            f"thruster (command_1, command_2) or the roll angle (phi), as in --column {one}"
         )
     steps += [f"name the column of rudder, thruster or roll angle in {out}"] if draft.lacks_input else []
     if steps:

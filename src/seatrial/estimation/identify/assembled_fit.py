@@ -59,7 +59,8 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
     approach = approach_condition(runs.records, trial.model)
     assessment = _identifiability(task, estimation, approach)
     shifts = estimated_value_shifts(estimation)
-    widened = with_estimated_values(estimation, shifts)
+    given = {name for symmetry in assessment.structural for name in symmetry.parameters}  # said of all coefficients
+    widened = with_estimated_values(estimation, [shift for shift in shifts if shift.name not in given])
     coefficients = fit_result.coefficients(widened, trial.truth, interval_ends(assessment.profiles, posterior))
     free = estimation.estimate.problem.free
     responses = frequency_responses(estimation.model, predicted.predictions, task.outputs)
