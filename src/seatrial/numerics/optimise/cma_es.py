@@ -19,15 +19,12 @@ class AdaptationSettings:
         iterations: generations at most.
         step: first standard deviation, as a share of the box's width.
         resampling: draws of a point before it is put on the wall of the box.
-        is_diagonal: adapt variances alone (Ros & Hansen 2008, PPSN X, LNCS 5199, 296-305): learnt in fewer points,
-            where unknowns are many for the points that can be had.
     """
 
     population: int | None = None
     iterations: int = 200
     step: float = 0.3
     resampling: int = 20
-    is_diagonal: bool = False
 
     @staticmethod
     def default_population(unknowns: int) -> int:
@@ -56,13 +53,12 @@ class CovarianceAdaptation(Population):
         settings: AdaptationSettings | None = None,
         start: Array | None = None,
     ) -> None:
-        from cmaes import CMA, SepCMA
+        from cmaes import CMA
 
         self.settings = settings or AdaptationSettings()
         super().__init__(box, generator, self.settings.iterations)
         unit = np.stack([np.zeros(box.size), np.ones(box.size)], axis=1)
-        strategy = SepCMA if self.settings.is_diagonal else CMA
-        self._strategy = strategy(
+        self._strategy = CMA(
             mean=np.full(box.size, 0.5) if start is None else (start - box.lower) / box.width,
             sigma=self.settings.step,
             bounds=unit,
