@@ -150,6 +150,7 @@ def lines(name: str, result: DesignOutcome) -> list[Line]:
     table = [
         Line(f"{name}: worst error designed, nominal", 100.0 * float(result.designed[0]), "%"),
         Line(f"{name}: worst error designed, median ship", 100.0 * float(np.median(result.designed[1:])), "%"),
+        Line(f"{name}: worst error designed, worst ship", 100.0 * float(np.max(result.designed[1:])), "%"),
         Line(f"{name}: ships lost under it", float(np.sum(~np.isfinite(result.designed))), ""),
         Line(f"{name}: largest drift, nominal", math.degrees(result.design.designed.drift), "deg"),
         at_least(f"{name}: compressed zigzag / designed, nominal", zigzag.nominal, "", FACTOR),
