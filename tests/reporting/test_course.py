@@ -41,8 +41,13 @@ def leaving(fit: Fit, share_in_windows: float, runs: int = 1) -> Fit:
 
 def test_only_a_craft_unstable_beyond_its_interval_has_the_row(fit: Fit) -> None:
     assert course_facts(fit) == () and unstable_course(fit) is None  # its interval contains 0
-    stable = replace(unstable(1.5), index=0.5, lower=0.4, upper=0.6)
+    stable = replace(unstable(1.5), index=0.5, lower=0.4, upper=0.6, growth_rate=-0.7, growth_lower=-0.8)
     assert course_facts(with_course(fit, stable)) == ()
+    # the index is a product of two rates: open, though the one that decides is known
+    by_rate = replace(unstable(1.3), index=-3.9, lower=-10.0, upper=2.3)
+    assert course_facts(with_course(fit, by_rate)) and not course_facts(
+        with_course(fit, replace(by_rate, growth_lower=-0.1))
+    )
     assert course_facts(replace(fit, identifiability=None)) == ()
     (fact,) = course_facts(with_course(fit, unstable(1.5)))
     assert fact.text.startswith(

@@ -88,8 +88,11 @@ class Stability:
 
     @property
     def is_unstable(self) -> bool:
-        """Whether the whole interval of the index lies below zero."""
-        return self.upper < 0.0
+        """Whether a deviation grows beyond doubt: the whole interval of its rate lies above zero, or C's below.
+
+        C is the product of two rates, and the one that decides may be well known where the other is not.
+        """
+        return self.upper < 0.0 or (self.growth_lower is not None and self.growth_lower > 0.0)
 
 
 @dataclass(frozen=True)

@@ -46,7 +46,7 @@ def course_stability(
 def course_finding(
     model: Model, course: Stability | None, approach: Mapping[str, float], ahead: float = DEFAULT_AHEAD
 ) -> tuple[Finding, ...]:
-    """Return a note `course-unstable` where the interval of the stability index lies below zero; else nothing."""
+    """Return a note `course-unstable` where a deviation grows beyond doubt; else nothing."""
     if course is None or not course.is_unstable:
         return ()
     return (Finding(

@@ -83,7 +83,9 @@ def stability(
     )
     starboard, port = (_index(rates, unit) for rates in one_sided_rates(model, speed, inputs))
     noun = "craft" if model.equations.layout else "ship"
-    text = _stability_text(noun, speed, index, wide) + _growth_text(growth, open_by, unit)
+    is_known = abs(index) > wide or abs(growth) > open_by
+    text = _stability_text(noun, speed, is_known=is_known, is_stable=growth < 0.0)
+    text += _growth_text(growth, open_by, unit)
     return Stability(
         index, index - wide, index + wide, text + _asymmetry_text(starboard, port), speed, growth, growth - open_by,
         growth + open_by,
@@ -104,9 +106,9 @@ def _deviation(model: Model, value_of: Callable[[Model], float], covariance: Arr
     return float(np.sqrt(max(np.array(slope) @ covariance @ np.array(slope), 0.0)))
 
 
-def _stability_text(noun: str, speed: float, index: float, half: float) -> str:
-    if abs(index) > half:
-        return f"the {noun} is course {'stable' if index > 0 else 'unstable'} at {significant(speed, 2)} m/s"
+def _stability_text(noun: str, speed: float, *, is_known: bool, is_stable: bool) -> str:
+    if is_known:
+        return f"the {noun} is course {'stable' if is_stable else 'unstable'} at {significant(speed, 2)} m/s"
     return f"whether the {noun} is course stable at {significant(speed, 2)} m/s cannot be determined"
 
 
