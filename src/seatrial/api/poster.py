@@ -17,9 +17,8 @@ RUDDER_DEG = 35.0
 """Rudder angle of the turning circles: the maximum rudder angle of most ships (MSC.137(76), 4.2.2)."""
 _RUDDER_TOLERANCE_DEG, _HEADING_TOLERANCE_DEG = 1.0, 2.0
 """How far rudder angle and switching heading of a measured run may be from those of the poster, degrees; chosen."""
-_SPEED_TOLERANCE = 0.1
-"""How far its approach speed may be from that at which the model's surge balances, as a share; chosen: measures over
-the ship's length hardly change with it, and thrust is identified apart from resistance only where it varies."""
+_SPEED_TOLERANCE = 0.05
+"""How far its approach speed may be, as a share; chosen."""
 _ZIGZAG_DEG = (10, 20)
 """Rudder angle and switching heading of the zigzags, degrees (MSC.137(76), 4.2.6)."""
 _TURNING = ("advance_L", "transfer_L", "tactical_diameter_L", "steady_diameter_L", "time_90_s", "speed_loss")
@@ -74,10 +73,11 @@ def poster(
     if not 0.0 < rudder_deg <= 90.0:
         raise InputError(f"a rudder angle of {rudder_deg:g} deg turns no ship; give one such as 35")
     report = report_progress or (lambda _: None)
-    manoeuvres, orders, readings = [], _orders(rudder_deg), readings_of(fit)
+    orders, readings = _orders(rudder_deg), readings_of(fit)
+    manoeuvres, measured_at = [], _speed_of_trials(readings) if speed is None else speed
     for number, order in enumerate(orders, 1):
         report(f"manoeuvres: {number} of {len(orders)}, {order.manoeuvre}")
-        manoeuvres.append(_manoeuvre(fit, order, speed, readings))
+        manoeuvres.append(_manoeuvre(fit, order, speed, [one for one in readings if _shows(one, order, measured_at)]))
     if not any(m.quantities for m in manoeuvres):
         raise InputError(f"no manoeuvre of the poster can be steered with this fit: {manoeuvres[0].note}")
     held_out, rate = {p.record for p in fit.validation}, rudder_rate_of(fit)
@@ -131,8 +131,16 @@ def _approach_speed(fit: "Fit", speed: float | None, manoeuvres: "Sequence[Poste
     return straight_by_thrusters(file.model).speed if file.model.equations.layout else file.approach.get("u", 0.0)
 
 
-def _manoeuvre(fit: "Fit", order: _Order, speed: float | None, readings: "Sequence[Reading]") -> "PosterManoeuvre":
-    """The model steered through it; what runs of the trials measured of it takes the predictions' place."""
+def _speed_of_trials(readings: "Sequence[Reading]") -> float | None:
+    """Median approach speed of the measured runs [m/s]: that of their propulsion, which the model may miss."""
+    from statistics import median
+
+    speeds = [one.values["approach_speed"] for one in readings if "approach_speed" in one.values]
+    return median(speeds) if speeds else None
+
+
+def _manoeuvre(fit: "Fit", order: _Order, speed: float | None, runs: "Sequence[Reading]") -> "PosterManoeuvre":
+    """The model steered through it; what these runs of the trials measured of it takes the predictions' place."""
     from seatrial.api.measured_runs import measured_quantity
     from seatrial.api.prediction import extrapolation, measure_intervals, measures
     from seatrial.api.simulation import as_model_file, steering
@@ -148,7 +156,6 @@ def _manoeuvre(fit: "Fit", order: _Order, speed: float | None, readings: "Sequen
         return PosterManoeuvre(order.manoeuvre, (), note=str(error))
     left = extrapolation(file, simulated)
     basis = Basis.EXTRAPOLATED if left is not None and left.index > EDGE_INDEX else Basis.PREDICTED
-    runs = [one for one in readings if _shows(one, order, values.get("approach_speed"))]
 
     def quantity(name: str) -> PosterQuantity:
         measured = measured_quantity(name, runs)
