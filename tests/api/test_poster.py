@@ -87,7 +87,7 @@ def test_the_interval_holds_the_error_of_the_current(fit: st.Fit) -> None:
     (p,) = fit.predictions
     errors = {"current_north": 0.1, "current_east": 0.0}  # m/s
     offsets = tuple(Offset(name, "day 1", "m/s", 0.0, error) for name, error in errors.items())
-    run = replace(p, measured=without_u(p.measured), offsets={o.name: o.estimate for o in offsets})
+    run = replace(p, measured=without_u(p.measured), session="day 1")
     (reading,) = readings_of(replace(fit, predictions=(run,), offsets=offsets))
     assert reading.run.current == 0.0
     assert reading.half_widths["approach_speed"] == pytest.approx(1.96 * 0.1, rel=0.01)

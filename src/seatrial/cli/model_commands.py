@@ -234,9 +234,12 @@ def _offset_lines(file: "ModelFile", measured: "Record | None", session: str | N
 
     if not file.offsets:
         return []
-    text = offsets_text(file.offsets, session)
     if measured is not None and is_measured_motion(file, measured):
-        return [f"inputs corrected as the fit found: {text}"]
+        return [f"with what the fit found of its session: {offsets_text(file.offsets, session)}"]
+    of_inputs = [one for one in file.offsets if one.is_of_input]
+    if not of_inputs:
+        return []
+    text = offsets_text(of_inputs, session)
     is_alone = len(file.offsets[0].by_session) == 1
     rest = "; how those of other sessions differ was not recorded, and is in no interval" if is_alone else ""
     return [f"inputs are true values; in logs the fit found {text}{rest}"]

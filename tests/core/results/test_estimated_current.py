@@ -16,9 +16,8 @@ def test_a_run_has_the_current_of_its_session() -> None:
         Offset("current_north", "day 2", "m/s", 0.3, 0.02), Offset("current_east", "day 2", "m/s", 0.4, None),
     )  # fmt: skip
     run = fabricated_fit().predictions[0]
-    second = estimated_current(replace(run, offsets={"current_north": 0.3, "current_east": 0.4}), offsets)
+    second = estimated_current(replace(run, session="day 2"), offsets)
     assert second is not None
     assert second.speed == pytest.approx(0.5) and (second.north_error, second.east_error) == (0.02, 0.0)
-    another_day = replace(run, offsets={"current_north": 0.0, "current_east": 0.0})
-    assert estimated_current(another_day, offsets) is None
-    assert estimated_current(replace(run, offsets={}), offsets) is None
+    assert estimated_current(replace(run, session="day 3"), offsets) is None
+    assert estimated_current(run, offsets) is None

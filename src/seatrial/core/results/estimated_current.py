@@ -29,7 +29,7 @@ class EstimatedCurrent:
 def estimated_current(p: Prediction, offsets: Sequence[Offset]) -> EstimatedCurrent | None:
     """Return the current of a run's session; None where none was estimated, as of a session that was not fitted.
 
-    offsets: of the fit. The run was simulated with the values of its own session, by which it is recognised.
+    offsets: of the fit.
     """
     north, east = (_of_session(p, offsets, name) for name in (CURRENT_NORTH, CURRENT_EAST))
     if north is None or east is None:
@@ -38,4 +38,4 @@ def estimated_current(p: Prediction, offsets: Sequence[Offset]) -> EstimatedCurr
 
 
 def _of_session(p: Prediction, offsets: Sequence[Offset], name: str) -> Offset | None:
-    return next((o for o in offsets if o.name == name and o.estimate == p.offsets.get(name)), None)
+    return next((o for o in offsets if o.name == name and o.group == p.session), None)

@@ -97,6 +97,7 @@ class Prediction:
             "which it was simulated, SI; empty: none"
         ),
     ] = field(default_factory=dict)
+    session: Annotated[str, Field(description="with whose runs it shares its offsets; empty: not known")] = ""
     windows: Annotated[
         tuple[WindowScore, ...], Field(description="windows of the run, each predicted by itself; validation runs only")
     ] = ()

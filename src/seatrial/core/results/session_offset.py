@@ -30,6 +30,11 @@ class SessionOffset:
     by_session: Mapping[str, float] = field(default_factory=dict)
 
     @property
+    def is_of_input(self) -> bool:
+        """Whether it corrects a logged input; else it is a parameter, such as a current."""
+        return self.correction[1] in KINDS
+
+    @property
     def correction(self) -> tuple[str, str]:
         """The input and the kind of its correction; the name and nothing for a parameter."""
         symbol, _, kind = self.name.partition(" ")

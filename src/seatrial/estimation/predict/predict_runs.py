@@ -203,7 +203,8 @@ def predict_runs(
     for item, run, reached, own, stream in zip(items, runs, moved_as, offsets, streams, strict=True):
         role = "training" if item.role is Role.TRAIN else "validation"
         one = predict_run(estimation.model, item.record, role, run, seconds, length)
-        one = replace(one, offsets=dict(zip(problem.session_unknowns, map(float, own.expected), strict=True)))
+        by_name = dict(zip(problem.session_unknowns, map(float, own.expected), strict=True))
+        one = replace(one, offsets=by_name, session=item.session)
         one = replace(one, extrapolation=extrapolation(reached, covered, layout))
         if run.divergence is not None:
             findings.append(divergence_finding(estimation.model, one, run.divergence))
