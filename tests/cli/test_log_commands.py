@@ -33,12 +33,13 @@ def test_a_draft_is_written_once_and_checked(tmp_path: Path) -> None:
     text = output("init", str(log), "--out", str(trial))
     assert "follows d(psi)/dt" in text and "zigzag1, " in text and "Next: name the column of rudder" in text
     assert "zigzag1" in trial.with_suffix(".html").read_text(encoding="utf-8")
-    with pytest.raises(InputError, match="exists and is not overwritten"):
+    with pytest.raises(InputError, match=r"trial.toml' exists; add --overwrite"):
         output("init", str(log), "--out", str(trial))
     assert "Next: " in output("check", str(trial))
     trial.unlink()
-    with pytest.raises(InputError, match="the drawing beside --out, exists"):
+    with pytest.raises(InputError, match=r"trial.html' exists; add --overwrite"):
         output("init", str(log), "--out", str(trial))
+    assert "trial file" in output("init", str(log), "--out", str(trial), "--overwrite")
 
 
 def test_sources_without_a_time_column_are_drafted_with_their_columns(tmp_path: Path) -> None:

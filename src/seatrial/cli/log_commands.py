@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 COLUMNS_SHOWN = 12  # columns of a topic that `check` lists without --all; ours, one screen for a log of a few topics
 DIGITS = 5  # significant ones of a range; chosen
+DRAFT = Path("trial.toml")  # what a drafted trial file is named; ours
 _NAMES = (0, 2)  # the column that holds names of the log, in the table of a topic and in that of guesses
 _TEXT_COLUMNS = (0, 1, 5)  # of the table of a topic: name, unit and channel
 TOPICS_SHOWN = 15  # topics, the same way
@@ -23,7 +24,10 @@ TOPICS_SHOWN = 15  # topics, the same way
 @app.command()
 def init(
     logs: Annotated[list[Path], typer.Argument(metavar="LOG...", help="Logs of any format, or folders with logs.")],
-    out: Annotated[Path, typer.Option("--out", metavar="TRIAL.toml", help="The trial file to write; a new one.")],
+    out: Annotated[Path, typer.Option("--out", metavar="TRIAL.toml", help="The trial file to write.")] = DRAFT,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace the trial file and its drawing where they exist.")
+    ] = False,
     length: Annotated[
         float, typer.Option("--length", metavar="METRES", help="Length of the craft; without it the file asks for it.")
     ] = 0.0,
@@ -55,8 +59,10 @@ def init(
     from seatrial.data.draft import name_contradiction, run_text
     from seatrial.reporting.draft import html as draft_page
 
-    if out.exists():
-        raise InputError(f"--out '{out}' exists and is not overwritten; name another file, or remove it")
+    page = out.with_suffix(".html")
+    for path in (out, page):
+        if path.exists() and not overwrite:
+            raise InputError(f"'{path}' exists; add --overwrite to replace it, or name another file with --out")
     draft = api.draft_trial(
         *logs,
         folder=out.resolve().parent,
@@ -69,9 +75,6 @@ def init(
         scale=scale,
         columns=column or (),
     )
-    page = out.with_suffix(".html")
-    if page.exists():
-        raise InputError(f"'{page}', the drawing beside --out, exists and is not overwritten; name another file")
     write_atomically(out, draft.text.encode())
     write_atomically(page, draft_page(draft, out.name).encode())
     _print_guesses([g for part in draft.guesses for g in part if g.is_used])
@@ -116,8 +119,8 @@ def _after_draft(draft: "DraftTrial", out: Path) -> str:
     if draft.lacks_input and draft.unrecognised:
         one = in_shell(f"{draft.unrecognised[0]}=CHANNEL")
         return (
-            f"remove {out} and {out.with_suffix('.html')}, and init again, saying which column is a rudder (delta), a "
-            f"thruster (command_1, command_2) or the roll angle (phi), as in --column {one}"
+            "say which column is a rudder (delta), a thruster (command_1, command_2) or the roll angle (phi): the same "
+            f"command with --overwrite --column {one}"
         )
     steps += [f"name the column of rudder, thruster or roll angle in {out}"] if draft.lacks_input else []
     if steps:

@@ -7,7 +7,12 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import InputError, Record, Severity
-from seatrial.data.check.thrusters import refuse_impossible_commands, thruster_findings
+from seatrial.data.check.thrusters import (
+    SURE_EFFECT,
+    refuse_impossible_commands,
+    thruster_effects,
+    thruster_findings,
+)
 from seatrial.physics.models import model_named
 from seatrial.physics.models.thruster_layout import CATAMARAN, AngleInput, CommandInput, Thruster, ThrusterLayout
 from seatrial.physics.simulate.replay import replay
@@ -71,6 +76,20 @@ def test_sides_and_signs_are_found(
     assert [f.code for f in findings] == ["thruster-side"] * len(sentences)
     assert all(f.severity is Severity.ERROR and f.advice for f in findings)
     assert all(text in f.text for f, text in zip(findings, sentences, strict=True))
+
+
+def test_what_turning_does_to_the_speed_ahead_is_no_effect_of_a_thruster() -> None:
+    time, generator = np.arange(0.0, 200.0, 0.1), np.random.default_rng(7)
+    commands = np.repeat(generator.uniform(0.0, 1.0, size=(len(time) // 40, 2)), 40, axis=0)
+    r, v = 1.2 * np.sin(0.5 * time), 0.6 * np.cos(0.35 * time)  # rad/s and m/s: fast turns with drift
+    thrust = np.sum(commands**2, axis=1)
+    u = np.zeros(len(time))
+    for k in range(len(time) - 1):  # surge in turning axes: du/dt = thrust - damping + v r
+        u[k + 1] = u[k] + 0.1 * (0.5 * thrust[k] - 0.5 * u[k] + v[k] * r[k])
+    u += 0.05 * generator.standard_normal(len(time))
+    channels = {"u": u, "v": v, "r": r, "command_1": commands[:, 0], "command_2": commands[:, 1]}
+    record = Record.from_arrays("run", time, channels)
+    assert min(one.surge for one in thruster_effects(CATAMARAN, [record])) > 2.0 * SURE_EFFECT
 
 
 def test_commands_that_move_together_say_nothing_of_sides() -> None:

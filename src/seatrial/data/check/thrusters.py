@@ -148,7 +148,7 @@ def _side_findings(layout: ThrusterLayout, records: Sequence[Record]) -> list[Fi
 def thruster_effects(layout: ThrusterLayout, records: Sequence[Record]) -> list[ThrusterEffect]:
     """Return what each thruster drives and turns as the records show it, standard conventions, with u and r.
 
-    Least squares of du/dt and dr/dt on what each thruster should give, with the motion's own damping.
+    Least squares of du/dt and dr/dt on what each thruster should give, with the motion's own damping and turning axes.
     """
     surge = _regression([_columns(layout, r, "u") for r in records], records[0].dt, len(layout.thrusters))
     yaw = _regression([_columns(layout, r, "r") for r in records], records[0].dt, len(layout.thrusters))
@@ -158,6 +158,7 @@ def thruster_effects(layout: ThrusterLayout, records: Sequence[Record]) -> list[
 def _columns(layout: ThrusterLayout, record: Record, channel: str) -> tuple[Array, Array]:
     """Features (n, k), one for each thruster first, and acceleration (n,); no rows of a run shorter than a window."""
     u, r = record["u"], record["r"]
+    v = record["v"] if "v" in record else np.zeros(len(u))
     levers = [_levers(t, record, channel) for t in layout.thrusters]
     features = [
         (o := _orders(t, record)) * np.abs(o) * lever for t, lever in zip(layout.thrusters, levers, strict=True)
@@ -165,7 +166,9 @@ def _columns(layout: ThrusterLayout, record: Record, channel: str) -> tuple[Arra
     own = record[channel]
     width = max(_LEAST_SAMPLES, 2 * round(0.5 * _SMOOTHING_S / record.dt) + 1)
     acceleration = smoothed_locally(own, width, 2, 1, record.dt) if len(own) >= width else np.full(len(own), np.nan)
-    damping = [own, own * np.abs(own), *([r * np.abs(u)] if channel == "r" else []), np.ones(len(own))]
+    # turning axes: surge gains v r (Fossen 2011, eq. 3.56), yaw the moments of |u| r and u v
+    of_turning = [r * np.abs(u), u * v] if channel == "r" else [v * r]
+    damping = [own, own * np.abs(own), *of_turning, np.ones(len(own))]
     table = np.stack([*features, *damping], axis=1)
     known = np.all(np.isfinite(table), axis=1) & np.isfinite(acceleration)
     return table[known], acceleration[known]

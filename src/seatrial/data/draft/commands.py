@@ -106,7 +106,7 @@ def _with_rest_in_the_middle(guess: ColumnGuess) -> ColumnGuess:
 def command_directions(record: Record) -> Changes:
     """Return what shows which way each command drives the craft and to which side it turns it."""
     names = [name for name in record.channels if name.startswith("command_")]
-    record = _with_surge(record)
+    record = _with_speeds(record)
     if not names or not {"u", "r", "psi"} <= set(record.channels):
         return {}
     try:
@@ -123,14 +123,15 @@ def command_directions(record: Record) -> Changes:
     }
 
 
-def _with_surge(record: Record) -> Record:
-    """The record with the speed ahead as the positions show it, where no speed is recorded."""
+def _with_speeds(record: Record) -> Record:
+    """The record with the speeds ahead and to starboard as the positions show them, where no speed is recorded."""
     if "u" in record or not {"x0", "y0", "psi"} <= set(record.channels):
         return record
     north, east = (np.gradient(padded(record, record[one]), record.dt) for one in ("x0", "y0"))
-    ahead = north * np.cos(record["psi"]) + east * np.sin(record["psi"])
-    surge = Record.from_arrays("surge", record.time, {"u": ahead, "v": np.zeros_like(ahead)})
-    return record.with_channel("u", surge.channel("u")).with_channel("v", surge.channel("v"))
+    cos, sin = np.cos(record["psi"]), np.sin(record["psi"])
+    speeds = {"u": north * cos + east * sin, "v": east * cos - north * sin}
+    motion = Record.from_arrays("motion", record.time, speeds)
+    return record.with_channel("u", motion.channel("u")).with_channel("v", motion.channel("v"))
 
 
 def _with_direction(effect: ThrusterEffect, guess: ColumnGuess) -> ColumnGuess:

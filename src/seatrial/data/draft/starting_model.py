@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from seatrial.core.values import Array, Record
-from seatrial.data.check.signal import smoothed_derivative, window_length
+from seatrial.core.values import Record
 from seatrial.data.draft.ship_estimates import UNSTATED, EstimatedValue, StatedSize, hull_rudder_propeller
+from seatrial.physics.manoeuvres.track import speed
 
 _THRUSTERS, _ROLL, _SHIP, _MMG, _WAVES = "thrusters", "roll", "abkowitz", "mmg", "heave_pitch"
 _WAVE, _MOTION_IN_WAVES = "zeta", frozenset({"z", "theta"})
@@ -112,18 +112,18 @@ def _steered_model(
 ) -> StartingModel:
     peaks = [_peak(one["delta"]) for one in records if one is not None and "delta" in one]
     falls = len(peaks) > 1 and max(peaks) > _AMPLITUDE_RATIO * min(peaks)
-    speed = _approach_speed(records)
-    if size.length and speed and any(one <= symbols for one in _DRIFT):
-        particulars = () if has_jet else hull_rudder_propeller(size, speed, _advance(records))
+    approach = _approach_speed(records)
+    if size.length and approach and any(one <= symbols for one in _DRIFT):
+        particulars = () if has_jet else hull_rudder_propeller(size, approach, _advance(records))
         if particulars:
             why = "forces of hull, propeller and rudder; abkowitz, without the last two, holds within the runs only"
             reason = "hull, wake, thrust and the flow at the rudder, held near formulas by priors of 50 per cent"
-            return StartingModel(_MMG, why, _MMG_TERMS, reason, ("delta",), speed, particulars)
+            return StartingModel(_MMG, why, _MMG_TERMS, reason, ("delta",), approach, particulars)
         if _is_rate_steady(records):
             why = "forces over drift, yaw rate, rudder; mmg goes farther with a propeller's rate (init --gear)"
             reason = f"the linear terms{', and the damping of fast turns, as rudder angles differ' if falls else ''}"
             free = (*_LINEAR_TERMS, "N_rrr") if falls else _LINEAR_TERMS
-            return StartingModel(_SHIP, why, free, reason, ("delta",), speed)
+            return StartingModel(_SHIP, why, free, reason, ("delta",), approach)
     why = "the simplest with a rudder; 'seatrial models' lists others, 'seatrial models NAME' what one needs"
     reason = "gain, time constant, and the fall of the gain with the rudder angle, which differs between the runs"
     return StartingModel("nomoto", why, ("K", "T", "alpha") if falls else (), reason, ("delta",))
@@ -137,23 +137,12 @@ def _approach_speed(records: Sequence[Record | None]) -> float:
 
 def _speed_ahead(record: Record) -> float:
     """The mean speed of a run at its start; of one that starts slowly what it reaches; 0 where it is not recorded."""
-    speed, time = _speed(record)
-    if not speed.size:
+    flow = speed(record)
+    if flow is None:
         return 0.0
-    reached = float(np.percentile(speed, _PEAK_PERCENTILE))
-    start = float(np.mean(speed[time - time[0] <= _APPROACH_S]))
+    reached = float(np.percentile(flow, _PEAK_PERCENTILE))
+    start = float(np.mean(flow[record.time - record.time[0] <= _APPROACH_S]))
     return start if start > _SLOW_START * reached else reached
-
-
-def _speed(record: Record) -> tuple[Array, Array]:
-    """Speed [m/s] as recorded, else along the smoothed track, and its time [s], each (n,); empty where neither is."""
-    if {"u", "v"} <= set(record.channels):
-        return np.hypot(record["u"], record["v"]), record.time
-    length = window_length(len(record))
-    if not {"x0", "y0"} <= set(record.channels) or len(record) < length:
-        return np.empty(0), np.empty(0)
-    north, east = (smoothed_derivative(record[one], record.dt, length) for one in ("x0", "y0"))
-    return np.hypot(north, east), record.time[: len(north)]
 
 
 def _advance(records: Sequence[Record | None]) -> float:
