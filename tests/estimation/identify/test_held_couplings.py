@@ -7,7 +7,7 @@ import pytest
 
 from seatrial.core.values import Record
 from seatrial.data.trial import EstimateMethod, EstimateSettings
-from seatrial.estimation.estimate import Runs, estimate_model
+from seatrial.estimation.estimate import Estimation, Runs, estimate_model
 from seatrial.estimation.identify.held_couplings import held_couplings
 from seatrial.physics.models.thruster_layout import CATAMARAN, Damping, ThrustCurve, ThrusterLayout
 from seatrial.physics.models.thrusters import thrusters
@@ -18,7 +18,7 @@ NOISE = {"u": 0.01, "v": 0.01, "r": 0.01, "psi": 0.005, "x0": 0.02, "y0": 0.02}
 
 @pytest.mark.parametrize(("N_uv", "criterion"), [(0.4, "output-error"), (0.0, "output-error"), (0.4, "auto")])
 def test_a_coupling_of_the_truth_is_named_with_what_it_moves(
-    N_uv: float, criterion: str, rng: np.random.Generator
+    N_uv: float, criterion: str, rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     layout = ThrusterLayout(
         tuple(replace(one, curve=ThrustCurve.LINEAR, lag=0.0) for one in CATAMARAN.thrusters), Damping.DIAGONAL
@@ -32,10 +32,15 @@ def test_a_coupling_of_the_truth_is_named_with_what_it_moves(
     noisy = {c: clean.channel(c).with_values(clean[c] + s * rng.standard_normal(600)) for c, s in NOISE.items()}
     record = replace(planned, channels=dict(planned.channels) | noisy)
     settings = EstimateSettings(method=EstimateMethod(criterion))
-    findings = held_couplings(estimate_model(model, Runs.one_session_each((record,), 1.0), settings))
+    estimation = estimate_model(model, Runs.one_session_each((record,), 1.0), settings)
+    findings = held_couplings(estimation)
     if N_uv == 0.0:
         assert findings == ()
         return
     assert findings[0].message.startswith("N_uv is held at 0 and the training runs speak against it, by ")
     assert "M_v by " in findings[0].evidence
     assert findings[0].advice.endswith('"N_uv"]')
+    size = float(findings[0].message.split(" by ")[-1].split()[0])
+    wide = replace(estimation.interval, covariance=size**2 * estimation.interval.covariance)
+    monkeypatch.setattr(Estimation, "interval", wide)
+    assert held_couplings(estimation) == ()  # within one standard error of what is not known

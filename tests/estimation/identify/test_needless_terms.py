@@ -1,15 +1,19 @@
 """A term that leads away from the held-out run is named, and its removal is what a fit without it does."""
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from seatrial.core.results import Fit
+from seatrial.core.results import Fit, Prediction
+from seatrial.core.results.identifiability import Stability
 from seatrial.core.values import Record, Ship
 from seatrial.data.trial import Role, Trial, TrialRun
-from seatrial.estimation.identify import identify
+from seatrial.estimation.estimate import Estimation
+from seatrial.estimation.identify import assembled_fit, identify
+from seatrial.estimation.identify.needless_terms import needless_term_findings
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.simulate import manoeuvre
@@ -47,6 +51,21 @@ def test_a_term_that_worsens_the_held_out_run_is_named_with_both_errors() -> Non
     assert without == pytest.approx(fitted(0.0).validation[0].rms["psi_deg"], rel=0.15)
     assert without < 0.5 * with_it
     assert finding.advice.startswith("do not fix it: the training runs determine it")
+
+
+def test_nothing_is_said_of_a_craft_whose_runs_leave_any_model(monkeypatch: pytest.MonkeyPatch) -> None:
+    seen = list[tuple[Estimation, Sequence[Prediction]]]()
+
+    def kept(estimation: Estimation, predictions: Sequence[Prediction], course: Stability | None) -> tuple[()]:
+        assert course is None or not course.is_unstable
+        seen.append((estimation, predictions))
+        return ()
+
+    monkeypatch.setattr(assembled_fit, "needless_term_findings", kept)
+    fitted(0.0, "alpha")
+    unstable = Stability(index=-1.0, lower=-2.0, upper=-0.5, text="")
+    assert len(needless_term_findings(*seen[0])) == 1
+    assert needless_term_findings(*seen[0], unstable) == ()
 
 
 def test_a_term_that_the_held_out_run_needs_is_not_named() -> None:

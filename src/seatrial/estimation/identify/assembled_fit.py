@@ -96,7 +96,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
             ),
             *short_record_findings(estimation, assessment.profiles), *closed_loop_findings(estimation),
             *(sampling_findings(posterior) if posterior else ()),
-            *needless_term_findings(estimation, predicted.predictions),
+            *needless_term_findings(estimation, predicted.predictions, assessment.stability),
             *predicted.findings,
             *response_findings(responses),
             *antenna_findings(predicted.predictions, runs.length),

@@ -2,7 +2,8 @@
 
 One Newton step from the optimum with one more coefficient free says how far it would move, over its standard error, and
 what it would move with it (Rao 1948, Proc. Cambridge Phil. Soc. 44, 50-57: the score statistic is the square of the
-first).
+first). Standard errors are as wide as those of the fit, which hold what correlated residuals and model error add to the
+information: else a term is named that, once free, has an interval around 0.
 """
 
 from dataclasses import dataclass, replace
@@ -12,10 +13,11 @@ import numpy as np
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, Finding, Severity
 from seatrial.estimation.estimate import Estimation
+from seatrial.estimation.information.covariance import inverse
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.physics.models.candidate_structures import SURGE_TERMS
 
-_STANDARD_ERRORS = 5.0  # of a coupling, from which on it is named; chosen: beyond what is left of model error
+_STANDARD_ERRORS = 3.0  # of a coupling, from which on it is named; chosen: one in 60 of six that are 0 in truth
 _MOVES = 2.0  # standard errors of a free coefficient by which it would move, from which on it is named; chosen
 _MOST_NAMED = 3  # coefficients that a message names; chosen
 
@@ -54,23 +56,32 @@ def held_couplings(estimation: Estimation) -> tuple[Finding, ...]:
     score = _score(estimation, candidates)
     errors = dict(zip(estimation.estimate.problem.free, estimation.interval.standard_error, strict=False))
     steps_of = {name: score.step(name, candidates) for name in candidates}
-    contradicted = (name for name in candidates if abs(steps_of[name][0]) > _STANDARD_ERRORS)
-    named = sorted(contradicted, key=lambda name: -abs(steps_of[name][0]))[: None if has_thrusters else 1]
+    widening = _widening(estimation)
+    sizes = {name: abs(size) / widening for name, (size, _) in steps_of.items()}
+    contradicted = (name for name in candidates if sizes[name] > _STANDARD_ERRORS)
+    named = sorted(contradicted, key=lambda name: -sizes[name])[: None if has_thrusters else 1]
     free = ", ".join(f'"{n}"' for n in (*estimation.estimate.problem.free, *named[:1]))
     findings = list[Finding]()
     for name in named:
-        size, steps = steps_of[name]
+        _, steps = steps_of[name]
         moved = {n: abs(step) / errors[n] for n, step in steps.items() if errors.get(n, 0.0) > 0.0}
         largest = sorted((n for n in moved if moved[n] > _MOVES), key=lambda n: -moved[n])[:_MOST_NAMED]
         text = enumeration([f"{n} by {moved[n]:.0f} standard errors" for n in largest])
         findings.append(Finding(
             Severity.WARNING, "held-coupling", f"{name} is held at 0 and the training runs speak against it, by "
-            f"{abs(size):.0f} standard errors", f"in one step it would move {text}" if text else "",
+            f"{sizes[name]:.0f} standard errors", f"in one step it would move {text}" if text else "",
             f"free {named[0]}{', the strongest, first' if len(named) > 1 else ''} and compare the held-out runs: under "
             f"[model] write free = [{free}]",
             "intervals of the coefficients that stand in for it do not hold their true values",
         ))  # fmt: skip
     return tuple(findings)
+
+
+def _widening(estimation: Estimation) -> float:
+    """The standard errors of the fit over those that its information alone gives: the median of its coefficients."""
+    count = len(estimation.estimate.problem.free)
+    by_information = np.sqrt(np.diag(inverse(estimation.information))[:count])
+    return float(np.median(estimation.interval.standard_error[:count] / by_information))
 
 
 def _couplings() -> tuple[str, ...]:

@@ -6,6 +6,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.results import Prediction
+from seatrial.core.results.identifiability import Stability
 from seatrial.core.text.numbers import significant
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Finding, InputError, Severity
@@ -20,13 +21,19 @@ LEAST_GAIN = 0.7
 chance between models that predict alike; chosen."""
 
 
-def needless_term_findings(estimation: Estimation, predictions: Sequence[Prediction]) -> tuple[Finding, ...]:
+def needless_term_findings(
+    estimation: Estimation, predictions: Sequence[Prediction], course: Stability | None = None
+) -> tuple[Finding, ...]:
     """Return a warning `term-worsens-prediction` for the term whose removal helps the held-out runs most; else nothing.
 
     A term is removed by setting its coefficient to 0 and moving the others with it, as the information has them at
     the least cost (Seber & Wild 1989, Nonlinear Regression, section 5.4: to first order, not fitted again). Terms with
     a prior, and those whose bounds exclude 0, stay.
+
+    course: of a craft that is course unstable, nothing is said: its runs leave any model.
     """
+    if course is not None and course.is_unstable:
+        return ()
     held = [p for p in predictions if p.role == "validation" and p.divergence is None and set(_ERRORS) & set(p.rms)]
     if not held:
         return ()
