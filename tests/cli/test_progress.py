@@ -25,6 +25,26 @@ def test_off_a_terminal_each_phase_is_one_line(capsys: pytest.CaptureFixture[str
     assert reported(Detail.NORMAL, capsys) == ["search, 12 segments", "prediction", "report"]
 
 
+def test_off_a_terminal_a_long_phase_says_at_each_doubling_how_far_it_is(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clock = iter(range(0, 1000, 10))  # s between two reports
+    monkeypatch.setattr(time, "monotonic", lambda: float(next(clock)))
+    with printing(Detail.NORMAL), progress_reporter() as report_progress:
+        for part in range(10):
+            report_progress(f"prediction: {part} of 10, run a")
+        for count in range(3):
+            report_progress(f"search: evaluation {count}, cost 7")
+    assert capsys.readouterr().err.splitlines() == [
+        "prediction",
+        "  prediction: 20 s so far, about 80 s left",
+        "  prediction: 40 s so far, about 60 s left",
+        "  prediction: 80 s so far, about 20 s left",
+        "search",
+        "  search: 20 s so far, evaluation 2, cost 7",
+    ]
+
+
 def test_quiet_prints_none_and_verbose_every_report(capsys: pytest.CaptureFixture[str]) -> None:
     assert reported(Detail.QUIET, capsys) == []
     assert reported(Detail.VERBOSE, capsys) == list(REPORTS)

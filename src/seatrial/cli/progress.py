@@ -1,6 +1,7 @@
-"""Progress on standard error: a line for each phase, and on a terminal how far the present one is."""
+"""Progress on standard error: a line for each phase, on a terminal how far the present one is; of a long one elsewhere."""
 
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
@@ -14,8 +15,9 @@ if TYPE_CHECKING:
 
 # s of a phase below which a terminal keeps no line of it; letters of what a phase says of itself; both chosen
 SHORT_PHASE_S, DETAIL_LETTERS = 0.3, 40
+LONG_PHASE_S = 20.0  # s of a phase after which, and after each doubling, a line says how far it is; chosen
 BAR_LETTERS = 20  # of the bar; chosen
-ONE_MINUTE_S = 60.0  # s: less is shown in whole seconds
+WHOLE_SECONDS_S = 120.0  # s: less is shown in whole seconds; chosen
 
 
 @contextmanager
@@ -27,7 +29,7 @@ def progress_reporter(*, has_live_table: bool = False) -> Iterator[Callable[[str
     if is_quiet() or (has_live_table and sys.stdout.isatty()):
         yield lambda _: None
     elif is_verbose() or not sys.stderr.isatty():
-        yield _printer(every=is_verbose())
+        yield _every_report if is_verbose() else _Lines().report
     else:
         with _bar() as bar:
             phases = _Phases(bar)
@@ -35,17 +37,36 @@ def progress_reporter(*, has_live_table: bool = False) -> Iterator[Callable[[str
             phases.end()
 
 
-def _printer(*, every: bool) -> Callable[[str], None]:
-    """Print each phase once, or every report."""
-    reported = set[str]()
+def _every_report(text: str) -> None:
+    _print(text)
 
-    def report(text: str) -> None:
-        line = text if every else read_report(text).phase
-        if every or line not in reported:
-            reported.add(line)
-            print(ascii_text(line), file=sys.stderr, flush=True)
 
-    return report
+def _print(line: str) -> None:
+    print(ascii_text(line), file=sys.stderr, flush=True)
+
+
+class _Lines:
+    """A line for each phase, once, and for a long one how far it is: after 20 s, 40 s, 80 s and so on."""
+
+    def __init__(self) -> None:
+        self._printed = set[str]()
+        self._phase = ""
+        self._began, self._next_s = 0.0, LONG_PHASE_S
+
+    def report(self, text: str) -> None:
+        """Print what this report adds."""
+        one, now = read_report(text), time.monotonic()
+        if one.phase != self._phase:
+            self._phase, self._began, self._next_s = one.phase, now, LONG_PHASE_S
+        if one.phase not in self._printed:
+            self._printed.add(one.phase)
+            _print(one.phase)
+        elapsed = now - self._began
+        if elapsed >= self._next_s:
+            while self._next_s <= elapsed:
+                self._next_s *= 2.0  # each doubling: few lines, however long it takes
+            left = _time_left(elapsed, one) or one.detail[:DETAIL_LETTERS]
+            _print(f"  {one.phase}: {elapsed:.0f} s so far{f', {left}' if left else ''}")
 
 
 def _bar() -> "Progress":
@@ -110,4 +131,4 @@ def _time_left(elapsed: float, one: ProgressReport) -> str:
     left = elapsed / one.done * (one.total - one.done)
     if left < 1.0:
         return ""
-    return f"about {ascii_text(duration(left)) if left > ONE_MINUTE_S else f'{left:.0f} s'} left"
+    return f"about {ascii_text(duration(left)) if left > WHOLE_SECONDS_S else f'{left:.0f} s'} left"
