@@ -36,9 +36,17 @@ def test_speeds_along_and_across_and_the_rate_of_the_shaft_are_recognised(name: 
         ("Rudder position", "delta"),
         ("rudder feedback", "delta"),
         ("battery voltage [V]", "voltage"),
+        ("RudderAngle", "delta"),
+        ("ShaftRPM", "n"),
+        ("LogSpeed", "stw"),
+        ("SpeedOverGround", "sog"),
+        ("GPSCourse", "cog"),
+        ("Gyro", "psi"),
+        ("thrustPort", "command_1"),
+        ("WindSpeedTrue", "wind_speed"),
     ],
 )
-def test_commands_and_batteries_are_recognised(name: str, symbol: str) -> None:
+def test_commands_batteries_and_words_set_apart_by_capitals_are_recognised(name: str, symbol: str) -> None:
     guess = guess_by_name("", name, "")
     assert guess is not None
     assert guess.symbol == symbol

@@ -124,7 +124,7 @@ _APPARENT, _ANGLE = "app(arent)?", "(dir(ection)?|angle)"
 _PROBE = "counts as at midship; of a probe on the craft elsewhere add reference_point, m forward of midship"
 _PORT, _STARBOARD = "(left|port)", "(right|starboard|stbd)"
 _SIDES = {"port": _PORT, "starboard": _STARBOARD}
-_THRUSTER, _PULSE = "(thr(ottle|uster)?|motor|esc|pwm|command|cmd)", "(_(pwm|us|out|output|raw|cmd))?"
+_THRUSTER, _PULSE = "(thr(ottle|ust|uster)?|motor|esc|pwm|command|cmd)", "(_(pwm|us|out|output|raw|cmd))?"
 _WORDS = [
     *_rules(
         "",
@@ -133,7 +133,7 @@ _WORDS = [
         (r"cog|course(_over_ground)?|(gps|gnss)\d*_(heading|course|track)|gcrs", "cog", ""),
         (r"stw|speed_through_water|log_speed", "stw", ""),
         (r"hdm|mag(netic)?_heading|heading_mag(netic)?", "psi_magnetic", ""),
-        (r"compass(_heading)?|gyro_?compass", "psi", "", "", "", 1.0, "", _COMPASS),
+        (r"compass(_heading)?|gyro(_?compass)?", "psi", "", "", "", 1.0, "", _COMPASS),
         (r"(true_)?heading|hdg|hdt|psi|psi_hat|yaw|yaw_angle", "psi", ""),
         (r"turn(ing)?_rate|rate_of_turn|rot", "r", ""),
         (r"yaw_?rate|yaw_?speed|r|r_angvelo|gyro?_?z|angular_velocity_z", "r", ""),
@@ -150,7 +150,7 @@ _WORDS = [
         (r"(steer(ing)?|outboard|azimuth)(_(angle|pos(ition)?|feedback))?", "delta", ""),
         (r"throttle", "command_1", ""), (r"alpha_(\d+)", "alpha_{}", ""),
         (r"(main_|port_|stbd_)?eng(ine)?(_(rate|speed|revs?))?", "n", "", "", "", 1.0, _ENGINE),
-        (r"n_prop|(prop(eller)?|shaft)_(rate|rpm|rps|speed)|shaft", "n", ""),
+        (r"n_prop|(prop(eller)?|shaft)_(rate|rpm|rps|revs?|speed)|(prop(eller)?|shaft)", "n", ""),
         (r"rpm|rps|n", "n", "", "", "", 1.0, "", _RATE),
         (r"roll(_angle)?|phi|heel", "phi", ""), (r"pitch(_angle)?|theta|trim_angle", "theta", ""),
         (r"roll_rate|p", "p", ""), (r"heave|z", "z", ""),
@@ -163,8 +163,8 @@ _WORDS = [
         (rf"{_THRUSTER}_?{_STARBOARD}{_PULSE}|{_STARBOARD}_?{_THRUSTER}{_PULSE}", "command_2", ""),
         (rf"({_THRUSTER}|servo)_?(\d+){_PULSE}", "command_{}", ""),
         (rf"c\d+_{_PORT}", "command_1", ""), (rf"c\d+_{_STARBOARD}", "command_2", ""),
-        (r"wind_velo_true|true_wind_speed|tws", "wind_speed", "", "", "", 1.0, "", _WIND),
-        (r"wind_dir_true|true_wind_dir(ection)?|twd", "wind_direction", "", "", "", 1.0, "", _WIND),
+        (r"wind_velo_true|true_wind_speed|wind_(speed_true|true_speed)|tws", "wind_speed", "", "", "", 1.0, "", _WIND),
+        (r"true_wind_dir(ection)?|wind_dir(ection)?_true|wind_true_dir(ection)?|twd", "wind_direction", "", "", "", 1.0, "", _WIND),
         (rf"wind_{_APPARENT}_(spd|speed)|{_APPARENT}_wind_(spd|speed)",
          "wind_speed_relative", "", "", "", 1.0, "", _APPARENT_WIND),
         (rf"wind_{_APPARENT}_{_ANGLE}|{_APPARENT}_wind_{_ANGLE}",
@@ -186,6 +186,8 @@ _INSTRUMENT = re.compile(r"(d?gps|gnss|rtk|imu|ahrs|ins|mru|gyro|vdr|nav|nmea|ai
 _QUALIFIERS = re.compile(
     r"(_(true|t|filt(ered)?|meas(ured)?|actual|raw|avg|mean|value|deg_t|lcg|cg|mid(ships?)?|amidships|\d))+$"
 )
+# between the words of a name that sets them apart by capitals: RudderAngle, ShaftRPM
+_CAPITALS = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 _BRACKETS = re.compile(r"[\[(]([^\])]*)[\])]")
 
 
@@ -224,14 +226,19 @@ def guess_by_name(topic: str, name: str, stated_unit: str, log_format: str = "te
     if log_format in _KNOWN_LOGGERS or _ORDERS.search(last.lower()):
         return None
     unit = _known_unit(stated_unit) or bracketed_unit(name)
-    plain = re.sub(r"[^a-z0-9]+", "_", without_accents(_BRACKETS.sub("", name).strip())).strip("_")
-    for text, word_unit in _readings(plain):
+    bare = _BRACKETS.sub("", name)
+    for text, word_unit in (*_readings(_plain(bare)), *_readings(_plain(_CAPITALS.sub("_", bare)))):
         for rule in _WORDS:
             match = re.fullmatch(rule.pattern, in_english(text))
             guess = _guess(rule, match, unit or word_unit, "its name") if match else None
             if guess is not None and (guess.unit or not word_unit):  # not heave for a ``z`` in rad/s
                 return guess
     return None
+
+
+def _plain(name: str) -> str:
+    """A heading in small letters and figures, with a line between words."""
+    return re.sub(r"[^a-z0-9]+", "_", without_accents(name)).strip("_")
 
 
 def bracketed_unit(name: str) -> str:
