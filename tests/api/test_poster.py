@@ -16,10 +16,12 @@ from seatrial.api.poster import _Order, _shows
 from seatrial.cli import app
 from seatrial.core.results import IntervalBasis, Offset, Prediction
 from seatrial.core.results.poster import Basis, Poster
-from seatrial.core.values import RecordKind
+from seatrial.core.values import Channel, RecordKind
 from seatrial.estimation.information.extrapolation import motion_envelope
 from seatrial.estimation.predict.open_loop import compare_measures
 from seatrial.physics.manoeuvres import ObservedManoeuvre
+from seatrial.physics.models.thruster_layout import CATAMARAN, AngleInput, CommandInput, Thruster, ThrusterLayout
+from seatrial.physics.models.thrusters import thrusters
 from seatrial.reporting.poster import TO_BE_FILLED_IN, html, particulars
 
 
@@ -80,6 +82,18 @@ def test_a_run_of_positions_without_speeds_is_read(fit: st.Fit) -> None:
     (run,) = readings_of(bare)
     for name in ("approach_speed", "initial_turning_L"):
         assert run.values[name] == pytest.approx(p.measures[name].measured, rel=0.01)
+
+
+def test_a_run_of_a_craft_that_steers_by_an_outboard_is_read_by_its_angle(fit: st.Fit) -> None:
+    """Abaft midship thrust to port turns to starboard: the angle is the order with its sign changed."""
+    (p,) = fit.predictions
+    outboard = ThrusterLayout((Thruster("outboard", -2.0, 0.0, CommandInput("command_1"), AngleInput("alpha_1")),))
+    angle = Channel.from_notation("alpha_1", -p.measured["delta"])
+    run = replace(p, measured=p.measured.without("delta").with_channel("alpha_1", angle))
+    (reading,) = readings_of(replace(fit, model=thrusters(outboard), predictions=(run,)))
+    (by_rudder,) = readings_of(fit)
+    assert reading.values == by_rudder.values
+    assert readings_of(replace(fit, model=thrusters(CATAMARAN), predictions=(run,))) == ()
 
 
 def test_the_interval_holds_the_error_of_the_current(fit: st.Fit) -> None:

@@ -101,16 +101,20 @@ def measured_quantity(name: str, runs: Sequence[Reading]) -> "PosterQuantity | N
 
 
 def _reading(fit: "Fit", p: "Prediction") -> Reading | None:
-    """None where the run has no heading or no rudder."""
+    """None where the run has no heading, and neither a rudder nor thrusters that turn."""
     from seatrial.core.results.estimated_current import estimated_current
     from seatrial.physics.manoeuvres import ObservedManoeuvre
+    from seatrial.physics.models.thruster_layout import ThrusterLayout
+    from seatrial.physics.models.thruster_steering import with_steering_order
     from seatrial.physics.sensors.current_correction import shows_ground_velocity
 
+    layout = fit.model.equations.layout
+    measured = with_steering_order(p.measured, ThrusterLayout.from_text(layout)) if layout else p.measured
     try:
-        manoeuvre = ObservedManoeuvre.from_record(p.measured)
+        manoeuvre = ObservedManoeuvre.from_record(measured)
     except InputError:
         return None
     return Reading(
-        p.measured, manoeuvre, estimated_current(p, fit.offsets), shows_ground_velocity(fit.model), fit.ship.length,
+        measured, manoeuvre, estimated_current(p, fit.offsets), shows_ground_velocity(fit.model), fit.ship.length,
         fit.seed,
     )  # fmt: skip

@@ -17,6 +17,7 @@ from seatrial.physics.simulate.batch import InputCorrection
 
 _START_SHARE = 0.1  # of a run, whose beginning shows its initial state where the ship's length is not known; chosen
 _LEAST_NOISE = 1e-6  # of a channel's largest value: one without noise is no better known; chosen
+_ANY_DEVIATION = 1.0  # SI, of an offset that is known: none is estimated, and it counts nothing
 _SMALLEST = 1e-12  # SI, noise of a channel that is zero throughout; chosen
 
 
@@ -46,7 +47,7 @@ def _template(model: Model, record: Record, offsets: Sequence[SessionOffset]) ->
         for name in outputs
     ]
     held = model.with_parameters(model.parameters.fixed(*model.parameters.names))
-    known = {one.name: Prior(one.expected, 1.0, "of the fit, and held") for one in offsets}
+    known = {one.name: Prior(one.expected, _ANY_DEVIATION, "of the fit, and held") for one in offsets}
     own = [one for one in offsets if one.name in model.parameters]
     corrections = [one for one in offsets if one.name not in model.parameters]
     return OutputError(
