@@ -1,4 +1,4 @@
-"""Progress on standard error: a line for each phase, on a terminal how far the present one is; of a long one elsewhere."""
+"""Progress on standard error: a line for each phase, and how far a long one is."""
 
 import sys
 import time

@@ -5,6 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from seatrial.core.values import Array, InputError, Record
+from seatrial.data.check import canonical_record
 from seatrial.data.read import ColumnSpec, Layout, Log, topic_table
 from seatrial.data.read.assemble import LogSource, assemble_record, record_of_sources
 from seatrial.data.read.layout import Geometry
@@ -130,6 +131,24 @@ def test_an_antenna_beside_the_centre_line_is_moved_to_it() -> None:
     record = derived(columns, Geometry(antenna_y=radius))
     for symbol in ("x0", "y0", "u", "v"):
         assert np.ptp(record[symbol]) < 5e-3, symbol
+
+
+def test_positions_on_a_plane_are_the_antenna_s_unless_they_come_with_velocities_or_state_a_place() -> None:
+    """Easting and northing of a craft that spins on the spot: a circle around it, whatever axes they are in."""
+    ahead, aside, rate = 3.0, 2.0, 0.3
+    psi = rate * TIME
+    x0 = ahead * np.cos(psi) - aside * np.sin(psi)
+    y0 = ahead * np.sin(psi) + aside * np.cos(psi)
+    track = {"x0": (x0, "m"), "y0": (y0, "m"), "psi": (psi, "rad")}
+    moved = derived(track, Geometry(antenna_x=ahead, antenna_y=aside))
+    assert moved.channel("x0").reference_point == moved.channel("y0").reference_point == ahead
+    at_midship = canonical_record(moved, 0.0)
+    for symbol in ("x0", "y0"):
+        np.testing.assert_allclose(at_midship[symbol], 0.0, atol=1e-9)
+    speeds = {"u": (0.0 * TIME, "m/s"), "v": (0.0 * TIME, "m/s")}
+    pose = derived(track | speeds, Geometry(antenna_x=ahead, antenna_y=aside))
+    np.testing.assert_array_equal(pose["x0"], x0)
+    assert pose.channel("x0").reference_point == 0.0
 
 
 @pytest.mark.parametrize(

@@ -42,13 +42,13 @@ def derived_channels(measured: _Measurements, geometry: Geometry, name: str) -> 
     """
     present = dict(measured)
     steps: tuple[Callable[[_Measurements, Geometry], _Measurements], ...] = (
-        _attitude, _magnetic_heading, _in_north_east, _position, _ground_velocity, _water_speed, _antenna_beside,
+        _attitude, _magnetic_heading, _in_north_east, _position, _ground_velocity, _water_speed, _from_antenna,
     )  # fmt: skip
     try:
         for step in steps:
             new = step(present, geometry)
             for symbol in new:
-                if symbol in measured and measured[symbol].column.frame != "enu" and step is not _antenna_beside:
+                if symbol in measured and measured[symbol].column.frame != "enu" and step is not _from_antenna:
                     raise InputError(
                         f"channel '{symbol}' is given, and follows from other columns as well; keep one of them"
                     )
@@ -159,21 +159,23 @@ def _in_north_east(present: _Measurements, geometry: Geometry) -> _Measurements:
     return turned
 
 
-def _antenna_beside(present: _Measurements, geometry: Geometry) -> _Measurements:
-    """Positions and velocities of an antenna b m to starboard moved to the centre line (Fossen 2021, section 2.3).
+def _from_antenna(present: _Measurements, geometry: Geometry) -> _Measurements:
+    """Positions on a plane as the antenna's, and all that is of one beside the centre line moved to it.
 
-    North + b sin psi, east - b cos psi; earth-fixed velocities + b r (cos psi, sin psi).
+    An antenna b m to starboard (Fossen 2021, section 2.3): north + b sin psi, east - b cos psi; earth-fixed velocities
+    + b r (cos psi, sin psi).
     """
+    moved = _plane_of_antenna(present, geometry)
     b = geometry.antenna_y
-    if b == 0.0 or not {"lat", "sog"} & set(present):
-        return {}
+    if b == 0.0 or not ({"lat", "sog"} & set(present) or moved):
+        return moved
     if "psi" not in present:
         raise InputError("an antenna beside the centre line needs the heading 'psi'; add it")
     psi = present["psi"].values * (-1.0 if present["psi"].column.positive == "port" else 1.0)
-    moved: _Measurements = {}
-    if "lat" in present:
-        moved["x0"] = replace(present["x0"], values=present["x0"].values + b * np.sin(psi))
-        moved["y0"] = replace(present["y0"], values=present["y0"].values - b * np.cos(psi))
+    if moved or "lat" in present:
+        north, east = (moved.get(symbol, present[symbol]) for symbol in ("x0", "y0"))
+        moved["x0"] = replace(north, values=north.values + b * np.sin(psi))
+        moved["y0"] = replace(east, values=east.values - b * np.cos(psi))
     if "sog" in present:
         if "r" not in present:
             raise InputError("velocities of an antenna beside the centre line need the yaw rate 'r'; add it")
@@ -181,3 +183,17 @@ def _antenna_beside(present: _Measurements, geometry: Geometry) -> _Measurements
         moved["u"] = replace(present["u"], values=present["u"].values + b * rate * np.cos(psi))
         moved["v"] = replace(present["v"], values=present["v"].values + b * rate * np.sin(psi))
     return moved
+
+
+def _plane_of_antenna(present: _Measurements, geometry: Geometry) -> _Measurements:
+    """Columns x0 and y0 at the antenna, unless they state a place; not those of a pose that comes with velocities."""
+    is_of_receiver = bool({"sog", "stw"} & set(present)) or not {"u", "v"} & set(present)
+    if "lat" in present or not {"x0", "y0"} <= set(present) or not is_of_receiver:
+        return {}
+    if geometry.antenna_x == geometry.antenna_y == 0.0 or present["x0"].column.reference_point != 0.0:
+        return {}
+    pair = {symbol: present[symbol] for symbol in ("x0", "y0")}
+    return {
+        symbol: replace(one, column=replace(one.column, reference_point=geometry.antenna_x))
+        for symbol, one in pair.items()
+    }
