@@ -9,10 +9,13 @@ from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Record
 from seatrial.data.folder.model_file import ModelFile, model_text, parse_model
 from seatrial.estimation.problem.segments import compared_outputs
+from seatrial.physics.manoeuvres import measures
+from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models import model_named
 from seatrial.physics.sensors import Compass, Sensors, VelocityReference, with_sensors
 from seatrial.physics.sensors.measured_outputs import is_late, late_name
 from seatrial.physics.sensors.settings import Antenna
+from seatrial.physics.simulate import manoeuvre
 from seatrial.physics.simulate.replay import replay
 from seatrial.testing import check_model
 
@@ -48,6 +51,18 @@ def test_positions_are_those_of_the_antenna(shown: Record) -> None:
     psi = shown["psi_true"]
     np.testing.assert_allclose(shown["x0"] - shown["x0_true"], 0.8 * np.cos(psi) + 0.3 * np.sin(psi), atol=1e-12)
     np.testing.assert_allclose(shown["y0"] - shown["y0_true"], 0.8 * np.sin(psi) - 0.3 * np.cos(psi), atol=1e-12)
+
+
+def test_a_circle_is_measured_at_the_craft_not_at_its_antenna() -> None:
+    craft = model_named("waterjet")
+    instruments = Sensors(velocity=VelocityReference.GROUND, antenna=Antenna(2.0, 0.0))
+    at_antenna = with_sensors(craft, instruments).with_values({"x_antenna": 2.0, "y_antenna": 0.0})
+    orders = programme("turning-circle:20")
+    bare, with_instruments = (
+        manoeuvre(one, orders, duration=60.0, inputs={"v_j": 10.0}) for one in (craft, at_antenna)
+    )
+    assert np.max(np.abs(with_instruments["x0"] - bare["x0"])) > 1.9  # m: the record shows the antenna
+    assert measures(with_instruments, 5.0) == pytest.approx(measures(bare, 5.0), rel=1e-12)
 
 
 def test_velocities_are_those_of_the_antenna_over_ground_turned_by_the_compass_and_late(shown: Record) -> None:

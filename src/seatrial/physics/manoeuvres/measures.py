@@ -6,6 +6,7 @@ IMO MSC.137(76) and MSC/Circ.1053 (2002); ITTC 7.5-02-06-01 (free running model 
 import numpy as np
 
 from seatrial.core.values import InputError, Record
+from seatrial.physics.manoeuvres.own_motion import own_motion
 from seatrial.physics.manoeuvres.recognition import ManoeuvreKind, ObservedManoeuvre
 from seatrial.physics.manoeuvres.release import roll_measures
 from seatrial.physics.manoeuvres.thrust_measures import commands_of, thrust_measures
@@ -35,7 +36,8 @@ def measures(
         reference: record of the same rudder history and times, e.g. the measured run of which `record` is the open
             loop simulation, or the manoeuvre recognised on it, where many records share one. Manoeuvre and executes are
             then made out on it, so that a heading that drifts off hides nothing; headings, tracks and speeds are
-            `record`'s own. By default all is read from `record`.
+            `record`'s own. By default all is read from `record`: of a model with sensors from the motion of the craft
+            itself, not of its antenna.
 
     Returns:
         Zigzag: ``overshoot_1_deg``, ``overshoot_2_deg``, …; ``initial_turning_time_s`` and ``initial_turning_L`` to 10
@@ -53,6 +55,7 @@ def measures(
         raise InputError(f"the ship's length {length:g} m is not positive; measures need it")
     if isinstance(reference, Record):
         reference = ObservedManoeuvre.from_record(reference)
+    record = own_motion(record) if reference is None else record
     if "delta" not in record and commands_of(record):
         return thrust_measures(record)
     if "psi" not in record and "phi" in record:

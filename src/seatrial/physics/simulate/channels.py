@@ -6,6 +6,7 @@ from seatrial.core.equations import Input, Model
 from seatrial.core.equations.model import MEASURED
 from seatrial.core.values import NOTATION, Array, Channel, InputError, Record, RecordKind, frozen
 from seatrial.core.values.notation import OPPOSITE
+from seatrial.physics.manoeuvres.own_motion import TRUE
 
 ZERO_BY_DEFAULT = ("wind_speed", "wind_direction", "F3", "M5", "delta_f1", "delta_f2", "alpha_w", "alpha_f")
 
@@ -71,7 +72,7 @@ def record_of(
 
     Of a model with sensors a channel is what its instrument shows; the state itself has `_true` behind its name.
     """
-    shown = {s: s if model.observable_of(s) == s else f"{s}_true" for s in model.states}
+    shown = {s: s if model.observable_of(s) == s else f"{s}{TRUE}" for s in model.states}
     channels = {shown[s]: _channel(s, states[:, i]) for i, s in enumerate(model.states)}
     for i, output in enumerate(model.outputs):
         channel = output.removesuffix(MEASURED)
