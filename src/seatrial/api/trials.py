@@ -126,6 +126,9 @@ def draft_trial(
     gear: float = 0.0,
     rho: float = 0.0,
     scale: float = 0.0,
+    propeller: float = 0.0,
+    rudder: float = 0.0,
+    antenna: float | None = None,
     columns: "Sequence[str]" = (),
 ) -> "DraftTrial":
     """Draft a trial file from logs: channels, units, frames and signs by name and behaviour, each with its evidence.
@@ -139,6 +142,8 @@ def draft_trial(
         gear: turns of the engine over those of the propeller; 0: the rate of an engine is no input.
         rho: density of the water [kg/m^3]; 0: that of sea water.
         scale: 40 for a model 1:40; 0: not stated.
+        propeller: diameter [m]. rudder: area [m^2]; 0: a rule stands in for them.
+        antenna: place of the GNSS antenna, m forward of midship, negative abaft; None: not stated.
         columns: what columns are whose names say nothing: ``Klokke=time``, ``Kurs (gyro)=psi``.
 
     Returns:
@@ -150,7 +155,7 @@ def draft_trial(
     """
     from seatrial.data.draft import StatedSize, draft_trial, stated_columns
 
-    size = StatedSize(length, beam, draught, mass, gear, rho, scale)
+    size = StatedSize(length, beam, draught, mass, gear, rho, scale, propeller, rudder, antenna)
     return draft_trial(*logs, folder=folder, size=size, stated=stated_columns(columns))
 
 

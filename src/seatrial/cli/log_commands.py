@@ -41,6 +41,12 @@ def init(
         float, typer.Option("--rho", metavar="KG/M^3", help="Density of the water, else sea water's; fresh has 1000.")
     ] = 0.0,
     scale: Annotated[float, typer.Option("--scale", metavar="RATIO", help="Scale of a model: 40 for 1:40.")] = 0.0,
+    propeller: Annotated[float, typer.Option("--propeller", metavar="METRES", help="Diameter, else estimated.")] = 0.0,
+    rudder: Annotated[float, typer.Option("--rudder", metavar="M^2", help="Area, else estimated.")] = 0.0,
+    antenna: Annotated[
+        float | None,
+        typer.Option("--antenna", metavar="METRES", help="GNSS antenna forward of midship; negative: abaft."),
+    ] = None,
     column: Annotated[
         list[str] | None,
         typer.Option("--column", metavar="HEADING=CHANNEL", help="What a column is whose heading says nothing."),
@@ -73,6 +79,9 @@ def init(
         gear=gear,
         rho=rho,
         scale=scale,
+        propeller=propeller,
+        rudder=rudder,
+        antenna=antenna,
         columns=column or (),
     )
     write_atomically(out, draft.text.encode())

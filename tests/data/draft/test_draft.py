@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.data.draft.craft import two_thrusters
 from tests.data.read.samples import SAMPLES
 
 from seatrial.api import check, draft_trial, survey_log
@@ -44,7 +45,7 @@ BASE = {"time": TRUTH["t"], "north": TRUTH["x0"], "east": TRUTH["y0"], "heading"
 
 def write(path: Path, columns: dict[str, Array]) -> Path:
     rows = np.column_stack(list(columns.values())).tolist()
-    lines = [",".join(columns), *(",".join(f"{x:.9g}" for x in row) for row in rows)]
+    lines = [",".join(columns), *(",".join(f"{x:.13g}" for x in row) for row in rows)]
     path.write_text("\n".join(lines), encoding="utf-8")
     return path
 
@@ -229,6 +230,39 @@ def test_dates_with_times_are_the_time_whatever_the_column_is_called(name: str, 
     (topic,) = survey_log(tmp_path / "nav.csv").topics
     assert topic.time is not None and (topic.time.source, topic.time.unit) == (name, "utc")
     assert topic.rate == pytest.approx(1.0)
+
+
+def test_a_stated_antenna_is_written_where_a_receiver_shows_the_track(tmp_path: Path) -> None:
+    draft = draft_trial(write(tmp_path / "run.csv", BASE), length=12.0, antenna=-2.5)
+    assert "\nantenna = { x = -2.5, y = 0.0 }    # m forward of midship, as stated" in draft.text
+    no_track = write(tmp_path / "turn.csv", {name: BASE[name] for name in ("time", "heading")})
+    assert "\nantenna" not in draft_trial(no_track, length=12.0, antenna=-2.5).text
+
+
+@pytest.mark.parametrize(
+    ("first", "start", "is_settled"), [("left", 1.79e9, True), ("left", 0.0, True), ("right", 0.0, False)]
+)
+def test_axes_that_a_log_leaves_open_follow_from_the_names_of_its_thrusters(
+    first: str, start: float, is_settled: bool, tmp_path: Path
+) -> None:
+    """Tables of a ROS recording: mirrored axes would put each thruster on the side its topic does not say."""
+    craft, second = two_thrusters(), {"left": "right", "right": "left"}[first]
+    half = 0.5 * (np.pi / 2.0 - craft["psi"])
+    pose = {"pose.pose.position.x": craft["y0"], "pose.pose.position.y": craft["x0"]}
+    turned = {"x": 0.0 * half, "y": 0.0 * half, "z": np.sin(half), "w": np.cos(half)}
+    pose |= {f"pose.pose.orientation.{name}": values for name, values in turned.items()}
+    twist = {
+        "twist.twist.linear.x": craft["u"],
+        "twist.twist.linear.y": 0.0 * half,
+        "twist.twist.angular.z": -craft["r"],
+    }
+    write(tmp_path / "odometry.csv", {"time": start + craft["t"]} | pose | twist)
+    for side, command in ((first, craft["left"]), (second, craft["right"])):
+        write(tmp_path / f"thrusters_{side}_cmd.csv", {"time": start + craft["t"], "data": command})
+    used = {g.symbol: g for part in draft_trial(tmp_path).guesses for g in part if g.is_used}
+    assert {"command_1", "command_2"} <= set(used)
+    assert not used["command_1"].is_open and not used["command_2"].is_open
+    assert [used[symbol].is_open for symbol in ("x0", "q_w", "r")] == [not is_settled] * 3
 
 
 def test_ranges_are_those_of_all_files(tmp_path: Path) -> None:

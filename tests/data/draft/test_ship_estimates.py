@@ -98,3 +98,16 @@ def test_no_propeller_is_estimated_for_what_turns_otherwise() -> None:
     assert not hull_rudder_propeller(size, 3.0, 0.02)  # an engine at 9000 turns a minute
     assert not hull_rudder_propeller(size, 3.0, 0.0)
     assert all(one.value < 0.0 for one in added_masses(size))
+
+
+def test_a_stated_propeller_and_rudder_stay_and_the_pitch_is_that_of_the_propeller() -> None:
+    """At one advance and thrust a larger propeller is less loaded: its pitch over its diameter is smaller."""
+    sizes = [StatedSize(112.0, 19.4, 5.6, 7.48e6, propeller=diameter, rudder=18.0) for diameter in (4.0, 4.4)]
+    small, large = ({one.key: one for one in hull_rudder_propeller(size, 5.8, 2.7)} for size in sizes)
+    assert large["D_P"].line.startswith("D_P = 4.4 ") and large["A_R"].line.startswith("A_R = 18.0 ")
+    assert "ESTIMATED" not in large["D_P"].line + large["A_R"].line
+    assert large["pitch_ratio"].value < small["pitch_ratio"].value
+    with pytest.raises(InputError, match="propeller = -1"):
+        StatedSize(112.0, propeller=-1.0)
+    with pytest.raises(InputError, match="antenna = nan"):
+        StatedSize(antenna=float("nan"))

@@ -156,6 +156,7 @@ def test_positions_on_a_plane_are_the_antenna_s_unless_they_come_with_velocities
     [
         (("lat",), "channel 'lat' needs 'lon' as well"),
         (("cog",), "channel 'cog' needs 'sog' as well"),
+        (("stw", "sog", "cog"), "'stw' and 'sog' both give the speed 'u'"),
         (("q_w", "q_x", "q_y"), "the quaternion lacks 'q_z'"),
         (("stw", "u"), "channel 'u' is given, and follows from other columns as well"),
         (("latitude",), "unknown channel 'latitude'; write lat"),
@@ -163,6 +164,6 @@ def test_positions_on_a_plane_are_the_antenna_s_unless_they_come_with_velocities
     ],
 )
 def test_what_cannot_be_derived_is_refused(columns: tuple[str, ...], sentence: str) -> None:
-    units = {"lat": "deg", "cog": "deg", "stw": "m/s", "u": "m/s"}
+    units = {"lat": "deg", "cog": "deg", "stw": "m/s", "sog": "m/s", "u": "m/s"}
     with pytest.raises(InputError, match=sentence):
         derived({symbol: (TIME + 1.0, units.get(symbol, "1")) for symbol in columns})

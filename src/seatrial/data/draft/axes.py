@@ -1,7 +1,7 @@
-"""Axes of positions and attitudes that a log leaves open, by the GNSS fixes of the same run."""
+"""Axes of positions and attitudes that a log leaves open, by the GNSS fixes of the same run or by its thrusters."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,6 +14,7 @@ from seatrial.data.draft.column_guess import ColumnGuess
 
 _POSITIONS, _FIXES, _QUATERNION = ("x0", "y0"), ("lat", "lon"), ("q_w", "q_x", "q_y", "q_z")
 _READINGS = ("enu", "earth")
+_SIDES = ("port", "starboard")
 _LEAST_SAMPLES = 30  # of the track beside the fixes; as in the checks
 
 Parts = list[list[ColumnGuess]]
@@ -42,6 +43,25 @@ def with_axes_by_fixes(parts: Parts, record_of: RecordOf) -> Parts:
     frame = _surer({one: _heading_misfit(record_of(_with_frame(settled, _QUATERNION, one, 0.0, "")))
                     for one in _READINGS})  # fmt: skip
     return settled if frame is None else _with_frame(settled, _QUATERNION, *frame, "of velocities turned by it")
+
+
+def with_axes_by_thrusters(parts: Parts, named: Mapping[str, str]) -> Parts:
+    """Return the guesses with open axes settled where thrusters to both sides turn the craft as their names say.
+
+    Read the other way the world is mirrored, and each thruster would be on the other side.
+
+    named: command -> side that its name has, port or starboard; empty: none.
+    """
+    shown = {g.symbol: g.side for part in parts for g in part if g.is_used and not g.is_open}
+    agreeing = [side for symbol, side in named.items() if side and shown.get(symbol) == side]
+    contradicted = any(side and shown.get(symbol, side) != side for symbol, side in named.items())
+    if contradicted or len(set(agreeing)) < len(_SIDES):
+        return parts
+    evidence = "as thrusters to port and starboard turn the craft"
+    return [
+        [replace(g, other_reading="").with_evidence(evidence) if g.is_used and g.is_open and g.frame == "enu" else g
+         for g in part] for part in parts
+    ]  # fmt: skip
 
 
 def _has_open(parts: Parts, symbols: tuple[str, ...]) -> bool:

@@ -22,7 +22,7 @@ from seatrial.data.check.sentinels import without_sentinels
 from seatrial.data.check.signal import smoothed, smoothed_derivative, window_length
 from seatrial.data.check.timestamps import rebuild_time_base
 from seatrial.data.check.velocity_conventions import ACCEPTABLE_MISFIT
-from seatrial.data.draft.axes import with_axes_by_fixes
+from seatrial.data.draft.axes import with_axes_by_fixes, with_axes_by_thrusters
 from seatrial.data.draft.column_guess import Changes, ColumnGuess
 from seatrial.data.draft.commands import command_directions, rest_of_commands
 from seatrial.data.draft.survey import LogSurvey
@@ -42,6 +42,7 @@ def checked_by_behaviour(
 ) -> list[list[ColumnGuess]]:
     """Return the guesses of the sources of one run with units, frames and signs as the motion shows them."""
     result = with_axes_by_fixes([list(one) for one in guesses], partial(run_record, surveys))
+    named = {g.symbol: g.side for one in result for g in one if g.is_used and g.symbol.startswith("command_")}
     for decide in (
         _yaw_rate_unit,
         _velocity_convention,
@@ -58,6 +59,7 @@ def checked_by_behaviour(
     if any(g.is_used and g.is_of_wind for one in result for g in one):
         record = run_record(surveys, result, has_wind=True)
         result = result if record is None else _changed(result, wind_readings(record))
+    result = with_axes_by_thrusters(result, named)
     if any(g.is_used and g.is_open and g.frame == "enu" for one in result for g in one):
         result = [[_as_open_as_the_axes(g) for g in one] for one in result]
     return result

@@ -129,7 +129,7 @@ def draft_trial(
     if model.has_thrusters and len(runs) == 1 and records[0] is not None and pieces:
         parts, held_out = _in_two(model, runs, records[0], stretches[0]) or (parts, held_out)
     blocks = _blocks(runs, guesses, stretches, parts, longest[0])
-    blocks = [_with_roles(block, model, held_out, session) for block in blocks]
+    blocks = [replace(_with_roles(one, model, held_out, session), antenna=size.antenna) for one in blocks]
     tables = tables_text(model, [g for _, columns in blocks[0].sources for g in columns], size)
     text = trial_text(blocks, tables, reasons | left_out, Path(folder).resolve())
     return DraftTrial(

@@ -19,8 +19,9 @@ from seatrial.data.read.layout import TimeSpec
 
 _NO_ANTENNA = (
     "# antenna = { x = 0.0, y = 0.0 }    # m forward of midship, to starboard: state it; each metre that it is forward "
-    "of this counts as 0.017 m/s of sway for each deg/s of yaw"
+    "of this counts as 0.017 m/s of sway for each deg/s of yaw (init --antenna)"
 )
+_OF_RECEIVER = frozenset({"lat", "sog", "x0"})  # channels that a GNSS antenna may show
 _UNUSED_SHOWN = 12  # names of columns without a channel in the comment; chosen
 
 
@@ -37,6 +38,7 @@ class RecordsBlock:
         validate: the runs to keep out of the estimation; empty: none of this block.
         has_waves: whether the waves are an input.
         is_released: whether each run is a roll decay, to be used from its release on.
+        antenna: m forward of midship, as stated; None: not stated.
     """
 
     name: str
@@ -48,6 +50,7 @@ class RecordsBlock:
     session: str = ""
     has_waves: bool = False
     is_released: bool = False
+    antenna: float | None = None
 
 
 def trial_text(
@@ -74,7 +77,7 @@ def _block_lines(block: RecordsBlock, folder: Path) -> list[str]:
     lines = ["[[records]]"]
     if block.files:
         files = ", ".join(_quoted(_relative(survey.path, folder)) for survey in block.files)
-        lines += [f"files = [{files}]", *_role_lines(block), *_antenna_lines(block.sources)]
+        lines += [f"files = [{files}]", *_role_lines(block), *_antenna_lines(block)]
         for survey, guesses in block.sources:
             lines += [*_layout_lines(survey), *_channel_lines(survey, guesses)]
         names = ["" if len(block.files) == 1 else survey.path.stem for survey in block.files]
@@ -83,7 +86,7 @@ def _block_lines(block: RecordsBlock, folder: Path) -> list[str]:
     lines += [
         f"name = {_quoted(block.name)}",
         *_role_lines(block),
-        *_antenna_lines(block.sources),
+        *_antenna_lines(block),
         *_part_lines({"": block.stretches[0]}, block.parts),
     ]
     nothing_used = not any(g.is_used for _, guesses in block.sources for g in guesses)
@@ -112,11 +115,14 @@ def _role_lines(block: RecordsBlock) -> list[str]:
     return [*lines, "from_release = true    # drops what lies before the release"] if block.is_released else lines
 
 
-def _antenna_lines(sources: Sequence[tuple[LogSurvey, tuple[ColumnGuess, ...]]]) -> list[str]:
-    """Where the antenna is, where a log states it and its fixes or velocities over ground are used."""
-    if not any(g.is_used and g.symbol in ("lat", "sog") for _, guesses in sources for g in guesses):
+def _antenna_lines(block: RecordsBlock) -> list[str]:
+    """Where the antenna is, as stated or as a log has it, where fixes or velocities over ground are used."""
+    used = {g.symbol for _, guesses in block.sources for g in guesses if g.is_used}
+    if block.antenna is not None and used & _OF_RECEIVER:
+        return [f"antenna = {{ x = {block.antenna:g}, y = 0.0 }}    # m forward of midship, as stated; to starboard"]
+    if not used & {"lat", "sog"}:
         return []
-    places = [place for survey, _ in sources if (place := antenna_place(survey.log.parameters)) is not None]
+    places = [place for survey, _ in block.sources if (place := antenna_place(survey.log.parameters)) is not None]
     if not places:
         return [_NO_ANTENNA]
     why = f"{places[0].evidence}; add the place of the autopilot where that is not midship"

@@ -124,7 +124,8 @@ _APPARENT, _ANGLE = "app(arent)?", "(dir(ection)?|angle)"
 _PROBE = "counts as at midship; of a probe on the craft elsewhere add reference_point, m forward of midship"
 _PORT, _STARBOARD = "(left|port)", "(right|starboard|stbd)"
 _SIDES = {"port": _PORT, "starboard": _STARBOARD}
-_THRUSTER, _PULSE = "(thr(ottle|ust|uster)?|motor|esc|pwm|command|cmd)", "(_(pwm|us|out|output|raw|cmd))?"
+_THRUSTER = "(thr(ottle|ust|uster)?s?|motors?|esc|pwm|command|cmd)"
+_PULSE = "(_(pwm|us|out|output|raw|cmd|command|thrust))*"
 _WORDS = [
     *_rules(
         "",
@@ -182,6 +183,7 @@ _ORDERS = re.compile(r"set_?point|target|desired|reference|goal|limits?\b|cmd|co
 _KNOWN_LOGGERS = ("ulog", "ardupilot-bin", "ardupilot-tlog", "nmea0183", "nmea2000")
 # column of a table into which an autopilot's log was exported: ``ATT.Yaw``, ``XKF1[0].VN``
 _EXPORTED = re.compile(r"/?([A-Za-z]\w*(?:\[\d+\])?)[./](\w+(?:\[\d+\])?)")
+_ONLY_FIELD, _TOPIC_PARTS = "data", 3  # of ROS's std_msgs; names of folders before that of a topic that are read
 # words before a quantity that name an instrument, and words behind it that say how it was taken
 _INSTRUMENT = re.compile(r"(d?gps|gnss|rtk|imu|ahrs|ins|mru|gyro|vdr|nav|nmea|ais|doppler|dvl|sensor|ship|vessel)\d*_")
 _QUALIFIERS = re.compile(
@@ -222,7 +224,10 @@ def guess_by_name(topic: str, name: str, stated_unit: str, log_format: str = "te
     for rule in _MESSAGES if message else ():
         match = re.fullmatch(rule.pattern, f"{message}/{field}".lower())
         if match:
-            return _guess(rule, match, _known_unit(stated_unit) or rule.unit, f"{rule.logger} {message}".strip())
+            last = message.rpartition("/")[2] if log_format == "text" else message  # not the folders of a user
+            return _guess(rule, match, _known_unit(stated_unit) or rule.unit, f"{rule.logger} {last}".strip())
+    if field == _ONLY_FIELD and (command := command_of_topic(topic, _known_unit(stated_unit))):
+        return command
     last = topic if log_format != "text" else topic.rpartition("/")[2]  # folders are called as anybody likes
     if log_format in _KNOWN_LOGGERS or _ORDERS.search(last.lower()):
         return None
@@ -234,6 +239,18 @@ def guess_by_name(topic: str, name: str, stated_unit: str, log_format: str = "te
             guess = _guess(rule, match, unit or word_unit, "its name") if match else None
             if guess is not None and (guess.unit or not word_unit):  # not heave for a ``z`` in rad/s
                 return guess
+    return None
+
+
+def command_of_topic(topic: str, unit: str = "") -> NameGuess | None:
+    """Return what the only field of a message is whose topic is called after a thruster, as ``thrusters/left/cmd``."""
+    parts = [_plain(_CAPITALS.sub("_", part)) for part in topic.split("/")]
+    for count in range(1, _TOPIC_PARTS + 1):
+        name = "_".join(parts[-count:])
+        for rule in _WORDS:
+            match = re.fullmatch(rule.pattern, name) if rule.symbol.startswith("command_") else None
+            if match:
+                return _guess(rule, match, unit, f"its topic {parts[-1]}")
     return None
 
 

@@ -7,6 +7,7 @@ from itertools import takewhile
 from pathlib import Path
 
 from seatrial.data.draft.clocks import shifted, time_span, zone_offsets
+from seatrial.data.draft.naming import command_of_topic
 from seatrial.data.draft.survey import LogSurvey
 
 _EPOCH_CLOCK_S = 1e8  # s beyond which a clock counts from 1970 or the like, three years; as in the parts of a run
@@ -30,9 +31,10 @@ def runs_of_logs(surveys: Sequence[LogSurvey]) -> list[LogRun]:
     """Return the runs, in the order of the files.
 
     Files of one kind (format, topics and columns) with clocks that start anew or do not overlap are runs; files of
-    several kinds are sources of one run where their clocks, counting from 1970, overlap, or where their names are alike
-    but for the kind. Where neither groups them, the files of one kind that lie in one folder are runs and the other
-    kinds are left out; where there are none, all are sources of one run.
+    several kinds are sources of one run where their clocks, counting from 1970, overlap, where those of one kind are
+    the commands of a craft's thrusters, or where their names are alike but for the kind. Where nothing of this groups
+    them, the files of one kind that lie in one folder are runs and the other kinds are left out; where there are none,
+    all are sources of one run.
     """
     kinds: dict[tuple, list[LogSurvey]] = {}
     for survey in surveys:
@@ -46,6 +48,8 @@ def runs_of_logs(surveys: Sequence[LogSurvey]) -> list[LogRun]:
         return _named([[one for one in moved if one in cluster] for cluster in _overlapping(moved)])
     together = [shifted(one, offset) for one, offset in zip(surveys, zone_offsets(surveys), strict=True)]
     series = max((group for group in groups if _is_series(group)), key=len, default=[])
+    if any(_is_of_thrusters(group) for group in groups):
+        return _named([together])
     if by_name := _by_name(groups):
         return _named(by_name)
     return [LogRun("", (survey,)) for survey in series] or _named([together])
@@ -72,6 +76,13 @@ def _overlapping(surveys: Sequence[LogSurvey]) -> list[list[LogSurvey]]:
 def _is_series(group: Sequence[LogSurvey]) -> bool:
     """Whether several files of one kind lie in one folder."""
     return len(group) > 1 and len({survey.path.parent for survey in group}) == 1
+
+
+def _is_of_thrusters(group: Sequence[LogSurvey]) -> bool:
+    """Whether several files of one kind are called after the thrusters whose commands they hold, each after another."""
+    named = [command_of_topic(survey.path.name.partition(".")[0]) for survey in group]
+    symbols = {one.symbol for one in named if one is not None}
+    return len(group) > 1 and len(symbols) == len(group)
 
 
 def _by_name(groups: Sequence[Sequence[LogSurvey]]) -> list[list[LogSurvey]]:

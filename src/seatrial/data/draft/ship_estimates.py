@@ -32,7 +32,7 @@ _FASTEST = 0.4  # Froude number beyond which a hull no longer displaces its way 
 _DIGITS = 4  # significant ones of an estimate; those of sea water
 _STATED_UNITS = {
     "length": "m", "beam": "m", "draught": "m", "mass": "kg", "gear": "turns", "rho": "kg/m^3",
-    "scale": "model lengths",
+    "scale": "model lengths", "propeller": "m", "rudder": "m^2",
 }  # fmt: skip
 
 
@@ -48,6 +48,9 @@ class StatedSize:
         gear: turns of the engine over those of the propeller.
         rho: density of the water [kg/m^3].
         scale: ship length over that of a model, 40 for a model 1:40.
+        propeller: diameter [m].
+        rudder: area [m^2].
+        antenna: of the GNSS receiver, m forward of midship, negative abaft; None: not stated.
     """
 
     length: float = 0.0
@@ -57,11 +60,16 @@ class StatedSize:
     gear: float = 0.0
     rho: float = 0.0
     scale: float = 0.0
+    propeller: float = 0.0
+    rudder: float = 0.0
+    antenna: float | None = None
 
     def __post_init__(self) -> None:
         for name, unit in _STATED_UNITS.items():
             if not 0.0 <= getattr(self, name) < math.inf:
                 raise InputError(f"{name} = {getattr(self, name):g}: a {name} in {unit} is positive; correct it")
+        if self.antenna is not None and not math.isfinite(self.antenna):
+            raise InputError(f"antenna = {self.antenna:g}: its place in m forward of midship is finite; correct it")
         if not self.length and (self.beam or self.draught or self.mass):
             raise InputError("beam, draught and mass say nothing without the length; state it as well (init --length)")
         if self.length and not _BLOCKS[0] <= self.form.C_b <= _BLOCKS[1]:
@@ -174,6 +182,9 @@ def added_masses(size: StatedSize) -> tuple[EstimatedValue, ...]:
     return tuple(EstimatedValue(key, -estimate.values[one] * form.d / form.L, text) for key, one in names.items())
 
 
+_DRIVING = "diameter of the propeller that drives such a hull at its rate: R_0 and t_P go with it"
+
+
 def hull_rudder_propeller(size: StatedSize, speed: float, advance: float) -> tuple[EstimatedValue, ...]:
     """Return what the MMG model needs besides the length, of a ship of `speed` [m/s] that makes `advance` [m] a turn.
 
@@ -187,7 +198,7 @@ def hull_rudder_propeller(size: StatedSize, speed: float, advance: float) -> tup
     smallest, largest = (share * form.d for share in _DIAMETERS)
     # thrust over rho n^2: (1 - t_P) rho n^2 D^4 K_T = rho/2 L d U^2 R_0, n = U / advance
     thrust = 0.5 * form.L * form.d * advance**2 * RESISTANCE / (1.0 - _thrust_deduction(form))
-    diameter = min(max((thrust / _THRUST) ** 0.25, smallest), largest)
+    diameter = size.propeller or min(max((thrust / _THRUST) ** 0.25, smallest), largest)
     if not _ADVANCES[0] <= flow / diameter <= _ADVANCES[1]:
         return ()
     pitch_ratio = _pitch_ratio(flow / diameter, thrust / diameter**4)
@@ -198,11 +209,15 @@ def hull_rudder_propeller(size: StatedSize, speed: float, advance: float) -> tup
         fullness(size),
         water_density(size),
         EstimatedValue("H_R", _SPAN * form.d, f"m, height of the rudder: {_SPAN:g} d"),
-        EstimatedValue("A_R", area, "m^2, area of the rudder: DNV's least area for L, B, d and C_b"),
-        EstimatedValue(
-            "D_P", diameter, "m, diameter of the propeller that drives such a hull at its rate: R_0 and t_P go with it"
+        EstimatedValue("A_R", size.rudder, "m^2, area of the rudder, as stated", is_stated=True)
+        if size.rudder
+        else EstimatedValue(
+            "A_R", area, "m^2, area of the rudder: DNV's least area for L, B, d and C_b (init --rudder)"
         ),
-        EstimatedValue("pitch_ratio", pitch_ratio, "P/D, from the same"),
+        EstimatedValue("D_P", size.propeller, "m, diameter of the propeller, as stated", is_stated=True)
+        if size.propeller
+        else EstimatedValue("D_P", diameter, f"m, {_DRIVING} (init --propeller)"),
+        EstimatedValue("pitch_ratio", pitch_ratio, "P/D with which it drives such a hull at its rate"),
     )
 
 

@@ -99,6 +99,8 @@ def _ground_velocity(present: _Measurements, geometry: Geometry) -> _Measurement
 
 
 def _water_speed(present: _Measurements, geometry: Geometry) -> _Measurements:  # noqa: ARG001
+    if {"stw", "sog"} <= set(present):
+        raise InputError("'stw' and 'sog' both give the speed 'u', through the water and over ground; leave one out")
     return {"u": present["stw"].turned_into("u", present["stw"].values)} if "stw" in present else {}
 
 
