@@ -20,6 +20,11 @@ if TYPE_CHECKING:
     from seatrial.core.values import Record
     from seatrial.data.folder.model_file import ModelFile
 
+INTERVALS_OF_COEFFICIENTS = (
+    "intervals hold what the coefficients may be wrong by, in still water and if the model's terms are the right ones; "
+    "a single trial scatters more, by wind and waves"
+)
+
 
 @app.command()
 def tune(
@@ -188,6 +193,7 @@ def simulate(
     measures = api.measures(file, record, reference) if manoeuvre or "psi" in record else {}
     leaving = api.extrapolation(file, record)
     print_measures(measures, intervals, leaving, is_manoeuvre=manoeuvre is not None)
+    print_lines([INTERVALS_OF_COEFFICIENTS] if any(intervals.values()) else [])
     print_lines(
         ["no measures: the run shows none of a zigzag, turn, spin, stop or decay"] if manoeuvre and not measures else []
     )
