@@ -7,10 +7,11 @@ import numpy as np
 
 from seatrial.core.results import ChannelScore, Divergence, Fit, Measure, WindowBaseline, WindowScore
 from seatrial.core.results.identifiability import Collinearity
-from seatrial.core.values import Severity
+from seatrial.core.values import Record, Severity
 from seatrial.numerics.optimise import Status
 from seatrial.reporting.first_screen import KeyFact
 from seatrial.reporting.key_facts import first_screen, key_facts
+from seatrial.reporting.runs import _ranged
 from seatrial.reporting.windows import baseline_sentence
 
 
@@ -110,6 +111,21 @@ def test_the_picture_is_the_worst_held_out_run_with_its_heading(fit: Fit) -> Non
     screen = first_screen(fit, 9.8)
     assert "zigzag_25_25" in screen.caption and screen.figure.count('"label"') == 1 and "ψ [deg]" in screen.figure
     assert first_screen(replace(fit, predictions=()), 9.8).figure == ""
+
+
+def test_the_band_of_a_run_without_a_track_is_not_compared_with_one(fit: Fit) -> None:
+    assert first_screen(fit, 9.8).caption.endswith("as wide as the track is long.")
+    bare = [replace(p, measured=p.measured.without("x0", "y0")) for p in fit.predictions]
+    assert first_screen(replace(fit, predictions=tuple(bare)), 9.8).caption.endswith("Pale: 95 % band.")
+
+
+def test_the_extrapolation_index_names_what_it_compares(fit: Fit) -> None:
+    (run,) = [p.measured for p in fit.validation]
+    assert _ranged([run]) == "yaw rate, drift, rudder or speed"
+    still = np.zeros(len(run))
+    waves = Record.from_arrays("waves", run.time, {"zeta": still, "z": still})
+    decay = Record.from_arrays("decay", run.time, {"phi": still})
+    assert _ranged([waves]) == "heave, pitch or elevation of the waves" and _ranged([decay]) == "roll angle"
 
 
 def test_a_search_that_did_not_converge_comes_first(fit: Fit) -> None:

@@ -44,7 +44,9 @@ def first_screen(fit: Fit, length: float) -> FirstScreen:
     view = headline_view(p, length, fit.model.input_names)
     which = "The held-out run" if len(fit.validation) == 1 else (
         "The worst held-out run" if fit.validation else "The worst training run")  # fmt: skip
-    band = " Pale: 95 % band, up to where it is half as wide as the track is long." if has_band(p) else ""
+    track = {"x0", "y0"} <= set(p.measured.channels)
+    reach = ", up to where it is half as wide as the track is long" if track else ""
+    band = f" Pale: 95 % band{reach}." if has_band(p) else ""
     caption = f"{which}, {p.record}: {p.reference_word} and {p.model_word}.{band}"
     return FirstScreen(verdict(fit), key_facts(fit), run_figure(view, is_first=True), caption, operators_sentence(fit))
 

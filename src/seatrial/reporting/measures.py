@@ -141,6 +141,9 @@ _EXTRAPOLATION_CLAUSES = {
     "rudder to port": ("uses more rudder to port than", "more rudder to port"),
     "rudder to starboard": ("uses more rudder to starboard than", "more rudder to starboard"),
     "roll": ("rolls {} times as far as", "{} times the roll angle"),
+    "heave": ("heaves {} times as far as", "{} times the heave"),
+    "pitch": ("pitches {} times as far as", "{} times the pitch angle"),
+    "elevation": ("meets waves {} times as high as", "{} times the height of the waves"),
     "fastest": ("goes {} times as fast as", "{} times the highest speed"),
     "slowest": ("slows to 1/{} of the lowest speed of", "1/{} of the lowest speed"),
 }

@@ -93,14 +93,14 @@ class RunScore:
 
 @dataclass(frozen=True)
 class ScoreTable:
-    """Errors (rms) of every run; `header`: name and unit of each column; `order_word`: what is ordered."""
+    """Errors (rms) of every run; `header`: name and unit of each column; `ranged`: of what runs are compared."""
 
     header: tuple[tuple[str, str], ...]
     rows: tuple[RunScore, ...]
     has_floor: bool
     has_spread: bool
     has_extrapolation: bool
-    order_word: str
+    ranged: str
 
 
 @dataclass(frozen=True)
@@ -148,8 +148,18 @@ def score_table(predictions: Sequence[Prediction], length: float) -> ScoreTable:
     return ScoreTable(
         tuple(header), tuple(rows), any(c.floor for row in rows for c in row.cells),
         any(c.spread for row in rows for c in row.cells), any(row.extrapolation for row in rows),
-        "rudder" if any("delta" in p.measured for p in predictions) else "command",
+        _ranged([p.measured for p in predictions]),
     )  # fmt: skip
+
+
+def _ranged(runs: Sequence[Record]) -> str:
+    """What the extrapolation index compares: motions in waves, roll, or those of a craft under way."""
+    shown = {name for run in runs for name in run.channels}
+    if "zeta" in shown:
+        return "heave, pitch or elevation of the waves"
+    if "phi" in shown and not {"psi", "r", "u"} & shown:
+        return "roll angle"
+    return f"yaw rate, drift, {'rudder' if 'delta' in shown else 'command'} or speed"
 
 
 def _repeats(p: Prediction, predictions: Sequence[Prediction]) -> str:

@@ -24,6 +24,16 @@ def run(name: str, r: float, beta: float, delta: float, speed: float) -> Record:
     )
 
 
+def test_runs_in_waves_are_compared_by_their_motions_and_the_height_of_the_waves() -> None:
+    swing = np.sin(TIME)
+    low = Record.from_arrays("low", TIME, {"zeta": 0.02 * swing, "z": 0.5 + 0.01 * swing, "theta": 0.03 * swing})
+    high = Record.from_arrays("high", TIME, {"zeta": 0.04 * swing, "z": 0.7 + 0.01 * swing, "theta": 0.045 * swing})
+    found = extrapolation(high, motion_envelope([low]))
+    assert found is not None
+    assert dict(found.ratios) == pytest.approx({"heave": 1.0, "pitch": 1.5, "elevation": 2.0})
+    assert "heave" not in motion_envelope([low.without("zeta")])
+
+
 def test_ratios_are_those_of_the_largest_values() -> None:
     train = [run("a", 0.02, 0.1, 0.2, 5.0), run("b", -0.04, -0.05, -0.3, 6.0)]
     found = extrapolation(run("c", 0.06, 0.15, -0.45, 5.5), motion_envelope(train))

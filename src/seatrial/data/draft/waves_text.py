@@ -14,8 +14,9 @@ def ship_in_waves(size: StatedSize) -> tuple[EstimatedValue, ...]:
         1.0 + 2.0 * form.C_b
     ) / 3.0  # waterplane coefficient; Schneekluth & Bertram 1998, eq. (1.58), V sections
     pitch = 0.350 * fullness**2 - 0.405 * fullness + 0.146  # I_L / (B L^3); D'Arcangelo 1969, in Parsons 2003
-    weight = mass["rho"].value * G
-    text = f"in sea water, of a waterplane with C_WP {fullness:.2f} ({_SOURCE})"
+    weight = size.density * G
+    water = f"in water of {size.density:g} kg/m^3" if size.rho else "in sea water"
+    text = f"{water}, of a waterplane with C_WP {fullness:.2f} ({_SOURCE})"
     return (
         *main_dimensions(size),
         mass["m"],

@@ -14,8 +14,12 @@ from seatrial.physics.simulate.rudder_rate import RUDDER_RATE, sustained_rudder_
 
 SIDES = ("port", "starboard")
 """Of the rudder: to which it turns the ship; ranges are called ``rudder to port`` and ``rudder to starboard``."""
-# rad/s, rad, rad, rad, m/s, m/s, below which a range counts as none; chosen
-NEGLIGIBLE = {"yaw_rate": 1e-4, "drift": 1e-3, "rudder": 1e-3, "roll": 1e-3, "fastest": 1e-3, "slowest": 1e-3}
+_IN_WAVES = {"heave": "z", "pitch": "theta", "elevation": "zeta"}  # ranges of a craft in waves -> channels
+# rad/s, rad, m/s; m and rad in waves: below which a range counts as none; chosen
+NEGLIGIBLE = {
+    "yaw_rate": 1e-4, "drift": 1e-3, "rudder": 1e-3, "roll": 1e-3, "fastest": 1e-3, "slowest": 1e-3,
+    "heave": 1e-5, "pitch": 1e-4, "elevation": 1e-5,
+}  # fmt: skip
 REST_SHARE = 0.1
 """Share of the fastest speed of the training runs below which a craft counts as at rest; chosen."""
 COMMAND = "command "
@@ -36,7 +40,8 @@ def motion_envelope(records: Sequence[Record], layout: str = "") -> dict[str, fl
 
 
 def _ranges(records: Sequence[Record], layout: str) -> dict[str, float]:
-    """Largest yaw rate, drift and rudder angle, also to each side, roll, fastest and slowest speed, commands.
+    """Largest yaw rate, drift, rudder angle, also to each side, roll, fastest and slowest speed, commands; in waves
+    heave, pitch and elevation about their means.
 
     The largest is the 99.5th percentile of all samples, so that a single bad one does not count; of roll, which a decay
     has once, the largest of all. What no record holds is absent. Drift is atan2(-v, u). Of every thruster of a `layout`
@@ -52,6 +57,9 @@ def _ranges(records: Sequence[Record], layout: str) -> dict[str, float]:
     ):
         if samples:
             made[name] = float(np.nanpercentile(np.concatenate(samples), REACH_PERCENTILE))
+    for name, channel in _IN_WAVES.items() if any("zeta" in r for r in records) else ():
+        samples = [np.abs(r[channel] - np.nanmean(r[channel])) for r in records if channel in r]
+        made |= {name: float(np.nanpercentile(np.concatenate(samples), REACH_PERCENTILE))} if samples else {}
     steered = [to_starboard(r, "delta") for r in records if "delta" in r]
     for side, sign in zip(SIDES, (-1.0, 1.0), strict=True) if steered else ():
         angles = np.maximum(sign * np.concatenate(steered), 0.0)
@@ -98,7 +106,7 @@ def extrapolation(predicted: Record, training_envelope: Mapping[str, float], lay
     """
     own = _ranges([predicted], layout)
     both = {n: (own[n], training_envelope[n]) for n in own if training_envelope.get(n, 0.0) > NEGLIGIBLE.get(n, 0.0)}
-    ratios = {n: both[n][0] / both[n][1] for n in ("yaw_rate", "drift", "rudder", "roll") if n in both}
+    ratios = {n: both[n][0] / both[n][1] for n in ("yaw_rate", "drift", "rudder", "roll", *_IN_WAVES) if n in both}
     for name in (f"rudder to {side}" for side in SIDES) if "rudder" in both else ():
         reach = both["rudder"][1]
         beyond = min(own[name], reach) - training_envelope.get(name, reach)
