@@ -107,6 +107,8 @@ def init(
     questions = draft.open_questions
     if questions:
         print_lines([f"{counted(len(questions), 'column')} to decide, marked OPEN in the file"])
+    if draft.assumed:
+        print_lines([f"ASSUMED, so correct what was not so: {', '.join(draft.assumed)} under [records.waves]"])
     if draft.estimated:
         print_lines([f"ESTIMATED, so correct what you know: {', '.join(draft.estimated)}"])
     print_file("trial file", out)

@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import openpyxl
 import pytest
 from tests.data.draft.craft import two_thrusters
 from tests.data.read.samples import SAMPLES
@@ -263,6 +264,28 @@ def test_axes_that_a_log_leaves_open_follow_from_the_names_of_its_thrusters(
     assert {"command_1", "command_2"} <= set(used)
     assert not used["command_1"].is_open and not used["command_2"].is_open
     assert [used[symbol].is_open for symbol in ("x0", "q_w", "r")] == [not is_settled] * 3
+
+
+def test_sheets_of_a_workbook_with_the_same_columns_are_runs(tmp_path: Path) -> None:
+    """A sheet of particulars is none; what one run shows of a column holds for all, each with its sheet's columns."""
+    book = openpyxl.Workbook()
+    particulars = book.active
+    assert particulars is not None
+    for row in (("Vessel", "cutter"), ("Lpp [m]", 12.0), ("Breadth [m]", 4.0)):
+        particulars.append(row)
+    columns = BASE | {"rudder [deg]": TRUTH["delta"] / DEGREE}
+    for title, part in (("zigzag", slice(0, 900)), ("circle", slice(1300, 2400))):
+        sheet = book.create_sheet(title)
+        for row in (["trial of the cutter"], list(columns), *np.column_stack(list(columns.values()))[part].tolist()):
+            sheet.append(row)
+    book.save(tmp_path / "trials.xlsx")
+    draft = draft_trial(tmp_path / "trials.xlsx", length=12.0)
+    assert [run.name for run in draft.runs] == ["zigzag", "circle"]
+    for name in ("zigzag", "circle"):
+        assert f'\nchannels.delta = {{ column = "{name}/rudder [deg]"' in draft.text
+    trial = tmp_path / "trial.toml"
+    trial.write_text(draft.text, encoding="utf-8")
+    assert [len(run.raw_record()) for run in load_runs(trial)] == [900, 1100]
 
 
 def test_ranges_are_those_of_all_files(tmp_path: Path) -> None:

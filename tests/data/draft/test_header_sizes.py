@@ -4,9 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.data.draft.header_sizes import sizes_in_header
+from seatrial.data.draft.header_sizes import sizes_in_header, speed_in_header
 from seatrial.data.draft.ship_estimates import UNSTATED, StatedSize
 from seatrial.data.draft.survey import LogSurvey, survey_log
+from seatrial.data.draft.waves_text import wave_lines
 
 TANK = "# Free-running model, feeder 1:40\n# LPP 3.400 m  B 580 mm  T 0.210 m  displacement 0.265 t  LCG -0.027 m"
 
@@ -25,6 +26,13 @@ def test_a_header_names_the_options(tmp_path: Path) -> None:
     assert found[0].text == "LPP 3.400 m"
     stated = StatedSize(3.4, 0.58, 0.21, 265.0)
     assert [one.option for one in sizes_in_header(log(tmp_path / "b.txt", TANK), stated)] == ["--scale 40"]
+
+
+def test_the_speed_of_a_carriage_is_that_of_the_run(tmp_path: Path) -> None:
+    assert speed_in_header(log(tmp_path / "a.txt", "# seakeeping\n# Carriage speed\t1.20 m/s")) == 1.2
+    assert speed_in_header(log(tmp_path / "b.txt", "# seakeeping\n# speed: 10 kn")) == pytest.approx(5.1444, rel=1e-4)
+    assert speed_in_header(log(tmp_path / "c.txt", "# speed 1 m/s\n# later speed 2 m/s")) is None
+    assert wave_lines(1.2)[-1].startswith("speed = 1.2 ") and "ASSUMED" in wave_lines(None)[-1]
 
 
 @pytest.mark.parametrize(

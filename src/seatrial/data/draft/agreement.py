@@ -10,11 +10,16 @@ def agreed_guesses(
     parts: Sequence[Sequence[ColumnGuess]], examined: Sequence[Sequence[Sequence[ColumnGuess]]]
 ) -> tuple[tuple[ColumnGuess, ...], ...]:
     """Return the guesses of the sources of one run as the runs that were examined decide them, column by column."""
-    known: dict[tuple[str | int, str], list[ColumnGuess]] = {}
+    known: dict[tuple[str, str], list[ColumnGuess]] = {}
     for run in examined:
         for guess in (g for part in run for g in part if g.is_used):
-            known.setdefault((guess.source, guess.symbol), []).append(guess)
-    return tuple(tuple(_agreed(g, known.get((g.source, g.symbol), ())) for g in part) for part in parts)
+            known.setdefault(_key(guess), []).append(guess)
+    return tuple(tuple(_agreed(g, known.get(_key(g), ())) for g in part) for part in parts)
+
+
+def _key(guess: ColumnGuess) -> tuple[str, str]:
+    """The name of a column without its topic, as runs that are sheets of a workbook have it, and its channel."""
+    return str(guess.source).rpartition("/")[2], guess.symbol
 
 
 def _agreed(guess: ColumnGuess, readings: Sequence[ColumnGuess]) -> ColumnGuess:
@@ -22,8 +27,10 @@ def _agreed(guess: ColumnGuess, readings: Sequence[ColumnGuess]) -> ColumnGuess:
     first = next(iter(decided or readings), guess)
     if len({_meaning(one) for one in decided}) > 1:
         other = "; another run shows ".join(_different(decided))
-        return replace(first, other_reading=f"{other}: the runs contradict each other", is_used=guess.is_used)
-    return replace(first, is_used=guess.is_used)
+        return replace(
+            first, source=guess.source, other_reading=f"{other}: the runs contradict each other", is_used=guess.is_used
+        )
+    return replace(first, source=guess.source, is_used=guess.is_used)
 
 
 def _meaning(guess: ColumnGuess) -> tuple[str, str, str]:

@@ -31,8 +31,9 @@ from seatrial.data.draft.ship_estimates import UNSTATED, StatedSize
 from seatrial.data.draft.starting_model import StartingModel, starting_model
 from seatrial.data.draft.stated_columns import CHANNELS, NOTHING_STATED, TIME, StatedColumns, refuse_absent
 from seatrial.data.draft.stretch import LogStretch
-from seatrial.data.draft.survey import LogSurvey, survey_log, with_common_ranges
+from seatrial.data.draft.survey import LogSurvey, apart_by_sheet, survey_log, with_common_ranges
 from seatrial.data.draft.tables_text import tables_text
+from seatrial.data.draft.waves_text import ASSUMED
 from seatrial.data.read import FORMATS
 from seatrial.data.trial.estimated_values import ESTIMATED
 from seatrial.data.trial.run_data import run_name
@@ -77,7 +78,15 @@ class DraftTrial:
     @property
     def estimated(self) -> tuple[str, ...]:
         """Keys of the file whose numbers nobody measured, each once."""
-        lines = (line.partition("=") for line in self.text.splitlines() if f"{ESTIMATED}: " in line)
+        return self._marked(ESTIMATED)
+
+    @property
+    def assumed(self) -> tuple[str, ...]:
+        """Keys of the file that hold what is usual."""
+        return self._marked(ASSUMED)
+
+    def _marked(self, mark: str) -> tuple[str, ...]:
+        lines = (line.partition("=") for line in self.text.splitlines() if f"{mark}: " in line)
         return tuple(dict.fromkeys(key.strip() for key, sign, _ in lines if sign and not key.startswith("#")))
 
     @property
@@ -105,7 +114,7 @@ def draft_trial(
     """
     surveys, reasons = _surveys([Path(log) for log in logs], stated)
     _refuse_unwritable_names(surveys)
-    runs = runs_of_logs(with_common_ranges(surveys))
+    runs = runs_of_logs(with_common_ranges(apart_by_sheet(surveys)))
     used = {survey.path for run in runs for survey in run.sources}
     left_out = {one.path: "it is of another kind than the runs" for one in surveys if one.path not in used}
     named = [without_conflicts([guess_columns(one, size.gear) for one in run.sources]) for run in runs]

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from seatrial.core.text.words import counted
 from seatrial.data.draft.column_guess import ColumnGuess
+from seatrial.data.draft.header_sizes import speed_in_header
 from seatrial.data.draft.held_out import NOTHING_HELD_OUT, HeldOutRuns
 from seatrial.data.draft.manoeuvres import used_parts
 from seatrial.data.draft.named_manoeuvre import name_contradiction
@@ -82,7 +83,7 @@ def _block_lines(block: RecordsBlock, folder: Path) -> list[str]:
             lines += [*_layout_lines(survey), *_channel_lines(survey, guesses)]
         names = ["" if len(block.files) == 1 else survey.path.stem for survey in block.files]
         lines += _part_lines(dict(zip(names, block.stretches, strict=True)), block.parts)
-        return [*lines, *(wave_lines() if block.has_waves else [])]
+        return [*lines, *(wave_lines(_common_speed(block.files)) if block.has_waves else [])]
     lines += [
         f"name = {_quoted(block.name)}",
         *_role_lines(block),
@@ -98,6 +99,12 @@ def _block_lines(block: RecordsBlock, folder: Path) -> list[str]:
             lines += ["", "[[records.sources]]", f"file = {_quoted(_relative(survey.path, folder))}"]
             lines += [*_layout_lines(survey), *_channel_lines(survey, guesses)]
     return lines
+
+
+def _common_speed(files: Sequence[LogSurvey]) -> float | None:
+    """The speed [m/s] that all headers state; None where one states none or another."""
+    speeds = {speed_in_header(one) for one in files}
+    return speeds.pop() if len(speeds) == 1 else None
 
 
 def _without_evidence(line: str) -> str:

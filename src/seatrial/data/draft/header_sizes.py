@@ -1,4 +1,4 @@
-"""Sizes of the craft that stand in the header of a text log, as the options of init that state them."""
+"""Sizes of the craft and its speed that stand in the header of a text log."""
 
 import re
 from dataclasses import dataclass, fields
@@ -16,6 +16,8 @@ _NAMES = {
     "mass": (r"(?i:displacement|mass)", "kg"),
 }
 _UNITS = {"m": "mm|cm|m", "kg": "kg|t"}
+# the speed of a carriage or craft, as headers have it
+_SPEED = re.compile(r"(?i:speed)[ \t]*[=:]?[ \t]*(\d+(?:\.\d+)?)[ \t]*(m/s|kn)\b")
 _SCALE = re.compile(r"(?<![\d:])1\s?:\s?(\d+(?:\.\d+)?)(?![\d:])")
 
 
@@ -29,16 +31,29 @@ class HeaderSize:
 
 def sizes_in_header(survey: LogSurvey, size: StatedSize) -> tuple[HeaderSize, ...]:
     """Return what the header of a text log says of the craft's size and what is not stated; nothing of other logs."""
-    lines = survey.layout.header_lines if survey.layout.format == "text" else 0
-    if lines < 2:  # a line of column names alone
-        return ()
-    try:
-        text = decoded_text(survey.path, survey.layout.encoding)
-    except InputError:
-        return ()
-    header = "\n".join(text.splitlines()[:lines])
+    header = _header(survey)
     stated = {one.name for one in fields(size) if getattr(size, one.name)}
     return tuple(one for name, one in _sizes(header).items() if name not in stated)
+
+
+def speed_in_header(survey: LogSurvey) -> float | None:
+    """Return the speed [m/s] that the header of a text log states once; None where it states none."""
+    matches = _SPEED.findall(_header(survey))
+    if len(matches) != 1:
+        return None
+    number, unit = matches[0]
+    return float(number) * si_unit(unit)[0]
+
+
+def _header(survey: LogSurvey) -> str:
+    """The lines above the numbers of a text log; empty of other logs, and where they are column names alone."""
+    lines = survey.layout.header_lines if survey.layout.format == "text" else 0
+    if lines < 2:  # a line of column names alone
+        return ""
+    try:
+        return "\n".join(decoded_text(survey.path, survey.layout.encoding).splitlines()[:lines])
+    except InputError:
+        return ""
 
 
 def _sizes(header: str) -> dict[str, HeaderSize]:

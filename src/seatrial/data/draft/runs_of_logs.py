@@ -28,7 +28,7 @@ class LogRun:
 
 
 def runs_of_logs(surveys: Sequence[LogSurvey]) -> list[LogRun]:
-    """Return the runs, in the order of the files.
+    """Return the runs, in the order of the files; sheets of one workbook that are logs by themselves are runs.
 
     Files of one kind (format, topics and columns) with clocks that start anew or do not overlap are runs; files of
     several kinds are sources of one run where their clocks, counting from 1970, overlap, where those of one kind are
@@ -36,6 +36,8 @@ def runs_of_logs(surveys: Sequence[LogSurvey]) -> list[LogRun]:
     them, the files of one kind that lie in one folder are runs and the other kinds are left out; where there are none,
     all are sources of one run.
     """
+    if len({survey.path for survey in surveys}) < len(surveys):  # sheets of a workbook
+        return [LogRun(survey.topics[0].topic or survey.path.stem, (survey,)) for survey in surveys]
     kinds: dict[tuple, list[LogSurvey]] = {}
     for survey in surveys:
         kinds.setdefault(survey.kind, []).append(survey)

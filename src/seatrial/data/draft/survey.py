@@ -13,6 +13,7 @@ from seatrial.data.read import ColumnSpec, Layout, Log, RawTable, format_of, rea
 from seatrial.data.read.clock import stamps
 from seatrial.data.read.layout import TimeSpec
 
+_WORKBOOK = "excel"  # the format whose sheets are often runs
 _LONGEST_CELL = 20  # characters of a cell that a message quotes; ours
 
 
@@ -95,6 +96,25 @@ def survey_log(path: Path, stated: StatedColumns = NOTHING_STATED) -> LogSurvey:
     log = read_log(path, layout)
     time = next((heading for heading, meaning in stated.items() if meaning == TIME), "")
     return LogSurvey(path, layout, log, tuple(_topic_summary(table, layout, time) for table in log.tables), stated)
+
+
+def apart_by_sheet(surveys: Sequence[LogSurvey]) -> list[LogSurvey]:
+    """Return logs in which each sheet of a workbook whose sheets have the same columns is a log by itself."""
+    return [one for survey in surveys for one in (_sheets(survey) or [survey])]
+
+
+def _sheets(survey: LogSurvey) -> list[LogSurvey]:
+    """The sheets with the most common columns, each alone; empty where no two are alike, and of other logs."""
+    if survey.layout.format != _WORKBOOK:
+        return []
+    timed = [one for one in survey.topics if one.time is not None]
+    layouts = [tuple(column.name for column in one.columns) for one in timed]
+    usual = max(layouts, key=layouts.count, default=())
+    alike = [one for one, names in zip(timed, layouts, strict=True) if names == usual]
+    tables = {table.topic: table for table in survey.log.tables}
+    return [
+        replace(survey, topics=(one,), log=replace(survey.log, tables=(tables[one.topic],))) for one in alike
+    ] if len(alike) > 1 else []  # fmt: skip
 
 
 def with_common_ranges(surveys: Sequence[LogSurvey]) -> list[LogSurvey]:

@@ -5,6 +5,8 @@ from seatrial.physics.hydro.dispersion import G
 
 # Parsons 2003, Parametric design, in Lamb (ed.), Ship Design and Construction, vol. 1, SNAME, ch. 11
 _SOURCE = "Parsons 2003"
+ASSUMED = "ASSUMED"
+"""Mark of a line of a draft that holds what is usual, not what a log shows."""
 
 
 def ship_in_waves(size: StatedSize) -> tuple[EstimatedValue, ...]:
@@ -28,13 +30,17 @@ def ship_in_waves(size: StatedSize) -> tuple[EstimatedValue, ...]:
     )
 
 
-def wave_lines() -> list[str]:
-    """Return what the waves did to the runs, as it is in a towing tank; a ship's log states heading and speed."""
+def wave_lines(speed: float | None) -> list[str]:
+    """Return what the waves did to the runs, as it is in a towing tank; a ship's log states heading and speed.
+
+    speed: m/s, as the headers of all runs state it; None: they do not.
+    """
+    known = f"speed = {speed:g}    # m/s, as the header says" if speed is not None else ""
     return [
         "",
         "[records.waves]",
-        'heading = { value = 180, unit = "deg" }    # ASSUMED: head seas; 0 is following, 90 beam',
-        "speed = 0.0    # ASSUMED: m/s of the craft, or of the carriage that tows it",
+        f'heading = {{ value = 180, unit = "deg" }}    # {ASSUMED}: head seas; 0 is following, 90 beam',
+        known or f"speed = 0.0    # {ASSUMED}: m/s of the craft, or of the carriage that tows it",
     ]
 
 

@@ -44,7 +44,7 @@ def unphysical_finding(model: Model, records: Sequence[Record]) -> tuple[Finding
     if not against:
         return ()
     advice = "record a decay from a larger angle, or fix b_2 and b_3 at 0 under [model.fixed]; --choose tries that"
-    if not is_pure_roll(model):
+    if "phi" not in model.states or not is_pure_roll(model):
         advice = "fix these under [model.fixed], or look for what the model lacks; --choose takes no such model"
     what = f"the estimate is implausible: {', '.join(against)}"
     return (Finding(Severity.WARNING, "unphysical-values", what, "", advice),)

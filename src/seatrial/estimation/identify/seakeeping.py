@@ -10,6 +10,7 @@ from seatrial.core.results.ship_motions import PointMotion, Seakeeping
 from seatrial.core.values import Array, Record
 from seatrial.data.trial import TrialRecord
 from seatrial.physics.hydro.excitation import encounter_frequency
+from seatrial.physics.sea.encounter import WaveEncounter, speed_factor, wave_frequency
 from seatrial.physics.sea.response import (
     MotionStatistics,
     motion_sickness,
@@ -17,7 +18,7 @@ from seatrial.physics.sea.response import (
     response_spectrum,
     vertical_motion,
 )
-from seatrial.physics.sea.spectrum import G, Spectrum, ittc
+from seatrial.physics.sea.spectrum import G, Spectrum, ittc, ittc_two_parameter
 from seatrial.physics.simulate.harmonics import Complex, frequency_response, linear_system
 
 # frequencies of the curves, ours
@@ -27,12 +28,12 @@ _ENERGY_BAND = (1e-3, 0.99)
 
 
 def seakeeping(model: Model, records: Sequence[TrialRecord], length: float) -> Seakeeping | None:
-    """Of the first run whose meeting with the waves is known; None where none is."""
+    """Of the first run whose meeting with the waves is known; None where none is, and of a model that is not linear."""
     met = next(((r.record, r.waves) for r in records if r.waves is not None), None)
-    if met is None:
+    if met is None or not model.is_affine:
         return None
     record, waves = met
-    spectrum = waves.spectrum or _spectrum_of_record(record)
+    spectrum = waves.spectrum or recorded_sea(record, waves)
     omega = np.linspace(*spectrum.band(*_ENERGY_BAND), _POINTS)
     omega_e = encounter_frequency(omega, waves.U, waves.beta)
     heave, pitch = transfer_functions(
@@ -43,7 +44,7 @@ def seakeeping(model: Model, records: Sequence[TrialRecord], length: float) -> S
     return Seakeeping(
         run=record.name, speed=waves.U, heading=math.degrees(waves.beta),
         sea=f"{spectrum.name}, {spectrum.significant_height:.2f} m"
-        + ("" if waves.spectrum else " (height of the recorded elevation)"),
+        + ("" if waves.spectrum else f" and {spectrum.mean_period:.2f} s (as the elevation of {record.name})"),
         omega=_floats(omega), omega_e=_floats(omega_e),
         heave=_floats(np.abs(heave)), heave_phase=_floats(np.degrees(np.angle(heave))),
         pitch=_floats(np.abs(slope)), pitch_phase=_floats(np.degrees(np.angle(slope))),
@@ -67,9 +68,23 @@ def transfer_functions(model: Model, omega_e: Array, forces: Complex) -> tuple[C
     return motion[:, 0], motion[:, 1]
 
 
-def _spectrum_of_record(record: Record) -> Spectrum:
-    """A sea of the significant height that was recorded."""
-    return ittc(4.0 * float(np.std(record["zeta"])))
+def recorded_sea(record: Record, waves: WaveEncounter) -> Spectrum:
+    """Return the sea with the significant height and the mean period of the elevation that was recorded.
+
+    The periodogram at the frequencies of encounter is moved to those of the waves, up to the share of its energy above
+    which the noise of the probe counts. Where the ship runs with the waves, to which one of
+    three waves an encounter belongs is not known: there the period is that of the ITTC sea of that height.
+    """
+    elevation = record["zeta"] - np.mean(record["zeta"])
+    height = 4.0 * float(np.std(elevation))
+    if speed_factor(waves.U, waves.beta) > 0.0:
+        return ittc(height)
+    omega_e = 2.0 * np.pi * np.fft.rfftfreq(len(elevation), record.dt)[1:]
+    energy = np.abs(np.fft.rfft(elevation)[1:]) ** 2
+    kept = np.cumsum(energy) <= _ENERGY_BAND[1] * np.sum(energy)
+    omega = wave_frequency(omega_e, waves.U, waves.beta)
+    mean = float(np.sum(energy[kept] * omega[kept]) / np.sum(energy[kept]))
+    return ittc_two_parameter(height, 2.0 * math.pi / mean)
 
 
 def _point_motion(
