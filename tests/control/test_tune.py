@@ -12,11 +12,12 @@ from seatrial.control.controller import describe_controller
 from seatrial.control.findings import Checks, findings
 from seatrial.control.front import Effort, pareto_front
 from seatrial.control.gain_evaluation import gain_evaluator
-from seatrial.control.task import ScheduleGrid, SimulationSettings
+from seatrial.control.task import ScheduleGrid, SimulationSettings, TrimmedShip
 from seatrial.control.tune import tune
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import InputError
 from seatrial.physics.loops.structures import five_gain_loop
+from seatrial.physics.models.roll import roll
 
 TINY = Effort(population=40, generations=10, refined=4, fill_rounds=2, neighbours=2000)
 SHORT = SimulationSettings(seeds=2, duration=200.0)
@@ -95,6 +96,15 @@ def test_gains_on_their_bounds_are_found():
     on_bound, inside = (describe_controller(evaluator, "chosen", np.array([KP, 1.0, 0.5])) for KP in (2.0, 1.9))
     assert "gain-on-bound" in {one.code for one in findings(evaluator, on_bound, (), front, Checks())}
     assert "gain-on-bound" not in {one.code for one in findings(evaluator, inside, (), front, Checks())}
+
+
+def test_gains_of_a_fit_that_warned_say_so():
+    ship = TrimmedShip(roll(), np.zeros(2), np.zeros(1), "alpha", "phi", warnings=("the search did not converge",))
+    warned = replace(gain_evaluator(fin_task()), task=replace(fin_task(), trimmed_ship=ship))
+    front = pareto_front(warned, "fins", 0, lambda _: None, TINY)
+    chosen = describe_controller(warned, "chosen", PUBLISHED)
+    found = {one.code: one.text for one in findings(warned, chosen, (), front, Checks())}
+    assert found["warned-fit"].endswith("the search did not converge")
 
 
 def test_an_interruption_keeps_what_is_finished(monkeypatch):

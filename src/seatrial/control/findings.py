@@ -61,6 +61,11 @@ def findings(
     if checks.is_interrupted:
         found.append(_warning("interrupted", "the work was interrupted; what follows the last step shown is missing",
                               "let it finish before the gains are used"))  # fmt: skip
+    ship = evaluator.task.trimmed_ship
+    found += [
+        _warning("warned-fit", f"of the fit whose model this is: {text}", "correct the fit before the gains are used")
+        for text in (ship.warnings if ship is not None else ())
+    ]
     found += _gain_findings(evaluator, chosen, method)
     found += _simulation_findings(checks.simulations, checks.comparisons, method)
     found += _demand_findings(evaluator.task.demand, checks.manoeuvres)

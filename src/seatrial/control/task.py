@@ -239,6 +239,7 @@ class TrimmedShip:
     Attributes:
         state, inputs: trim about which it was linearised, SI; covariance: of the free parameters (k, k) or (0, 0).
         actuator, disturbance, output: names; the disturbance may be empty.
+        warnings: of the fit, a sentence each: what holds for every use of its values.
         sign: -1 where the record's actuator is positive the other way than the model's.
     """
 
@@ -249,6 +250,7 @@ class TrimmedShip:
     output: str
     disturbance: str = ""
     covariance: Array = field(default_factory=lambda: np.empty((0, 0)))
+    warnings: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

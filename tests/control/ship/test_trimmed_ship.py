@@ -19,6 +19,7 @@ from seatrial.control.ship.trimmed_ship import (
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError
 from seatrial.data.folder.model_file import ModelFile
+from seatrial.data.folder.model_tables import ModelProvenance
 from seatrial.physics.models import model_named
 from seatrial.physics.models.published import kvlcc2
 from seatrial.physics.simulate import harmonics
@@ -33,6 +34,11 @@ ROLL = {"b_1": 0.02, "b_2": 0.3, "b_3": 0.4, "c_1": 1.2, "c_3": -0.6, "c_5": 0.2
 def of(model: Model, **values: float) -> ModelFile:
     """A model file of known values."""
     return ModelFile(model.with_values(values))
+
+
+def test_warnings_of_the_fit_go_with_the_ship() -> None:
+    file = replace(of(model_named("nomoto"), K=0.2, T=5.0), provenance=ModelProvenance(warnings=("it diverges",)))
+    assert trim_ship(file, output="psi", actuator="delta").warnings == ("it diverges",)
 
 
 @given(K=st.floats(-0.5, 0.5).filter(lambda k: abs(k) > 1e-3), T=st.floats(0.5, 200.0))

@@ -264,6 +264,7 @@ def test_axes_that_a_log_leaves_open_follow_from_the_names_of_its_thrusters(
     assert {"command_1", "command_2"} <= set(used)
     assert not used["command_1"].is_open and not used["command_2"].is_open
     assert [used[symbol].is_open for symbol in ("x0", "q_w", "r")] == [not is_settled] * 3
+    assert '[sensors]\nvelocity = "ground"    # as the positions change' in draft_trial(tmp_path, length=2.0).text
 
 
 def test_sheets_of_a_workbook_with_the_same_columns_are_runs(tmp_path: Path) -> None:

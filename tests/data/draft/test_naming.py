@@ -52,6 +52,12 @@ def test_commands_batteries_and_words_set_apart_by_capitals_are_recognised(name:
     assert guess.symbol == symbol
 
 
+def test_a_topic_of_orders_has_those_of_thrusters_alone() -> None:
+    left = guess_by_name("thrusters_left_cmd", "thr_left", "")
+    assert left is not None and left.symbol == "command_1"
+    assert guess_by_name("heading_setpoint", "heading", "") is None
+
+
 def test_the_rate_of_an_engine_is_recognised_and_not_taken_for_that_of_the_propeller() -> None:
     guess = guess_by_name("", "Engine rpm", "")
     assert guess is not None

@@ -1,11 +1,16 @@
 """The curvature that quasi-Newton steps take over from two gradients."""
 
+from types import SimpleNamespace
+from typing import cast
+
 import numpy as np
 import pytest
 from scipy.optimize import BFGS
 
 from seatrial.core.values import Array
-from seatrial.estimation.estimate.newton_refinement import with_curvature
+from seatrial.estimation.estimate.newton_refinement import _newton_step, with_curvature
+from seatrial.estimation.problem.prediction_error import PredictionError
+from seatrial.numerics.optimise import NormalEquations
 
 BELIEVED = np.array([[4.0, 1.0, 0.0], [1.0, 3.0, 0.5], [0.0, 0.5, 2.0]])
 STEP = np.array([0.3, -0.2, 0.1])
@@ -34,6 +39,24 @@ def test_of_a_quadratic_cost_it_becomes_the_true_one() -> None:
     for step in np.eye(3):  # conjugate for a diagonal one
         curvature = with_curvature(curvature, step, true @ step)
     np.testing.assert_allclose(curvature, true, atol=1e-12)
+
+
+def quadratic(hessian: Array) -> NormalEquations:
+    """A cost whose gradient is `STEP`, without local unknowns."""
+    return NormalEquations(1.0, STEP, hessian, np.zeros((0, 0)), np.zeros((0, 0, 0)), np.zeros((0, 3, 0)))
+
+
+@pytest.mark.parametrize("entry", [np.inf, np.nan])
+def test_where_the_information_overflows_no_step_is_taken_and_the_search_has_not_converged(entry: float) -> None:
+    box = cast(PredictionError, SimpleNamespace(lower=np.full(3, -np.inf), upper=np.full(3, np.inf)))
+    curved = BELIEVED.copy()
+    curved[1, 1] = entry
+    step, left = _newton_step(box, np.zeros(3), quadratic(curved))
+    np.testing.assert_array_equal(step, 0.0)
+    assert left == np.inf
+    step, left = _newton_step(box, np.zeros(3), quadratic(BELIEVED))
+    np.testing.assert_allclose(step, -np.linalg.solve(BELIEVED, STEP))
+    assert left == pytest.approx(0.5 * STEP @ np.linalg.solve(BELIEVED, STEP))
 
 
 def test_a_step_that_is_none_teaches_nothing() -> None:

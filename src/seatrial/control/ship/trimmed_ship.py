@@ -64,7 +64,7 @@ def trim_ship(
         raise InputError(f"model '{model.name}' has no value for {', '.join(model.parameters.missing)}")
     model, held = held_inputs_at_speed(model, file.approach, speed, inputs)
     state, trim = find_trim(model, held)
-    made = TrimmedShip(model, state, trim, actuator, output, disturbance, file.covariance)
+    made = TrimmedShip(model, state, trim, actuator, output, disturbance, file.covariance, file.provenance.warnings)
     plant_and_disturbance(made)
     return made
 

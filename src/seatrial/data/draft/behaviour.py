@@ -33,6 +33,8 @@ from seatrial.data.read.assemble import LogSource, assemble_record, record_of_so
 # correlation with the rate of the heading that proves a yaw rate; factor by which a unit may be missed; chosen
 _SURE_CORRELATION, _UNIT_TOLERANCE = 0.8, 1.3
 _YAW_RATE_UNITS = {"rad/s": 1.0, "deg/s": 180.0 / math.pi, "deg/min": 10800.0 / math.pi}  # per rad/s
+# misfit with the derivative of position below which a velocity is over ground: any current would leave more; chosen
+_OVER_GROUND = 0.03
 _SPEED_TOLERANCE = 1.15  # factor by which a unit of speed may be missed; chosen: units differ by 1.8 and more
 _SPEED_UNITS = {"m/s": 1.0, "kn": 1852.0 / 3600.0, "km/h": 1.0 / 3.6}  # m/s
 
@@ -160,7 +162,8 @@ def _velocity_convention(record: Record) -> Changes:
             if guess.is_open and not unit:
                 return replace(guess, frame=frame).with_evidence(f"{text}, {scale:.2f} times as large")
             known = guess.unit if not guess.is_open else unit
-            return replace(guess, frame=frame, positive=positive, unit=known, other_reading="").with_evidence(text)
+            one = replace(guess, frame=frame, positive=positive, unit=known, other_reading="")
+            return replace(one, follows_track=misfit < _OVER_GROUND).with_evidence(text)
 
         changes[symbol] = decided
     if best.psi_factor == 1.0:

@@ -16,6 +16,7 @@ class ColumnGuess:
         evidence: why.
         other_reading: what it may be instead; empty: it is assigned outright.
         side: of the craft on which the motion shows a thruster, port or starboard; empty: not shown.
+        follows_track: whether the motion shows a velocity to be the derivative of the position, over ground.
         is_used: whether it is the one chosen for its symbol.
         unused_because: why it is not; empty: it is used.
     """
@@ -32,6 +33,7 @@ class ColumnGuess:
     evidence: tuple[str, ...] = ()
     other_reading: str = ""
     side: str = ""
+    follows_track: bool = False
     is_used: bool = True
     unused_because: str = ""
 

@@ -216,7 +216,7 @@ class NameGuess:
 def guess_by_name(topic: str, name: str, stated_unit: str, log_format: str = "text") -> NameGuess | None:
     """Return what a column is by its name, None where the name says nothing.
 
-    Messages of autopilots and buses are known one by one; in other logs a column of a topic that holds orders is left.
+    Messages of autopilots and buses are known one by one; of other topics of orders those of thrusters count.
     stated_unit: the unit that the file states; it overrides what the name says.
     """
     exported = _EXPORTED.fullmatch(name) if log_format == "text" else None
@@ -229,12 +229,13 @@ def guess_by_name(topic: str, name: str, stated_unit: str, log_format: str = "te
     if field == _ONLY_FIELD and (command := command_of_topic(topic, _known_unit(stated_unit))):
         return command
     last = topic if log_format != "text" else topic.rpartition("/")[2]  # folders are called as anybody likes
-    if log_format in _KNOWN_LOGGERS or _ORDERS.search(last.lower()):
+    if log_format in _KNOWN_LOGGERS:
         return None
+    names = [one for one in _WORDS if one.symbol.startswith("command_")] if _ORDERS.search(last.lower()) else _WORDS
     unit = _known_unit(stated_unit) or bracketed_unit(name)
     bare = _BRACKETS.sub("", name)
     for text, word_unit in (*_readings(_plain(bare)), *_readings(_plain(_CAPITALS.sub("_", bare)))):
-        for rule in _WORDS:
+        for rule in names:
             match = re.fullmatch(rule.pattern, in_english(text))
             guess = _guess(rule, match, unit or word_unit, "its name") if match else None
             if guess is not None and (guess.unit or not word_unit):  # not heave for a ``z`` in rad/s

@@ -115,6 +115,8 @@ def _lever_line(sign: float, length: float) -> str:
 
 def _sensor_lines(model: StartingModel, guesses: Sequence[ColumnGuess]) -> list[str]:
     """That velocities are those of a receiver: fitted as if through the water, a current would end in coefficients."""
+    if model.has_thrusters and any(g.is_used and g.symbol == "u" and g.follows_track for g in guesses):
+        return ["[sensors]", 'velocity = "ground"    # as the positions change, over ground: a current is in them', ""]
     if not _is_over_ground(guesses) or not (model.has_thrusters or model.has_forces_of_a_ship):
         return []
     return ["[sensors]", 'velocity = "ground"    # of a receiver, over ground: a current is in them', ""]

@@ -86,8 +86,9 @@ def newton_optimum(problem: PredictionError, few: Optimum, share: float) -> Newt
     normal = replace(problem, steps=steps, is_one_sided=True).normal(point, _NO_INITIAL_STATES)
     step, decrement = _newton_step(problem, point, normal)
     moved = np.clip(point + step, problem.lower, problem.upper)
-    solution = Solution(moved, normal.cost - decrement, Status.CONVERGED, few.solution.evaluations + 1)
-    optimum = Optimum(solution, _NO_INITIAL_STATES, replace(normal, cost=normal.cost - decrement))
+    cost = normal.cost - decrement if np.isfinite(decrement) else np.inf
+    solution = Solution(moved, cost, Status.CONVERGED, few.solution.evaluations + 1)
+    optimum = Optimum(solution, _NO_INITIAL_STATES, replace(normal, cost=cost))
     return NewtonOptimum(optimum, decrement)
 
 
@@ -100,11 +101,14 @@ def newton_step(problem: PredictionError, point: Array) -> Array:
 def _newton_step(problem: PredictionError, point: Array, normal: NormalEquations) -> tuple[Array, float]:
     """Newton step within the bounds, and the decrease of the cost that it promises.
 
-    Where no bound is in the way that is half the squared gradient in the information's metric.
+    Where no bound is in the way that is half the squared gradient in the information's metric. Where gradient or
+    information overflow, no step is known: none is taken, and infinitely much is left.
     """
     low, high, slope = problem.lower, problem.upper, normal.gradient
     free = (low < high) & ~((point <= low) & (slope > 0)) & ~((point >= high) & (slope < 0))
     gradient, hessian = slope[free], normal.hessian[np.ix_(free, free)]
+    if not (np.all(np.isfinite(gradient)) and np.all(np.isfinite(hessian))):
+        return np.zeros_like(point), np.inf
     scale = 1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-300))  # above zero, for a division
     # rounding of a singular matrix; chosen
     solved = scale * np.linalg.lstsq(hessian * scale[:, None] * scale, scale * gradient, rcond=1e-12)[0]
