@@ -56,8 +56,15 @@ def guess_columns(survey: LogSurvey, gear: float = 0.0) -> tuple[ColumnGuess, ..
     for rank, guess in guesses:
         if not guess.unused_because and (guess.symbol not in best or rank < best[guess.symbol][0]):
             best[guess.symbol] = (rank, guess)
-    chosen = [replace(guess, is_used=guess.symbol in best and best[guess.symbol][1] is guess) for _, guess in guesses]
+    chosen = [_chosen(guess, best[guess.symbol][1] if guess.symbol in best else None) for _, guess in guesses]
     return without_conflicts([chosen])[0]
+
+
+def _chosen(guess: ColumnGuess, best: ColumnGuess | None) -> ColumnGuess:
+    """The guess, used where it is the best of its channel, with what is taken in its place where it is not."""
+    if guess is best or best is None or guess.unused_because:
+        return replace(guess, is_used=guess is best)
+    return replace(guess, is_used=False, unused_because=f"'{best.source}' is taken")
 
 
 def _of_propeller(guess: ColumnGuess, gear: float) -> ColumnGuess:

@@ -124,6 +124,10 @@ _APPARENT, _ANGLE = "app(arent)?", "(dir(ection)?|angle)"
 _PROBE = "counts as at midship; of a probe on the craft elsewhere add reference_point, m forward of midship"
 _PORT, _STARBOARD = "(left|port)", "(right|starboard|stbd)"
 _SIDES = {"port": _PORT, "starboard": _STARBOARD}
+_SIDE = f"({_PORT}|{_STARBOARD})"
+_TWO_RUDDERS = "of rudders that move together one is read: A_R is the area of all"
+# thrust goes with D^4 at one rate and advance: two propellers thrust as one that is the fourth root of two as large
+_TWO_SCREWS = "of screws that turn together one is read; in mmg D_P times 1.19 stands for two"
 _THRUSTER = "(thr(ottle|ust|uster)?s?|motors?|esc|pwm|command|cmd)"
 _PULSE = "(_(pwm|us|out|output|raw|cmd|command|thrust))*"
 _WORDS = [
@@ -153,6 +157,9 @@ _WORDS = [
         (r"(main_|port_|stbd_)?eng(ine)?(_(rate|speed|revs?))?", "n", "", "", "", 1.0, _ENGINE),
         (r"n_prop|(prop(eller)?|shaft)_(rate|rpm|rps|revs?|speed)|(prop(eller)?|shaft)", "n", ""),
         (r"rpm|rps|n", "n", "", "", "", 1.0, "", _RATE),
+        (rf"rudder_{_SIDE}|{_SIDE}_rudder", "delta", "", "", "", 1.0, "", _TWO_RUDDERS),
+        (rf"(rpm|(prop(eller)?|shaft)(_rpm|_speed)?)_{_SIDE}|{_SIDE}_(rpm|(prop(eller)?|shaft)(_rpm|_speed)?)",
+         "n", "", "", "", 1.0, "", _TWO_SCREWS),
         (r"roll(_angle)?|phi|heel", "phi", ""), (r"pitch(_angle)?|theta|trim_angle", "theta", ""),
         (r"roll_rate|p", "p", ""), (r"heave|z", "z", ""),
         (
