@@ -38,7 +38,7 @@ def _rules(logger: str, *rows: tuple) -> list[NameRule]:
     return [NameRule(*row, logger=logger) for row in rows]
 
 
-_WIND = "no model but mmg takes it: a comment in the file"
+_WIND = "of the models mmg alone takes it, with A_T, A_L stated and C_X1, C_Y1, C_N2 free: a comment in the file"
 _APPARENT_WIND = "no model takes an apparent wind: a comment in the file"
 _MESSAGES = [
     *_rules(
