@@ -29,16 +29,12 @@ def progress_reporter(*, has_live_table: bool = False) -> Iterator[Callable[[str
     if is_quiet() or (has_live_table and sys.stdout.isatty()):
         yield lambda _: None
     elif is_verbose() or not sys.stderr.isatty():
-        yield _every_report if is_verbose() else _Lines().report
+        yield _print if is_verbose() else _Lines().report
     else:
         with _bar() as bar:
             phases = _Phases(bar)
             yield phases.report
             phases.end()
-
-
-def _every_report(text: str) -> None:
-    _print(text)
 
 
 def _print(line: str) -> None:

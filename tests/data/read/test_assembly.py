@@ -110,6 +110,18 @@ def test_quaternions_of_either_frame_give_the_same_angles(frame: str) -> None:
         np.testing.assert_allclose(np.unwrap(record[symbol]), angle, atol=1e-9)
 
 
+def test_a_pose_in_the_plane_has_a_heading_alone_and_one_with_a_gap_keeps_its_roll() -> None:
+    half, flat = 0.05 * TIME, 0.0 * TIME
+    plane = {"q_w": (np.cos(half), "1"), "q_x": (flat, "1"), "q_y": (flat, "1"), "q_z": (np.sin(half), "1")}
+    assert set(derived(plane).channels) == {"psi"}
+    roll = np.full(len(TIME), 0.1)
+    roll[0] = np.nan
+    rolled = {"q_w": (np.cos(roll), "1"), "q_x": (np.sin(roll), "1"), "q_y": (flat, "1"), "q_z": (flat, "1")}
+    record = derived(rolled)
+    np.testing.assert_allclose(record["phi"][1:], 0.2)
+    assert "theta" not in record
+
+
 def test_enu_axes_are_turned_north_east() -> None:
     columns = {"x0": (TIME, "m"), "y0": (2.0 * TIME, "m"), "psi": (0.1 * TIME, "rad"), "r": (0.1 + 0 * TIME, "rad/s")}
     record = derived(columns, frame="enu")

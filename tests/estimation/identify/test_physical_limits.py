@@ -4,6 +4,7 @@ import numpy as np
 
 from seatrial.core.values import Prior, Record
 from seatrial.estimation.identify.physical_limits import objections, unphysical_finding
+from seatrial.physics.models import model_named
 from seatrial.physics.models.published import kvlcc2
 from seatrial.physics.models.roll import roll
 
@@ -48,5 +49,9 @@ def test_what_no_craft_has_is_a_warning_with_a_cure() -> None:
     assert finding.code == "unphysical-values"
     assert "its damping decreases with amplitude" in finding.text
     assert "[model.fixed]" in finding.advice
+    waves = model_named("heave_pitch")
+    waves = waves.with_parameters(waves.parameters.with_priors({"b33": Prior(1.0, 0.1)})).with_values({"b33": 2.0})
+    (finding,) = unphysical_finding(waves, ())
+    assert "b33 is 10.0 standard deviations off its prior" in finding.text and "b_2" not in finding.advice
     (finding,) = unphysical_finding(kvlcc2().with_values({"Y_v": 0.2}), ())
     assert "Y_v 0.2 is positive" in finding.text

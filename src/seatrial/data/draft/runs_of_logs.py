@@ -37,7 +37,8 @@ def runs_of_logs(surveys: Sequence[LogSurvey]) -> list[LogRun]:
     all are sources of one run.
     """
     if len({survey.path for survey in surveys}) < len(surveys):  # sheets of a workbook
-        return [LogRun(survey.topics[0].topic or survey.path.stem, (survey,)) for survey in surveys]
+        sheets = [next((one.topic for one in survey.topics), "") for survey in surveys]
+        return [LogRun(sheet or survey.path.stem, (survey,)) for sheet, survey in zip(sheets, surveys, strict=True)]
     kinds: dict[tuple, list[LogSurvey]] = {}
     for survey in surveys:
         kinds.setdefault(survey.kind, []).append(survey)

@@ -139,7 +139,7 @@ def _attitude(present: _Measurements, geometry: Geometry) -> _Measurements:  # n
     is_enu = source.column.frame == "enu"
     angles = {"psi": np.pi / 2.0 - yaw if is_enu else yaw, "phi": roll, "theta": -pitch if is_enu else pitch}
     # a pose in the plane shows neither roll nor pitch: its zeros are no measurement
-    shown = {symbol: angle for symbol, angle in angles.items() if symbol == "psi" or np.ptp(angle) > 0.0}
+    shown = {s: angle for s, angle in angles.items() if s == "psi" or np.any(np.isfinite(angle) & (angle != 0.0))}
     return {symbol: source.turned_into(symbol, angle) for symbol, angle in shown.items() if symbol not in present}
 
 
