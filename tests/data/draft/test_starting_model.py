@@ -8,7 +8,7 @@ import pytest
 from seatrial.core.values import Record
 from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.ship_estimates import StatedSize
-from seatrial.data.draft.starting_model import starting_model
+from seatrial.data.draft.starting_model import starting_model, with_wind
 from seatrial.data.draft.tables_text import tables_text, thruster_tables
 from seatrial.data.trial.load import load_trial
 
@@ -123,3 +123,15 @@ def test_the_tables_of_a_ship_are_a_trial_that_runs(tmp_path: Path, rate: float)
     assert value["I_z"] == pytest.approx(value["m"] * (35.0 / 4.0) ** 2, 1e-3)
     assert trial.estimate.current and 'velocity = "ground"' in "".join(lines)
     assert any("ESTIMATED" in line and line.startswith(("m = ", "D_P = ")) for line in lines)
+
+
+def test_a_recorded_wind_acts_on_areas_from_the_length(tmp_path: Path) -> None:
+    model = with_wind(starting_model(SHIP, [trial_run(10.0, 4.0)], LENGTH), LENGTH)
+    (tmp_path / "log.csv").write_text("".join(f"{t},{t % 7},4\n" for t in range(40)))
+    records = '[[records]]\nfiles = ["log.csv"]\ntime = { column = 1 }\nchannels.delta = { column = 2, unit = "deg" }\n'
+    records += 'channels.n = { column = 3, unit = "rps" }\n'
+    (tmp_path / "trial.toml").write_text("\n".join([*tables_text(model, [], LENGTH), records]))
+    parameters = load_trial(tmp_path / "trial.toml").model.parameters
+    assert parameters["A_L"].value == pytest.approx(0.1 * 35.0**2)
+    priors = [parameters[name].prior for name in ("C_X1", "C_Y1", "C_N2")]
+    assert [(one.mean, one.standard_deviation) for one in priors if one] == [(-0.7, 0.35), (-0.8, 0.4), (0.0, 0.1)]

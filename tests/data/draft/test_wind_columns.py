@@ -5,7 +5,7 @@ import pytest
 
 from seatrial.core.values import Record
 from seatrial.data.draft.column_guess import ColumnGuess
-from seatrial.data.draft.wind_columns import wind_readings
+from seatrial.data.draft.wind_columns import tells_wind, wind_readings, with_wind_role
 
 TIME = np.arange(0.0, 400.0, 1.0)
 PSI = 0.02 * TIME
@@ -53,3 +53,18 @@ def test_a_straight_run_says_nothing() -> None:
     straight = record(9.0 + 0.0 * TIME, 1.2 - PSI, RELATIVE)
     assert wind_readings(straight.with_channel("psi", straight.channel("psi").with_values(0.0 * TIME))) == {}
     assert wind_readings(straight.without("x0")) == {}
+
+
+def guesses(*symbols: str) -> list[ColumnGuess]:
+    return [ColumnGuess(one, one, "rad") for one in symbols]
+
+
+def test_an_apparent_wind_is_taken_where_the_velocity_over_ground_stands_beside_it() -> None:
+    whole = guesses(*RELATIVE, "sog", "cog", "psi")
+    assert tells_wind([whole]) and tells_wind([guesses("psi"), guesses(*TRUE)])
+    assert not tells_wind([guesses(*RELATIVE, "psi"), guesses("sog", "cog")])
+    doubtful = [whole[0].with_evidence("NOT AS NAMED: as the true wind"), *whole[1:]]
+    assert not tells_wind([doubtful])
+    (taken,), (left,) = with_wind_role([whole], is_taken=True), with_wind_role([whole], is_taken=False)
+    assert not any(one.is_commented for one in taken) and "the true wind follows" in taken[0].evidence[-1]
+    assert [one.is_commented for one in left] == [True, True, False, False, False]

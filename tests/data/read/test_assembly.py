@@ -88,6 +88,17 @@ def test_course_and_speed_are_earth_fixed_velocities() -> None:
     assert record.channel("u").frame == "earth" and record.channel("v").positive == "east"
 
 
+def test_an_apparent_wind_less_the_velocity_over_ground_is_the_true_wind() -> None:
+    """By hand: a craft that goes north at 10 kn meets a wind of 10 kn from the east at 45 deg off the bow, 14.14 kn."""
+    same = np.ones(200)
+    columns = {"wind_speed_relative": (np.sqrt(200.0) * same, "kn"), "wind_direction_relative": (45.0 * same, "deg"),
+               "sog": (10.0 * same, "kn"), "cog": (0.0 * same, "deg"), "psi": (0.0 * same, "deg")}  # fmt: skip
+    record = derived(columns)
+    np.testing.assert_allclose(record["wind_speed"], 10.0 * 1852.0 / 3600.0, rtol=1e-12)
+    np.testing.assert_allclose(np.degrees(record["wind_direction"]), 90.0, rtol=1e-12)
+    assert "wind_speed" not in derived({k: v for k, v in columns.items() if k != "psi"})
+
+
 def test_a_magnetic_heading_needs_the_variation() -> None:
     heading = {"psi_magnetic": (20.0 + TIME, "deg")}
     record = derived(heading, Geometry(variation=3.0 * DEGREE))

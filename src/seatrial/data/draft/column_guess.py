@@ -19,6 +19,7 @@ class ColumnGuess:
         follows_track: whether the motion shows a velocity to be the derivative of the position, over ground.
         is_used: whether it is the one chosen for its symbol.
         unused_because: why it is not; empty: it is used.
+        is_commented: whether its line is a comment, as the model does not take it.
     """
 
     source: str | int
@@ -36,6 +37,7 @@ class ColumnGuess:
     follows_track: bool = False
     is_used: bool = True
     unused_because: str = ""
+    is_commented: bool = False
 
     @property
     def is_open(self) -> bool:
@@ -44,7 +46,7 @@ class ColumnGuess:
 
     @property
     def is_of_wind(self) -> bool:
-        """Whether it is wind, which the models of a draft take for calm."""
+        """Whether it is wind, which a draft may leave out: without it the air is taken for calm."""
         return self.symbol.startswith("wind_")
 
     @property

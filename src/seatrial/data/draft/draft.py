@@ -28,12 +28,13 @@ from seatrial.data.draft.manoeuvres import (
 from seatrial.data.draft.runs_of_logs import LogRun, runs_of_logs
 from seatrial.data.draft.session_text import session_line
 from seatrial.data.draft.ship_estimates import UNSTATED, StatedSize
-from seatrial.data.draft.starting_model import StartingModel, starting_model
+from seatrial.data.draft.starting_model import StartingModel, starting_model, with_wind
 from seatrial.data.draft.stated_columns import CHANNELS, NOTHING_STATED, TIME, StatedColumns, refuse_absent
 from seatrial.data.draft.stretch import LogStretch
 from seatrial.data.draft.survey import LogSurvey, apart_by_sheet, survey_log, with_common_ranges
 from seatrial.data.draft.tables_text import tables_text
 from seatrial.data.draft.waves_text import ASSUMED
+from seatrial.data.draft.wind_columns import tells_wind, with_wind_role
 from seatrial.data.read import FORMATS
 from seatrial.data.trial.estimated_values import ESTIMATED
 from seatrial.data.trial.run_data import run_name
@@ -132,6 +133,9 @@ def draft_trial(
     parts = tuple(() for _ in runs) if model.has_thrusters and len(runs) > 1 else offered_parts(records, stretches)
     pieces = _pieces(runs, records, parts)
     model = starting_model(symbols, list(pieces.values()), size, has_jet=has_jet) if pieces else model
+    has_wind = model.has_propeller and tells_wind(guesses[longest[0]])
+    model = with_wind(model, size) if has_wind else model
+    guesses = [with_wind_role(parts, is_taken=has_wind) for parts in guesses]
     held_out = held_out_runs(model, pieces)
     is_model_test = model.has_forces_of_a_ship and is_in_basin((g for one in guesses[longest[0]] for g in one), size)
     session = session_line(runs, is_in_basin=is_model_test)

@@ -176,12 +176,12 @@ def _channel_lines(survey: LogSurvey, guesses: Sequence[ColumnGuess]) -> list[st
         line = f"channels.{guess.symbol} = {_channel_table(guess)}"
         if not guess.is_used:
             continue
-        if guess.is_open and guess.is_of_wind:
+        if guess.is_open and guess.is_commented:
             lines.append(f"# {line}    # {why}; or {guess.other_reading}")
         elif guess.is_open:
             lines += [f"# OPEN {guess.symbol}: {why}; or {guess.other_reading}", f"# {line}"]
         else:
-            lines.append(f"{'# ' if guess.is_of_wind else ''}{line}    # {why}")
+            lines.append(f"{'# ' if guess.is_commented else ''}{line}    # {why}")
     lines += [f"# left out: column {_comment(fault)}" for topic in survey.topics for fault in topic.faults]
     return [*lines, *_unused_lines(survey, guesses)]
 

@@ -38,8 +38,6 @@ def _rules(logger: str, *rows: tuple) -> list[NameRule]:
     return [NameRule(*row, logger=logger) for row in rows]
 
 
-_WIND = "of the models mmg alone takes it, with A_T, A_L stated and C_X1, C_Y1, C_N2 free: a comment in the file"
-_APPARENT_WIND = "no model takes an apparent wind: a comment in the file"
 _MESSAGES = [
     *_rules(
         "ArduPilot",
@@ -81,8 +79,8 @@ _MESSAGES = [
         (r"(hdt|ths)/heading", "psi", "rad"), (r"hdm/heading", "psi_magnetic", "rad"), (r"rot/rate", "r", "rad/s"),
         (r"rsa/angle", "delta", "rad"), (r"(vhw|vbw)/speed", "stw", "m/s"), (r"rpm/s(\d)", "rpm_{}", "rps"),
         (r"rpm/e\d", "n", "rps", "", "", 1.0, _ENGINE),
-        (r"mwv/speed", "wind_speed_relative", "m/s", "", "", 1.0, "", _APPARENT_WIND),
-        (r"mwv/angle", "wind_direction_relative", "rad", "", "", 1.0, "", _APPARENT_WIND),
+        (r"mwv/speed", "wind_speed_relative", "m/s"),
+        (r"mwv/angle", "wind_direction_relative", "rad"),
         (r"xdr/(roll|heel)", "phi", "rad"), (r"xdr/(ptch|pitch)", "theta", "rad"), (r"xdr/heave?", "z", "m"),
     ),
     *_rules(
@@ -171,17 +169,15 @@ _WORDS = [
         (rf"{_THRUSTER}_?{_STARBOARD}{_PULSE}|{_STARBOARD}_?{_THRUSTER}{_PULSE}", "command_2", ""),
         (rf"({_THRUSTER}|servo)_?(\d+){_PULSE}", "command_{}", ""),
         (rf"c\d+_{_PORT}", "command_1", ""), (rf"c\d+_{_STARBOARD}", "command_2", ""),
-        (r"wind_velo_true|true_wind_speed|wind_(speed_true|true_speed)|tws", "wind_speed", "", "", "", 1.0, "", _WIND),
+        (r"wind_velo_true|true_wind_speed|wind_(speed_true|true_speed)|tws", "wind_speed"),
         (r"true_wind_dir(ection)?|wind_(true_dir(ection)?|dir(ection)?_true)|twd",
-         "wind_direction", "", "", "", 1.0, "", _WIND),
+         "wind_direction"),
         (rf"wind_{_APPARENT}_(spd|speed)|{_APPARENT}_wind_(spd|speed)",
-         "wind_speed_relative", "", "", "", 1.0, "", _APPARENT_WIND),
+         "wind_speed_relative"),
         (rf"wind_{_APPARENT}_{_ANGLE}|{_APPARENT}_wind_{_ANGLE}",
-         "wind_direction_relative", "", "", "", 1.0, "", _APPARENT_WIND),
-        (r"wind_velo_relative(_mid)?|apparent_wind_speed|aws", "wind_speed_relative", "", "", "", 1.0, "",
-         _APPARENT_WIND),
-        (r"wind_dir_relative(_mid)?|apparent_wind_angle|awa", "wind_direction_relative", "", "", "", 1.0, "",
-         _APPARENT_WIND),
+         "wind_direction_relative"),
+        (r"wind_velo_relative(_mid)?|apparent_wind_speed|aws", "wind_speed_relative"),
+        (r"wind_dir_relative(_mid)?|apparent_wind_angle|awa", "wind_direction_relative"),
     ),
 ]  # fmt: skip
 # words of topics that hold orders or limits, not measurements

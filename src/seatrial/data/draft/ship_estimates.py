@@ -29,6 +29,8 @@ _THRUST = 0.18  # thrust coefficient of a ship's propeller under way; chosen: KV
 _PITCH_RATIOS = np.linspace(0.5, 1.4, 91)  # P/D of the B series (Oosterveld & van Oossanen 1975)
 _ADVANCES = (0.25, 1.2)  # range of advance ratios beyond which nothing drives a ship; chosen
 _FASTEST = 0.4  # Froude number beyond which a hull no longer displaces its way as those of the regressions; chosen
+# areas above water over B^2 and L^2; chosen: laden tankers have 0.6 and 0.06, ferries 1 and 0.14
+_FRONTAL, _LATERAL = 0.8, 0.1
 _DIGITS = 4  # significant ones of an estimate; those of sea water
 _STATED_UNITS = {
     "length": "m", "beam": "m", "draught": "m", "mass": "kg", "gear": "turns", "rho": "kg/m^3",
@@ -218,6 +220,16 @@ def hull_rudder_propeller(size: StatedSize, speed: float, advance: float) -> tup
         if size.propeller
         else EstimatedValue("D_P", diameter, f"m, {_DRIVING} (init --propeller)"),
         EstimatedValue("pitch_ratio", pitch_ratio, "P/D with which it drives such a hull at its rate"),
+    )
+
+
+def wind_areas(size: StatedSize) -> tuple[EstimatedValue, ...]:
+    """Return the areas above water on which a recorded wind acts [m^2]."""
+    form = size.form
+    with_it = "the coefficients C_ of the wind go with it"
+    return (
+        EstimatedValue("A_T", _FRONTAL * form.B**2, f"m^2, frontal area above water: {_FRONTAL:g} B^2; {with_it}"),
+        EstimatedValue("A_L", _LATERAL * form.L**2, f"m^2, lateral area above water: {_LATERAL:g} L^2; {with_it}"),
     )
 
 

@@ -1,13 +1,14 @@
 """The model with which a drafted trial begins, by what the logs hold and what is stated of the craft."""
 
 from collections.abc import Sequence, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from seatrial.core.values import Record
-from seatrial.data.draft.ship_estimates import UNSTATED, EstimatedValue, StatedSize, hull_rudder_propeller
+from seatrial.data.draft.ship_estimates import UNSTATED, EstimatedValue, StatedSize, hull_rudder_propeller, wind_areas
 from seatrial.physics.manoeuvres.track import speed
+from seatrial.physics.models.wind import SYMMETRIC
 
 _THRUSTERS, _ROLL, _SHIP, _MMG, _WAVES = "thrusters", "roll", "abkowitz", "mmg", "heave_pitch"
 _WAVE, _MOTION_IN_WAVES = "zeta", frozenset({"z", "theta"})
@@ -41,6 +42,7 @@ class StartingModel:
         inputs: channels by whose size and range runs are compared.
         speed: m/s at which the runs begin; 0 where it is not recorded.
         particulars: of hull, rudder and propeller, where the model needs them.
+        has_wind: whether the recorded wind is an input.
     """
 
     name: str
@@ -50,6 +52,7 @@ class StartingModel:
     inputs: tuple[str, ...] = ()
     speed: float = 0.0
     particulars: tuple[EstimatedValue, ...] = ()
+    has_wind: bool = False
 
     @property
     def has_derivatives(self) -> bool:
@@ -105,6 +108,13 @@ def starting_model(
         free = ("b_1", "b_2", "c_1", "c_3", "phi_0")
         return StartingModel(_ROLL, "of a ship that rolls out from a release", free, reason, ("phi",))
     return StartingModel("")
+
+
+def with_wind(model: StartingModel, size: StatedSize) -> StartingModel:
+    """Return the model with a recorded wind on the areas of a ship of this size."""
+    reason = f"{model.free_reason}; the recorded wind"
+    particulars = (*model.particulars, *wind_areas(size))
+    return replace(model, free=(*model.free, *SYMMETRIC), free_reason=reason, particulars=particulars, has_wind=True)
 
 
 def _steered_model(

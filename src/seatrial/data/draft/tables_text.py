@@ -11,10 +11,7 @@ from seatrial.data.trial.estimated_values import ESTIMATED
 
 _LEVER_SHARE = 0.15  # of the length, from the centre line to a thruster of a pair; chosen: a catamaran's hull
 # formulas for what the records leave open, as 'seatrial models mmg' lists them
-_PRIOR_LINES = [
-    'priors_from = ["yoshimura", "zhou", "interaction", "propulsion", "displacement"]',
-    "prior_sd_percent = 50    # of coefficients whose scatter is not known",
-]
+_FORMULAS = ("yoshimura", "zhou", "interaction", "propulsion", "displacement")
 _CURRENT = 0.3  # m/s, standard deviation of an unknown current; as the advice of the checks
 _NO_CURRENT = (
     f"# current = {_CURRENT:g}    # m/s: taken for a model in a basin, where none runs; uncomment it for open water"
@@ -40,7 +37,7 @@ def tables_text(model: StartingModel, guesses: Sequence[ColumnGuess], size: Stat
         "",
         "[model]",
         f'name = "{model.name}"    # {model.why}',
-        *(_PRIOR_LINES if model.has_propeller else []),
+        *(_prior_lines(model) if model.has_propeller else []),
         *([f"free = [{names}]    # {model.free_reason}"] if model.free else []),
         *(["", "[model.fixed]", *(one.line for one in added_masses(size))] if model.has_derivatives else []),
         *(thruster_tables(guesses, size.length) if model.has_thrusters else []),
@@ -49,6 +46,11 @@ def tables_text(model: StartingModel, guesses: Sequence[ColumnGuess], size: Stat
         *_sensor_lines(model, guesses),
         *_offset_lines(model, guesses, size),
     ]
+
+
+def _prior_lines(model: StartingModel) -> list[str]:
+    sources = ", ".join(f'"{one}"' for one in (*_FORMULAS, *(["wind"] if model.has_wind else [])))
+    return [f"priors_from = [{sources}]", "prior_sd_percent = 50    # of coefficients whose scatter is not known"]
 
 
 def _ship_lines(model: StartingModel, size: StatedSize) -> list[str]:

@@ -1,5 +1,6 @@
 """What columns of wind are, by which reading of them the wind over ground is steady while the craft turns."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -18,6 +19,37 @@ _APPARENT, _OFF_BOW, _TRUE = (
     "the true wind",
 )
 _NAMED = {"wind_speed_relative": _APPARENT, "wind_speed": _TRUE}
+_NOT_AS_NAMED = "NOT AS NAMED"
+# what turns an apparent wind into the true one, of the same source
+_OVER_GROUND = frozenset({"sog", "cog", "psi"})
+
+
+def tells_wind(parts: Sequence[Sequence[ColumnGuess]]) -> bool:
+    """Return whether columns of one source say the true wind without doubt, or an apparent one with what turns it."""
+    return any(_true_wind_columns(part) for part in parts)
+
+
+def with_wind_role(parts: Sequence[Sequence[ColumnGuess]], *, is_taken: bool) -> tuple[tuple[ColumnGuess, ...], ...]:
+    """Return the guesses with the wind as an input of the model where it is one, else as a comment that says why."""
+    return tuple(tuple(_in_role(g, _true_wind_columns(part) if is_taken else ()) for g in part) for part in parts)
+
+
+def _in_role(guess: ColumnGuess, inputs: Sequence[str]) -> ColumnGuess:
+    if not guess.is_of_wind or not guess.is_used:
+        return guess
+    if guess.symbol in inputs:
+        what = "the true wind follows from it; an input" if "relative" in guess.symbol else "an input of the model"
+        return guess.with_evidence(what)
+    return replace(guess, is_commented=True).with_evidence("a comment in the file: the air is taken for calm")
+
+
+def _true_wind_columns(part: Sequence[ColumnGuess]) -> tuple[str, str] | tuple[()]:
+    """The pair of channels of a source that says the true wind; empty where none does without doubt."""
+    sure = {g.symbol for g in part if g.is_used and not g.is_open and not any(_NOT_AS_NAMED in e for e in g.evidence)}
+    apparent, true = _PAIRS
+    if set(true) <= sure:
+        return true
+    return apparent if set(apparent) | _OVER_GROUND <= sure else ()
 
 
 def wind_readings(record: Record) -> Changes:
@@ -42,7 +74,7 @@ def _changes(pair: tuple[str, str], scatters: dict[tuple[str, str], float]) -> C
     as_named = min(value for (reading, _), value in scatters.items() if reading == named)
     if best[0] != named and as_named > _SURE * scatters[best]:
         text = (
-            f"NOT AS NAMED: as {best[0]} it is steady within {scatters[best]:.0%} while the craft turns, "
+            f"{_NOT_AS_NAMED}: as {best[0]} it is steady within {scatters[best]:.0%} while the craft turns, "
             f"as {named} within {as_named:.0%}"
         )
         return {pair[0]: lambda guess: guess.with_evidence(text)}

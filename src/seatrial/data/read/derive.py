@@ -34,7 +34,8 @@ def derived_channels(measured: _Measurements, geometry: Geometry, name: str) -> 
     """Return the channels: those that were measured, and those that follow from the rest, which is left out.
 
     lat, lon -> x0, y0 on the plane that touches the ellipsoid at the origin; sog, cog -> u, v over ground; stw -> u;
-    psi_magnetic and the variation -> psi; a quaternion -> psi, phi, theta; ENU axes -> north, east.
+    psi_magnetic and the variation -> psi; an apparent wind with sog, cog and psi -> the true one; a quaternion -> psi,
+    phi, theta; ENU axes -> north, east.
 
     Raises:
         InputError: one of a pair is missing, a channel comes from two measurements, no variation for a magnetic
@@ -42,7 +43,8 @@ def derived_channels(measured: _Measurements, geometry: Geometry, name: str) -> 
     """
     present = dict(measured)
     steps: tuple[Callable[[_Measurements, Geometry], _Measurements], ...] = (
-        _attitude, _magnetic_heading, _in_north_east, _position, _ground_velocity, _water_speed, _from_antenna,
+        _attitude, _magnetic_heading, _in_north_east, _position, _true_wind, _ground_velocity,
+        _water_speed, _from_antenna,
     )  # fmt: skip
     try:
         for step in steps:
@@ -63,6 +65,11 @@ def _pair(present: _Measurements, one: str, other: str) -> tuple[Measured, Measu
         lone, missing = (one, other) if one in present else (other, one)
         raise InputError(f"channel '{lone}' needs '{missing}' as well; add it, or leave '{lone}' out")
     return (present[one], present[other]) if one in present else None
+
+
+def _to_starboard(measured: Measured) -> Array:
+    """Angles or rates that count to starboard, whichever way the column does."""
+    return -measured.values if measured.column.positive == "port" else measured.values
 
 
 def _position(present: _Measurements, geometry: Geometry) -> _Measurements:
@@ -95,6 +102,24 @@ def _ground_velocity(present: _Measurements, geometry: Geometry) -> _Measurement
     return {
         "u": speed.turned_into("u", speed.values * np.cos(course.values), frame="earth", reference_point=place),
         "v": course.turned_into("v", speed.values * np.sin(course.values), frame="earth", reference_point=place),
+    }
+
+
+def _true_wind(present: _Measurements, geometry: Geometry) -> _Measurements:  # noqa: ARG001
+    """The apparent wind without the craft's own velocity over ground, both as where they come from (north + i east).
+
+    W exp(i direction) = V_A exp(i (psi + angle)) - U exp(i chi) (Fossen 2021, section 10.1, eq. 10.2 to 10.4).
+    """
+    if not {"wind_speed_relative", "wind_direction_relative", "sog", "cog", "psi"} <= set(present):
+        return {}
+    if {"wind_speed", "wind_direction"} & set(present):
+        return {}
+    direction = _to_starboard(present["psi"]) + _to_starboard(present["wind_direction_relative"])
+    air = present["wind_speed_relative"].values * np.exp(1j * direction)
+    wind = air - present["sog"].values * np.exp(1j * _to_starboard(present["cog"]))
+    return {
+        "wind_speed": present["wind_speed_relative"].turned_into("wind_speed", np.abs(wind)),
+        "wind_direction": present["wind_direction_relative"].turned_into("wind_direction", np.angle(wind)),
     }
 
 
@@ -175,7 +200,7 @@ def _from_antenna(present: _Measurements, geometry: Geometry) -> _Measurements:
         return moved
     if "psi" not in present:
         raise InputError("an antenna beside the centre line needs the heading 'psi'; add it")
-    psi = present["psi"].values * (-1.0 if present["psi"].column.positive == "port" else 1.0)
+    psi = _to_starboard(present["psi"])
     if moved or "lat" in present:
         north, east = (moved.get(symbol, present[symbol]) for symbol in ("x0", "y0"))
         moved["x0"] = replace(north, values=north.values + b * np.sin(psi))
@@ -183,7 +208,7 @@ def _from_antenna(present: _Measurements, geometry: Geometry) -> _Measurements:
     if "sog" in present:
         if "r" not in present:
             raise InputError("velocities of an antenna beside the centre line need the yaw rate 'r'; add it")
-        rate = present["r"].values * (-1.0 if present["r"].column.positive == "port" else 1.0)
+        rate = _to_starboard(present["r"])
         moved["u"] = replace(present["u"], values=present["u"].values + b * rate * np.cos(psi))
         moved["v"] = replace(present["v"], values=present["v"].values + b * rate * np.sin(psi))
     return moved

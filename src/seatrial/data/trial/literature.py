@@ -17,6 +17,7 @@ from seatrial.physics.hydro.empirical import (
     yoshimura,
 )
 from seatrial.physics.models.published import PARAMETER_SETS, parameter_set
+from seatrial.physics.models.wind import SYMMETRIC, TYPICAL, TYPICAL_SPREAD
 
 USUAL_PROPELLER = {"pitch_ratio": 0.75, "area_ratio": 0.5, "blades": 4.0}
 """P/D, A_E/A_0 and blades where `[ship]` does not state them; chosen: a merchant ship's fixed propeller."""
@@ -57,6 +58,7 @@ FORMULAS: dict[str, Callable[[HullForm, Ship], EmpiricalEstimate]] = {
     "interaction": _interaction,
     "propulsion": _propulsion,
     "displacement": _displacement,
+    "wind": lambda _, __: EmpiricalEstimate(SYMMETRIC, TYPICAL, True, "any craft", TYPICAL_SPREAD),
 }
 _FORMULA_MODEL = "mmg"
 
