@@ -128,6 +128,7 @@ def draft_trial(
     scale: float = 0.0,
     propeller: float = 0.0,
     rudder: float = 0.0,
+    gm: float = 0.0,
     antenna: float | None = None,
     columns: "Sequence[str]" = (),
 ) -> "DraftTrial":
@@ -143,6 +144,7 @@ def draft_trial(
         rho: density of the water [kg/m^3]; 0: that of sea water.
         scale: 40 for a model 1:40; 0: not stated.
         propeller: diameter [m]. rudder: area [m^2]; 0: a rule stands in for them.
+        gm: metacentric height [m], of roll decays; 0: not stated.
         antenna: place of the GNSS antenna, m forward of midship, negative abaft; None: not stated.
         columns: what columns are whose names say nothing: ``Klokke=time``, ``Kurs (gyro)=psi``.
 
@@ -155,7 +157,7 @@ def draft_trial(
     """
     from seatrial.data.draft import StatedSize, draft_trial, stated_columns
 
-    size = StatedSize(length, beam, draught, mass, gear, rho, scale, propeller, rudder, antenna)
+    size = StatedSize(length, beam, draught, mass, gear, rho, scale, propeller, rudder, gm, antenna)
     return draft_trial(*logs, folder=folder, size=size, stated=stated_columns(columns))
 
 

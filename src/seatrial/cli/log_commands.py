@@ -12,6 +12,7 @@ from seatrial.cli.screen import in_shell, print_file, print_lines, print_next, p
 
 if TYPE_CHECKING:
     from seatrial.data.draft import ColumnGuess, ColumnSummary, DraftTrial, LogSurvey, TopicSummary
+    from seatrial.data.draft.one_speed import OtherSpeed
 
 COLUMNS_SHOWN = 12  # columns of a topic that `check` lists without --all; ours, one screen for a log of a few topics
 DIGITS = 5  # significant ones of a range; chosen
@@ -43,6 +44,7 @@ def init(
     scale: Annotated[float, typer.Option("--scale", metavar="RATIO", help="Scale of a model: 40 for 1:40.")] = 0.0,
     propeller: Annotated[float, typer.Option("--propeller", metavar="METRES", help="Diameter, else estimated.")] = 0.0,
     rudder: Annotated[float, typer.Option("--rudder", metavar="M^2", help="Area, else estimated.")] = 0.0,
+    gm: Annotated[float, typer.Option("--gm", metavar="METRES", help="Metacentric height, of roll decays.")] = 0.0,
     antenna: Annotated[
         float | None,
         typer.Option("--antenna", metavar="METRES", help="GNSS antenna forward of midship; negative: abaft."),
@@ -81,6 +83,7 @@ def init(
         scale=scale,
         propeller=propeller,
         rudder=rudder,
+        gm=gm,
         antenna=antenna,
         columns=column or (),
     )
@@ -94,6 +97,7 @@ def init(
     if draft.header_sizes:
         says = ", ".join(one.text for one in draft.header_sizes)
         print_lines([f"NOTE the header says {says}, not used: {' '.join(one.option for one in draft.header_sizes)}"])
+    print_lines(_other_speed_note(one, out) for one in draft.other_speeds)
     for run, stretches, parts in zip(draft.runs, draft.stretches, draft.parts, strict=True):
         name = run.name or run.sources[0].path.name
         print_lines(f"{name}: {one.name}, {one.start:.4g} to {one.stop:.4g} s: {one.evidence}" for one in parts)
@@ -114,6 +118,14 @@ def init(
     print_file("trial file", out)
     print_file("drawing", page)
     print_next(_after_draft(draft, out))
+
+
+def _other_speed_note(other: "OtherSpeed", out: Path) -> str:
+    """Which roll decays are left out, why, and the command that makes a trial of them."""
+    trial = out.with_name(f"{out.stem}_{other.speed:g}ms{out.suffix}")
+    parts = [*other.logs, *other.options, "--out", trial]
+    names = ", ".join(log.name for log in other.logs)
+    return f"NOTE left out: {names}: {other.reason}: seatrial init {' '.join(in_shell(one) for one in parts)}"
 
 
 def _after_draft(draft: "DraftTrial", out: Path) -> str:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from seatrial.core.values import Record
-from seatrial.data.check.roll_release import release_findings, release_row
+from seatrial.data.check.roll_release import begins_before_release, is_free_decay, release_findings, release_row
 
 TIME = np.arange(0.0, 60.0, 0.05)
 
@@ -21,3 +21,11 @@ def test_a_held_heel_is_named_with_its_seconds(rng: np.random.Generator) -> None
 def test_a_record_from_the_release_on_has_nothing_to_name(rng: np.random.Generator) -> None:
     assert release_findings(held_heel(rng, 0.0)) == ()
     assert release_row(np.cos(TIME)) == 0
+
+
+def test_rest_before_the_heel_is_before_the_release_too(rng: np.random.Generator) -> None:
+    shifted = np.concatenate([np.zeros(200), held_heel(rng, 0.0)["phi"]])
+    at_rest_first = Record.from_arrays("decay", 0.05 * np.arange(len(shifted)), {"phi": shifted})
+    assert begins_before_release(at_rest_first) and release_findings(at_rest_first) == ()
+    assert begins_before_release(held_heel(rng, 5.0)) and not begins_before_release(held_heel(rng, 0.0))
+    assert not is_free_decay(Record.from_arrays("roll", TIME, {"phi": 0.1 * np.cos(TIME)}))

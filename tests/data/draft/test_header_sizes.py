@@ -28,6 +28,12 @@ def test_a_header_names_the_options(tmp_path: Path) -> None:
     assert [one.option for one in sizes_in_header(log(tmp_path / "b.txt", TANK), stated)] == ["--scale 40"]
 
 
+def test_a_header_of_lines_with_tabs_names_displacement_and_metacentric_height(tmp_path: Path) -> None:
+    tank = "Scale\t1:8\nLpp\t3.90 m\nT\t0.42 m\nDispl.\t873 kg\nGM\t0.081 m"
+    options = [one.option for one in sizes_in_header(log(tmp_path / "a.txt", tank), UNSTATED)]
+    assert options == ["--length 3.9", "--draught 0.42", "--mass 873", "--gm 0.081", "--scale 8"]
+
+
 def test_the_speed_of_a_carriage_is_that_of_the_run(tmp_path: Path) -> None:
     assert speed_in_header(log(tmp_path / "a.txt", "# seakeeping\n# Carriage speed\t1.20 m/s")) == 1.2
     assert speed_in_header(log(tmp_path / "b.txt", "# seakeeping\n# speed: 10 kn")) == pytest.approx(5.1444, rel=1e-4)

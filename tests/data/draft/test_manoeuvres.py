@@ -88,6 +88,21 @@ def test_a_roll_that_dies_out_is_a_decay() -> None:
     assert decays(Record.from_arrays("run", TIME, {"phi": steady})) == []
 
 
+def released(time: Array, size_deg: float) -> Array:
+    """Held at an angle for 30 s, then rolling out with a period of 10 s, slow forces in its tail."""
+    since = time - 30.0
+    swing = size_deg * np.exp(-since / 60.0) * np.cos(since * 2.0 * np.pi / 10.0) + 0.6 * np.sin(since / 13.0)
+    return np.radians(np.where(since < 0.0, size_deg, swing))
+
+
+def test_a_decay_with_a_disturbed_tail_is_one_decay_and_the_next_release_another() -> None:
+    (decay,) = decays(Record.from_arrays("run", TIME[:500], {"phi": released(TIME[:500], 12.0)}))
+    assert decay.stop > 100.0 and decay.start < 40.0
+    twice = np.concatenate([released(TIME[:500], 12.0), released(TIME[:500], -9.0)])
+    first, second = decays(Record.from_arrays("run", TIME[:1000], {"phi": twice}))
+    assert first.stop <= 250.0 and second.start == pytest.approx(280.0, abs=3.0)
+
+
 def test_straight_runs_inside_a_zigzag_are_not_offered(tmp_path: Path) -> None:
     delta = 0.2 * np.sign(np.sin(0.08 * TIME)) * over(TIME, 0.0, 600.0)
     record = nomoto(delta, np.full(TIME.size, 4.0))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import InputError, Record
-from seatrial.data.trial.roll_decay_start import require_decay, trim_to_decay_start
+from seatrial.data.trial.roll_decay_start import need_release, require_decay, trim_to_decay_start
 
 TIME = np.arange(0.0, 60.0, 0.05)
 
@@ -24,6 +24,12 @@ def test_what_lies_before_the_release_goes() -> None:
         assert kept.time[0] == pytest.approx(15.0, abs=0.1)
         assert kept.time[-1] == TIME[-1]
         assert "from its release on" in kept.provenance.steps[-1]
+
+
+def test_records_need_their_release_where_one_begins_before_it() -> None:
+    from_release = trim_to_decay_start(decay())
+    assert need_release([from_release, decay()]) and not need_release([from_release])
+    assert not need_release([decay(), decay(damping=0.0)])
 
 
 def test_an_angle_that_is_held_long_is_cut_at_the_release(rng: np.random.Generator) -> None:

@@ -87,6 +87,11 @@ def test_roll_that_nothing_explains_is_in_unknown_waves_unless_a_criterion_is_se
     assert driven is Situation.DRIVEN_ROLL
 
 
+def test_a_held_angle_and_its_release_are_a_decay_and_no_waves_even_if_unexplained() -> None:
+    held = np.where(TIME < 15.0, 1.0, np.exp(-0.1 * (TIME - 15.0)) * np.cos(TIME - 15.0))
+    assert situation("roll", run({"phi": held}), is_explained=lambda: False) is Situation.FREE_DECAY
+
+
 def test_every_situation_has_its_strategy() -> None:
     assert set(STRATEGIES) == set(Situation)
     assert len(set(STRATEGIES.values())) == len(Situation)

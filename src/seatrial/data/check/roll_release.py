@@ -1,5 +1,7 @@
 """The release of a roll decay: what lies before it was held by hand, and is no motion of the ship alone."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from seatrial.core.values import Array, Finding, Record, Severity
@@ -27,20 +29,23 @@ def release_row(swing: Array) -> int:
     return first + int(np.flatnonzero(size[first:stop] >= limit)[-1])
 
 
+def is_free_decay(record: Record) -> bool:
+    """Return whether the roll dies out from a release, with nothing recorded that drives it."""
+    return _release(record) is not None
+
+
+def begins_before_release(record: Record) -> bool:
+    """Return whether a free roll decay begins long before its release: with an angle that is held, or on its way."""
+    release = _release(record)
+    return release is not None and release.row > _HOLD_SHARE * release.fall > 0.0
+
+
 def release_findings(record: Record) -> tuple[Finding, ...]:
     """Return a warning where a free roll decay begins with an angle that is held."""
-    if "phi" not in record or any(name in record for name in _DRIVEN) or len(record) < _FEWEST_ROWS:
+    release = _release(record)
+    if release is None or not release.fall or release.held <= _HOLD_SHARE * release.fall:
         return ()
-    swing = record["phi"] - np.median(record["phi"][-max(1, len(record) // 4) :])
-    size, release = np.abs(swing), release_row(swing)
-    if size[release] < _SHRINKS * np.max(size[-len(size) // 3 :]):
-        return ()
-    start = int(np.flatnonzero(size >= _NEAR * size[release])[0])
-    after = np.flatnonzero(np.sign(swing[release:]) != np.sign(swing[release]))
-    held, fall = release - start, int(after[0]) if after.size else 0
-    if not fall or held <= _HOLD_SHARE * fall:
-        return ()
-    angle, seconds = np.degrees(abs(swing[release])), held * record.dt
+    angle, seconds = np.degrees(release.angle), release.held * record.dt
     return (
         Finding(
             Severity.WARNING, "held-roll", f"record '{record.name}': the roll angle is held before it is released",
@@ -48,3 +53,26 @@ def release_findings(record: Record) -> tuple[Finding, ...]:
             "from_release = true under [[records]] drops what lies before the release",
         ),
     )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class _Release:
+    """Of a free decay: the row of its release and the angle [rad]; rows it was held before, and from it to the rest."""
+
+    row: int
+    angle: float
+    held: int
+    fall: int
+
+
+def _release(record: Record) -> _Release | None:
+    """The release of a free roll decay; None of another record."""
+    if "phi" not in record or any(name in record for name in _DRIVEN) or len(record) < _FEWEST_ROWS:
+        return None
+    swing = record["phi"] - np.median(record["phi"][-max(1, len(record) // 4) :])
+    size, row = np.abs(swing), release_row(swing)
+    if size[row] < _SHRINKS * np.max(size[-len(size) // 3 :]):
+        return None
+    start = int(np.flatnonzero(size >= _NEAR * size[row])[0])
+    after = np.flatnonzero(np.sign(swing[row:]) != np.sign(swing[row]))
+    return _Release(row, float(size[row]), row - start, int(after[0]) if after.size else 0)

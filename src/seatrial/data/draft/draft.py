@@ -19,12 +19,12 @@ from seatrial.data.draft.held_out import NOTHING_HELD_OUT, HeldOutRuns, can_judg
 from seatrial.data.draft.manoeuvres import (
     find_stretches,
     has_modes,
-    is_decay,
     numbered,
     offered_parts,
     two_thirds_and_a_third,
     used_parts,
 )
+from seatrial.data.draft.one_speed import OtherSpeed, runs_by_speed, stated_options
 from seatrial.data.draft.runs_of_logs import LogRun, runs_of_logs
 from seatrial.data.draft.session_text import session_line
 from seatrial.data.draft.ship_estimates import UNSTATED, StatedSize
@@ -37,6 +37,7 @@ from seatrial.data.draft.waves_text import ASSUMED
 from seatrial.data.draft.wind_columns import tells_wind, with_wind_role
 from seatrial.data.read import FORMATS
 from seatrial.data.trial.estimated_values import ESTIMATED
+from seatrial.data.trial.roll_decay_start import need_release
 from seatrial.data.trial.run_data import run_name
 
 _NOZZLE = re.compile("nozzle|jet|bucket", re.IGNORECASE)  # in the name of a column that steers by the jet itself
@@ -56,6 +57,7 @@ class DraftTrial:
         stretches: manoeuvres found, of each run; parts: those of them that are runs of their own.
         held_out: the runs that judge the model; empty: none can.
         unrecognised: columns of the longest run that stand for no channel.
+        other_speeds: roll decays that are left out, a trial of their own for each speed.
         session: the line that says which runs share their offsets; empty: each has its own.
         header_sizes: what the header of the longest run says of the craft and what is not stated.
         lacks_length: whether the length of the craft is to be stated.
@@ -71,6 +73,7 @@ class DraftTrial:
     parts: tuple[tuple[LogStretch, ...], ...] = ()
     held_out: HeldOutRuns = NOTHING_HELD_OUT
     unrecognised: tuple[str, ...] = ()
+    other_speeds: tuple[OtherSpeed, ...] = ()
     session: str = ""
     header_sizes: tuple[HeaderSize, ...] = ()
     lacks_length: bool = False
@@ -118,8 +121,12 @@ def draft_trial(
     runs = runs_of_logs(with_common_ranges(apart_by_sheet(surveys)))
     used = {survey.path for run in runs for survey in run.sources}
     left_out = {one.path: "it is of another kind than the runs" for one in surveys if one.path not in used}
-    named = [without_conflicts([guess_columns(one, size.gear) for one in run.sources]) for run in runs]
+    named = _named_columns(runs, size)
     _refuse_nothing_recognised(surveys, named)
+    others = _other_speeds(runs, named, size, stated)
+    left_out |= {path: one.reason for one in others for path in one.logs}
+    runs = [run for run in runs if run.sources[0].path not in left_out]
+    named = _named_columns(runs, size)
     longest = sorted(range(len(runs)), key=lambda k: -runs[k].duration)[:_RUNS_EXAMINED]
     examined = [checked_by_behaviour(runs[k].sources, named[k]) for k in longest]
     guesses = [agreed_guesses(parts, examined) for parts in named]
@@ -142,14 +149,39 @@ def draft_trial(
     if model.has_thrusters and len(runs) == 1 and records[0] is not None and pieces:
         parts, held_out = _in_two(model, runs, records[0], stretches[0]) or (parts, held_out)
     blocks = _blocks(runs, guesses, stretches, parts, longest[0])
-    blocks = [replace(_with_roles(one, model, held_out, session), antenna=size.antenna) for one in blocks]
+    is_released = model.swings and need_release(list(pieces.values()))
+    blocks = [
+        replace(_with_roles(one, model, held_out, session), antenna=size.antenna, is_released=is_released)
+        for one in blocks
+    ]
     tables = tables_text(model, [g for _, columns in blocks[0].sources for g in columns], size)
     text = trial_text(blocks, tables, reasons | left_out, Path(folder).resolve())
     return DraftTrial(
         text, tuple(surveys), tuple(runs), guesses[longest[0]], tuple(records), stretches, parts, held_out,
-        tuple(name for one in blocks[0].sources for name in unrecognised_columns(*one)), session,
+        tuple(name for one in blocks[0].sources for name in unrecognised_columns(*one)), others, session,
         sizes_in_header(runs[longest[0]].sources[0], size), bool(model.name) and not size.length, not model.name,
     )  # fmt: skip
+
+
+def _named_columns(runs: Sequence[LogRun], size: StatedSize) -> list[list[tuple[ColumnGuess, ...]]]:
+    """What the columns of each source of each run are, by their names."""
+    return [without_conflicts([guess_columns(one, size.gear) for one in run.sources]) for run in runs]
+
+
+def _other_speeds(
+    runs: Sequence[LogRun],
+    named: Sequence[Sequence[Sequence[ColumnGuess]]],
+    size: StatedSize,
+    stated: StatedColumns,
+) -> tuple[OtherSpeed, ...]:
+    """The roll decays that are left out, by their speed: all but those of the speed with the most."""
+    symbols = {g.symbol for run in named for part in run for g in part if g.is_used}
+    if not starting_model(symbols, ()).swings:
+        return ()
+    return tuple(
+        OtherSpeed(speed, tuple(run.sources[0].path for run in group), stated_options(size, stated))
+        for speed, group in runs_by_speed(runs)[1:]
+    )
 
 
 def _refuse_nothing_recognised(
@@ -230,7 +262,7 @@ def _blocks(
 
 
 def _with_roles(block: RecordsBlock, model: StartingModel, held_out: HeldOutRuns, session: str) -> RecordsBlock:
-    """The block with the runs that judge the model, its session, and roll decays from their release on."""
+    """The block with the runs that judge the model, and its session."""
     names = [block.name, *(run_name(one.path) for one in block.files)]
     names += [one.name for offered in block.parts for one in offered]
     return replace(
@@ -238,7 +270,6 @@ def _with_roles(block: RecordsBlock, model: StartingModel, held_out: HeldOutRuns
         validate=replace(held_out, names=tuple(one for one in held_out.names if one in names)),
         session=session,
         has_waves=model.has_waves,
-        is_released=model.swings and all(any(map(is_decay, one)) for one in block.stretches),
     )
 
 

@@ -13,7 +13,8 @@ _NAMES = {
     "length": (r"L|(?i:L[ _]?pp|length(?: between perpendiculars)?)", "m"),
     "beam": (r"B|(?i:B[ _]?wl|beam|breadth)", "m"),
     "draught": (r"T|d|(?i:draught|draft)", "m"),
-    "mass": (r"(?i:displacement|mass)", "kg"),
+    "mass": (r"(?i:displ(?:acement|\.)|mass)", "kg"),
+    "gm": (r"(?i:GM(?:[ _]?[0tT])?)", "m"),
 }
 _UNITS = {"m": "mm|cm|m", "kg": "kg|t"}
 # the speed of a carriage or craft, as headers have it

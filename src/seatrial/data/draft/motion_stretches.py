@@ -1,5 +1,7 @@
 """Straight runs, spirals, stops and roll decays in a log."""
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -18,8 +20,11 @@ _HOLD_DEG, _LARGEST_STEP_DEG, _HOLD_S, _SPIRAL_HOLDS = 1.0, 12.0, 20.0, 5
 _FAST, _STOPPED = 0.7, 0.1  # of the largest speed, between which a craft stops; chosen
 _FALLING = 0.9  # share of a stop's samples at which the speed falls; chosen
 _LOOK_S = 0.5  # s between two looks at the rudder; chosen: short against a hold
-# half swings of a roll decay, factor by which they shrink in all, largest growth of one, scatter of their time; chosen
-_HALF_SWINGS, _SHRINKS, _GROWTH, _PERIOD_SCATTER = 6, 2.0, 1.02, 0.25
+# half swings of a roll decay, factor by which they shrink in all, scatter of their time; chosen
+_HALF_SWINGS, _SHRINKS, _PERIOD_SCATTER = 6, 2.0, 0.25
+# of the first swing, by which later ones grow where slow forces disturb a decay, and no more than a tail is; chosen
+_DISTURBED = 0.15
+_HELD = 1.5  # of the time of the half swings that follow, beyond which the first one was held; chosen
 _NOISE_SAMPLES = 2  # samples of a swing that is but noise about zero; chosen
 _SMALLEST_ROLL = np.radians(2.0)  # rad, of the first swing of a decay; chosen
 
@@ -119,38 +124,59 @@ def _propulsion(record: Record, first: int, last: int) -> str:
     return "propeller astern" if is_astern else "coasting"
 
 
+@dataclass(frozen=True)
+class _HalfSwing:
+    """The roll between two times at rest: its first row, the row after its last, and its largest angle [rad]."""
+
+    first: int
+    stop: int
+    angle: float
+
+
 def decays(record: Record) -> list[LogStretch]:
-    """Return stretches in which the roll swings evenly and dies out."""
+    """Return stretches in which the roll swings evenly and dies out, each to where it is released anew."""
     if "phi" not in record:
         return []
     phi = record["phi"] - float(np.median(record["phi"]))
-    edges = np.flatnonzero(np.diff(phi >= 0.0)) + 1
-    swings = [(int(a), int(b), float(np.max(np.abs(phi[a:b])))) for a, b in pairwise(edges)]
-    swings = [swing for swing in swings if swing[1] - swing[0] > _NOISE_SAMPLES]
-    time, stretches, chain = elapsed(record), list[LogStretch](), list[tuple[int, int, float]]()
-    for swing in [*swings, (len(phi), len(phi), np.inf)]:
-        if chain and swing[2] > _GROWTH * chain[-1][2]:
-            if _dies_out(chain):
-                text = f"roll swings {len(chain)} half periods from {np.degrees(chain[0][2]):.1f} deg down"
-                stretches.append(
-                    LogStretch(DECAY, float(time[_release(phi, chain[0][0])]), float(time[chain[-1][1] - 1]), text)
-                )
+    time, stretches, chain = elapsed(record), list[LogStretch](), list[_HalfSwing]()
+    for swing in [*_half_swings(phi), _HalfSwing(len(phi), len(phi), np.inf)]:
+        if chain and swing.angle > _smallest_level(chain) + _DISTURBED * chain[0].angle:
+            even = [one for one in chain if one.angle > _DISTURBED * chain[0].angle]
+            if _dies_out(even):
+                text = f"roll swings {len(even)} half periods from {np.degrees(chain[0].angle):.1f} deg down"
+                start, stop = _release(phi, even), chain[-1].stop - 1
+                stretches.append(LogStretch(DECAY, float(time[start]), float(time[stop]), text))
             chain = []
         chain.append(swing)
     return stretches
 
 
-def _release(phi: Array, first: int) -> int:
-    """The row of the release before the first swing to the other side, or that swing's where nothing shows one."""
+def _half_swings(phi: Array) -> list[_HalfSwing]:
+    """The swings to one side each, without those that are but noise about zero."""
+    edges = np.flatnonzero(np.diff(phi >= 0.0)) + 1
+    swings = (_HalfSwing(int(a), int(b), float(np.max(np.abs(phi[a:b])))) for a, b in pairwise(edges))
+    return [swing for swing in swings if swing.stop - swing.first > _NOISE_SAMPLES]
+
+
+def _smallest_level(chain: Sequence[_HalfSwing]) -> float:
+    """The smallest angle [rad] so far that swings to both sides stayed within: one rest angle is no growth."""
+    return min((max(a.angle, b.angle) for a, b in pairwise(chain)), default=chain[0].angle)
+
+
+def _release(phi: Array, chain: Sequence[_HalfSwing]) -> int:
+    """The row of the release: of a first swing that was held, else before it, or its own where nothing shows one."""
+    first = chain[0].first
+    if chain[0].stop - first > _HELD * float(np.median([one.stop - one.first for one in chain[1:]])):
+        return first + release_row(phi[first : chain[0].stop])
     sides = np.flatnonzero(np.diff(phi[: first + 1] >= 0.0))[:-1]
     start = int(sides[-1]) + 1 if sides.size else 0
     return start + release_row(phi[start:first]) if first > start else first
 
 
-def _dies_out(chain: list[tuple[int, int, float]]) -> bool:
-    lengths = np.array([b - a for a, b, _ in chain], dtype=float)
+def _dies_out(chain: Sequence[_HalfSwing]) -> bool:
+    lengths = np.array([one.stop - one.first for one in chain[1:]], dtype=float)  # the first one may have been held
     return (
         len(chain) >= _HALF_SWINGS
-        and chain[0][2] > max(_SMALLEST_ROLL, _SHRINKS * chain[-1][2])
+        and chain[0].angle > max(_SMALLEST_ROLL, _SHRINKS * chain[-1].angle)
         and float(np.std(lengths)) < _PERIOD_SCATTER * float(np.mean(lengths))
     )

@@ -35,6 +35,7 @@ _DIGITS = 4  # significant ones of an estimate; those of sea water
 _STATED_UNITS = {
     "length": "m", "beam": "m", "draught": "m", "mass": "kg", "gear": "turns", "rho": "kg/m^3",
     "scale": "model lengths", "propeller": "m", "rudder": "m^2",
+    "gm": "m",
 }  # fmt: skip
 
 
@@ -52,6 +53,7 @@ class StatedSize:
         scale: ship length over that of a model, 40 for a model 1:40.
         propeller: diameter [m].
         rudder: area [m^2].
+        gm: metacentric height [m].
         antenna: of the GNSS receiver, m forward of midship, negative abaft; None: not stated.
     """
 
@@ -64,6 +66,7 @@ class StatedSize:
     scale: float = 0.0
     propeller: float = 0.0
     rudder: float = 0.0
+    gm: float = 0.0
     antenna: float | None = None
 
     def __post_init__(self) -> None:
@@ -143,7 +146,11 @@ def main_dimensions(size: StatedSize) -> tuple[EstimatedValue, ...]:
 
 def stated_values(size: StatedSize) -> tuple[EstimatedValue, ...]:
     """Return what is stated of hull and water besides the length, whether or not a model asks for it."""
-    values = (*main_dimensions(size), EstimatedValue("m", size.mass, "kg, as stated", bool(size.mass)))
+    values = (
+        *main_dimensions(size),
+        EstimatedValue("m", size.mass, "kg, as stated", bool(size.mass)),
+        EstimatedValue("GM", size.gm, "m, metacentric height, as stated", bool(size.gm)),
+    )
     return tuple(one for one in (*values, water_density(size)) if one.is_stated)
 
 

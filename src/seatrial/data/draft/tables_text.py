@@ -69,11 +69,20 @@ def _ship_lines(model: StartingModel, size: StatedSize) -> list[str]:
             f"m = {size.mass:g}    # kg, as stated: forces come out on each kg of m + m_x until a thruster has bollard"
         )
     if model.swings:
-        breadth = f"B = {size.beam:g}    # m, breadth, as stated" if size.beam else "# B = 0.0    # m, breadth"
-        lines.append(f"{breadth}: with it GM follows from the period, within some 40 %")
-        lines.append("# GM = 0.0    # m, metacentric height, if known: the period then gives the radius of gyration")
+        lines += _roll_lines(size)
     written = {line.partition(" =")[0] for line in lines}
     return [*lines, *(one.line for one in stated_values(size) if one.key not in written)]
+
+
+def _roll_lines(size: StatedSize) -> list[str]:
+    """The breadth and the metacentric height, each to be stated where the other one is to follow from the period."""
+    if size.gm:
+        return [f"GM = {size.gm:g}    # m, metacentric height, as stated: the period gives the radius of gyration"]
+    breadth = f"B = {size.beam:g}    # m, breadth, as stated" if size.beam else "# B = 0.0    # m, breadth"
+    return [
+        f"{breadth}: with it GM follows from the period, within some 40 %",
+        "# GM = 0.0    # m, metacentric height, if known: the period then gives the radius of gyration (init --gm)",
+    ]
 
 
 def thruster_tables(guesses: Sequence[ColumnGuess], length: float) -> list[str]:

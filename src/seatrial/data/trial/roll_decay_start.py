@@ -1,9 +1,11 @@
-"""A roll decay from its release on: what lies before the largest angle was held by hand."""
+"""A roll decay from its release on: what lies before it was held by hand."""
+
+from collections.abc import Sequence
 
 import numpy as np
 
 from seatrial.core.values import Array, InputError, Record
-from seatrial.data.check.roll_release import release_row
+from seatrial.data.check.roll_release import begins_before_release, release_row
 from seatrial.data.check.signal import sample_noise
 
 # first angle over noise; largest angle of the last third over that of the first, ours
@@ -54,6 +56,16 @@ def trim_to_decay_start(record: Record) -> Record:
     step = f"from its release on: the largest roll angle at {record.time[first]:g} s"
     kept = record.rows(slice(first, None))
     return kept.with_channel("phi", kept.channel("phi"), step)
+
+
+def need_release(records: Sequence[Record]) -> bool:
+    """Return whether records are to be cut at their releases: one begins long before its own, and all have one."""
+    try:
+        for record in records:
+            trim_to_decay_start(record)
+    except InputError:
+        return False
+    return any(map(begins_before_release, records))
 
 
 def require_decay(record: Record) -> None:

@@ -7,6 +7,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Record
+from seatrial.data.check.roll_release import is_free_decay
 from seatrial.data.trial import TrialRecord
 from seatrial.estimation.estimate.criterion_choice import WAVE_FORCES
 from seatrial.estimation.estimate.fit import moving_inputs
@@ -45,7 +46,8 @@ def situation_of(
     Args:
         has_force_points: whether static force points are fitted with the runs.
         is_criterion_free: whether the criterion is left to the decision table.
-        is_explained: whether the initial states explain the motion; called for roll without any input only.
+        is_explained: whether the initial states explain the motion; called for roll without any input only. Roll
+            that dies out from a release is a decay even so: one that was held, or several that no one model has.
     """
     if any(run.waves is not None and run.waves.spectrum is not None for run in runs):
         return Situation.WAVE_SPECTRUM
@@ -55,7 +57,7 @@ def situation_of(
         return Situation.STATIC_FORCES if has_force_points else Situation.STEERED
     if not is_unforced_roll(model, [run.record for run in runs]):
         return Situation.DRIVEN_ROLL
-    if is_explained():
+    if is_explained() or all(is_free_decay(run.record) for run in runs):
         return Situation.FREE_DECAY
     return Situation.UNKNOWN_WAVES if is_criterion_free else Situation.DRIVEN_ROLL
 
