@@ -70,7 +70,7 @@ def test_the_rate_of_an_engine_is_recognised_and_not_taken_for_that_of_the_prope
 
 def test_a_speed_of_the_wind_is_no_speed_of_the_craft() -> None:
     guess = guess_by_name("", "Wind speed fwd", "")
-    assert guess is None
+    assert guess is not None and guess.symbol == "wind_speed" and "apparent" in guess.rule.other_reading
 
 
 @pytest.mark.parametrize(
@@ -94,6 +94,12 @@ def test_the_side_of_a_thruster_is_that_of_its_name(name: str, side: str) -> Non
         ("heading_deg_t", "psi", ""),
         ("Rudder actual", "delta", ""),
         ("Wind app. spd", "wind_speed_relative", ""),
+        ("Wind rel. Geschw. [m/s]", "wind_speed_relative", "m/s"),
+        ("Windrichtung scheinbar [°]", "wind_direction_relative", "deg"),
+        ("Wahre Windrichtung [°]", "wind_direction", "deg"),
+        ("Wind Direction (deg)", "wind_direction", "deg"),
+        ("Heading gyro (deg)", "psi", "deg"),
+        ("Kurs rw [°]", "psi", "deg"),
         ("Spd", "sog", ""),
         ("GCrs", "cog", ""),
         ("GyrZ", "r", ""),

@@ -5,6 +5,7 @@ import pytest
 
 from seatrial.core.values import Record
 from seatrial.data.draft.column_guess import ColumnGuess
+from seatrial.data.draft.naming import APPARENT_WIND
 from seatrial.data.draft.wind_columns import tells_wind, wind_readings, with_wind_role
 
 TIME = np.arange(0.0, 400.0, 1.0)
@@ -30,7 +31,8 @@ def decided(speed: np.ndarray, angle: np.ndarray, names: tuple[str, str], other:
 
 def test_a_wind_that_is_named_rightly_is_left() -> None:
     apparent = WIND + SHIP
-    assert decided(np.abs(WIND) + 0.0 * TIME, np.angle(WIND) + 0.0 * TIME, TRUE) is None
+    true = decided(np.abs(WIND) + 0.0 * TIME, np.angle(WIND) + 0.0 * TIME, TRUE)
+    assert true is not None and true.evidence == () and true.symbol == "wind_speed"
     left = decided(np.abs(apparent), np.angle(apparent) - PSI, RELATIVE)
     assert left is not None and left.evidence == () and left.unit == "m/s"
 
@@ -53,6 +55,17 @@ def test_a_straight_run_says_nothing() -> None:
     straight = record(9.0 + 0.0 * TIME, 1.2 - PSI, RELATIVE)
     assert wind_readings(straight.with_channel("psi", straight.channel("psi").with_values(0.0 * TIME))) == {}
     assert wind_readings(straight.without("x0")) == {}
+
+
+def test_a_wind_that_is_called_neither_true_nor_apparent_is_what_stays_while_the_craft_turns() -> None:
+    apparent = WIND + SHIP
+    plain = ColumnGuess("a", "wind_speed", "m/s", other_reading=APPARENT_WIND)
+    shown = wind_readings(record(np.abs(apparent), np.angle(apparent) - PSI, TRUE))["wind_speed"](plain)
+    assert (shown.symbol, shown.other_reading) == ("wind_speed_relative", "")
+    true = wind_readings(record(np.abs(WIND) + 0.0 * TIME, np.angle(WIND) + 0.0 * TIME, TRUE))["wind_speed"](plain)
+    assert (true.symbol, true.other_reading) == ("wind_speed", "")
+    off_bow = wind_readings(record(np.abs(WIND) + 0.0 * TIME, np.angle(WIND) - PSI, TRUE))["wind_speed"](plain)
+    assert off_bow.is_open
 
 
 def guesses(*symbols: str) -> list[ColumnGuess]:

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-from seatrial.data.draft.column_guess import ColumnGuess
+from seatrial.data.draft.column_guess import RELATIVE, ColumnGuess
 
 
 def agreed_guesses(
@@ -18,8 +18,11 @@ def agreed_guesses(
 
 
 def _key(guess: ColumnGuess) -> tuple[str, str]:
-    """The name of a column without its topic, as runs that are sheets of a workbook have it, and its channel."""
-    return str(guess.source).rpartition("/")[2], guess.symbol
+    """The name of a column without its topic, as runs that are sheets of a workbook have it, and its channel.
+
+    A wind that a run shows to be an apparent one is the same column.
+    """
+    return str(guess.source).rpartition("/")[2], guess.symbol.removesuffix(RELATIVE)
 
 
 def _agreed(guess: ColumnGuess, readings: Sequence[ColumnGuess]) -> ColumnGuess:

@@ -5,6 +5,9 @@ from dataclasses import dataclass, replace
 
 from seatrial.data.read import ColumnSpec
 
+RELATIVE = "_relative"
+"""The end of the channels of an apparent wind."""
+
 
 @dataclass(frozen=True)
 class ColumnGuess:

@@ -140,7 +140,7 @@ def _first_guess(survey: LogSurvey, topic: TopicSummary, column: ColumnSummary, 
         return replace(guess, other_reading=f"the number of another column that is called '{name}'")
     if rule.logger == "ROS" and rule.positive:
         return replace(guess, other_reading='positive = "starboard": the log does not say')
-    return guess
+    return replace(guess, other_reading=guess.other_reading or rule.other_reading)
 
 
 def _with_unit_by_range(guess: ColumnGuess, column: ColumnSummary) -> ColumnGuess:

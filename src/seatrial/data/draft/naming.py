@@ -1,7 +1,7 @@
 """What a column may be, by its name: the messages of known loggers first, then the names that people use."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from seatrial.core.values import InputError, si_unit
 from seatrial.core.values.units import UNIT_WORDS
@@ -20,6 +20,7 @@ class NameRule:
     """A pattern of ``topic/field`` (small letters) and what it names; an empty unit is to be found by behaviour.
 
     unused_because: why a column of this name is not taken by itself. note: what else is to be known of one.
+    other_reading: what it may be as well.
     """
 
     pattern: str
@@ -31,11 +32,12 @@ class NameRule:
     unused_because: str = ""
     note: str = ""
     logger: str = ""
+    other_reading: str = ""
 
 
 def _rules(logger: str, *rows: tuple) -> list[NameRule]:
     """Rules of one logger: pattern, symbol, unit, then frame, positive and scale where they are stated."""
-    return [NameRule(*row, logger=logger) for row in rows]
+    return [replace(NameRule(*row), logger=logger) for row in rows]
 
 
 _MESSAGES = [
@@ -118,7 +120,14 @@ _MESSAGES = [
 _FORWARD, _ACROSS = "(forward|fwd|ahead|longitudinal)", "(stbd|starboard|lateral|transverse)"
 _COMPASS = "a magnetic one is psi_magnetic, with variation"
 _RATE = "taken for the shaft's; of an engine behind a gear add scale = propeller turns over engine turns"
-_APPARENT, _ANGLE = "app(arent)?", "(dir(ection)?|angle)"
+# what a heading of the wind holds: the wind, the apparent or the true one, its speed, where it comes from
+_AIR = "(?=(.*_)?(wind(?!ow|lass)|vind|viento|vento|vent_))"
+_IS_APPARENT = "(?=.*(app|rel|schein|schijn|skenbar))"
+_IS_TRUE = "(?=.*(true|wahr|vrai|real|verdader|sann|abs|_t(_|$)))"
+_FAST = "(speed|spd|velo|geschw|hastig|vitesse|snelheid)"
+_FROM = "(dir|ang(le)?|richt|retning|riktning|rumbo)"
+APPARENT_WIND = "the apparent wind, if so called wind_speed_relative, wind_direction_relative"
+"""The other reading of a wind whose heading says neither true nor apparent."""
 _PROBE = "counts as at midship; of a probe on the craft elsewhere add reference_point, m forward of midship"
 _PORT, _STARBOARD = "(left|port)", "(right|starboard|stbd)"
 _SIDES = {"port": _PORT, "starboard": _STARBOARD}
@@ -169,15 +178,12 @@ _WORDS = [
         (rf"{_THRUSTER}_?{_STARBOARD}{_PULSE}|{_STARBOARD}_?{_THRUSTER}{_PULSE}", "command_2", ""),
         (rf"({_THRUSTER}|servo)_?(\d+){_PULSE}", "command_{}", ""),
         (rf"c\d+_{_PORT}", "command_1", ""), (rf"c\d+_{_STARBOARD}", "command_2", ""),
-        (r"wind_velo_true|true_wind_speed|wind_(speed_true|true_speed)|tws", "wind_speed"),
-        (r"true_wind_dir(ection)?|wind_(true_dir(ection)?|dir(ection)?_true)|twd",
-         "wind_direction"),
-        (rf"wind_{_APPARENT}_(spd|speed)|{_APPARENT}_wind_(spd|speed)",
-         "wind_speed_relative"),
-        (rf"wind_{_APPARENT}_{_ANGLE}|{_APPARENT}_wind_{_ANGLE}",
-         "wind_direction_relative"),
-        (r"wind_velo_relative(_mid)?|apparent_wind_speed|aws", "wind_speed_relative"),
-        (r"wind_dir_relative(_mid)?|apparent_wind_angle|awa", "wind_direction_relative"),
+        (rf"{_AIR}{_IS_APPARENT}.*{_FAST}.*", "wind_speed_relative"), (r"aws", "wind_speed_relative"),
+        (rf"{_AIR}{_IS_APPARENT}.*{_FROM}.*", "wind_direction_relative"), (r"awa", "wind_direction_relative"),
+        (rf"{_AIR}{_IS_TRUE}.*{_FAST}.*", "wind_speed"), (r"tws", "wind_speed"),
+        (rf"{_AIR}{_IS_TRUE}.*{_FROM}.*", "wind_direction"), (r"twd", "wind_direction"),
+        (rf"{_AIR}.*{_FAST}.*", "wind_speed", "", "", "", 1.0, "", "", "", APPARENT_WIND),
+        (rf"{_AIR}.*{_FROM}.*", "wind_direction", "", "", "", 1.0, "", "", "", APPARENT_WIND),
     ),
 ]  # fmt: skip
 # words of topics that hold orders or limits, not measurements
@@ -190,7 +196,8 @@ _ONLY_FIELD, _TOPIC_PARTS = "data", 3  # of ROS's std_msgs; names of folders bef
 # words before a quantity that name an instrument, and words behind it that say how it was taken
 _INSTRUMENT = re.compile(r"(d?gps|gnss|rtk|imu|ahrs|ins|mru|gyro|vdr|nav|nmea|ais|doppler|dvl|sensor|ship|vessel)\d*_")
 _QUALIFIERS = re.compile(
-    r"(_(true|t|filt(ered)?|meas(ured)?|actual|raw|avg|mean|value|deg_t|lcg|cg|mid(ships?)?|amidships|\d))+$"
+    r"(_(true|t|filt(ered)?|meas(ured)?|actual|raw|avg|mean|value|deg_t|lcg|cg|mid(ships?)?|amidships|\d"
+    r"|gyro|d?gps|gnss|rtk|ins|imu|rw|rechtweisend|wahrer?|ist(wert)?|faktisk|vrai|verdadero))+$"
 )
 # between the words of a name that sets them apart by capitals: RudderAngle, ShaftRPM
 _CAPITALS = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")

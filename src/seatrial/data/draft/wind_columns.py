@@ -1,12 +1,14 @@
 """What columns of wind are, by which reading of them the wind over ground is steady while the craft turns."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from seatrial.core.values import Array, Record
-from seatrial.data.draft.column_guess import Changes, ColumnGuess
+from seatrial.data.draft.column_guess import RELATIVE, Changes, ColumnGuess
+from seatrial.data.draft.naming import APPARENT_WIND
 from seatrial.data.draft.stretch import padded
 
 _TURNS_RAD = np.radians(90.0)  # range of the heading from which on readings differ; chosen
@@ -69,27 +71,42 @@ def wind_readings(record: Record) -> Changes:
 
 
 def _changes(pair: tuple[str, str], scatters: dict[tuple[str, str], float]) -> Changes:
-    best = min(scatters, key=lambda one: scatters[one])
+    reading, unit = min(scatters, key=lambda one: scatters[one])
+    least = scatters[reading, unit]
+    of_readings = {one: min(value for (other, _), value in scatters.items() if other == one) for one, _ in scatters}
+    rival = min((value for one, value in of_readings.items() if one != reading), default=math.inf)
+    decided = rival > _SURE * least
     named = _NAMED[pair[0]]
-    as_named = min(value for (reading, _), value in scatters.items() if reading == named)
-    if best[0] != named and as_named > _SURE * scatters[best]:
-        text = (
-            f"{_NOT_AS_NAMED}: as {best[0]} it is steady within {scatters[best]:.0%} while the craft turns, "
-            f"as {named} within {as_named:.0%}"
-        )
-        return {pair[0]: lambda guess: guess.with_evidence(text)}
-    units = {unit: value for (reading, unit), value in scatters.items() if reading == named}
-    unit = min(units, key=lambda one: units[one])
-    if max(units.values()) > _SURE * units[unit]:
-        return {pair[0]: lambda guess: _with_unit(guess, unit)}
+    if reading != named and of_readings[named] > _SURE * least:
+        rest = f"as {named} within {of_readings[named]:.0%}"
+        text = f"as {reading} it is steady within {least:.0%} while the craft turns, {rest}"
+        shown = reading if decided else ""
+        return dict.fromkeys(pair, lambda guess: _as_shown(guess, shown, unit, text))
+    if reading == named and decided:
+        units = [value for (other, _), value in scatters.items() if other == named]
+        sure_unit = unit if max(units) > _SURE * least else ""
+        text = f"{named}: with it the wind over ground is steady while the craft turns"
+        return dict.fromkeys(pair, lambda guess: _as_shown(guess, named, sure_unit, text))
     return {}
 
 
-def _with_unit(guess: ColumnGuess, unit: str) -> ColumnGuess:
-    """An open unit as the wind over ground shows it."""
+def _as_shown(guess: ColumnGuess, reading: str, unit: str, text: str) -> ColumnGuess:
+    """The guess as the turn of the craft shows it: what its name left open is closed, what its name denies is said.
+
+    reading: empty where two are left. unit: of an apparent speed; empty where both will do.
+    """
+    names_neither = guess.other_reading == APPARENT_WIND
+    named = _NAMED[guess.symbol.replace("direction", "speed")]
+    if reading != named and not (names_neither and reading == _APPARENT):
+        return guess if "direction" in guess.symbol else guess.with_evidence(f"{_NOT_AS_NAMED}: {text}")
     if not guess.is_open:
         return guess
-    return replace(guess, unit=unit, other_reading="").with_evidence(f"{unit}: the wind over ground is then steady")
+    is_unit_open = not names_neither and "speed" in guess.symbol
+    if is_unit_open and not unit:
+        return guess
+    symbol = guess.symbol.removesuffix(RELATIVE) + (RELATIVE if reading == _APPARENT else "")
+    read = replace(guess, symbol=symbol, unit=unit if is_unit_open else guess.unit, other_reading="")
+    return read.with_evidence(f"{read.unit}: the wind over ground is then steady" if is_unit_open else text)
 
 
 def _velocity(record: Record) -> tuple[Array, Array] | None:
