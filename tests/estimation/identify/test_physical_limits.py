@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from seatrial.core.values import Prior, Record
+from seatrial.core.values import Prior, Record, Severity
 from seatrial.estimation.identify.physical_limits import objections, unphysical_finding
 from seatrial.physics.models import model_named
 from seatrial.physics.models.published import kvlcc2
@@ -32,6 +32,16 @@ def test_values_far_off_their_prior_are_named() -> None:
     assert objections(near, ()) == ()
     far = near.with_values({"X_vv": priors["X_vv"].mean + 0.05})
     assert objections(far, ()) == ("X_vv is 5.0 standard deviations off its prior",)
+    assert objections(far, (), {"X_vv": 0.01}) == ()  # 5 / sqrt(2), by an estimated size of the craft
+
+
+def test_a_prior_whose_spread_is_assumed_makes_nothing_implausible() -> None:
+    model = kvlcc2()
+    mean = model.parameters["X_vv"].value
+    guessed = {"X_vv": Prior(mean, 0.01, is_spread_assumed=True)}
+    far = model.with_parameters(model.parameters.with_priors(guessed)).with_values({"X_vv": mean + 0.05})
+    (finding,) = unphysical_finding(far, ())
+    assert finding.severity is Severity.INFO and "X_vv is 5.0 standard deviations off" in finding.text
 
 
 def test_damping_of_roll_is_judged_over_the_measured_amplitudes() -> None:

@@ -15,11 +15,15 @@ from seatrial.core.values.errors import InputError, spelling_hint
 
 @dataclass(frozen=True)
 class Prior:
-    """Gaussian knowledge of one parameter before the fit, in its unit, with its source."""
+    """Gaussian knowledge of one parameter before the fit, in its unit, with its source.
+
+    is_spread_assumed: whether nobody knows how far the mean may be wrong, and a share of it stands for that.
+    """
 
     mean: float
     standard_deviation: float
     source: str = ""
+    is_spread_assumed: bool = False
 
 
 NOT_MEASURED = "estimated, not measured"

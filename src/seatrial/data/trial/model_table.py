@@ -182,7 +182,7 @@ def _with_priors(parameters: Parameters, table: ModelTable, literature: Mapping[
         for p in parameters.free:
             known = literature.get(p.name, LiteraturePrior(p.value, p.source))
             spread = share * max(abs(known.mean), p.scale) or share
-            priors.setdefault(p.name, Prior(known.mean, spread, known.source))
+            priors.setdefault(p.name, Prior(known.mean, spread, known.source, is_spread_assumed=True))
     return _with_prior_sources(parameters.with_priors(priors), literature)
 
 

@@ -16,6 +16,7 @@ from seatrial.estimation.identify.box_scale import stands_on_box
 from seatrial.estimation.identify.closed_loop_findings import closed_loop_findings
 from seatrial.estimation.identify.course_stability import course_finding
 from seatrial.estimation.identify.estimated_values_effect import (
+    errors_of,
     estimated_value_shifts,
     with_effects,
     with_estimated_values,
@@ -84,8 +85,8 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         findings=(
             *with_effects(task.findings, estimation, shifts),
             *selected.findings, *findings, *fit_result.open_signs(estimation.model, coefficients),
-            *unphysical_finding(estimation.model, runs.records), *fit_result.bounds_hit(estimation),
-            *fit_result.unconverged(estimation), *other_optima(estimation),
+            *unphysical_finding(estimation.model, runs.records, errors_of(shifts, free)),
+            *fit_result.bounds_hit(estimation), *fit_result.unconverged(estimation), *other_optima(estimation),
             *abandoned_criterion_finding(estimation, runs.records),
             *held_couplings(selected.estimation),
             *course_finding(estimation.model, assessment.stability, approach),

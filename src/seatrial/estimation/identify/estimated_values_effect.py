@@ -89,6 +89,13 @@ def estimated_value_shifts(estimation: Estimation) -> tuple[EstimatedValueShift,
     return tuple(shifts)
 
 
+def errors_of(shifts: Sequence[EstimatedValueShift], free: Sequence[str]) -> dict[str, float]:
+    """Return the standard deviation, SI, that estimated values put into each free coefficient, by its name."""
+    if not shifts:
+        return {}
+    return dict(zip(free, np.sqrt(np.sum([shift.moves**2 for shift in shifts], axis=0)).tolist(), strict=True))
+
+
 def with_estimated_values(estimation: Estimation, shifts: Sequence[EstimatedValueShift]) -> Estimation:
     """Return the estimation whose intervals hold what estimated values may be wrong by, independently of one another.
 

@@ -1,6 +1,8 @@
 """What no estimate of a craft should be: masses or damping of the wrong sign, values far off their priors."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 
 import numpy as np
 
@@ -18,10 +20,13 @@ _AMPLITUDES = 20
 """Amplitudes up to the largest measured at which the damping of roll is looked at; chosen."""
 
 
-def objections(model: Model, records: Sequence[Record]) -> tuple[str, ...]:
+def objections(
+    model: Model, records: Sequence[Record], errors: Mapping[str, float] = MappingProxyType({})
+) -> tuple[str, ...]:
     """Return why the values of a model cannot be a craft's, in phrases; empty where nothing speaks against them.
 
-    records: those that were fitted; the damping of roll is judged over the amplitudes that they show.
+    records: those that were fitted; the damping of roll is judged over the amplitudes that they show. errors: standard
+    deviation that estimated values of the craft put into a coefficient; 0 where it is not named.
     """
     signs, parameters = PHYSICAL_SIGNS.get(model.name, {}), model.parameters
     turned = [
@@ -29,20 +34,36 @@ def objections(model: Model, records: Sequence[Record]) -> tuple[str, ...]:
         for name, sign in signs.items()
         if name in parameters and parameters[name].free and sign * parameters[name].value < 0.0
     ]
-    far = []
-    for p in parameters.free:
-        if p.prior is not None and np.isfinite(p.prior.standard_deviation):
-            away = abs(p.value - p.prior.mean) / p.prior.standard_deviation
-            if away > MOST_PRIOR_DEVIATIONS:
-                far.append(f"{p.name} is {away:.1f} standard deviations off its prior")
+    far = _far_off_priors(model, errors).values()
     return (*turned, *far, *(_roll_objections(model, records) if is_pure_roll(model) else ()))
 
 
-def unphysical_finding(model: Model, records: Sequence[Record]) -> tuple[Finding, ...]:
-    """Return a warning where an estimated model has values that no craft has; `records`: as in `objections`."""
-    against = objections(model, records)
+def _far_off_priors(model: Model, errors: Mapping[str, float]) -> dict[str, str]:
+    """The free coefficients that are far off their priors, with how far."""
+    far = dict[str, str]()
+    for p in model.parameters.free:
+        if p.prior is not None and np.isfinite(p.prior.standard_deviation):
+            away = abs(p.value - p.prior.mean) / math.hypot(p.prior.standard_deviation, errors.get(p.name, 0.0))
+            if away > MOST_PRIOR_DEVIATIONS:
+                far[p.name] = f"{p.name} is {away:.1f} standard deviations off its prior"
+    return far
+
+
+def unphysical_finding(
+    model: Model, records: Sequence[Record], errors: Mapping[str, float] = MappingProxyType({})
+) -> tuple[Finding, ...]:
+    """Return a warning where an estimated model has values that no craft has; `records`, `errors`: as in `objections`.
+
+    A note where a value is only far off a prior of which nobody knows how far it may be wrong.
+    """
+    against = objections(model, records, errors)
+    priors = {p.name: p.prior for p in model.parameters.free if p.prior is not None}
+    doubtful = [text for n, text in _far_off_priors(model, errors).items() if priors[n].is_spread_assumed]
     if not against:
         return ()
+    if set(against) == set(doubtful):
+        advice = "how far the prior may be wrong is assumed (prior_sd_percent): read these values with care"
+        return (Finding(Severity.INFO, "unphysical-values", f"unusual: {', '.join(against)}", "", advice),)
     advice = "record a decay from a larger angle, or fix b_2 and b_3 at 0 under [model.fixed]; --choose tries that"
     if "phi" not in model.states or not is_pure_roll(model):
         advice = "fix these under [model.fixed], or look for what the model lacks; --choose takes no such model"
