@@ -72,7 +72,9 @@ def test_a_fit_that_is_best_over_the_longest_windows_only_does_not_claim_all(fit
     rival = WindowBaseline("NARX", {"psi_deg": ChannelScore(0.5, 90.0, 0.9)})
     short = replace(longest, window="1 L", seconds=12.0, baselines=(rival,))
     both = replace(kept, predictions=(replace(p, windows=(short, longest)),))
-    assert "best in every quantity over the longest windows, not over all" in rows(both)["Closest baseline"].text
+    fact = rows(both)["Closest baseline"]
+    assert "best in every quantity over the longest windows, not in heading over 1 L (NARX)" in fact.text
+    assert fact.is_good is None
 
 
 def test_an_interval_that_cannot_fail_is_no_tick(fit: Fit) -> None:

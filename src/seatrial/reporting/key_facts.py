@@ -129,12 +129,17 @@ def _baseline(fit: Fit) -> KeyFact:
         f"{ERROR_LABELS[name][0]} by {rival}" for p in fit.validation if (w := _longest_windows(p))
         for name, rival in w.better_baselines.items() if name not in _MAIN_CHANNELS
     )  # fmt: skip
-    elsewhere = any(w.better_baselines for p in fit.validation for w in p.windows)
-    verdict = "this fit is best in every quantity" + (" over the longest windows, not over all" if elsewhere else "")
+    elsewhere = [
+        f"{ERROR_LABELS[name][0]} over {w.window} ({rival})"
+        for p in fit.validation for w in p.windows for name, rival in w.better_baselines.items()
+    ]  # fmt: skip
+    verdict = "this fit is best in every quantity"
+    verdict += f" over the longest windows, not in {enumeration(elsewhere, MAX_NAMES)}" if elsewhere else ""
     if ratio < 1.0 or rest:
         verdict = "; ".join([*(["better without this fit"] if ratio < 1.0 else []),
                              *([f"without this fit {enumeration(list(rest))} is better"] if rest else [])])  # fmt: skip
-    return KeyFact("Closest baseline", f"{text}; {verdict}", "prediction", ratio >= 1.0 and not rest)
+    is_best = ratio >= 1.0 and not rest
+    return KeyFact("Closest baseline", f"{text}; {verdict}", "prediction", None if is_best and elsewhere else is_best)
 
 
 def _run_name(fit: Fit, p: Prediction) -> str:

@@ -238,6 +238,9 @@ def test_a_stated_antenna_is_written_where_a_receiver_shows_the_track(tmp_path: 
     assert "\nantenna = { x = -2.5, y = 0.0 }    # m forward of midship, as stated" in draft.text
     no_track = write(tmp_path / "turn.csv", {name: BASE[name] for name in ("time", "heading")})
     assert "\nantenna" not in draft_trial(no_track, length=12.0, antenna=-2.5).text
+    pose = write(tmp_path / "pose.csv", BASE | {"surge": TRUTH["u"], "sway": TRUTH["v"]})
+    text = draft_trial(pose, length=12.0, antenna=-2.5).text
+    assert "\nantenna" not in text and "the stated antenna is not used" in text
 
 
 @pytest.mark.parametrize(

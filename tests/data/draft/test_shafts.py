@@ -4,6 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from tests.data.draft.test_draft import write
 from tests.onboard.sentences import sentence
 
 from seatrial.data.draft.column_guess import ColumnGuess
@@ -45,3 +46,15 @@ def test_an_angle_that_turns_the_only_thruster_is_the_direction_of_its_thrust() 
         assert with_turned_thruster(kept) == tuple(kept), "which is turned is not known, or nothing is"
     lines = thruster_tables([turned, throttle], 5.6)
     assert 'angle = { channel = "alpha_1" }' in lines and any(line.startswith("x = -2.80") for line in lines)
+
+
+def test_two_shafts_by_their_sides_are_thrusters_where_no_rudder_steers(tmp_path: Path) -> None:
+    time = np.arange(60.0)
+    columns = {"time": time, "heading_deg": 40.0 + time, "rpm_left": 300.0 + time, "rpm_right": 400.0 - time}
+    write(tmp_path / "usv.csv", columns)
+    found = {one.symbol: one for one in guess_columns(survey_log(tmp_path / "usv.csv")) if one.is_used}
+    assert (found["rpm_1"].source, found["rpm_2"].source) == ("rpm_left", "rpm_right") and "n" not in found
+    assert (found["rpm_1"].side, found["rpm_2"].side) == ("port", "starboard")
+    write(tmp_path / "ship.csv", columns | {"rudder_deg": 10.0 * np.sin(time)})
+    found = {one.symbol: one for one in guess_columns(survey_log(tmp_path / "ship.csv")) if one.is_used}
+    assert found["n"].source == "rpm_left" and "rpm_1" not in found

@@ -240,6 +240,11 @@ def test_a_step_within_bounds_promises_what_the_residuals_show(rng: np.random.Ge
 def test_a_wrong_jacobian_stalls() -> None:
     found = solved(Curve(lambda x: np.array([x[0] - 3.0]), lambda _: -np.ones((1, 1))), [1.0])
     assert found.solution.status is Status.STALLED
+    kinked = Curve(lambda x: np.array([1.0 + abs(x[0])]), lambda _: 0.01 * np.ones((1, 1)))
+    promise = 0.5  # by hand: the model's minimum is at a residual of 0
+    for sufficient, status in ((1.01 * promise, Status.CONVERGED), (0.99 * promise, Status.STALLED)):
+        at_kink = levenberg_marquardt(kinked, np.array([0.0]), NONE, sufficient=sufficient)
+        assert at_kink.solution.status is status
     assert found.solution.point[0] == 1.0
 
 

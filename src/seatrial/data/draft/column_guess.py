@@ -18,7 +18,7 @@ class ColumnGuess:
         symbol, unit, frame, positive, zero, span, scale, kind: as in a channel of the trial file.
         evidence: why.
         other_reading: what it may be instead; empty: it is assigned outright.
-        side: of the craft on which the motion shows a thruster, port or starboard; empty: not shown.
+        side: of the craft on which the motion or a name shows a thruster or shaft, port or starboard; empty: not shown.
         follows_track: whether the motion shows a velocity to be the derivative of the position, over ground.
         is_used: whether it is the one chosen for its symbol.
         unused_because: why it is not; empty: it is used.

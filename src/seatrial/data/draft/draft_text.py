@@ -22,7 +22,7 @@ _NO_ANTENNA = (
     "# antenna = { x = 0.0, y = 0.0 }    # m forward of midship, to starboard: state it; each metre that it is forward "
     "of this counts as 0.017 m/s of sway for each deg/s of yaw (init --antenna)"
 )
-_OF_RECEIVER = frozenset({"lat", "sog", "x0"})  # channels that a GNSS antenna may show
+_OF_RECEIVER = frozenset({"lat", "sog"})  # channels that a GNSS antenna shows
 _UNUSED_SHOWN = 12  # names of columns without a channel in the comment; chosen
 
 
@@ -125,9 +125,12 @@ def _role_lines(block: RecordsBlock) -> list[str]:
 def _antenna_lines(block: RecordsBlock) -> list[str]:
     """Where the antenna is, as stated or as a log has it, where fixes or velocities over ground are used."""
     used = {g.symbol for _, guesses in block.sources for g in guesses if g.is_used}
-    if block.antenna is not None and used & _OF_RECEIVER:
+    is_of_receiver = bool(used & _OF_RECEIVER) or ("x0" in used and not used & {"u", "v"})
+    if block.antenna is not None and is_of_receiver:
         return [f"antenna = {{ x = {block.antenna:g}, y = 0.0 }}    # m forward of midship, as stated; to starboard"]
-    if not used & {"lat", "sog"}:
+    if block.antenna is not None and "x0" in used:
+        return ["# the stated antenna is not used: a pose with velocities is of the point that its estimator says"]
+    if not used & _OF_RECEIVER:
         return []
     places = [place for survey, _ in block.sources if (place := antenna_place(survey.log.parameters)) is not None]
     if not places:

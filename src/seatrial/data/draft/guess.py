@@ -127,6 +127,7 @@ def _first_guess(survey: LogSurvey, topic: TopicSummary, column: ColumnSummary, 
         scale=rule.scale,
         evidence=(f"by {named.evidence}{': ' if rule.note else ''}{rule.note}",),
         unused_because=rule.unused_because,
+        side=named.side if named.symbol == "n" else "",
     )
     if named.symbol.startswith("command_"):
         return command_guess(replace(guess, side=named.side), column, survey)
@@ -175,11 +176,27 @@ def without_conflicts(parts: Sequence[Sequence[ColumnGuess]]) -> list[tuple[Colu
     """Return the guesses of the sources of a run with one source for each channel, what is measured before the rest."""
     used: set[str] = set()
     first = []
-    for part in _with_propeller(parts):
+    for part in _with_propeller(_with_two_shafts(parts)):
         first.append([_unused(g, f"another source has {g.symbol}") if g.symbol in used else g for g in part])
         used |= {g.symbol for g in first[-1] if g.is_used}
     reasons = _superfluous(used)
     return [tuple(_unused(g, reasons[g.symbol]) if g.symbol in reasons else g for g in part) for part in first]
+
+
+def _with_two_shafts(parts: Sequence[Sequence[ColumnGuess]]) -> Sequence[Sequence[ColumnGuess]]:
+    """The guesses, where no rudder steers and the rates of two shafts are recorded: each as that of a thruster."""
+    rates = [one for part in parts for one in part if one.symbol == "n" and one.side]
+    has_rudder = any(one.is_used and one.symbol == "delta" for part in parts for one in part)
+    if has_rudder or sorted(one.side for one in rates) != ["port", "starboard"]:
+        return parts
+    text = "one of two shafts, and no rudder: a thruster's"
+    return [[_as_thruster(one).with_evidence(text) if one in rates else one for one in part] for part in parts]
+
+
+def _as_thruster(rate: ColumnGuess) -> ColumnGuess:
+    symbol = {"port": "rpm_1", "starboard": "rpm_2"}[rate.side]
+    because = "by its name"  # the note on two screws that turn together is not of two that steer
+    return replace(rate, symbol=symbol, is_used=True, unused_because="", evidence=(because, *rate.evidence[1:]))
 
 
 def _with_propeller(parts: Sequence[Sequence[ColumnGuess]]) -> list[Sequence[ColumnGuess]]:

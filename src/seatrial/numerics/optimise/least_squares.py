@@ -190,8 +190,8 @@ def levenberg_marquardt(
 
     A promised decrease below `negligible` stops it too: where residuals are in standard deviations, 1e-8 is a move of
     some 1e-4 standard errors, and data without noise are not fitted down to their last bit. Where the evaluations run
-    out, a promised decrease of `sufficient` or less counts as converged: kinks of a model (|r| r, sides of a rudder)
-    keep the search from getting nearer.
+    out, or no step lowers the cost, a promised decrease of `sufficient` or less counts as converged: kinks of a model
+    (|r| r, sides of a rudder) keep the search from getting nearer.
 
     damping: of the first step, over the Hessian's diagonal; larger where the start is far from the optimum.
 
@@ -239,7 +239,7 @@ def levenberg_marquardt(
             damping, growth, rejected = max(damping, least) * growth, growth * 2.0, rejected + 1
             # promised decrease that is rounding; rejected steps in a row; chosen
             if predicted <= 1e-14 * normal.cost or rejected > 25:
-                rounding = max(_ROUNDING * normal.cost, _EXHAUSTED * history[0])
+                rounding = max(_ROUNDING * normal.cost, _EXHAUSTED * history[0], sufficient)
                 promised = predicted_decrease(normal, *_step(normal, 0.0, low, high))
                 status = Status.CONVERGED if promised <= rounding else Status.STALLED
                 break
