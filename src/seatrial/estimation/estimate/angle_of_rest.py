@@ -14,7 +14,7 @@ import numpy as np
 from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
 from seatrial.core.values import Array
 from seatrial.estimation.estimate.point_estimate import PointEstimate
-from seatrial.estimation.estimate.process_noise_interval import without_initial_state
+from seatrial.estimation.estimate.process_noise_interval import inverse_variances, without_initial_state
 from seatrial.estimation.estimate.resampling import one_step_jackknife
 from seatrial.estimation.information.covariance import Interval, inverse, jackknife
 
@@ -52,9 +52,7 @@ def _influence(estimate: PointEstimate, residuals: Array, place: int) -> Array:
     problem = estimate.problem
     row = inverse(estimate.optimum.normal.without_local()[1])[place]
     slopes = problem.slopes(estimate.common_parameters, estimate.optimum.local)
-    trust = 1.0 / problem.noise**2 if problem.inflation is None else 1.0 / (problem.noise**2 * problem.inflation)
-    weights = np.where(np.isfinite(problem.data.measured), trust, 0.0)
-    eliminated = without_initial_state(slopes, len(row), weights)
+    eliminated = without_initial_state(slopes, len(row), inverse_variances(problem))
     return np.einsum("tyk,k,ty->t", eliminated, row, np.nan_to_num(residuals))
 
 

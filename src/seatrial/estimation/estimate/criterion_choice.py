@@ -27,6 +27,7 @@ from seatrial.estimation.estimate.process_noise import (
     implied_process_noise,
 )
 from seatrial.estimation.estimate.settings import WHITE_INFLATION
+from seatrial.estimation.estimate.whole_run_intensity import with_whole_run_intensity
 from seatrial.estimation.information.whiteness import WhitenessTest, whiteness_test
 from seatrial.estimation.problem.output_error import OutputError
 
@@ -52,8 +53,8 @@ SPREAD = "intervals cover the spread between the disturbance models"
 _MAX_RESIDUAL_GROWTH = 1.05
 # rad from sample to sample, ours: straight lines between samples then lose 1 % of an input
 _MAX_PHASE_STEP = 0.3
-# residuals over spread of a free decay that its initial state explains, ours
-_MAX_RESIDUAL_SHARE = 0.1
+# residuals over spread, in every channel, of a free decay that its initial state explains; chosen
+_MAX_RESIDUAL_SHARE = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +67,8 @@ class CriterionChoice:
         whiteness: tests of the residuals (under prediction error of the normalised innovations).
         disturbances: the disturbance models that were compared; None: none were.
         process: intensities of process noise that suit the estimate; noise: the prediction-error optimum, if used.
-        beside: what suits an output-error estimate over a few whole runs, where it makes one-step residuals white.
+        implied_noise: what suits an output-error estimate over a few whole runs, where it makes one-step residuals
+            white or the runs are free decays.
     """
 
     estimate: PointEstimate
@@ -130,7 +132,7 @@ def choose_criterion(
             disturbances = choose_disturbance(white, report_progress=report_progress)
             reasons = ("it is set by the trial", disturbances.summary)
             return prediction_error_choice(disturbances.chosen.noise, disturbances, *reasons)
-        case FitCriterion.AUTO if is_unforced and _is_explained(shot):
+        case FitCriterion.AUTO if is_unforced and is_explained(shooting):
             return _required_choice(shot, settings, noise, _FREE_DECAY)
         case FitCriterion.AUTO:
             pass
@@ -196,11 +198,13 @@ def _required_choice(
         and not settings.robust
     ):
         implied = implied_process_noise(shooting.estimate, noise)
-        compatible = implied if implied.test.is_nearly_white else None
+        is_decay = reason == _FREE_DECAY  # nothing that is recorded drives it: what is left is disturbance
+        if is_decay and not implied.test.is_white:
+            implied = with_whole_run_intensity(implied, shooting.estimate, shooting.residuals)
         return replace(
             shooting.with_reasons(reason, _CORRELATED),
             process_intensities=implied.process_intensities,
-            implied_noise=compatible,
+            implied_noise=implied if is_decay or implied.test.is_nearly_white else None,
         )
     reasons = (_CORRELATED,) if shooting.criterion == WHOLE_RUNS else (_CORRELATED, _SEGMENTED)
     return replace(
@@ -208,10 +212,10 @@ def _required_choice(
     )
 
 
-def _is_explained(shooting: CriterionChoice) -> bool:
-    """Whether a tenth of each channel's spread or less is left."""
-    measured = np.nanstd(shooting.estimate.problem.data.measured, axis=0)
-    return bool(np.all(np.nanstd(shooting.residuals, axis=0) <= _MAX_RESIDUAL_SHARE * measured))
+def is_explained(estimate: PointEstimate) -> bool:
+    """Return whether at most half of each channel's standard deviation is left by an estimate."""
+    spread = np.nanstd(estimate.problem.data.measured, axis=0)
+    return bool(np.all(np.nanstd(estimate.residuals(), axis=0) <= _MAX_RESIDUAL_SHARE * spread))
 
 
 def _whole_runs_choice(shooting: CriterionChoice, whole_runs: PointEstimate | None) -> CriterionChoice | None:

@@ -14,33 +14,42 @@ from seatrial.core.values import Array
 from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.estimate.process_noise import ProcessNoise
 from seatrial.estimation.information.covariance import Interval, inverse
+from seatrial.estimation.problem.output_error import OutputError
 
-MEANING = (
-    "covariance of the output-error estimate under the process noise that makes one-step residuals white, "
-    "carried through the motion"
-)
+_CARRIED = "covariance of the output-error estimate under {}, carried through the motion"
+MEANING = _CARRIED.format("the process noise that makes one-step residuals white")
+MEANING_OF_WHOLE_RUNS = _CARRIED.format("process noise at least as strong as the residuals of whole runs show")
+"""Meaning of an interval whose process noise makes one-step residuals white, and of one whose does not."""
+WHOLE_RUN_NOISE = "white, as strong as whole runs show"
+"""Disturbance of process noise of the second kind."""
 
 
 def process_noise_interval(estimate: PointEstimate, process_noise: ProcessNoise) -> Interval:
-    """Interval of the shared unknowns of an estimate over whole runs; noise: what suits it (`process_noise.suited`)."""
+    """Interval of the shared unknowns of an estimate over whole runs under noise in the states that suits it."""
     problem, hessian = estimate.problem, estimate.optimum.normal.without_local()[1]
     score = problem.prior_precision(estimate.common_parameters)
     slopes = problem.slopes(estimate.common_parameters, estimate.optimum.local)
-    trust = 1.0 / problem.noise**2 if problem.inflation is None else 1.0 / (problem.noise**2 * problem.inflation)
-    is_measured = np.isfinite(problem.data.measured)
+    trust = inverse_variances(problem)
     deviation = np.array(list(process_noise.measurement_noise.values()))
     intensity = np.array([process_noise.process_intensities.get(s, 0.0) for s in problem.model.states])
     for run, (a, b) in enumerate(pairwise(problem.data.offsets)):
         columns = problem.columns_of(int(problem.data.session[run]))
-        own = without_initial_state(slopes[a:b], len(columns), np.where(is_measured[a:b], trust, 0.0))
+        own = without_initial_state(slopes[a:b], len(columns), trust[a:b])
         moved, observation = process_noise.problem.transitions(run, estimate.common_parameters, estimate.optimum.local)
         carried = own.transpose(0, 2, 1)
         white = np.einsum("tky,y,tly->kl", carried, deviation**2, carried)
-        score[np.ix_(columns, columns)] += white + _driven_variance(
+        score[np.ix_(columns, columns)] += white + driven_variance(
             carried @ observation, moved, intensity**2 * problem.data.dt
         )
     bread = inverse(hessian)
-    return Interval(bread @ score @ bread, np.inf, MEANING)
+    is_of_runs = process_noise.disturbance_model == WHOLE_RUN_NOISE
+    return Interval(bread @ score @ bread, np.inf, MEANING_OF_WHOLE_RUNS if is_of_runs else MEANING)
+
+
+def inverse_variances(problem: OutputError) -> Array:
+    """Return what each sample weighs, (rows, ny): nothing where it is missing."""
+    variance = problem.noise**2 if problem.inflation is None else problem.noise**2 * problem.inflation
+    return np.where(np.isfinite(problem.data.measured), 1.0 / variance, 0.0)
 
 
 def without_initial_state(slopes: Array, count: int, weights: Array) -> Array:
@@ -52,8 +61,8 @@ def without_initial_state(slopes: Array, count: int, weights: Array) -> Array:
     return weighted[:, :, :count] - weighted[:, :, count:] @ solved
 
 
-def _driven_variance(score: Array, transitions: Array, variance: Array) -> Array:
-    """Variance (k, k) of sum_t score_t x_t, x driven by white noise, half of it before and half after each step.
+def driven_variance(score: Array, transitions: Array, variance: Array) -> Array:
+    """Return the variance (k, k) of sum_t score_t x_t, x driven by white noise, half before and half after each step.
 
     score (rows, k, nx), moved (rows - 1, nx, nx) transition matrices, variance (nx,) of the noise in one step.
     """

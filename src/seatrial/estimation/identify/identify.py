@@ -9,11 +9,12 @@ from seatrial.core.results import Fit
 from seatrial.core.values import InputError, ProgressReporter
 from seatrial.data.trial import EstimateMethod, FitCriterion, Role, Trial, checked_records
 from seatrial.estimation.estimate import EstimatorOptions, IntervalMethod
+from seatrial.estimation.estimate.criterion_choice import is_explained
 from seatrial.estimation.estimate.settings import WEAK_FORM_SHIP_LENGTHS
 from seatrial.estimation.identify.baselines import with_baselines, with_search_baselines
 from seatrial.estimation.identify.identification import Identification
 from seatrial.estimation.identify.search_problem import check_search_settings
-from seatrial.estimation.identify.situation import Situation, is_explained, situation_of
+from seatrial.estimation.identify.situation import Situation, situation_of
 from seatrial.estimation.identify.strategies.published import own_estimate_progress, published_fit, refuse_options
 from seatrial.estimation.identify.strategies.recorded_waves import identify_in_recorded_waves
 from seatrial.estimation.identify.strategies.regression import estimate_by_regression

@@ -3,22 +3,16 @@
 from collections.abc import Callable, Sequence
 from enum import StrEnum
 
-import numpy as np
-
 from seatrial.core.equations import Model
 from seatrial.core.values import Record
 from seatrial.data.check.roll_release import is_free_decay
 from seatrial.data.trial import TrialRecord
 from seatrial.estimation.estimate.criterion_choice import WAVE_FORCES
 from seatrial.estimation.estimate.fit import moving_inputs
-from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.estimate.time_scale import is_pure_roll
 
 WAVE_SLOPE = "alpha_w"
 """The input by which waves drive roll."""
-
-_MAX_RESIDUAL_SHARE = 0.5
-"""A motion is explained where no channel's residuals exceed this share of its standard deviation; chosen."""
 
 
 class Situation(StrEnum):
@@ -67,9 +61,3 @@ def is_unforced_roll(model: Model, records: Sequence[Record]) -> bool:
     if not is_pure_roll(model) or WAVE_SLOPE not in model.input_names or not all("phi" in r for r in records):
         return False
     return not moving_inputs(model, records)
-
-
-def is_explained(estimate: PointEstimate) -> bool:
-    """Return whether at most half of each channel's standard deviation is left by an estimate."""
-    spread = np.nanstd(estimate.problem.data.measured, axis=0)
-    return bool(np.all(np.nanstd(estimate.residuals(), axis=0) <= _MAX_RESIDUAL_SHARE * spread))

@@ -5,10 +5,10 @@ from seatrial.core.text.words import enumeration
 from seatrial.core.values import InputError
 from seatrial.data.check.roll_release import begins_before_release
 from seatrial.data.trial.roll_decay_start import require_decay
+from seatrial.estimation.estimate.criterion_choice import is_explained
 from seatrial.estimation.identify.assembled_fit import assembled_fit
 from seatrial.estimation.identify.identification import Identification
 from seatrial.estimation.identify.selection import selected_model
-from seatrial.estimation.identify.situation import is_explained
 
 
 def identify_free_decay(task: Identification) -> Fit:
