@@ -12,7 +12,7 @@ from seatrial.numerics.optimise import Status
 from seatrial.reporting.first_screen import KeyFact
 from seatrial.reporting.key_facts import first_screen, key_facts
 from seatrial.reporting.runs import _ranged
-from seatrial.reporting.windows import baseline_sentence
+from seatrial.reporting.windows import baseline_sentence, shortest_judged
 
 
 def rows(fit: Fit) -> dict[str, KeyFact]:
@@ -154,6 +154,15 @@ def test_windows_that_diverge_have_no_better_baseline(fit: Fit) -> None:
     assert windows[0].better_baselines == {}
     text = baseline_sentence(lost.validation, {"psi_deg": ("heading", "deg")})
     assert "diverges in 3 of 4 windows" in text and "without this fit" not in text
+
+
+def test_windows_shorter_than_a_roll_period_are_no_reproach(fit: Fit) -> None:
+    better = with_windows(fit, 1.0, 0.5)
+    labels = {"psi_deg": ("heading", "deg")}
+    seconds = max(w.seconds for p in better.validation for w in p.windows)
+    assert "do not rely on it" in baseline_sentence(better.validation, labels, seconds)
+    assert baseline_sentence(better.validation, labels, 1.01 * seconds) == ""
+    assert shortest_judged(fit) == 0.0
 
 
 def test_what_process_noise_leaves_stands_with_the_error(fit: Fit) -> None:

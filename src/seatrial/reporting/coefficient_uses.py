@@ -78,11 +78,13 @@ def _use(c: Coefficient, inflation: float, *, is_paired: bool) -> Use:
         return Use.FROM_PRIOR
     if is_paired or inflation >= MIN_VARIANCE_INFLATION:
         return Use.AS_A_SET
+    if c.is_level:
+        return Use.BY_ITSELF
     return Use.VAGUELY if (c.standard_error or 0.0) >= WELL_DETERMINED * abs(c.estimate) else Use.BY_ITSELF
 
 
 def _relative_half_width(c: Coefficient) -> float:
-    if c.lower is None or c.upper is None or c.estimate == 0.0:
+    if c.lower is None or c.upper is None or c.estimate == 0.0 or c.is_level:
         return math.nan
     return 0.5 * (c.upper - c.lower) / abs(c.estimate)
 

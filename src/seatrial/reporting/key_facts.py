@@ -23,6 +23,7 @@ from seatrial.reporting.record_gaps import gap_facts
 from seatrial.reporting.runs import ERROR_LABELS, badness
 from seatrial.reporting.time_figures import run_figure
 from seatrial.reporting.verdict import error_text, has_converged, verdict, worst_errors
+from seatrial.reporting.windows import shortest_judged
 
 # share of values inside their 95 % intervals that counts as kept; chosen between 0.95 and the scatter of few values
 LEAST_COVERAGE = 0.9
@@ -129,12 +130,14 @@ def _baseline(fit: Fit) -> KeyFact:
         f"{ERROR_LABELS[name][0]} by {rival}" for p in fit.validation if (w := _longest_windows(p))
         for name, rival in w.better_baselines.items() if name not in _MAIN_CHANNELS
     )  # fmt: skip
-    elsewhere = [
-        f"{ERROR_LABELS[name][0]} over {w.window} ({rival})"
+    better = [
+        (w.seconds >= shortest_judged(fit), f"{ERROR_LABELS[name][0]} over {w.window} ({rival})")
         for p in fit.validation for w in p.windows for name, rival in w.better_baselines.items()
     ]  # fmt: skip
+    elsewhere = [text for is_judged, text in better if is_judged]
     verdict = "this fit is best in every quantity"
     verdict += f" over the longest windows, not in {enumeration(elsewhere, MAX_NAMES)}" if elsewhere else ""
+    verdict += " over windows of a roll period and more" if better and not elsewhere else ""
     if ratio < 1.0 or rest:
         verdict = "; ".join([*(["better without this fit"] if ratio < 1.0 else []),
                              *([f"without this fit {enumeration(list(rest))} is better"] if rest else [])])  # fmt: skip

@@ -33,7 +33,7 @@ from seatrial.reporting.figures.record_charts import track_overview
 from seatrial.reporting.figures.residual_charts import residual_series, whiteness_chart
 from seatrial.reporting.figures.search_charts import attempts_chart
 from seatrial.reporting.mass_specific import with_mass_specific_units
-from seatrial.reporting.windows import WINDOW_NOTE, baseline_sentence
+from seatrial.reporting.windows import WINDOW_NOTE, baseline_sentence, shortest_judged
 
 TITLES = {
     "published": "The published method and the package’s own estimate",
@@ -98,7 +98,7 @@ def html(fit: Fit) -> str:
         "convergence_sentence": summary.convergence_sentence(fit),
         "search_status": summary.search_status(fit),
         "offset_sentences": summary.offset_sentences(fit),
-        "better_baselines": baseline_sentence(fit.validation, runs.ERROR_LABELS),
+        "better_baselines": baseline_sentence(fit.validation, runs.ERROR_LABELS, shortest_judged(fit)),
         "reading_note": runs.reading_note(fit.predictions),
         "window_note": WINDOW_NOTE if any(p.windows for p in fit.predictions) else "",
         "scores": runs.score_table(fit.predictions, 0.0 if has_thrusters else length),

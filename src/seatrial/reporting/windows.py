@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from seatrial.core.results import Prediction, WindowScore
+from seatrial.core.results import Fit, Prediction, WindowScore
 from seatrial.core.results.window_scores import ChannelScore
 from seatrial.core.text.numbers import DASH, fixed, significant
 from seatrial.core.text.words import counted, enumeration, sentence
@@ -59,15 +59,28 @@ def _fits(w: WindowScore, header: tuple[str, ...], labels: dict[str, tuple[str, 
     return TextTable(f"Fit in windows of {w.window}, % (R²)", ("", *header), numeric, rows, "")
 
 
-def baseline_sentence(predictions: Sequence[Prediction], labels: dict[str, tuple[str, str]]) -> str:
-    """Return in which windows the model diverges, and which runs predictions without this fit predict better."""
+def shortest_judged(fit: Fit) -> float:
+    """Return the s of windows from which on a better prediction without the fit speaks against it.
+
+    Of roll its natural period: over less, the motion goes on as it began, and any smooth curve predicts it.
+    """
+    return fit.roll.natural_period.value if fit.roll is not None else 0.0
+
+
+def baseline_sentence(
+    predictions: Sequence[Prediction], labels: dict[str, tuple[str, str]], shortest: float = 0.0
+) -> str:
+    """Return in which windows the model diverges, and which runs predictions without this fit predict better.
+
+    shortest: s of the windows that are compared, at least.
+    """
     clauses, lost = [], []
     for p in predictions:
         for w in p.windows:
             if w.diverged:
                 lost.append(f"{p.record}, windows of {w.window}: {w.divergence_text}")
             better = [f"{labels[name][0]} by {baseline}" for name, baseline in w.better_baselines.items()]
-            if better:
+            if better and w.seconds >= shortest:
                 clauses.append(f"{p.record} in windows of {w.window}: {enumeration(better)}")
     sentences = [f"{sentence('; '.join(lost))}"] if lost else []
     if clauses:

@@ -2,8 +2,10 @@
 
 import numpy as np
 
-from seatrial.core.values import Prior, Record, Severity
+from seatrial.core.values import Prior, Record, Severity, Ship
 from seatrial.estimation.identify.physical_limits import objections, unphysical_finding
+from seatrial.estimation.identify.roll_characteristics import roll_characteristics
+from seatrial.estimation.information.covariance import Interval
 from seatrial.physics.models import model_named
 from seatrial.physics.models.published import kvlcc2
 from seatrial.physics.models.roll import roll
@@ -51,6 +53,16 @@ def test_damping_of_roll_is_judged_over_the_measured_amplitudes() -> None:
     assert objections(roll().with_values({**base, "b_2": -0.05}), DECAY) == ("its damping decreases with amplitude",)
     negative = roll().with_values({**base, "b_2": -1.0})
     assert objections(negative, DECAY) == ("its damping is negative at amplitudes that were measured",)
+
+
+def test_damping_that_chance_alone_makes_fall_is_not_implausible() -> None:
+    """A roll whose intervals hold constant damping, and one whose do not."""
+    model = roll().with_values({"c_1": 6.0, "b_1": 0.1, "b_2": -0.05})
+    free = ("b_1", "b_2")
+    for error, count in ((0.02, 0), (0.001, 1)):
+        interval = Interval(error**2 * np.eye(2), np.inf, "")
+        characteristics = roll_characteristics(model, interval, free, DECAY, Ship("ship", {"L": 1.0}))
+        assert len(unphysical_finding(model, DECAY, roll=characteristics)) == count
 
 
 def test_what_no_craft_has_is_a_warning_with_a_cure() -> None:

@@ -77,7 +77,7 @@ def test_without_any_size_there_is_no_metacentric_height(decay: Record) -> None:
 
 @pytest.mark.parametrize(
     ("speeds", "text"),
-    [((1.0, 1.01), "at 1 m/s alone"), ((None, None), "at a speed that was not recorded"), ((0.0, 1.0), "")],
+    [((1.0, 1.01), "at 1 m/s alone"), ((None, None), "without a channel of speed (u)"), ((0.0, 1.0), "")],
 )
 def test_decays_at_one_speed_are_said_not_to_identify_its_effect(
     decay: Record, speeds: tuple[float | None, ...], text: str

@@ -11,6 +11,8 @@ from seatrial.core.results.fields import ABSENT, Number, StoredArray
 from seatrial.core.text.numbers import significant
 from seatrial.core.values import NOT_MEASURED, InputError, display_unit
 
+_LEVELS = frozenset({"phi_0"})  # parameters that are where something rests or reads zero, not the strength of an effect
+
 
 def _absent_unless_given(value: float | None) -> object:
     return ABSENT if value is None else value
@@ -47,12 +49,17 @@ class Coefficient:
         return self.fixed and self.source.startswith(NOT_MEASURED)
 
     @property
+    def is_level(self) -> bool:
+        """Whether 0 is a value like another, as of the angle at which a ship comes to rest."""
+        return self.name in _LEVELS
+
+    @property
     def is_sign_open(self) -> bool:
         """Whether its interval contains 0, so that the records do not determine it by itself.
 
-        An interval may be open at an end, where a profile of the likelihood has not ended.
+        An interval may be open at an end, where a profile of the likelihood has not ended. A level has none to show.
         """
-        if self.standard_error is None:
+        if self.standard_error is None or self.is_level:
             return False
         return (self.lower is None or self.lower < 0.0) and (self.upper is None or self.upper > 0.0)
 

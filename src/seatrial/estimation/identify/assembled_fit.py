@@ -26,6 +26,7 @@ from seatrial.estimation.identify.identifiability import identifiability
 from seatrial.estimation.identify.identification import Identification
 from seatrial.estimation.identify.misfit_disturbance import misfit_disturbance
 from seatrial.estimation.identify.model_selection import SelectedModel, with_model_spread
+from seatrial.estimation.identify.narrow_bands import narrow_band_findings
 from seatrial.estimation.identify.needless_terms import needless_term_findings
 from seatrial.estimation.identify.other_optima import other_optima
 from seatrial.estimation.identify.physical_limits import unphysical_finding
@@ -85,7 +86,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         findings=(
             *with_effects(task.findings, estimation, shifts),
             *selected.findings, *findings, *fit_result.open_signs(estimation.model, coefficients),
-            *unphysical_finding(estimation.model, runs.records, errors_of(shifts, free)),
+            *unphysical_finding(estimation.model, runs.records, errors_of(shifts, free), roll),
             *fit_result.bounds_hit(estimation), *fit_result.unconverged(estimation), *other_optima(estimation),
             *abandoned_criterion_finding(estimation, runs.records),
             *held_couplings(selected.estimation),
@@ -101,6 +102,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
             *predicted.findings,
             *response_findings(responses),
             *antenna_findings(predicted.predictions, runs.length),
+            *narrow_band_findings(predicted.predictions),
             *one_speed_finding(roll, runs.records),
             *gyradius_findings(trial.ship, roll.gyradius if roll else None),
         ),

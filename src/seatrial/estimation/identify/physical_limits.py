@@ -7,6 +7,7 @@ from types import MappingProxyType
 import numpy as np
 
 from seatrial.core.equations import Model
+from seatrial.core.results.ship_motions import RollCharacteristics
 from seatrial.core.values import Finding, Record, Severity
 from seatrial.estimation.estimate.time_scale import is_pure_roll
 from seatrial.estimation.identify.roll_characteristics import DAMPING_NAMES, RESTORING_NAMES
@@ -50,13 +51,19 @@ def _far_off_priors(model: Model, errors: Mapping[str, float]) -> dict[str, str]
 
 
 def unphysical_finding(
-    model: Model, records: Sequence[Record], errors: Mapping[str, float] = MappingProxyType({})
+    model: Model,
+    records: Sequence[Record],
+    errors: Mapping[str, float] = MappingProxyType({}),
+    roll: RollCharacteristics | None = None,
 ) -> tuple[Finding, ...]:
     """Return a warning where an estimated model has values that no craft has; `records`, `errors`: as in `objections`.
 
-    A note where a value is only far off a prior of which nobody knows how far it may be wrong.
+    A note where a value is only far off a prior of which nobody knows how far it may be wrong. roll: of the estimate;
+    where a ship's damping lies within its intervals, chance alone may have made it implausible, and nothing is said.
     """
     against = objections(model, records, errors)
+    if roll is not None and _has_plausible_damping(roll):
+        against = tuple(one for one in against if one not in _roll_objections(model, records))
     priors = {p.name: p.prior for p in model.parameters.free if p.prior is not None}
     doubtful = [text for n, text in _far_off_priors(model, errors).items() if priors[n].is_spread_assumed]
     if not against:
@@ -69,6 +76,14 @@ def unphysical_finding(
         advice = "fix these under [model.fixed], or look for what the model lacks; --choose takes no such model"
     what = f"the estimate is implausible: {', '.join(against)}"
     return (Finding(Severity.WARNING, "unphysical-values", what, "", advice),)
+
+
+def _has_plausible_damping(roll: RollCharacteristics) -> bool:
+    """Whether damping that is nowhere negative and never decreases lies within the intervals at all amplitudes."""
+    if not roll.amplitude:
+        return False
+    least = np.maximum.accumulate(np.maximum(roll.damping_lower, 0.0))
+    return bool(np.all(least <= np.asarray(roll.damping_upper)))
 
 
 def _roll_objections(model: Model, records: Sequence[Record]) -> tuple[str, ...]:

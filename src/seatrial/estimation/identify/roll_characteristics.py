@@ -21,13 +21,13 @@ _POINTS, _MIN_SWING_SHARE = 40, 0.05
 
 
 def one_speed_finding(roll: RollCharacteristics | None, records: Sequence[Record]) -> tuple[Finding, ...]:
-    """Return the note that decays at one speed, or at an unrecorded one, show no dependence of damping on speed."""
+    """Return the note that decays at one speed, or without a channel of it, show no dependence of damping on speed."""
     if roll is None:
         return ()
     speeds = [float(np.nanmean(r["u"])) for r in records if "u" in r and np.isfinite(r["u"]).any()]
     if len(speeds) == len(records) and np.ptp(speeds) > max(_ONE_SPEED, _ONE_SPEED_SHARE * np.max(np.abs(speeds))):
         return ()
-    where = f"at {np.mean(speeds):.3g} m/s alone" if speeds else "at a speed that was not recorded"
+    where = f"at {np.mean(speeds):.3g} m/s alone" if speeds else "without a channel of speed (u)"
     return (
         Finding(
             Severity.INFO,
