@@ -65,6 +65,18 @@ def test_runs_simulated_whole_that_leave_their_bands_are_counted_beside_the_wind
     assert "simulated whole" not in fact.text and fact.is_good
 
 
+def test_bands_much_wider_than_the_error_are_no_tick(fit: Fit) -> None:
+    """By hand: r^2 = 0.99 is an error of a tenth of the motion, so that a band of 0.61 of it is 6.1 times the error."""
+    kept = with_windows(fit, 1.0, 3.0)
+    (p,) = kept.validation
+    (w,) = p.windows
+    for band, is_good in ((0.2, True), (0.61, None)):
+        scores = {"psi_deg": ChannelScore(0.1, 90.0, 0.99, inside_band=1.0, band_share=band)}
+        judged = replace(p, windows=(replace(w, scores=scores),), half_width={})
+        fact = rows(replace(kept, predictions=(judged,)))["Inside 95 % intervals"]
+        assert fact.is_good is is_good and ("cautious: bands of 6.1 times the error" in fact.text) == (is_good is None)
+
+
 def test_a_fit_that_is_best_over_the_longest_windows_only_does_not_claim_all(fit: Fit) -> None:
     kept = with_windows(fit, 1.0, 3.0)
     (p,) = kept.validation

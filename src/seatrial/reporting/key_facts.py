@@ -34,6 +34,8 @@ LEAST_WHOLE_RUN = 0.5
 _MAIN_CHANNELS = ("psi_deg", "position_m", "z", "theta_deg", "phi_deg")
 # names that a row holds, chosen
 MAX_NAMES = 4
+# half width of a band over the error from which on it is said to be cautious: three times what holds 95 %; chosen
+_CAUTIOUS = 6.0
 
 
 def first_screen(fit: Fit, length: float) -> FirstScreen:
@@ -162,6 +164,7 @@ def _coverage(fit: Fit) -> KeyFact:
         for which in (IntervalVerdict.INSIDE, IntervalVerdict.OUTSIDE, IntervalVerdict.TOO_WIDE)
     )
     texts, shares, untested = list[str](), list[float](), [counted(wide, "manoeuvring value")] if wide else []
+    widest = 0.0
     if inside + outside:
         texts.append(f"{inside} of {inside + outside} {fit.validation[0].reference_word} manoeuvring values")
         shares.append(inside / (inside + outside))
@@ -173,6 +176,7 @@ def _coverage(fit: Fit) -> KeyFact:
             untested.append(f"the band of {ERROR_LABELS[key][0]}")
         elif bands:
             share = sum(share * count for share, count in bands) / sum(count for _, count in bands)
+            widest = max(widest, *(_band_over_error(score) for score, _ in scores))
             texts.append(f"{fixed(100.0 * share, 0)} % of the samples of {ERROR_LABELS[key][0]}")
             shares.append(share)
     if not texts and not untested:
@@ -183,9 +187,20 @@ def _coverage(fit: Fit) -> KeyFact:
     over = f", in windows of {lengths.pop()}" if len(lengths) == 1 and has_bands else ""
     too_wide = [f"too wide to test anything: {enumeration(untested)}"] if untested else []
     whole = whole_run_shares(fit.validation)
-    text = "; ".join([*([f"{enumeration(texts)}{over}"] if texts else []), *_whole_run_text(whole), *too_wide])
+    cautious = [f"cautious: bands of {significant(widest, 2)} times the error"] if widest > _CAUTIOUS else []
+    text = "; ".join(
+        [*([f"{enumeration(texts)}{over}"] if texts else []), *_whole_run_text(whole), *too_wide, *cautious]
+    )
     is_kept = bool(shares) and min(shares) >= LEAST_COVERAGE and min(whole, default=1.0) >= LEAST_WHOLE_RUN
-    return KeyFact(name, text, "prediction", is_kept)
+    return KeyFact(name, text, "prediction", None if is_kept and cautious else is_kept)
+
+
+def _band_over_error(score: ChannelScore) -> float:
+    """Half width of a band over the error, both rms: 2 where it holds 95 % of a Gaussian error; 0 without a band."""
+    if score.inside_band is None or score.band_share is None:
+        return 0.0
+    error = math.sqrt(max(1.0 - score.r_squared, 1e-12))  # over the standard deviation of the motion, as the band
+    return score.band_share / error
 
 
 def whole_run_shares(runs: Sequence[Prediction]) -> list[float]:

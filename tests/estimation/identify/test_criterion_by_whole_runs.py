@@ -70,7 +70,7 @@ def test_output_error_takes_the_place_of_what_misses_the_runs_left_out(estimatio
     poor = replace(estimation, uncertainty=replace(estimation.uncertainty, leave_one_out=1.3 * points))
     used = preferred_estimation(poor, runs, SETTINGS, OPTIONS, START_S)
     assert used.criterion == WHOLE_RUNS
-    assert "each run was predicted as a whole by the others" in used.reasons[0]
+    assert "left out in turn and predicted as a whole" in used.reasons[0]
     assert used.reasons[0] in used.noise_model.text
     assert not any("set by the trial" in reason for reason in used.reasons), "nobody set it"
     assert not any(c.is_chosen for c in used.noise_model.candidates)

@@ -67,7 +67,7 @@ def _still_turns(record: Record, row: int) -> str:
     largest = float(np.max(np.abs(smoothed(turning, window_length(len(record))))))
     if rate <= _TURNS * largest:
         return ""
-    return f"yaw rate {np.degrees(rate):.2g} deg/s there, at most {np.degrees(largest):.2g} deg/s in the run"
+    return f"it turns at {np.degrees(rate):.2g} deg/s there, and by {np.degrees(largest):.2g} deg/s at most in the run"
 
 
 def _yaw_rate(record: Record) -> Array | None:

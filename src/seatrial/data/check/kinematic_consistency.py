@@ -159,6 +159,8 @@ def candidate_causes(motion: RecordedMotion, error: Array) -> list[ErrorCause]:
         "misalignment": [(-y, x)],
         "scale": [(x, y)],
     }
+    if motion.frame == "earth":  # of a receiver: it has no zero ahead and across of its own
+        causes = {name: features for name, features in causes.items() if not name.startswith("bias")}
     constants = [np.concatenate([zero + 1, zero]), np.concatenate([zero, zero + 1])]
     fitted = []
     for name, features in causes.items():
@@ -216,6 +218,8 @@ def _cause_text(
             return "v with the opposite sign", "turn positive of v round", (TrialEdit("channels.v.positive", REVERSED),)
         case "misalignment":
             edits = (TrialEdit("channels.psi.offset", f"{-size:.4g}", "rad"),)
+            if motion.frame == "earth":
+                return f"velocities turned by {np.degrees(size):+.2g} deg against the positions", "check their axes", ()
             text = f"a misalignment of {np.degrees(size):+.2g} deg between heading and log (magnetic variation?)"
             return text, "check the zero of the compass", edits
         case _:
