@@ -115,6 +115,8 @@ def init(
         print_lines([f"ASSUMED, so correct what was not so: {', '.join(draft.assumed)} under [records.waves]"])
     if draft.estimated:
         print_lines([f"ESTIMATED, so correct what you know: {', '.join(draft.estimated)}"])
+    if draft.lacks_antenna:
+        print_lines(["the GNSS antenna is taken to be at midship: state it with --antenna, metres forward of it"])
     print_file("trial file", out)
     print_file("drawing", page)
     print_next(_after_draft(draft, out))

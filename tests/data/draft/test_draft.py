@@ -241,6 +241,12 @@ def test_a_stated_antenna_is_written_where_a_receiver_shows_the_track(tmp_path: 
     pose = write(tmp_path / "pose.csv", BASE | {"surge": TRUTH["u"], "sway": TRUTH["v"]})
     text = draft_trial(pose, length=12.0, antenna=-2.5).text
     assert "\nantenna" not in text and "the stated antenna is not used" in text
+    fixes = {name: BASE[name] for name in ("time", "heading")}
+    fixes |= {"lat": 43.0 + TRUTH["x0"] / 111e3, "lon": 5.0 + TRUTH["y0"] / 81e3}
+    gnss = write(tmp_path / "gnss.csv", fixes)
+    assert (
+        draft_trial(gnss, length=12.0).lacks_antenna and not draft_trial(gnss, length=12.0, antenna=0.0).lacks_antenna
+    )
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from seatrial.data.draft.agreement import agreed_guesses
 from seatrial.data.draft.basin import is_in_basin
 from seatrial.data.draft.behaviour import checked_by_behaviour, run_record
 from seatrial.data.draft.column_guess import ColumnGuess
-from seatrial.data.draft.draft_text import RecordsBlock, trial_text, unrecognised_columns
+from seatrial.data.draft.draft_text import NO_ANTENNA, RecordsBlock, trial_text, unrecognised_columns
 from seatrial.data.draft.guess import guess_columns, with_turned_thruster, without_conflicts
 from seatrial.data.draft.header_sizes import HeaderSize, sizes_in_header
 from seatrial.data.draft.held_out import NOTHING_HELD_OUT, HeldOutRuns, can_judge, held_out_runs
@@ -83,6 +83,11 @@ class DraftTrial:
     def estimated(self) -> tuple[str, ...]:
         """Keys of the file whose numbers nobody measured, each once."""
         return self._marked(ESTIMATED)
+
+    @property
+    def lacks_antenna(self) -> bool:
+        """Whether a receiver shows the track, and neither its log nor anybody says where its antenna stands."""
+        return NO_ANTENNA in self.text
 
     @property
     def assumed(self) -> tuple[str, ...]:

@@ -18,10 +18,11 @@ from seatrial.data.draft.waves_text import wave_lines
 from seatrial.data.read import ColumnSpec
 from seatrial.data.read.layout import TimeSpec
 
-_NO_ANTENNA = (
+NO_ANTENNA = (
     "# antenna = { x = 0.0, y = 0.0 }    # m forward of midship, to starboard: state it; each metre that it is forward "
     "of this counts as 0.017 m/s of sway for each deg/s of yaw (init --antenna)"
 )
+"""The line that asks for the place of an antenna of which nothing is known."""
 _OF_RECEIVER = frozenset({"lat", "sog"})  # channels that a GNSS antenna shows
 _UNUSED_SHOWN = 12  # names of columns without a channel in the comment; chosen
 
@@ -134,7 +135,7 @@ def _antenna_lines(block: RecordsBlock) -> list[str]:
         return []
     places = [place for survey, _ in block.sources if (place := antenna_place(survey.log.parameters)) is not None]
     if not places:
-        return [_NO_ANTENNA]
+        return [NO_ANTENNA]
     why = f"{places[0].evidence}; add the place of the autopilot where that is not midship"
     return [f"antenna = {{ x = {places[0].x:g}, y = {places[0].y:g} }}    # {why}"]
 
