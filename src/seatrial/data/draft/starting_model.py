@@ -8,7 +8,7 @@ import numpy as np
 from seatrial.core.values import Record
 from seatrial.data.draft.ship_estimates import UNSTATED, EstimatedValue, StatedSize, hull_rudder_propeller, wind_areas
 from seatrial.physics.manoeuvres.track import speed
-from seatrial.physics.models.wind import SYMMETRIC
+from seatrial.physics.models.typical_wind import SYMMETRIC
 
 _THRUSTERS, _ROLL, _SHIP, _MMG, _WAVES = "thrusters", "roll", "abkowitz", "mmg", "heave_pitch"
 _WAVE, _MOTION_IN_WAVES = "zeta", frozenset({"z", "theta"})

@@ -17,7 +17,7 @@ from seatrial.physics.hydro.empirical import (
     yoshimura,
 )
 from seatrial.physics.models.published import PARAMETER_SETS, parameter_set
-from seatrial.physics.models.wind import SYMMETRIC, TYPICAL, TYPICAL_SPREAD
+from seatrial.physics.models.typical_wind import SYMMETRIC, TYPICAL, TYPICAL_SPREAD
 
 USUAL_PROPELLER = {"pitch_ratio": 0.75, "area_ratio": 0.5, "blades": 4.0}
 """P/D, A_E/A_0 and blades where `[ship]` does not state them; chosen: a merchant ship's fixed propeller."""

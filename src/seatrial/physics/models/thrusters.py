@@ -19,7 +19,8 @@ from seatrial.physics.models.pose import Current, pose_rates
 from seatrial.physics.models.thruster_forces import ThrusterSheet, Water
 from seatrial.physics.models.thruster_layout import CATAMARAN, Damping, ThrusterLayout
 from seatrial.physics.models.thruster_rudders import craft_flow
-from seatrial.physics.models.wind import SYMMETRIC, wind_force
+from seatrial.physics.models.typical_wind import SYMMETRIC
+from seatrial.physics.models.wind import wind_force
 
 FOSSEN = "Fossen 2021, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed."
 HULL = f"{FOSSEN}, section 6.5, damping"

@@ -11,13 +11,6 @@ from seatrial.physics.models.pose import Current
 WIND = "Fujiwara et al. 1998, J. Soc. Nav. Archit. Japan 183, 77-90, Fourier series in the apparent direction"
 SERIES: dict[str, float] = dict.fromkeys(("C_X0", "C_X1", "C_X3", "C_Y1", "C_Y3", "C_N1", "C_N2", "C_N3"), 0.0)
 """Coefficients of the series; none acts until it has a value."""
-SYMMETRIC = {"C_X1": -0.7, "C_Y1": -0.8, "C_N2": 0.0}
-"""Those of a craft symmetrical fore and aft, where a search starts: the middle of typical values (Fossen 2021, section
-10.1, c_x 0.5 to 0.9, c_y 0.7 to 0.95); the moment has either sign."""
-TYPICAL_SPREAD = {"C_X1": 0.35, "C_Y1": 0.4, "C_N2": 0.1}
-"""Standard deviations about them where the areas are estimates, too: half of the forces' (areas of ships of one length
-differ by that); the moment's is the middle of its typical size, 0.05 to 0.20 (Fossen 2021, section 10.1)."""
-TYPICAL = "Fossen 2021, section 10.1, typical values of craft symmetrical fore and aft"
 _SCALE = 0.1
 """Size of a coefficient that counts; chosen."""
 
