@@ -3,12 +3,14 @@
 from dataclasses import replace
 
 import pytest
+from tests.reporting.complete_fit import with_bounds
 from tests.reporting.published_fit import published
 
 from seatrial.core.results import Fit
 from seatrial.core.values import RecordKind
 from seatrial.reporting.pages import report_page
 from seatrial.reporting.published_chapter import published_chapter
+from seatrial.reporting.runs import reading_note
 
 TITLE = "The published method and the package’s own estimate"
 
@@ -65,3 +67,12 @@ def test_a_simulated_record_is_not_called_measured(fit: Fit) -> None:
     text = report_page(replace(fit, predictions=predictions))
     assert "Broad grey line: the reference, itself simulated." in text and "inputs as measured" not in text
     assert "inputs as measured" in report_page(fit)
+
+
+def test_only_of_a_craft_that_sails_is_a_track_spoken_of(fit: Fit) -> None:
+    banded = with_bounds(fit.predictions[0])
+    still = replace(
+        banded, measured=banded.measured.without("x0", "y0"), simulated=banded.simulated.without("x0", "y0")
+    )
+    assert "track" not in reading_note([still]) and "Pale: 95 % band of the" in reading_note([still])
+    assert "along the track to its sides" in reading_note([banded]) and "Ships" in reading_note([banded])

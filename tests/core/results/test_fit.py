@@ -27,7 +27,7 @@ def test_a_coefficient_is_found_by_its_name(fit: Fit) -> None:
 
 def test_a_level_has_no_sign_to_show(fit: Fit) -> None:
     one = replace(fit.coefficients[0], standard_error=0.1, lower=-0.1, upper=0.2)
-    assert one.is_sign_open and not replace(one, name="phi_0").is_sign_open
+    assert one.is_sign_open and not replace(one, unit="rad").is_sign_open
 
 
 def test_the_table_holds_every_coefficient(fit: Fit) -> None:

@@ -81,3 +81,12 @@ def test_an_apparent_wind_is_taken_where_the_velocity_over_ground_stands_beside_
     (taken,), (left,) = with_wind_role([whole], is_taken=True), with_wind_role([whole], is_taken=False)
     assert not any(one.is_commented for one in taken) and "the true wind follows" in taken[0].evidence[-1]
     assert [one.is_commented for one in left] == [True, True, False, False, False]
+
+
+def test_a_wind_beside_the_one_that_is_used_is_left_for_it() -> None:
+    both = guesses(*TRUE, *RELATIVE, "sog", "cog", "psi")
+    (read,) = with_wind_role([both], is_taken=True)
+    assert [one.is_commented for one in read[:4]] == [False, False, True, True]
+    assert read[2].evidence[-1] == "a comment in the file: wind_speed and wind_direction beside it say the wind"
+    (calm,) = with_wind_role([both], is_taken=False)
+    assert calm[0].evidence[-1] == "a comment in the file: the air is taken for calm"

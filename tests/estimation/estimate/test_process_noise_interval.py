@@ -9,7 +9,7 @@ from seatrial.core.values import Record
 from seatrial.data.trial import EstimateMethod, EstimateSettings
 from seatrial.estimation.estimate import EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.estimate.point_estimate import PointEstimate
-from seatrial.estimation.estimate.process_noise import ProcessNoise, implied_process_noise
+from seatrial.estimation.estimate.process_noise import NoiseEvidence, ProcessNoise, implied_process_noise
 from seatrial.estimation.estimate.process_noise_interval import MEANING, process_noise_interval
 from seatrial.physics.models.roll import roll
 
@@ -84,5 +84,5 @@ def test_a_decay_alone_gets_it_and_says_so() -> None:
     found = estimate_model(linear(), Runs.one_session_each([disturbed_decay(8e-4, np.random.default_rng(1))], 5.0))
     assert found.criterion == "output error over whole runs"
     assert any("free decay" in reason for reason in found.reasons)
-    assert found.interval.meaning == MEANING
+    assert found.interval.meaning == MEANING[NoiseEvidence.ONE_STEP]
     assert found.noise_model.process["p"] > 0.0

@@ -11,7 +11,7 @@ from seatrial.core.results.fields import ABSENT, Number, StoredArray
 from seatrial.core.text.numbers import significant
 from seatrial.core.values import NOT_MEASURED, InputError, display_unit
 
-_LEVELS = frozenset({"phi_0"})  # parameters that are where something rests or reads zero, not the strength of an effect
+_ANGLE = "rad"  # unit of parameters that say where something rests or reads zero, not the strength of an effect
 
 
 def _absent_unless_given(value: float | None) -> object:
@@ -50,8 +50,8 @@ class Coefficient:
 
     @property
     def is_level(self) -> bool:
-        """Whether 0 is a value like another, as of the angle at which a ship comes to rest."""
-        return self.name in _LEVELS
+        """Whether 0 is a value like another, as of an angle: where a ship comes to rest, where a rudder reads zero."""
+        return self.unit == _ANGLE
 
     @property
     def is_sign_open(self) -> bool:

@@ -42,7 +42,8 @@ def _in_role(guess: ColumnGuess, inputs: Sequence[str]) -> ColumnGuess:
     if guess.symbol in inputs:
         what = "the true wind follows from it; an input" if "relative" in guess.symbol else "an input of the model"
         return guess.with_evidence(what)
-    return replace(guess, is_commented=True).with_evidence("a comment in the file: the air is taken for calm")
+    why = f"{' and '.join(inputs)} beside it say the wind" if inputs else "the air is taken for calm"
+    return replace(guess, is_commented=True).with_evidence(f"a comment in the file: {why}")
 
 
 def _true_wind_columns(part: Sequence[ColumnGuess]) -> tuple[str, str] | tuple[()]:

@@ -6,6 +6,7 @@ needed (likelihood against the same filter without process noise) and whether it
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from enum import Enum, auto
 from functools import cached_property
 from itertools import pairwise
 
@@ -53,6 +54,13 @@ _MAX_SAMPLES = 3000
 _HOPELESS_INFLATION = 3.0
 
 
+class NoiseEvidence(Enum):
+    """What shows how strong the process noise is."""
+
+    ONE_STEP = auto()
+    WHOLE_RUNS = auto()
+
+
 @dataclass(frozen=True, eq=False)
 class ProcessNoise:
     """An optimum of the prediction-error criterion, with its gate.
@@ -63,7 +71,7 @@ class ProcessNoise:
             where the coefficients were not searched.
         runs: the output-error problem over whole runs that it was made from; `problem.runs` is another one where the
             model has more states (gusts with a memory, biases, lags), whose parameters stand behind the free ones.
-        disturbance_model: the disturbance in words.
+        disturbance_model: the disturbance in words; evidence: what shows its strength.
     """
 
     problem: PredictionError
@@ -72,6 +80,7 @@ class ProcessNoise:
     test: ProcessNoiseTest
     output_error: OutputError
     disturbance_model: str = "white"
+    evidence: NoiseEvidence = NoiseEvidence.ONE_STEP
 
     @property
     def common_parameters(self) -> Array:

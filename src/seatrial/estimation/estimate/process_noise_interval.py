@@ -12,16 +12,17 @@ import numpy as np
 
 from seatrial.core.values import Array
 from seatrial.estimation.estimate.point_estimate import PointEstimate
-from seatrial.estimation.estimate.process_noise import ProcessNoise
+from seatrial.estimation.estimate.process_noise import NoiseEvidence, ProcessNoise
 from seatrial.estimation.information.covariance import Interval, inverse
 from seatrial.estimation.problem.output_error import OutputError
 
-_CARRIED = "covariance of the output-error estimate under {}, carried through the motion"
-MEANING = _CARRIED.format("the process noise that makes one-step residuals white")
-MEANING_OF_WHOLE_RUNS = _CARRIED.format("process noise at least as strong as the residuals of whole runs show")
-"""Meaning of an interval whose process noise makes one-step residuals white, and of one whose does not."""
-WHOLE_RUN_NOISE = "white, as strong as whole runs show"
-"""Disturbance of process noise of the second kind."""
+MEANING = {
+    NoiseEvidence.ONE_STEP: "covariance of the output-error estimate under the process noise that makes one-step "
+    "residuals white, carried through the motion",
+    NoiseEvidence.WHOLE_RUNS: "covariance of the output-error estimate under process noise at least as strong as the "
+    "residuals of whole runs show, carried through the motion",
+}
+"""What the interval is, by what shows how strong its process noise is."""
 
 
 def process_noise_interval(estimate: PointEstimate, process_noise: ProcessNoise) -> Interval:
@@ -42,8 +43,7 @@ def process_noise_interval(estimate: PointEstimate, process_noise: ProcessNoise)
             carried @ observation, moved, intensity**2 * problem.data.dt
         )
     bread = inverse(hessian)
-    is_of_runs = process_noise.disturbance_model == WHOLE_RUN_NOISE
-    return Interval(bread @ score @ bread, np.inf, MEANING_OF_WHOLE_RUNS if is_of_runs else MEANING)
+    return Interval(bread @ score @ bread, np.inf, MEANING[process_noise.evidence])
 
 
 def inverse_variances(problem: OutputError) -> Array:

@@ -14,9 +14,8 @@ import numpy as np
 
 from seatrial.core.values import Array
 from seatrial.estimation.estimate.point_estimate import PointEstimate
-from seatrial.estimation.estimate.process_noise import ProcessNoise
+from seatrial.estimation.estimate.process_noise import NoiseEvidence, ProcessNoise
 from seatrial.estimation.estimate.process_noise_interval import (
-    WHOLE_RUN_NOISE,
     driven_variance,
     inverse_variances,
     without_initial_state,
@@ -39,7 +38,7 @@ def with_whole_run_intensity(process_noise: ProcessNoise, estimate: PointEstimat
     scaled = point.copy()
     scaled[driven] *= share
     by_runs = _with_point(process_noise, np.maximum(scaled, process_noise.optimum.solution.point))
-    return replace(by_runs, disturbance_model=WHOLE_RUN_NOISE)
+    return replace(by_runs, evidence=NoiseEvidence.WHOLE_RUNS)
 
 
 def _with_point(process_noise: ProcessNoise, point: Array) -> ProcessNoise:
