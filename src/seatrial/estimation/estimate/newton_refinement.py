@@ -23,34 +23,57 @@ _NO_INITIAL_STATES = np.zeros((0, 0))
 
 
 def refine_by_newton(problem: PredictionError, optimum: Optimum) -> tuple[PredictionError, Optimum, float]:
-    """Take quasi-Newton steps by the exact gradient, none where it vanishes; return the decrement that is left, too."""
-    point, count = optimum.solution.point, optimum.solution.evaluations
-    exact = replace(problem, steps=problem.difference_steps(point, optimum.normal.hessian))
-    normal = exact.normal(point, _NO_INITIAL_STATES)
-    curved = normal
-    for _ in range(_NEWTON_STEPS):
-        step, slope = _newton_step(exact, point, curved)
+    """Take quasi-Newton steps by the exact gradient, none where it vanishes; return the decrement that is left, too.
+
+    Differences to one side lead near the optimum at half the cost; those to both sides have the last word.
+    """
+    exact = replace(problem, steps=problem.difference_steps(optimum.solution.point, optimum.normal.hessian))
+    one_sided = replace(exact, is_one_sided=True)
+    begun = one_sided.normal(optimum.solution.point, _NO_INITIAL_STATES)
+    near = _descend(one_sided, _Descent(optimum.solution.point, begun, begun.hessian))
+    end = _descend(exact, replace(near, normal=exact.normal(near.point, _NO_INITIAL_STATES)))
+    slope = _newton_step(exact, end.point, end.curved)[1]
+    solution = replace(
+        optimum.solution, point=end.point, value=end.normal.cost,
+        status=Status.CONVERGED if slope <= _MAX_DECREMENT else Status.STALLED,
+        evaluations=optimum.solution.evaluations + end.count, history=(*optimum.solution.history, end.normal.cost),
+    )  # fmt: skip
+    return exact, Optimum(solution, _NO_INITIAL_STATES, end.normal), slope
+
+
+@dataclass(frozen=True, eq=False)
+class _Descent:
+    """Where quasi-Newton steps have come to; hessian: the curvature that they believe, count: steps so far."""
+
+    point: Array
+    normal: NormalEquations
+    hessian: Array
+    count: int = 0
+
+    @property
+    def curved(self) -> NormalEquations:
+        """The gradient with the curvature that is believed."""
+        return replace(self.normal, hessian=self.hessian)
+
+
+def _descend(problem: PredictionError, descent: _Descent) -> _Descent:
+    """Step until no more than `_MAX_DECREMENT` is promised, or until no step decreases the cost."""
+    while descent.count < _NEWTON_STEPS:
+        step, slope = _newton_step(problem, descent.point, descent.curved)
         if slope <= _MAX_DECREMENT:
             break
-        trials = [np.clip(point + share * step, exact.lower, exact.upper) for share in _STEP_SHARES]
-        costs = [exact.cost(trial, _NO_INITIAL_STATES) for trial in trials]
+        trials = [np.clip(descent.point + share * step, problem.lower, problem.upper) for share in _STEP_SHARES]
+        costs = [problem.cost(trial, _NO_INITIAL_STATES) for trial in trials]
         best = int(np.argmin(costs))
-        if not costs[best] < normal.cost:
-            if curved is normal:
+        if not costs[best] < descent.normal.cost:
+            if descent.hessian is descent.normal.hessian:
                 break
-            curved = normal  # once more by the expected information
+            descent = replace(descent, hessian=descent.normal.hessian)  # once more by the expected information
             continue
-        before, moved = normal, trials[best] - point
-        point, normal, count = (trials[best], exact.normal(trials[best], _NO_INITIAL_STATES), count + 1)
-        hessian = with_curvature(curved.hessian, moved, normal.gradient - before.gradient)
-        curved = replace(normal, hessian=hessian)
-    slope = _newton_step(exact, point, curved)[1]
-    status = Status.CONVERGED if slope <= _MAX_DECREMENT else Status.STALLED
-    history = (*optimum.solution.history, normal.cost)
-    solution = replace(
-        optimum.solution, point=point, value=normal.cost, status=status, evaluations=count, history=history
-    )
-    return exact, Optimum(solution, _NO_INITIAL_STATES, normal), slope
+        point, normal = trials[best], problem.normal(trials[best], _NO_INITIAL_STATES)
+        hessian = with_curvature(descent.hessian, point - descent.point, normal.gradient - descent.normal.gradient)
+        descent = _Descent(point, normal, hessian, descent.count + 1)
+    return descent
 
 
 def with_curvature(hessian: Array, moved: Array, gradient_change: Array) -> Array:
