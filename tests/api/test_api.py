@@ -130,3 +130,9 @@ def test_commands_without_a_motion_begin_at_rest() -> None:
     assert run["u"][-1] > 1.0
     assert np.all(np.abs(run["v"]) < 1e-12)
     assert sea.simulate(craft, table, speed=1.0)["u"][0] == 1.0
+
+
+def test_the_logs_of_a_folder_are_surveyed_like_a_log(tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text("time,heading\n0,1\n1,2\n2,3\n", encoding="utf-8")
+    (one,) = sea.survey_logs(tmp_path).logs
+    assert [topic.rows for topic in one.topics] == [topic.rows for topic in sea.survey_log(one.path).topics] == [3]

@@ -28,6 +28,18 @@ def test_a_bare_log_is_listed(tmp_path: Path) -> None:
     assert "Next: seatrial init" in text
 
 
+def test_a_folder_is_listed_as_init_takes_it(tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        write(tmp_path / f"{name}.csv", {"time": TRUTH["t"], "heading": TRUTH["psi"]})
+    (tmp_path / "notes.txt").write_text("no numbers\n", encoding="utf-8")
+    text = output("check", str(tmp_path))
+    assert "a.csv: text, 1 topic" in text and "b.csv: text, 1 topic" in text and "no log: notes.txt: " in text
+    assert text.endswith(f"Next: seatrial init {tmp_path} --out trial.toml\n")
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(InputError, match="there is no log"):
+        output("check", str(tmp_path / "empty"))
+
+
 def test_a_draft_is_written_once_and_checked(tmp_path: Path) -> None:
     log, trial = write(tmp_path / "run.csv", BASE | {"rot": TRUTH["r"]}), tmp_path / "trial.toml"
     text = output("init", str(log), "--out", str(trial))
@@ -67,6 +79,18 @@ def test_a_draft_of_runs_takes_them_whole_and_a_model_of_its_inputs(tmp_path: Pa
     assert "parts" not in draft
     assert '\nname = "thrusters"' in draft
     assert 'validate = "a"' in draft
+
+
+@pytest.mark.parametrize(("stated", "is_noted"), [("", True), ("--rho 1000", False)])
+def test_the_water_of_a_small_craft_is_asked_for_where_its_model_takes_one(
+    tmp_path: Path, stated: str, *, is_noted: bool
+) -> None:
+    columns = BASE | {"rudder": TRUTH["delta"] * 180.0 / np.pi}
+    write(tmp_path / "a.csv", columns)
+    size = ["--length", "8", "--name", 'Dr"a', *stated.split()]
+    text = output("init", str(tmp_path), *size, "--out", str(tmp_path / "trial.toml"))
+    assert ("NOTE the water is taken for that of the sea" in text) is is_noted
+    assert '\nname = "Dr\\"a"\n' in (tmp_path / "trial.toml").read_text(encoding="utf-8")
 
 
 def test_the_manoeuvres_of_a_single_log_are_runs(tmp_path: Path) -> None:

@@ -25,6 +25,7 @@ from seatrial.api.trials import (
     load_trial,
     prepared_run,
     survey_log,
+    survey_logs,
 )
 from seatrial.api.tuning import load_loop, tune, verify
 
@@ -33,6 +34,6 @@ __all__ = [
     "design", "draft_trial", "export", "export_targets", "extrapolation", "follow", "gather_campaign", "identify",
     "list_models", "load", "load_fit", "load_loop", "load_model", "load_trial", "measure_intervals", "measures",
     "model_guide", "poster", "predict", "prepared_run", "read_record", "replay", "replay_fmu", "report", "reproduce",
-    "retry_campaign", "rms_differences", "rudder_rate_of", "save", "simulate", "steering", "survey_log", "tune",
-    "verify", "write_poster", "write_record",
+    "retry_campaign", "rms_differences", "rudder_rate_of", "save", "simulate", "steering", "survey_log", "survey_logs",
+    "tune", "verify", "write_poster", "write_record",
 ]  # fmt: skip

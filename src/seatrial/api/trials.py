@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from seatrial.core.results import Design, Fit
     from seatrial.core.results.online import SampleCounts, Snapshot
     from seatrial.core.values import Finding, ProgressReporter, Record
-    from seatrial.data.draft import DraftTrial, LogSurvey
+    from seatrial.data.draft import DraftTrial, LogSurvey, SurveyedLogs
     from seatrial.data.folder.model_file import ModelFile
     from seatrial.data.trial import Trial
     from seatrial.data.trial.correction import Correction
@@ -130,6 +130,7 @@ def draft_trial(
     rudder: float = 0.0,
     gm: float = 0.0,
     antenna: float | None = None,
+    name: str = "",
     columns: "Sequence[str]" = (),
 ) -> "DraftTrial":
     """Draft a trial file from logs: channels, units, frames and signs by name and behaviour, each with its evidence.
@@ -146,6 +147,7 @@ def draft_trial(
         propeller: diameter [m]. rudder: area [m^2]; 0: a rule stands in for them.
         gm: metacentric height [m], of roll decays; 0: not stated.
         antenna: place of the GNSS antenna, m forward of midship, negative abaft; None: not stated.
+        name: of the craft, as it stands in the report; empty: not stated.
         columns: what columns are whose names say nothing: ``Klokke=time``, ``Kurs (gyro)=psi``.
 
     Returns:
@@ -157,8 +159,19 @@ def draft_trial(
     """
     from seatrial.data.draft import StatedSize, draft_trial, stated_columns
 
-    size = StatedSize(length, beam, draught, mass, gear, rho, scale, propeller, rudder, gm, antenna)
+    size = StatedSize(length, beam, draught, mass, gear, rho, scale, propeller, rudder, gm, antenna, name)
     return draft_trial(*logs, folder=folder, size=size, stated=stated_columns(columns))
+
+
+def survey_logs(path: "str | Path") -> "SurveyedLogs":
+    """Read one log, or those of a folder, and list what is in each; files of the folder that are no logs are named.
+
+    Raises:
+        InputError: the file cannot be read, or the folder holds no log.
+    """
+    from seatrial.data.draft import survey_logs
+
+    return survey_logs([Path(path)])
 
 
 def survey_log(path: "str | Path") -> "LogSurvey":

@@ -11,7 +11,7 @@ from seatrial.cli.application import app
 from seatrial.cli.screen import in_shell, print_file, print_lines, print_next, print_table
 
 if TYPE_CHECKING:
-    from seatrial.data.draft import ColumnGuess, ColumnSummary, DraftTrial, LogSurvey, TopicSummary
+    from seatrial.data.draft import ColumnGuess, ColumnSummary, DraftTrial, LogSurvey, SurveyedLogs, TopicSummary
     from seatrial.data.draft.one_speed import OtherSpeed
 
 COLUMNS_SHOWN = 12  # columns of a topic that `check` lists without --all; ours, one screen for a log of a few topics
@@ -49,6 +49,7 @@ def init(
         float | None,
         typer.Option("--antenna", metavar="METRES", help="GNSS antenna forward of midship; negative: abaft."),
     ] = None,
+    name: Annotated[str, typer.Option("--name", metavar="NAME", help="Of the craft, for the report.")] = "",
     column: Annotated[
         list[str] | None,
         typer.Option("--column", metavar="HEADING=CHANNEL", help="What a column is whose heading says nothing."),
@@ -64,7 +65,6 @@ def init(
     from seatrial.core.text.words import counted
     from seatrial.core.values import InputError
     from seatrial.core.values.files import write_atomically
-    from seatrial.data.draft import name_contradiction, run_text
     from seatrial.reporting.draft import html as draft_page
 
     page = out.with_suffix(".html")
@@ -85,6 +85,7 @@ def init(
         rudder=rudder,
         gm=gm,
         antenna=antenna,
+        name=name,
         columns=column or (),
     )
     write_atomically(out, draft.text.encode())
@@ -98,12 +99,7 @@ def init(
         says = ", ".join(one.text for one in draft.header_sizes)
         print_lines([f"NOTE the header says {says}, not used: {' '.join(one.option for one in draft.header_sizes)}"])
     print_lines(_other_speed_note(one, out) for one in draft.other_speeds)
-    for run, stretches, parts in zip(draft.runs, draft.stretches, draft.parts, strict=True):
-        name = run.name or run.sources[0].path.name
-        print_lines(f"{name}: {one.name}, {one.start:.4g} to {one.stop:.4g} s: {one.evidence}" for one in parts)
-        print_lines([f"{name}: {run_text(stretches)}"] if stretches and not parts else [])
-        contradiction = name_contradiction(name, stretches)
-        print_lines([f"NOTE {name}: {contradiction}"] if contradiction else [])
+    _print_runs(draft)
     if draft.held_out.names:
         why = f" ({draft.held_out.why})" if draft.held_out.why else ""
         print_lines([f"kept out of the estimation, to judge the model by: {', '.join(draft.held_out.names)}{why}"])
@@ -115,11 +111,25 @@ def init(
         print_lines([f"ASSUMED, so correct what was not so: {', '.join(draft.assumed)} under [records.waves]"])
     if draft.estimated:
         print_lines([f"ESTIMATED, so correct what you know: {', '.join(draft.estimated)}"])
+    if draft.lacks_density:
+        print_lines(["NOTE the water is taken for that of the sea, 1025 kg/m^3: if it was fresh, add --rho 1000"])
     if draft.lacks_antenna:
         print_lines(["the GNSS antenna is taken to be at midship: state it with --antenna, metres forward of it"])
     print_file("trial file", out)
     print_file("drawing", page)
     print_next(_after_draft(draft, out))
+
+
+def _print_runs(draft: "DraftTrial") -> None:
+    """The parts of each run, or what it is as a whole, and where its name says something else."""
+    from seatrial.data.draft import name_contradiction, run_text
+
+    for run, stretches, parts in zip(draft.runs, draft.stretches, draft.parts, strict=True):
+        name = run.name or run.sources[0].path.name
+        print_lines(f"{name}: {one.name}, {one.start:.4g} to {one.stop:.4g} s: {one.evidence}" for one in parts)
+        print_lines([f"{name}: {run_text(stretches)}"] if stretches and not parts else [])
+        contradiction = name_contradiction(name, stretches)
+        print_lines([f"NOTE {name}: {contradiction}"] if contradiction else [])
 
 
 def _other_speed_note(other: "OtherSpeed", out: Path) -> str:
@@ -171,8 +181,18 @@ def _print_guesses(guesses: "Sequence[ColumnGuess]") -> None:
         print_table([header, *rows], flush_left=range(len(header)), verbatim=_NAMES[1:])
 
 
-def print_survey(survey: "LogSurvey", *, show_all: bool) -> None:
-    """Print the topics and columns of a log with rates, ranges and the share missing."""
+def print_surveys(path: Path, surveyed: "SurveyedLogs", *, show_all: bool) -> None:
+    """Print what is in a log, or in each of a folder, and which of its files are none."""
+    for survey in surveyed.logs:
+        _print_survey(survey, show_all=show_all)
+    print_lines(f"no log: {one.name}: {why}" for one, why in surveyed.left_out.items())
+    has_time = any(topic.time is not None for survey in surveyed.logs for topic in survey.topics)
+    time = "" if has_time else " --column 'HEADING OF THE TIME=time'"
+    print_next(f"seatrial init {in_shell(path)}{time} --out trial.toml")
+
+
+def _print_survey(survey: "LogSurvey", *, show_all: bool) -> None:
+    """The topics and columns of a log with rates, ranges and the share missing."""
     from seatrial.core.text.words import counted
     from seatrial.data.draft import guess_columns
 
@@ -187,9 +207,6 @@ def print_survey(survey: "LogSurvey", *, show_all: bool) -> None:
     print_lines(f"event at {event.time:.6g} s: {event.name}" for event in survey.log.events[:TOPICS_SHOWN])
     if survey.log.parameters:
         print_lines([f"{counted(len(survey.log.parameters), 'parameter')} stored"])
-    has_time = any(topic.time is not None for topic in survey.topics)
-    time = "" if has_time else " --column 'HEADING OF THE TIME=time'"
-    print_next(f"seatrial init {in_shell(survey.path)}{time} --out trial.toml")
 
 
 def _print_topic(topic: "TopicSummary", *, show_all: bool, symbols: dict[str, str]) -> None:

@@ -28,7 +28,7 @@ FINDINGS_PER_CODE = 2  # findings of one kind that `check` prints without --all;
 
 @app.command()
 def check(
-    trial: Annotated[Path, typer.Argument(metavar="TRIAL.toml|LOG", help="Trial file, or a log of any format.")],
+    trial: Annotated[Path, typer.Argument(metavar="TRIAL.toml|LOG", help="Trial file, or a log or a folder of logs.")],
     show_all: Annotated[
         bool, typer.Option("--all", help="Show every finding (column), not the first few of each kind.")
     ] = False,
@@ -52,11 +52,11 @@ def check(
     from seatrial.data.folder.document import findings_document
 
     if trial.suffix.lower() != ".toml":
-        from seatrial.cli.log_commands import print_survey
+        from seatrial.cli.log_commands import print_surveys
 
         if fix:
             raise InputError("--fix corrects a trial file; draft one from the log with 'seatrial init'")
-        print_survey(api.survey_log(trial), show_all=show_all)
+        print_surveys(trial, api.survey_logs(trial), show_all=show_all)
         return
     if fix:
         write_correction(api.correct_trial(trial), trial, FINDINGS_PER_CODE)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from seatrial.data.draft.basin import is_in_basin
+from seatrial.data.draft.basin import is_in_basin, may_be_in_fresh_water
 from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.ship_estimates import StatedSize
 from seatrial.data.draft.starting_model import StartingModel
@@ -31,6 +31,17 @@ def test_a_small_craft_without_a_receiver_is_in_a_basin(
     guesses: list[ColumnGuess], size: StatedSize, expected: bool
 ) -> None:
     assert is_in_basin(guesses, size) is expected
+
+
+def test_the_water_of_small_craft_and_models_is_in_doubt_unless_stated() -> None:
+    asked = [
+        StatedSize(3.4),
+        StatedSize(120.0, scale=30.0),
+        StatedSize(62.0),
+        StatedSize(3.4, rho=1000.0),
+        StatedSize(),
+    ]
+    assert [may_be_in_fresh_water(size) for size in asked] == [True, True, False, False, False]
 
 
 def test_no_current_is_drafted_in_a_basin() -> None:

@@ -9,6 +9,7 @@ from tests.onboard.sentences import sentence
 
 from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.guess import guess_columns, with_turned_thruster
+from seatrial.data.draft.ship_estimates import StatedSize
 from seatrial.data.draft.survey import survey_log
 from seatrial.data.draft.tables_text import thruster_tables
 
@@ -44,7 +45,7 @@ def test_an_angle_that_turns_the_only_thruster_is_the_direction_of_its_thrust() 
     assert (back.symbol, back.positive) == ("alpha_1", "")
     for kept in ([(steering, throttle, other)], [(steering,)], [(replace(steering, source="rudder"), throttle)]):
         assert with_turned_thruster(kept) == tuple(kept), "which is turned is not known, or nothing is"
-    lines = thruster_tables([turned, throttle], 5.6)
+    lines = thruster_tables([turned, throttle], StatedSize(5.6))
     assert 'angle = { channel = "alpha_1" }' in lines and any(line.startswith("x = -2.80") for line in lines)
 
 

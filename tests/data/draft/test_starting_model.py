@@ -44,10 +44,13 @@ def test_the_fall_of_the_gain_is_free_where_rudder_angles_differ() -> None:
 
 def test_thrusters_are_named_by_the_side_that_the_motion_shows() -> None:
     left, right = (ColumnGuess(s, f"command_{k}", "1", side=s) for k, s in ((1, "port"), (2, "starboard")))
-    text = "\n".join(thruster_tables([left, right], 2.0))
+    text = "\n".join(thruster_tables([left, right], StatedSize(2.0)))
     assert 'name = "port"\nx = 0.0' in text and "y = -0.30    # ESTIMATED" in text
     assert text.count("same_as") == 1
-    unknown = thruster_tables([ColumnGuess("a", "command_1", "1"), ColumnGuess("b", "alpha_1", "rad")], 2.0)
+    assert "y = -0.34    # ESTIMATED: m to starboard, from B" in "\n".join(
+        thruster_tables([left, right], StatedSize(1.4, 0.9))
+    )
+    unknown = thruster_tables([ColumnGuess("a", "command_1", "1"), ColumnGuess("b", "alpha_1", "rad")], StatedSize(2.0))
     assert 'name = "thruster_1"' in unknown and 'angle = { channel = "alpha_1" }' in unknown
 
 

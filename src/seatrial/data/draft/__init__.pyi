@@ -3,6 +3,7 @@ from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.draft import DraftTrial, draft_trial
 from seatrial.data.draft.draft_text import run_text
 from seatrial.data.draft.guess import guess_columns
+from seatrial.data.draft.log_files import SurveyedLogs, survey_logs
 from seatrial.data.draft.manoeuvres import find_stretches
 from seatrial.data.draft.named_manoeuvre import name_contradiction
 from seatrial.data.draft.runs_of_logs import LogRun, runs_of_logs
@@ -19,6 +20,7 @@ __all__ = [
     "LogStretch",
     "LogSurvey",
     "StatedSize",
+    "SurveyedLogs",
     "TopicSummary",
     "checked_by_behaviour",
     "draft_trial",
@@ -29,4 +31,5 @@ __all__ = [
     "runs_of_logs",
     "stated_columns",
     "survey_log",
+    "survey_logs",
 ]

@@ -7,15 +7,15 @@ from pathlib import Path
 
 from seatrial.core.values import InputError, Record
 from seatrial.core.values.errors import listed
-from seatrial.core.values.files import is_folder
 from seatrial.data.draft.agreement import agreed_guesses
-from seatrial.data.draft.basin import is_in_basin
+from seatrial.data.draft.basin import is_in_basin, may_be_in_fresh_water
 from seatrial.data.draft.behaviour import checked_by_behaviour, run_record
 from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.draft_text import NO_ANTENNA, RecordsBlock, trial_text, unrecognised_columns
 from seatrial.data.draft.guess import guess_columns, with_turned_thruster, without_conflicts
 from seatrial.data.draft.header_sizes import HeaderSize, sizes_in_header
 from seatrial.data.draft.held_out import NOTHING_HELD_OUT, HeldOutRuns, can_judge, held_out_runs
+from seatrial.data.draft.log_files import survey_logs
 from seatrial.data.draft.manoeuvres import (
     find_stretches,
     has_modes,
@@ -29,13 +29,12 @@ from seatrial.data.draft.runs_of_logs import LogRun, runs_of_logs
 from seatrial.data.draft.session_text import session_line
 from seatrial.data.draft.ship_estimates import UNSTATED, StatedSize
 from seatrial.data.draft.starting_model import StartingModel, starting_model, with_wind
-from seatrial.data.draft.stated_columns import CHANNELS, NOTHING_STATED, TIME, StatedColumns, refuse_absent
+from seatrial.data.draft.stated_columns import CHANNELS, NOTHING_STATED, StatedColumns
 from seatrial.data.draft.stretch import LogStretch
-from seatrial.data.draft.survey import LogSurvey, apart_by_sheet, survey_log, with_common_ranges
+from seatrial.data.draft.survey import LogSurvey, apart_by_sheet, with_common_ranges
 from seatrial.data.draft.tables_text import tables_text
 from seatrial.data.draft.waves_text import ASSUMED
 from seatrial.data.draft.wind_columns import tells_wind, with_wind_role
-from seatrial.data.read import FORMATS
 from seatrial.data.trial.estimated_values import ESTIMATED
 from seatrial.data.trial.roll_decay_start import need_release
 from seatrial.data.trial.run_data import run_name
@@ -60,6 +59,7 @@ class DraftTrial:
         other_speeds: roll decays that are left out, a trial of their own for each speed.
         session: the line that says which runs share their offsets; empty: each has its own.
         header_sizes: what the header of the longest run says of the craft and what is not stated.
+        lacks_density: whether its water is taken for that of the sea, and the craft is often tried in fresh water.
         lacks_length: whether the length of the craft is to be stated.
         lacks_input: whether no column is an input of a model.
     """
@@ -76,6 +76,7 @@ class DraftTrial:
     other_speeds: tuple[OtherSpeed, ...] = ()
     session: str = ""
     header_sizes: tuple[HeaderSize, ...] = ()
+    lacks_density: bool = False
     lacks_length: bool = False
     lacks_input: bool = False
 
@@ -121,7 +122,8 @@ def draft_trial(
     Raises:
         InputError: no logs, one that cannot be read, or no column that is recognised.
     """
-    surveys, reasons = _surveys([Path(log) for log in logs], stated)
+    surveyed = survey_logs([Path(log) for log in logs], stated)
+    surveys = surveyed.logs
     _refuse_unwritable_names(surveys)
     runs = runs_of_logs(with_common_ranges(apart_by_sheet(surveys)))
     used = {survey.path for run in runs for survey in run.sources}
@@ -160,11 +162,12 @@ def draft_trial(
         for one in blocks
     ]
     tables = tables_text(model, [g for _, columns in blocks[0].sources for g in columns], size)
-    text = trial_text(blocks, tables, reasons | left_out, Path(folder).resolve())
+    text = trial_text(blocks, tables, {**surveyed.left_out, **left_out}, Path(folder).resolve())
     return DraftTrial(
-        text, tuple(surveys), tuple(runs), guesses[longest[0]], tuple(records), stretches, parts, held_out,
+        text, surveys, tuple(runs), guesses[longest[0]], tuple(records), stretches, parts, held_out,
         tuple(name for one in blocks[0].sources for name in unrecognised_columns(*one)), others, session,
-        sizes_in_header(runs[longest[0]].sources[0], size), bool(model.name) and not size.length, not model.name,
+        sizes_in_header(runs[longest[0]].sources[0], size), may_be_in_fresh_water(size) and "\nrho = " in text,
+        bool(model.name) and not size.length, not model.name,
     )  # fmt: skip
 
 
@@ -276,50 +279,3 @@ def _with_roles(block: RecordsBlock, model: StartingModel, held_out: HeldOutRuns
         session=session,
         has_waves=model.has_waves,
     )
-
-
-def _surveys(logs: Sequence[Path], stated: StatedColumns) -> tuple[list[LogSurvey], dict[Path, str]]:
-    """The logs, and the files of folders that are none, with the reason; a file that is named must be one."""
-    named = {log for log in logs if not is_folder(log)}
-    surveys, reasons = list[LogSurvey](), dict[Path, str]()
-    for path in _log_files(logs):
-        try:
-            survey = survey_log(path, stated)
-        except InputError as error:
-            if path in named:
-                raise
-            reasons[path] = str(error)
-            continue
-        if path in named or any(topic.time is not None for topic in survey.topics):
-            surveys.append(survey)
-        else:
-            reasons[path] = f"no column is a time{_how_to_state(survey, TIME)}"
-    if not surveys:
-        first = next(iter(reasons.items()))
-        raise InputError(f"there is no log to draft a trial of: {first[0]}: {first[1]}")
-    refuse_absent(stated, (name for one in surveys for table in one.log.tables for name in table.names))
-    return surveys, reasons
-
-
-def _how_to_state(survey: LogSurvey, meaning: str) -> str:
-    """The end of a sentence that says how a column is named: with the first one of text, or else of all."""
-    topic = next((one for one in survey.topics if one.text_columns or one.columns), None)
-    if topic is None:
-        return ""
-    heading = topic.text_columns[0] if topic.text_columns else topic.columns[0].name
-    return f"; if it is '{heading}', add --column '{heading}={meaning}'"
-
-
-def _log_files(logs: Sequence[Path]) -> list[Path]:
-    """The files, and those of known endings in the folders."""
-    known = {suffix for one in FORMATS.values() for suffix in one.suffixes}
-    files = []
-    for log in logs:
-        if is_folder(log):
-            inside = sorted(path for path in log.rglob("*") if path.is_file())
-            files += [path for path in inside if Path(path.name.removesuffix(".gz")).suffix.lower() in known]
-        else:
-            files.append(log)
-    if not files:
-        raise InputError("there is no log to draft a trial of; name files, or a folder with logs")
-    return files

@@ -1,6 +1,5 @@
 """The text of a drafted trial file: every line with its evidence, what is unsure as a comment."""
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +13,7 @@ from seatrial.data.draft.named_manoeuvre import name_contradiction
 from seatrial.data.draft.stored_parameters import antenna_place
 from seatrial.data.draft.stretch import LogStretch
 from seatrial.data.draft.survey import LogSurvey, TopicSummary
+from seatrial.data.draft.toml_values import quoted
 from seatrial.data.draft.waves_text import wave_lines
 from seatrial.data.read import ColumnSpec
 from seatrial.data.read.layout import TimeSpec
@@ -78,7 +78,7 @@ def trial_text(
 def _block_lines(block: RecordsBlock, folder: Path) -> list[str]:
     lines = ["[[records]]"]
     if block.files:
-        files = ", ".join(_quoted(_relative(survey.path, folder)) for survey in block.files)
+        files = ", ".join(quoted(_relative(survey.path, folder)) for survey in block.files)
         lines += [f"files = [{files}]", *_role_lines(block), *_antenna_lines(block)]
         for survey, guesses in block.sources:
             lines += [*_layout_lines(survey), *_channel_lines(survey, guesses)]
@@ -86,7 +86,7 @@ def _block_lines(block: RecordsBlock, folder: Path) -> list[str]:
         lines += _part_lines(dict(zip(names, block.stretches, strict=True)), block.parts)
         return [*lines, *(wave_lines(_common_speed(block.files)) if block.has_waves else [])]
     lines += [
-        f"name = {_quoted(block.name)}",
+        f"name = {quoted(block.name)}",
         *_role_lines(block),
         *_antenna_lines(block),
         *_part_lines({"": block.stretches[0]}, block.parts),
@@ -97,7 +97,7 @@ def _block_lines(block: RecordsBlock, folder: Path) -> list[str]:
             name = _comment(survey.path.name)
             lines += [f"# {name}: {line.removeprefix('# ')}" for line in _unused_lines(survey, guesses)]
         else:
-            lines += ["", "[[records.sources]]", f"file = {_quoted(_relative(survey.path, folder))}"]
+            lines += ["", "[[records.sources]]", f"file = {quoted(_relative(survey.path, folder))}"]
             lines += [*_layout_lines(survey), *_channel_lines(survey, guesses)]
     return lines
 
@@ -117,7 +117,7 @@ def _role_lines(block: RecordsBlock) -> list[str]:
     """Which runs judge the model, and from where on a decay counts."""
     names, why = block.validate.names, block.validate.why
     reason = f"kept out of the estimation, to judge the model by{f': {why}' if why else ''}; choose others if you like"
-    listed = ", ".join(map(_quoted, names))
+    listed = ", ".join(map(quoted, names))
     lines = [f"validate = {listed if len(names) == 1 else f'[{listed}]'}    # {reason}"] if names else []
     lines += [block.session] if block.session else []
     return [*lines, "from_release = true    # drops what lies before the release"] if block.is_released else lines
@@ -146,9 +146,9 @@ def _layout_lines(survey: LogSurvey) -> list[str]:
     if layout.header_lines > 1:
         lines.append(f"header_lines = {layout.header_lines}")
     if layout.encoding != "utf-8":
-        lines.append(f"encoding = {_quoted(layout.encoding)}")
+        lines.append(f"encoding = {quoted(layout.encoding)}")
     if layout.decimal != ".":
-        lines.append(f"decimal = {_quoted(layout.decimal)}")
+        lines.append(f"decimal = {quoted(layout.decimal)}")
     topic = next((one for one in survey.topics if one.time is not None), None)
     if topic is None or topic.time is None:
         why = "".join(f" ({_comment(one.time_note)})" for one in survey.topics[:1] if one.time_note)
@@ -164,12 +164,12 @@ def _layout_lines(survey: LogSurvey) -> list[str]:
 
 
 def _time_table(time: ColumnSpec) -> str:
-    parts = [f"column = {_quoted(time.source)}"]
+    parts = [f"column = {quoted(time.source)}"]
     if time.unit != "s":
-        parts.append(f"unit = {_quoted(time.unit)}")
+        parts.append(f"unit = {quoted(time.unit)}")
     if isinstance(time, TimeSpec):
         others = {"nanoseconds": time.nanoseconds, "date": time.date, "week": time.week}
-        parts += [f"{key} = {_quoted(source)}" for key, source in others.items() if source]
+        parts += [f"{key} = {quoted(source)}" for key, source in others.items() if source]
     return f"{{ {', '.join(parts)} }}"
 
 
@@ -216,9 +216,9 @@ def _unused_lines(survey: LogSurvey, guesses: Sequence[ColumnGuess]) -> list[str
 
 
 def _channel_table(guess: ColumnGuess) -> str:
-    parts = [f"column = {_quoted(guess.source)}", f"unit = {_quoted(guess.unit or '1')}"]
+    parts = [f"column = {quoted(guess.source)}", f"unit = {quoted(guess.unit or '1')}"]
     words = (("frame", guess.frame), ("positive", guess.positive), ("kind", guess.kind))
-    parts += [f"{key} = {_quoted(value)}" for key, value in words if value]
+    parts += [f"{key} = {quoted(value)}" for key, value in words if value]
     numbers = (("zero", guess.zero, 0.0), ("span", guess.span, 1.0), ("scale", guess.scale, 1.0))
     parts += [f"{key} = {value:g}" for key, value, default in numbers if value != default]
     return f"{{ {', '.join(parts)} }}"
@@ -238,9 +238,9 @@ def _part_lines(stretches: Mapping[str, Sequence[LogStretch]], parts: Sequence[S
         "parts = [",
     ]
     for name, part in offered.items():
-        used, file = used_parts(part), f"file = {_quoted(name)}, " if name else ""
+        used, file = used_parts(part), f"file = {quoted(name)}, " if name else ""
         lines += [
-            f'{"   " if one in used else "#  "} {{ {file}name = {_quoted(one.name)}, from = "{one.start:.6g} s", '
+            f'{"   " if one in used else "#  "} {{ {file}name = {quoted(one.name)}, from = "{one.start:.6g} s", '
             f'to = "{one.stop:.6g} s" }},    # {one.evidence}'
             for one in part
         ]
@@ -259,11 +259,6 @@ def run_text(stretches: Sequence[LogStretch]) -> str:
         return f"{stretches[0].name}: {stretches[0].evidence}"
     kinds = list(dict.fromkeys(one.name.rstrip("0123456789").rstrip("_").replace("_", " to ") for one in stretches))
     return f"{counted(len(stretches), 'manoeuvre')}: {', '.join(kinds)}"
-
-
-def _quoted(value: str | int) -> str:
-    """A value as TOML writes it; the escapes of JSON are those of TOML."""
-    return str(value) if isinstance(value, int) else json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def _comment(text: str) -> str:

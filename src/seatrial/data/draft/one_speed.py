@@ -49,7 +49,12 @@ def stated_options(size: StatedSize, stated: StatedColumns) -> tuple[str, ...]:
     sizes = [(one.name, getattr(size, one.name)) for one in fields(size)]
     columns = [f"{heading}={meaning}" for heading, meaning in stated.items()]
     return (
-        *(part for name, value in sizes if value for part in (f"--{name}", f"{value:g}")),
+        *(
+            part
+            for name, value in sizes
+            if value
+            for part in (f"--{name}", value if isinstance(value, str) else f"{value:g}")
+        ),
         *(part for one in columns for part in ("--column", one)),
     )
 

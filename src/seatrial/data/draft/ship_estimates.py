@@ -55,6 +55,7 @@ class StatedSize:
         rudder: area [m^2].
         gm: metacentric height [m].
         antenna: of the GNSS receiver, m forward of midship, negative abaft; None: not stated.
+        name: of the craft, as it stands in the report; empty: not stated.
     """
 
     length: float = 0.0
@@ -68,6 +69,7 @@ class StatedSize:
     rudder: float = 0.0
     gm: float = 0.0
     antenna: float | None = None
+    name: str = ""
 
     def __post_init__(self) -> None:
         for name, unit in _STATED_UNITS.items():

@@ -6,13 +6,17 @@ from seatrial.data.draft.basin import is_in_basin
 from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.ship_estimates import StatedSize, added_masses, mass_properties, stated_values
 from seatrial.data.draft.starting_model import StartingModel
+from seatrial.data.draft.toml_values import quoted
 from seatrial.data.draft.waves_text import excitation_lines, ship_in_waves
 from seatrial.data.trial.estimated_values import ESTIMATED
 
-_LEVER_SHARE = 0.15  # of the length, from the centre line to a thruster of a pair; chosen: a catamaran's hull
+# from the centre line to a thruster of a pair, of the breadth: (1 - 0.24) / 2, in the middle of each hull of a
+# catamaran that takes 0.24 of it; of the length where the breadth is not stated; both chosen
+_LEVER_OF_BEAM, _LEVER_OF_LENGTH = 0.38, 0.15
 # formulas for what the records leave open, as 'seatrial models mmg' lists them
 _FORMULAS = ("yoshimura", "zhou", "interaction", "propulsion", "displacement")
 _CURRENT = 0.3  # m/s, standard deviation of an unknown current; as the advice of the checks
+_UNNAMED = "craft"  # a craft whose name is not stated; ours
 _NO_CURRENT = (
     f"# current = {_CURRENT:g}    # m/s: taken for a model in a basin, where none runs; uncomment it for open water"
 )
@@ -32,7 +36,7 @@ def tables_text(model: StartingModel, guesses: Sequence[ColumnGuess], size: Stat
     names = ", ".join(f'"{name}"' for name in model.free)
     return [
         "[ship]",
-        'name = "craft"',
+        f"name = {quoted(size.name or _UNNAMED)}",
         *_ship_lines(model, size),
         "",
         "[model]",
@@ -40,7 +44,7 @@ def tables_text(model: StartingModel, guesses: Sequence[ColumnGuess], size: Stat
         *(_prior_lines(model) if model.has_propeller else []),
         *([f"free = [{names}]    # {model.free_reason}"] if model.free else []),
         *(["", "[model.fixed]", *(one.line for one in added_masses(size))] if model.has_derivatives else []),
-        *(thruster_tables(guesses, size.length) if model.has_thrusters else []),
+        *(thruster_tables(guesses, size) if model.has_thrusters else []),
         "",
         *(excitation_lines() if model.has_waves else []),
         *_sensor_lines(model, guesses),
@@ -85,8 +89,8 @@ def _roll_lines(size: StatedSize) -> list[str]:
     ]
 
 
-def thruster_tables(guesses: Sequence[ColumnGuess], length: float) -> list[str]:
-    """Return one table for each command, on the side that the motion or its name shows; length: m, 0: not stated."""
+def thruster_tables(guesses: Sequence[ColumnGuess], size: StatedSize) -> list[str]:
+    """Return one table for each command, on the side that the motion or its name shows."""
     used = {g.symbol: g for g in guesses if g.is_used}
     commands = [g for symbol, g in sorted(used.items()) if symbol.startswith(("command_", "rpm_"))]
     sides = [g.side for g in commands]
@@ -100,8 +104,8 @@ def thruster_tables(guesses: Sequence[ColumnGuess], length: float) -> list[str]:
         unit = ', unit = "rpm" }    # add span = the rpm at full ahead' if is_rate else " }"
         lines += [
             "", "[[thruster]]", f'name = "{name}"',
-            _place_line(length, is_turned=angle in used),
-            _lever_line(sign, length),
+            _place_line(size.length, is_turned=angle in used),
+            _lever_line(sign, size),
             *([f'angle = {{ channel = "{angle}" }}'] if angle in used else []),
             f'command = {{ channel = "{guess.symbol}"{unit}',
             *(['same_as = "starboard"    # the same coefficients'] if is_pair and name == "port" else []),
@@ -116,12 +120,13 @@ def _place_line(length: float, *, is_turned: bool) -> str:
     return f"x = {-0.5 * length:.2f}    # {ESTIMATED}: m forward of midship, of an outboard at the transom; measure it"
 
 
-def _lever_line(sign: float, length: float) -> str:
+def _lever_line(sign: float, size: StatedSize) -> str:
     """Where a thruster lies across: of a pair an estimate, which no prediction depends on."""
-    lever = sign * _LEVER_SHARE * length
+    share, origin = (_LEVER_OF_BEAM * size.beam, "B") if size.beam else (_LEVER_OF_LENGTH * size.length, "L")
+    lever = sign * share
     if not lever:
         return "y = 0.0    # m to starboard, negative to port: measure it where it is not on the centre line"
-    return f"y = {lever:.2f}    # {ESTIMATED}: m to starboard, from L; measure it: yaw coefficients go with it"
+    return f"y = {lever:.2f}    # {ESTIMATED}: m to starboard, from {origin}; measure it: yaw coefficients go with it"
 
 
 def _sensor_lines(model: StartingModel, guesses: Sequence[ColumnGuess]) -> list[str]:
