@@ -102,7 +102,8 @@ def init(
     _print_runs(draft)
     if draft.held_out.names:
         why = f" ({draft.held_out.why})" if draft.held_out.why else ""
-        print_lines([f"kept out of the estimation, to judge the model by: {', '.join(draft.held_out.names)}{why}"])
+        kept = f"kept out of the estimation, to judge the model by: {', '.join(draft.held_out.names)}"
+        print_lines([f"{kept}: {draft.held_out.share}{why}"])
     print_lines([draft.session.replace("    # ", ": ")] if draft.session else [])
     questions = draft.open_questions
     if questions:

@@ -41,8 +41,10 @@ def html(draft: DraftTrial, title: str) -> str:
     """Return the self-contained page; title: the name of the trial file beside it."""
     rows = [_column_row(g) for part in draft.guesses for g in part if g.is_used]
     sections = [
-        _run_section(number, run, record, parts)
-        for number, (run, record, parts) in enumerate(zip(draft.runs, draft.records, draft.stretches, strict=True))
+        _run_section(number, run, record, offered or stretches)
+        for number, (run, record, stretches, offered) in enumerate(
+            zip(draft.runs, draft.records, draft.stretches, draft.parts, strict=True)
+        )
         if record is not None
     ]
     context = {
@@ -52,6 +54,7 @@ def html(draft: DraftTrial, title: str) -> str:
         "rows": rows,
         "open_count": counted(len(draft.open_questions), "column") if draft.open_questions else "",
         "runs": sections,
+        "has_left_out": any(part.is_left_out for offered in draft.parts for part in offered),
         "unfolded": _OPEN_RUNS,
     }
     return page_text("draft.html", context)
@@ -77,4 +80,4 @@ def _run_section(number: int, run: LogRun, record: Record, parts: tuple[LogStret
     name = run.name or run.sources[0].path.name
     view = log_view(record, parts)
     figure = run_figure(view.run, view.spans)
-    return DrawnRun(f"run-{number}", name, counted(len(parts), "manoeuvre"), parts, figure)
+    return DrawnRun(f"run-{number}", name, counted(len(parts), "part"), parts, figure)

@@ -119,6 +119,8 @@ def test_cutting_is_inclusive_of_both_ends(record: Record) -> None:
     made = record.between(1.0, 2.0)
     assert (made.time[0], made.time[-1]) == pytest.approx((1.0, 2.0))
     assert len(made) == 11
+    since_1970 = Record.from_arrays("run", 1.7e9 + np.arange(100) * 0.1, {"u": np.zeros(100)})
+    assert len(since_1970.between(1.7e9 + 2.0, 1.7e9 + 3.0)) == 11
     with pytest.raises(InputError, match=r"'run 1' has no samples between 20 and 30 s"):
         record.between(20.0, 30.0)
 

@@ -30,7 +30,8 @@ _EVEN_STEPS, _WHOLE_RATIO, _ROUNDING = 1e-3, 1e-3, 1e-12
 MAX_SAMPLES = 10**8
 LATEST_TIME = datetime.max.replace(tzinfo=UTC).timestamp()
 """s since 1970, at the end of the year 9999: the last time that has a date."""
-_SAME_TIME = 1e-9  # s, relative beyond 1 s; ours: time stamps that near are one
+_SAME_TIME = 1e-9  # s, relative beyond 1 s from the first; ours: time stamps that near are one
+_SAME_FLOATS = 4.0  # steps between floats by which a time is rounded at most, as of clocks from 1970; chosen
 
 
 class RecordKind(StrEnum):
@@ -172,7 +173,8 @@ class Record(PickledByConstructor):
         Raises:
             InputError: no sample lies between.
         """
-        margin = _SAME_TIME * max(1.0, abs(stop))
+        near = _SAME_TIME * max(1.0, abs(stop - float(self.time[0])))
+        margin = max(near, _SAME_FLOATS * float(np.spacing(abs(stop))))
         first = int(np.searchsorted(self.time, start - margin))
         last = int(np.searchsorted(self.time, stop + margin, side="right"))
         if first >= last:

@@ -8,6 +8,7 @@ from pathlib import Path
 from seatrial.core.values import InputError, Record
 from seatrial.core.values.errors import listed
 from seatrial.data.draft.agreement import agreed_guesses
+from seatrial.data.draft.autopilot_modes import autopilot_modes
 from seatrial.data.draft.basin import is_in_basin, may_be_in_fresh_water
 from seatrial.data.draft.behaviour import checked_by_behaviour, run_record
 from seatrial.data.draft.column_guess import ColumnGuess
@@ -16,21 +17,15 @@ from seatrial.data.draft.guess import guess_columns, with_turned_thruster, witho
 from seatrial.data.draft.header_sizes import HeaderSize, sizes_in_header
 from seatrial.data.draft.held_out import NOTHING_HELD_OUT, HeldOutRuns, can_judge, held_out_runs
 from seatrial.data.draft.log_files import survey_logs
-from seatrial.data.draft.manoeuvres import (
-    find_stretches,
-    has_modes,
-    numbered,
-    offered_parts,
-    two_thirds_and_a_third,
-    used_parts,
-)
+from seatrial.data.draft.log_partition import parts_without_gaps
+from seatrial.data.draft.manoeuvres import find_stretches, numbered, offered_parts, two_thirds_and_a_third
 from seatrial.data.draft.one_speed import OtherSpeed, runs_by_speed, stated_options
 from seatrial.data.draft.runs_of_logs import LogRun, runs_of_logs
 from seatrial.data.draft.session_text import session_line
 from seatrial.data.draft.ship_estimates import UNSTATED, StatedSize
 from seatrial.data.draft.starting_model import StartingModel, starting_model, with_wind
 from seatrial.data.draft.stated_columns import CHANNELS, NOTHING_STATED, StatedColumns
-from seatrial.data.draft.stretch import LogStretch
+from seatrial.data.draft.stretch import LogStretch, used_parts
 from seatrial.data.draft.survey import LogSurvey, apart_by_sheet, with_common_ranges
 from seatrial.data.draft.tables_text import tables_text
 from seatrial.data.draft.waves_text import ASSUMED
@@ -40,6 +35,7 @@ from seatrial.data.trial.roll_decay_start import need_release
 from seatrial.data.trial.run_data import run_name
 
 _NOZZLE = re.compile("nozzle|jet|bucket", re.IGNORECASE)  # in the name of a column that steers by the jet itself
+_MIXED = "mixed"  # kind of a run that holds several manoeuvres, or none that is recognised; ours
 _RUNS_EXAMINED = 6  # the longest, whose motion is compared with the guesses; chosen: some show what others do not
 
 
@@ -144,16 +140,16 @@ def draft_trial(
     has_jet = any(_NOZZLE.search(str(g.source)) for one in guesses[longest[0]] for g in one if g.symbol == "delta")
     model = starting_model(symbols, records, size, has_jet=has_jet)
     # whatever a craft with thrusters does shows them: its runs stay whole where one can judge the others
-    parts = tuple(() for _ in runs) if model.has_thrusters and len(runs) > 1 else offered_parts(records, stretches)
+    parts = _thruster_parts(runs, records, stretches) if model.has_thrusters else offered_parts(records, stretches)
     pieces = _pieces(runs, records, parts)
     model = starting_model(symbols, list(pieces.values()), size, has_jet=has_jet) if pieces else model
     has_wind = model.has_propeller and tells_wind(guesses[longest[0]])
     model = with_wind(model, size) if has_wind else model
     guesses = [with_wind_role(parts, is_taken=has_wind) for parts in guesses]
-    held_out = held_out_runs(model, pieces)
+    held_out = held_out_runs(model, pieces, _kinds(runs, stretches, parts))
     is_model_test = model.has_forces_of_a_ship and is_in_basin((g for one in guesses[longest[0]] for g in one), size)
     session = session_line(runs, is_in_basin=is_model_test)
-    if model.has_thrusters and len(runs) == 1 and records[0] is not None and pieces:
+    if model.has_thrusters and len(runs) == 1 and records[0] is not None and not held_out.has_several:
         parts, held_out = _in_two(model, runs, records[0], stretches[0]) or (parts, held_out)
     blocks = _blocks(runs, guesses, stretches, parts, longest[0])
     is_released = model.swings and need_release(list(pieces.values()))
@@ -230,8 +226,33 @@ def _pieces(
             return {}
         origin = float(record.time[0])
         cut = {one.name: record.between(origin + one.start, origin + one.stop) for one in used_parts(offered)}
-        pieces |= cut or {run.name or run_name(run.sources[0].path): record}
+        pieces |= cut or {_whole_name(run): record}
     return pieces
+
+
+def _thruster_parts(
+    runs: Sequence[LogRun], records: Sequence[Record | None], stretches: Sequence[Sequence[LogStretch]]
+) -> tuple[tuple[LogStretch, ...], ...]:
+    """The parts of the only log, of which nothing is left out; none of several, which stay whole."""
+    if len(runs) > 1 or records[0] is None:
+        return tuple(() for _ in runs)
+    return (parts_without_gaps(records[0], stretches[0], autopilot_modes(runs[0].sources, records[0])),)
+
+
+def _kinds(
+    runs: Sequence[LogRun], stretches: Sequence[Sequence[LogStretch]], parts: Sequence[Sequence[LogStretch]]
+) -> dict[str, str]:
+    """The kind of manoeuvre of each run of the trial; of a whole one with several, that it is mixed."""
+    kinds = dict[str, str]()
+    for run, found, offered in zip(runs, stretches, parts, strict=True):
+        whole = found[0].kind if len(found) == 1 else _MIXED
+        cut = {one.name: one.kind for one in used_parts(offered)}
+        kinds |= cut or {_whole_name(run): whole}
+    return kinds
+
+
+def _whole_name(run: LogRun) -> str:
+    return run.name or run_name(run.sources[0].path)
 
 
 def _in_two(
@@ -242,13 +263,14 @@ def _in_two(
     Whatever such a craft does shows its thrusters, so that nothing is left out. None where no third can be held out, or
     an autopilot's modes cut the log.
     """
-    if has_modes(runs[0].sources, record):
+    if len(autopilot_modes(runs[0].sources, record)) > 1:
         return None
     for is_last in (True, False):
         parts = (two_thirds_and_a_third(record, stretches, is_last=is_last),)
         name = parts[0][1 if is_last else 0].name
         if can_judge(model, name, _pieces(runs, [record], parts)):
-            return parts, HeldOutRuns((name,), "a third of the log; what is ordered in it the rest holds, too")
+            held_out = HeldOutRuns((name,), "a third of the log; what is ordered in it the rest holds, too")
+            return parts, held_out.timed(_pieces(runs, [record], parts))
     return None
 
 

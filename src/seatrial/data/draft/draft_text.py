@@ -1,17 +1,17 @@
 """The text of a drafted trial file: every line with its evidence, what is unsure as a comment."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 from seatrial.core.text.words import counted
 from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.header_sizes import speed_in_header
 from seatrial.data.draft.held_out import NOTHING_HELD_OUT, HeldOutRuns
-from seatrial.data.draft.manoeuvres import used_parts
 from seatrial.data.draft.named_manoeuvre import name_contradiction
 from seatrial.data.draft.stored_parameters import antenna_place
-from seatrial.data.draft.stretch import LogStretch
+from seatrial.data.draft.stretch import LogStretch, used_parts
 from seatrial.data.draft.survey import LogSurvey, TopicSummary
 from seatrial.data.draft.toml_values import quoted
 from seatrial.data.draft.waves_text import wave_lines
@@ -116,7 +116,8 @@ def _without_evidence(line: str) -> str:
 def _role_lines(block: RecordsBlock) -> list[str]:
     """Which runs judge the model, and from where on a decay counts."""
     names, why = block.validate.names, block.validate.why
-    reason = f"kept out of the estimation, to judge the model by{f': {why}' if why else ''}; choose others if you like"
+    kept = f"{block.validate.share}, kept out of the estimation, to judge the model by"
+    reason = f"{kept}{f': {why}' if why else ''}; choose others if you like"
     listed = ", ".join(map(quoted, names))
     lines = [f"validate = {listed if len(names) == 1 else f'[{listed}]'}    # {reason}"] if names else []
     lines += [block.session] if block.session else []
@@ -234,7 +235,7 @@ def _part_lines(stretches: Mapping[str, Sequence[LogStretch]], parts: Sequence[S
     if not offered:
         return lines
     lines += [
-        "# Each of these parts is a run of its own; what lies between them is not used.",
+        f"# Each of these parts is a run of its own{_left_out_text(offered.values())}.",
         "parts = [",
     ]
     for name, part in offered.items():
@@ -245,6 +246,12 @@ def _part_lines(stretches: Mapping[str, Sequence[LogStretch]], parts: Sequence[S
             for one in part
         ]
     return [*lines, "]"]
+
+
+def _left_out_text(parts: Iterable[Sequence[LogStretch]]) -> str:
+    """What of the logs no part holds, as it follows upon what the parts are."""
+    has_gaps = any(after.start > before.stop for part in parts for before, after in pairwise(used_parts(part)))
+    return "; what lies between them is not used" if has_gaps else ", each from where the one before ends"
 
 
 def _run_line(name: str, stretches: Sequence[LogStretch]) -> str:

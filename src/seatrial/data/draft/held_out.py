@@ -1,15 +1,23 @@
 """The runs that judge the model of a draft: what tests it most, and no repeat of what trains where there is another."""
 
+import math
+from collections import Counter
 from collections.abc import Mapping, Sequence, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
+from types import MappingProxyType
 
 import numpy as np
 
+from seatrial.core.text.numbers import duration
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Record
+from seatrial.data.draft.held_out_kinds import CIRCLE, ZIGZAG, JudgingRuns, kind_of_orders, share_of_time
 from seatrial.data.draft.starting_model import StartingModel
-from seatrial.physics.manoeuvres import ManoeuvreKind, SteeredOrders, steered_orders
+from seatrial.physics.manoeuvres import SteeredOrders, steered_orders
 
+_NO_KINDS: Mapping[str, str] = MappingProxyType({})
+_LEAST_SHARE = 0.2  # of the time of all runs of a craft with thrusters that judges its model, if it can be; chosen
 _CHOICE = 3  # manoeuvres from which on the middle one by size is held out
 _HARDLY_STEERED = 0.3  # of the largest size of the inputs of a run, below which a run judges nothing; chosen
 # of the range of an input in the other runs, by which a run may leave it and still lie within; by which one may where
@@ -19,32 +27,72 @@ _BEYOND, _FARTHER_BEYOND = 0.05, 0.25
 
 @dataclass(frozen=True)
 class HeldOutRuns:
-    """The runs that are kept out of the estimation, and why these; empty: none can judge the model."""
+    """The runs that are kept out of the estimation, and why these; empty: none can judge the model.
+
+    has_several: whether they are of several kinds, or as many of one as the others allow. seconds: that they last.
+    seconds_in_all: that all runs last.
+    """
 
     names: tuple[str, ...] = ()
     why: str = ""
+    has_several: bool = False
+    seconds: float = 0.0
+    seconds_in_all: float = 0.0
+
+    @property
+    def share(self) -> str:
+        """How much judges the model, for people."""
+        return f"{duration(self.seconds)} of {duration(self.seconds_in_all)}"
+
+    def timed(self, records: Mapping[str, Record]) -> "HeldOutRuns":
+        """Return them with how long they and all runs last."""
+        seconds = {name: record.duration for name, record in records.items()}
+        held = math.fsum(seconds[name] for name in self.names)
+        return replace(self, seconds=held, seconds_in_all=math.fsum(seconds.values()))
 
 
 NOTHING_HELD_OUT = HeldOutRuns()
 """No run can judge the model."""
 
 
-def held_out_runs(model: StartingModel, records: Mapping[str, Record]) -> HeldOutRuns:
+def held_out_runs(
+    model: StartingModel, records: Mapping[str, Record], kinds: Mapping[str, str] = _NO_KINDS
+) -> HeldOutRuns:
     """Return the runs to judge the model by.
 
-    A model with propeller and rudder is judged by the turning circles to one side where those to the other and a
-    zigzag train it: what no run steers it hardly predicts. Else it is the upper middle one by size of the manoeuvres
-    whose inputs lie within the others', with its repeats; of two the smaller one, since the larger one shows more to
-    the estimate. Where nothing but a repeat can be held out, that is said.
+    A model of a ship's propeller and rudder, or of thrusters, is judged by manoeuvres of several kinds of which two at
+    least train it; of a ship without so many by the turning circles to one side where those to the other and a zigzag
+    train it, or by one zigzag where there are as many of these. Else it is the upper middle one by size of the
+    manoeuvres whose inputs lie within the others', with its repeats; of two the smaller one, since the larger one shows
+    more to the estimate. Where nothing but a repeat can be held out, that is said.
 
     Empty where there is none: a model is not judged beyond the runs that it is fitted to, nor by one that hardly
     steers.
+
+    Args:
+        model: decides which rule holds.
+        records: of the runs.
+        kinds: of the manoeuvres of the runs, of a craft that no rudder steers.
     """
+    return _chosen(model, records, kinds).timed(records)
+
+
+def _chosen(model: StartingModel, records: Mapping[str, Record], kinds: Mapping[str, str]) -> HeldOutRuns:
     if not model.inputs:
         return NOTHING_HELD_OUT
     orders = {name: steered_orders(one) if "delta" in model.inputs else None for name, one in records.items()}
     groups = _repeats(orders)
+    kinds = (
+        {name: kind_of_orders(one) for name, one in orders.items()}
+        if model.has_propeller
+        else kinds or dict.fromkeys(records, "")
+    )
+    several = _of_several_kinds(model, records, orders, kinds)
+    if several is not None:
+        return several
     if model.has_propeller and (circles := _circles_to_one_side(orders)):
+        if zigzags := _zigzags_instead(model, records, groups, kinds):
+            return HeldOutRuns(zigzags, "circles to either side are fitted, of which there are no others")
         return HeldOutRuns(circles, "circles to one side; those to the other are fitted")
     if middle := _middle(model, records, groups):
         return HeldOutRuns(middle)
@@ -55,16 +103,47 @@ def held_out_runs(model: StartingModel, records: Mapping[str, Record]) -> HeldOu
     return HeldOutRuns(single, f"a repeat of {enumeration(repeated)}: it tests no other manoeuvre, record one")
 
 
+def _of_several_kinds(
+    model: StartingModel,
+    records: Mapping[str, Record],
+    orders: Mapping[str, SteeredOrders | None],
+    kinds: Mapping[str, str],
+) -> HeldOutRuns | None:
+    """The runs of several kinds, or of the one of which there are enough; None where there are not enough of any."""
+    if not (model.has_propeller or model.has_thrusters):
+        return None
+    sizes = {name: _size(model, record) for name, record in records.items()}
+    steered = [one for one in _repeats(orders) if sizes[one[0]] > _HARDLY_STEERED * max(sizes.values())]
+    least = _LEAST_SHARE if model.has_thrusters else 0.0
+    within = (partial(_lie_within, model, records=records, beyond=share) for share in (_BEYOND, _FARTHER_BEYOND))
+    choices = [JudgingRuns(records, steered, kinds, sizes, orders, one).of_several_kinds(least) for one in within]
+    able = [one for one in choices if one]
+    if not able:
+        return None
+    enough = [one for one in able if share_of_time(one, records) >= least]
+    in_order = tuple(sorted((enough or able)[0], key=list(records).index))
+    return HeldOutRuns(in_order, "at least two of each of their kinds are fitted", has_several=True)
+
+
 def can_judge(model: StartingModel, name: str, records: Mapping[str, Record]) -> bool:
     """Return whether a run can judge the model: what is ordered in it the other runs hold, too."""
-    return bool(model.inputs) and _lie_within(model, {name}, records, _FARTHER_BEYOND)
+    return bool(model.inputs) and _lie_within(model, {name}, records=records, beyond=_FARTHER_BEYOND)
+
+
+def _zigzags_instead(
+    model: StartingModel, records: Mapping[str, Record], groups: Sequence[tuple[str, ...]], kinds: Mapping[str, str]
+) -> tuple[str, ...]:
+    """The middle group of zigzags, where there are as many as circles and others are left; else nothing."""
+    counts = Counter(kinds.values())
+    zigzags = [group for group in groups if kinds[group[0]] == ZIGZAG and len(group) < counts[ZIGZAG]]
+    return _middle(model, records, zigzags) if counts[ZIGZAG] >= counts[CIRCLE] else ()
 
 
 def _circles_to_one_side(orders: Mapping[str, SteeredOrders | None]) -> tuple[str, ...]:
     """The turning circles to the side of fewer, else to port, where there are others and a zigzag; else nothing."""
     port = tuple(name for name, one in orders.items() if one is not None and one.is_turn and one.rudder < 0.0)
     starboard = tuple(name for name, one in orders.items() if one is not None and one.is_turn and one.rudder > 0.0)
-    has_zigzag = any(one is not None and one.kind is ManoeuvreKind.ZIGZAG for one in orders.values())
+    has_zigzag = any(kind_of_orders(one) == ZIGZAG for one in orders.values())
     if not has_zigzag or not port or not starboard:
         return ()
     return port if len(port) <= len(starboard) else starboard
@@ -88,14 +167,15 @@ def _middle(model: StartingModel, records: Mapping[str, Record], groups: Sequenc
     sizes = {name: _size(model, record) for name, record in records.items()}
     steered = [group for group in groups if sizes[group[0]] > _HARDLY_STEERED * max(sizes.values())]
     within = (
-        [g for g in steered if _lie_within(model, set(g), records, share)] for share in (_BEYOND, _FARTHER_BEYOND)
+        [g for g in steered if _lie_within(model, set(g), records=records, beyond=share)]
+        for share in (_BEYOND, _FARTHER_BEYOND)
     )
     inside = next((found for found in within if found), [])
     ordered = sorted(inside, key=lambda group: sizes[group[0]])
     return ordered[len(ordered) // 2 if len(ordered) >= _CHOICE else 0] if ordered else ()
 
 
-def _lie_within(model: StartingModel, names: Set[str], records: Mapping[str, Record], beyond: float) -> bool:
+def _lie_within(model: StartingModel, names: Set[str], *, records: Mapping[str, Record], beyond: float) -> bool:
     """Whether the inputs of runs stay in the range of those of the other runs, of which there are as many at least."""
     rest = [record for name, record in records.items() if name not in names]
     for symbol in model.inputs:

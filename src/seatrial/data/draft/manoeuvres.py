@@ -1,11 +1,11 @@
 """Manoeuvres in a long log, found by heading, speed, rudder and roll; cut where the mode of an autopilot changes."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from itertools import pairwise
+from dataclasses import replace
 
 from seatrial.core.values import InputError, Record
 from seatrial.data.check.approach_phase import approach_fault
+from seatrial.data.draft.autopilot_modes import AutopilotMode, autopilot_modes
 from seatrial.data.draft.motion_stretches import (
     DECAY,
     SHORTEST_STRAIGHT_S,
@@ -25,26 +25,6 @@ _MOST_STRETCHES = 12  # offered of one run; the longest
 # of a manoeuvre's time, and s at least, that its part shows of the approach: measures need the execute; chosen
 _APPROACH_SHARE, _APPROACH_S = 0.1, 10.0
 _FINDERS: tuple[Callable[[Record], list[LogStretch]], ...] = (turning_stretches, spirals, stops)
-# PX4, msg/VehicleStatus.msg: number of a navigation state -> its name
-_PX4_STATES = {0: "MANUAL", 1: "ALTCTL", 2: "POSCTL", 3: "AUTO", 4: "LOITER", 5: "RTL", 10: "ACRO", 14: "OFFBOARD",
-               15: "STABILIZED", 17: "TAKEOFF", 18: "LAND"}  # fmt: skip
-_WITHOUT_CONTROLLER = ("MANUAL", "INITIALISING")
-
-
-@dataclass(frozen=True)
-class _Mode:
-    """A mode of the autopilot: start and stop on the clock of the log [s]."""
-
-    name: str
-    start: float
-    stop: float
-
-    @property
-    def text(self) -> str:
-        """What it means for an estimate."""
-        if self.name in _WITHOUT_CONTROLLER:
-            return f"mode {self.name}: no controller"
-        return f"mode {self.name}: a controller is on, its orders follow the motion"
 
 
 def find_stretches(surveys: Sequence[LogSurvey], record: Record | None) -> tuple[LogStretch, ...]:
@@ -55,15 +35,10 @@ def find_stretches(surveys: Sequence[LogSurvey], record: Record | None) -> tuple
     """
     if record is None:
         return ()
-    modes = _modes(surveys, record)
+    modes = autopilot_modes(surveys, record)
     stretches = [one for mode in modes for one in _in_mode(record, mode)] if modes else _manoeuvres_of(record)
     longest = sorted(stretches, key=lambda one: one.start - one.stop)[:_MOST_STRETCHES]
     return tuple(sorted(longest, key=lambda one: one.start))
-
-
-def has_modes(surveys: Sequence[LogSurvey], record: Record) -> bool:
-    """Return whether the logs say in which mode an autopilot was."""
-    return bool(_modes(surveys, record))
 
 
 def numbered(runs: Sequence[Sequence[LogStretch]]) -> tuple[tuple[LogStretch, ...], ...]:
@@ -84,10 +59,11 @@ def offered_parts(
 ) -> tuple[tuple[LogStretch, ...], ...]:
     """Return the stretches of each run that are offered as runs of their own; empty where the run stays whole.
 
-    It stays whole where it is one roll decay, or manoeuvres fill it and it is one of several runs or holds but one.
+    Straight ones are left out where there are others. A run stays whole where it is one roll decay, or manoeuvres fill
+    it and it is one of several runs or holds but one.
     """
     return tuple(
-        () if record is not None and _is_whole(record, run, len(records)) else tuple(run)
+        () if record is not None and _is_whole(record, run, len(records)) else _without_straight(run)
         for record, run in zip(records, stretches, strict=True)
     )
 
@@ -105,9 +81,12 @@ def two_thirds_and_a_third(record: Record, stretches: Sequence[LogStretch], *, i
     )
 
 
-def used_parts(offered: Sequence[LogStretch]) -> tuple[LogStretch, ...]:
-    """Return those of the offered stretches of a run that are runs of their own; straight ones only where all are."""
-    return tuple(one for one in offered if not one.name.startswith(STRAIGHT)) or tuple(offered)
+def _without_straight(stretches: Sequence[LogStretch]) -> tuple[LogStretch, ...]:
+    """The stretches, of which straight ones are left out where there are others."""
+    is_straight = [one.name.startswith(STRAIGHT) for one in stretches]
+    if all(is_straight):
+        return tuple(stretches)
+    return tuple(replace(one, is_left_out=out) for one, out in zip(stretches, is_straight, strict=True))
 
 
 def _is_whole(record: Record, stretches: Sequence[LogStretch], count: int) -> bool:
@@ -183,25 +162,7 @@ def _outside(straight: LogStretch, manoeuvres: Sequence[LogStretch]) -> list[Log
     return pieces
 
 
-def _modes(surveys: Sequence[LogSurvey], record: Record) -> list[_Mode]:
-    events = sorted(
-        (event.time, _mode_name(event.name)) for one in surveys for event in one.log.events if _mode_name(event.name)
-    )
-    start, end = float(record.time[0]), float(record.time[-1])
-    pairs = pairwise([*events, (end, "")])
-    modes = [_Mode(name, max(time, start), min(stop, end)) for (time, name), (stop, _) in pairs]
-    return [one for one in modes if one.stop - one.start > 0.0]
-
-
-def _mode_name(event: str) -> str:
-    """The name of a mode; empty for another event."""
-    kind, _, name = event.partition(" ")
-    if kind == "nav_state" and name.isdecimal():
-        return _PX4_STATES.get(int(name), name)
-    return name if kind == "MODE" else ""
-
-
-def _in_mode(record: Record, mode: _Mode) -> list[LogStretch]:
+def _in_mode(record: Record, mode: AutopilotMode) -> list[LogStretch]:
     """The manoeuvres within a mode; the mode itself where there are none and it lasts."""
     try:
         part = record.between(mode.start, mode.stop)

@@ -1,5 +1,6 @@
 """A stretch of a log that is a manoeuvre, and the signals in which manoeuvres are sought."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,6 +23,7 @@ class LogStretch:
         start, stop: s after the first sample.
         evidence: what shows it.
         released: s after the first sample from which on the rudder is amidships to the stop; None: it is not.
+        is_left_out: whether it is offered as a run, and not used unless a person says so.
     """
 
     name: str
@@ -29,6 +31,17 @@ class LogStretch:
     stop: float
     evidence: str
     released: float | None = None
+    is_left_out: bool = False
+
+    @property
+    def kind(self) -> str:
+        """What it is, without side and number."""
+        return self.name.partition("_")[0].rstrip("0123456789")
+
+
+def used_parts(offered: Sequence[LogStretch]) -> tuple[LogStretch, ...]:
+    """Return those of the offered stretches of a run that are runs of their own."""
+    return tuple(one for one in offered if not one.is_left_out)
 
 
 def padded(record: Record, values: Array) -> Array:
