@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from seatrial.data.draft.one_speed import OtherSpeed
 
 COLUMNS_SHOWN = 12  # columns of a topic that `check` lists without --all; ours, one screen for a log of a few topics
+REASONS_SHOWN = 3  # why known columns are not needed, of which the file has all; ours
 DIGITS = 5  # significant ones of a range; chosen
 DRAFT = Path("trial.toml")  # what a drafted trial file is named; ours
 _NAMES = (0, 2)  # the column that holds names of the log, in the table of a topic and in that of guesses
@@ -65,6 +66,7 @@ def init(
     from seatrial.core.text.words import counted
     from seatrial.core.values import InputError
     from seatrial.core.values.files import write_atomically
+    from seatrial.data.draft import not_needed_text
     from seatrial.reporting.draft import html as draft_page
 
     page = out.with_suffix(".html")
@@ -95,6 +97,8 @@ def init(
     if ignored:
         more = f" and {len(ignored) - COLUMNS_SHOWN} more" if len(ignored) > COLUMNS_SHOWN else ""
         print_lines([f"NOTE not recognised, not used: {', '.join(ignored[:COLUMNS_SHOWN])}{more}"])
+    known = not_needed_text(draft.not_needed, REASONS_SHOWN)
+    print_lines([f"NOTE known, not needed: {known}"] if known else [])
     if draft.header_sizes:
         says = ", ".join(one.text for one in draft.header_sizes)
         print_lines([f"NOTE the header says {says}, not used: {' '.join(one.option for one in draft.header_sizes)}"])

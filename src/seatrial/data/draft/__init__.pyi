@@ -6,6 +6,7 @@ from seatrial.data.draft.guess import guess_columns
 from seatrial.data.draft.log_files import SurveyedLogs, survey_logs
 from seatrial.data.draft.manoeuvres import find_stretches
 from seatrial.data.draft.named_manoeuvre import name_contradiction
+from seatrial.data.draft.not_needed import not_needed_text
 from seatrial.data.draft.runs_of_logs import LogRun, runs_of_logs
 from seatrial.data.draft.ship_estimates import StatedSize
 from seatrial.data.draft.stated_columns import stated_columns
@@ -27,6 +28,7 @@ __all__ = [
     "find_stretches",
     "guess_columns",
     "name_contradiction",
+    "not_needed_text",
     "run_text",
     "runs_of_logs",
     "stated_columns",

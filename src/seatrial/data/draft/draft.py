@@ -1,8 +1,8 @@
 """A trial file drafted from logs: every guess with its evidence, what is unsure as a commented line."""
 
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from seatrial.core.values import InputError, Record
@@ -12,7 +12,7 @@ from seatrial.data.draft.autopilot_modes import autopilot_modes
 from seatrial.data.draft.basin import is_in_basin, may_be_in_fresh_water
 from seatrial.data.draft.behaviour import checked_by_behaviour, run_record
 from seatrial.data.draft.column_guess import ColumnGuess
-from seatrial.data.draft.draft_text import NO_ANTENNA, RecordsBlock, trial_text, unrecognised_columns
+from seatrial.data.draft.draft_text import NO_ANTENNA, RecordsBlock, known_unneeded, trial_text, unrecognised_columns
 from seatrial.data.draft.guess import guess_columns, with_turned_thruster, without_conflicts
 from seatrial.data.draft.header_sizes import HeaderSize, sizes_in_header
 from seatrial.data.draft.held_out import NOTHING_HELD_OUT, HeldOutRuns, can_judge, held_out_runs
@@ -51,7 +51,8 @@ class DraftTrial:
         records: of each run, even and complete; None where its columns make none.
         stretches: manoeuvres found, of each run; parts: those of them that are runs of their own.
         held_out: the runs that judge the model; empty: none can.
-        unrecognised: columns of the longest run that stand for no channel.
+        unrecognised: columns of the longest run that stand for nothing that is known.
+        not_needed: those that are known and stand for no channel, with the reason.
         other_speeds: roll decays that are left out, a trial of their own for each speed.
         session: the line that says which runs share their offsets; empty: each has its own.
         header_sizes: what the header of the longest run says of the craft and what is not stated.
@@ -69,6 +70,7 @@ class DraftTrial:
     parts: tuple[tuple[LogStretch, ...], ...] = ()
     held_out: HeldOutRuns = NOTHING_HELD_OUT
     unrecognised: tuple[str, ...] = ()
+    not_needed: Mapping[str, str] = field(default_factory=dict)
     other_speeds: tuple[OtherSpeed, ...] = ()
     session: str = ""
     header_sizes: tuple[HeaderSize, ...] = ()
@@ -161,7 +163,8 @@ def draft_trial(
     text = trial_text(blocks, tables, {**surveyed.left_out, **left_out}, Path(folder).resolve())
     return DraftTrial(
         text, surveys, tuple(runs), guesses[longest[0]], tuple(records), stretches, parts, held_out,
-        tuple(name for one in blocks[0].sources for name in unrecognised_columns(*one)), others, session,
+        tuple(name for one in blocks[0].sources for name in unrecognised_columns(*one)),
+        {name: why for one in blocks[0].sources for name, why in known_unneeded(*one).items()}, others, session,
         sizes_in_header(runs[longest[0]].sources[0], size), may_be_in_fresh_water(size) and "\nrho = " in text,
         bool(model.name) and not size.length, not model.name,
     )  # fmt: skip

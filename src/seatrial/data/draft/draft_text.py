@@ -10,6 +10,7 @@ from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.header_sizes import speed_in_header
 from seatrial.data.draft.held_out import NOTHING_HELD_OUT, HeldOutRuns
 from seatrial.data.draft.named_manoeuvre import name_contradiction
+from seatrial.data.draft.not_needed import columns_not_needed, not_needed_text
 from seatrial.data.draft.stored_parameters import antenna_place
 from seatrial.data.draft.stretch import LogStretch, used_parts
 from seatrial.data.draft.survey import LogSurvey, TopicSummary
@@ -191,8 +192,18 @@ def _channel_lines(survey: LogSurvey, guesses: Sequence[ColumnGuess]) -> list[st
     return [*lines, *_unused_lines(survey, guesses)]
 
 
+def known_unneeded(survey: LogSurvey, guesses: Sequence[ColumnGuess]) -> dict[str, str]:
+    """Return the columns that are known and stand for no channel, as none is needed, with the reason."""
+    return columns_not_needed(_without_channel(survey, guesses), {g.symbol for g in guesses if g.is_used})
+
+
 def unrecognised_columns(survey: LogSurvey, guesses: Sequence[ColumnGuess]) -> list[str]:
-    """Return the names of columns that stand for no channel: by name nothing, or text."""
+    """Return the names of columns that stand for nothing that is known: by name nothing, or text."""
+    known = known_unneeded(survey, guesses)
+    return [name for name in _without_channel(survey, guesses) if name not in known]
+
+
+def _without_channel(survey: LogSurvey, guesses: Sequence[ColumnGuess]) -> list[str]:
     known = {str(guess.source) for guess in guesses if guess.is_used or guess.unused_because}
     return [
         name for topic in survey.topics for name in (*_column_names(topic), *topic.text_columns) if name not in known
@@ -213,6 +224,8 @@ def _unused_lines(survey: LogSurvey, guesses: Sequence[ColumnGuess]) -> list[str
     more = f", and {len(rest) - _UNUSED_SHOWN} more ('seatrial check {survey.path.name}' lists them)"
     shown = ", ".join(rest[:_UNUSED_SHOWN]) + (more if len(rest) > _UNUSED_SHOWN else "")
     lines = [f"# not used: {_comment(', '.join(recognised))}"] if recognised else []
+    known = known_unneeded(survey, guesses)
+    lines += [f"# known, not needed: {_comment(not_needed_text(known))}"] if known else []
     return [*lines, f"# not used, names not recognised: {_comment(shown)}"] if rest else lines
 
 

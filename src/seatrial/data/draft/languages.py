@@ -4,6 +4,7 @@ Danish, Dutch, French, German, Italian, Norwegian, Portuguese, Spanish and Swedi
 have them; in small letters, accents off, words joined by underscores.
 """
 
+import re
 import unicodedata
 
 _HEADINGS = {
@@ -54,6 +55,11 @@ def without_accents(text: str) -> str:
     """Return a text in small letters, without accents."""
     apart = unicodedata.normalize("NFKD", text.lower().translate(_LETTERS))
     return "".join(letter for letter in apart if not unicodedata.combining(letter))
+
+
+def plain_name(name: str) -> str:
+    """Return a heading in small letters and figures without accents, with a line between words."""
+    return re.sub(r"[^a-z0-9]+", "_", without_accents(name)).strip("_")
 
 
 def in_english(plain: str) -> str:

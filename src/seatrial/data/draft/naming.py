@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from seatrial.core.values import InputError, si_unit
 from seatrial.core.values.units import UNIT_WORDS
-from seatrial.data.draft.languages import in_english, without_accents
+from seatrial.data.draft.languages import in_english, plain_name
 from seatrial.data.draft.stored_parameters import PX4_MAIN_OUTPUTS
 from seatrial.data.read.quantities import log_quantity
 
@@ -244,7 +244,7 @@ def guess_by_name(topic: str, name: str, stated_unit: str, log_format: str = "te
     names = [one for one in _WORDS if one.symbol.startswith("command_")] if _ORDERS.search(last.lower()) else _WORDS
     unit = _known_unit(stated_unit) or bracketed_unit(name)
     bare = _BRACKETS.sub("", name)
-    for text, word_unit in (*_readings(_plain(bare)), *_readings(_plain(_CAPITALS.sub("_", bare)))):
+    for text, word_unit in (*_readings(plain_name(bare)), *_readings(plain_name(_CAPITALS.sub("_", bare)))):
         for rule in names:
             match = re.fullmatch(rule.pattern, in_english(text))
             guess = _guess(rule, match, unit or word_unit, "its name") if match else None
@@ -255,7 +255,7 @@ def guess_by_name(topic: str, name: str, stated_unit: str, log_format: str = "te
 
 def command_of_topic(topic: str, unit: str = "") -> NameGuess | None:
     """Return what the only field of a message is whose topic is called after a thruster, as ``thrusters/left/cmd``."""
-    parts = [_plain(_CAPITALS.sub("_", part)) for part in topic.split("/")]
+    parts = [plain_name(_CAPITALS.sub("_", part)) for part in topic.split("/")]
     for count in range(1, _TOPIC_PARTS + 1):
         name = "_".join(parts[-count:])
         for rule in _WORDS:
@@ -263,11 +263,6 @@ def command_of_topic(topic: str, unit: str = "") -> NameGuess | None:
             if match:
                 return _guess(rule, match, unit, f"its topic {parts[-1]}")
     return None
-
-
-def _plain(name: str) -> str:
-    """A heading in small letters and figures, with a line between words."""
-    return re.sub(r"[^a-z0-9]+", "_", without_accents(name)).strip("_")
 
 
 def bracketed_unit(name: str) -> str:
