@@ -54,6 +54,8 @@ def test_only_a_craft_unstable_beyond_its_interval_has_the_row(fit: Fit) -> None
         "course unstable: a deviation grows by a factor e in 1.5 s [1.4, 1.7] at 1.4 m/s; without steering"
     )
     assert fact in key_facts(with_course(fit, unstable(1.5)))
+    (limited,) = course_facts(with_course(fit, replace(unstable(1.5), stable_below=1.1)))
+    assert "at 1.4 m/s, course stable below about 1.1 m/s; without steering" in limited.text
 
 
 @pytest.mark.parametrize(("low", "text"), [(0.5, "in 1.0 s [0.67, 2.0]"), (-0.1, "in 1.0 s"), (None, "in 1.0 s")])

@@ -256,4 +256,4 @@ def course_findings(
         1.0 if model.ship is None else model.ship.particulars.get("L", 1.0),
         ahead,
     )
-    return course_finding(model.model, course, approach, ahead)
+    return course_finding(model.model, course, approach)

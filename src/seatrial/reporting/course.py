@@ -35,6 +35,8 @@ def course_facts(fit: Fit) -> tuple[KeyFact, ...]:
     if course is None:
         return ()
     speed = f" at {significant(course.speed, 2)} m/s" if course.speed is not None else ""
+    if course.stable_below is not None:
+        speed += f", course stable below about {significant(course.stable_below, 2)} m/s"
     text = (
         f"{growth_clause(course)}{speed}; without steering it leaves a straight course, and errors of runs simulated "
         "whole grow as fast"

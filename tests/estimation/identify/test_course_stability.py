@@ -4,7 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
+from seatrial.core.results import Stability
+from seatrial.core.text.numbers import significant
 from seatrial.estimation.identify.course_stability import course_finding, course_stability
 from seatrial.physics.models import model_named
 from seatrial.physics.simulate.thrust import settled_yaw_rate, straight_by_thrusters
@@ -67,3 +70,24 @@ def test_a_nudge_grows_as_the_growth_rate_says() -> None:
 def test_a_craft_that_cannot_go_ahead_has_no_straight_course() -> None:
     craft = model_named("thrusters").with_values({"k_f": 0.0})
     assert course_stability(craft, NOTHING, math.inf, {}, LENGTH) is None
+
+
+def test_a_craft_that_loses_its_course_at_speed_is_judged_up_to_the_fastest_of_its_runs() -> None:
+    """Sway and yaw are damped by constants, destabilised in proportion to u: unstable above where det(A) vanishes."""
+    craft = model_named("thrusters").with_values({**LINEAR, "N_uv": 0.0, "N_r": -1.6, "k_f": 4.0, "k_b": 4.0})
+    covariance = NOTHING[: len(craft.parameters.free), : len(craft.parameters.free)]
+    limit = brentq(lambda u: np.linalg.det(by_hand(u, 0.0, -1.6)), 0.1, 5.0)
+
+    def course(fastest: float) -> Stability:
+        found = course_stability(craft, covariance, math.inf, {}, LENGTH, ahead=0.05, fastest=fastest)
+        assert found is not None and found.speed is not None
+        return found
+
+    below, beyond = course(0.9 * limit), course(1.2 * limit)
+    assert (
+        below.is_stable and f"up to {significant(0.9 * limit, 2)} m/s, the fastest of the training runs" in below.text
+    )
+    assert beyond.is_unstable and beyond.speed == pytest.approx(1.2 * limit, rel=1e-5)
+    assert beyond.stable_below == pytest.approx(limit, abs=2e-3)
+    assert f"below about {significant(limit, 2)} m/s it is course stable" in beyond.text
+    assert "ends in a turn of" in course_finding(craft, beyond, {})[0].evidence

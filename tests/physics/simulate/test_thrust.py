@@ -14,6 +14,7 @@ from seatrial.physics.models.thrusters import thrusters
 from seatrial.physics.simulate.thrust import (
     refuse_rudder_options,
     settled_yaw_rate,
+    straight_at_speed,
     straight_by_thrusters,
     thrust_manoeuvre,
 )
@@ -128,3 +129,15 @@ def test_a_straight_run_balances_surge_and_a_nudge_shows_whether_it_is_held(craf
     assert settled_yaw_rate(craft, run) > 0.1
     held = craft.with_values({"N_r": -3.0, "Y_v": -3.0})
     assert settled_yaw_rate(held, straight_by_thrusters(held)) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_the_order_of_a_speed_is_found_within_full_command(craft: Model) -> None:
+    """Quadratic thrust against quadratic drag: the speed is in proportion to the order."""
+    half = straight_by_thrusters(craft, 0.5)
+    command = craft.input_names.index("command_1")
+    same = straight_at_speed(craft, half.speed)
+    np.testing.assert_allclose(same.inputs, half.inputs, atol=1e-5)
+    assert straight_at_speed(craft, 10.0 * half.speed).speed == pytest.approx(2.0 * half.speed, rel=1e-9)
+    assert straight_at_speed(craft, 0.1 * half.speed).inputs[command] == pytest.approx(
+        0.1 * half.inputs[command], abs=1e-5
+    )

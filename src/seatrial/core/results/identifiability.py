@@ -85,6 +85,9 @@ class Stability:
     ] = None
     growth_lower: Annotated[Number | None, Field(description="end of its interval, 1/s")] = None
     growth_upper: Annotated[Number | None, Field(description="end of its interval, 1/s")] = None
+    stable_below: Annotated[
+        Number | None, Field(description="speed below which an unstable craft is stable, m/s; null: none in the runs")
+    ] = None
 
     @property
     def is_unstable(self) -> bool:
@@ -93,6 +96,11 @@ class Stability:
         C is the product of two rates, and the one that decides may be well known where the other is not.
         """
         return self.upper < 0.0 or (self.growth_lower is not None and self.growth_lower > 0.0)
+
+    @property
+    def is_stable(self) -> bool:
+        """Whether a deviation dies out beyond doubt: the whole interval of its rate lies below zero."""
+        return self.growth_upper is not None and self.growth_upper < 0.0
 
 
 @dataclass(frozen=True)

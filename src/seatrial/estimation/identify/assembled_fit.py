@@ -1,5 +1,6 @@
 """A fit from an estimate: predictions of all runs, identifiability, findings, and what a report shows."""
 
+import math
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -59,7 +60,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
     predicted = _predictions(task, selected)
     estimation = with_model_spread(selected.estimation, selected.tied)
     approach = approach_condition(runs.records, trial.model)
-    assessment = _identifiability(task, estimation, approach)
+    assessment = _identifiability(task, estimation, approach, predicted.interval_basis.training_envelope)
     shifts = estimated_value_shifts(estimation)
     given = {name for symmetry in assessment.structural for name in symmetry.parameters}  # said of all coefficients
     widened = with_estimated_values(estimation, [shift for shift in shifts if shift.name not in given])
@@ -153,10 +154,13 @@ def _predictions(task: Identification, selected: SelectedModel) -> RunPrediction
     )  # fmt: skip
 
 
-def _identifiability(task: Identification, estimation: Estimation, approach: Mapping[str, float]) -> Identifiability:
+def _identifiability(
+    task: Identification, estimation: Estimation, approach: Mapping[str, float], envelope: Mapping[str, float]
+) -> Identifiability:
     """Return what the records determine, with profile likelihoods where these are required."""
     assessment = identifiability(
-        estimation, task.symmetries, approach, task.runs.length, stands_on_box(task.trial)
+        estimation, task.symmetries, approach, task.runs.length, stands_on_box(task.trial),
+        envelope.get("fastest", math.inf),
     )  # fmt: skip
     return replace(assessment, profiles=_profiles(task, estimation))
 

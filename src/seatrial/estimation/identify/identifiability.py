@@ -1,5 +1,6 @@
 """What the records determine of a fitted model and what they do not, put together for the report."""
 
+import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -34,11 +35,12 @@ def identifiability(
     approach: Mapping[str, float],
     length: float,
     is_on_box: bool = False,
+    fastest: float = math.inf,
 ) -> Identifiability:
     """Return everything a report shows about identifiability.
 
     symmetries: found before the fit; approach: steady speed u and inputs of the trials, SI, notation signs; length: m;
-    is_on_box: whether the wave forces are those of a box with the stated stiffness.
+    is_on_box: whether the wave forces are those of a box with the stated stiffness; fastest: of the training runs, m/s.
     """
     problem = estimation.estimate.problem
     names, sizes = problem.free, _signed_scales(estimation)
@@ -55,7 +57,7 @@ def identifiability(
         sensitivities=sensitivities(estimation),
         consequences=consequences(estimation, is_on_box),
         stability=course_stability(
-            estimation.model, covariance, estimation.interval.degrees_of_freedom, approach, length,
+            estimation.model, covariance, estimation.interval.degrees_of_freedom, approach, length, fastest=fastest
         ),
     )  # fmt: skip
 

@@ -56,6 +56,11 @@ def lateral_states(model: Model) -> tuple[str, ...]:
     return ("v", "r") if "v" in model.states else tuple(s for s in model.states if s not in ("psi", "x0", "y0", "u"))
 
 
+def growth_rate(model: Model, speed: float, inputs: Array) -> float:
+    """Return the largest real part of the eigenvalues of sway and yaw on a straight course, 1/s; below 0: stable."""
+    return float(np.max(np.linalg.eigvals(straight_course_rates(model, speed, inputs)).real))
+
+
 def stability(
     model: Model, covariance: Array, degrees_of_freedom: float, speed: float, inputs: Array, length: float
 ) -> Stability | None:
@@ -75,7 +80,7 @@ def stability(
         return _index(straight_course_rates(one, speed, inputs), unit)
 
     def growth_of(one: Model) -> float:
-        return float(np.max(np.linalg.eigvals(straight_course_rates(one, speed, inputs)).real))
+        return growth_rate(one, speed, inputs)
 
     t = two_sided_quantile(STORED_LEVEL, degrees_of_freedom)
     (index, wide), (growth, open_by) = (

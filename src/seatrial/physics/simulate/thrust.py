@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.optimize import brentq
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError, Provenance, Record, frozen, spelling_hint
@@ -32,6 +33,7 @@ DEFAULT_AHEAD = 0.5
 STEP_S = 0.05
 """Step of the simulation [s]: a quarter of a small thruster's time constant; chosen."""
 _NUDGE = 1e-3  # rad/s, with which a straight run is disturbed: below any gyro's noise; chosen
+_ORDER_STEP = 1e-6  # to which the order ahead of a speed is found; chosen
 _LAST_SHARE = 0.1  # of a run, over which its yaw rate is averaged; chosen
 
 
@@ -67,6 +69,24 @@ def straight_by_thrusters(
     for row in _allocation(model, layout):
         held[int(row[0])] = row[1] + row[2] * row[3] * ahead
     return StraightRun(approach_speed(model, held), held)
+
+
+def straight_at_speed(model: Model, speed: float, inputs: Mapping[str, float] | None = None) -> StraightRun:
+    """Return the steady straight run at a speed [m/s]; that of full command where no order is as fast.
+
+    Raises:
+        InputError: as `straight_by_thrusters`.
+    """
+
+    def beyond(ahead: float) -> float:
+        try:
+            return straight_by_thrusters(model, ahead, inputs).speed - speed
+        except InputError:  # it does not go ahead by so small an order
+            return -speed
+
+    if beyond(1.0) <= 0.0:
+        return straight_by_thrusters(model, 1.0, inputs)
+    return straight_by_thrusters(model, float(brentq(beyond, 0.0, 1.0, xtol=_ORDER_STEP)), inputs)
 
 
 def settled_yaw_rate(model: Model, run: StraightRun) -> float:
