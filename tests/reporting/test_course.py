@@ -93,4 +93,4 @@ def test_a_fitted_run_that_an_unstable_craft_leaves_is_no_model_error(fit: Fit) 
 
     assert "model error, not extrapolation" in row(leaving(fit, 0.2))
     text = row(with_course(leaving(fit, 0.2), unstable(2.0)))
-    assert text.startswith("simulated whole, the model leaves ") and "no evidence of model error" in text
+    assert text.startswith("simulated whole, the model misses ") and "no evidence of model error" in text

@@ -46,7 +46,8 @@ def test_every_colour_of_figures_and_plots_has_one_for_the_dark(page: Path) -> N
 
 
 def test_a_page_without_time_series_carries_no_plotting_code() -> None:
-    context = {"title": "t", "verdict": "", "titles": {}, "rows": [], "open_count": "", "runs": [], "unfolded": 0}
+    context = {"title": "t", "verdict": "", "titles": {}, "rows": [], "open_count": "", "runs": [], "unfolded": 0,
+               "has_left_out": False}  # fmt: skip
     text = page_text("draft.html", context | {"titles": {"columns": "Columns", "runs": "Runs"}})
     assert "uPlot=" not in text and text.count("<script>") == 1
     assert environment() is environment()

@@ -210,8 +210,13 @@ def test_fitted_runs_that_are_missed_are_a_row_of_their_own(fit: Fit) -> None:
     spread = math.degrees(float(np.nanstd(first.measured["psi"])))
     close = [replace(p, rms={"psi_deg": 0.1}) for p in (*rest, *fit.validation)]
     assert "Error, fitted (rms)" not in rows(replace(fit, predictions=(replace(first, rms={"psi_deg": 0.1}), *close)))
-    missed = replace(first, rms={"psi_deg": 0.8 * spread})
+    missed = replace(first, rms={"psi_deg": 0.8 * spread}, noise_floor={})
     fact = rows(replace(fit, predictions=(missed, *close)))["Error, fitted (rms)"]
     assert fact.is_good is False and fact.section == "training"
-    assert fact.text.startswith(f"{first.record} is missed although fitted, by ")
-    assert fact.text.endswith("(poorly): model error, not extrapolation; docs/bad-fit.md, By symptom")
+    cause = "model error, not extrapolation: docs/bad-fit.md, By symptom"
+    assert fact.text.startswith(f"missed although fitted: {first.record} by ")
+    assert fact.text.endswith(f"(poorly); {cause}")
+    worse = replace(first, record="b", rms={"psi_deg": 0.9 * spread}, noise_floor={"psi_deg": 0.8 * spread})
+    both = rows(replace(fit, predictions=(missed, worse, replace(missed, record="c"), *close)))["Error, fitted (rms)"]
+    assert both.text.startswith("missed although fitted: b by ") and "; 1 more; the process noise" in both.text
+    assert both.text.endswith(f"; disturbances or {cause}")

@@ -34,6 +34,11 @@ LEAST_WHOLE_RUN = 0.5
 _MAIN_CHANNELS = ("psi_deg", "position_m", "z", "theta_deg", "phi_deg")
 # names that a row holds, chosen
 MAX_NAMES = 4
+# share of an error from which on the process noise is said to leave it, chosen
+_EXPLAINED = 0.7
+_BY_SYMPTOM = "docs/bad-fit.md, By symptom"
+# training runs that are missed whose errors a row quotes, chosen
+_MISSED_RUNS = 2
 # half width of a band over the error from which on it is said to be cautious: three times what holds 95 %; chosen
 _CAUTIOUS = 6.0
 
@@ -72,9 +77,7 @@ def _score(fit: Fit) -> KeyFact:
         return KeyFact(
             name, f"{counted(diverged, 'run')} {'diverges' if diverged == 1 else 'diverge'}", "prediction", False
         )
-    floors = [error_text(key, max(p.noise_floor[key] for p in held if key in p.noise_floor))
-              for key in ("psi_deg", "position_m") if any(key in p.noise_floor for p in held)]  # fmt: skip
-    floor = f"; the process noise as estimated, model error in it, would leave {enumeration(floors)}" if floors else ""
+    floor = _floor_clause(held)
     course = unstable_course(fit)
     share = f"; {sentence}" if (sentence := share_sentence(held, course)) else ""
     largest = worst_share(held, course)
@@ -82,27 +85,34 @@ def _score(fit: Fit) -> KeyFact:
     return KeyFact(name, f"{worst_errors(held)}{share}{floor}", "prediction", False if is_marked else None)
 
 
+def _floor_clause(runs: Sequence[Prediction]) -> str:
+    """What the process noise would leave of heading and position by itself, the largest of some runs; may be empty."""
+    floors = [error_text(key, max(p.noise_floor[key] for p in runs if key in p.noise_floor))
+              for key in ("psi_deg", "position_m") if any(key in p.noise_floor for p in runs)]  # fmt: skip
+    return f"; the process noise as estimated, model error in it, would leave {enumeration(floors)}" if floors else ""
+
+
 def _training_score(fit: Fit) -> tuple[KeyFact, ...]:
     """The training runs that the model misses, the worst first; no row where it reproduces them well."""
-    trained = {p.record: largest_error_share(p) for p in fit.predictions if p.role == "training"}
-    shares = {name: share for name, share in trained.items() if share is not None and share.needs_attention}
+    shares = [(share, p) for p in fit.predictions if p.role == "training"
+              and (share := largest_error_share(p)) is not None and share.needs_attention]  # fmt: skip
     if not shares or not fit.validation:
         return ()
-    worst = max(shares, key=lambda name: shares[name].share)
-    runs = [p for p in fit.predictions if p.record == worst]
-    names = enumeration(sorted(shares, key=lambda name: -shares[name].share), MAX_NAMES)
-    is_one = len(shares) == 1
-    errors = f"{'' if is_one else f'{worst} '}by {worst_errors(runs)} ({shares[worst].grade})"
+    shares.sort(key=lambda row: -row[0].share)
+    runs = [p for _, p in shares]
+    named = [f"{p.record} by {worst_errors([p])} ({share.grade})" for share, p in shares[:_MISSED_RUNS]]
+    more = [f"{len(shares) - _MISSED_RUNS} more"] if len(shares) > _MISSED_RUNS else []
+    errors = "; ".join([*named, *more])
     if unstable_course(fit) is not None:
         text = (
-            f"simulated whole, the model leaves {names}, {errors}: no evidence of model error, as a deviation of a "
+            f"simulated whole, the model misses {errors}: no evidence of model error, as a deviation of a "
             "course-unstable craft grows by itself; windows of held-out runs judge it"
         )
         return (KeyFact("Error, fitted (rms)", text, "training"),)
-    text = (
-        f"{names} {'is' if is_one else 'are'} missed although fitted, {errors}: model error, not extrapolation; "
-        "docs/bad-fit.md, By symptom"
-    )
+    worst, p = shares[0]
+    is_explained = p.noise_floor.get(worst.name, 0.0) >= _EXPLAINED * p.rms[worst.name]
+    cause = "disturbances or model error" if is_explained else "model error"
+    text = f"missed although fitted: {errors}{_floor_clause(runs)}; {cause}, not extrapolation: {_BY_SYMPTOM}"
     return (KeyFact("Error, fitted (rms)", text, "training", is_good=False),)
 
 

@@ -209,13 +209,15 @@ def predict_runs(
         if run.divergence is not None:
             findings.append(divergence_finding(estimation.model, one, run.divergence))
         uncertainty = replace(calibration.uncertainty, offsets=own.covariance)
+        if run.divergence is None:
+            alone = _process_noise_floor(estimation, item.record, run.start.values[0], own.expected, one.rms)
+            one = replace(one, noise_floor=alone)
         if run.divergence is None and item.role is not Role.TRAIN:
             rng = np.random.default_rng(stream)
             spread = prediction_spread(
                 problem, estimation.model, item.record, run, own.expected, length, uncertainty, rng, DRAWS
             )
-            alone = _process_noise_floor(estimation, item.record, run.start.values[0], own.expected, one.rms)
-            one = replace(one, tied_spread=tied_model_spread(tied, one, seconds, length), noise_floor=alone)
+            one = replace(one, tied_spread=tied_model_spread(tied, one, seconds, length))
             one = with_intervals(one, spread, calibration.discrepancy, uncertainty.degrees_of_freedom)
         if item.role is not Role.TRAIN:
             index = one.extrapolation.index if one.extrapolation else 1.0
