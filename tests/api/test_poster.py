@@ -114,6 +114,7 @@ def without_u(record: st.Record) -> st.Record:
 def test_a_run_of_another_speed_or_side_or_a_simulated_one_is_no_measurement(fit: st.Fit) -> None:
     faster = 1.2 * poster_speed(fit)
     assert not any(names(api.poster(fit, speed=faster)))
+    assert any(names(api.poster(fit, speed=1.08 * poster_speed(fit))))
     circle = fit_of_runs("turning-circle:35")
     assert names(api.poster(circle)) == [[], ["turning-circle"], [], []]
     assert not any(names(api.poster(circle, rudder_deg=30.0)))
