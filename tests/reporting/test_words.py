@@ -86,7 +86,7 @@ def test_the_spread_of_offsets_over_one_session_is_called_assumed(fit: Fit) -> N
     assert summary.offset_sentences(several)[0] == population.sentence
     assert not any("One session" in text for text in summary.offset_sentences(several))
     one = replace(several, offsets=several.offsets[:1])
-    assert summary.offset_sentences(one)[-1].startswith("One session was recorded: ")
+    assert summary.offset_sentences(one)[0].startswith("One session was recorded: ")
     assert summary.offset_sentences(replace(one, offset_populations=())) == ()
 
 

@@ -112,7 +112,7 @@ def search_status(fit: Fit) -> str:
 
 
 def offset_sentences(fit: Fit) -> tuple[str, ...]:
-    """Return what is expected of a new session's offsets; of one recorded session, that their spread is assumed.
+    """Return what is expected of a new session's offsets; of one recorded session, first that their spread is assumed.
 
     Of a rudder's or nozzle's zero also what else would look the same.
     """
@@ -123,7 +123,7 @@ def offset_sentences(fit: Fit) -> tuple[str, ...]:
         sentences = (*sentences, *_steering_zero_sentence(fit))
     if len({offset.group for offset in fit.offsets}) > 1:
         return sentences
-    return (*sentences, "One session was recorded: how these differ between sessions is assumed, not estimated.")
+    return ("One session was recorded: how offsets differ between sessions is assumed, not estimated.", *sentences)
 
 
 def _steering_zero_sentence(fit: Fit) -> tuple[str, ...]:

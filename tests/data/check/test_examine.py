@@ -136,6 +136,14 @@ def test_an_error_of_the_speed_below_what_a_good_log_has_is_a_note() -> None:
         assert (finding.severity is Severity.INFO) == (code == "small-closure")
 
 
+def test_a_heading_turned_by_a_share_of_the_speed_below_that_is_a_note() -> None:
+    record = zigzag()
+    for angle, code in ((0.004, "small-closure"), (0.03, "closure")):  # rad
+        finding = found(with_values(record, psi=record["psi"] + angle), code)
+        assert "misalignment" in finding.message
+        assert (finding.severity is Severity.INFO) == (code == "small-closure")
+
+
 @pytest.mark.parametrize("samples", [5, -8])
 def test_lags_are_measured(samples: int) -> None:
     record = zigzag(noise=1.0)

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, Channel, InputError, Record, quantity
 from seatrial.core.values.notation import COMMANDS, NOTATION, OPPOSITE, positive_direction
 from seatrial.data.check.signal import unwrapped
@@ -84,7 +85,7 @@ def _body_fixed_channel(symbol: str, channel: Channel, values: Array) -> Channel
 
 def _moved_to_reference_point(record: Record, reference_point: float) -> Record:
     """v_P = v + d r, x_P = x + d cos(psi), y_P = y + d sin(psi), d = distance to P (Fossen 2021, section 2.3)."""
-    moved = []
+    moved, places = [], list[str]()
     for symbol, needed in (("v", "r"), ("v_dot", "r"), ("x0", "psi"), ("y0", "psi")):
         if symbol not in record:
             continue
@@ -98,9 +99,13 @@ def _moved_to_reference_point(record: Record, reference_point: float) -> Record:
             values = channel.values + distance * _lever(symbol, record)
             record = record.with_channel(symbol, replace(channel.with_values(values), reference_point=reference_point))
             moved.append(symbol)
+            places.append(f"{channel.reference_point:g} m")
     same = {s: replace(record.channel(s), reference_point=reference_point) for s in ("u", "u_dot") if s in record}
     record = replace(record, channels={**record.channels, **same})
-    return record.with_step(f"{', '.join(moved)} referred to {reference_point:g} m from midship") if moved else record
+    if not moved:
+        return record
+    origin = enumeration(list(dict.fromkeys(places)))
+    return record.with_step(f"{', '.join(moved)} moved from x = {origin} to {reference_point:g} m from midship")
 
 
 def _lever(symbol: str, record: Record) -> Array:

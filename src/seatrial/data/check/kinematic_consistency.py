@@ -48,7 +48,7 @@ class ErrorCause:
         match self.name:
             case "current" | "bias of u" | "bias of v":
                 return math.hypot(*self.coefficients)
-            case "scale":
+            case "scale" | "misalignment":  # a small angle [rad] turns that share of the velocity aside
                 return abs(self.coefficients[0]) * mean_speed
             case _:
                 return math.inf

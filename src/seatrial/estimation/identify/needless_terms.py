@@ -19,6 +19,8 @@ _ERRORS = {"psi_deg": ("heading", " deg"), "position_m": ("position", " m")}
 LEAST_GAIN = 0.7
 """Mean error without a term over that with it, from which on it is named: 30 % are beyond what one run scatters by
 chance between models that predict alike; chosen."""
+_DAMPING = frozenset({"X_u", "Y_v", "N_r", "R_0", "K_p"})
+"""Resistance and linear damping on the diagonal, which every craft has: water takes energy from motion."""
 
 
 def needless_term_findings(
@@ -28,7 +30,7 @@ def needless_term_findings(
 
     A term is removed by setting its coefficient to 0 and moving the others with it, as the information has them at
     the least cost (Seber & Wild 1989, Nonlinear Regression, section 5.4: to first order, not fitted again). Terms with
-    a prior, and those whose bounds exclude 0, stay.
+    a prior, those whose bounds exclude 0, and the resistance and damping that every craft has stay.
 
     course: of a craft that is course unstable, nothing is said: its runs leave any model.
     """
@@ -38,7 +40,8 @@ def needless_term_findings(
     if not held:
         return ()
     names, parameters = estimation.estimate.problem.free, estimation.model.parameters
-    removable = [n for n in names if parameters[n].prior is None and parameters[n].lower <= 0.0 <= parameters[n].upper]
+    removable = [n for n in names if n not in _DAMPING
+                 and parameters[n].prior is None and parameters[n].lower <= 0.0 <= parameters[n].upper]  # fmt: skip
     ratios = {name: _error_ratio(estimation, _without(estimation, name), held) for name in removable}
     best = min(ratios, key=lambda name: ratios[name], default="")
     if not best or ratios[best] > LEAST_GAIN:
