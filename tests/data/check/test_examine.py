@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from tests.data.check.ship import in_earth_axes, mirrored, with_declaration, with_values, zigzag
+from tests.data.check.ship import in_earth_axes, integral, mirrored, with_declaration, with_values, zigzag
 
 from seatrial.core.values import Finding, Record, Severity
 from seatrial.data.check import canonical_record, examine, is_excited
@@ -204,3 +204,14 @@ def test_every_finding_names_the_record_and_gives_numbers_and_advice() -> None:
         assert "'zigzag'" in finding.message
         assert any(c.isdigit() for c in finding.evidence) and finding.advice
         assert not math.isnan(len(finding.text))
+
+
+@pytest.mark.parametrize(("speed", "is_said"), [(0.1, False), (1.0, True)])
+def test_velocities_below_the_noise_of_the_positions_contradict_nothing(speed: float, is_said: bool) -> None:
+    """A craft that spins; u, v are of another motion, which positions show within 3 cm only where it is fast."""
+    rng, time = np.random.default_rng(3), 0.05 * np.arange(330)
+    psi = 0.9 * time
+    north, east = (speed * integral(f(1.7 * time), 0.05) + 0.03 * rng.standard_normal(330) for f in (np.cos, np.sin))
+    values = {"x0": north, "y0": east, "psi": psi, "u": speed * np.cos(2.6 * time), "v": speed * np.sin(0.4 * time)}
+    findings = examine(Record.from_arrays("spin", time, values))
+    assert any("in no frame" in f.message for f in findings) is is_said

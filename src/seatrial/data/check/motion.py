@@ -11,7 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatrial.core.values import Array, Record
-from seatrial.data.check.signal import cumulative_integral, smoothed, smoothed_derivative, trimmed_rms, window_length
+from seatrial.data.check.signal import (
+    cumulative_integral,
+    sample_noise,
+    smoothed,
+    smoothed_derivative,
+    trimmed_rms,
+    window_length,
+)
 
 ComplexArray = NDArray[np.complex128]
 DEGREES_PER_RADIAN = 180.0 / math.pi
@@ -185,6 +192,17 @@ class RecordedMotion:
         velocity, track = self.smoothed_velocity(reading), self.smoothed_track_velocity(reading)
         k = max(self.speed_scale(reading), 0.0)
         return trimmed_rms(np.abs(track - k * velocity)) / max(trimmed_rms(np.abs(track)), 1e-12)  # never a zero
+
+    @property
+    def noise_misfit(self) -> float:
+        """Return the misfit that noise of the positions alone makes: of slopes over so many samples, by least squares.
+
+        Variance 12 s^2 / (n^3 dt^2) for noise s at each of n samples (Draper & Smith 1998, eq. (1.4.5), evenly spaced).
+        """
+        noise = np.hypot(sample_noise(self.record["x0"]), sample_noise(self.record["y0"]))
+        slope = noise * np.sqrt(12.0 / self.window_samples**3) / self.record.dt  # m/s, the formula above
+        track = self.smoothed_track_velocity(self.readings[0])
+        return float(slope / max(trimmed_rms(np.abs(track)), 1e-12))  # never a zero
 
     @cached_property
     def best_reading(self) -> VelocityConvention:

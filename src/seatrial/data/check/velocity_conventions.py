@@ -13,6 +13,8 @@ from seatrial.data.check.motion import DOUBTFUL_RATIO, PositionReading, Recorded
 CERTAIN_RATIO = 3.0
 # rms difference from the track over rms speed that is acceptable, rough, and negligible; chosen
 ACCEPTABLE_MISFIT, ROUGH_MISFIT, NEGLIGIBLE_MISFIT = 0.3, 0.1, 0.03
+# misfit over that of the noise of the positions, up to which a slow craft shows nothing; chosen
+NOISE_FACTOR = 2.0
 # departure of a factor on the speed from another, relative, up to which they are the same; chosen: units differ by more
 SAME_SCALE = 0.1
 # heading [rad] by which psi must be off before that is said here; chosen: smaller ones show in closure
@@ -65,7 +67,7 @@ def _comparison_findings(comparison: _Comparison) -> list[Finding]:
     angle, misfit = motion.heading_offset() if motion.frame == "body" else (0.0, np.inf)
     if abs(angle) > LARGE_OFFSET and misfit * CERTAIN_RATIO < comparison.best_misfit:
         return [_heading_offset_finding(comparison, angle, misfit)]
-    if comparison.best_misfit > ACCEPTABLE_MISFIT:
+    if comparison.best_misfit > max(ACCEPTABLE_MISFIT, NOISE_FACTOR * motion.noise_misfit):
         text = "u, v fit the derivative of position in no frame"
         advice = "check columns, units and noise of positions and velocities"
         return [comparison.finding(Severity.WARNING, "velocity-frame", text, advice)]
