@@ -39,3 +39,5 @@ def test_parts_are_coloured_on_the_track_and_behind_each_channel(tmp_path: Path)
         (one.start, one.stop, str(k)) for k, one in enumerate(parts, start=1)
     ]
     assert with_parts.run.channels[0].curves[0].time[0] == 0.0
+    for track, part in zip(with_parts.run.tracks[1:], parts, strict=True):  # its own points only: all can be drawn
+        assert np.isfinite(track.north).all() and len(track.north) <= 1.01 * (part.stop - part.start) / record.dt + 1

@@ -62,7 +62,7 @@ def _part_tracks(record: Record, parts: Sequence[LogStretch]) -> list[Track]:
     tracks = []
     for number, part in enumerate(parts, start=1):
         inside = (record.time >= part.start) & (record.time <= part.stop)
-        north, east = (np.where(inside, record[name], np.nan) for name in ("x0", "y0"))
+        north, east = record["x0"][inside], record["y0"][inside]
         if np.count_nonzero(np.isfinite(north + east)) > 1:
             tracks.append(Track(north, east, None, Stroke(_colour(number), _THICK)))
     return tracks

@@ -45,7 +45,8 @@
         ctx.fillStyle = colour(fill);
         ctx.fillRect(left, bbox.top, right - left, bbox.height);
         ctx.fillStyle = colour(INK);
-        ctx.fillText(words, left + 3, bbox.top + 11 * devicePixelRatio);
+        if (ctx.measureText(words).width + 3 < right - left)  // else it would stand over its neighbour's
+          ctx.fillText(words, left + 3, bbox.top + 11 * devicePixelRatio);
       }
       ctx.restore();
     };
