@@ -75,7 +75,7 @@ def gap_facts(fit: Fit) -> tuple[KeyFact, ...]:
     gaps = record_gaps(fit)
     if not gaps:
         return ()
-    text = "; ".join(f"{gap.name} ({gap.command})" for gap in gaps)
+    text = "; ".join(f"{gap.name} (such a run: simulate {gap.command})" for gap in gaps)
     return (KeyFact("Not in the training runs", text, "identifiability" if fit.identifiability else ""),)
 
 

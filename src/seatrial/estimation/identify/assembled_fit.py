@@ -38,6 +38,7 @@ from seatrial.estimation.identify.roll_characteristics import one_speed_finding,
 from seatrial.estimation.identify.roll_inertia import gyradius_findings
 from seatrial.estimation.identify.seakeeping import seakeeping
 from seatrial.estimation.identify.short_records import default_profiles, short_record_findings
+from seatrial.estimation.identify.short_time_constants import short_time_constant_findings
 from seatrial.estimation.identify.thruster_craft import thruster_craft
 from seatrial.estimation.identify.varying_gain import varying_gain_finding
 from seatrial.estimation.information.frequency_response import frequency_responses
@@ -104,6 +105,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
             *response_findings(responses),
             *antenna_findings(predicted.predictions, runs.length),
             *narrow_band_findings(predicted.predictions),
+            *short_time_constant_findings(estimation),
             *one_speed_finding(roll, runs.records),
             *gyradius_findings(trial.ship, roll.gyradius if roll else None),
         ),
