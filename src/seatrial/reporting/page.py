@@ -33,6 +33,7 @@ from seatrial.reporting.figures.record_charts import track_overview
 from seatrial.reporting.figures.residual_charts import residual_series, whiteness_chart
 from seatrial.reporting.figures.search_charts import attempts_chart
 from seatrial.reporting.mass_specific import with_mass_specific_units
+from seatrial.reporting.wind import wind_sentence
 from seatrial.reporting.windows import WINDOW_NOTE, baseline_sentence, shortest_judged
 
 TITLES = {
@@ -103,6 +104,7 @@ def html(fit: Fit) -> str:
         "window_note": WINDOW_NOTE if any(p.windows for p in fit.predictions) else "",
         "scores": runs.score_table(fit.predictions, 0.0 if has_thrusters else length),
         "records": tables.records(fit),
+        "wind": wind_sentence(fit.records),
         "without": _prefix_note(fit),
         "tracks": Markup(svg(track_overview([r for r in fit.records if r.name in drawn_names] or fit.records, length))),
         "resimulation": resimulation.resimulation(fit),
