@@ -79,6 +79,9 @@ def test_a_share_of_the_range_needs_no_parameters(tmp_path: Path) -> None:
     assert guess is not None and (guess.unit, guess.is_open) == ("1", False)
     percent = ColumnSummary("left", "", -100.0, 100.0, 0.0, is_constant=False, common=0.0)
     guess = command_guess(ColumnGuess("left", "command_1", ""), percent, survey)
+    assert guess is not None and guess.other_reading.startswith("positive")
+    to_one_side = ColumnSummary("left", "", 0.0, 100.0, 0.0, is_constant=False, common=0.0)
+    guess = command_guess(ColumnGuess("left", "command_1", ""), to_one_side, survey)
     assert guess is not None and "set zero and span" in guess.other_reading
 
 
@@ -91,15 +94,16 @@ def test_a_rest_that_is_not_1500_is_open_with_both_readings(common: float, other
     assert guess.zero == (common if abs(common - 1500.0) < 60.0 else 1500.0)
 
 
-@pytest.mark.parametrize(("unit", "is_open"), [("%", False), ("", True)])
-def test_commands_in_per_cent(tmp_path: Path, unit: str, is_open: bool) -> None:
+@pytest.mark.parametrize("unit", ["%", ""])
+def test_commands_in_per_cent(tmp_path: Path, unit: str) -> None:
+    """Stated, or to both sides of a rest that is then 0; the motion shows which way each drives."""
     header = {"thr_left": f"thr_left [{unit}]" if unit else "thr_left"}
     columns = {header.get(key, key): values for key, values in _log(1.0, 1.0).items()}
     left = next(key for key in columns if key.startswith("thr_left"))
     columns[left] = (columns[left] - 1500.0) / 4.0
     guess = guesses(write(tmp_path / "run.csv", columns))["command_1"]
     assert (guess.unit, guess.zero, guess.span) == ("percent", 0.0, 1.0)
-    assert guess.is_open == is_open
+    assert not guess.is_open
 
 
 def test_a_rudder_in_per_cent_is_an_angle_whose_full_travel_is_a_question(tmp_path: Path) -> None:

@@ -56,6 +56,18 @@ def guesses(path: Path) -> dict[str, ColumnGuess]:
     return {guess.symbol: guess for guess in part if guess.is_used}
 
 
+def test_angles_of_a_telephone_are_roll_pitch_and_a_heading_that_is_not_needed(tmp_path: Path) -> None:
+    """Azimuth, pitch, roll in degrees: a pitch below a degree goes by its neighbours."""
+    time = 0.05 * np.arange(2000)
+    roll = 9.0 * np.exp(-time / 40.0) * np.cos(1.1 * time)
+    columns = {"time": time, "Azimuth": 212.0 + 0.1 * np.sin(time), "Pitch": 0.7 + 0.02 * np.cos(time), "Roll": roll}
+    draft = draft_trial(write(tmp_path / "run.csv", columns))
+    used = {guess.symbol: guess for guess in draft.guesses[0] if guess.is_used}
+    assert set(used) == {"theta", "phi"} and {one.unit for one in used.values()} == {"deg"}
+    assert 'name = "roll"' in draft.text and not draft.open_questions
+    assert "Azimuth (psi, nothing that steers is recorded" in draft.text
+
+
 @pytest.mark.parametrize(
     ("unit", "sign"), [("rad/s", 1.0), ("deg/s", 1.0), ("deg/min", 1.0), ("deg/s", -1.0), ("deg/min", -1.0)]
 )

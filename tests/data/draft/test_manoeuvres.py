@@ -88,6 +88,14 @@ def test_a_roll_that_dies_out_is_a_decay() -> None:
     assert decays(Record.from_arrays("run", TIME, {"phi": steady})) == []
 
 
+def test_swings_that_people_drive_are_no_part_of_the_decay_that_follows() -> None:
+    """They run for 100 s, so that the roll swings to the same angle; then it dies out."""
+    size = np.where(TIME < 100.0, 1.0, np.exp(-(TIME - 100.0) / 60.0))
+    phi = np.radians(8.0) * size * np.cos(TIME * 2.0 * np.pi / 10.0)
+    (decay,) = decays(Record.from_arrays("run", TIME[:600], {"phi": phi[:600]}))
+    assert 90.0 <= decay.start <= 105.0 and "from 8.0 deg down" in decay.evidence
+
+
 def released(time: Array, size_deg: float) -> Array:
     """Held at an angle for 30 s, then rolling out with a period of 10 s, slow forces in its tail."""
     since = time - 30.0

@@ -46,6 +46,9 @@ def test_speeds_along_and_across_and_the_rate_of_the_shaft_are_recognised(name: 
         ("GPSCourse", "cog"),
         ("Gyro", "psi"),
         ("thrustPort", "command_1"),
+        ("motorL", "command_1"),
+        ("thr_r", "command_2"),
+        ("PWM_L [us]", "command_1"),
         ("WindSpeedTrue", "wind_speed"),
     ],
 )
@@ -53,6 +56,12 @@ def test_commands_batteries_and_words_set_apart_by_capitals_are_recognised(name:
     guess = guess_by_name("", name, "")
     assert guess is not None
     assert guess.symbol == symbol
+
+
+def test_a_letter_names_the_side_of_a_thruster() -> None:
+    left, right = guess_by_name("", "motorL", ""), guess_by_name("", "escR", "")
+    assert left is not None and right is not None and (left.side, right.side) == ("port", "starboard")
+    assert guess_by_name("", "temp_L", "") is None
 
 
 def test_a_topic_of_orders_has_those_of_thrusters_alone() -> None:

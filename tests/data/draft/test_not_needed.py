@@ -16,6 +16,9 @@ from seatrial.data.draft.not_needed import columns_not_needed, not_needed_text
         ("Commanded rudder [deg]", {"delta"}, "an order"),
         ("Shaft/power", set[str](), "power"),
         ("Propeller torque (kNm)", set[str](), "torque"),
+        ("speed_kmh", {"lat"}, "positions show"),
+        ("hdop", set[str](), "receiver"),
+        ("gFx", set[str](), "accelerations"),
     ],
 )
 def test_the_reason_is_given(name: str, used: set[str], words: str) -> None:

@@ -61,8 +61,14 @@ def rebuild_time_base(record: Record) -> tuple[Record, tuple[Finding, ...]]:
         return record, findings
     grid = even_base(record.time)
     _refuse_jumping_clock(record, grid)
+    grid = grid if grid.is_even or grid.repeated else replace(grid, step=_whole_rate(grid.step))
     rebuilt = _placed_on_grid(record, grid) if grid.is_even else _interpolated_on_grid(record, grid)
     return rebuilt.with_step("time base rebuilt"), findings + _time_base_findings(record, grid)
+
+
+def _whole_rate(step: float) -> float:
+    """The step [s] of the nearest whole number of samples a second, or of seconds: the same of all parts of a log."""
+    return 1.0 / round(1.0 / step) if step < 1.0 else float(round(step))
 
 
 def _refuse_jumping_clock(record: Record, grid: EvenBase) -> None:
@@ -152,7 +158,12 @@ def _time_base_findings(record: Record, grid: EvenBase) -> tuple[Finding, ...]:
     steps = np.diff(record.time)
     findings = []
     regular = np.delete(steps, grid.gaps)
-    if regular.size and np.ptp(regular) > SMALL_UNEVENNESS * grid.step:
+    if regular.size and not grid.is_even and not grid.repeated:
+        text = f"record '{record.name}' is sampled unevenly; values are interpolated at even steps of {grid.step:.6g} s"
+        evidence = f"steps {regular.min():.4g} to {regular.max():.4g} s"
+        advice = "nothing to do where the stamps are those of the samples"
+        findings.append(Finding(Severity.INFO, "uneven-sampling", text, evidence, advice))
+    elif regular.size and np.ptp(regular) > SMALL_UNEVENNESS * grid.step:
         kind = f"{grid.repeated} repeated or rounded time stamps" if grid.repeated else "uneven time stamps"
         is_rough = grid.repeated or np.ptp(regular) > LARGE_UNEVENNESS * grid.step
         text = f"record '{record.name}' has {kind}; the time base is rebuilt with even steps of {grid.step:.6g} s"

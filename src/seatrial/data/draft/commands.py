@@ -37,7 +37,7 @@ def command_guess(guess: ColumnGuess, column: ColumnSummary, survey: LogSurvey) 
     if column.low >= -1.0 and column.high <= 1.0:
         return replace(guess, unit="1").with_evidence("between -1 and 1")
     if column.low >= -100.0 and column.high <= 100.0 and max(-column.low, column.high) > _SURELY_PERCENT:
-        other = "set zero and span: command = (cell - zero) / span"
+        other = _ONLY_SIGN if column.low < 0.0 else "set zero and span: command = (cell - zero) / span"
         text = f"from {column.low:g} to {column.high:g}: per cent of full command"
         return replace(guess, unit="percent", other_reading=other).with_evidence(text)
     if not (_RANGE[0] <= column.low and column.high <= _RANGE[1]):
@@ -83,7 +83,7 @@ def rudder_in_percent(guess: ColumnGuess) -> ColumnGuess:
 
 
 def rest_of_commands(record: Record) -> Changes:
-    """Return the commands whose pulse at rest is the middle one, as the craft stands still with it at the start."""
+    """Return the commands that are at rest at 0 or the middle pulse, as the craft stands still with it at the start."""
     names = [name for name in record.channels if name.startswith("command_")]
     flow = smooth_speed(record)
     if not names or flow is None:
@@ -93,13 +93,13 @@ def rest_of_commands(record: Record) -> Changes:
     if rows * record.dt < _STILL_S:
         return {}
     resting = [name for name in names if np.max(np.abs(record[name][:rows])) < _REST_SHARE]
-    return dict.fromkeys(resting, _with_rest_in_the_middle)
+    return dict.fromkeys(resting, _with_known_rest)
 
 
-def _with_rest_in_the_middle(guess: ColumnGuess) -> ColumnGuess:
-    if guess.unit != "us" or not guess.is_open:
+def _with_known_rest(guess: ColumnGuess) -> ColumnGuess:
+    if guess.unit not in ("us", "percent") or not guess.is_open:
         return guess
-    text = f"the craft stands still with {guess.zero:g} us at the start"
+    text = f"the craft stands still with {guess.zero:g} {'us' if guess.unit == 'us' else 'per cent'} at the start"
     return replace(guess, other_reading=_ONLY_SIGN).with_evidence(text)
 
 

@@ -26,6 +26,11 @@ _LARGEST_RPS = 60.0  # 1/s; propellers of ships and models turn more slowly, tho
 _TURNED = re.compile("steer|outboard|azimuth", re.IGNORECASE)
 # headings of the rate of a propeller or its shaft, which no gear stands before
 _SHAFT = re.compile("prop|shaft|welle|aksel|arbre|helice|hélice|elica", re.IGNORECASE)
+_TILT = frozenset({"phi", "theta"})
+_ATTITUDE = _TILT | {"psi"}
+_MAY_BE_DEGREES = 'unit = "deg"'
+_PLACE_OR_SPEED = frozenset({"lat", "x0", "u", "v", "sog", "stw"})
+_HEADING_OF_PHONES = "azimuth"  # of the triple azimuth, pitch, roll (Android, SensorManager.getOrientation)
 _FOLDERS_READ = 3  # folders above a file whose names may be those of a topic; chosen
 
 
@@ -41,9 +46,12 @@ def guess_columns(survey: LogSurvey, gear: float = 0.0) -> tuple[ColumnGuess, ..
         if topic.time is None:
             continue
         guesses += [((0.0,), guess) for guess in _without_names(survey, topic)]
-        has_degrees = _has_latitude_in_degrees(survey, topic)
+        has_degrees, has_tilt = _has_latitude_in_degrees(survey, topic), _has_tilt(survey, topic)
+        begun = len(guesses)
         for column in topic.columns:
             named = _named(survey, topic, column)
+            if named is not None and has_tilt and column.name.lower() == _HEADING_OF_PHONES:
+                named = replace(named, symbol="psi", evidence="its name, beside pitch and roll: the heading")
             if named is not None and not (column.is_constant and named.symbol.startswith("command_")):
                 rank = (column.is_constant, not named.unit, column.missing, -topic.rows)
                 guess = _first_guess(survey, topic, column, named)
@@ -52,6 +60,8 @@ def guess_columns(survey: LogSurvey, gear: float = 0.0) -> tuple[ColumnGuess, ..
                 if guess is not None and guess.symbol == "n" and gear and not _SHAFT.search(column.name):
                     guess = _of_propeller(guess, gear)
                 guesses += [] if guess is None else [(rank, guess)]
+        guesses[begun:] = [(rank, one) for (rank, _), one in zip(guesses[begun:], _with_units_alike(
+            [one for _, one in guesses[begun:]]), strict=True)]  # fmt: skip
     best: dict[str, tuple[tuple[float, ...], ColumnGuess]] = {}
     for rank, guess in guesses:
         if not guess.unused_because and (guess.symbol not in best or rank < best[guess.symbol][0]):
@@ -93,6 +103,24 @@ def _has_latitude_in_degrees(survey: LogSurvey, topic: TopicSummary) -> bool:
         if named is not None and named.symbol == "lat" and not named.unit:
             return max(abs(column.low), abs(column.high)) > _LATITUDE_RAD
     return False
+
+
+def _has_tilt(survey: LogSurvey, topic: TopicSummary) -> bool:
+    """Whether a topic has roll and pitch."""
+    symbols = {named.symbol for column in topic.columns if (named := _named(survey, topic, column)) is not None}
+    return {"phi", "theta"} <= symbols
+
+
+def _with_units_alike(guesses: Sequence[ColumnGuess]) -> list[ColumnGuess]:
+    """The guesses of a topic, roll and pitch that may be radians in degrees where the other angles are."""
+    others = [one.unit for one in guesses if one.symbol in _ATTITUDE and not one.is_open]
+    if not others or set(others) != {"deg"}:
+        return list(guesses)
+    return [
+        replace(one, unit="deg", other_reading="").with_evidence("degrees, as the other angles")
+        if one.symbol in _TILT and one.other_reading == _MAY_BE_DEGREES else one
+        for one in guesses
+    ]  # fmt: skip
 
 
 def _named(survey: LogSurvey, topic: TopicSummary, column: ColumnSummary) -> NameGuess | None:
@@ -157,7 +185,7 @@ def _with_unit_by_range(guess: ColumnGuess, column: ColumnSummary) -> ColumnGues
                 return replace(guess, unit="rad", other_reading="psi, with frame").with_evidence(f"{text}: no pitch")
             if span > _MOST_OF_A_TURN or guess.symbol == "delta":
                 return replace(guess, unit="rad").with_evidence(f"{text}: radians")
-            return replace(guess, unit="rad", other_reading='unit = "deg"').with_evidence(text)
+            return replace(guess, unit="rad", other_reading=_MAY_BE_DEGREES).with_evidence(text)
         case "rad/s":
             return replace(guess, unit="rad/s", other_reading='unit = "deg/s" or "deg/min"').with_evidence(text)
         case "m/s":
@@ -238,6 +266,11 @@ def _superfluous(used: set[str]) -> dict[str, str]:
     mates = (("sog", "cog"), ("cog", "sog"), ("lat", "lon"), ("lon", "lat"))
     reasons = {one: f"needs {mate}, which no column is" for one, mate in mates if mate not in used}
     reasons |= {one: f"{min(better & used)} is there" for one, better in follows.items() if better & used}
+    steers = any(one == "delta" or one.startswith(("command_", "rpm_", "alpha_")) for one in used)
+    if "phi" in used and not steers and not used & _PLACE_OR_SPEED:
+        reasons |= dict.fromkeys(
+            ("psi", "psi_magnetic", "r"), "nothing that steers is recorded, nor a place: the roll is"
+        )
     quaternion = {"q_w", "q_x", "q_y", "q_z"}
     if {"psi", "phi", "theta"} <= used:
         reasons |= dict.fromkeys(quaternion, "psi, phi and theta are there")

@@ -24,6 +24,7 @@ _LOOK_S = 0.5  # s between two looks at the rudder; chosen: short against a hold
 _HALF_SWINGS, _SHRINKS, _PERIOD_SCATTER = 6, 2.0, 0.25
 # of the first swing, by which later ones grow where slow forces disturb a decay, and no more than a tail is; chosen
 _DISTURBED = 0.15
+_AS_LARGE = 0.95  # of the largest swing, from which on one is as large; chosen: a free one loses more in a period
 _HELD = 1.5  # of the time of the half swings that follow, beyond which the first one was held; chosen
 _NOISE_SAMPLES = 2  # samples of a swing that is but noise about zero; chosen
 _SMALLEST_ROLL = np.radians(2.0)  # rad, of the first swing of a decay; chosen
@@ -142,9 +143,11 @@ def decays(record: Record) -> list[LogStretch]:
     for swing in [*_half_swings(phi), _HalfSwing(len(phi), len(phi), np.inf)]:
         if chain and swing.angle > _smallest_level(chain) + _DISTURBED * chain[0].angle:
             even = [one for one in chain if one.angle > _DISTURBED * chain[0].angle]
-            if _dies_out(even):
-                text = f"roll swings {len(even)} half periods from {np.degrees(chain[0].angle):.1f} deg down"
-                start, stop = _release(phi, even), chain[-1].stop - 1
+            driven = _driven(even)
+            free = even[driven:]
+            if _dies_out(free):
+                text = f"roll swings {len(free)} half periods from {np.degrees(free[0].angle):.1f} deg down"
+                start, stop = _peak(phi, free[0]) if driven else _release(phi, free), chain[-1].stop - 1
                 stretches.append(LogStretch(DECAY, float(time[start]), float(time[stop]), text))
             chain = []
         chain.append(swing)
@@ -156,6 +159,21 @@ def _half_swings(phi: Array) -> list[_HalfSwing]:
     edges = np.flatnonzero(np.diff(phi >= 0.0)) + 1
     swings = (_HalfSwing(int(a), int(b), float(np.max(np.abs(phi[a:b])))) for a, b in pairwise(edges))
     return [swing for swing in swings if swing.stop - swing.first > _NOISE_SAMPLES]
+
+
+def _driven(chain: Sequence[_HalfSwing]) -> int:
+    """How many of the first swings were driven, by people who run from side to side: they are as large as later ones.
+
+    Two are those of a first one that was held and of its neighbour.
+    """
+    largest = max(one.angle for one in chain)
+    last = max(k for k, one in enumerate(chain) if one.angle >= _AS_LARGE * largest)
+    return last if last > 1 else 0
+
+
+def _peak(phi: Array, swing: _HalfSwing) -> int:
+    """The row of its largest angle."""
+    return swing.first + int(np.argmax(np.abs(phi[swing.first : swing.stop])))
 
 
 def _smallest_level(chain: Sequence[_HalfSwing]) -> float:

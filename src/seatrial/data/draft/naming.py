@@ -130,6 +130,8 @@ APPARENT_WIND = "the apparent wind, if so called wind_speed_relative, wind_direc
 """The other reading of a wind whose heading says neither true nor apparent."""
 _PROBE = "counts as at midship; of a probe on the craft elsewhere add reference_point, m forward of midship"
 _PORT, _STARBOARD = "(left|port)", "(right|starboard|stbd)"
+# letters of thrusters, as in motor_l
+_LETTERS = {"port": re.compile("(^|_)l($|_)"), "starboard": re.compile("(^|_)r($|_)")}
 _SIDES = {"port": _PORT, "starboard": _STARBOARD}
 _SIDE = f"({_PORT}|{_STARBOARD})"
 _TWO_RUDDERS = "of rudders that move together one is read: A_R is the area of all"
@@ -176,6 +178,8 @@ _WORDS = [
         (r"(batt?(ery)?_?)?volt(s|age)?|batt?(ery)?(_v)?|v_?batt?(ery)?", "voltage", ""),
         (rf"{_THRUSTER}_?{_PORT}{_PULSE}|{_PORT}_?{_THRUSTER}{_PULSE}", "command_1", ""),
         (rf"{_THRUSTER}_?{_STARBOARD}{_PULSE}|{_STARBOARD}_?{_THRUSTER}{_PULSE}", "command_2", ""),
+        (rf"{_THRUSTER}_l{_PULSE}|l_{_THRUSTER}{_PULSE}", "command_1", ""),
+        (rf"{_THRUSTER}_r{_PULSE}|r_{_THRUSTER}{_PULSE}", "command_2", ""),
         (rf"({_THRUSTER}|servo)_?(\d+){_PULSE}", "command_{}", ""),
         (rf"c\d+_{_PORT}", "command_1", ""), (rf"c\d+_{_STARBOARD}", "command_2", ""),
         (rf"{_AIR}{_IS_APPARENT}.*{_FAST}.*", "wind_speed_relative"), (r"aws", "wind_speed_relative"),
@@ -302,7 +306,10 @@ def _guess(rule: NameRule, match: re.Match[str], unit: str, evidence: str) -> Na
     is_share = symbol == "delta" and unit == "percent"
     if unit and unit != "us" and not is_share and si_unit(unit)[1] != expected:
         unit = ""
-    return NameGuess(rule, symbol, unit, evidence, named_side(match.string))
+    side = named_side(match.string)
+    if not side and symbol.startswith("command_"):
+        side = next((one for one, letter in _LETTERS.items() if letter.search(match.string)), "")
+    return NameGuess(rule, symbol, unit, evidence, side)
 
 
 def named_side(name: str) -> str:

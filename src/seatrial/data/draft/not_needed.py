@@ -49,6 +49,13 @@ _MESSAGES = (
 _WORDS = (
     _Rule(rf"(rudder|helm|steering|nozzle)_(angle_)?({_ORDERED})", "an order; the angle that follows is used", _ANGLES),
     _Rule(rf"({_ORDERED})_(rudder|helm|steering|nozzle)(_angle)?", "an order; the angle that follows is used", _ANGLES),
+    _Rule(
+        r"(gps_|gnss_)?(speed|velocity)(_(kmh|kn|knots|kts|mps|m_s))?",
+        "the positions show the speed over ground",
+        _PLACES,
+    ),
+    _Rule(r"[hvp]dop|n?_?(um_)?sats?(ellites)?(_used)?|fix(_(type|quality))?|rssi", "the state of the receiver"),
+    _Rule(r"g_?f[xyz]|(lin(ear)?_)?acc(el)?(eration)?_?[xyz]", "no model takes accelerations"),
     _Rule(r"((prop(eller)?|shaft|(main_)?engine)_)?(power|torque)(_kw|_knm)?", "no model takes power or torque"),
 )
 
