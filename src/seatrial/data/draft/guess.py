@@ -3,7 +3,7 @@
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -41,33 +41,45 @@ def guess_columns(survey: LogSurvey, gear: float = 0.0) -> tuple[ColumnGuess, ..
     gear: turns of the engine over those of the propeller; 0: not stated, and the rate of an engine is not used. A
     column that is called after the propeller or its shaft is taken as it is.
     """
-    guesses: list[tuple[tuple[float, ...], ColumnGuess]] = []
-    for topic in survey.topics:
-        if topic.time is None:
-            continue
-        guesses += [((0.0,), guess) for guess in _without_names(survey, topic)]
-        has_degrees, has_tilt = _has_latitude_in_degrees(survey, topic), _has_tilt(survey, topic)
-        begun = len(guesses)
-        for column in topic.columns:
-            named = _named(survey, topic, column)
-            if named is not None and has_tilt and column.name.lower() == _HEADING_OF_PHONES:
-                named = replace(named, symbol="psi", evidence="its name, beside pitch and roll: the heading")
-            if named is not None and not (column.is_constant and named.symbol.startswith("command_")):
-                rank = (column.is_constant, not named.unit, column.missing, -topic.rows)
-                guess = _first_guess(survey, topic, column, named)
-                if guess is not None and guess.symbol == "lon" and guess.is_open and has_degrees:
-                    guess = replace(guess, unit="deg", other_reading="").with_evidence("degrees, as the latitude")
-                if guess is not None and guess.symbol == "n" and gear and not _SHAFT.search(column.name):
-                    guess = _of_propeller(guess, gear)
-                guesses += [] if guess is None else [(rank, guess)]
-        guesses[begun:] = [(rank, one) for (rank, _), one in zip(guesses[begun:], _with_units_alike(
-            [one for _, one in guesses[begun:]]), strict=True)]  # fmt: skip
-    best: dict[str, tuple[tuple[float, ...], ColumnGuess]] = {}
-    for rank, guess in guesses:
-        if not guess.unused_because and (guess.symbol not in best or rank < best[guess.symbol][0]):
-            best[guess.symbol] = (rank, guess)
-    chosen = [_chosen(guess, best[guess.symbol][1] if guess.symbol in best else None) for _, guess in guesses]
+    topics = [topic for topic in survey.topics if topic.time is not None]
+    ranked = [one for topic in topics for one in _ranked_guesses(survey, topic, gear)]
+    best: dict[str, _RankedGuess] = {}
+    for one in ranked:
+        symbol = one.guess.symbol
+        if not one.guess.unused_because and (symbol not in best or one.rank < best[symbol].rank):
+            best[symbol] = one
+    chosen = [_chosen(one.guess, best[one.guess.symbol].guess if one.guess.symbol in best else None) for one in ranked]
     return without_conflicts([chosen])[0]
+
+
+@dataclass(frozen=True)
+class _RankedGuess:
+    """What a column is, and its place among those of one channel: the smallest rank is used."""
+
+    rank: tuple[float, ...]
+    guess: ColumnGuess
+
+
+def _ranked_guesses(survey: LogSurvey, topic: TopicSummary, gear: float) -> list[_RankedGuess]:
+    """The guesses of a topic."""
+    ranked = [_RankedGuess((0.0,), guess) for guess in _without_names(survey, topic)]
+    has_degrees, has_tilt = _has_latitude_in_degrees(survey, topic), _has_tilt(survey, topic)
+    for column in topic.columns:
+        named = _named(survey, topic, column)
+        if named is None or (column.is_constant and named.symbol.startswith("command_")):
+            continue
+        if has_tilt and column.name.lower() == _HEADING_OF_PHONES:
+            named = replace(named, symbol="psi", evidence="its name, beside pitch and roll: the heading")
+        guess = _first_guess(survey, topic, column, named)
+        if guess is None:
+            continue
+        if guess.symbol == "lon" and guess.is_open and has_degrees:
+            guess = replace(guess, unit="deg", other_reading="").with_evidence("degrees, as the latitude")
+        if guess.symbol == "n" and gear and not _SHAFT.search(column.name):
+            guess = _of_propeller(guess, gear)
+        ranked.append(_RankedGuess((column.is_constant, not named.unit, column.missing, -topic.rows), guess))
+    alike = _with_units_alike([one.guess for one in ranked])
+    return [replace(one, guess=guess) for one, guess in zip(ranked, alike, strict=True)]
 
 
 def _chosen(guess: ColumnGuess, best: ColumnGuess | None) -> ColumnGuess:
