@@ -3,6 +3,7 @@
 import math
 import re
 from collections import defaultdict
+from dataclasses import dataclass
 from datetime import date
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from seatrial.data.read.layout import Layout
 from seatrial.data.read.log import Log, topic_table
 from seatrial.data.read.nmea_sentence import Sentence, SentenceFault, parse_sentence, readings, utc_time
 from seatrial.data.read.raw_table import RawTable
+from seatrial.data.read.receipt import on_the_clock, receipt_time
 
 _DAY_S = 86400.0  # s, of a day
 _RMC_DATE = 9  # field of RMC with the date, ddmmyy
@@ -29,14 +31,16 @@ def read_nmea0183(path: Path, layout: Layout) -> Log:
     """Sentences with a valid checksum, by kind (``GGA/lat``, ``VTG/north``, ``HDT/heading``, ``ROT/rate``), SI.
 
     ``time`` is UTC in s since 1970 where a sentence (RMC, ZDA) gives the date, else since the midnight before the
-    first stamp; sentences without a time have that of the last stamp before them, several of a kind spread evenly.
+    first stamp. Sentences without a time have that of their receipt where the logger wrote it, to parts of a second,
+    before each; else that of the last stamp before them, several of a kind spread evenly.
 
     Raises:
         InputError: no sentence with a reading, or none with a time.
     """
     content = decoded_text(path, layout.encoding).encode("ascii", "replace")
     clock = _Clock()
-    samples: dict[str, list[tuple[int, dict[str, float]]]] = defaultdict(list)
+    samples: dict[str, list[_Sample]] = defaultdict(list)
+    receipts, own = list[float](), list[float]()
     faults = 0
     for line in content.splitlines():
         if not line.strip():
@@ -47,19 +51,39 @@ def read_nmea0183(path: Path, layout: Layout) -> Log:
             continue
         try:
             values = readings(sentence)
-            clock.read(sentence)
+            stamped = clock.read(sentence)
         except ValueError:
             faults += 1
             continue
         if values and clock.stamps:
-            samples[sentence.kind].append((len(clock.stamps) - 1, values))
+            samples[sentence.kind].append(_Sample(len(receipts), len(clock.stamps) - 1, values))
+            receipts.append(receipt_time(line))
+            own.append(stamped)
     if not samples:
         raise InputError(
             f"{path.name} holds no NMEA 0183 sentence with a reading and a time (GGA, RMC, ZDA, GLL); {faults} lines "
             "are damaged"
         )
-    stamps = clock.seconds()
-    return Log(path.name, tuple(_table(path.name, kind, rows, stamps) for kind, rows in samples.items()))
+    stamps, day = clock.seconds(), clock.first_day_s
+    received = on_the_clock(np.array(receipts), np.array(own) + day)
+    tables = []
+    for kind, rows in samples.items():
+        has_own = np.isfinite([own[one.place] for one in rows]).any()
+        by_epoch = received is None or has_own
+        times = (
+            _spread(np.array([one.epoch for one in rows]), stamps) if by_epoch else received[[r.place for r in rows]]
+        )
+        tables.append(_table(path.name, kind, rows, times))
+    return Log(path.name, tuple(tables))
+
+
+@dataclass(frozen=True)
+class _Sample:
+    """Readings of one sentence, its place among all and the number of its epoch."""
+
+    place: int
+    epoch: int
+    values: dict[str, float]
 
 
 class _Clock:
@@ -70,11 +94,11 @@ class _Clock:
         self._midnights = 0
         self._first_day: int | None = None
 
-    def read(self, sentence: Sentence) -> None:
-        """Take the stamp of a sentence, if it has one that is later than the last."""
+    def read(self, sentence: Sentence) -> float:
+        """Take the stamp of a sentence, if it has one that is later than the last, and return it; NaN: it has none."""
         stamp = utc_time(sentence)
         if not math.isfinite(stamp):
-            return
+            return math.nan
         if self.stamps and stamp + self._midnights * _DAY_S < self.stamps[-1] - _DAY_S / 2.0:
             self._midnights += 1
         stamp += self._midnights * _DAY_S
@@ -82,10 +106,16 @@ class _Clock:
             self.stamps.append(stamp)
         if self._first_day is None and (day := _day_number(sentence)) is not None:
             self._first_day = day - self._midnights
+        return stamp
+
+    @property
+    def first_day_s(self) -> float:
+        """The midnight before the first stamp [s since 1970], 0 where no sentence gives the date."""
+        return (self._first_day or 0) * _DAY_S
 
     def seconds(self) -> Array:
         """Return the stamps [s]."""
-        return np.array(self.stamps) + (self._first_day or 0) * _DAY_S
+        return np.array(self.stamps) + self.first_day_s
 
 
 def _day_number(sentence: Sentence) -> int | None:
@@ -103,12 +133,12 @@ def _day_number(sentence: Sentence) -> int | None:
     return day.toordinal() - date(1970, 1, 1).toordinal()  # days since the Unix epoch
 
 
-def _table(file: str, kind: str, rows: list[tuple[int, dict[str, float]]], stamps: Array) -> RawTable:
-    names = list(dict.fromkeys(name for _, values in rows for name in values))
+def _table(file: str, kind: str, rows: list[_Sample], times: Array) -> RawTable:
+    names = list(dict.fromkeys(name for one in rows for name in one.values))
     fields = {_field(name, kind): name for name in names}
-    columns = {"time": _spread(np.array([epoch for epoch, _ in rows]), stamps)}
+    columns = {"time": times}
     for field, name in fields.items():
-        columns[field] = np.array([values.get(name, math.nan) for _, values in rows])
+        columns[field] = np.array([one.values.get(name, math.nan) for one in rows])
     units = {field: "rps" if kind == "RPM" else _UNITS.get(field.rpartition(" ")[2], "") for field in fields}
     return topic_table(file, kind, columns, units)
 
