@@ -144,6 +144,18 @@ def test_a_heading_turned_by_a_share_of_the_speed_below_that_is_a_note() -> None
         assert (finding.severity is Severity.INFO) == (code == "small-closure")
 
 
+def test_a_lag_in_which_the_velocity_hardly_turns_is_a_note() -> None:
+    """At 0.064 rad/s rms the velocity turns by 0.77 % of itself in 0.12 s, by 3.2 % in 0.5 s."""
+    record = zigzag()
+    assert float(np.sqrt(np.mean(record["r"] ** 2))) == pytest.approx(0.064, rel=0.01)
+    for lag, code in ((0.12, "small-closure"), (0.5, "closure")):  # s
+        late = {s: np.interp(record.time - lag, record.time, record[s]) for s in ("u", "v", "psi")}
+        earth = in_earth_axes(with_values(record, **late))
+        finding = found(with_values(earth, psi=record["psi"]), code)
+        assert "lag of" in finding.message
+        assert (finding.severity is Severity.INFO) == (code == "small-closure")
+
+
 @pytest.mark.parametrize("samples", [5, -8])
 def test_lags_are_measured(samples: int) -> None:
     record = zigzag(noise=1.0)

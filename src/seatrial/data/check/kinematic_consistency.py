@@ -43,13 +43,18 @@ class ErrorCause:
     residual_rms: float
     edits: tuple[TrialEdit, ...] = ()
 
-    def speed_error(self, mean_speed: float) -> float:
-        """The error of the velocity [m/s] that the cause is, at a mean speed [m/s]; infinite where it is none."""
+    def speed_error(self, mean_speed: float, turning: float) -> float:
+        """The error of the velocity [m/s] that the cause is, at a mean speed [m/s]; infinite where it is none.
+
+        turning: rms of the yaw rate [rad/s], by which velocity and heading change in a lag.
+        """
         match self.name:
             case "current" | "bias of u" | "bias of v":
                 return math.hypot(*self.coefficients)
             case "scale" | "misalignment":  # a small angle [rad] turns that share of the velocity aside
                 return abs(self.coefficients[0]) * mean_speed
+            case "lag of velocity" | "lag of heading":
+                return abs(self.coefficients[0]) * turning * mean_speed
             case _:
                 return math.inf
 
@@ -86,7 +91,8 @@ def kinematic_consistency_findings(motion: RecordedMotion) -> tuple[Finding, ...
     message += f"; {' or '.join(one.text for one in alike[:MOST_CAUSES])} would explain it"
     evidence += f", {_residuals_text(ranked)}"
     mean_speed = motion.path_length / record.duration
-    if max(one.speed_error(mean_speed) for one in alike) < SMALL_SPEED_ERROR * mean_speed:
+    turning = float(np.sqrt(np.mean(np.gradient(record["psi"], record.dt) ** 2)))
+    if max(one.speed_error(mean_speed, turning) for one in alike) < SMALL_SPEED_ERROR * mean_speed:
         advice = (
             f"no action needed: it is below {SMALL_SPEED_ERROR:.0%} of the speed, and a good log may have twice that"
         )

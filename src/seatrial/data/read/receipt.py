@@ -12,7 +12,7 @@ from seatrial.core.values import Array
 _ISO = re.compile(rb"(\d{4}-\d\d-\d\d)[T ](\d\d:\d\d:\d\d[.,]\d{1,6})")
 _UNIX = re.compile(rb"(?<!\d)(1\d{9}\.\d{1,9})(?!\d)")
 _UNIX_MS = re.compile(rb"(?<!\d)(1\d{12})(?!\d)")
-_MS = 1e-3  # s
+_MS = 1e-3  # s, of a millisecond
 _LEAST_SHARE = 0.99  # of the sentences that have a receipt, from which on it is used; chosen
 
 

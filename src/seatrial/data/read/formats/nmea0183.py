@@ -68,11 +68,11 @@ def read_nmea0183(path: Path, layout: Layout) -> Log:
     received = on_the_clock(np.array(receipts), np.array(own) + day)
     tables = []
     for kind, rows in samples.items():
-        has_own = np.isfinite([own[one.place] for one in rows]).any()
-        by_epoch = received is None or has_own
-        times = (
-            _spread(np.array([one.epoch for one in rows]), stamps) if by_epoch else received[[r.place for r in rows]]
-        )
+        has_own = bool(np.isfinite([own[one.place] for one in rows]).any())
+        if received is None or has_own:
+            times = _spread(np.array([one.epoch for one in rows]), stamps)
+        else:
+            times = received[[one.place for one in rows]]
         tables.append(_table(path.name, kind, rows, times))
     return Log(path.name, tuple(tables))
 
