@@ -48,6 +48,21 @@ def test_one_step_is_exact_where_the_problem_is_linear(runs: tuple[Array, Array]
     assert interval.half_width[0] == pytest.approx(stats.t.ppf(0.975, RUNS - 1) * np.sqrt(exact[0, 0]))
 
 
+def test_what_one_run_alone_identifies_gets_the_error_of_the_information_matrix(runs: tuple[Array, Array]) -> None:
+    """One run has an unknown to itself, as the only one with astern commands has; the others keep theirs."""
+    matrices, right = runs
+    matrices[1:, :, 2] = 0.0
+    right = right + 300.0 * (matrices[:, :, 2] - runs[0][:, :, 2])
+    gradients, hessians = normal_equations(matrices, right, solve(matrices, right))
+    gradients[0, 2] += 1e-9  # rounding of a gradient that is zero at the optimum; divided by rounding before
+    information = hessians.sum(axis=0)
+    interval = jackknife(jackknife_steps(information, gradients, hessians), "one-step")
+    assert interval.standard_error[2] == pytest.approx(from_information(information).standard_error[2], rel=0.1)
+    others = [np.delete(matrices[:, :, :2], i, 0).reshape(-1, 2) for i in range(RUNS)]
+    ends = [np.linalg.lstsq(a, np.delete(right, i, 0).ravel())[0] for i, a in enumerate(others[1:], 1)]
+    assert np.all(interval.standard_error[:2] < 2.0 * np.std(ends, axis=0) * np.sqrt(RUNS - 1))
+
+
 def test_information_matrix_of_white_noise(runs: tuple[Array, Array]) -> None:
     matrices, _ = runs
     joint = matrices.reshape(-1, UNKNOWNS)

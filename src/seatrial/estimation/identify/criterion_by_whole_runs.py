@@ -185,8 +185,8 @@ def _comparison_text(
         )
     if incumbent.left_out and rival.left_out:
         texts.append(
-            f"left out in turn and predicted as a whole, each by one step of the search without it, where the only run "
-            f"of its kind is an extrapolation: {mean_text(rival.left_out)} by {WHOLE_RUNS}, "
+            f"left out in turn and predicted as a whole, each by one step of the search without it, which keeps what "
+            f"no other run identifies: {mean_text(rival.left_out)} by {WHOLE_RUNS}, "
             f"{mean_text(incumbent.left_out)} by {criterion}; the run that was held out judges the fit itself"
         )
     return f"no disturbance makes the residuals white, so whole runs were compared: {'; '.join(texts)}"

@@ -10,6 +10,9 @@ import numpy as np
 from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
 from seatrial.core.values import Array
 
+_LEAST_SHARE = 0.01
+"""Of the information on a direction, that the other runs must hold to stand for one: ten times the error; chosen"""
+
 
 @dataclass(frozen=True, eq=False)
 class Interval:
@@ -32,10 +35,16 @@ class Interval:
 
 def inverse(hessian: Array) -> Array:
     """Inverse of a symmetric positive matrix in its own scales; singular directions get a huge variance, not zero."""
+    root = _whitening(hessian)
+    return root @ root.T
+
+
+def _whitening(hessian: Array) -> Array:
+    """W with W' H W = 1, in which H's inverse is W W'; of singular directions huge, not infinite."""
     scale = 1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-100))  # above zero, for a division
     values, vectors = np.linalg.eigh(hessian * scale[:, None] * scale[None, :])
     values = np.maximum(values, 1e-14 * values[-1])  # rounding of double precision; chosen
-    return scale[:, None] * ((vectors / values) @ vectors.T) * scale[None, :]
+    return scale[:, None] * vectors / np.sqrt(values)
 
 
 def from_information(hessian: Array) -> Interval:
@@ -46,9 +55,22 @@ def from_information(hessian: Array) -> Interval:
 def jackknife_steps(hessian: Array, run_gradients: Array, run_hessians: Array) -> Array:
     """One Gauss-Newton step from the joint optimum for each run left out, theta_(-i) - theta = (H - H_i)^-1 g_i.
 
-    From the stored normal equations (Hinkley 1977): run_gradients (n, k), run_hessians (n, k, k); returns (n, k).
+    From the stored normal equations (Hinkley 1977): run_gradients (n, k), run_hessians (n, k, k); returns (n, k). In
+    the eigenvectors of H_i by H the step is g/(1 - l), l the share of the information that the run holds. Where it
+    holds all but `_LEAST_SHARE`, the other runs do not identify the direction, and g/(1 - l) is 0/0: the step is then
+    of the size that gives `jackknife` the variance of the information matrix, the limit for l to 1 of the variance that
+    is unbiased for any l (HC2; MacKinnon and White 1985, J. Econometrics 29, 305, eq. 6).
     """
-    return np.array([inverse(hessian - h) @ g for g, h in zip(run_gradients, run_hessians, strict=True)])
+    count, whitening = len(run_gradients), _whitening(hessian)
+    steps = np.empty_like(run_gradients)
+    for i, (gradient, run_hessian) in enumerate(zip(run_gradients, run_hessians, strict=True)):
+        shares, vectors = np.linalg.eigh(whitening.T @ run_hessian @ whitening)
+        directions = whitening @ vectors
+        push, left = directions.T @ gradient, 1.0 - shares
+        alone = left < _LEAST_SHARE
+        size = np.where(alone, np.copysign(count / (count - 1.0), push), push / np.where(alone, 1.0, left))
+        steps[i] = directions @ size
+    return steps
 
 
 def jackknife(points: Array, meaning: str) -> Interval:
