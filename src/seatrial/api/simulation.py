@@ -228,6 +228,28 @@ def _with_seed(manoeuvre: str, seed: int) -> str:
     return ":".join(["prbs", *fields, *["20", ""][len(fields) :], str(seed)])
 
 
+_HELD = 0.98  # of a rate of the propeller, below which its fall in the training runs is said; chosen: beyond noise
+
+
+def propeller_rate_text(model: "ModelFile", simulated: "Record") -> str:
+    """Return that a simulated run holds the propeller's rate although it fell in the training runs; empty: it did not.
+
+    An engine slows down as a turn loads its propeller: held at its rate, a ship turns and runs faster than it does.
+    """
+    from seatrial.estimation.information.extrapolation import PROPELLER_RATE
+
+    slowest = None if model.interval_basis is None else model.interval_basis.training_envelope.get(PROPELLER_RATE)
+    if slowest is None or "n" not in simulated:
+        return ""
+    held = float(abs(simulated["n"]).min())
+    if not 0.0 < slowest < _HELD * held:
+        return ""
+    return (
+        f"the propeller turns at {held:.3g} rps ({60.0 * held:.0f} rpm) throughout; in the training runs it fell to "
+        f"{slowest:.3g} rps ({60.0 * slowest:.0f} rpm): for a turn with that rate --set n={slowest:.3g}"
+    )
+
+
 def course_findings(
     model: "ModelFile", manoeuvre: str, inputs: Mapping[str, float] | None = None
 ) -> "tuple[Finding, ...]":

@@ -202,6 +202,8 @@ def simulate(
         print_lines([f"against {measured.name}: rms {errors_text(rms)}"])
     if rate is not None:
         print_lines([rate.text])
+    held_rate = api.propeller_rate_text(file, record) if manoeuvre else ""
+    print_lines([held_rate] if held_rate else [])
     print_lines(_offset_lines(file, measured, session))
     for text in file.provenance.warnings:
         print_finding("warning", f"of the fit: {text}")

@@ -10,7 +10,7 @@ from seatrial.core.results import Fit
 from seatrial.core.text.numbers import significant
 from seatrial.core.values import Array, Record
 from seatrial.core.values.channel_text import channel_meaning, channel_unit, unit_text
-from seatrial.physics.manoeuvres import REACH_PERCENTILE, initial_speed, steered_orders, to_starboard
+from seatrial.physics.manoeuvres import REACH_PERCENTILE, initial_speed, ordered_degrees, steered_orders, to_starboard
 from seatrial.physics.models.thrust_orders import work_shares
 from seatrial.physics.models.thruster_layout import ThrusterLayout
 from seatrial.physics.models.thruster_steering import steering_angles, with_steering_order
@@ -205,4 +205,4 @@ def _usual_zigzag(runs: Sequence[Record]) -> str:
     largest = max(orders, key=lambda o: o.rudder, default=None)
     if largest is None:
         return "zigzag:20/20"
-    return f"zigzag:{math.degrees(largest.rudder):.0f}/{math.degrees(largest.heading):.0f}"
+    return f"zigzag:{ordered_degrees(largest.rudder):.0f}/{ordered_degrees(largest.heading):.0f}"

@@ -1,7 +1,7 @@
 """The verdict on a fit: one sentence with its number, and where the model extrapolates."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -9,7 +9,14 @@ from seatrial.core.results import Fit, Prediction, Stability
 from seatrial.core.text.numbers import duration, significant
 from seatrial.core.text.words import counted, enumeration
 from seatrial.core.values import InputError, Record, Severity
-from seatrial.physics.manoeuvres import REACH_PERCENTILE, ManoeuvreKind, ObservedManoeuvre, initial_speed, to_starboard
+from seatrial.physics.manoeuvres import (
+    REACH_PERCENTILE,
+    ManoeuvreKind,
+    ObservedManoeuvre,
+    initial_speed,
+    ordered_degrees,
+    to_starboard,
+)
 from seatrial.reporting.course import growth_clause, unstable_course
 from seatrial.reporting.grades import Grade, is_missed, judged_share, judging_course, judging_window
 from seatrial.reporting.repeats import MAX_NAMES, repeat_clause, repeated_runs
@@ -128,17 +135,28 @@ def _several_runs_clause(
     lasting = f"{shortest if shortest == longest else f'{shortest} to {longest}'} each"
     repeats = sum(bool(repeated_runs(p, predictions)) for p in held)
     repeat = f"; {repeats} of them {'repeats' if repeats == 1 else 'repeat'} a fitted manoeuvre" if repeats else ""
-    errors = _judged_errors(held, course)
-    at_worst = f"to {errors}{repeat}" if errors else repeat.removeprefix("; ")
     grades = {p.record: share.grade for p in held if (share := judged_share(p, course)) is not None}
-    worst = max(grades.values(), key=list(Grade).index, default=None)
+    worst = _worst(grades.values())
     if worst in (Grade.POORLY, Grade.NOT):
         names = [name for name, grade in grades.items() if grade is worst]
         verb = f"{'is' if len(names) == 1 else 'are'} {'not predicted' if worst is Grade.NOT else 'poorly predicted'}"
-        return f"Of {len(held)} runs that were not used, {lasting}, {enumeration(names, MAX_NAMES)} {verb}, {at_worst}"
+        missed, others = ([p for p in held if (p.record in names) is which] for which in (True, False))
+        rest = _graded(_worst(grades.get(p.record) for p in others), _judged_errors(others, course))
+        clauses = [f"{enumeration(names, MAX_NAMES)} {verb}, to {_judged_errors(missed, course)}",
+                   *([f"the others{rest}"] if rest else [])]  # fmt: skip
+        return f"Of {len(held)} runs that were not used, {lasting}, {'; '.join(clauses)}{repeat}"
+    graded = _graded(worst, _judged_errors(held, course))
+    return f"Predicts {len(held)} runs that were not used, {lasting},{graded}{repeat}"
+
+
+def _worst(grades: Iterable[Grade | None]) -> Grade | None:
+    return max((one for one in grades if one is not None), key=list(Grade).index, default=None)
+
+
+def _graded(worst: Grade | None, errors: str) -> str:
+    """How runs are predicted and their errors: `` well or better: to 6.3° in heading``."""
     better = "" if worst is Grade.CLOSELY else " or better"
-    graded = f" {worst}{better}:" if worst is not None else ""
-    return f"Predicts {len(held)} runs that were not used, {lasting},{graded} {at_worst}"
+    return "".join([f" {worst}{better}:" if worst is not None else "", f" to {errors}" if errors else ""])
 
 
 def _over_time(p: Prediction) -> str:
@@ -181,11 +199,11 @@ def run_name(p: Prediction) -> str:
         manoeuvre = ObservedManoeuvre.from_record(p.measured)
     except InputError:
         return f"{p.record}, a run"
-    angles = [math.degrees(hold.angle) for hold in manoeuvre.holds]
+    angles = [hold.angle for hold in manoeuvre.holds]
     if manoeuvre.kind is ManoeuvreKind.ZIGZAG and angles:
-        return f"a {float(np.median(np.abs(angles))):.0f}° zigzag"
+        return f"a {ordered_degrees(float(np.median(np.abs(angles)))):.0f}° zigzag"
     if manoeuvre.kind is ManoeuvreKind.TURNING_CIRCLE:
-        angle = math.degrees(manoeuvre.longest_hold[0].angle)
+        angle = ordered_degrees(manoeuvre.longest_hold[0].angle)
         return f"a turning circle to {'starboard' if angle > 0 else 'port'} with {abs(angle):.0f}° rudder"
     return f"{p.record}, a run"
 

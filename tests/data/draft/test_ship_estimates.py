@@ -53,12 +53,20 @@ def test_what_is_stated_is_not_marked() -> None:
         ({"length": 3.0, "rho": -1.0}, r"a rho in kg/m\^3 is positive"),
         ({"mass": 165.0}, "say nothing without the length"),
         ({"length": 10.0, "mass": math.inf}, "a mass in kg is positive"),
-        ({"length": 3.2, "beam": 0.5, "draught": 0.1, "mass": 900.0}, "block coefficient"),
     ],
 )
-def test_sizes_that_no_hull_has_are_refused(sizes: dict[str, float], message: str) -> None:
+def test_sizes_that_nothing_has_are_refused(sizes: dict[str, float], message: str) -> None:
     with pytest.raises(InputError, match=message):
         StatedSize(**sizes)
+
+
+def test_a_volume_that_no_hull_has_is_refused_where_a_hull_is_needed() -> None:
+    """A catamaran's breadth over all holds no block, and its thrusters need none."""
+    for sizes in ((3.2, 0.5, 0.1, 900.0), (2.4, 1.25, 0.22, 112.0)):
+        size = StatedSize(*sizes)
+        assert {one.key for one in stated_values(size)} == {"B", "d", "m"}
+        with pytest.raises(InputError, match=r"block coefficient of .* which no hull has"):
+            main_dimensions(size)
 
 
 def test_the_formulas_for_kvlcc2_come_near_its_rudder_and_propeller() -> None:

@@ -8,11 +8,11 @@ from scipy.signal import lfilter
 
 from seatrial.estimation.information.covariance import (
     Interval,
+    RunScores,
     bootstrap,
     from_information,
     inverse,
     jackknife,
-    jackknife_steps,
     sandwich,
     with_prior,
 )
@@ -42,7 +42,8 @@ def test_one_step_is_exact_where_the_problem_is_linear(runs: tuple[Array, Array]
     gradients, hessians = normal_equations(matrices, right, solve(matrices, right))
     refits = np.array([solve(np.delete(matrices, i, 0), np.delete(right, i, 0)) for i in range(RUNS)])
     exact = (RUNS - 1) / RUNS * (refits - refits.mean(axis=0)).T @ (refits - refits.mean(axis=0))
-    interval = jackknife(jackknife_steps(hessians.sum(axis=0), gradients, hessians), "one-step")
+    steps = RunScores.from_normals(hessians.sum(axis=0), gradients, hessians).left_out_steps
+    interval = jackknife(steps, "one-step")
     np.testing.assert_allclose(interval.covariance, exact, rtol=1e-8)
     assert interval.degrees_of_freedom == RUNS - 1
     assert interval.half_width[0] == pytest.approx(stats.t.ppf(0.975, RUNS - 1) * np.sqrt(exact[0, 0]))
@@ -56,11 +57,36 @@ def test_what_one_run_alone_identifies_gets_the_error_of_the_information_matrix(
     gradients, hessians = normal_equations(matrices, right, solve(matrices, right))
     gradients[0, 2] += 1e-9  # rounding of a gradient that is zero at the optimum; divided by rounding before
     information = hessians.sum(axis=0)
-    interval = jackknife(jackknife_steps(information, gradients, hessians), "one-step")
+    interval = RunScores.from_normals(information, gradients, hessians).interval("over runs")
     assert interval.standard_error[2] == pytest.approx(from_information(information).standard_error[2], rel=0.1)
     others = [np.delete(matrices[:, :, :2], i, 0).reshape(-1, 2) for i in range(RUNS)]
     ends = [np.linalg.lstsq(a, np.delete(right, i, 0).ravel())[0] for i, a in enumerate(others[1:], 1)]
     assert np.all(interval.standard_error[:2] < 2.0 * np.std(ends, axis=0) * np.sqrt(RUNS - 1))
+
+
+def test_spread_over_runs_is_unbiased_where_one_run_holds_most_of_the_information(rng: np.random.Generator) -> None:
+    """White noise of unit size, so that the true covariance is H^-1; the jackknife's is far too wide there."""
+    matrices = rng.standard_normal((4, ROWS, UNKNOWNS)) * np.array([[5.0], [1.0], [1.0], [1.0]])[:, :, None]
+    hessians = np.einsum("sri,srj->sij", matrices, matrices)
+    information = hessians.sum(axis=0)
+    unbiased, left_out = [], []
+    for _ in range(2000):
+        right = rng.standard_normal((4, ROWS))
+        gradients, _ = normal_equations(matrices, right, solve(matrices, right))
+        scores = RunScores.from_normals(information, gradients, hessians)
+        unbiased.append(np.diag(scores.interval("").covariance))
+        left_out.append(np.diag(jackknife(scores.left_out_steps, "").covariance))
+    true = np.diag(np.linalg.inv(information))
+    np.testing.assert_allclose(np.mean(unbiased, axis=0) / true, 1.0, atol=0.06)  # 3 standard errors of 2000 draws
+    assert np.all(np.mean(left_out, axis=0) > 3.0 * true)
+
+
+def test_spread_over_runs_of_equal_weight_is_the_jackknifes(runs: tuple[Array, Array]) -> None:
+    matrices, right = np.repeat(runs[0][:1], RUNS, axis=0), runs[1]
+    gradients, hessians = normal_equations(matrices, right, solve(matrices, right))
+    scores = RunScores.from_normals(hessians.sum(axis=0), gradients, hessians)
+    by_jackknife = jackknife(scores.left_out_steps, "").covariance
+    np.testing.assert_allclose(scores.interval("").covariance, by_jackknife, rtol=1e-9)
 
 
 def test_information_matrix_of_white_noise(runs: tuple[Array, Array]) -> None:

@@ -19,6 +19,7 @@ class ColumnGuess:
         evidence: why.
         other_reading: what it may be instead; empty: it is assigned outright.
         side: of the craft on which the motion or a name shows a thruster or shaft, port or starboard; empty: not shown.
+        reference_point: m forward of midship to which it refers; 0: midship, or not examined.
         follows_track: whether the motion shows a velocity to be the derivative of the position, over ground.
         is_used: whether it is the one chosen for its symbol.
         unused_because: why it is not; empty: it is used.
@@ -37,6 +38,7 @@ class ColumnGuess:
     evidence: tuple[str, ...] = ()
     other_reading: str = ""
     side: str = ""
+    reference_point: float = 0.0
     follows_track: bool = False
     is_used: bool = True
     unused_because: str = ""
@@ -61,6 +63,7 @@ class ColumnGuess:
             self.unit,
             self.frame,
             self.positive,
+            self.reference_point,
             zero=self.zero,
             span=self.span,
             factor=self.scale,

@@ -28,6 +28,7 @@ from seatrial.data.draft.stated_columns import CHANNELS, NOTHING_STATED, StatedC
 from seatrial.data.draft.stretch import LogStretch, used_parts
 from seatrial.data.draft.survey import LogSurvey, apart_by_sheet, with_common_ranges
 from seatrial.data.draft.tables_text import tables_text
+from seatrial.data.draft.velocity_place import with_velocities_of_antenna
 from seatrial.data.draft.waves_text import ASSUMED
 from seatrial.data.draft.wind_columns import tells_wind, with_wind_role
 from seatrial.data.trial.estimated_values import ESTIMATED
@@ -136,6 +137,7 @@ def draft_trial(
     examined = [checked_by_behaviour(runs[k].sources, named[k]) for k in longest]
     guesses = [agreed_guesses(parts, examined) for parts in named]
     records = [run_record(run.sources, parts) for run, parts in zip(runs, guesses, strict=True)]
+    guesses = with_velocities_of_antenna(guesses, records, size.antenna)
     stretches = numbered([find_stretches(run.sources, one) for run, one in zip(runs, records, strict=True)])
     guesses = [with_turned_thruster(parts) for parts in guesses]
     symbols = {g.symbol for one in guesses[longest[0]] for g in one if g.is_used}

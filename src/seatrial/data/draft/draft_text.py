@@ -233,7 +233,12 @@ def _channel_table(guess: ColumnGuess) -> str:
     parts = [f"column = {quoted(guess.source)}", f"unit = {quoted(guess.unit or '1')}"]
     words = (("frame", guess.frame), ("positive", guess.positive), ("kind", guess.kind))
     parts += [f"{key} = {quoted(value)}" for key, value in words if value]
-    numbers = (("zero", guess.zero, 0.0), ("span", guess.span, 1.0), ("scale", guess.scale, 1.0))
+    numbers = (
+        ("reference_point", guess.reference_point, 0.0),
+        ("zero", guess.zero, 0.0),
+        ("span", guess.span, 1.0),
+        ("scale", guess.scale, 1.0),
+    )
     parts += [f"{key} = {value:g}" for key, value, default in numbers if value != default]
     return f"{{ {', '.join(parts)} }}"
 

@@ -205,6 +205,8 @@ _QUALIFIERS = re.compile(
 )
 # between the words of a name that sets them apart by capitals: RudderAngle, ShaftRPM
 _CAPITALS = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
+# of motions: a heading of another of these than a channel has means another quantity
+_MOTION_UNITS = frozenset({"m", "m/s", "m/s^2", "rad", "rad/s"})
 _BRACKETS = re.compile(r"[\[(]([^\])]*)[\])]")
 
 
@@ -305,6 +307,8 @@ def _guess(rule: NameRule, match: re.Match[str], unit: str, evidence: str) -> Na
         return None
     is_share = symbol == "delta" and unit == "percent"
     if unit and unit != "us" and not is_share and si_unit(unit)[1] != expected:
+        if not rule.logger and {si_unit(unit)[1], expected} <= _MOTION_UNITS:
+            return None  # ``Gyro X (deg/s)`` is no position, although it ends in x
         unit = ""
     side = named_side(match.string)
     if not side and symbol.startswith("command_"):

@@ -12,6 +12,7 @@ _NAMES_SHOWN = 4  # columns of one reason that a line names; ours
 _PLACES = frozenset({"lat", "x0"})
 _ANGLES = frozenset({"delta", "alpha_1"})
 _HEADINGS = frozenset({"psi"})
+_ROLL = frozenset({"phi"})
 _ORDERED = "order(ed)?|command(ed)?|cmd|demand(ed)?|set_?point|target|desired"
 
 
@@ -56,6 +57,8 @@ _WORDS = (
     ),
     _Rule(r"[hvp]dop|n?_?(um_)?sats?(ellites)?(_used)?|fix(_(type|quality))?|rssi", "the state of the receiver"),
     _Rule(r"g_?f[xyz]|(lin(ear)?_)?acc(el)?(eration)?_?[xyz]", "no model takes accelerations"),
+    _Rule(r"(imu_)?(gyro?_?x|roll_?(rate|speed)|w_?x)(_rate)?", "the roll angle shows it", _ROLL),
+    _Rule(r"(imu_)?(gyro?_?y|pitch_?(rate|speed)|w_?y)(_rate)?", "no model in the plane takes it"),
     _Rule(r"((prop(eller)?|shaft|(main_)?engine)_)?(power|torque)(_kw|_knm)?", "no model takes power or torque"),
 )
 
@@ -84,7 +87,7 @@ def not_needed_text(reasons: Mapping[str, str], most: int | None = None) -> str:
 
 
 def _reason(name: str, used: Set[str]) -> str:
-    field = plain_name(_UNIT.sub("", name.rpartition("/")[2]))
+    field = plain_name(_UNIT.sub("", name).rpartition("/")[2])
     matched = [one for one in _MESSAGES if re.fullmatch(one.pattern, name.lower())]
     matched += [one for one in _WORDS if re.fullmatch(one.pattern, in_english(field))]
     return next((one.reason for one in matched if not one.beside or one.beside & used), "")

@@ -79,11 +79,6 @@ class StatedSize:
             raise InputError(f"antenna = {self.antenna:g}: its place in m forward of midship is finite; correct it")
         if not self.length and (self.beam or self.draught or self.mass):
             raise InputError("beam, draught and mass say nothing without the length; state it as well (init --length)")
-        if self.length and not _BLOCKS[0] <= self.form.C_b <= _BLOCKS[1]:
-            raise InputError(
-                f"a mass of {self.mass:g} kg in L {self.length:g} m, B {self.form.B:.3g} m, d {self.form.d:.3g} m is a "
-                f"block coefficient of {self.form.C_b:.2g}, which no hull has; correct mass, length, beam or draught"
-            )
 
     @property
     def density(self) -> float:
@@ -92,7 +87,11 @@ class StatedSize:
 
     @property
     def form(self) -> HullForm:
-        """The hull, with rules for what is not stated; the displacement is kept where it is stated."""
+        """The hull, with rules for what is not stated; the displacement is kept where it is stated.
+
+        Raises:
+            InputError: no hull has so little or so much volume within these dimensions.
+        """
         volume = self.mass / self.density
         beam, draught = self.beam, self.draught
         if not beam and draught and volume:
@@ -103,6 +102,11 @@ class StatedSize:
         if not draught:
             draught = volume / (self.length * beam * _BLOCK) if volume else beam / _BREADTH_TO_DRAUGHT
         block = volume / (self.length * beam * draught) if volume else _BLOCK
+        if not _BLOCKS[0] <= block <= _BLOCKS[1]:
+            raise InputError(
+                f"a mass of {self.mass:g} kg in L {self.length:g} m, B {beam:.3g} m, d {draught:.3g} m is a block "
+                f"coefficient of {block:.2g}, which no hull has; correct mass, length, beam or draught"
+            )
         return HullForm(self.length, beam, draught, block)
 
     @property
@@ -139,17 +143,19 @@ class EstimatedValue:
 def main_dimensions(size: StatedSize) -> tuple[EstimatedValue, ...]:
     """Return breadth and draught [m]."""
     origin = "from length and mass" if size.mass else "from the length"
-    stated = (("B", size.form.B, "breadth", size.beam), ("d", size.form.d, "draught", size.draught))
+    form = size.form
+    values = (("B", size.beam, form.B, "breadth"), ("d", size.draught, form.d, "draught"))
     return tuple(
-        EstimatedValue(key, value, f"m, {name}, {'as stated' if given else origin}", bool(given))
-        for key, value, name, given in stated
+        EstimatedValue(key, given or rule, f"m, {name}, {'as stated' if given else origin}", bool(given))
+        for key, given, rule, name in values
     )
 
 
 def stated_values(size: StatedSize) -> tuple[EstimatedValue, ...]:
     """Return what is stated of hull and water besides the length, whether or not a model asks for it."""
     values = (
-        *main_dimensions(size),
+        EstimatedValue("B", size.beam, "m, breadth, as stated", bool(size.beam)),
+        EstimatedValue("d", size.draught, "m, draught, as stated", bool(size.draught)),
         EstimatedValue("m", size.mass, "kg, as stated", bool(size.mass)),
         EstimatedValue("GM", size.gm, "m, metacentric height, as stated", bool(size.gm)),
     )

@@ -8,7 +8,7 @@ import numpy as np
 from seatrial.core.values import InputError, Record
 from seatrial.data.check.signal import mask_intervals
 from seatrial.data.draft.stretch import LogStretch, elapsed, padded, smooth_speed
-from seatrial.physics.manoeuvres import ManoeuvreKind, ObservedManoeuvre
+from seatrial.physics.manoeuvres import ManoeuvreKind, ObservedManoeuvre, ordered_degrees
 
 _CIRCLE, _ZIGZAG_TURNS = np.radians(270.0), 3  # rad of a circle, and turns of a zigzag; chosen
 _SMALLEST_TURN, _LARGEST_ZIGZAG = np.radians(8.0), np.radians(120.0)  # rad of a turn of a zigzag; chosen
@@ -157,4 +157,5 @@ def _zigzag_text(record: Record, chain: list[_Turn]) -> str:
     rudder = float(np.median([abs(hold.angle) for hold in manoeuvre.holds]))
     psi = [manoeuvre.psi_at(one) for one in manoeuvre.executes[1:]]
     switched = 0.5 * float(np.median(np.abs(np.diff(psi))))
-    return f"{text}; rudder {np.degrees(rudder):.0f} deg, switched at {np.degrees(switched):.0f} deg of heading"
+    angles = f"rudder {ordered_degrees(rudder):.0f} deg, switched at {ordered_degrees(switched):.0f} deg of heading"
+    return f"{text}; {angles}"

@@ -15,8 +15,8 @@ from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
 from seatrial.core.values import Array
 from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.estimate.process_noise_interval import inverse_variances, without_initial_state
-from seatrial.estimation.estimate.resampling import one_step_jackknife
-from seatrial.estimation.information.covariance import Interval, inverse, jackknife
+from seatrial.estimation.estimate.resampling import run_scores
+from seatrial.estimation.information.covariance import Interval, inverse
 
 ANGLE_OF_REST = "phi_0"
 """Parameter of a roll model for the angle at which the ship comes to rest [rad]."""
@@ -35,7 +35,7 @@ def with_slow_forces(interval: Interval, estimate: PointEstimate, residuals: Arr
     place = estimate.problem.free.index(ANGLE_OF_REST)
     runs = len(estimate.problem.data.runs)
     if runs > 1:
-        by_runs = jackknife(one_step_jackknife(estimate), "")
+        by_runs = run_scores(estimate).interval("")
         deviation, freedom = float(by_runs.standard_error[place]), by_runs.degrees_of_freedom
     else:
         deviation, freedom = _within_run(_influence(estimate, residuals, place)), float(COSINES)

@@ -16,15 +16,18 @@ from seatrial.core.results import DisturbanceCandidate
 from seatrial.core.values import Array, ProgressReporter
 from seatrial.estimation.estimate.disturbance_models import DisturbanceModel, gusts, sensor_models, waves
 from seatrial.estimation.estimate.likelihood_ratio import CONFIDENCE_LEVEL, likelihood_ratio_test
-from seatrial.estimation.estimate.newton_refinement import newton_step
-from seatrial.estimation.estimate.process_noise import ProcessNoise, search_prediction_error
-from seatrial.numerics.optimise import levenberg_marquardt
+from seatrial.estimation.estimate.newton_refinement import newton_optimum, newton_step, refine_by_newton
+from seatrial.estimation.estimate.process_noise import ProcessNoise, search_with_frozen_gain
+from seatrial.estimation.problem.prediction_error import PredictionError
+from seatrial.numerics.optimise import Optimum, levenberg_marquardt
 
 _NO_INITIAL_STATES = np.zeros((0, 0))
 # most evaluations of each search; chosen
 _EVALUATIONS = 60
 # promised decrease of the cost at which the search without a disturbance ends; its gradient is exact
 _NEGLIGIBLE = 1e-3
+# promises of one Newton step within which the end of a search lies; chosen: 1.45 at most over ten searches of two craft
+_REACH = 3.0
 HELD_OUT_SHARE = 0.25
 """Share of each run, at its end, on which candidates are scored; chosen."""
 
@@ -34,15 +37,26 @@ _SPECTRUM_SEGMENT = 1024
 
 @dataclass(frozen=True, eq=False)
 class FittedDisturbance:
-    """A candidate at its optimum; unknown_count: unknowns that describe the disturbance."""
+    """A candidate at its optimum, or near it where it cannot be the likeliest.
+
+    Attributes:
+        unknown_count: unknowns that describe the disturbance.
+        promise: what a Newton step would add to its log-likelihood; 0 where it was searched to the end.
+    """
 
     noise: ProcessNoise
     unknown_count: int
+    promise: float = 0.0
 
     @property
     def log_likelihood(self) -> float:
-        """At the optimum, up to a constant that all candidates share."""
+        """As far as it was searched, up to a constant that all candidates share."""
         return -self.noise.optimum.normal.cost
+
+    @property
+    def reachable(self) -> float:
+        """The log-likelihood that a search to the end may find at most."""
+        return self.log_likelihood + _REACH * self.promise
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +125,7 @@ def choose_disturbance(
     evaluations: int = _EVALUATIONS,
     report_progress: ProgressReporter | None = None,
 ) -> DisturbanceChoice:
-    """Fit every candidate and choose one.
+    """Fit every candidate, to the end those that may be the likeliest, and choose one.
 
     Args:
         white: the optimum with white noise on the states.
@@ -123,7 +137,7 @@ def choose_disturbance(
     fitted = [FittedDisturbance(without_disturbance(white, evaluations, report), 0), FittedDisturbance(white, count)]
     has_room = not white.output_error.extra_terms  # force points know the caller's parameters only
     if has_room:
-        fitted += _fitted([gusts(white)], white, evaluations, report)
+        fitted += _begun([gusts(white)], white, evaluations, report)
     eligible = int(needs_disturbance)  # the first to choose from
     best = likeliest(fitted[eligible:])
     if not best.noise.test.is_white:
@@ -131,9 +145,9 @@ def choose_disturbance(
         gusty = next((f for f in fitted if f.noise.disturbance_model.startswith("first-order Markov")), None)
         if gusty is not None:
             more.append(waves(white, gusty.noise, _peak_frequency(gusty.noise)))
-        fitted += _fitted(more, white, evaluations, report)
-        best = likeliest(fitted[eligible:])
-    return DisturbanceChoice(best, tuple(fitted))
+        fitted += _begun(more, white, evaluations, report)
+    fitted = _searched(fitted, report)
+    return DisturbanceChoice(likeliest(fitted[eligible:]), tuple(fitted))
 
 
 def likeliest(fitted: Sequence[FittedDisturbance]) -> FittedDisturbance:
@@ -179,19 +193,47 @@ def held_out_score(noise: ProcessNoise) -> float | None:
     return score / count if count and np.isfinite(score) else None
 
 
-def _fitted(
+def _begun(
     models: Sequence[DisturbanceModel], white: ProcessNoise, evaluations: int, report: ProgressReporter
 ) -> Iterator[FittedDisturbance]:
-    without = white.optimum.normal.cost + 0.5 * white.test.likelihood_ratio
+    """Yield candidates near their optima, where the search with the gain as given ends."""
     for one in models:
         report(f"disturbances compared: {one.name}")
         if not np.isfinite(one.problem.cost(one.point, _NO_INITIAL_STATES)):
             continue
-        exact, optimum, decrement = search_prediction_error(one.problem, one.point, evaluations, report)
-        verdict = likelihood_ratio_test(exact, optimum.solution.point, optimum.normal.cost, without, None)
-        verdict = replace(verdict, inflation_without=white.test.inflation_without)
-        noise = ProcessNoise(exact, optimum, decrement, verdict, white.output_error, one.name)
-        yield FittedDisturbance(noise, one.unknown_count)
+        near = search_with_frozen_gain(one.problem, one.point, evaluations, report)
+        exact = replace(one.problem, steps=one.problem.difference_steps(near.solution.point, near.normal.hessian))
+        promise = newton_optimum(one.problem, near, 1.0).decrement
+        yield _candidate(white, one.name, one.unknown_count, exact, near, promise, promise)
+
+
+def _searched(begun: Sequence[FittedDisturbance], report: ProgressReporter) -> list[FittedDisturbance]:
+    """Return candidates, searched to the end where they may be the likeliest there, the most promising first."""
+    ends, white = list(begun), begun[1].noise
+    for k in sorted(range(len(begun)), key=lambda k: -begun[k].reachable):
+        one, best = begun[k], max(f.log_likelihood for f in ends)
+        if one.promise > 0.0 and one.reachable > best - critical_gain(one.unknown_count):
+            report(f"disturbances compared: {one.noise.disturbance_model}")
+            exact, optimum, decrement = refine_by_newton(one.noise.problem, one.noise.optimum)
+            ends[k] = _candidate(white, one.noise.disturbance_model, one.unknown_count, exact, optimum, decrement)
+    return ends
+
+
+def _candidate(
+    white: ProcessNoise,
+    name: str,
+    unknown_count: int,
+    problem: PredictionError,
+    optimum: Optimum,
+    decrement: float,
+    promise: float = 0.0,
+) -> FittedDisturbance:
+    """The candidate at this optimum of its problem, tested against none as `white` is."""
+    without = white.optimum.normal.cost + 0.5 * white.test.likelihood_ratio
+    verdict = likelihood_ratio_test(problem, optimum.solution.point, optimum.normal.cost, without, None)
+    verdict = replace(verdict, inflation_without=white.test.inflation_without)
+    noise = ProcessNoise(problem, optimum, decrement, verdict, white.output_error, name)
+    return FittedDisturbance(noise, unknown_count, promise)
 
 
 def _peak_frequency(noise: ProcessNoise) -> float:

@@ -9,7 +9,7 @@ from seatrial.core.values import Array, InputError
 from seatrial.estimation.estimate.disturbance_choice import DisturbanceChoice
 from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.estimate.process_noise import ProcessNoise
-from seatrial.estimation.estimate.resampling import ReportCount, bootstrap_fits, full_jackknife, one_step_jackknife
+from seatrial.estimation.estimate.resampling import ReportCount, bootstrap_fits, full_jackknife, run_scores
 from seatrial.estimation.estimate.settings import WHITE_INFLATION, IntervalMethod
 from seatrial.estimation.information.covariance import (
     Interval,
@@ -64,7 +64,8 @@ def estimate_uncertainty(
     problem, hessian = estimate.problem, estimate.optimum.normal.without_local()[1]
     runs = len(problem.data.runs)
     refuse_few_runs(kind, runs)
-    steps = one_step_jackknife(estimate) if runs >= RUNS_FOR_JACKKNIFE else None
+    scores = run_scores(estimate) if runs >= RUNS_FOR_JACKKNIFE else None
+    steps = None if scores is None else estimate.common_parameters + scores.left_out_steps
 
     def over_runs(interval: Interval) -> Interval:
         known = with_prior(interval, hessian, problem.prior_precision(estimate.common_parameters))
@@ -86,8 +87,8 @@ def estimate_uncertainty(
         )
     if np.max(inflation) <= WHITE_INFLATION:
         return Uncertainty(from_information(hessian), steps)
-    if steps is not None:
-        return Uncertainty(over_runs(jackknife(steps, f"one-step jackknife over {runs} runs")), steps)
+    if scores is not None:
+        return Uncertainty(over_runs(scores.interval(f"one-step jackknife over {runs} runs")), steps)
     if problem.data.count >= _BLOCKS_FOR_SANDWICH:
         return Uncertainty(
             with_prior(
@@ -110,7 +111,7 @@ def innovations_uncertainty(noise: ProcessNoise, disturbances: DisturbanceChoice
     steps = noise.leave_one_out if runs >= RUNS_FOR_JACKKNIFE else None
     wanted = kind in (IntervalMethod.JACKKNIFE, IntervalMethod.BOOTSTRAP)
     if steps is not None and (wanted or not noise.test.is_white):
-        made = jackknife(steps, f"one-step jackknife over {runs} runs, prediction error")
+        made = noise.interval_over_runs(f"one-step jackknife over {runs} runs, prediction error")
         precision = noise.output_error.prior_precision(noise.common_parameters)
         widened = with_prior(made, noise.information, precision)
         count = len(noise.output_error.free)

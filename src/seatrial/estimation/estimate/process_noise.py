@@ -22,7 +22,7 @@ from seatrial.estimation.estimate.likelihood_ratio import (
 )
 from seatrial.estimation.estimate.newton_refinement import refine_by_newton
 from seatrial.estimation.estimate.point_estimate import PointEstimate, rounding_level
-from seatrial.estimation.information.covariance import Interval, from_information, jackknife_steps
+from seatrial.estimation.information.covariance import Interval, RunScores, from_information
 from seatrial.estimation.problem.output_error import OutputError, SegmentNormals
 from seatrial.estimation.problem.prediction_error import PredictionError, join_segments
 from seatrial.numerics.optimise import (
@@ -141,18 +141,18 @@ class ProcessNoise:
     @property
     def leave_one_out(self) -> Array:
         """`shared` with each run left out by one Newton step from stored normal equations, (runs, k)."""
-        blocks, point, runs = (self._segment_normals, self.optimum.solution.point, self.problem.runs.data)
-        parts = [
-            self.problem.assemble(blocks, point, runs.run_segments(int(r)), with_prior=False)
-            for r in np.unique(runs.run)
-        ]
-        free = self._free_indices
-        gradients = np.array([p.gradient[free] for p in parts])
-        hessians = np.array([p.hessian[np.ix_(free, free)] for p in parts])
-        steps = jackknife_steps(self.optimum.normal.hessian[np.ix_(free, free)], gradients, hessians)
-        moved = np.tile(point, (len(parts), 1))
+        point, free, steps = self.optimum.solution.point, self._free_indices, self._run_scores.left_out_steps
+        moved = np.tile(point, (len(steps), 1))
         moved[:, free] += steps
         return moved[:, self.common_indices]
+
+    def interval_over_runs(self, meaning: str) -> Interval:
+        """Return that of `shared` by how the runs differ, each weighed by the information that it holds."""
+        free, size = self._free_indices, len(self.optimum.solution.point)
+        interval = self._run_scores.interval(meaning)
+        covariance = np.zeros((size, size))
+        covariance[np.ix_(free, free)] = interval.covariance
+        return replace(interval, covariance=covariance[np.ix_(self.common_indices, self.common_indices)])
 
     def as_point_estimate(self) -> PointEstimate:
         """The same point as an estimate over whole runs: noise levels, initial states, and the reduced information."""
@@ -167,6 +167,21 @@ class ProcessNoise:
     @cached_property
     def _segment_normals(self) -> SegmentNormals:
         return replace(self.problem, steps=None).segment_normals(self.optimum.solution.point)
+
+    @cached_property
+    def _run_scores(self) -> RunScores:
+        """Of the free unknowns."""
+        blocks, point, runs = self._segment_normals, self.optimum.solution.point, self.problem.runs.data
+        parts = [
+            self.problem.assemble(blocks, point, runs.run_segments(int(r)), with_prior=False)
+            for r in np.unique(runs.run)
+        ]
+        free = self._free_indices
+        return RunScores.from_normals(
+            self.optimum.normal.hessian[np.ix_(free, free)],
+            np.array([p.gradient[free] for p in parts]),
+            np.array([p.hessian[np.ix_(free, free)] for p in parts]),
+        )
 
     @cached_property
     def _free_indices(self) -> Index:
@@ -268,15 +283,22 @@ def search_prediction_error(
     problem: PredictionError, point: Array, evaluations: int, report_progress: ProgressReporter
 ) -> tuple[PredictionError, Optimum, float]:
     """The problem with steps for exact gradients, its optimum, and the Newton decrement left there."""
+    optimum = search_with_frozen_gain(problem, point, evaluations, report_progress)
+    report_progress("prediction error: exact gradient")
+    return refine_by_newton(problem, optimum)
+
+
+def search_with_frozen_gain(
+    problem: PredictionError, point: Array, evaluations: int, report_progress: ProgressReporter
+) -> Optimum:
+    """The end of a search whose gradient takes the filter's gain as given, near the optimum."""
 
     def counted(count: int, cost: float) -> None:
         report_progress(f"prediction error: evaluation {count}, cost {cost:.6g}")
 
-    optimum = levenberg_marquardt(
+    return levenberg_marquardt(
         problem, point, _NO_INITIAL_STATES, negligible=_NEGLIGIBLE, evaluations=evaluations, report_progress=counted
     )
-    report_progress("prediction error: exact gradient")
-    return refine_by_newton(problem, optimum)
 
 
 def _without_search(problem: PredictionError, point: Array) -> ProcessNoise:

@@ -10,7 +10,7 @@ import numpy as np
 
 from seatrial.core.values import Array, Index
 from seatrial.estimation.estimate.point_estimate import PointEstimate
-from seatrial.estimation.information.covariance import inverse, jackknife_steps
+from seatrial.estimation.information.covariance import RunScores, inverse
 from seatrial.numerics.optimise import levenberg_marquardt
 from seatrial.numerics.workers import map_in_threads
 
@@ -25,11 +25,14 @@ def one_step_jackknife(estimate: PointEstimate, groups: Sequence[Sequence[int]] 
 
     groups: positions of runs; None: each run by itself. Returns (groups, k).
     """
+    return estimate.common_parameters + run_scores(estimate, groups).left_out_steps
+
+
+def run_scores(estimate: PointEstimate, groups: Sequence[Sequence[int]] | None = None) -> RunScores:
+    """Return what each group of runs says of the shared unknowns at the estimate; None: each run by itself."""
     parts = _normals_of(estimate, groups or [[r] for r in range(len(estimate.problem.data.runs))])
     hessian = estimate.optimum.normal.without_local()[1]
-    return estimate.common_parameters + jackknife_steps(
-        hessian, np.array([g for g, _ in parts]), np.array([h for _, h in parts])
-    )
+    return RunScores.from_normals(hessian, np.array([g for g, _ in parts]), np.array([h for _, h in parts]))
 
 
 @dataclass(frozen=True, eq=False)

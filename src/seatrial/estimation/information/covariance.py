@@ -52,25 +52,61 @@ def from_information(hessian: Array) -> Interval:
     return Interval(inverse(hessian), np.inf, "information matrix, every sample counted as independent")
 
 
-def jackknife_steps(hessian: Array, run_gradients: Array, run_hessians: Array) -> Array:
-    """One Gauss-Newton step from the joint optimum for each run left out, theta_(-i) - theta = (H - H_i)^-1 g_i.
+@dataclass(frozen=True, eq=False)
+class RunScores:
+    """What each of n runs says at the joint optimum of k shared unknowns, from the stored normal equations.
 
-    From the stored normal equations (Hinkley 1977): run_gradients (n, k), run_hessians (n, k, k); returns (n, k). In
-    the eigenvectors of H_i by H the step is g/(1 - l), l the share of the information that the run holds. Where it
-    holds all but `_LEAST_SHARE`, the other runs do not identify the direction, and g/(1 - l) is 0/0: the step is then
-    of the size that gives `jackknife` the variance of the information matrix, the limit for l to 1 of the variance that
-    is unbiased for any l (HC2; MacKinnon and White 1985, J. Econometrics 29, 305, eq. 6).
+    In the eigenvectors of a run's information by that of all, `shares` are those of the information that it holds.
+
+    Attributes:
+        pushes: gradient of the run, (n, k).
+        shares: from 0 to 1, (n, k).
+        directions: in columns, (n, k, k).
     """
-    count, whitening = len(run_gradients), _whitening(hessian)
-    steps = np.empty_like(run_gradients)
-    for i, (gradient, run_hessian) in enumerate(zip(run_gradients, run_hessians, strict=True)):
-        shares, vectors = np.linalg.eigh(whitening.T @ run_hessian @ whitening)
+
+    pushes: Array
+    shares: Array
+    directions: Array
+
+    @classmethod
+    def from_normals(cls, hessian: Array, run_gradients: Array, run_hessians: Array) -> "RunScores":
+        """Return those of runs with gradients (n, k) and Hessians (n, k, k), of which `hessian` (k, k) is the sum."""
+        whitening = _whitening(hessian)
+        shares, vectors = np.linalg.eigh(whitening.T @ run_hessians @ whitening)
         directions = whitening @ vectors
-        push, left = directions.T @ gradient, 1.0 - shares
-        alone = left < _LEAST_SHARE
-        size = np.where(alone, np.copysign(count / (count - 1.0), push), push / np.where(alone, 1.0, left))
-        steps[i] = directions @ size
-    return steps
+        return cls(np.einsum("ikd,ik->id", directions, run_gradients), shares, directions)
+
+    @property
+    def left(self) -> Array:
+        """Shares that the other runs hold; one where they do not identify the direction."""
+        return np.where(self.is_alone, 1.0, 1.0 - self.shares)
+
+    @property
+    def is_alone(self) -> Array:
+        """Whether the run holds all but `_LEAST_SHARE`, so that g/(1 - l) would divide rounding by rounding."""
+        return 1.0 - self.shares < _LEAST_SHARE
+
+    @property
+    def left_out_steps(self) -> Array:
+        """One Gauss-Newton step from the joint optimum for each run left out, theta_(-i) - theta = (H - H_i)^-1 g_i.
+
+        (n, k), Hinkley 1977; where a run is alone, by as much as the other runs scatter.
+        """
+        count = len(self.pushes)
+        size = np.where(self.is_alone, np.copysign(count / (count - 1.0), self.pushes), self.pushes / self.left)
+        return np.einsum("ikd,id->ik", self.directions, size)
+
+    def interval(self, meaning: str) -> Interval:
+        """Return the covariance that is unbiased whatever share of the information a run holds.
+
+        Sum of s s' with s = g/sqrt(1 - l) in the eigenvectors (CR2 of Bell and McCaffrey 2002, Survey Methodology 28,
+        169, eq. 6; HC2 of MacKinnon and White 1985, J. Econometrics 29, 305, eq. 6, where a run is a sample). The
+        jackknife's g/(1 - l) is the same where all runs hold as much, and too wide by 1/(1 - l) where one holds most.
+        Where a run is alone, the information matrix's, the limit for l to 1.
+        """
+        size = np.where(self.is_alone, np.copysign(1.0, self.pushes), self.pushes / np.sqrt(self.left))
+        parts = np.einsum("ikd,id->ik", self.directions, size)
+        return Interval(parts.T @ parts, len(parts) - 1, meaning)
 
 
 def jackknife(points: Array, meaning: str) -> Interval:

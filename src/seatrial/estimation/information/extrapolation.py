@@ -28,15 +28,28 @@ COMMAND_GAIN = 1.0
 """Growth of the index over the whole range of commands (benchmarks/thrusters_bands.py)."""
 
 
-def motion_envelope(records: Sequence[Record], layout: str = "") -> dict[str, float]:
-    """What the records cover, SI: ranges of motion, rudder and commands, and the rate of the rudder's fastest move.
+PROPELLER_RATE = "propeller_rate"
+"""Name of the least rate of the propeller under way in the training runs [rps]: engines slow down in turns."""
+_IDLE = 0.5  # of the median rate of a propeller, below which it is stopped or started; chosen
 
-    That rate (`sustained_rudder_rate`) is no limit of a prediction. What no record holds is absent. Of a craft
+
+def motion_envelope(records: Sequence[Record], layout: str = "") -> dict[str, float]:
+    """What the records cover, SI: ranges of motion, rudder and commands, rates of the rudder and the propeller.
+
+    The rate of the rudder's fastest move (`sustained_rudder_rate`) and the propeller's least rate are no limits of a
+    prediction. What no record holds is absent. Of a craft
     whose `layout` has thrusters that turn, the rudder is the order of their angle.
     """
     records = _with_orders(records, layout)
     rates = [rate for r in records if (rate := sustained_rudder_rate(r)) is not None]
-    return _ranges(records, layout) | ({RUDDER_RATE: max(rates)} if rates else {})
+    shafts = [np.abs(r["n"]) for r in records if "n" in r]
+    turning = [n[n > _IDLE * np.nanmedian(n)] for n in shafts]
+    slowest = [float(np.nanpercentile(n, 100.0 - REACH_PERCENTILE)) for n in turning if n.size]
+    return (
+        _ranges(records, layout)
+        | ({RUDDER_RATE: max(rates)} if rates else {})
+        | ({PROPELLER_RATE: min(slowest)} if slowest else {})
+    )
 
 
 def _ranges(records: Sequence[Record], layout: str) -> dict[str, float]:

@@ -14,5 +14,6 @@ from seatrial.physics.manoeuvres.recognition import (
 from seatrial.physics.manoeuvres.steered_orders import (
     SteeredOrders as SteeredOrders,
     initial_speed as initial_speed,
+    ordered_degrees as ordered_degrees,
     steered_orders as steered_orders,
 )

@@ -11,6 +11,7 @@ from seatrial.physics.manoeuvres.recognition import ManoeuvreKind, ObservedManoe
 # share by which orders and speeds of repeats differ at most; chosen: below the steps in which people order angles
 _TOLERANCE = 0.1
 _LEAST_ANGLE = math.radians(1.0)  # of a difference of angles that counts; chosen
+_ORDER_STEP, _ORDER_TOLERANCE = 5.0, 1.2  # deg between angles that are ordered, and what readings miss; chosen
 _TURNS = (ManoeuvreKind.TURNING_CIRCLE, ManoeuvreKind.PULL_OUT)  # in which the rudder is held over once, for long
 _APPROACH = 5.0  # s at the start of a run whose mean is its speed; chosen
 
@@ -59,6 +60,13 @@ def steered_orders(record: Record) -> SteeredOrders | None:
     course, *turned = (run.psi_at(time) for time in run.executes)
     heading = float(np.median([abs(psi - course) for psi in turned])) if turned else 0.0
     return SteeredOrders(run.kind, float(np.median([abs(h.angle) for h in run.holds])), heading, speed)
+
+
+def ordered_degrees(angle: float) -> float:
+    """Return an angle [rad] in degrees as it was ordered: angles are ordered in steps of five, and read off by them."""
+    degrees = math.degrees(angle)
+    step = _ORDER_STEP * round(degrees / _ORDER_STEP)
+    return step if step and abs(degrees - step) <= _ORDER_TOLERANCE else float(round(degrees))
 
 
 def _is_near(one: float, other: float, least: float) -> bool:

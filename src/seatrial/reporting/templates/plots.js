@@ -83,7 +83,7 @@
       const axis = { stroke: () => colour(SOFT), font: "10px Arial, sans-serif", grid, ticks, values };
       return {
         width: this.width(), height: this.figure.height, legend: { show: false }, pxAlign: 0,
-        padding: [6, 8, 0, 0],
+        padding: [6, 14, 0, 0],  // px; right: half of a last label such as 10000
         cursor: { sync: { key: figure.id, scales: ["x", null] }, drag: { x: true, y: false }, y: false, points: { size: 5 } },
         scales: { x: { time: false }, y: { range: (u, low, high) => this.isWhole(u, full) || !(high > low) ? data.ends : [low, high] } },
         axes: [{ ...axis, size: 18, gap: 3, label: figure.document.x, labelSize: 14, labelGap: 0, labelFont: "10px Arial, sans-serif", space: 55 },
