@@ -92,7 +92,7 @@ def test_a_craft_with_thrusters_is_judged_by_manoeuvres_of_several_kinds_that_la
     kinds = {"circle": (0.8, 0.3), "zigzag": (0.6, 0.7), "straight": (0.5, 0.5)}
     records = {f"{kind}{k}": craft_run(*commands) for k in range(4) for kind, commands in kinds.items()}
     judged = held_out_runs(model, records, {name: name[:-1] for name in records})
-    assert {name[:-1] for name in judged.names} == {"circle", "zigzag", "straight"}
+    assert {name[:-1] for name in judged.names} == {"circle", "zigzag"}, "on a held course all but errors is corrected"
     assert 0.2 <= judged.seconds / judged.seconds_in_all <= 1.0 / 3.0
     few = {name: one for name, one in records.items() if name[-1] in "01"}
     assert len(held_out_runs(model, few, {name: name[:-1] for name in few}).names) == 1, "of no kind are there three"

@@ -17,7 +17,7 @@ LINEAR = {
     "M_v": 2.0, "M_r": 0.4, "X_u": 0.0, "X_uu": -0.4, "Y_v": -0.5, "Y_uv": -0.2, "N_ur": -0.1, "Y_NT": 0.0, "k_J": 0.0,
     "k_4": 0.0,
 }  # fmt: skip
-NOTHING = np.zeros((20, 20))
+NOTHING = np.zeros((21, 21))
 
 
 def by_hand(u: float, N_uv: float, N_r: float) -> np.ndarray:

@@ -81,10 +81,26 @@ def fossen_rates(values: dict[str, float], nu: Array, tau: Array) -> Array:
     c = values
     D = -np.array([
         [c["X_u"] + c["X_uu"] * abs(u), 0, 0],
-        [0, c["Y_v"] + c["Y_vv"] * abs(v) + c["Y_uv"] * abs(u), c["Y_r"] + c["Y_ur"] * u],
-        [c["N_u"] + c["N_uu"] * abs(u), c["N_v"] + c["N_uv"] * u, c["N_r"] + c["N_rr"] * abs(r) + c["N_ur"] * abs(u)],
+        [0, c["Y_v"] + c["Y_vv"] * abs(v) + c["Y_uv"] * abs(u), c["Y_r"] + c["Y_ur"] * u + c["N_fin"] * abs(u)],
+        [c["N_u"] + c["N_uu"] * abs(u), c["N_v"] + c["N_uv"] * u + c["N_fin"] * abs(u),
+         c["N_r"] + c["N_rr"] * abs(r) + c["N_ur"] * abs(u)],
     ])  # fmt: skip
     return np.linalg.solve(M, tau - C @ nu - D @ nu)
+
+
+def test_a_fin_abaft_acts_as_its_lift_at_its_place_ahead_and_astern(rng: np.random.Generator) -> None:
+    """Lift -K |u| (v + x r) at x, by hand: three coefficients, one of which counts twice."""
+    K, x = 0.8, -0.6
+    base = thrusters(CATAMARAN)
+    still = {p.name: 0.0 for p in base.parameters if p.name[0] in "XYN"}
+    fin = base.with_values(still | {"Y_uv": -K, "N_ur": -K * x**2, "N_fin": -K * x})
+    bare = base.with_values(still)
+    for u, v, r in rng.normal(size=(10, 3)):
+        state = np.concatenate([[u, v, r], np.zeros(len(base.states) - 3)])
+        lift = -K * abs(u) * (v + x * r)
+        for name, force in (("Y_H", lift), ("N_H", x * lift)):
+            added = [float(model.forces(state[None], np.zeros((1, 2)))[name][0]) for model in (fin, bare)]
+            assert added[0] - added[1] == pytest.approx(force, abs=1e-12)
 
 
 def test_rates_equal_the_matrices_of_fossen(rng: np.random.Generator) -> None:

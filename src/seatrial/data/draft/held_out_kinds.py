@@ -37,14 +37,21 @@ class JudgingRuns:
     lies_within: Callable[[Set[str]], bool]
 
     def of_several_kinds(self, least_share: float) -> tuple[str, ...]:
-        """Return of each kind the middle group by size; more of them in turn until they last a share of all time."""
+        """Return of each kind the middle group by size; more of them in turn until they last a share of all time.
+
+        Straight runs only where the others do not last that long: on a course that a helmsman holds, what he corrects
+        is all that could be predicted.
+        """
         counts = Counter(kind for name in self.records if (kind := self.kinds[name]))
-        kinds = sorted(counts, key=lambda kind: (kind == STRAIGHT, -counts[kind]))  # straight runs say least
-        held, before = (), None
-        while held != before and (before is None or share_of_time(held, self.records) < least_share):
-            before = held
-            for kind in kinds:
-                held = (*held, *self._next_of(kind, held))
+        kinds, held = sorted(counts, key=lambda kind: -counts[kind]), ()
+        for chosen in ([kind for kind in kinds if kind != STRAIGHT], kinds):
+            before = None
+            while held != before and (before is None or share_of_time(held, self.records) < least_share):
+                before = held
+                for kind in chosen:
+                    held = (*held, *self._next_of(kind, held))
+            if held and share_of_time(held, self.records) >= least_share:
+                break
         return held
 
     def _next_of(self, kind: str, held: tuple[str, ...]) -> tuple[str, ...]:

@@ -28,6 +28,8 @@ _EVALUATIONS = 60
 _NEGLIGIBLE = 1e-3
 # promises of one Newton step within which the end of a search lies; chosen: 1.45 at most over ten searches of two craft
 _REACH = 3.0
+# variance inflation of innovations near an optimum, beyond which its last steps do not make them white; chosen
+_HOPELESS_INFLATION = 10.0
 HELD_OUT_SHARE = 0.25
 """Share of each run, at its end, on which candidates are scored; chosen."""
 
@@ -146,7 +148,7 @@ def choose_disturbance(
         if gusty is not None:
             more.append(waves(white, gusty.noise, _peak_frequency(gusty.noise)))
         fitted += _begun(more, white, evaluations, report)
-    fitted = _searched(fitted, report)
+    fitted = _searched(fitted, report, needs_disturbance=needs_disturbance)
     return DisturbanceChoice(likeliest(fitted[eligible:]), tuple(fitted))
 
 
@@ -207,12 +209,18 @@ def _begun(
         yield _candidate(white, one.name, one.unknown_count, exact, near, promise, promise)
 
 
-def _searched(begun: Sequence[FittedDisturbance], report: ProgressReporter) -> list[FittedDisturbance]:
-    """Return candidates, searched to the end where they may be the likeliest there, the most promising first."""
+def _searched(
+    begun: Sequence[FittedDisturbance], report: ProgressReporter, *, needs_disturbance: bool
+) -> list[FittedDisturbance]:
+    """Return candidates, searched to the end where they may be the likeliest there, the most promising first.
+
+    Not where innovations stay so coloured that none would be used, unless one is needed.
+    """
     ends, white = list(begun), begun[1].noise
     for k in sorted(range(len(begun)), key=lambda k: -begun[k].reachable):
         one, best = begun[k], max(f.log_likelihood for f in ends)
-        if one.promise > 0.0 and one.reachable > best - critical_gain(one.unknown_count):
+        is_hopeless = not needs_disturbance and np.max(one.noise.test.inflation) > _HOPELESS_INFLATION
+        if one.promise > 0.0 and not is_hopeless and one.reachable > best - critical_gain(one.unknown_count):
             report(f"disturbances compared: {one.noise.disturbance_model}")
             exact, optimum, decrement = refine_by_newton(one.noise.problem, one.noise.optimum)
             ends[k] = _candidate(white, one.noise.disturbance_model, one.unknown_count, exact, optimum, decrement)

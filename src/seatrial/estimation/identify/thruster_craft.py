@@ -55,7 +55,7 @@ _DAMPING: Mapping[str, tuple[str, int, int]] = {
 _MEANINGS = {
     "D": "linear damping", "D_u": "damping with |u|", "D_v": "damping with |v|", "D_r": "damping with |r|",
 }  # fmt: skip
-_NO_MATRIX = ("Y_ur", "N_uv", "D_c")  # terms with the sign of u, and the strips of cross-flow
+_NO_MATRIX = ("Y_ur", "N_uv", "N_fin", "D_c")  # terms with the sign of u, and the strips of cross-flow
 
 
 def thruster_craft(

@@ -55,6 +55,8 @@ _COUPLED = {
     "N_uv": _HullTerm(0.0, "kg", 0, "yaw moment of u v"),
     "Y_ur": _HullTerm(0.0, "kg", 0, "side force of u r", is_free=False),
     "Y_uv": _HullTerm(0.0, "kg/m", -1, "sway damping that grows with speed, |u| v"),
+    # lift -K |u| (v + x r) of a fin at x: Y_uv = -K, N_ur = -K x^2, and -K x for both of the couplings that are N_fin
+    "N_fin": _HullTerm(0.0, "kg", 0, "yaw moment of |u| v and side force of |u| r: fins, skegs"),
     "N_v": _HullTerm(0.0, "kg m/s", 0, "yaw moment of v", is_free=False),
     "Y_r": _HullTerm(0.0, "kg m/s", 0, "side force of r", is_free=False),
     "N_u": _HullTerm(0.0, "kg m/s", 0, "yaw moment of u: a craft that pulls to one side", is_free=False),
@@ -137,7 +139,7 @@ def _coefficient(sheet: Sheet, layout: ThrusterLayout, name: str, term: _HullTer
 
 
 def _hull(sheet: Sheet, layout: ThrusterLayout, water: Water, thrust: PlanarForce) -> PlanarForce:
-    """Damping; terms even in u act astern as ahead. Those that the layout's damping leaves out stay fixed at zero."""
+    """Damping and fins; terms even in u act astern as ahead. What the layout leaves out stays fixed at zero."""
     is_strips = layout.damping is Damping.CROSS_FLOW
     names = [n for n in (*_DIAGONAL, *_COUPLED) if not (is_strips and n in ("Y_vv", "N_rr"))]
     c = {name: _coefficient(sheet, layout, name, {**_DIAGONAL, **_COUPLED}[name]) for name in names}
@@ -150,13 +152,13 @@ def _hull(sheet: Sheet, layout: ThrusterLayout, water: Water, thrust: PlanarForc
     Y = sheet.bind(
         "Y_H",
         c["Y_v"] * v + c["Y_r"] * r + Y_flow + c["Y_uv"] * fast * v + c["Y_ur"] * u * r
-        + c["Y_T"] * thrust.X + c["Y_NT"] * thrust.N,
+        + c["N_fin"] * fast * r + c["Y_T"] * thrust.X + c["Y_NT"] * thrust.N,
         f"{HULL}; side force of the wash", "N",
     )  # fmt: skip
     N = sheet.bind(
         "N_H",
         c["N_r"] * r + c["N_v"] * v + N_flow + c["N_ur"] * fast * r + c["N_uv"] * u * v
-        + c["N_u"] * u + c["N_uu"] * fast * u,
+        + c["N_fin"] * fast * v + c["N_u"] * u + c["N_uu"] * fast * u,
         HULL, "N m",
     )  # fmt: skip
     return PlanarForce(X, Y, N)
