@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 import seatrial as st
-from seatrial.api import course_findings, replay
-from seatrial.core.results import SessionOffset
+from seatrial.api import course_findings, propeller_rate_text, replay
+from seatrial.core.results import IntervalBasis, SessionOffset
 from seatrial.core.values import InputError, RecordKind
 from seatrial.data.folder.model_file import ModelFile
+from seatrial.estimation.information.extrapolation import motion_envelope
 from seatrial.physics.models import model_named
 
 JET = {"v_j": 1.866}  # jet velocity of the example's trials, m/s
@@ -115,3 +116,18 @@ def test_inputs_of_a_log_are_corrected_by_what_its_session_was_off(craft: ModelF
 def zigzag_measured(zigzag: st.Record) -> st.Record:
     """The zigzag as a log would hold it."""
     return replace(zigzag, kind=RecordKind.MEASURED)
+
+
+@pytest.mark.parametrize(("lowest", "is_said"), [(3.04, True), (3.28, False)])
+def test_a_propeller_that_slowed_down_in_the_trials_and_not_in_the_simulation_is_said(
+    craft: ModelFile, lowest: float, is_said: bool
+) -> None:
+    time = np.arange(0.0, 400.0)
+    n = np.where(time < 10.0, 0.0, np.where(time < 200.0, 3.3, lowest))  # rps: started, straight ahead, in the turn
+    turn = st.Record.from_arrays("circle", time, {"n": n})
+    basis = IntervalBasis(np.zeros((0, 0)), np.inf, training_envelope=motion_envelope([turn]))
+    held = st.Record.from_arrays("simulated", time, {"n": np.full(len(time), 3.3)})
+    text = propeller_rate_text(replace(craft, interval_basis=basis), held)
+    assert ("3.3 rps (198 rpm) throughout" in text and "fell to 3.04 rps (182 rpm)" in text) == is_said
+    assert text.endswith("--set n=3.04") if is_said else text == ""
+    assert propeller_rate_text(craft, held) == ""

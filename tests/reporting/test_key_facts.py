@@ -221,3 +221,14 @@ def test_fitted_runs_that_are_missed_are_a_row_of_their_own(fit: Fit) -> None:
     both = rows(replace(fit, predictions=(missed, worse, replace(missed, record="c"), *close)))["Error, fitted (rms)"]
     assert both.text.startswith("missed although fitted: b by ") and "; 1 more; the process noise" in both.text
     assert both.text.endswith(f"; disturbances or {cause}")
+
+
+def test_a_held_out_run_that_is_luckier_than_the_fitted_ones_does_not_stand_for_them(fit: Fit) -> None:
+    (p,) = fit.validation
+    others = [one for one in fit.predictions if one is not p]
+    small = {"psi_deg": 0.05 * float(np.degrees(np.std(p.measured["psi"]))), "position_m": 0.1}
+    lucky = replace(p, rms=small)
+    for factor, is_said in ((1.4, False), (1.6, True)):
+        trained = [replace(one, rms={"psi_deg": factor * small["psi_deg"], "position_m": 0.2}) for one in others]
+        fact = rows(replace(fit, predictions=(lucky, *trained)))["Error, held out (rms)"]
+        assert ("although fitted, is missed by more: " in fact.text) == is_said

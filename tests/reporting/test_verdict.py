@@ -83,6 +83,8 @@ def test_of_several_runs_those_that_are_missed_are_named(fit: Fit) -> None:
     first, second = (replace(with_share(p, share), record=name) for name, share in (("one", 0.8), ("two", 0.2)))
     text = verdict(with_runs(fit, first, second))
     assert text.startswith("Of 2 runs that were not used, 4 min 00 s each, one is poorly predicted, to ")
+    own, others = (error_text("psi_deg", p.rms["psi_deg"]) for p in (first, second))
+    assert f"one is poorly predicted, to {own} in heading" in text and f"; the other well: to {others} in" in text
     lost = with_share(first, 1.2)
     assert ", one and two are not predicted, to " in verdict(with_runs(fit, lost, replace(lost, record="two")))
     assert ", 4 min 00 s each, well or better: to " in verdict(with_runs(fit, second, replace(second, record="one")))

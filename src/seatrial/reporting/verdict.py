@@ -141,11 +141,11 @@ def _several_runs_clause(
         names = [name for name, grade in grades.items() if grade is worst]
         verb = f"{'is' if len(names) == 1 else 'are'} {'not predicted' if worst is Grade.NOT else 'poorly predicted'}"
         missed, others = ([p for p in held if (p.record in names) is which] for which in (True, False))
-        rest = _graded(_worst(grades.get(p.record) for p in others), _judged_errors(others, course))
+        rest = _graded([grades.get(p.record) for p in others], _judged_errors(others, course))
         clauses = [f"{enumeration(names, MAX_NAMES)} {verb}, to {_judged_errors(missed, course)}",
-                   *([f"the others{rest}"] if rest else [])]  # fmt: skip
+                   *([f"the other{'s' if len(others) > 1 else ''}{rest}"] if rest else [])]  # fmt: skip
         return f"Of {len(held)} runs that were not used, {lasting}, {'; '.join(clauses)}{repeat}"
-    graded = _graded(worst, _judged_errors(held, course))
+    graded = _graded(list(grades.values()), _judged_errors(held, course))
     return f"Predicts {len(held)} runs that were not used, {lasting},{graded}{repeat}"
 
 
@@ -153,9 +153,10 @@ def _worst(grades: Iterable[Grade | None]) -> Grade | None:
     return max((one for one in grades if one is not None), key=list(Grade).index, default=None)
 
 
-def _graded(worst: Grade | None, errors: str) -> str:
+def _graded(grades: Sequence[Grade | None], errors: str) -> str:
     """How runs are predicted and their errors: `` well or better: to 6.3° in heading``."""
-    better = "" if worst is Grade.CLOSELY else " or better"
+    worst = _worst(grades)
+    better = "" if worst is Grade.CLOSELY or len(grades) == 1 else " or better"
     return "".join([f" {worst}{better}:" if worst is not None else "", f" to {errors}" if errors else ""])
 
 

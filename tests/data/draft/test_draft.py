@@ -261,6 +261,26 @@ def test_a_stated_antenna_is_written_where_a_receiver_shows_the_track(tmp_path: 
     )
 
 
+@pytest.mark.parametrize("place", [0.0, 0.8])
+def test_velocities_that_change_the_positions_are_the_antennas(place: float, tmp_path: Path) -> None:
+    """Positions of an antenna 0.8 m ahead of midship, and velocities of it or, by an estimator, of midship."""
+    craft = two_thrusters()
+    c, s = np.cos(craft["psi"]), np.sin(craft["psi"])
+    speeds = {"vn": craft["u"] * c - place * craft["r"] * s, "ve": craft["u"] * s + place * craft["r"] * c}
+    north, east = craft["x0"] + 0.8 * c, craft["y0"] + 0.8 * s
+    fixes = {
+        "time": craft["t"],
+        "yaw": np.degrees(craft["psi"]),
+        "lat": 43.0 + north / 111.1e3,
+        "lon": 5.0 + east / 81.5e3,
+    }
+    log = write(tmp_path / "log.csv", fixes | speeds | {"left": craft["left"], "right": craft["right"]})
+    used = {g.symbol: g for part in draft_trial(log, length=2.0, antenna=0.8).guesses for g in part if g.is_used}
+    assert [used[symbol].reference_point for symbol in ("u", "v")] == [place, place]
+    text = draft_trial(log, length=2.0, antenna=0.8).text
+    assert ("reference_point = 0.8" in text) == bool(place)
+
+
 @pytest.mark.parametrize(
     ("first", "start", "is_settled"), [("left", 1.79e9, True), ("left", 0.0, True), ("right", 0.0, False)]
 )

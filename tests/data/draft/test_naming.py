@@ -123,3 +123,8 @@ def test_an_instrument_before_a_name_and_how_it_was_taken_behind_it_change_nothi
 ) -> None:
     guess = guess_by_name("", name, "")
     assert guess is not None and (guess.symbol, guess.unit) == (symbol, unit)
+
+
+@pytest.mark.parametrize("name", ["Gyro X (deg/s)", "Accel Y (m/s2)", "x [deg]", "surge [m]"])
+def test_a_unit_of_another_motion_is_another_quantity(name: str) -> None:
+    assert guess_by_name("", name, "") is None

@@ -19,6 +19,9 @@ from seatrial.data.draft.not_needed import columns_not_needed, not_needed_text
         ("speed_kmh", {"lat"}, "positions show"),
         ("hdop", set[str](), "receiver"),
         ("gFx", set[str](), "accelerations"),
+        ("Accel X (m/s2)", set[str](), "accelerations"),
+        ("Gyro X (deg/s)", {"phi"}, "roll angle"),
+        ("Gyro Y (deg/s)", set[str](), "no model"),
     ],
 )
 def test_the_reason_is_given(name: str, used: set[str], words: str) -> None:

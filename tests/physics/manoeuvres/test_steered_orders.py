@@ -8,7 +8,7 @@ import pytest
 from tests.reporting.fabricated import zigzag
 
 from seatrial.core.values import Record
-from seatrial.physics.manoeuvres import ManoeuvreKind, SteeredOrders, initial_speed, steered_orders
+from seatrial.physics.manoeuvres import ManoeuvreKind, SteeredOrders, initial_speed, ordered_degrees, steered_orders
 
 
 def test_the_orders_are_those_of_the_run() -> None:
@@ -32,3 +32,10 @@ def test_the_speed_at_the_start_is_that_of_the_first_seconds() -> None:
     record = Record.from_arrays("s", time, {"u": np.where(time <= 5.0, 3.0, 1.0)})
     assert initial_speed(record) == pytest.approx(3.0)
     assert math.isnan(initial_speed(record.without("u")))
+
+
+@pytest.mark.parametrize(
+    ("read", "ordered"), [(10.6, 10.0), (20.9, 20.0), (-34.2, -35.0), (11.5, 12.0), (1.0, 1.0), (0.2, 0.0)]
+)
+def test_angles_are_ordered_in_steps_of_five_degrees(read: float, ordered: float) -> None:
+    assert ordered_degrees(math.radians(read)) == ordered
