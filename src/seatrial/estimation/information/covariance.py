@@ -6,6 +6,7 @@ White-noise errors are valid only for white residuals; the other two stay valid 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
 from seatrial.core.values import Array
@@ -82,7 +83,7 @@ class RunScores:
         return np.where(self.is_alone, 1.0, 1.0 - self.shares)
 
     @property
-    def is_alone(self) -> Array:
+    def is_alone(self) -> NDArray[np.bool_]:
         """Whether the run holds all but `_LEAST_SHARE`, so that g/(1 - l) would divide rounding by rounding."""
         return 1.0 - self.shares < _LEAST_SHARE
 
