@@ -59,3 +59,12 @@ def test_two_shafts_by_their_sides_are_thrusters_where_no_rudder_steers(tmp_path
     write(tmp_path / "ship.csv", columns | {"rudder_deg": 10.0 * np.sin(time)})
     found = {one.symbol: one for one in guess_columns(survey_log(tmp_path / "ship.csv")) if one.is_used}
     assert found["n"].source == "rpm_left" and "rpm_1" not in found
+
+
+def test_rates_of_thrusters_whose_commands_are_recorded_are_not_two_more_thrusters(tmp_path: Path) -> None:
+    time = np.arange(60.0)
+    columns = {"time": time, "heading_deg": 40.0 + time, "rpm_port": 30.0 * time, "rpm_stbd": 300.0 - 4.0 * time}
+    columns |= {"throttle_port_pct": 1.5 * time, "throttle_stbd_pct": 90.0 - 1.2 * time}
+    write(tmp_path / "usv.csv", columns)
+    found = {one.symbol: one for one in guess_columns(survey_log(tmp_path / "usv.csv")) if one.is_used}
+    assert {"command_1", "command_2"} <= set(found) and not {"rpm_1", "rpm_2", "n"} & set(found)

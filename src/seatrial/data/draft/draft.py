@@ -21,6 +21,7 @@ from seatrial.data.draft.log_partition import parts_without_gaps
 from seatrial.data.draft.manoeuvres import find_stretches, numbered, offered_parts, two_thirds_and_a_third
 from seatrial.data.draft.one_speed import OtherSpeed, runs_by_speed, stated_options
 from seatrial.data.draft.runs_of_logs import LogRun, runs_of_logs
+from seatrial.data.draft.sample_rate import thinned_rate
 from seatrial.data.draft.session_text import session_line
 from seatrial.data.draft.ship_estimates import UNSTATED, StatedSize
 from seatrial.data.draft.starting_model import StartingModel, starting_model, with_wind
@@ -161,7 +162,8 @@ def draft_trial(
         replace(_with_roles(one, model, held_out, session), antenna=size.antenna, is_released=is_released)
         for one in blocks
     ]
-    tables = tables_text(model, [g for _, columns in blocks[0].sources for g in columns], size)
+    rate = thinned_rate(records, size.length, model.speed) if model.has_forces_of_a_ship else None
+    tables = tables_text(model, [g for _, columns in blocks[0].sources for g in columns], size, rate)
     text = trial_text(blocks, tables, {**surveyed.left_out, **left_out}, Path(folder).resolve())
     return DraftTrial(
         text, surveys, tuple(runs), guesses[longest[0]], tuple(records), stretches, parts, held_out,

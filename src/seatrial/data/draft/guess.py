@@ -224,11 +224,17 @@ def without_conflicts(parts: Sequence[Sequence[ColumnGuess]]) -> list[tuple[Colu
 
 
 def _with_two_shafts(parts: Sequence[Sequence[ColumnGuess]]) -> Sequence[Sequence[ColumnGuess]]:
-    """The guesses, where no rudder steers and the rates of two shafts are recorded: each as that of a thruster."""
+    """The guesses, where no rudder steers and the rates of two shafts are recorded: each as that of a thruster.
+
+    Where the commands of thrusters are recorded as well, these are used, and the rates that follow them are not.
+    """
     rates = [one for part in parts for one in part if one.symbol == "n" and one.side]
     has_rudder = any(one.is_used and one.symbol == "delta" for part in parts for one in part)
     if has_rudder or sorted(one.side for one in rates) != ["port", "starboard"]:
         return parts
+    if any(one.is_used and one.symbol.startswith("command_") for part in parts for one in part):
+        reason = "the rate of a thruster whose command is taken"
+        return [[_unused(one, reason) if one in rates else one for one in part] for part in parts]
     text = "one of two shafts, and no rudder: a thruster's"
     return [[_as_thruster(one).with_evidence(text) if one in rates else one for one in part] for part in parts]
 

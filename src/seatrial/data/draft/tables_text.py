@@ -22,10 +22,12 @@ _NO_CURRENT = (
 )
 
 
-def tables_text(model: StartingModel, guesses: Sequence[ColumnGuess], size: StatedSize) -> list[str]:
+def tables_text(
+    model: StartingModel, guesses: Sequence[ColumnGuess], size: StatedSize, rate: float | None = None
+) -> list[str]:
     """Return the lines of ship and model, and of what else the model needs; of a model without a name what is missing.
 
-    guesses: of all sources of the longest run.
+    guesses: of all sources of the longest run; rate: at which residuals are taken [Hz]; None: that of the records.
     """
     if not model.name:
         return [
@@ -48,7 +50,7 @@ def tables_text(model: StartingModel, guesses: Sequence[ColumnGuess], size: Stat
         "",
         *(excitation_lines() if model.has_waves else []),
         *_sensor_lines(model, guesses),
-        *_offset_lines(model, guesses, size),
+        *_offset_lines(model, guesses, size, rate),
     ]
 
 
@@ -138,7 +140,9 @@ def _sensor_lines(model: StartingModel, guesses: Sequence[ColumnGuess]) -> list[
     return ["[sensors]", 'velocity = "ground"    # of a receiver, over ground: a current is in them', ""]
 
 
-def _offset_lines(model: StartingModel, guesses: Sequence[ColumnGuess], size: StatedSize) -> list[str]:
+def _offset_lines(
+    model: StartingModel, guesses: Sequence[ColumnGuess], size: StatedSize, rate: float | None
+) -> list[str]:
     """What differs from day to day: a current, where positions or velocities show it, and the zero of the rudder."""
     if not (model.has_forces_of_a_ship or model.has_thrusters):
         return []
@@ -150,7 +154,8 @@ def _offset_lines(model: StartingModel, guesses: Sequence[ColumnGuess], size: St
         else f"current = {_CURRENT:g}    # m/s, of which nothing is known but that it is of this size"
     )
     zero = 'offsets = ["delta"]    # the zero of the rudder\'s indicator'
-    lines = [*([current] if shows_current else []), *([zero] if model.has_forces_of_a_ship else [])]
+    lines = [f"rate = {rate:.4g}    # Hz, of residuals: the log has more samples than the ship moves"] if rate else []
+    lines += [*([current] if shows_current else []), *([zero] if model.has_forces_of_a_ship else [])]
     return ["[estimate]", *lines, ""] if lines else []
 
 
