@@ -207,7 +207,12 @@ class DisturbanceCandidate:
     """One model of what disturbs the ship, fitted with the coefficients to the same records."""
 
     name: Annotated[str, Field(description="kind of disturbance and the states it acts on")]
-    log_likelihood: Annotated[Number, Field(description="at its optimum, up to a constant that all candidates share")]
+    log_likelihood: Annotated[
+        Number,
+        Field(
+            description="at its optimum, or near it where it cannot be the likeliest, up to a constant that all share"
+        ),
+    ]
     degrees_of_freedom: Annotated[int, Field(description="unknowns that describe the disturbance")]
     likelihood_ratio: Annotated[Number, Field(description="twice the log-likelihood above that of the first candidate")]
     critical_ratio: Annotated[Number, Field(description="what chance alone gives once in a thousand cases")]
