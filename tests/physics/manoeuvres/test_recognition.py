@@ -38,3 +38,19 @@ def test_a_zigzag_is_known_though_its_rudder_slews_longer_than_it_holds() -> Non
     seen = ObservedManoeuvre.from_record(record)
     assert seen.kind is ManoeuvreKind.ZIGZAG and len(seen.holds) == 5
     assert np.degrees(seen.psi_at(seen.executes[1])) == pytest.approx(10.0, abs=0.3)
+
+
+def test_a_rudder_that_turns_back_as_it_arrives_was_put_over() -> None:
+    """A 30/10 zigzag of a ship that turns fast: the first peak has no flat part, and is its first execute."""
+    time = np.arange(0.0, 60.0, 0.05)
+    corners = [(0.0, 0.0), (12.0, 0.0), (15.0, 30.0), (21.0, -30.0), (27.0, -30.0), (33.0, 30.0), (39.0, 30.0),
+               (45.0, -30.0), (60.0, -30.0)]  # fmt: skip
+    delta = np.radians(np.interp(time, *zip(*corners, strict=True)))
+    r = np.zeros(len(time))
+    for k in range(1, len(time)):
+        r[k] = r[k - 1] + 0.05 * (0.5 * delta[k - 1] - r[k - 1])  # Nomoto's first order, K 0.5, T 1 s
+    record = Record.from_arrays("30/10", time, {"delta": delta, "psi": np.cumsum(r) * 0.05})
+    run = ObservedManoeuvre.from_record(record)
+    assert run.kind is ManoeuvreKind.ZIGZAG
+    np.testing.assert_allclose(run.executes, [12.0, 15.0, 27.0, 39.0], atol=0.1)
+    assert np.degrees(run.holds[0].angle) == pytest.approx(30.0, abs=0.5)

@@ -26,6 +26,7 @@ ANGLE_TOLERANCE, COURSE_TOLERANCE = 0.25, float(np.radians(8.0))
 # shares: of an angle that is amidships, of samples there that make a stop, of the largest rate that is a slew; of a
 # slew from which its beginning is extrapolated; chosen
 _AMIDSHIPS, _STOP, _SLEWING, _SLEW_PART = 0.1, 0.3, 0.2, (0.25, 0.75)
+_REACHED = 0.95  # of the angle of the holds, at which a rudder that turns back at once was put over; chosen
 _CHECKED_SHARE = 0.8  # of executes at which a zigzag's heading lies to the side steered from; chosen
 _FEWEST_ANGLES, _STANDING = 6, 0.02  # rudder angles of a spiral, and share of the samples at each; chosen
 # stretches of rudder to one side from which on a record is a programme of random orders, not a manoeuvre; chosen
@@ -96,11 +97,30 @@ class ObservedManoeuvre:
         pieces = [(a, b) for a, b in pairwise(bounds) if level[a] != 0.0]
         if len(pieces) > _MOST_STRETCHES:
             return ()
-        held = [h for a, b in pieces if (h := _find_hold(self.delta, a, b)) is not None]
+        held = {k: h for k, (a, b) in enumerate(pieces) if (h := _find_hold(self.delta, a, b)) is not None}
         if not held:
             return ()
-        shortest = SHORTEST_HOLD * float(np.median([h.last - h.first for h in held]))
-        return self._without_course_keeping([h for h in held if h.last - h.first >= max(shortest, 2.0)])
+        shortest = SHORTEST_HOLD * float(np.median([h.last - h.first for h in held.values()]))
+        long = {k: h for k, h in held.items() if h.last - h.first >= max(shortest, 2.0)}
+        turned_back = self._turned_back(pieces, long)
+        return self._without_course_keeping([one for _, one in sorted((long | turned_back).items())])
+
+    def _turned_back(self, pieces: list[tuple[int, int]], holds: dict[int, Hold]) -> dict[int, Hold]:
+        """Holds of a row where the rudder is put over to the other side as it arrives: 30/10 of a ship that turns fast.
+
+        pieces: stretches of rudder to one side, first and last row; holds: of those that have one. A peak is one where
+        it reaches the angle of the holds, and a hold to the other side follows.
+        """
+        if not holds:
+            return {}
+        reached = _REACHED * _median_angle(list(holds.values()))
+        peaks = dict[int, Hold]()
+        for k, (a, b) in enumerate(pieces):
+            row = a + int(np.argmax(np.abs(self.delta[a:b])))
+            angle, after = float(self.delta[row]), holds.get(k + 1)
+            if k not in holds and abs(angle) >= reached and after is not None and after.angle * angle < 0.0:
+                peaks[k] = Hold(row, row + 1, angle)
+        return peaks
 
     def _without_course_keeping(self, holds: list[Hold]) -> tuple[Hold, ...]:
         level = _median_angle(holds) if holds else 0.0
