@@ -143,3 +143,11 @@ def test_the_next_command_quotes_a_path_with_spaces(tmp_path: Path) -> None:
     log = write(folder / "run 1.csv", {"time": TRUTH["t"], "heading": TRUTH["psi"]})
     assert f"Next: seatrial init '{log}' --out trial.toml" in output("check", str(log))
     assert f"seatrial check '{folder / 'trial.toml'}'" in output("init", str(log), "--out", str(folder / "trial.toml"))
+
+
+def test_a_heading_that_is_not_recognised_is_asked_for(tmp_path: Path) -> None:
+    named = {name: values for name, values in BASE.items() if name != "heading"}
+    log = write(tmp_path / "run.csv", named | {"bearing of the bow": TRUTH["psi"], "rudder": TRUTH["delta"]})
+    text = output("init", str(log), "--length", "12", "--out", str(tmp_path / "trial.toml"))
+    assert "Next: no column is recognised as the heading" in text
+    assert "--overwrite --column 'bearing of the bow=psi'" in text.replace("\n", " ").replace("  ", " ")

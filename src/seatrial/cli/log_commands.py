@@ -162,6 +162,9 @@ def _after_draft(draft: "DraftTrial", out: Path) -> str:
             "say which column is a rudder (delta), a thruster (command_1, command_2) or the roll angle (phi): the same "
             f"command with --overwrite --column {one}"
         )
+    if draft.lacks_heading and draft.unrecognised:
+        one = in_shell(f"{draft.unrecognised[0]}=psi")
+        return f"no column is recognised as the heading: if one is, the same command with --overwrite --column {one}"
     steps += [f"name the column of rudder, thruster or roll angle in {out}"] if draft.lacks_input else []
     if steps:
         return f"{', '.join(steps)}, then seatrial check {in_shell(out)}"

@@ -8,7 +8,14 @@ from enum import StrEnum
 import numpy as np
 
 from seatrial.core.results import Fit, Prediction, Stability, WindowScore
-from seatrial.core.results.motion_spread import HEADING_SPREAD, MOTIONS, MotionSpread, motion_spread, motion_spreads
+from seatrial.core.results.motion_spread import (
+    HEADING_SPREAD,
+    HELD_COURSE_SPREAD,
+    MOTIONS,
+    MotionSpread,
+    motion_spread,
+    motion_spreads,
+)
 from seatrial.core.text.numbers import significant
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, Record
@@ -42,13 +49,15 @@ class ErrorShare:
     """An error over a whole run, or over windows of it, as a share of the standard deviation of that motion there.
 
     name: as in `Prediction.rms`. window: length of the windows; empty: over the whole run. is_turning: the heading
-    spreads further than all directions alike do, so that the share is one of those.
+    spreads further than all directions alike do, so that the share is one of those. is_held: it is held over the run,
+    so that the share is one of a small turn.
     """
 
     name: str
     share: float
     window: str = ""
     is_turning: bool = False
+    is_held: bool = False
 
     @property
     def grade(self) -> Grade:
@@ -78,7 +87,8 @@ def window_shares(p: Prediction, window: WindowScore) -> tuple[ErrorShare, ...]:
 
 def _error_share(name: str, rms: float, spread: MotionSpread, window: str = "") -> ErrorShare:
     """An error as the share of the spread of its motion."""
-    return ErrorShare(name, rms / spread.size if spread.size > 0.0 else math.inf, window, spread.is_turning)
+    share = rms / spread.size if spread.size > 0.0 else math.inf
+    return ErrorShare(name, share, window, spread.is_turning, spread.is_held)
 
 
 def _inside_windows(record: Record, channels: Sequence[str], seconds: float) -> list[Array]:
@@ -153,7 +163,10 @@ def share_sentence(predictions: Sequence[Prediction], course: Stability | None =
                for name in MOTIONS if any(one.name == name for one in every)]  # fmt: skip
     parts = enumeration([f"{significant(one.share, 2)} in {ERROR_LABELS[one.name][0]}" for one in largest])
     over = f", over {worst.window}" if worst.window else ""
-    turning = f" ({math.degrees(HEADING_SPREAD):.0f}° for a heading that turns on and on)"
-    capped = turning if any(one.is_turning for one in largest) else ""
+    notes = (
+        (f"{math.degrees(HEADING_SPREAD):.0f}° for a heading that turns on and on", any(o.is_turning for o in largest)),
+        (f"{math.degrees(HELD_COURSE_SPREAD):.0f}° for a heading that is held", any(o.is_held for o in largest)),
+    )
+    capped = f" ({'; '.join(text for text, is_said in notes if is_said)})" if any(said for _, said in notes) else ""
     noun = "share" if len(largest) == 1 else "shares"
     return f"{noun} of the standard deviation of the motion itself{over}{capped}: {parts}, {worst.grade} ({SCALE})"

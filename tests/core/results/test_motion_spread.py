@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.core.results.motion_spread import HEADING_SPREAD, is_lost, motion_spread
+from seatrial.core.results.motion_spread import HEADING_SPREAD, is_lost, motion_spread, motion_spreads
 from seatrial.core.values import Record
 
 TIME = np.arange(1000) * 0.1
@@ -29,3 +29,15 @@ def test_a_run_is_lost_where_an_error_is_beyond_its_motion_or_nothing_was_simula
     record = Record.from_arrays("run", TIME, {"psi": math.radians(20.0) * SWING})
     assert not is_lost({"psi_deg": 14.0, "u": 9.0}, record) and is_lost({"psi_deg": 14.3}, record)
     assert is_lost({}, record) and not is_lost({"position_m": 1e6}, record), "positions that were not recorded"
+
+
+def test_a_held_heading_is_judged_as_a_small_turn_and_a_turn_by_itself() -> None:
+    """1.4 and 7.1 deg by hand, a sine of 2 and 10 deg."""
+    held, turned = (
+        motion_spreads({"psi_deg": 1.0}, Record.from_arrays("run", TIME, {"psi": math.radians(size) * SWING}))[
+            "psi_deg"
+        ]
+        for size in (2.0, 10.0)
+    )
+    assert held.is_held and held.size == pytest.approx(10.0)
+    assert not turned.is_held and turned.size == pytest.approx(10.0 / math.sqrt(2.0))

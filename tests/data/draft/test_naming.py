@@ -33,6 +33,7 @@ def test_speeds_along_and_across_and_the_rate_of_the_shaft_are_recognised(name: 
         ("battery_v", "voltage"),
         ("batt", "voltage"),
         ("compass", "psi"),
+        ("Kurs HDG [°]", "psi"),
         ("Rudder position", "delta"),
         ("rudder feedback", "delta"),
         ("battery voltage [V]", "voltage"),

@@ -12,6 +12,10 @@ MOTIONS = {"psi_deg": ("psi",), "position_m": ("x0", "y0"), "z": ("z",), "theta_
 """Name of an error, as in `Prediction.rms` -> the channels of that motion."""
 HEADING_SPREAD = math.pi / math.sqrt(3.0)
 """rad, standard deviation of a heading that points anywhere alike: turns on and on spread it no further."""
+HELD_COURSE_SPREAD = math.radians(10.0)
+"""rad, by which a heading that is held over a whole run counts as spread: what a helmsman leaves of it is no motion to
+measure a model by; chosen: of a 10/10 zigzag."""
+_HELD_WITHIN = math.radians(5.0)  # standard deviation of a heading below which it is held; chosen: of small zigzags
 _DEGREES = math.degrees(1.0)
 
 
@@ -19,11 +23,13 @@ _DEGREES = math.degrees(1.0)
 class MotionSpread:
     """Standard deviation of a motion in the unit of its error.
 
-    is_turning: the heading spreads further than all directions alike do, so that it is theirs.
+    is_turning: the heading spreads further than all directions alike do, so that it is theirs. is_held: the heading is
+    held over the run, so that it is that of a small turn.
     """
 
     size: float
     is_turning: bool = False
+    is_held: bool = False
 
 
 def motion_spread(name: str, motions: Sequence[Array]) -> MotionSpread:
@@ -37,7 +43,11 @@ def motion_spread(name: str, motions: Sequence[Array]) -> MotionSpread:
 def motion_spreads(names: Container[str], measured: Record) -> dict[str, MotionSpread]:
     """Return the spreads of a run's motions for the errors of these names, as far as it holds their channels."""
     compared = (name for name, channels in MOTIONS.items() if name in names and all(c in measured for c in channels))
-    return {name: motion_spread(name, [measured[c] for c in MOTIONS[name]]) for name in compared}
+    spreads = {name: motion_spread(name, [measured[c] for c in MOTIONS[name]]) for name in compared}
+    heading = spreads.get("psi_deg")
+    if heading is not None and heading.size < _DEGREES * _HELD_WITHIN:
+        spreads["psi_deg"] = MotionSpread(_DEGREES * HELD_COURSE_SPREAD, is_held=True)
+    return spreads
 
 
 def is_lost(errors: Mapping[str, float], measured: Record) -> bool:

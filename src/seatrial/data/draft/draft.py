@@ -86,6 +86,13 @@ class DraftTrial:
         return self._marked(ESTIMATED)
 
     @property
+    def lacks_heading(self) -> bool:
+        """Whether what steers is recorded and no heading is recognised, without which the track shows no drift."""
+        symbols = {g.symbol for part in self.guesses for g in part if g.is_used}
+        steers = any(one == "delta" or one.startswith(("command_", "rpm_")) for one in symbols)
+        return steers and not symbols & {"psi", "psi_magnetic", "q_w"}
+
+    @property
     def lacks_antenna(self) -> bool:
         """Whether a receiver shows the track, and neither its log nor anybody says where its antenna stands."""
         return NO_ANTENNA in self.text

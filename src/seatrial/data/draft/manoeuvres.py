@@ -21,7 +21,8 @@ from seatrial.data.draft.turns import turning_stretches
 
 _FILLED = 0.7  # share of a run that its manoeuvres cover, from which on it is taken whole; chosen
 _CUT_TOLERANCE = 0.1  # of a log, by which a cut into thirds moves to where a manoeuvre begins; chosen
-_MOST_STRETCHES = 12  # offered of one run; the longest
+# offered of one run; of what is on the way between manoeuvres the longest; chosen
+_MOST_STRETCHES, _ON_THE_WAY = 16, frozenset({"turn", STRAIGHT})
 # of a manoeuvre's time, and s at least, that its part shows of the approach: measures need the execute; chosen
 _APPROACH_SHARE, _APPROACH_S = 0.1, 10.0
 _FINDERS: tuple[Callable[[Record], list[LogStretch]], ...] = (turning_stretches, spirals, stops)
@@ -37,8 +38,8 @@ def find_stretches(surveys: Sequence[LogSurvey], record: Record | None) -> tuple
         return ()
     modes = autopilot_modes(surveys, record)
     stretches = [one for mode in modes for one in _in_mode(record, mode)] if modes else _manoeuvres_of(record)
-    longest = sorted(stretches, key=lambda one: one.start - one.stop)[:_MOST_STRETCHES]
-    return tuple(sorted(longest, key=lambda one: one.start))
+    ranked = sorted(stretches, key=lambda one: (one.kind in _ON_THE_WAY, one.start - one.stop))
+    return tuple(sorted(ranked[:_MOST_STRETCHES], key=lambda one: one.start))
 
 
 def numbered(runs: Sequence[Sequence[LogStretch]]) -> tuple[tuple[LogStretch, ...], ...]:

@@ -148,7 +148,7 @@ _WORDS = [
         (r"stw|speed_through_water|log_speed", "stw", ""),
         (r"hdm|mag(netic)?_heading|heading_mag(netic)?", "psi_magnetic", ""),
         (r"compass(_heading)?|gyro(_?compass)?", "psi", "", "", "", 1.0, "", _COMPASS),
-        (r"(true_)?heading|hdg|hdt|psi|psi_hat|yaw|yaw_angle", "psi", ""),
+        (r"((true|course|kurs|koers|cap|rumbo)_)?(heading|hdg|hdt)|psi|psi_hat|yaw|yaw_angle", "psi", ""),
         (r"turn(ing)?_rate|rate_of_turn|rot", "r", ""),
         (r"yaw_?rate|yaw_?speed|r|r_angvelo|gyro?_?z|angular_velocity_z", "r", ""),
         (r"x_ned|x_?north|north(ing)?|north_x|x0|pos(ition)?_n(orth)?", "x0", ""),

@@ -187,6 +187,6 @@ def _comparison_text(
         texts.append(
             f"left out in turn and predicted as a whole, each by one step of the search without it, which keeps what "
             f"no other run identifies: {mean_text(rival.left_out)} by {WHOLE_RUNS}, "
-            f"{mean_text(incumbent.left_out)} by {criterion}; the run that was held out judges the fit itself"
+            f"{mean_text(incumbent.left_out)} by {criterion}; what was held out judges the fit itself"
         )
     return f"no disturbance makes the residuals white, so whole runs were compared: {'; '.join(texts)}"
