@@ -104,6 +104,7 @@ def init(
         print_lines([f"NOTE the header says {says}, not used: {' '.join(one.option for one in draft.header_sizes)}"])
     print_lines(_other_speed_note(one, out) for one in draft.other_speeds)
     _print_runs(draft)
+    print_lines([f"NOTE {draft.unlike_decays}"] if draft.unlike_decays else [])
     if draft.held_out.names:
         why = f" ({draft.held_out.why})" if draft.held_out.why else ""
         kept = f"kept out of the estimation, to judge the model by: {', '.join(draft.held_out.names)}"

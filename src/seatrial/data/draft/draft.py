@@ -18,7 +18,7 @@ from seatrial.data.draft.header_sizes import HeaderSize, sizes_in_header
 from seatrial.data.draft.held_out import NOTHING_HELD_OUT, HeldOutRuns, can_judge, held_out_runs
 from seatrial.data.draft.log_files import survey_logs
 from seatrial.data.draft.log_partition import parts_without_gaps
-from seatrial.data.draft.manoeuvres import find_stretches, numbered, offered_parts, two_thirds_and_a_third
+from seatrial.data.draft.manoeuvres import find_stretches, is_decay, numbered, offered_parts, two_thirds_and_a_third
 from seatrial.data.draft.one_speed import OtherSpeed, runs_by_speed, stated_options
 from seatrial.data.draft.runs_of_logs import LogRun, runs_of_logs
 from seatrial.data.draft.sample_rate import thinned_rate
@@ -29,6 +29,7 @@ from seatrial.data.draft.stated_columns import CHANNELS, NOTHING_STATED, StatedC
 from seatrial.data.draft.stretch import LogStretch, used_parts
 from seatrial.data.draft.survey import LogSurvey, apart_by_sheet, with_common_ranges
 from seatrial.data.draft.tables_text import tables_text
+from seatrial.data.draft.unlike_decays import unlike_decays_text
 from seatrial.data.draft.velocity_place import with_velocities_of_antenna
 from seatrial.data.draft.waves_text import ASSUMED
 from seatrial.data.draft.wind_columns import tells_wind, with_wind_role
@@ -56,6 +57,7 @@ class DraftTrial:
         unrecognised: columns of the longest run that stand for nothing that is known.
         not_needed: those that are known and stand for no channel, with the reason.
         other_speeds: roll decays that are left out, a trial of their own for each speed.
+        unlike_decays: which roll decays die out faster than the others; empty: none.
         session: the line that says which runs share their offsets; empty: each has its own.
         header_sizes: what the header of the longest run says of the craft and what is not stated.
         lacks_density: whether its water is taken for that of the sea, and the craft is often tried in fresh water.
@@ -74,6 +76,7 @@ class DraftTrial:
     unrecognised: tuple[str, ...] = ()
     not_needed: Mapping[str, str] = field(default_factory=dict)
     other_speeds: tuple[OtherSpeed, ...] = ()
+    unlike_decays: str = ""
     session: str = ""
     header_sizes: tuple[HeaderSize, ...] = ()
     lacks_density: bool = False
@@ -175,7 +178,8 @@ def draft_trial(
     return DraftTrial(
         text, surveys, tuple(runs), guesses[longest[0]], tuple(records), stretches, parts, held_out,
         tuple(name for one in blocks[0].sources for name in unrecognised_columns(*one)),
-        {name: why for one in blocks[0].sources for name, why in known_unneeded(*one).items()}, others, session,
+        {name: why for one in blocks[0].sources for name, why in known_unneeded(*one).items()}, others,
+        unlike_decays_text(_decays(runs, records, stretches)) if model.swings else "", session,
         sizes_in_header(runs[longest[0]].sources[0], size), may_be_in_fresh_water(size) and "\nrho = " in text,
         bool(model.name) and not size.length, not model.name,
     )  # fmt: skip
@@ -267,6 +271,19 @@ def _kinds(
 
 def _whole_name(run: LogRun) -> str:
     return run.name or run_name(run.sources[0].path)
+
+
+def _decays(
+    runs: Sequence[LogRun], records: Sequence[Record | None], stretches: Sequence[Sequence[LogStretch]]
+) -> dict[str, Record]:
+    """The roll decays by name, each from its release; those of a log with several by the names of these."""
+    decays = dict[str, Record]()
+    for run, record, found in zip(runs, records, stretches, strict=True):
+        for one in filter(is_decay, found if record is not None else ()):
+            origin = float(record.time[0]) if record is not None else 0.0
+            name = _whole_name(run) if len(found) == 1 else one.name
+            decays |= {} if record is None else {name: record.between(origin + one.start, origin + one.stop)}
+    return decays
 
 
 def _in_two(

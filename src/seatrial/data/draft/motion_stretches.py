@@ -154,6 +154,11 @@ def decays(record: Record) -> list[LogStretch]:
     return stretches
 
 
+def half_swing_angles(phi: Array) -> Array:
+    """Return the largest angle of each swing to one side, rad; phi: about its rest."""
+    return np.array([one.angle for one in _half_swings(phi)])
+
+
 def _half_swings(phi: Array) -> list[_HalfSwing]:
     """The swings to one side each, without those that are but noise about zero."""
     edges = np.flatnonzero(np.diff(phi >= 0.0)) + 1
