@@ -2,11 +2,14 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from seatrial.core.values import InputError
 from seatrial.data.read import ColumnSpec, RawTable
 from seatrial.data.read.degrees_minutes import degrees_of
+from seatrial.data.read.formats.text import read_text
+from seatrial.data.read.layout import Layout
 
 
 @pytest.mark.parametrize(
@@ -35,3 +38,13 @@ def test_a_column_of_them_is_numbers_and_other_text_is_not() -> None:
     assert table.numbers(ColumnSpec("lat", "lat", "deg"))[[0, 2]] == pytest.approx([54.5, 54.6])
     with pytest.raises(InputError, match="is not a number"):
         table.numbers(ColumnSpec("lat", "note", "deg"))
+
+
+def test_the_side_may_stand_in_the_column_behind_the_angle(tmp_path: Path) -> None:
+    rows = ["54 48.7004,N,013 15.2114,W", "5448.7064,N,01315.2204,W", ",,,"]
+    path = tmp_path / "nav.csv"
+    path.write_text("\n".join(["Latitude,N/S,Longitude,E/W", *rows]), encoding="utf-8")
+    (table,) = read_text(path, Layout("text", ColumnSpec("time", "", "s"), (), header_lines=1)).tables
+    latitude, longitude = (table.numbers(ColumnSpec(name, name, "deg")) for name in ("Latitude", "Longitude"))
+    np.testing.assert_allclose(latitude, [54.0 + 48.7004 / 60.0, 54.0 + 48.7064 / 60.0, np.nan], atol=1e-12)
+    np.testing.assert_allclose(longitude, [-13.0 - 15.2114 / 60.0, -13.0 - 15.2204 / 60.0, np.nan], atol=1e-12)

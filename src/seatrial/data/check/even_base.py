@@ -14,6 +14,9 @@ GAP_STEPS, GAP_QUANTA = 2.5, 1.5
 STEP_LAG = 20
 # distance of a stamp from the even base, in steps and in roundings, up to which the samples are even; chosen
 LARGEST_JITTER, LARGEST_ROUNDING = 0.6, 1.01
+# distance of a step of the clock from a whole number of the usual one, in steps, up to which samples between are lost;
+# chosen: below half a hundredth of a second at 10 Hz
+_WHOLE_STEPS = 0.05
 # significant digits that a logger may round its stamps to, fewest first; more cannot be distinguished from noise
 _DIGITS = range(2, 7)
 # share of a rounding by which a stamp may differ from a multiple of it, and of stamps that may be zero; representation
@@ -49,6 +52,8 @@ def even_base(time: Array) -> EvenBase:
     digits, which grows with the clock); otherwise stretches between gaps share one step, each with its own place.
     """
     steps = np.diff(time)
+    if (counted := _counted_base(time, steps)) is not None:
+        return counted
     repeated = int(np.sum(steps == 0))
     quantum = float(np.min(steps[steps > 0], initial=np.inf)) if repeated else 0.0
     rounding = np.maximum(_significant_rounding(time), quantum) if repeated else np.zeros(len(time))
@@ -58,6 +63,21 @@ def even_base(time: Array) -> EvenBase:
     nominal = _nominal_step(time, quantum)
     gaps = np.flatnonzero((steps > GAP_STEPS * nominal) & (steps > nominal + GAP_QUANTA * rounding[1:]))
     return _base(time, gaps, rounding, repeated)
+
+
+def _counted_base(time: Array, steps: Array) -> EvenBase | None:
+    """The base of stamps that are whole numbers of one step apart, so that each lost sample counts; None of others."""
+    usual = float(np.median(steps))
+    if not usual > 0.0:
+        return None
+    counts = np.round(steps / usual)
+    if np.any(counts < 1.0) or np.any(np.abs(steps - counts * usual) > _WHOLE_STEPS * usual):
+        return None
+    index = np.concatenate([[0.0], np.cumsum(counts)])
+    step, start = (float(one) for one in np.polyfit(index, time - time[0], 1))
+    jitter = float(np.max(np.abs(time - time[0] - start - step * index)))
+    gaps = np.flatnonzero(counts > GAP_STEPS)
+    return EvenBase(index.astype(np.intp), float(time[0]) + start, step, jitter, True, 0, gaps)
 
 
 def _base(time: Array, gaps: RowIndices, rounding: Array, repeated: int) -> EvenBase:

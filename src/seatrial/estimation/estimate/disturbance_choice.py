@@ -29,7 +29,7 @@ _NEGLIGIBLE = 1e-3
 # promises of one Newton step within which the end of a search lies; chosen: 1.45 at most over ten searches of two craft
 _REACH = 3.0
 # variance inflation of innovations near an optimum, beyond which its last steps do not make them white; chosen
-_HOPELESS_INFLATION = 10.0
+_HOPELESS_INFLATION = 3.0
 HELD_OUT_SHARE = 0.25
 """Share of each run, at its end, on which candidates are scored; chosen."""
 
@@ -113,9 +113,12 @@ class DisturbanceChoice:
         )
 
     def spread(self, coefficients: Array) -> Array:
-        """Mean square distance of the disturbed candidates' coefficients from these, (k, k)."""
-        k = len(coefficients)
-        away = [f.noise.common_parameters[:k] - coefficients for f in self.fitted if f.unknown_count]
+        """Mean square distance of the disturbed candidates' coefficients from these, (k, k).
+
+        Of those that were searched to the end: the others are far less likely, and their coefficients not at an optimum.
+        """
+        k, searched = len(coefficients), (f for f in self.fitted if f.unknown_count and f.promise == 0.0)
+        away = [f.noise.common_parameters[:k] - coefficients for f in searched]
         away = np.array([a for a in away if np.any(a)]).reshape(-1, k)
         return away.T @ away / max(len(away), 1)
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 import numpy as np
 
 from seatrial.core.values import InputError
+from seatrial.data.read.degrees_minutes import with_sides
 from seatrial.data.read.header import table_header
 from seatrial.data.read.layout import Layout
 from seatrial.data.read.log import Log
@@ -155,7 +156,7 @@ def read_text(path: Path, layout: Layout) -> Log:
     frame = _data_frame(source, start, separator, layout.decimal, path.name, has_spaces=has_spaces)
     above = [column_names(line, separator) for line in header] if layout.has_named_columns else []
     columns = table_header(above)
-    cells = tuple(_cells(frame.pop(column), layout.decimal) for column in tuple(frame.columns))
+    cells = with_sides([_cells(frame.pop(column), layout.decimal) for column in tuple(frame.columns)])
     width = len(cells)
     return Log.of_table(RawTable(path.name, columns.names_of(width), cells, start + 1, "", columns.units_of(width)))
 
