@@ -115,7 +115,7 @@ class DisturbanceChoice:
     def spread(self, coefficients: Array) -> Array:
         """Mean square distance of the disturbed candidates' coefficients from these, (k, k).
 
-        Of those that were searched to the end: the others are far less likely, and their coefficients not at an optimum.
+        Of those that were searched to the end: the others are far less likely, their coefficients at no optimum.
         """
         k, searched = len(coefficients), (f for f in self.fitted if f.unknown_count and f.promise == 0.0)
         away = [f.noise.common_parameters[:k] - coefficients for f in searched]
