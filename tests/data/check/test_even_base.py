@@ -70,3 +70,13 @@ def test_a_channel_that_is_mostly_empty_is_named() -> None:
     holed = whole.with_channel("r", whole.channel("r").with_values(values))
     (finding,) = [one for one in examined_record(holed).findings if one.code == "rows-dropped"]
     assert "remove channels.r, which is empty in 2400 rows" in finding.advice
+
+
+def test_each_lost_second_of_a_clock_counts() -> None:
+    """Whole seconds of which two were not logged: the step stays one second, and a part of the log has the same."""
+    time = np.delete(np.arange(0.0, 600.0), [100, 400])
+    base = even_base(time)
+    assert base.is_even and base.step == pytest.approx(1.0, abs=1e-12) and not base.gaps.size
+    np.testing.assert_array_equal(base.index, time)
+    jittered = 0.1 * np.delete(np.arange(600), [100, 400]) + np.random.default_rng(1).uniform(-0.002, 0.002, 598)
+    assert even_base(jittered).step == pytest.approx(0.1, abs=1e-5) and even_base(jittered).index[-1] == 599

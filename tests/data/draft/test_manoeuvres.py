@@ -121,6 +121,20 @@ def test_straight_runs_inside_a_zigzag_are_not_offered(tmp_path: Path) -> None:
     assert straight_runs(record)[-1].stop == pytest.approx(TIME[-1], abs=1.0)
 
 
+def test_of_a_long_log_what_is_on_the_way_between_manoeuvres_is_left_out_first() -> None:
+    """Twelve long turns with straight runs between them, and two short zigzags at the end."""
+    time = STEP * np.arange(26000)
+    turning = np.zeros(time.size)
+    for k in range(12):
+        turning += 0.02 * (-1) ** k * ((time > 800.0 * k + 300.0) & (time < 800.0 * k + 460.0))
+    swing = 0.3 * np.sign(np.sin(0.12 * time))
+    turning += np.where(((time > 9900) & (time < 10100)) | ((time > 10500) & (time < 10700)), 0.1 * swing, 0.0)
+    r = np.convolve(turning, np.exp(-STEP * np.arange(200) / 5.0) * STEP / 5.0)[: time.size]
+    record = Record.from_arrays("run", time, {"psi": np.cumsum(r) * STEP, "r": r, "u": np.full(time.size, 5.0)})
+    found = find_stretches((), record)
+    assert len(found) <= 16 and sum(one.kind == "zigzag" for one in found) == 2
+
+
 def test_parts_lie_within_one_mode_and_say_whether_a_controller_was_on(tmp_path: Path) -> None:
     craft = two_thrusters()
     micro = [round(1e6 * t) for t in craft["t"]]

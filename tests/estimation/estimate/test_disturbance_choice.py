@@ -110,6 +110,18 @@ def test_the_spread_holds_the_other_candidates(model: Model) -> None:
     np.testing.assert_allclose(choice.spread(markov), np.outer(white - markov, white - markov))
 
 
+def test_a_candidate_that_cannot_be_the_likeliest_is_left_near_its_optimum(model: Model) -> None:
+    """Positions wander, so that gusts are far less likely than that: their promise is far too small."""
+    choice = choose_disturbance(found_in(model, 2, bias=0.1))
+    gusts = next(f for f in choice.fitted if f.noise.disturbance_model.startswith("first-order Markov on r"))
+    assert choice.chosen.promise == 0.0 < gusts.promise
+    assert gusts.log_likelihood < gusts.reachable < choice.chosen.log_likelihood
+    searched = [f.noise.common_parameters for f in choice.fitted if f.unknown_count and f.promise == 0.0]
+    away = np.array([one - searched[-1] for one in searched])
+    away = away[np.any(away != 0.0, axis=1)]
+    np.testing.assert_allclose(choice.spread(searched[-1]), away.T @ away / max(len(away), 1))
+
+
 def test_chance_gains_are_those_of_chi_squared() -> None:
     """Abramowitz & Stegun 1972, table 26.8, upper 0.1 % points."""
     assert [critical_gain(k) for k in (1, 2, 5)] == pytest.approx([10.828, 13.816, 20.515], abs=1e-3)

@@ -15,8 +15,8 @@ STEP_LAG = 20
 # distance of a stamp from the even base, in steps and in roundings, up to which the samples are even; chosen
 LARGEST_JITTER, LARGEST_ROUNDING = 0.6, 1.01
 # distance of a step of the clock from a whole number of the usual one, in steps, up to which samples between are lost;
-# chosen: below half a hundredth of a second at 10 Hz
-_WHOLE_STEPS = 0.05
+# chosen: ten standard deviations of stamps that jitter by 3 ms at 10 Hz
+_WHOLE_STEPS = 0.3
 # significant digits that a logger may round its stamps to, fewest first; more cannot be distinguished from noise
 _DIGITS = range(2, 7)
 # share of a rounding by which a stamp may differ from a multiple of it, and of stamps that may be zero; representation
@@ -76,6 +76,8 @@ def _counted_base(time: Array, steps: Array) -> EvenBase | None:
     index = np.concatenate([[0.0], np.cumsum(counts)])
     step, start = (float(one) for one in np.polyfit(index, time - time[0], 1))
     jitter = float(np.max(np.abs(time - time[0] - start - step * index)))
+    if jitter > LARGEST_JITTER * step:
+        return None
     gaps = np.flatnonzero(counts > GAP_STEPS)
     return EvenBase(index.astype(np.intp), float(time[0]) + start, step, jitter, True, 0, gaps)
 

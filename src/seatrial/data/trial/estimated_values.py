@@ -8,6 +8,7 @@ from seatrial.core.equations import Model
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import NOT_MEASURED, Finding, Severity
 from seatrial.data.trial.trial import Trial
+from seatrial.physics.hydro.empirical import OOSTERVELD
 
 ESTIMATED = "ESTIMATED"
 """Marks a line of a trial file whose number is not measured, in a comment, as `seatrial init` writes it."""
@@ -15,6 +16,8 @@ _TABLE = re.compile(r"^\[+(?P<name>[\w.]+)\]+")
 _MARKED = re.compile(rf"^(?P<key>\w+)\s*=[^#]*# {ESTIMATED}: (?P<text>[^;]*)")
 _THRUSTER_NAME = re.compile(r'^name\s*=\s*"(?P<name>[^"]*)"')
 ESTIMATED_VALUES = "estimated-values"
+_FOLLOWING = {"pitch_ratio": ("k_0", "k_1", "k_2")}
+"""Particulars of a ship that no model holds -> its parameters that formulas take from them."""
 
 
 def with_estimates_named(trial: Trial, text: str) -> Trial:
@@ -42,7 +45,10 @@ def _marks(text: str) -> Iterator[tuple[str, str]]:
 
 
 def _with_sources(model: Model, marks: Mapping[str, str]) -> Model:
-    for name, text in marks.items():
+    """The model whose marked values say so, and those that follow from a marked particular of the ship."""
+    following = {name: f"of {key}: {text}" for key, text in marks.items() for name in _FOLLOWING.get(key, ())}
+    from_series = {n for n in following if n in model.parameters and OOSTERVELD in model.parameters[n].source}
+    for name, text in (marks | {n: following[n] for n in from_series}).items():
         if name in model.parameters and not model.parameters[name].free:
             value = model.parameters[name].value
             model = model.with_values({name: value}, source=f"{NOT_MEASURED}: {text}")

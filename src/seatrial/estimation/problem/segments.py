@@ -148,7 +148,8 @@ def segments_between(
     for index, (record, of_record) in enumerate(zip(records, bounds, strict=True)):
         if abs(record.dt - dt) > 1e-3 * dt:  # share by which time steps may differ; chosen
             raise InputError(
-                f"record '{record.name}' has a time step of {record.dt:g} s, the first one {dt:g} s; give one rate"
+                f"record '{record.name}' has a time step of {record.dt:g} s, the first one {dt:g} s; give one: "
+                f"rate = {1.0 / dt:.4g} under [[records]]"
             )
         if len(record) < 3:
             raise InputError(f"record '{record.name}' has {len(record)} samples; at least three are needed")
