@@ -162,7 +162,7 @@ def _baseline(fit: Fit) -> KeyFact:
         (w.seconds >= shortest_judged(fit), f"{ERROR_LABELS[name][0]} over {w.window} ({rival})")
         for p in fit.validation for w in p.windows for name, rival in w.better_baselines.items()
     ]  # fmt: skip
-    elsewhere = [text for is_judged, text in better if is_judged]
+    elsewhere = list(dict.fromkeys(text for is_judged, text in better if is_judged))
     verdict = "this fit is best in every quantity"
     verdict += f" over the longest windows, not in {enumeration(elsewhere, MAX_NAMES)}" if elsewhere else ""
     verdict += " over windows of a roll period and more" if better and not elsewhere else ""

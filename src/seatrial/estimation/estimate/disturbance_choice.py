@@ -83,7 +83,10 @@ class DisturbanceChoice:
         )
         text = "the likeliest disturbance is" if self.is_detected else "none is detected, the one estimated is"
         gain = max(2.0 * (self.chosen.log_likelihood - best.log_likelihood), 0.0)
-        margin = f"twice its log-likelihood is {gain:.3g} above that of {best.noise.disturbance_model}"
+        other = best.noise.disturbance_model
+        margin = f"twice its log-likelihood is {gain:.3g} above that of {other}" if np.isfinite(gain) else (
+            f"with {other} the records are impossible"
+        )  # fmt: skip
         return f"{text} {self.chosen.noise.disturbance_model} ({margin})"
 
     @property
