@@ -11,6 +11,7 @@ _HELD_NOISE = 3.0  # standard deviations of noise by which an angle that is held
 # share of the largest angle that a swing loses in a fourteenth of its period, acos(0.9) / (2 pi), and shares of the
 # time from there to amidships that are a hold; chosen
 _NEAR, _HOLD_SHARE = 0.9, 1.5
+_LEAVES = 0.97  # of the level of an angle that is held, down to which it still is; chosen: a free one falls so in T/25
 _SHRINKS = 2.0  # largest swing over the largest of the last third of a decay; chosen
 _FEWEST_ROWS = 30  # of a decay; chosen
 _DRIVEN = ("delta", "alpha_w", "alpha_f", "u", "psi", "r")  # channels of records that are no free decays
@@ -19,14 +20,21 @@ _DRIVEN = ("delta", "alpha_w", "alpha_f", "u", "psi", "r")  # channels of record
 def release_row(swing: Array) -> int:
     """Return the last row at which an angle, about its rest, is the largest to within noise, shape (n,).
 
+    Of one that is held for longer than it takes to fall, the last row near the level at which it was held: it wanders
+    by more than noise while it is pulled, and the largest comes long before the release.
+
     swing: up to the first time that it crosses its rest, or beyond.
     """
     size = np.abs(swing)
     first = int(np.argmax(size))
     crossing = np.flatnonzero(np.sign(swing[first:]) != np.sign(swing[first]))
     stop = first + int(crossing[0]) if crossing.size else len(swing)
-    limit = size[first] - _HELD_NOISE * (sample_noise(swing) if len(swing) > _FEWEST_ROWS else 0.0)
-    return first + int(np.flatnonzero(size[first:stop] >= limit)[-1])
+    noise = _HELD_NOISE * (sample_noise(swing) if len(swing) > _FEWEST_ROWS else 0.0)
+    near = first + np.flatnonzero(size[first:stop] >= _NEAR * size[first])
+    if len(near) > _HOLD_SHARE * (stop - int(near[-1])):
+        level = float(np.median(size[near]))
+        return first + int(np.flatnonzero(size[first:stop] >= _LEAVES * level - noise)[-1])
+    return first + int(np.flatnonzero(size[first:stop] >= size[first] - noise)[-1])
 
 
 def is_free_decay(record: Record) -> bool:
