@@ -14,6 +14,7 @@ from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.identify import EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.identify.estimated_values_effect import (
     EstimatedValueEffect,
+    _wrong_together,
     estimated_value_effects,
     estimated_value_shifts,
     finding_with_effects,
@@ -108,3 +109,9 @@ def test_other_findings_pass_unchanged(record: Record) -> None:
 def test_of_an_open_sign_no_share_is_given() -> None:
     text = EstimatedValueEffect("D_P", 0.1, "w_P0", math.nan, 1.6, 0.018).sentence
     assert "moves w_P0 by 1.6 of half its interval by the records alone, and" in text and "nan" not in text
+
+
+def test_levers_of_thrusters_are_wrong_together() -> None:
+    """Both are estimated from one breadth: a lever of one side alone that is off makes the craft pull to a side."""
+    assert _wrong_together(["m", "y_port", "y_starboard"]) == [["y_port", "y_starboard"], ["m"]]
+    assert _wrong_together(["m", "rho"]) == [["m"], ["rho"]]

@@ -38,6 +38,11 @@ class AssumedInformation:
         moves, growth = estimate_shifts(self.information, self.moving, change)
         return moves[: self.count], growth
 
+    @property
+    def none(self) -> Array:
+        """Return no change, (n,)."""
+        return np.zeros(len(self.point))
+
     def unit(self, name: str) -> Array:
         """Return a change by one of an assumed value alone, (n,)."""
         return np.eye(1, len(self.point), self.place[name])[0]

@@ -19,6 +19,7 @@ MATTERS = 1.0
 interval that is right but for this value would no longer hold the truth; chosen."""
 PLAUSIBLE_ERROR = {"rho": 0.025}
 """Standard deviation of values that are known better than to `RELATIVE_CHANGE`: water between fresh and salt."""
+_LEVER = "y_"  # begins the names of the places of thrusters across the craft
 MAX_NAMED = 3
 """Values of which a warning says what they do; chosen."""
 
@@ -82,11 +83,18 @@ def estimated_value_shifts(estimation: Estimation) -> tuple[EstimatedValueShift,
     if not names:
         return ()
     known, shifts = assumed_information(estimation, names), []
-    for name in names:
-        error = PLAUSIBLE_ERROR.get(name, RELATIVE_CHANGE)
-        moves, growth = known.shifts(known.unit(name) * error * model.parameters[name].value)
-        shifts.append(EstimatedValueShift(name, error, moves, float(np.sqrt(growth / known.samples))))
+    for group in _wrong_together(names):
+        error = PLAUSIBLE_ERROR.get(group[0], RELATIVE_CHANGE)
+        change = sum((known.unit(name) * error * model.parameters[name].value for name in group), known.none)
+        moves, growth = known.shifts(change)
+        shifts.append(EstimatedValueShift(enumeration(group), error, moves, float(np.sqrt(growth / known.samples))))
     return tuple(shifts)
+
+
+def _wrong_together(names: Sequence[str]) -> list[list[str]]:
+    """The names, those of the levers of thrusters in one group: they are estimated from one size of the craft."""
+    levers = [name for name in names if name.startswith(_LEVER)]
+    return [*([levers] if levers else []), *([name] for name in names if name not in levers)]
 
 
 def errors_of(shifts: Sequence[EstimatedValueShift], free: Sequence[str]) -> dict[str, float]:
