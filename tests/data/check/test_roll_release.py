@@ -15,7 +15,7 @@ def held_heel(rng: np.random.Generator, seconds: float) -> Record:
 
 def test_a_held_heel_is_named_with_its_seconds(rng: np.random.Generator) -> None:
     (finding,) = release_findings(held_heel(rng, 5.0))
-    assert finding.code == "held-roll" and "for 5.1 s" in finding.evidence
+    assert finding.code == "held-roll" and "for 5.0 s" in finding.evidence
 
 
 def test_a_record_from_the_release_on_has_nothing_to_name(rng: np.random.Generator) -> None:

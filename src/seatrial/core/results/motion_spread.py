@@ -41,13 +41,17 @@ def motion_spread(name: str, motions: Sequence[Array]) -> MotionSpread:
 
 
 def motion_spreads(names: Container[str], measured: Record) -> dict[str, MotionSpread]:
-    """Return the spreads of a run's motions for the errors of these names, as far as it holds their channels."""
-    compared = (name for name, channels in MOTIONS.items() if name in names and all(c in measured for c in channels))
-    spreads = {name: motion_spread(name, [measured[c] for c in MOTIONS[name]]) for name in compared}
+    """Return what errors of these names over a whole run are compared with, as far as it holds their channels."""
+    spreads = _own_spreads(names, measured)
     heading = spreads.get("psi_deg")
     if heading is not None and heading.size < _DEGREES * _HELD_WITHIN:
         spreads["psi_deg"] = MotionSpread(_DEGREES * HELD_COURSE_SPREAD, is_held=True)
     return spreads
+
+
+def _own_spreads(names: Container[str], measured: Record) -> dict[str, MotionSpread]:
+    compared = (name for name, channels in MOTIONS.items() if name in names and all(c in measured for c in channels))
+    return {name: motion_spread(name, [measured[c] for c in MOTIONS[name]]) for name in compared}
 
 
 def is_lost(errors: Mapping[str, float], measured: Record) -> bool:
@@ -55,5 +59,5 @@ def is_lost(errors: Mapping[str, float], measured: Record) -> bool:
 
     errors: rms errors as in `Prediction.rms`; empty: the simulation diverges.
     """
-    spreads = motion_spreads(errors, measured)
+    spreads = _own_spreads(errors, measured)
     return not errors or any(errors[name] > spread.size for name, spread in spreads.items())

@@ -30,11 +30,14 @@ def release_row(swing: Array) -> int:
     crossing = np.flatnonzero(np.sign(swing[first:]) != np.sign(swing[first]))
     stop = first + int(crossing[0]) if crossing.size else len(swing)
     noise = _HELD_NOISE * (sample_noise(swing) if len(swing) > _FEWEST_ROWS else 0.0)
+    largest = first + int(np.flatnonzero(size[first:stop] >= size[first] - noise)[-1])
     near = first + np.flatnonzero(size[first:stop] >= _NEAR * size[first])
-    if len(near) > _HOLD_SHARE * (stop - int(near[-1])):
-        level = float(np.median(size[near]))
-        return first + int(np.flatnonzero(size[first:stop] >= _LEAVES * level - noise)[-1])
-    return first + int(np.flatnonzero(size[first:stop] >= size[first] - noise)[-1])
+    fall = stop - int(near[-1])
+    if len(near) <= _HOLD_SHARE * fall:
+        return largest
+    level = float(np.median(size[near]))
+    leaves = first + int(np.flatnonzero(size[first:stop] >= _LEAVES * level)[-1])
+    return largest if leaves - largest < fall else leaves
 
 
 def is_free_decay(record: Record) -> bool:

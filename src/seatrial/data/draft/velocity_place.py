@@ -19,7 +19,7 @@ def with_velocities_of_antenna(
     """
     if not antenna or not _are_of_antenna(records, antenna):
         return [tuple(map(tuple, parts)) for parts in runs]
-    return [tuple(tuple(_at(one, antenna) for one in part) for part in parts) for parts in runs]
+    return [tuple(tuple(_of_antenna(one, antenna) for one in part) for part in parts) for parts in runs]
 
 
 def _are_of_antenna(records: Sequence[Record | None], antenna: float) -> bool:
@@ -40,7 +40,7 @@ def _with_positions_at(record: Record, place: float) -> Record:
     return record
 
 
-def _at(guess: ColumnGuess, antenna: float) -> ColumnGuess:
+def _of_antenna(guess: ColumnGuess, antenna: float) -> ColumnGuess:
     if not (guess.is_used and guess.symbol in _VELOCITIES and guess.follows_track):
         return guess
     return replace(guess, reference_point=antenna).with_evidence("of the antenna, as the positions are")

@@ -78,7 +78,7 @@ class RunScores:
         return cls(np.einsum("ikd,ik->id", directions, run_gradients), shares, directions)
 
     @property
-    def left(self) -> Array:
+    def others_share(self) -> Array:
         """Shares that the other runs hold; one where they do not identify the direction."""
         return np.where(self.is_alone, 1.0, 1.0 - self.shares)
 
@@ -94,7 +94,7 @@ class RunScores:
         (n, k), Hinkley 1977; where a run is alone, by as much as the other runs scatter.
         """
         count = len(self.pushes)
-        size = np.where(self.is_alone, np.copysign(count / (count - 1.0), self.pushes), self.pushes / self.left)
+        size = np.where(self.is_alone, np.copysign(count / (count - 1.0), self.pushes), self.pushes / self.others_share)
         return np.einsum("ikd,id->ik", self.directions, size)
 
     def interval(self, meaning: str) -> Interval:
@@ -105,7 +105,7 @@ class RunScores:
         jackknife's g/(1 - l) is the same where all runs hold as much, and too wide by 1/(1 - l) where one holds most.
         Where a run is alone, the information matrix's, the limit for l to 1.
         """
-        size = np.where(self.is_alone, np.copysign(1.0, self.pushes), self.pushes / np.sqrt(self.left))
+        size = np.where(self.is_alone, np.copysign(1.0, self.pushes), self.pushes / np.sqrt(self.others_share))
         parts = np.einsum("ikd,id->ik", self.directions, size)
         return Interval(parts.T @ parts, len(parts) - 1, meaning)
 
