@@ -48,7 +48,7 @@ def _with_sources(model: Model, marks: Mapping[str, str]) -> Model:
     """The model whose marked values say so, and those that follow from a marked particular of the ship."""
     following = {name: f"of {key}: {text}" for key, text in marks.items() for name in _FOLLOWING.get(key, ())}
     from_series = {n for n in following if n in model.parameters and OOSTERVELD in model.parameters[n].source}
-    for name, text in (marks | {n: following[n] for n in from_series}).items():
+    for name, text in {**marks, **{n: following[n] for n in from_series}}.items():
         if name in model.parameters and not model.parameters[name].free:
             value = model.parameters[name].value
             model = model.with_values({name: value}, source=f"{NOT_MEASURED}: {text}")
