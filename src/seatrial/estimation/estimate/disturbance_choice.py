@@ -26,7 +26,7 @@ _NO_INITIAL_STATES = np.zeros((0, 0))
 _EVALUATIONS = 60
 # promised decrease of the cost at which the search without a disturbance ends; its gradient is exact
 _NEGLIGIBLE = 1e-3
-# promises of one Newton step within which the end of a search lies; chosen: 1.45 at most over ten searches of two craft
+# promises of one Newton step within which the end of a search lies; chosen: 1.45 at most in nine searches of two craft
 _REACH = 3.0
 # variance inflation of innovations near an optimum, beyond which its last steps do not make them white; chosen
 _HOPELESS_INFLATION = 3.0

@@ -101,7 +101,7 @@ class RunScores:
         """Return the covariance that is unbiased whatever share of the information a run holds.
 
         Sum of s s' with s = g/sqrt(1 - l) in the eigenvectors (CR2 of Bell and McCaffrey 2002, Survey Methodology 28,
-        169, eq. 6; HC2 of MacKinnon and White 1985, J. Econometrics 29, 305, eq. 6, where a run is a sample). The
+        169; HC2 of MacKinnon and White 1985, J. Econometrics 29, 305, eq. 6, where a run is a sample). The
         jackknife's g/(1 - l) is the same where all runs hold as much, and too wide by 1/(1 - l) where one holds most.
         Where a run is alone, the information matrix's, the limit for l to 1.
         """
