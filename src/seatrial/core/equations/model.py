@@ -18,6 +18,11 @@ def measured_name(channel: str) -> str:
     return f"{channel}{MEASURED}"
 
 
+def channel_of(observable: str) -> str:
+    """Return the name of the channel that an observable fills."""
+    return observable.removesuffix(MEASURED)
+
+
 @dataclass(frozen=True)
 class Model:
     """Equations with the parameters, free and fixed, in the equations' order."""

@@ -16,7 +16,13 @@ from seatrial.core.values import Array, Index
 from seatrial.estimation.problem.output_error import OutputError, SegmentNormals
 from seatrial.numerics.optimise import NormalEquations
 from seatrial.numerics.workers import map_in_threads
+from seatrial.physics.sensors.wave_motion import STILL, WaveMotion
 from seatrial.physics.simulate.filtering import FilterPoint, KalmanFilter
+
+LEAST_WAVE_DAMPING, MOST_WAVE_DAMPING = 0.005, 0.7
+"""Relative damping of waves, from a swell that hardly varies to a band without a peak (zeta = 1 / sqrt 2); chosen."""
+FEWEST_WAVE_PERIODS = 3.0
+"""Periods of the slowest waves in the longest run: slower ones are no band; chosen."""
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -47,7 +53,7 @@ class KalmanInnovations:
 
 @dataclass(frozen=True, eq=False)
 class PredictionError:
-    """Unknowns: those of `runs`, then the squared intensity of each process noise, then the variance of each channel.
+    """Unknowns: those of `runs`, the squared intensity of each process noise, those of `waves`, variances of channels.
 
     Squares, because the likelihood is smooth in them where there is none.
 
@@ -55,6 +61,7 @@ class PredictionError:
         runs: an output-error problem over whole runs; gives model, data, nuisances, priors, bounds.
         process: states driven by white noise.
         start, start_variance: mean and variance of the initial state of each run, both (runs, nx).
+        waves: motion that sensors show on top of the craft's own.
         measurement: known standard deviations of channels, SI, NaN where unknown, (ny,).
         steps: steps of the central differences by which the exact gradient is taken, (size,); None: gain frozen.
         is_one_sided: whether differences are taken to one side, which halves their cost.
@@ -67,6 +74,7 @@ class PredictionError:
     measurement: Array
     steps: Array | None = field(default=None)
     is_one_sided: bool = False
+    waves: WaveMotion = STILL
 
     @property
     def size(self) -> int:
@@ -75,28 +83,46 @@ class PredictionError:
 
     @property
     def noise_count(self) -> int:
-        """Number of intensities and standard deviations."""
-        return len(self.process) + len(self.runs.data.outputs)
+        """Number of intensities, unknowns of waves, and standard deviations."""
+        return len(self.process) + self.waves.size + len(self.runs.data.outputs)
 
     @property
     def lower(self) -> Array:
-        """Lower bounds: no process noise."""
-        return self._bounds(self.runs.lower, 0.0, (1e-4 * self.runs.noise) ** 2)  # of the residuals of the runs; chosen
+        """Lower bounds: no process noise, no waves, channels as fine as their values are written."""
+        # of the residuals of the runs; chosen
+        least = np.maximum(1e-4 * self.runs.noise, self.runs.data.rounding_noise)
+        return self._bounds(self.runs.lower, 0.0, self.wave_bounds[0], least**2)
 
     @property
     def upper(self) -> Array:
         """Upper bounds."""
         # of the residuals of the runs; chosen
-        return self._bounds(self.runs.upper, np.inf, (1e4 * self.runs.noise) ** 2)
+        return self._bounds(self.runs.upper, np.inf, self.wave_bounds[1], (1e4 * self.runs.noise) ** 2)
 
-    def _bounds(self, run_bounds: Array, process_bound: float, variance_bounds: Array) -> Array:
+    @cached_property
+    def wave_bounds(self) -> tuple[Array, Array]:
+        """Bounds of what describes the waves; frequencies up to that of the samples, as an angle's rate may show them."""
+        data, peaks, sizes = self.runs.data, self.waves.peaks, self.waves.pair_count
+        slowest = 2.0 * np.pi * FEWEST_WAVE_PERIODS / (data.dt * float(np.max(np.diff(data.offsets))))
+        low, high = (slowest, LEAST_WAVE_DAMPING), (2.0 * np.pi / data.dt, MOST_WAVE_DAMPING)
+        return (
+            np.concatenate([np.tile(low, peaks), np.zeros(sizes)]),
+            np.concatenate([np.tile(high, peaks), np.full(sizes, np.inf)]),
+        )
+
+    def _bounds(self, run_bounds: Array, process_bound: float, wave_bounds: Array, variance_bounds: Array) -> Array:
         known = np.where(np.isfinite(self.measurement), self.measurement**2, variance_bounds)
-        return np.concatenate([run_bounds, np.full(len(self.process), process_bound), known])
+        return np.concatenate([run_bounds, np.full(len(self.process), process_bound), wave_bounds, known])
 
     def split(self, shared: Array) -> tuple[Array, Array, Array]:
         """Unknowns of the runs, intensities of `process`, standard deviations of the channels, the latter two SI."""
         first, second = self.runs.size, self.runs.size + len(self.process)
-        return shared[:first], np.sqrt(shared[first:second]), np.sqrt(shared[second:])
+        return shared[:first], np.sqrt(shared[first:second]), np.sqrt(shared[second + self.waves.size :])
+
+    def wave_unknowns(self, shared: Array) -> Array:
+        """Return what describes the waves, (k,)."""
+        first = self.runs.size + len(self.process)
+        return shared[first : first + self.waves.size]
 
     def columns_of(self, session: int) -> Index:
         """Return positions among the unknowns of what a session's runs depend on."""
@@ -108,14 +134,16 @@ class PredictionError:
         names = (*runs.free, *(name for name, _ in runs.session_parameters))
         return KalmanFilter(
             runs.model, runs.data.inputs, runs.data.offsets, runs.data.dt, runs.observables, names,
-            tuple(n.correction for n in runs.nuisances), (), runs.substeps, self.process,
+            tuple(n.correction for n in runs.nuisances), (), runs.substeps, self.process, self.waves,
         )  # fmt: skip
 
     def filter_point(self, shared: Array) -> FilterPoint:
         """Return a point as the filter sees it."""
         own, intensity, deviation = self.split(shared)
         _, values, corrections = self.runs.unpack(own, np.zeros((self.runs.data.count, len(self.runs.starts))))
-        return FilterPoint(self.start, self.start_variance, values, corrections, intensity, deviation)
+        return FilterPoint(
+            self.start, self.start_variance, values, corrections, intensity, deviation, self.wave_unknowns(shared)
+        )
 
     def transitions(self, run: int, shared: Array, local: Array) -> tuple[Array, Array]:
         """Transition matrices of a run from sample to sample, (rows - 1, nx, nx), outputs by states (rows, ny, nx).

@@ -2,12 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index, InputError, Record, channel_hint
+from seatrial.numerics.resolution import resolution
 from seatrial.physics.sensors import Sensors
 from seatrial.physics.simulate.actuators import ActuatorHistory
 from seatrial.physics.simulate.channels import inputs_of
@@ -34,6 +36,12 @@ class Segments:
     outputs: tuple[str, ...]
     dt: float
     history: ActuatorHistory | None = None
+
+    @cached_property
+    def rounding_noise(self) -> Array:
+        """Standard deviation of the rounding of each output's values, (ny,), SI: of a uniform error of one step."""
+        columns = (column[np.isfinite(column)] for column in self.measured.T)
+        return np.array([resolution(column) for column in columns]) / np.sqrt(12.0)  # Widrow & Kollar 2008, eq. (1.1)
 
     @property
     def count(self) -> int:

@@ -2,5 +2,6 @@
 
 from seatrial.physics.sensors.measured_outputs import with_sensors
 from seatrial.physics.sensors.settings import Compass, Sensors, VelocityReference
+from seatrial.physics.sensors.wave_motion import WaveMotion
 
-__all__ = ["Compass", "Sensors", "VelocityReference", "with_sensors"]
+__all__ = ["Compass", "Sensors", "VelocityReference", "WaveMotion", "with_sensors"]

@@ -1,13 +1,15 @@
 """A Kalman filter over many segments of one model: innovations, and innovations with sensitivities."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
+from seatrial.core.equations.model import channel_of
 from seatrial.core.values import Array, Index
 from seatrial.numerics.kernels.compiled_function import TangentPointer
 from seatrial.numerics.kernels.sensitivity import DELAY, GAIN, OFFSET
+from seatrial.physics.sensors.wave_motion import STILL, WaveMotion
 from seatrial.physics.simulate.batch import SegmentBatch
 from seatrial.physics.simulate.linear import batch_class
 
@@ -23,6 +25,7 @@ class FilterPoint:
         start, start_variance: initial states and their variances, (segments, nx).
         parameters: all of the model's, (segments, np); corrections (segments, n).
         intensity: of each state that is `driven`, SI over the root of a second; deviation: of each output, SI.
+        waves: unknowns of the filter's `waves`, (k,).
     """
 
     start: Array
@@ -31,6 +34,7 @@ class FilterPoint:
     corrections: Array
     intensity: Array
     deviation: Array
+    waves: Array = field(default_factory=lambda: np.zeros(0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,18 +52,20 @@ class _FilteredSegment:
 
 @dataclass(frozen=True, eq=False)
 class KalmanFilter(SegmentBatch):
-    """Segments to be filtered; columns: parameters, corrections, squares of intensities, squares of deviations.
+    """Segments to be filtered; columns: parameters, corrections, squared intensities, waves, squared deviations.
 
     Attributes:
         driven: states with white process noise.
+        waves: what channels show on top of the craft's own motion.
     """
 
     driven: tuple[str, ...] = ()
+    waves: WaveMotion = STILL
 
     @property
     def noise_count(self) -> int:
-        """Number of intensities and deviations."""
-        return len(self.driven) + len(self.outputs)
+        """Number of intensities, unknowns of waves, and deviations."""
+        return len(self.driven) + self.waves.size + len(self.outputs)
 
     @cached_property
     def _driven(self) -> Index:
@@ -135,8 +141,26 @@ class KalmanFilter(SegmentBatch):
             self.model, np.ascontiguousarray(inputs[rows]), bounds, self.dt, self.outputs, substeps=self.substeps
         )
         values, none = np.tile(point.parameters[segment], (len(origins), 1)), np.zeros((len(origins), 0))
-        y, _ = ahead.simulate(0, len(origins), run.states[origins], values, none)
-        return y.reshape(len(origins), steps + 1, -1)
+        states, nx = run.states[origins], len(self.model.states)
+        y, _ = ahead.simulate(0, len(origins), np.ascontiguousarray(states[:, :nx]), values, none)
+        return y.reshape(len(origins), steps + 1, -1) + self._waves_ahead(states, point.waves, steps)
+
+    def _waves_ahead(self, states: Array, waves: Array, steps: int) -> Array:
+        """Return what channels show of waves after filtered states, (origins, steps + 1, ny)."""
+        ahead = np.zeros((len(states), steps + 1, len(self.outputs)))
+        pairs, _ = self.waves.pairs(waves, self.dt)
+        now = states.copy()
+        for step in range(steps + 1 if self.waves.peaks else 0):
+            for column, places in enumerate(self.shown):
+                ahead[:, step, column] = now[:, places[places >= 0]].sum(axis=1)
+            for a, pair in zip(range(len(self.model.states), states.shape[1], 2), pairs, strict=True):
+                now[:, a : a + 2] = now[:, a : a + 2] @ pair[:4].reshape(2, 2).T
+        return ahead
+
+    @cached_property
+    def shown(self) -> Index:
+        """State that each output shows of each peak of the waves, -1: none, (ny, peaks)."""
+        return self.waves.shown([channel_of(o) for o in self.outputs], len(self.model.states))
 
     def transitions(self, segment: int, start: Array, parameters: Array, corrections: Array) -> tuple[Array, Array]:
         """Return transition matrices from sample to sample, (rows - 1, nx, nx), and outputs by states, (rows, ny, nx).
@@ -179,12 +203,15 @@ class KalmanFilter(SegmentBatch):
         process[self._driven] = point.intensity**2
         e, v = np.empty((b - a, ny)), np.empty((b - a, ny))
         de, dv = np.empty((b - a, ny, width)), np.empty((b - a, ny, noise_count))
-        variance, states = (np.empty((b - a if with_states else 0, nx)) for _ in range(2))
+        pairs, size = self.waves.pairs(point.waves, self.dt)
+        rows = b - a if with_states else 0
+        variance, states = np.empty((rows, nx)), np.empty((rows, nx + 2 * len(size)))
         failed = filter_innovations(
             *self._functions, inputs, weights, self._rise, self.dt,
             self._steps_per_sample, point.start[segment], point.start_variance[segment], point.parameters[segment],
             chain, link_p, link_u, g_link_p, g_link_u, self._output_columns, len(self.model.outputs), self._driven,
-            process, point.deviation**2, np.ascontiguousarray(measured[a:b]), e, v, de, dv, variance, states,
+            process, point.deviation**2, np.ascontiguousarray(measured[a:b]), pairs, size, self.shown,
+            e, v, de, dv, variance, states,
         )  # fmt: skip
         return _FilteredSegment(e, v, de, dv, variance, states, failed >= 0)
 

@@ -1,0 +1,118 @@
+"""First-order wave motion as sensors show it: each displacement a narrow-band process on top of the craft's own motion.
+
+Waves move a craft to and fro and leave no mean (Balchen et al. 1976; Saelid, Jenssen & Balchen 1983): what an instrument
+shows is the slow motion, which rudder, thrusters and wind cause, and a displacement xi with
+
+    xi'' + 2 zeta omega xi' + omega^2 xi = noise     (Fossen 2011, eq. (8.113), section 11.1, as an output).
+
+A heading and a yaw rate show the same motion, xi and xi'; so do roll and pitch and their rates. Frequency and damping
+are common to all motions of a peak: wind sea is one, swell may be another.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from seatrial.core.values import Array, Index
+
+PAIR_COLUMNS = 22
+"""Numbers that describe a pair: see `_pair`."""
+
+RATES = {"psi": "r", "phi": "p", "theta": "q"}
+"""Angle -> its rate: channels that show the same motion."""
+
+_ANGLES = {rate: angle for angle, rate in RATES.items()}
+_COMPLEX_STEP = 1e-30  # of a derivative without cancellation (Squire & Trapp 1998); any small number; chosen
+
+
+def motion_of(channel: str) -> str:
+    """Return the displacement that a channel shows: a rate's angle, else itself."""
+    return _ANGLES.get(channel, channel)
+
+
+@dataclass(frozen=True)
+class WaveMotion:
+    """Motions that channels show at one or more peaks of the sea's spectrum.
+
+    Unknowns: frequency [rad/s] and relative damping of each peak, then, peak after peak, the variance of each motion
+    [SI squared].
+
+    Attributes:
+        motions: displacements, as `motion_of` names them; peaks: number of peaks.
+    """
+
+    motions: tuple[str, ...] = ()
+    peaks: int = 0
+
+    @property
+    def pair_count(self) -> int:
+        """Number of pairs of states, a displacement and its rate."""
+        return self.peaks * len(self.motions)
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+        return 2 * self.peaks + self.pair_count
+
+    def shown(self, channels: Sequence[str], states: int) -> Index:
+        """Return the state that a channel shows of each peak, counted behind `states`, -1: none, (channels, peaks)."""
+        table = np.full((len(channels), self.peaks), -1, dtype=np.int64)
+        for row, channel in enumerate(channels):
+            motion = motion_of(channel)
+            if motion in self.motions:
+                first = np.arange(self.peaks) * len(self.motions) + self.motions.index(motion)
+                table[row] = states + 2 * first + (motion != channel)
+        return table
+
+    def pairs(self, unknowns: Array, dt: float) -> tuple[Array, Array]:
+        """Return the pairs as `kernels.innovations` wants them, (pairs, columns), and each motion's variance, (pairs,).
+
+        unknowns: (size,); dt: time step [s].
+        """
+        shape = unknowns[: 2 * self.peaks].reshape(self.peaks, 2)
+        made = [_pair(float(omega), float(zeta), dt) for omega, zeta in shape for _ in self.motions]
+        return np.array(made).reshape(len(made), PAIR_COLUMNS), np.ascontiguousarray(unknowns[2 * self.peaks :])
+
+    def variances(self, unknowns: Array, channels: Sequence[str]) -> Array:
+        """Return the variance that waves add to each channel, (channels,), SI."""
+        omega = unknowns[: 2 * self.peaks : 2]
+        size = unknowns[2 * self.peaks :].reshape(self.peaks, len(self.motions))
+        total = np.zeros(len(channels))
+        for row, channel in enumerate(channels):
+            motion = motion_of(channel)
+            if motion in self.motions:
+                own = size[:, self.motions.index(motion)]
+                # variance of the rate of a stationary process of this kind: that of the displacement times omega^2
+                total[row] = np.sum(own * (omega**2 if motion != channel else 1.0))
+        return total
+
+
+STILL = WaveMotion()
+"""No waves."""
+
+
+def _pair(omega: float, zeta: float, dt: float) -> Array:
+    """Return one pair: exact transition over dt, the variance gained in it at unit variance, and derivatives."""
+    step = _COMPLEX_STEP * 1j
+    values = [_exact(omega, zeta, dt), _exact(omega + step, zeta, dt), _exact(omega, zeta + step, dt)]
+    phi, noise = ([v[i].real if k == 0 else v[i].imag / _COMPLEX_STEP for k, v in enumerate(values)] for i in range(2))
+    return np.concatenate([*phi, *noise, [omega**2]])
+
+
+def _exact(omega: complex, zeta: complex, dt: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return exp(A dt) row by row, (4,), and D - exp(A dt) D exp(A dt)', D = diag(1, omega^2), as 11, 12, 22, (3,).
+
+    D is the stationary covariance at unit variance: A D + D A' is minus the noise's (Gelb 1974, eq. (3.7-8)).
+    """
+    root = np.sqrt(1.0 - zeta**2 + 0j)
+    decay, angle = np.exp(-zeta * omega * dt), omega * root * dt
+    c, s = decay * np.cos(angle), decay * np.sin(angle) / root
+    phi = np.array([c + zeta * s, s / omega, -omega * s, c - zeta * s])
+    square = omega**2
+    noise = np.array([
+        1.0 - phi[0] ** 2 - square * phi[1] ** 2,
+        -phi[0] * phi[2] - square * phi[1] * phi[3],
+        square - phi[2] ** 2 - square * phi[3] ** 2,
+    ])  # fmt: skip
+    return phi, noise
