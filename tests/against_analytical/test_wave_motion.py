@@ -119,4 +119,6 @@ def test_forecasts_hold_the_waves(problem: PredictionError) -> None:
 def test_waves_of_a_peak_add_their_variances() -> None:
     waves = WaveMotion(("psi", "u"), 2)
     unknowns = np.array([1.0, 0.1, 0.5, 0.1, 4.0, 1.0, 9.0, 2.0])
-    np.testing.assert_allclose(waves.variances(unknowns, ("psi", "r", "u", "x0")), [13.0, 4.0 + 9.0 * 0.25, 3.0, 0.0])
+    np.testing.assert_allclose(
+        waves.variances(unknowns, ("psi", "r", "u", "x0")), [[4.0, 4.0, 1.0, 0.0], [9.0, 9.0 * 0.25, 2.0, 0.0]]
+    )

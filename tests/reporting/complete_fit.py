@@ -159,8 +159,8 @@ def disturbance() -> NoiseModel:
         disturbance="first-order Markov on u, v, r",
         added={"gust_memory_r": 4.8},
         candidates=(
-            DisturbanceCandidate("none", -812.4, 0, 0.0, 0.0, 0.0, False, {}, -1.912, False),
-            DisturbanceCandidate("white", 7312.4, 3, 16249.6, 16.3, 3e-9, False, {}, 1.204, False),
+            DisturbanceCandidate("none", -812.4, 0, 0.0, 0.0, 0.0, False, {}, None, False),
+            DisturbanceCandidate("white", 7312.4, 3, 16249.6, 16.3, 3e-9, False, {}, 1.31, False),
             DisturbanceCandidate(
                 "first-order Markov on u, v, r",
                 7724.1,
@@ -170,7 +170,7 @@ def disturbance() -> NoiseModel:
                 0.23,
                 True,
                 {"gust_memory_u": 6.1, "gust_memory_v": 5.2, "gust_memory_r": 4.8},
-                1.311,
+                1.0,
                 True,
             ),
         ),

@@ -175,13 +175,13 @@ def print_disturbances(candidates: "Sequence[DisturbanceCandidate]") -> None:
     """Print the disturbance models that were compared; nothing where none was needed."""
     if not candidates:
         return
-    from seatrial.core.text.numbers import exact, fixed, p_value
+    from seatrial.core.text.numbers import fixed, p_value
 
-    rows = [["disturbance", "log-likelihood", "dof", "ratio", "by chance", "innovations", "held-out", ""]]
+    rows = [["disturbance", "log-likelihood", "dof", "ratio", "by chance", "innovations", "left out", ""]]
     for c in candidates:
         ratios = [fixed(c.likelihood_ratio, 1), fixed(c.critical_ratio, 1)] if c.critical_ratio > 0.0 else ["", ""]
         verdict = f"{'white' if c.is_white else 'not white'}, {p_value(c.whiteness_p)}"
-        held_out = "" if c.held_out_score is None else exact(c.held_out_score, DIGITS)
+        left_out = "" if c.left_out_error is None else fixed(c.left_out_error, 2)
         used = "used" if c.is_chosen else ""
-        rows.append([c.name, fixed(c.log_likelihood, 1), str(c.degrees_of_freedom), *ratios, verdict, held_out, used])
+        rows.append([c.name, fixed(c.log_likelihood, 1), str(c.degrees_of_freedom), *ratios, verdict, left_out, used])
     print_table(rows, flush_left=(0, 5, 7), indent="  ")  # columns of words: name, verdict, use

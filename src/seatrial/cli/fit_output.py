@@ -237,6 +237,7 @@ def _print_details(fit: "Fit") -> None:
     print_heading("Method")
     if noise_model is not None:
         print_lines([f"{noise_model.method}: {noise_model.text}"] if noise_model.text else [])
+        print_lines(noise_model.wave_sentences)
         print_lines(noise_model.closed_loop.sentences if noise_model.closed_loop is not None else [])
         print_disturbances(noise_model.candidates)
     print_lines([f"criterion: {fit.method.criterion}", f"intervals: {fit.method.intervals}"])

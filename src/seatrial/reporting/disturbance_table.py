@@ -8,8 +8,8 @@ from seatrial.core.text.numbers import fixed, p_value, significant
 
 # decimal places of log-likelihoods: differences below a tenth decide nothing
 _LIKELIHOOD_PLACES = 1
-# the same of the mean over samples
-_SCORE_PLACES = 4
+# the same of ratios of errors
+_RATIO_PLACES = 2
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class DisturbanceRow:
     ratio: str
     critical: str
     whiteness: str
-    held_out: str
+    left_out: str
     is_chosen: bool
 
 
@@ -42,6 +42,6 @@ def _row(c: DisturbanceCandidate) -> DisturbanceRow:
         ratio=fixed(c.likelihood_ratio, _LIKELIHOOD_PLACES) if has_ratio else "",
         critical=fixed(c.critical_ratio, _LIKELIHOOD_PLACES) if has_ratio else "",
         whiteness=f"{'white' if c.is_white else 'not white'}, {p_value(c.whiteness_p)}",
-        held_out="" if c.held_out_score is None else fixed(c.held_out_score, _SCORE_PLACES),
+        left_out="" if c.left_out_error is None else fixed(c.left_out_error, _RATIO_PLACES),
         is_chosen=c.is_chosen,
     )

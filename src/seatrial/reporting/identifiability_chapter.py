@@ -94,6 +94,7 @@ class NoiseText:
     is_whole_run: bool
     candidates: tuple[DisturbanceRow, ...]
     closed_loop: str
+    waves: str
     has_disturbance: bool
 
 
@@ -299,6 +300,7 @@ def _noise_text(d: NoiseModel, names: Sequence[str]) -> NoiseText:
         d.method == _OUTPUT_ERROR and bool(active),
         disturbance_rows(d.candidates),
         " ".join(sentence(text) for text in d.closed_loop.sentences) if d.closed_loop else "",
+        " ".join(d.wave_sentences),
         d.disturbance != "none",
     )
 

@@ -11,7 +11,6 @@ from seatrial.core.equations.augment import (
     with_biases,
     with_gusts,
     with_lags,
-    with_waves,
 )
 from seatrial.core.values import InputError
 from seatrial.physics.models.nomoto import nomoto
@@ -31,20 +30,6 @@ def test_a_gust_pushes_and_fades() -> None:
     time = DT * np.arange(ROWS)
     np.testing.assert_allclose(states[:, -1], 0.01 * np.exp(-time / 2.0), rtol=1e-6)
     np.testing.assert_allclose(states[:, 0], 0.02 * (1.0 - np.exp(-time / 2.0)), atol=1e-8)
-
-
-def test_a_wave_swings_and_fades() -> None:
-    """Free response of w'' + 2 zeta omega w' + omega^2 w = 0 from w0, and r' = w."""
-    omega, zeta = 0.8, 0.1
-    model = with_waves(nomoto().with_values({"T": 1e12}), ("r",), omega, zeta)
-    assert model.states[-2:] == ("wave_r", "wave_r_rate")
-    start = np.zeros(6)
-    start[-2] = 0.01
-    states, _ = trajectory(model, 0.0 * INPUTS, DT, start)
-    time, damped = DT * np.arange(ROWS), omega * np.sqrt(1.0 - zeta**2)
-    free = np.cos(damped * time) + zeta * omega / damped * np.sin(damped * time)
-    np.testing.assert_allclose(states[:, -2], 0.01 * np.exp(-zeta * omega * time) * free, atol=2e-8)
-    np.testing.assert_allclose(np.gradient(states[:, 0], DT)[1:-1], states[1:-1, -2], atol=3e-5)
 
 
 def test_biases_are_added_to_what_is_read() -> None:
@@ -69,7 +54,6 @@ def test_a_lagging_channel_follows() -> None:
     "more",
     [
         lambda m: with_gusts(m, {"r": 1.0}),
-        lambda m: with_waves(m, ("r",), 1.0, 0.1),
         lambda m: with_lags(m, ("r",), 1.0),
     ],
 )

@@ -1,15 +1,11 @@
 """The curvature that quasi-Newton steps take over from two gradients."""
 
-from types import SimpleNamespace
-from typing import cast
-
 import numpy as np
 import pytest
 from scipy.optimize import BFGS
 
 from seatrial.core.values import Array
-from seatrial.estimation.estimate.newton_refinement import _newton_step, with_curvature
-from seatrial.estimation.problem.prediction_error import PredictionError
+from seatrial.estimation.estimate.newton_refinement import step_within, with_curvature
 from seatrial.numerics.optimise import NormalEquations
 
 BELIEVED = np.array([[4.0, 1.0, 0.0], [1.0, 3.0, 0.5], [0.0, 0.5, 2.0]])
@@ -48,13 +44,13 @@ def quadratic(hessian: Array) -> NormalEquations:
 
 @pytest.mark.parametrize("entry", [np.inf, np.nan])
 def test_where_the_information_overflows_no_step_is_taken_and_the_search_has_not_converged(entry: float) -> None:
-    box = cast(PredictionError, SimpleNamespace(lower=np.full(3, -np.inf), upper=np.full(3, np.inf)))
+    room = np.full(3, -np.inf), np.full(3, np.inf)
     curved = BELIEVED.copy()
     curved[1, 1] = entry
-    step, left = _newton_step(box, np.zeros(3), quadratic(curved))
+    step, left = step_within(room, quadratic(curved))
     np.testing.assert_array_equal(step, 0.0)
     assert left == np.inf
-    step, left = _newton_step(box, np.zeros(3), quadratic(BELIEVED))
+    step, left = step_within(room, quadratic(BELIEVED))
     np.testing.assert_allclose(step, -np.linalg.solve(BELIEVED, STEP))
     assert left == pytest.approx(0.5 * STEP @ np.linalg.solve(BELIEVED, STEP))
 

@@ -1,9 +1,8 @@
 """A model with more states: disturbances with a memory, biased or lagging sensors. ModelEquations like any others.
 
-A gust is a force of first order (Gauss-Markov; Gelb 1974, section 3.5) and a wave force one of second order with a
-peak at the frequency of encounter (Fossen 2011, section 8.2.6), both given as the acceleration they cause; a bias is a
-random walk on a channel; a lagging channel follows its state with one time constant. What drives them is white noise on
-the new states.
+A gust is a force of first order (Gauss-Markov; Gelb 1974, section 3.5), given as the acceleration it causes; a bias is
+a random walk on a channel; a lagging channel follows its state with one time constant. What drives them is white noise
+on the new states.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -18,10 +17,9 @@ from seatrial.core.values import InputError, Parameter, Parameters
 if TYPE_CHECKING:
     import sympy as sp
 
-WAVE_FREQUENCY, WAVE_DAMPING, SENSOR_LAG = "wave_frequency", "wave_damping", "sensor_lag"
+SENSOR_LAG = "sensor_lag"
 MEMORY_PREFIX = "gust_memory_"
 _SOURCE = "augmented model"
-FOSSEN = "Fossen 2011, section 8.2.6, without the zero at the origin"
 
 
 def gust_name(state: str) -> str:
@@ -32,16 +30,6 @@ def gust_name(state: str) -> str:
 def memory_name(state: str) -> str:
     """Name of the parameter that holds the memory of a gust on `state`."""
     return f"{MEMORY_PREFIX}{state}"
-
-
-def wave_name(state: str) -> str:
-    """Name of the state that holds a wave's acceleration of `state`."""
-    return f"wave_{state}"
-
-
-def wave_rate_name(state: str) -> str:
-    """Name of the state that holds the rate of a wave's acceleration of `state`."""
-    return f"wave_{state}_rate"
 
 
 def bias_name(channel: str) -> str:
@@ -79,32 +67,6 @@ def with_gusts(model: Model, memories: Mapping[str, float]) -> Model:
 
     constants = [_time_constant(memory_name(s), value, f"memory of gusts on {s}") for s, value in memories.items()]
     return _augmented(model, ("gusts", *memories), write, *constants)
-
-
-def with_waves(model: Model, states: Sequence[str], frequency: float, damping: float) -> Model:
-    """Return the model with accelerations wave_s on states: w'' + 2 zeta omega w' + omega^2 w = noise.
-
-    frequency: omega [rad/s], start value; damping: zeta [-], start value. Both are free and shared by the states.
-
-    Raises:
-        InputError: the model has one of the new names already.
-    """
-
-    def write() -> ModelEquations:
-        omega, zeta = _symbol(WAVE_FREQUENCY), _symbol(WAVE_DAMPING)
-        waves = {s: (_symbol(wave_name(s)), _symbol(wave_rate_name(s))) for s in states}
-        rates = [b.bound_to(b.expression + waves[b.name][0]) if b.name in waves else b for b in model.equations.rates]
-        for w, rate in waves.values():
-            rates.append(Binding.from_expression(str(w), rate, FOSSEN))
-            rates.append(Binding.from_expression(str(rate), -(omega**2) * w - 2 * zeta * omega * rate, FOSSEN))
-        return _extended(model, "waves", rates, new=(WAVE_FREQUENCY, WAVE_DAMPING))
-
-    # a factor of four to each side of the start, and of twenty: the spectrum's own peak is the start, chosen
-    peak = Parameter(WAVE_FREQUENCY, frequency, "rad/s", frequency / 4.0, 4.0 * frequency, frequency, None, True,
-                     _SOURCE, "peak frequency of wave forces", "")  # fmt: skip
-    width = Parameter(WAVE_DAMPING, damping, "1", damping / 20.0, 20.0 * damping, damping, None, True,
-                      _SOURCE, "relative damping of wave forces", "")  # fmt: skip
-    return _augmented(model, ("waves", *states), write, peak, width)
 
 
 def with_biases(model: Model, channels: Sequence[str]) -> Model:

@@ -2,6 +2,7 @@
 
 from seatrial.core.results.coefficients import (
     CandidateModel, Coefficient, DisturbanceCandidate, Method, Noise, NoiseModel, Offset, OffsetPopulation, Residuals,
+    Waves,
 )  # fmt: skip
 from seatrial.core.results.comparison import ComparedFit, Comparison, Difference, JointTest, ManoeuvreDifferences
 from seatrial.core.results.design import Actuator, Confirmation, Design, ManoeuvrePrecision, TimedOrder, TrialLimits
@@ -118,6 +119,7 @@ __all__ = [
     "TimedOrder",
     "TrialLimits",
     "Verdict",
+    "Waves",
     "WindowBaseline",
     "WindowScore",
     "fitted_session",

@@ -9,7 +9,9 @@ from pydantic import Field, PlainSerializer, WithJsonSchema
 from seatrial.core.results.closed_loop import FeedbackEvidence
 from seatrial.core.results.fields import ABSENT, Number, StoredArray
 from seatrial.core.text.numbers import significant
+from seatrial.core.text.words import enumeration
 from seatrial.core.values import NOT_MEASURED, InputError, display_unit
+from seatrial.core.values.channel_text import channel_unit
 
 _ANGLE = "rad"  # unit of parameters that say where something rests or reads zero, not the strength of an effect
 
@@ -223,14 +225,39 @@ class DisturbanceCandidate:
     parameters: Annotated[
         dict[str, Number], Field(description="memories [s], peak frequency of waves [rad/s] and its damping")
     ]
-    held_out_score: Annotated[
+    left_out_error: Annotated[
         Number | None,
         Field(
-            description="mean log-likelihood of a sample in the last quarter of each run, predicted from the samples "
-            "before it by a fit to the other three quarters; null: not computed"
+            description="geometric mean of the errors on quarters of the runs, each simulated by the estimate without "
+            "it, over that of the best criterion; null: not judged"
         ),
     ]
     is_chosen: Annotated[bool, Field(description="whether it is behind the estimate")]
+
+
+@dataclass(frozen=True)
+class Waves:
+    """Waves at one peak, as instruments show them on top of the craft's own motion."""
+
+    frequency: Annotated[Number, Field(description="of encounter, rad/s")]
+    damping: Annotated[Number, Field(description="relative, of the narrow band")]
+    rms: Annotated[dict[str, Number], Field(description="channel -> standard deviation that they add to it, SI")]
+
+    @property
+    def period(self) -> float:
+        """Period of encounter [s]."""
+        return 2.0 * math.pi / self.frequency
+
+    @property
+    def sentence(self) -> str:
+        """Return period and sizes in words."""
+        sizes = enumeration([_size_text(channel, size) for channel, size in self.rms.items()])
+        return f"Waves of {significant(self.period, 2)} s move the instruments by {sizes} rms."
+
+
+def _size_text(channel: str, size: float) -> str:
+    factor, unit = display_unit(channel_unit(channel))
+    return f"{significant(size * factor, 2)} {unit} ({channel})"
 
 
 @dataclass(frozen=True)
@@ -264,6 +291,21 @@ class NoiseModel:
         FeedbackEvidence | None,
         Field(description="a controller that was on in training runs; null: no input follows outputs"),
     ] = None
+    waves: Annotated[tuple[Waves, ...], Field(description="first-order motion on the sensors; empty: none")] = ()
+    wave_cost: Annotated[
+        Number | None,
+        Field(description="median over the coefficients of standard error over that without waves; null: no waves"),
+    ] = None
+
+    @property
+    def wave_sentences(self) -> list[str]:
+        """Return what waves the log shows, and what they cost."""
+        if not self.waves:
+            return []
+        cost = [] if self.wave_cost is None else [
+            f"Without them the standard errors would be {significant(1.0 / self.wave_cost, 2)} times as large (median)."
+        ]  # fmt: skip
+        return [*(w.sentence for w in self.waves), *cost]
 
 
 @dataclass(frozen=True, eq=False)

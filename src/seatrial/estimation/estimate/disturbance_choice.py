@@ -1,4 +1,4 @@
-"""Which disturbance explains the records: none, white, with a memory, waves. Likelihood decides, whiteness confirms.
+"""Which disturbance explains the records: none, white, with a memory; waves. Likelihood decides, whiteness confirms.
 
 Candidates are compared in the order of their unknowns; one is preferred to the best before it where twice the gain of
 log-likelihood exceeds what chance gives once in a thousand cases (Wilks 1938; 10.8 for one unknown). Tests of whiteness
@@ -6,6 +6,7 @@ see weak disturbances far too rarely to decide (benchmarks/gusts.py).
 """
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -14,12 +15,22 @@ from scipy.special import gammaincinv
 
 from seatrial.core.results import DisturbanceCandidate
 from seatrial.core.values import Array, ProgressReporter
-from seatrial.estimation.estimate.disturbance_models import DisturbanceModel, gusts, sensor_models, waves
+from seatrial.estimation.estimate.disturbance_models import (
+    DisturbanceModel,
+    gusts,
+    likeliest_start,
+    sensor_models,
+    wave_motion,
+    white_intensities,
+)
 from seatrial.estimation.estimate.likelihood_ratio import CONFIDENCE_LEVEL, likelihood_ratio_test
-from seatrial.estimation.estimate.newton_refinement import newton_optimum, newton_step, refine_by_newton
+from seatrial.estimation.estimate.newton_refinement import newton_optimum, refine_by_newton
+from seatrial.estimation.estimate.plausibility import is_lost
+from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.estimate.process_noise import ProcessNoise, search_with_frozen_gain
+from seatrial.estimation.information.spectral_peaks import SpectralPeak, spectral_peaks
 from seatrial.estimation.problem.prediction_error import PredictionError
-from seatrial.numerics.optimise import Optimum, levenberg_marquardt
+from seatrial.numerics.optimise import Optimum, Solution, Status, levenberg_marquardt
 
 _NO_INITIAL_STATES = np.zeros((0, 0))
 # most evaluations of each search; chosen
@@ -30,11 +41,10 @@ _NEGLIGIBLE = 1e-3
 _REACH = 3.0
 # variance inflation of innovations near an optimum, beyond which its last steps do not make them white; chosen
 _HOPELESS_INFLATION = 3.0
-HELD_OUT_SHARE = 0.25
-"""Share of each run, at its end, on which candidates are scored; chosen."""
-
-# samples over which the innovations' spectrum is averaged when its peak is looked for; chosen
-_SPECTRUM_SEGMENT = 1024
+_FAR_LESS_LIKELY = 12.0  # nats below the likeliest from which on a candidate says nothing of its spread; chosen
+_PEAKS = 3  # of the residuals' spectra at which waves are sought, the likeliest is searched from; chosen
+# intensities of gusts beside waves, over those of white noise, which had to explain the waves too; chosen
+_BESIDE_WAVES = (0.03, 0.3)
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,11 +54,13 @@ class FittedDisturbance:
     Attributes:
         unknown_count: unknowns that describe the disturbance.
         promise: what a Newton step would add to its log-likelihood; 0 where it was searched to the end.
+        left_out_error: error on left-out quarters of the runs over that of the best criterion; None: not judged.
     """
 
     noise: ProcessNoise
     unknown_count: int
     promise: float = 0.0
+    left_out_error: float | None = None
 
     @property
     def log_likelihood(self) -> float:
@@ -109,7 +121,7 @@ class DisturbanceChoice:
                 whiteness_p=f.noise.test.whiteness.smallest,
                 is_white=f.noise.test.is_white,
                 parameters=f.noise.added_parameters,
-                held_out_score=held_out_score(f.noise),
+                left_out_error=f.left_out_error,
                 is_chosen=is_used and f is self.chosen,
             )
             for f in self.fitted
@@ -118,9 +130,10 @@ class DisturbanceChoice:
     def spread(self, coefficients: Array) -> Array:
         """Mean square distance of the disturbed candidates' coefficients from these, (k, k).
 
-        Of those that were searched to the end: the others are far less likely, their coefficients at no optimum.
+        Of those that were searched to the end and are not far less likely than the best.
         """
-        k, searched = len(coefficients), (f for f in self.fitted if f.unknown_count and f.promise == 0.0)
+        k, likely = len(coefficients), max(f.log_likelihood for f in self.fitted) - _FAR_LESS_LIKELY
+        searched = (f for f in self.fitted if f.unknown_count and f.promise == 0.0 and f.log_likelihood >= likely)
         away = [f.noise.common_parameters[:k] - coefficients for f in searched]
         away = np.array([a for a in away if np.any(a)]).reshape(-1, k)
         return away.T @ away / max(len(away), 1)
@@ -129,6 +142,7 @@ class DisturbanceChoice:
 def choose_disturbance(
     white: ProcessNoise,
     *,
+    plain: PointEstimate | None = None,
     needs_disturbance: bool = False,
     evaluations: int = _EVALUATIONS,
     report_progress: ProgressReporter | None = None,
@@ -137,25 +151,69 @@ def choose_disturbance(
 
     Args:
         white: the optimum with white noise on the states.
+        plain: an estimate by output error, from which noise of the sensors alone may begin, too.
         needs_disturbance: whether a disturbance is used even where none is likelier (inputs follow outputs); what the
             likelihood would be without one is still in the table.
     """
     report = report_progress or (lambda _: None)
     count = len(white.problem.process)
-    fitted = [FittedDisturbance(without_disturbance(white, evaluations, report), 0), FittedDisturbance(white, count)]
+    none = without_disturbance(white, plain, evaluations, report)
+    fitted = [FittedDisturbance(none, 0)]
+    if np.isfinite(white.newton_decrement):
+        fitted.append(FittedDisturbance(white, count))
     has_room = not white.output_error.extra_terms  # force points know the caller's parameters only
-    if has_room:
-        fitted += _begun([gusts(white)], white, evaluations, report)
-    eligible = int(needs_disturbance)  # the first to choose from
+    models = [gusts(white, white.problem.process, white_intensities(white))] if has_room else []
+    gusty = list(_begun(models, white, evaluations, report))
+    fitted += gusty
+    eligible = int(needs_disturbance and len(fitted) > 1)  # the first to choose from
+    if has_room and not likeliest(fitted[eligible:]).noise.test.is_white:
+        fitted += _in_waves(none, [f.noise for f in gusty], white, evaluations, report)
+    if not likeliest(fitted[eligible:]).noise.test.is_nearly_white:
+        fitted += _begun(list(sensor_models(white)), white, evaluations, report)
+    fitted = _searched(fitted, white, report, needs_disturbance=needs_disturbance)
+    eligible = int(needs_disturbance and len(fitted) > 1)
     best = likeliest(fitted[eligible:])
-    if not best.noise.test.is_white:
-        more = list(sensor_models(white))
-        gusty = next((f for f in fitted if f.noise.disturbance_model.startswith("first-order Markov")), None)
-        if gusty is not None:
-            more.append(waves(white, gusty.noise, _peak_frequency(gusty.noise)))
-        fitted += _begun(more, white, evaluations, report)
-    fitted = _searched(fitted, report, needs_disturbance=needs_disturbance)
+    if best.noise.problem.waves.peaks and not best.noise.test.is_white:
+        more = _begun(wave_motion(best.noise, _peaks(best.noise)), white, evaluations, report)
+        fitted = _searched([*fitted, *more], white, report, needs_disturbance=needs_disturbance)
     return DisturbanceChoice(likeliest(fitted[eligible:]), tuple(fitted))
+
+
+def _in_waves(
+    none: ProcessNoise, gusty: Sequence[ProcessNoise], white: ProcessNoise, evaluations: int, report: ProgressReporter
+) -> Iterator[FittedDisturbance]:
+    """Yield waves on the sensors alone, and gusts beside them, where residuals without a disturbance peak.
+
+    Gusts begin beside the waves that the spectra show or that explain most alone, or the waves beside the gusts that do;
+    not at all where waves alone leave white innovations that no gust of the grid makes likelier.
+    """
+    peaks, driven, whites = _peaks(none), white.problem.process, white_intensities(white)
+    start = wave_motion(none, peaks)
+    motion = next(_begun(start, white, evaluations, report), None)
+    if motion is None:
+        return
+    yield motion
+    bases = [motion.noise, *(_unsearched(white, one) for one in start)]
+    scanned = likeliest_start([gusts(base, driven, share * whites) for base in bases for share in _BESIDE_WAVES])
+    is_likelier = scanned.problem.cost(scanned.point, _NO_INITIAL_STATES) < motion.noise.optimum.normal.cost
+    if not motion.noise.test.is_white or is_likelier:
+        starts = [scanned, *(start for base in gusty for start in wave_motion(base, peaks))]
+        yield from _begun([likeliest_start(starts)], white, evaluations, report)
+
+
+def _unsearched(white: ProcessNoise, model: DisturbanceModel) -> ProcessNoise:
+    """The candidate where its search begins."""
+    normal = model.problem.normal(model.point, _NO_INITIAL_STATES)
+    optimum = Optimum(Solution(model.point, normal.cost, Status.STALLED, 1), _NO_INITIAL_STATES, normal)
+    return _candidate(white, model.name, model.unknown_count, model.problem, optimum, np.inf).noise
+
+
+def _peaks(noise: ProcessNoise) -> list[SpectralPeak]:
+    """The peaks of the innovations' spectra."""
+    e, data = noise.problem.innovations(noise.optimum.solution.point).e, noise.problem.runs.data
+    if not np.all(np.isfinite(np.nan_to_num(e, nan=0.0))):
+        return []
+    return spectral_peaks([e[a:b] for a, b in pairwise(data.offsets)], data.dt, _PEAKS)
 
 
 def likeliest(fitted: Sequence[FittedDisturbance]) -> FittedDisturbance:
@@ -174,63 +232,60 @@ def critical_gain(unknown_count: int) -> float:
     return float(2.0 * gammaincinv(0.5 * unknown_count, CONFIDENCE_LEVEL)) if unknown_count > 0 else 0.0
 
 
-def without_disturbance(white: ProcessNoise, evaluations: int, report: ProgressReporter) -> ProcessNoise:
-    """The optimum of the same likelihood with noise of the sensors only."""
+def without_disturbance(
+    white: ProcessNoise, plain: PointEstimate | None, evaluations: int, report: ProgressReporter
+) -> ProcessNoise:
+    """The optimum of the same likelihood with noise of the sensors only; `plain`: where it may begin, too."""
     problem = replace(white.problem, process=(), steps=None)
     point, size = white.optimum.solution.point, white.problem.runs.size
-    begin = np.concatenate([point[:size], point[size + len(white.problem.process) :]])
+    deviations = point[size + white.problem.waves.size + len(white.problem.process) :]
+    starts = [np.concatenate([point[:size], deviations])]
+    if plain is not None:
+        starts.append(np.concatenate([plain.common_parameters, plain.problem.noise**2]))
+    begin = min(starts, key=lambda start: problem.cost(start, _NO_INITIAL_STATES))
     report("disturbances compared: none")
     optimum = levenberg_marquardt(problem, begin, _NO_INITIAL_STATES, negligible=_NEGLIGIBLE, evaluations=evaluations)
     verdict = likelihood_ratio_test(problem, optimum.solution.point, optimum.normal.cost, optimum.normal.cost, None)
     return ProcessNoise(problem, optimum, 0.0, verdict, white.output_error, "none")
 
 
-def held_out_score(noise: ProcessNoise) -> float | None:
-    """Mean log-likelihood of a sample in the last quarter of each run, by a fit to the rest (one Newton step).
-
-    None where that fit diverges on the last quarter, or nothing is measured there.
-    """
-    problem, data = noise.problem, noise.problem.runs.data
-    measured = data.measured.copy()
-    for a, b in pairwise(data.offsets):
-        measured[a + round((1.0 - HELD_OUT_SHARE) * (b - a)) : b] = np.nan
-    count = int(np.isfinite(data.measured).sum() - np.isfinite(measured).sum())
-    fitted = replace(problem, runs=replace(problem.runs, data=replace(data, measured=measured)))
-    point = newton_step(fitted, noise.optimum.solution.point)
-    score = fitted.cost(point, _NO_INITIAL_STATES) - problem.cost(point, _NO_INITIAL_STATES)
-    return score / count if count and np.isfinite(score) else None
-
-
 def _begun(
     models: Sequence[DisturbanceModel], white: ProcessNoise, evaluations: int, report: ProgressReporter
 ) -> Iterator[FittedDisturbance]:
-    """Yield candidates near their optima, where the search with the gain as given ends."""
+    """Yield candidates near their optima, where the search with the gain as given ends; none that leaves physics."""
     for one in models:
         report(f"disturbances compared: {one.name}")
         if not np.isfinite(one.problem.cost(one.point, _NO_INITIAL_STATES)):
             continue
-        near = search_with_frozen_gain(one.problem, one.point, evaluations, report)
-        exact = replace(one.problem, steps=one.problem.difference_steps(near.solution.point, near.normal.hessian))
-        promise = newton_optimum(one.problem, near, 1.0).decrement
-        yield _candidate(white, one.name, one.unknown_count, exact, near, promise, promise)
+        with suppress(np.linalg.LinAlgError):  # sensitivities overflow: the search has left physics
+            near = search_with_frozen_gain(one.problem, one.point, evaluations, report)
+            if is_lost(white.output_error, near.solution.point):
+                continue
+            exact = replace(one.problem, steps=one.problem.difference_steps(near.solution.point, near.normal.hessian))
+            promise = newton_optimum(one.problem, near, 1.0).decrement
+            yield _candidate(white, one.name, one.unknown_count, exact, near, promise, promise)
 
 
 def _searched(
-    begun: Sequence[FittedDisturbance], report: ProgressReporter, *, needs_disturbance: bool
+    begun: Sequence[FittedDisturbance], white: ProcessNoise, report: ProgressReporter, *, needs_disturbance: bool
 ) -> list[FittedDisturbance]:
     """Return candidates, searched to the end where they may be the likeliest there, the most promising first.
 
-    Not where innovations stay so coloured that none would be used, unless one is needed.
+    Not where innovations stay so coloured that none would be used, unless one is needed; without what leaves physics.
     """
-    ends, white = list(begun), begun[1].noise
+    ends: list[FittedDisturbance | None] = list(begun)
     for k in sorted(range(len(begun)), key=lambda k: -begun[k].reachable):
-        one, best = begun[k], max(f.log_likelihood for f in ends)
+        one, best = begun[k], max(f.log_likelihood for f in ends if f is not None)
         is_hopeless = not needs_disturbance and np.max(one.noise.test.inflation) > _HOPELESS_INFLATION
         if one.promise > 0.0 and not is_hopeless and one.reachable > best - critical_gain(one.unknown_count):
             report(f"disturbances compared: {one.noise.disturbance_model}")
-            exact, optimum, decrement = refine_by_newton(one.noise.problem, one.noise.optimum)
-            ends[k] = _candidate(white, one.noise.disturbance_model, one.unknown_count, exact, optimum, decrement)
-    return ends
+            ends[k] = None
+            with suppress(np.linalg.LinAlgError):  # as above
+                exact, optimum, decrement = refine_by_newton(one.noise.problem, one.noise.optimum)
+                if not is_lost(white.output_error, optimum.solution.point):
+                    name = one.noise.disturbance_model
+                    ends[k] = _candidate(white, name, one.unknown_count, exact, optimum, decrement)
+    return [f for f in ends if f is not None]
 
 
 def _candidate(
@@ -248,15 +303,3 @@ def _candidate(
     verdict = replace(verdict, inflation_without=white.test.inflation_without)
     noise = ProcessNoise(problem, optimum, decrement, verdict, white.output_error, name)
     return FittedDisturbance(noise, unknown_count, promise)
-
-
-def _peak_frequency(noise: ProcessNoise) -> float:
-    """Frequency [rad/s] at which the innovations of any channel exceed their mean power most, (Welch 1967)."""
-    data = noise.problem.runs.data
-    values = np.nan_to_num(noise.problem.innovations(noise.optimum.solution.point).normalised)
-    length = min(_SPECTRUM_SEGMENT, int(np.max(np.diff(data.offsets))))
-    window = np.hanning(length)[:, None]
-    pieces = [values[a : a + length] for a in range(0, len(values) - length + 1, length // 2)]
-    power = np.mean([np.abs(np.fft.rfft(window * p, axis=0)) ** 2 for p in pieces], axis=0)[2:]
-    peak = np.argmax(np.max(power / power.mean(axis=0), axis=1))
-    return float(2.0 * np.pi * (peak + 2) / (length * data.dt))

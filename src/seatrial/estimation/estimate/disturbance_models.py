@@ -1,4 +1,7 @@
-"""Candidates for what disturbs a ship: gusts with a memory, waves, wandering sensors; each a model with more states."""
+"""Candidates for what is between a ship and its records: gusts with a memory, waves, wandering sensors.
+
+Gusts, biases and lags are a model with more states; waves are motion that the filter adds to what sensors show.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -12,19 +15,23 @@ from seatrial.core.equations.augment import (
     gust_name,
     lagged_name,
     memory_name,
-    wave_name,
-    wave_rate_name,
     with_biases,
     with_gusts,
     with_lags,
-    with_waves,
 )
+from seatrial.core.equations.model import channel_of
 from seatrial.core.values import Array, InputError, Record
 from seatrial.estimation.estimate.process_noise import ProcessNoise
+from seatrial.estimation.information.spectral_peaks import SpectralPeak
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.prediction_error import PredictionError
+from seatrial.physics.sensors.wave_motion import RATES, WaveMotion, motion_of
 
 POSITIONS, VELOCITIES = ("x0", "y0"), ("u", "v")
+GUSTS = "first-order Markov"
+"""Name of gusts with a memory."""
+SEAS = {1: "waves on the sensors", 2: "sea and swell on the sensors"}
+"""Name of waves with so many peaks."""
 # memories of gusts from which the search starts: from so many samples to a tenth of the longest run, so many values
 _FEWEST_MEMORY_SAMPLES, _LONGEST_MEMORY_SHARE, _MEMORIES = 5.0, 0.1, 4
 FEWEST_SAMPLES = round(_FEWEST_MEMORY_SAMPLES / _LONGEST_MEMORY_SHARE)
@@ -34,10 +41,8 @@ FEWEST_SAMPLES = round(_FEWEST_MEMORY_SAMPLES / _LONGEST_MEMORY_SHARE)
 _INTENSITY_FACTORS = (0.5, 1.5, 5.0, 15.0)
 # intensity where white noise was none, over that which would explain all motion of its state; smallest size, SI
 _LEAST_SHARE, _SMALLEST = 0.01, 1e-12
-# peak frequencies of waves from which the search starts, over that of the innovations' spectrum
-_FREQUENCY_FACTORS = (0.7, 1.0, 1.4)
-# relative damping of waves from which the search starts (a sea's spectrum; Fossen 2011, section 8.2.6)
-_WAVE_DAMPING = 0.1
+# relative damping of waves from which the search starts: swell, a sea's spectrum (Fossen 2011, section 8.2.6)
+_WAVE_DAMPINGS = (0.03, 0.1)
 # lag of a log from which the search starts, samples, ours
 _LAG_SAMPLES = 2.0
 # s in which a bias changes by the noise of its channel, where the search starts, ours
@@ -79,29 +84,71 @@ class _NewStates:
     renamed: Mapping[str, str] = field(default_factory=dict)
 
 
-def gusts(base: ProcessNoise) -> DisturbanceModel:
-    """A first-order Markov acceleration on every driven state, each with its own memory and intensity."""
+def gusts(base: ProcessNoise, driven: Sequence[str], whites: Array) -> DisturbanceModel:
+    """A first-order Markov acceleration on driven states, each with its own memory and intensity.
+
+    base: what else is between craft and record, white noise on states taken away; whites: intensities of white noise
+    about which those of gusts are tried, (driven,).
+    """
     runs = base.output_error
     memories = np.geomspace(_FEWEST_MEMORY_SAMPLES * runs.data.dt, _LONGEST_MEMORY_SHARE * longest_run(runs), _MEMORIES)
-    whites = white_intensities(base)
-    points = [_gusts(base, float(m), f * whites) for m in memories for f in _INTENSITY_FACTORS]
-    return _likeliest(points)
+    return likeliest_start([_gusts(base, driven, float(m), f * whites) for m in memories for f in _INTENSITY_FACTORS])
 
 
-def waves(base: ProcessNoise, gusty: ProcessNoise, frequency: float) -> DisturbanceModel:
-    """Gusts, and a second-order acceleration with a common peak on every driven state.
+def wave_motion(base: ProcessNoise, peaks: Sequence[SpectralPeak]) -> list[DisturbanceModel]:
+    """Waves on the sensors at one more peak than `base` has, on the channels that show it: one start, none without.
 
-    gusty: the optimum with gusts alone; frequency: peak of its innovations' spectrum [rad/s].
+    peaks: where it may lie.
     """
-    driven, added = base.problem.process, gusty.added_parameters
-    memory = np.array([added[memory_name(s)] for s in driven])
-    squared = gusty.problem.split(gusty.optimum.solution.point)[1] ** 2
-    points = [
-        _waves(base, gusty, memory, squared, f * frequency, factor)
-        for f in _FREQUENCY_FACTORS
-        for factor in _INTENSITY_FACTORS
-    ]
-    return _likeliest(points)
+    points = [_wave_motion(base, _unfolded(base, peak), damping) for peak in peaks for damping in _WAVE_DAMPINGS]
+    return [likeliest_start(points)] if points else []
+
+
+def _unfolded(base: ProcessNoise, peak: SpectralPeak) -> SpectralPeak:
+    """The peak at the frequency that angles and rates agree with: samples show those beyond half their own folded."""
+    outputs = base.output_error.data.outputs
+    variance = dict(zip(outputs, peak.variance.tolist(), strict=True))
+    ratios = [variance[rate] / variance[angle] for angle, rate in RATES.items()
+              if variance.get(angle, 0.0) > 0.0 and variance.get(rate, 0.0) > 0.0]  # fmt: skip
+    if not ratios:
+        return peak
+    folded = 2.0 * np.pi / base.output_error.data.dt - peak.frequency
+    shown = 0.5 * np.log(np.mean(ratios))  # a rate's variance over its angle's is omega^2
+    is_folded = abs(np.log(folded) - shown) < abs(np.log(peak.frequency) - shown)
+    return replace(peak, frequency=folded) if is_folded else peak
+
+
+def _wave_motion(base: ProcessNoise, peak: SpectralPeak, damping: float) -> DisturbanceModel:
+    old, point = base.problem, base.optimum.solution.point.copy()
+    channels = [channel_of(o) for o in old.runs.observables]
+    sizes = dict.fromkeys((*old.waves.motions, *_motions(channels, peak)), 0.0)
+    for motion in sizes:
+        shown = [v / (peak.frequency**2 if c != motion else 1.0) for c, v in zip(channels, peak.variance, strict=True)
+                 if motion_of(c) == motion and v > 0.0]  # fmt: skip
+        sizes[motion] = float(max(shown, default=0.0))
+    waves = WaveMotion(tuple(sizes), old.waves.peaks + 1)
+    earlier, first = old.wave_unknowns(point), old.runs.size + len(old.process)
+    shapes, known = earlier[: 2 * old.waves.peaks], earlier[2 * old.waves.peaks :].reshape(old.waves.peaks, len(old.waves.motions))
+    widened = np.pad(known, ((0, 0), (0, len(sizes) - known.shape[1])))
+    unknowns = np.concatenate([shapes, [peak.frequency, damping], widened.ravel(), list(sizes.values())])
+    is_waved = np.array([sizes.get(motion_of(c), 0.0) > 0.0 for c in channels])
+    deviations = np.where(is_waved, np.minimum(point[-len(channels) :], peak.floor), point[-len(channels) :])
+    problem = replace(old, waves=waves, steps=None)
+    moved = np.concatenate([point[:first], unknowns, deviations])
+    gusty = [s for s in base.output_error.model.states if gust_name(s) in old.process]
+    return DisturbanceModel(
+        problem, np.clip(moved, problem.lower, problem.upper), _name(gusty, waves.peaks),
+        len(old.process) + len(base.added_constants) + waves.size,
+    )  # fmt: skip
+
+
+def _motions(channels: Sequence[str], peak: SpectralPeak) -> list[str]:
+    return [motion_of(c) for c, v in zip(channels, peak.variance, strict=True) if v > 0.0]
+
+
+def _name(gusty: Sequence[str], peaks: int) -> str:
+    parts = [f"{GUSTS} on {', '.join(gusty)}"] if gusty else []
+    return " and ".join([*parts, *([SEAS[peaks]] if peaks else [])])
 
 
 def sensor_models(base: ProcessNoise) -> Iterator[DisturbanceModel]:
@@ -146,13 +193,13 @@ def white_intensities(base: ProcessNoise) -> Array:
     return np.maximum(estimated, _LEAST_SHARE * scale)
 
 
-def _likeliest(points: list[DisturbanceModel]) -> DisturbanceModel:
+def likeliest_start(points: list[DisturbanceModel]) -> DisturbanceModel:
+    """Return the candidate whose search begins at the likeliest point."""
     return min(points, key=lambda one: one.problem.cost(one.point, _NO_INITIAL_STATES))
 
 
-def _gusts(base: ProcessNoise, memory: float, intensities: Array) -> DisturbanceModel:
+def _gusts(base: ProcessNoise, driven: Sequence[str], memory: float, intensities: Array) -> DisturbanceModel:
     """White noise on the states becomes white noise on accelerations of the same effect over longer times."""
-    driven = base.problem.process
     model = with_gusts(base.output_error.model, dict.fromkeys(driven, memory))
     # stationary variance of a Gauss-Markov process whose integral spreads like white noise: q^2 / (2 memory)
     variance = {
@@ -161,39 +208,7 @@ def _gusts(base: ProcessNoise, memory: float, intensities: Array) -> Disturbance
     }
     squared = {gust_name(s): float(q / memory) ** 2 for s, q in zip(driven, intensities, strict=True)}
     new = _NewStates(model, squared, (memory,) * len(driven), variance)
-    return _augmented(base, new, f"first-order Markov on {', '.join(driven)}", 2 * len(driven))
-
-
-def _waves(
-    base: ProcessNoise, gusty: ProcessNoise, memory: Array, squared: Array, frequency: float, factor: float
-) -> DisturbanceModel:
-    driven = base.problem.process
-    held = dict(zip(driven, map(float, memory), strict=True))
-    model = with_waves(with_gusts(base.output_error.model, held), driven, frequency, _WAVE_DAMPING)
-    at_start = gusty.problem.start_variance[0, len(base.output_error.model.states) :]
-    variance = dict(zip(map(gust_name, driven), map(float, at_start), strict=True))
-    intensities = dict(zip(map(gust_name, driven), map(float, squared), strict=True))
-    for state, spread in zip(driven, map(float, np.sqrt(0.5 * squared * memory)), strict=True):
-        size = max(factor * spread, _SMALLEST)
-        variance |= {wave_name(state): size**2, wave_rate_name(state): (size * frequency) ** 2}
-        # stationary variance of the second-order process: q^2 / (4 zeta omega^3)
-        intensities[wave_rate_name(state)] = 4.0 * _WAVE_DAMPING * frequency**3 * size**2
-    new = _NewStates(model, intensities, (*map(float, memory), frequency, _WAVE_DAMPING), variance)
-    words = f"first-order Markov and waves on {', '.join(driven)}"
-    begun = _augmented(base, new, words, 3 * len(driven) + 2)
-    return replace(begun, point=_with_coefficients(begun, gusty))
-
-
-def _with_coefficients(begun: DisturbanceModel, gusty: ProcessNoise) -> Array:
-    """The point with coefficients, what sessions have of their own, and sensor noise of another optimum."""
-    free, ny = len(gusty.output_error.free), len(gusty.output_error.data.outputs)
-    point, size = begun.point.copy(), begun.problem.runs.size
-    common = gusty.common_parameters
-    point[:free] = common[:free]
-    if len(common) > free:
-        point[size - (len(common) - free) : size] = common[free:]
-    point[-ny:] = gusty.optimum.solution.point[-ny:]
-    return np.clip(point, begun.problem.lower, begun.problem.upper)
+    return _augmented(base, new, _name(driven, base.problem.waves.peaks), 2 * len(driven) + base.problem.waves.size)
 
 
 def _biases(base: ProcessNoise, channels: tuple[str, ...]) -> DisturbanceModel:
@@ -234,6 +249,7 @@ def _augmented(base: ProcessNoise, new: _NewStates, name: str, unknown_count: in
         steps=None,
     )
     own, free, ny = base.common_parameters, len(runs.free), len(data.outputs)
-    deviations = base.optimum.solution.point[-ny:]
-    point = np.concatenate([own[:free], new.constants, own[free:], list(new.squared.values()), deviations])
+    point = base.optimum.solution.point
+    waves, deviations = old.wave_unknowns(point), point[-ny:]
+    point = np.concatenate([own[:free], new.constants, own[free:], list(new.squared.values()), waves, deviations])
     return DisturbanceModel(problem, np.clip(point, problem.lower, problem.upper), name, unknown_count)

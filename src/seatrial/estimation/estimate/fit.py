@@ -24,6 +24,7 @@ from seatrial.estimation.estimate.intervals import (
     with_spread,
 )
 from seatrial.estimation.estimate.large_records import choice_over_all, choice_runs
+from seatrial.estimation.estimate.left_out_quarters import WindowSeconds
 from seatrial.estimation.estimate.plausibility import implausible_coefficients, refuse_implausible
 from seatrial.estimation.estimate.point_estimate import PointEstimate, fit_output_error, refuse_unstarted
 from seatrial.estimation.estimate.process_noise import ProcessNoise
@@ -31,6 +32,8 @@ from seatrial.estimation.estimate.process_noise_interval import process_noise_in
 from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import (
     HUBER_LIMIT,
+    INITIAL_STATE_SHIP_LENGTHS,
+    JUDGED_SHIP_LENGTHS,
     SEGMENT_SHIP_LENGTHS,
     WEAK_FORM_SHIP_LENGTHS,
     EstimatorOptions,
@@ -241,7 +244,8 @@ def _chosen(
         return _fit_whole_runs(shooting, model, runs, settings, options, report_progress)
 
     choice = choose_criterion(
-        shooting, seconds, settings, runs.noise, whole_runs, report_progress,
+        shooting, seconds, settings, runs.noise, whole_runs, runs,
+        WindowSeconds(JUDGED_SHIP_LENGTHS * unit, INITIAL_STATE_SHIP_LENGTHS * unit), report_progress,
         is_unforced=_is_unforced(model, runs.records),
         begun=_begun(shooting, begun.start),
         has_feedback=evidence.is_closed,
@@ -296,6 +300,8 @@ def _noise_model(choice: CriterionChoice, evidence: LoopEvidence) -> NoiseModel:
         added={} if noise is None else noise.added_parameters,
         candidates=() if compared is None else compared.rows(is_used=noise is not None),
         closed_loop=closed_loop(evidence, compared, noise),
+        waves=() if noise is None else noise.waves,
+        wave_cost=None if noise is None else noise.wave_cost,
     )
 
 

@@ -8,6 +8,7 @@ damped so that it stays positive (Powell 1978; Nocedal & Wright 2006, Numerical 
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from seatrial.core.values import Array
 from seatrial.estimation.problem.prediction_error import PredictionError
@@ -18,6 +19,10 @@ _MAX_DECREMENT = 1e-3  # decrease of the cost that a Newton step still promises 
 # disturbance are far from quadratic, so that whole steps overshoot, and each costs as much as fifty evaluations
 _NEWTON_STEPS, _STEP_SHARES = 30, (1.0, 0.5, 0.25, 0.125)
 _LEAST_CURVATURE = 0.2  # of the believed curvature along a step (Powell 1978)
+_DETERMINED = 2.0  # standard errors above zero from which on a variance is searched by its logarithm; chosen
+_FARTHEST = 2.0  # logarithm of the factor by which one step changes a size or time at most; chosen
+# how often steps of differences are renewed at most, and the factor by which they are wrong then; chosen
+_RENEWALS, _WRONG_STEPS = 2, 3.0
 # the filter eliminates initial states: there are no local unknowns
 _NO_INITIAL_STATES = np.zeros((0, 0))
 
@@ -25,14 +30,21 @@ _NO_INITIAL_STATES = np.zeros((0, 0))
 def refine_by_newton(problem: PredictionError, optimum: Optimum) -> tuple[PredictionError, Optimum, float]:
     """Take quasi-Newton steps by the exact gradient, none where it vanishes; return the decrement that is left, too.
 
-    Differences to one side lead near the optimum at half the cost; those to both sides have the last word.
+    Differences to one side lead near the optimum at half the cost; those to both sides have the last word. Where the
+    search went so far that the steps of differences no longer suit, it goes on with new ones.
     """
-    exact = replace(problem, steps=problem.difference_steps(optimum.solution.point, optimum.normal.hessian))
-    one_sided = replace(exact, is_one_sided=True)
-    begun = one_sided.normal(optimum.solution.point, _NO_INITIAL_STATES)
-    near = _descend(one_sided, _Descent(optimum.solution.point, begun, begun.hessian))
-    end = _descend(exact, replace(near, normal=exact.normal(near.point, _NO_INITIAL_STATES)))
-    slope = _newton_step(exact, end.point, end.curved)[1]
+    point = optimum.solution.point
+    exact = replace(problem, steps=problem.difference_steps(point, optimum.normal.hessian))
+    near = _descend(replace(exact, is_one_sided=True), point, 0)
+    end = _descend(exact, near.point, near.count)
+    for _ in range(_RENEWALS):
+        steps = problem.difference_steps(end.point, end.normal.hessian)
+        is_wrong = np.abs(np.log(steps / np.where(exact.steps > 0.0, exact.steps, steps))) > np.log(_WRONG_STEPS)
+        if not np.any(is_wrong & (problem.lower < problem.upper)):
+            break
+        exact = replace(problem, steps=steps)
+        end = _descend(exact, end.point, end.count)
+    slope = end.decrement
     solution = replace(
         optimum.solution, point=end.point, value=end.normal.cost,
         status=Status.CONVERGED if slope <= _MAX_DECREMENT else Status.STALLED,
@@ -43,37 +55,74 @@ def refine_by_newton(problem: PredictionError, optimum: Optimum) -> tuple[Predic
 
 @dataclass(frozen=True, eq=False)
 class _Descent:
-    """Where quasi-Newton steps have come to; hessian: the curvature that they believe, count: steps so far."""
+    """Where quasi-Newton steps have come to; count: steps so far, decrement: what another one promises."""
 
     point: Array
     normal: NormalEquations
-    hessian: Array
-    count: int = 0
-
-    @property
-    def curved(self) -> NormalEquations:
-        """The gradient with the curvature that is believed."""
-        return replace(self.normal, hessian=self.hessian)
+    count: int
+    decrement: float
 
 
-def _descend(problem: PredictionError, descent: _Descent) -> _Descent:
+@dataclass(frozen=True, eq=False)
+class _Coordinates:
+    """Logarithms of some unknowns, the others themselves; `is_log`: which."""
+
+    is_log: NDArray[np.bool_]
+
+    @classmethod
+    def at(cls, problem: PredictionError, point: Array, hessian: Array) -> "_Coordinates":
+        """Return those that suit a point: what is positive by its bounds, and variances that are not near zero."""
+        error = 1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-300))  # above zero, for a division
+        is_variance = np.arange(len(point)) >= problem.runs.size
+        return cls((point > 0.0) & ((problem.lower > 0.0) | (is_variance & (point > _DETERMINED * error))))
+
+    def normal(self, normal: NormalEquations, point: Array) -> NormalEquations:
+        """Return gradient and Hessian by these coordinates."""
+        scale = np.where(self.is_log, point, 1.0)
+        return replace(normal, gradient=scale * normal.gradient, hessian=normal.hessian * np.outer(scale, scale))
+
+    def room(self, problem: PredictionError, point: Array) -> tuple[Array, Array]:
+        """Return the least and the largest step."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            down, up = np.log(problem.lower / point), np.log(problem.upper / point)
+        low = np.where(self.is_log, np.maximum(down, -_FARTHEST), problem.lower - point)
+        high = np.where(self.is_log, np.minimum(up, _FARTHEST), problem.upper - point)
+        return low, high
+
+    def moved(self, point: Array, step: Array) -> Array:
+        """Return the point after a step."""
+        return np.where(self.is_log, point * np.exp(np.where(self.is_log, step, 0.0)), point + step)
+
+    def way(self, point: Array, end: Array) -> Array:
+        """Return the step from one point to another."""
+        ratio = np.where(self.is_log, end, 1.0) / np.where(self.is_log, point, 1.0)
+        return np.where(self.is_log, np.log(ratio), end - point)
+
+
+def _descend(problem: PredictionError, point: Array, count: int) -> _Descent:
     """Step until no more than `_MAX_DECREMENT` is promised, or until no step decreases the cost."""
-    while descent.count < _NEWTON_STEPS:
-        step, slope = _newton_step(problem, descent.point, descent.curved)
-        if slope <= _MAX_DECREMENT:
-            break
-        trials = [np.clip(descent.point + share * step, problem.lower, problem.upper) for share in _STEP_SHARES]
+    normal = problem.normal(point, _NO_INITIAL_STATES)
+    coordinates = _Coordinates.at(problem, point, normal.hessian)
+    here = coordinates.normal(normal, point)
+    hessian, is_expected = here.hessian, True
+    while True:
+        room = coordinates.room(problem, point)
+        step, decrement = step_within(room, replace(here, hessian=hessian))
+        if decrement <= _MAX_DECREMENT or count >= _NEWTON_STEPS:
+            return _Descent(point, normal, count, decrement)
+        trials = [np.clip(coordinates.moved(point, share * step), problem.lower, problem.upper) for share in _STEP_SHARES]
         costs = [problem.cost(trial, _NO_INITIAL_STATES) for trial in trials]
         best = int(np.argmin(costs))
-        if not costs[best] < descent.normal.cost:
-            if descent.hessian is descent.normal.hessian:
-                break
-            descent = replace(descent, hessian=descent.normal.hessian)  # once more by the expected information
+        if not costs[best] < normal.cost:
+            if is_expected:
+                return _Descent(point, normal, count, decrement)
+            hessian, is_expected = here.hessian, True  # once more by the expected information
             continue
-        point, normal = trials[best], problem.normal(trials[best], _NO_INITIAL_STATES)
-        hessian = with_curvature(descent.hessian, point - descent.point, normal.gradient - descent.normal.gradient)
-        descent = _Descent(point, normal, hessian, descent.count + 1)
-    return descent
+        end = trials[best]
+        normal = problem.normal(end, _NO_INITIAL_STATES)
+        after = coordinates.normal(normal, end)
+        hessian = with_curvature(hessian, coordinates.way(point, end), after.gradient - here.gradient)
+        point, here, count, is_expected = end, after, count + 1, False
 
 
 def with_curvature(hessian: Array, moved: Array, gradient_change: Array) -> Array:
@@ -107,7 +156,7 @@ def newton_optimum(problem: PredictionError, few: Optimum, share: float) -> Newt
     point = few.solution.point
     steps = problem.difference_steps(point, share * few.normal.hessian)
     normal = replace(problem, steps=steps, is_one_sided=True).normal(point, _NO_INITIAL_STATES)
-    step, decrement = _newton_step(problem, point, normal)
+    step, decrement = step_within((problem.lower - point, problem.upper - point), normal)
     moved = np.clip(point + step, problem.lower, problem.upper)
     cost = normal.cost - decrement if np.isfinite(decrement) else np.inf
     solution = Solution(moved, cost, Status.CONVERGED, few.solution.evaluations + 1)
@@ -117,27 +166,29 @@ def newton_optimum(problem: PredictionError, few: Optimum, share: float) -> Newt
 
 def newton_step(problem: PredictionError, point: Array) -> Array:
     """The point after one full Newton step, within the bounds."""
-    step, _ = _newton_step(problem, point, problem.normal(point, _NO_INITIAL_STATES))
-    return np.clip(point + step, problem.lower, problem.upper)
+    room = problem.lower - point, problem.upper - point
+    return np.clip(
+        point + step_within(room, problem.normal(point, _NO_INITIAL_STATES))[0], problem.lower, problem.upper
+    )
 
 
-def _newton_step(problem: PredictionError, point: Array, normal: NormalEquations) -> tuple[Array, float]:
-    """Newton step within the bounds, and the decrease of the cost that it promises.
+def step_within(room: tuple[Array, Array], normal: NormalEquations) -> tuple[Array, float]:
+    """Return the Newton step within its room (least, largest), and the decrease of the cost that it promises.
 
     Where no bound is in the way that is half the squared gradient in the information's metric. Where gradient or
     information overflow, no step is known: none is taken, and infinitely much is left.
     """
-    low, high, slope = problem.lower, problem.upper, normal.gradient
-    free = (low < high) & ~((point <= low) & (slope > 0)) & ~((point >= high) & (slope < 0))
+    (low, high), slope = room, normal.gradient
+    free = (low < high) & ~((low >= 0.0) & (slope > 0)) & ~((high <= 0.0) & (slope < 0))
     gradient, hessian = slope[free], normal.hessian[np.ix_(free, free)]
+    step = np.zeros_like(slope)
     if not (np.all(np.isfinite(gradient)) and np.all(np.isfinite(hessian))):
-        return np.zeros_like(point), np.inf
+        return step, np.inf
     scale = 1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-300))  # above zero, for a division
     # rounding of a singular matrix; chosen
     solved = scale * np.linalg.lstsq(hessian * scale[:, None] * scale, scale * gradient, rcond=1e-12)[0]
-    step = np.zeros_like(point)
     step[free] = -solved
-    if np.all((point + step >= low) & (point + step <= high)):
+    if np.all((step >= low) & (step <= high)):
         return step, float(0.5 * gradient @ solved)
-    step = bounded_step(normal, low - point, high - point)
+    step = bounded_step(normal, low, high)
     return step, predicted_decrease(normal, step, _NO_INITIAL_STATES)

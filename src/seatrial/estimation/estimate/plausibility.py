@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from seatrial.core.values import Array, InputError
 from seatrial.estimation.estimate.point_estimate import PointEstimate
+from seatrial.estimation.problem.output_error import OutputError
 
 ABSURD_FACTOR, IMPOSSIBLE_FACTOR = 1e3, 1e6
 """Times its characteristic size that a free coefficient without a prior may reach undetermined, and at all; chosen."""
@@ -75,10 +76,19 @@ def with_plausible_start(estimate: PointEstimate) -> PointEstimate:
     return replace(estimate, optimum=replace(estimate.optimum, solution=replace(solution, point=point)))
 
 
+def is_lost(problem: OutputError, common_parameters: Array) -> bool:
+    """Return whether a search has left physics: no optimum there counts, and no other search begins there."""
+    return bool(np.any(_beyond(problem, common_parameters, _LOST_FACTOR)))
+
+
 def _is_beyond(estimate: PointEstimate, factor: float) -> NDArray[np.bool_]:
+    return _beyond(estimate.problem, estimate.common_parameters, factor)
+
+
+def _beyond(problem: OutputError, common_parameters: Array, factor: float) -> NDArray[np.bool_]:
     """Return whether each free coefficient is no number or above so many times its size, (free,)."""
-    parameters = [estimate.problem.model.parameters[name] for name in estimate.problem.free]
-    values = estimate.common_parameters[: len(parameters)]
+    parameters = [problem.model.parameters[name] for name in problem.free]
+    values = common_parameters[: len(parameters)]
     sizes = [max(p.scale, abs(p.value), abs(p.prior.mean) if p.prior else 0.0) for p in parameters]
     has_limit = [p.prior is None and size > 0.0 for p, size in zip(parameters, sizes, strict=True)]
     return ~np.isfinite(values) | (np.array(has_limit) & (np.abs(values) > factor * np.array(sizes)))

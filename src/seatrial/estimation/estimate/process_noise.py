@@ -13,6 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from seatrial.core.equations.augment import gust_name, memory_name
+from seatrial.core.results import Waves
 from seatrial.core.values import Array, Index, InputError, ProgressReporter, spelling_hint
 from seatrial.data.check.signal import sample_noise
 from seatrial.estimation.estimate.likelihood_ratio import (
@@ -21,8 +22,9 @@ from seatrial.estimation.estimate.likelihood_ratio import (
     likelihood_ratio_test,
 )
 from seatrial.estimation.estimate.newton_refinement import refine_by_newton
+from seatrial.estimation.estimate.plausibility import is_lost
 from seatrial.estimation.estimate.point_estimate import PointEstimate, rounding_level
-from seatrial.estimation.information.covariance import Interval, RunScores, from_information
+from seatrial.estimation.information.covariance import Interval, RunScores, from_information, inverse
 from seatrial.estimation.problem.output_error import OutputError, SegmentNormals
 from seatrial.estimation.problem.prediction_error import PredictionError, join_segments
 from seatrial.numerics.optimise import (
@@ -68,7 +70,7 @@ class ProcessNoise:
     Attributes:
         problem: gives exact gradients; optimum: point, normal equations with expected information, history.
         slope: Newton decrement of the exact gradient at the point: how far above the minimum the cost still is; NaN
-            where the coefficients were not searched.
+            where the coefficients were not searched, infinite where their search left physics.
         runs: the output-error problem over whole runs that it was made from; `problem.runs` is another one where the
             model has more states (gusts with a memory, biases, lags), whose parameters stand behind the free ones.
         disturbance_model: the disturbance in words; evidence: what shows its strength.
@@ -95,7 +97,7 @@ class ProcessNoise:
         """
         names, q = (self.problem.process, self.problem.split(self.optimum.solution.point)[1])
         intensities, states = (dict(zip(names, map(float, q), strict=True)), self.output_error.model.states)
-        memories = self.added_parameters
+        memories = self.added_constants
         gusts = {s: intensities[gust_name(s)] * memories[memory_name(s)] for s in states if gust_name(s) in intensities}
         return {s: v for s, v in intensities.items() if s in states} | gusts
 
@@ -111,16 +113,48 @@ class ProcessNoise:
         return np.maximum(spread[[model.states.index(s) for s in driven]], _LEAST_SPREAD)
 
     @property
-    def added_parameters(self) -> dict[str, float]:
+    def added_constants(self) -> dict[str, float]:
         """Parameters the model has beyond the caller's: time constants [s]."""
         free, point = self.problem.runs.free, self.optimum.solution.point
         return {n: float(point[i]) for i, n in enumerate(free) if n not in self.output_error.free}
 
     @property
+    def added_parameters(self) -> dict[str, float]:
+        """What describes the disturbance beyond intensities: time constants [s]; of waves as `wave_parameters`."""
+        waves = self.problem.waves
+        return self.added_constants | waves.named(self.problem.wave_unknowns(self.optimum.solution.point))
+
+    @property
     def measurement_noise(self) -> dict[str, float]:
-        """Standard deviation of each channel's noise, SI."""
-        r = self.problem.split(self.optimum.solution.point)[2]
-        return dict(zip(self.output_error.data.outputs, map(float, r), strict=True))
+        """Standard deviation of each channel about the craft's own motion, SI: noise, and waves where there are any."""
+        point, outputs = self.optimum.solution.point, self.output_error.data.outputs
+        waves = self.problem.waves.variances(self.problem.wave_unknowns(point), outputs)
+        total = np.sqrt(self.problem.split(point)[2] ** 2 + waves.sum(axis=0))
+        return dict(zip(outputs, map(float, total), strict=True))
+
+    @property
+    def waves(self) -> tuple[Waves, ...]:
+        """The waves that sensors show, one of each peak."""
+        unknowns, outputs = self.problem.wave_unknowns(self.optimum.solution.point), self.output_error.data.outputs
+        rms = np.sqrt(self.problem.waves.variances(unknowns, outputs))
+        return tuple(
+            Waves(float(omega), float(zeta), {c: float(s) for c, s in zip(outputs, sizes, strict=True) if s > 0.0})
+            for (omega, zeta), sizes in zip(unknowns[: 2 * len(rms)].reshape(-1, 2), rms, strict=True)
+        )
+
+    @property
+    def wave_cost(self) -> float | None:
+        """Median over the coefficients of their standard errors over those without waves; None where there are none."""
+        if not self.waves:
+            return None
+        point, first = self.optimum.solution.point.copy(), self.problem.runs.size + len(self.problem.process)
+        point[first + 2 * self.problem.waves.peaks : first + self.problem.waves.size] = 0.0
+        plain, k, kept = replace(self.problem, steps=None), len(self.output_error.free), self.problem.runs.size
+        waved, still = (
+            np.diag(inverse(plain.normal(p, _NO_INITIAL_STATES).hessian[:kept, :kept]))[:k]
+            for p in (self.optimum.solution.point, point)
+        )
+        return float(np.sqrt(np.median(waved / still)))
 
     @cached_property
     def common_indices(self) -> Index:
@@ -255,6 +289,7 @@ def fit_prediction_error(
     Returns:
         The optimum with its gate, however that decides. Where innovations stay strongly coloured with intensities that
         suit the given coefficients, these are kept: the gate is shut already, and the intensities serve the floor.
+        Where the search leaves physics, the intensities that suit the given coefficients, and an infinite decrement.
 
     Raises:
         InputError: a driven state is none of the model's, or reaches no compared channel.
@@ -266,6 +301,8 @@ def fit_prediction_error(
     if not thorough and np.max(innovation_correlation(problem, point)[1]) > _HOPELESS_INFLATION:
         return _without_search(problem, point)
     exact, found, slope = search_prediction_error(problem, point, evaluations, report)
+    if is_lost(problem.runs, found.solution.point):
+        return replace(_without_search(problem, point), newton_decrement=np.inf)
     cost, before = _cost_without_process_noise(problem, estimate, found.solution.point)
     verdict = likelihood_ratio_test(exact, found.solution.point, found.normal.cost, cost, before)
     return ProcessNoise(exact, found, slope, verdict, problem.runs)

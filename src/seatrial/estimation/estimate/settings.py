@@ -18,6 +18,9 @@ WHITE_INFLATION = 1.3
 INITIAL_STATE_SHIP_LENGTHS = 1.0
 """The initial state of a validation run comes from its first L/U seconds."""
 
+JUDGED_SHIP_LENGTHS = 5.0
+"""Criteria are judged in windows of 5 L/U, besides whole quarters of runs; chosen."""
+
 
 class IntervalMethod(StrEnum):
     """Where intervals come from; `auto` is the decision table's choice."""

@@ -64,18 +64,21 @@ def yaw_time(records: Sequence[Record]) -> float:
     For steering models of records that show no speed.
 
     Raises:
-        InputError: no record holds r or psi, or none swings.
+        InputError: no record holds r or psi, or none moves.
     """
     turning = [r for r in records if {"r", "psi"} & set(r.channels)]
     rates = [(r["r"] if "r" in r else np.gradient(r["psi"], r.dt), r.dt) for r in turning]
     if not rates:
         raise InputError("the records show neither speed nor yaw; give r or psi, or set estimate.segment_s")
-    return float(np.median([dominant_period(rate, dt) for rate, dt in rates])) / (2.0 * math.pi)
+    return float(np.median([_strongest_period(rate, dt, 1) for rate, dt in rates])) / (2.0 * math.pi)
 
 
 def is_pure_roll(model: Model) -> bool:
     """Return whether the ship swings about a rest: a model without heading and surge."""
     return not {"psi", "u"} & {*model.states, *model.input_names}
+
+
+_PADDED = 4  # lengths of the record over which its spectrum is taken, so that it has places between; chosen
 
 
 def dominant_period(values: Array, dt: float) -> float:
@@ -84,8 +87,21 @@ def dominant_period(values: Array, dt: float) -> float:
     Raises:
         InputError: it does not move, or never swings.
     """
-    power = np.abs(np.fft.rfft(values - values.mean(), 4 * len(values)))
-    peak = int(np.argmax(power))
-    if not power[peak] > 0.0 or peak < 4:
+    period = _strongest_period(values, dt, 0)
+    if period > len(values) * dt:
         raise InputError("the motion never swings about its mean; give a longer record, from the release on")
-    return 4 * len(values) * dt / peak
+    return period
+
+
+def _strongest_period(values: Array, dt: float, least_cycles: int) -> float:
+    """Period [s] of most power among those of which the record (n,) holds so many cycles; infinite at zero frequency.
+
+    Raises:
+        InputError: it does not move.
+    """
+    power = np.abs(np.fft.rfft(values - values.mean(), _PADDED * len(values)))
+    first = _PADDED * least_cycles
+    peak = first + int(np.argmax(power[first:]))
+    if not power[peak] > 0.0:
+        raise InputError("the motion never swings about its mean; give a longer record, from the release on")
+    return _PADDED * len(values) * dt / peak if peak else math.inf

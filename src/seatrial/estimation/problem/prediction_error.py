@@ -11,6 +11,7 @@ from itertools import pairwise
 from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from seatrial.core.values import Array, Index
 from seatrial.estimation.problem.output_error import OutputError, SegmentNormals
@@ -224,6 +225,26 @@ class PredictionError:
         return [self._exact_normal(shared, segment, ahead, behind) for segment in runs]
 
     def _exact_normal(self, shared: Array, segment: int, ahead: Array, behind: Array) -> tuple[float, Array, Array]:
+        slopes = self._slopes_of_run(shared, segment, ahead, behind)
+        return (slopes.cost, *slopes.information(slice(None)))
+
+    def part_normals(self, shared: Array, part: Index, count: int) -> list[tuple[Array, Array]]:
+        """Return gradient and information of each part of the samples, priors left out; `part`: of each row, (rows,).
+
+        From differences of the innovations: `steps` must be given.
+        """
+        gradients, hessians = np.zeros((count, self.size)), np.zeros((count, self.size, self.size))
+        ahead, behind = self._difference_points(shared)
+        for segment, (a, b) in enumerate(pairwise(self.runs.data.offsets)):
+            columns = self.columns_of(int(self.runs.data.session[segment]))
+            slopes = self._slopes_of_run(shared, segment, ahead, behind)
+            for k in range(count):
+                gradient, hessian = slopes.information(part[a:b] == k)
+                gradients[k, columns] += gradient
+                hessians[k][np.ix_(columns, columns)] += hessian
+        return list(zip(gradients, hessians, strict=True))
+
+    def _slopes_of_run(self, shared: Array, segment: int, ahead: Array, behind: Array) -> "_InnovationSlopes":
         columns = self.columns_of(int(self.runs.data.session[segment]))
         cost, e, v = self._loss(shared, segment)
 
@@ -235,15 +256,13 @@ class PredictionError:
             point[column] = side[column]
             return self._loss(point, segment)[1:]
 
+        de, dv = np.zeros((*e.shape, len(columns))), np.zeros((*e.shape, len(columns)))
         sides = iter(self._map(moved, [(int(c), side) for c in columns for side in (ahead, behind)]))
-        if not np.isfinite(cost):
-            return cost, np.zeros(len(columns)), np.eye(len(columns))
-        de, dv = np.empty((*e.shape, len(columns))), np.empty((*e.shape, len(columns)))
         for c, column in enumerate(columns):
             (e_1, v_1), (e_0, v_0), way = (next(sides), next(sides), ahead[column] - behind[column])
-            de[:, :, c], dv[:, :, c] = ((e_1 - e_0) / way, (v_1 - v_0) / way) if way > 0 else (0.0, 0.0)
-        mean, spread = _mean_information(e, v, de), _variance_information(e, v, dv)
-        return cost, mean[0] + spread[0], mean[1] + spread[1]
+            if way > 0 and np.isfinite(cost):
+                de[:, :, c], dv[:, :, c] = (e_1 - e_0) / way, (v_1 - v_0) / way
+        return _InnovationSlopes(cost, e, v, de, dv)
 
     def _difference_points(self, shared: Array) -> tuple[Array, Array]:
         """Return every unknown a step ahead and a step behind, within its bounds."""
@@ -276,13 +295,31 @@ class PredictionError:
     def difference_steps(self, shared: Array, hessian: Array, share: float = 0.02) -> Array:
         """Return steps for an exact gradient, (size,): a share of what each unknown may move with the others held.
 
-        Of variances no more than a tenth of themselves, unless they are zero.
+        Of variances and of what is positive by its bounds no more than a tenth of themselves, unless they are zero.
         """
         # above zero, for a division
-        steps, noise = (share / np.sqrt(np.maximum(np.diag(hessian), 1e-300)), slice(self.runs.size, None))
-        tenth = np.where(shared > 0, 0.1 * shared, steps)  # a tenth, as said above
-        steps[noise] = np.minimum(steps, tenth)[noise]
-        return steps
+        steps = share / np.sqrt(np.maximum(np.diag(hessian), 1e-300))
+        is_positive = (np.arange(self.size) >= self.runs.size) | (self.lower > 0.0)
+        return np.where(is_positive & (shared > 0.0), np.minimum(steps, 0.1 * shared), steps)  # a tenth, as said above
+
+
+@dataclass(frozen=True, eq=False)
+class _InnovationSlopes:
+    """Innovations and variances of a run, (rows, ny), and their derivatives by a session's columns, (rows, ny, k)."""
+
+    cost: float
+    e: Array
+    v: Array
+    de: Array
+    dv: Array
+
+    def information(self, rows: slice | NDArray[np.bool_]) -> tuple[Array, Array]:
+        """Return gradient and expected information of some rows; of a run that diverges none, and the identity."""
+        if not np.isfinite(self.cost):
+            return np.zeros(self.de.shape[2]), np.eye(self.de.shape[2])
+        e, v = self.e[rows], self.v[rows]
+        mean, spread = _mean_information(e, v, self.de[rows]), _variance_information(e, v, self.dv[rows])
+        return mean[0] + spread[0], mean[1] + spread[1]
 
 
 def _negative_log_likelihood(e: Array, v: Array) -> float:

@@ -74,18 +74,29 @@ class WaveMotion:
         made = [_pair(float(omega), float(zeta), dt) for omega, zeta in shape for _ in self.motions]
         return np.array(made).reshape(len(made), PAIR_COLUMNS), np.ascontiguousarray(unknowns[2 * self.peaks :])
 
+    def named(self, unknowns: Array) -> dict[str, float]:
+        """Return frequency [rad/s], relative damping and standard deviation of each motion [SI], of each peak."""
+        omega, zeta = unknowns[: 2 * self.peaks].reshape(self.peaks, 2).T
+        deviation = np.sqrt(unknowns[2 * self.peaks :]).reshape(self.peaks, len(self.motions))
+        names = {}
+        for peak in range(self.peaks):
+            behind = f"_{peak + 1}" if peak else ""
+            names |= {f"wave_frequency{behind}": omega[peak], f"wave_damping{behind}": zeta[peak]}
+            names |= {f"wave_{m}{behind}": deviation[peak, k] for k, m in enumerate(self.motions)}
+        return {name: float(value) for name, value in names.items()}
+
     def variances(self, unknowns: Array, channels: Sequence[str]) -> Array:
-        """Return the variance that waves add to each channel, (channels,), SI."""
+        """Return the variance that waves of each peak add to each channel, (peaks, channels), SI."""
         omega = unknowns[: 2 * self.peaks : 2]
         size = unknowns[2 * self.peaks :].reshape(self.peaks, len(self.motions))
-        total = np.zeros(len(channels))
-        for row, channel in enumerate(channels):
+        added = np.zeros((self.peaks, len(channels)))
+        for column, channel in enumerate(channels):
             motion = motion_of(channel)
             if motion in self.motions:
-                own = size[:, self.motions.index(motion)]
                 # variance of the rate of a stationary process of this kind: that of the displacement times omega^2
-                total[row] = np.sum(own * (omega**2 if motion != channel else 1.0))
-        return total
+                square = omega**2 if motion != channel else 1.0
+                added[:, column] = size[:, self.motions.index(motion)] * square
+        return added
 
 
 STILL = WaveMotion()
