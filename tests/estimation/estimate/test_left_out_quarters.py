@@ -1,0 +1,92 @@
+"""Errors on left-out quarters: steps against refits, and what they are there for, an order recorded for the angle."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from seatrial.core.values import Record
+from seatrial.estimation.estimate.criterion_choice import PREDICTION_ERROR
+from seatrial.estimation.estimate.fit import estimate_model
+from seatrial.estimation.estimate.left_out_quarters import (
+    QUARTERS,
+    WindowSeconds,
+    innovation_points,
+    kinds_of,
+    left_out_errors,
+    output_error_points,
+)
+from seatrial.estimation.estimate.point_estimate import PointEstimate, fit_output_error
+from seatrial.estimation.estimate.process_noise import fit_prediction_error
+from seatrial.estimation.estimate.runs import Runs
+from seatrial.estimation.estimate.settings import EstimatorOptions
+from seatrial.estimation.problem.output_error import OutputError
+from seatrial.estimation.problem.segments import cut_segments
+from seatrial.physics.models.nomoto import nomoto
+
+K, T, DT, ROWS = 0.1, 8.0, 0.5, 1200
+NOISE = np.radians(0.1)
+
+
+def record_of(rng: np.random.Generator, late: float = 0.0) -> Record:
+    """Rudder that runs straight from sample to sample, ten steps each; late: lag between order and angle [s]."""
+    order = np.repeat(rng.choice([-0.2, -0.1, 0.1, 0.2], ROWS // 40), 40)
+    order = np.convolve(order, np.ones(8) / 8.0, "same")
+    between = np.interp(np.arange(10 * ROWS) / 10.0 + 0.05, np.arange(ROWS), order)
+    h, r, psi, delta = DT / 10.0, 0.0, 0.0, 0.0
+    heading = np.empty(ROWS)
+    for k in range(10 * ROWS):
+        if k % 10 == 0:
+            heading[k // 10] = psi
+        delta += (between[k] - delta) * (1.0 - np.exp(-h / late) if late else 1.0)
+        after = K * delta + (r - K * delta) * np.exp(-h / T)
+        psi, r = psi + 0.5 * h * (r + after), after
+    shown = heading + NOISE * rng.standard_normal(ROWS)
+    return Record.from_arrays("run", DT * np.arange(ROWS), {"delta": order, "psi": shown})
+
+
+@pytest.fixture(scope="module")
+def estimate() -> PointEstimate:
+    record = record_of(np.random.default_rng(4))
+    data = cut_segments(nomoto(), [record], ("psi",), None)
+    problem = OutputError(nomoto(), data, np.array([NOISE]), workers=1)
+    return fit_output_error(problem, problem.start(), problem.measured_initial_states(), {"psi": NOISE})
+
+
+def test_a_step_leads_to_the_refit_without_the_quarter(estimate: PointEstimate) -> None:
+    points, problem = output_error_points(estimate), estimate.problem
+    assert points.shape == (QUARTERS, 2)
+    for k in range(QUARTERS):
+        measured = problem.data.measured.copy()
+        measured[k * ROWS // QUARTERS : (k + 1) * ROWS // QUARTERS] = np.nan
+        rest = replace(problem, data=replace(problem.data, measured=measured))
+        refit = fit_output_error(rest, estimate.common_parameters, estimate.optimum.local, {"psi": NOISE})
+        moved = refit.common_parameters - estimate.common_parameters
+        np.testing.assert_allclose(points[k] - estimate.common_parameters, moved, rtol=0.1, atol=1e-4)
+
+
+def test_without_a_disturbance_both_criteria_predict_alike(estimate: PointEstimate) -> None:
+    noise = fit_prediction_error(estimate, {"psi": NOISE}, thorough=True)
+    record = record_of(np.random.default_rng(4))
+    runs, seconds = Runs.one_session_each([record], 40.0), WindowSeconds(10.0, 4.0)
+    errors = left_out_errors(estimate.problem, output_error_points(estimate), runs, seconds)
+    others = left_out_errors(noise.as_point_estimate().problem, innovation_points(noise), runs, seconds)
+    assert errors.shape == others.shape == (QUARTERS, 2, 1)
+    np.testing.assert_allclose(errors, others, atol=0.1)
+    assert np.all(np.exp(errors) < 5.0 * NOISE)  # the state at which a window begins is known by a few samples
+
+
+def test_an_order_in_place_of_the_angle_is_no_disturbance() -> None:
+    """One-step prediction takes the machinery's lag for gusts and shifts K; what is predicted shows it."""
+    record = record_of(np.random.default_rng(1), late=2.5)
+    estimation = estimate_model(nomoto(), Runs.one_session_each([record], 40.0), options=EstimatorOptions(workers=1))
+    assert estimation.criterion != PREDICTION_ERROR
+    assert estimation.estimate.common_parameters[0] == pytest.approx(K, rel=0.05)
+    assert any("errors on left-out quarters" in reason for reason in estimation.reasons)
+    judged = [c.left_out_error for c in estimation.noise_model.candidates if c.left_out_error is not None]
+    assert min(judged) > 1.25
+
+
+def test_kinds_of_channels() -> None:
+    assert kinds_of(("u", "psi", "x0", "y0")) == [("psi",), ("x0", "y0")]
+    assert kinds_of(("z", "theta")) == [("z",), ("theta",)]
