@@ -101,7 +101,9 @@ def test_the_gradient_is_the_slope_of_the_cost(problem: PredictionError) -> None
     normal = problem.normal(point, NONE)
     noise = slice(2, None)  # those of the craft count the gain as constant
     steps = 1e-4 * point
-    slope = [(problem.cost(point + s, NONE) - problem.cost(point - s, NONE)) / (2.0 * np.max(s)) for s in np.diag(steps)]
+    slope = [
+        (problem.cost(point + s, NONE) - problem.cost(point - s, NONE)) / (2.0 * np.max(s)) for s in np.diag(steps)
+    ]
     np.testing.assert_allclose((normal.gradient * point)[noise], (slope * point)[noise], rtol=1e-4, atol=1e-5)
 
 

@@ -170,9 +170,7 @@ def choose_criterion(
     white = fit_prediction_error(first, noise, other=other, thorough=not in_waves, report_progress=report_progress)
     if np.isnan(white.newton_decrement):  # not searched: no disturbance makes such innovations white
         return replace(shot.with_reasons(white.test.summary, _SEGMENTED), process_intensities=white.process_intensities)
-    disturbances = choose_disturbance(
-        white, plain=first, needs_disturbance=is_closed, report_progress=report_progress
-    )
+    disturbances = choose_disturbance(white, plain=first, needs_disturbance=is_closed, report_progress=report_progress)
     best = disturbances.chosen.noise
     if over_runs is not None and over_runs.whiteness.is_white and not disturbances.chosen.unknown_count:
         return replace(over_runs.with_reasons(disturbances.summary), disturbances=disturbances)

@@ -184,8 +184,8 @@ def _in_waves(
 ) -> Iterator[FittedDisturbance]:
     """Yield waves on the sensors alone, and gusts beside them, where residuals without a disturbance peak.
 
-    Gusts begin beside the waves that the spectra show or that explain most alone, or the waves beside the gusts that do;
-    not at all where waves alone leave white innovations that no gust of the grid makes likelier.
+    Gusts begin beside the waves that the spectra show or that explain most alone, or the waves beside the gusts that
+    do; not at all where waves alone leave white innovations that no gust of the grid makes likelier.
     """
     peaks, driven, whites = _peaks(none), white.problem.process, white_intensities(white)
     start = wave_motion(none, peaks)

@@ -14,7 +14,6 @@ from seatrial.core.equations.augment import (
     biased_name,
     gust_name,
     lagged_name,
-    memory_name,
     with_biases,
     with_gusts,
     with_lags,
@@ -128,7 +127,10 @@ def _wave_motion(base: ProcessNoise, peak: SpectralPeak, damping: float) -> Dist
         sizes[motion] = float(max(shown, default=0.0))
     waves = WaveMotion(tuple(sizes), old.waves.peaks + 1)
     earlier, first = old.wave_unknowns(point), old.runs.size + len(old.process)
-    shapes, known = earlier[: 2 * old.waves.peaks], earlier[2 * old.waves.peaks :].reshape(old.waves.peaks, len(old.waves.motions))
+    shapes, known = (
+        earlier[: 2 * old.waves.peaks],
+        earlier[2 * old.waves.peaks :].reshape(old.waves.peaks, len(old.waves.motions)),
+    )
     widened = np.pad(known, ((0, 0), (0, len(sizes) - known.shape[1])))
     unknowns = np.concatenate([shapes, [peak.frequency, damping], widened.ravel(), list(sizes.values())])
     is_waved = np.array([sizes.get(motion_of(c), 0.0) > 0.0 for c in channels])

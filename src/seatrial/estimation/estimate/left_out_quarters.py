@@ -1,6 +1,6 @@
 """How far off a criterion's estimate is on what it did not see: a quarter of every training run, left out in turn.
 
-What an estimate would be without a quarter follows by one Newton step (Cook & Weisberg 1982, section 5.4). The quarter
+What an estimate would be without a quarter follows by one Newton step (Pregibon 1981, Ann. Stat. 9, 705). The quarter
 is then simulated from its recorded inputs, as a whole and in windows, each from a state that its first seconds show.
 """
 

@@ -110,7 +110,9 @@ def _descend(problem: PredictionError, point: Array, count: int) -> _Descent:
         step, decrement = step_within(room, replace(here, hessian=hessian))
         if decrement <= _MAX_DECREMENT or count >= _NEWTON_STEPS:
             return _Descent(point, normal, count, decrement)
-        trials = [np.clip(coordinates.moved(point, share * step), problem.lower, problem.upper) for share in _STEP_SHARES]
+        trials = [
+            np.clip(coordinates.moved(point, share * step), problem.lower, problem.upper) for share in _STEP_SHARES
+        ]
         costs = [problem.cost(trial, _NO_INITIAL_STATES) for trial in trials]
         best = int(np.argmin(costs))
         if not costs[best] < normal.cost:

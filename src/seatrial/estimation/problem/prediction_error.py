@@ -102,7 +102,7 @@ class PredictionError:
 
     @cached_property
     def wave_bounds(self) -> tuple[Array, Array]:
-        """Bounds of what describes the waves; frequencies up to that of the samples, as an angle's rate may show them."""
+        """Bounds of what describes the waves; frequencies up to that of the samples: an angle's rate may show them."""
         data, peaks, sizes = self.runs.data, self.waves.peaks, self.waves.pair_count
         slowest = 2.0 * np.pi * FEWEST_WAVE_PERIODS / (data.dt * float(np.max(np.diff(data.offsets))))
         low, high = (slowest, LEAST_WAVE_DAMPING), (2.0 * np.pi / data.dt, MOST_WAVE_DAMPING)

@@ -41,7 +41,7 @@ class Segments:
     def rounding_noise(self) -> Array:
         """Standard deviation of the rounding of each output's values, (ny,), SI: of a uniform error of one step."""
         columns = (column[np.isfinite(column)] for column in self.measured.T)
-        return np.array([resolution(column) for column in columns]) / np.sqrt(12.0)  # Widrow & Kollar 2008, eq. (1.1)
+        return np.array([resolution(column) for column in columns]) / np.sqrt(12.0)  # Widrow & Kollar 2008
 
     @property
     def count(self) -> int:

@@ -22,7 +22,6 @@ from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.sensitivity import propagate_tangent
 from seatrial.numerics.kernels.types import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, TABLE, TANGENT, VECTOR
 
-
 PHI, NOISE, SQUARED_FREQUENCY = 0, 12, 21
 """Columns of a pair: its transition matrix and derivatives by frequency and damping, four each; the variance that it
 gains in a step and its derivatives, three each; the square of its frequency."""
@@ -39,12 +38,13 @@ def add_pair(covariance, a, pair, place, factor):
 
 @njit(inline="always", **OPTIONS)
 def turn_pair(covariance, m, a, pairs, q, place, transition, nx, turned):
-    """Add dPhi P Phi' and its transpose to covariance[m], dPhi being the block at `place` of pair q, P covariance[0]."""
+    """Add dPhi P Phi' and its transpose to covariance[m], dPhi: the block at `place` of pair q, P: covariance[0]."""
     n = covariance.shape[1]
     for row in range(2):
         for j in range(n):
             turned[j] = (
-                pairs[q, place + 2 * row] * covariance[0, a, j] + pairs[q, place + 2 * row + 1] * covariance[0, a + 1, j]
+                pairs[q, place + 2 * row] * covariance[0, a, j]
+                + pairs[q, place + 2 * row + 1] * covariance[0, a + 1, j]
             )
         for j in range(n):
             total = 0.0
@@ -313,8 +313,8 @@ def filter_innovations(
     that a channel shows of each peak, -1 for none. de_out (rows, ny, columns): sensitivities of e, columns as the links
     say (counted from nx, the first nx being the transition matrix), the last ones by process of `noisy_states`, by
     frequency and damping of each peak, by sizes, by measurement; dv_out (rows, ny, noise columns) those of v; without
-    columns the likelihood alone. variance_out (rows or 0, nx): of the craft's states before each sample; state_out (rows or 0,
-    nx + 2 k): means of all after it. A missing sample has e = 0 and v = 1.
+    columns the likelihood alone. variance_out (rows or 0, nx): of the craft's states before each sample; state_out
+    (rows or 0, nx + 2 k): means of all after it. A missing sample has e = 0 and v = 1.
     """
     nx, nu, width = x0.size, inputs.shape[1], de_out.shape[2]
     whole, covs, n = nx + nu + p.size, 1 + dv_out.shape[2], nx + 2 * size.size

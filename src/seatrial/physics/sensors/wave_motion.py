@@ -1,9 +1,9 @@
-"""First-order wave motion as sensors show it: each displacement a narrow-band process on top of the craft's own motion.
+"""First-order wave motion as sensors show it: displacements in a narrow band on top of the craft's own motion.
 
-Waves move a craft to and fro and leave no mean (Balchen et al. 1976; Saelid, Jenssen & Balchen 1983): what an instrument
-shows is the slow motion, which rudder, thrusters and wind cause, and a displacement xi with
+Waves move a craft to and fro and leave no mean (Balchen et al. 1976; Saelid, Jenssen & Balchen 1983): an instrument
+shows the slow motion, which rudder, thrusters and wind cause, and a displacement xi with
 
-    xi'' + 2 zeta omega xi' + omega^2 xi = noise     (Fossen 2011, eq. (8.113), section 11.1, as an output).
+    xi'' + 2 zeta omega xi' + omega^2 xi = noise     (Fossen 2011, section 8.2.6, as an output).
 
 A heading and a yaw rate show the same motion, xi and xi'; so do roll and pitch and their rates. Frequency and damping
 are common to all motions of a peak: wind sea is one, swell may be another.
@@ -114,7 +114,7 @@ def _pair(omega: float, zeta: float, dt: float) -> Array:
 def _exact(omega: complex, zeta: complex, dt: float) -> tuple[np.ndarray, np.ndarray]:
     """Return exp(A dt) row by row, (4,), and D - exp(A dt) D exp(A dt)', D = diag(1, omega^2), as 11, 12, 22, (3,).
 
-    D is the stationary covariance at unit variance: A D + D A' is minus the noise's (Gelb 1974, eq. (3.7-8)).
+    D is the stationary covariance at unit variance: A D + D A' is minus the noise's (Gelb 1974, section 3.7).
     """
     root = np.sqrt(1.0 - zeta**2 + 0j)
     decay, angle = np.exp(-zeta * omega * dt), omega * root * dt
