@@ -6,7 +6,6 @@ sum of e_i' S^-1 e_j + tr(S^-1 S_i S^-1 S_j) / 2, subscripts for derivatives (Ka
 Signal Processing: Estimation Theory, eq. (3.31)).
 """
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,6 +24,7 @@ from simulated_seas import (
 
 UNKNOWN = ("K", "T", "zero")
 STEPS = (1e-4, 1e-3, 1e-5)  # 1/s, s, rad: central differences, some 1e-3 of a standard error and more; chosen
+SETTLED = 1e-9  # 1, relative change of every covariance over a sample below which the filter is constant; chosen
 START = (0.05, 1.0)  # rad/s, rad: standard deviations of the state at the start, as good as none; chosen
 
 
@@ -41,16 +41,31 @@ class _Filters:
     zero: Array
 
 
+@dataclass(frozen=True, eq=False)
+class Likelihood:
+    """Of a record at the truth: information on (K, T, zero), (3, 3), its score, (3,), and innovations squared, (rows,).
+
+    squared: e' S^-1 e, its mean the number of channels where filter and simulator agree.
+    """
+
+    information: Array
+    score: Array
+    squared: Array
+
+
 def standard_errors(craft: Craft, conditions: Conditions, run: SimulatedRun) -> dict[str, float]:
     """Return standard errors of K and T; empty where positions are measured or the craft is not of first order."""
     if craft.name != "nomoto" or "x0" in conditions.channels:
         return {}
-    truth = np.array([craft.truth["K"], craft.truth["T"], 0.0])
-    points = np.vstack([truth + sign * np.diag(STEPS) for sign in (1.0, -1.0)])
-    points = np.vstack([truth, points])
-    information = _information(_filters(craft, conditions, run.step, points), run)
-    deviations = np.sqrt(np.diag(np.linalg.inv(information)))
+    deviations = np.sqrt(np.diag(np.linalg.inv(likelihood(craft, conditions, run).information)))
     return {name: float(d) for name, d in zip(UNKNOWN[:2], deviations, strict=False)}
+
+
+def likelihood(craft: Craft, conditions: Conditions, run: SimulatedRun) -> Likelihood:
+    """Return what the likelihood of the true disturbance says at the truth."""
+    truth = np.array([craft.truth["K"], craft.truth["T"], conditions.zero])
+    points = np.vstack([truth, *(truth + sign * np.diag(STEPS) for sign in (1.0, -1.0))])
+    return _likelihood(_filters(craft, conditions, run.step, points), run)
 
 
 def _filters(craft: Craft, conditions: Conditions, step: float, points: Array) -> _Filters:
@@ -86,27 +101,32 @@ def _filters(craft: Craft, conditions: Conditions, step: float, points: Array) -
     return _Filters(F, g, Q, np.tile(P, (len(points), 1, 1)), H, R, points[:, 2])
 
 
-def _information(filters: _Filters, run: SimulatedRun) -> Array:
-    """Return the information on the unknowns, (3, 3)."""
+def _likelihood(filters: _Filters, run: SimulatedRun) -> Likelihood:
     f, record = filters, run.record
     names = ["psi", "r"] if "r" in record.channels else ["psi"]
     y, delta = np.stack([record[n] for n in names], axis=1), record["delta"]
     x, P = np.zeros((len(f.F), f.F.shape[1])), f.P
     x[:, -1] = y[0, 0]
-    total, widths = np.zeros((3, 3)), 2.0 * np.array(STEPS)
+    total, score, widths, squared = np.zeros((3, 3)), np.zeros(3), 2.0 * np.array(STEPS), np.zeros(len(y))
+    settled, half = False, np.zeros(3)
     for k in range(len(y)):
         e = y[k] - x @ f.H.T
-        PH = P @ f.H.T
-        S = f.H @ PH + f.R
-        inverse = np.linalg.inv(S[0])
-        de, dS = (e[1:4] - e[4:7]) / widths[:, None], (S[1:4] - S[4:7]) / widths[:, None, None]
-        weighed = inverse @ dS
-        total += de @ inverse @ de.T + 0.5 * np.einsum("aij,bji->ab", weighed, weighed)
-        gain = PH @ np.linalg.inv(S)
-        x, P = x + np.einsum("aij,aj->ai", gain, e), P - gain @ np.swapaxes(PH, 1, 2)
+        if not settled:  # what depends on covariances alone
+            PH = P @ f.H.T
+            S = f.H @ PH + f.R
+            inverse, gain = np.linalg.inv(S[0]), PH @ np.linalg.inv(S)
+            weighed = inverse @ (S[1:4] - S[4:7]) / widths[:, None, None]
+            spread, half = 0.5 * np.einsum("aij,bji->ab", weighed, weighed), 0.5 * np.trace(weighed, axis1=1, axis2=2)
+            before = P
+            P = f.F @ (P - gain @ np.swapaxes(PH, 1, 2)) @ np.swapaxes(f.F, 1, 2) + f.Q
+            P = 0.5 * (P + np.swapaxes(P, 1, 2))
+            settled = np.allclose(P, before, rtol=SETTLED, atol=0.0)
+        de, error = (e[1:4] - e[4:7]) / widths[:, None], inverse @ e[0]
+        total += de @ inverse @ de.T + spread
+        score += -de @ error + 0.5 * (weighed @ error) @ e[0] - half
+        squared[k] = e[0] @ error
+        x = x + (gain @ e[:, :, None])[:, :, 0]
         if k < len(y) - 1:
             slope = (delta[k + 1] - delta[k]) / run.step
-            x = np.einsum("aij,aj->ai", f.F, x) + f.g[:, :, 0] * (delta[k] + f.zero)[:, None] + f.g[:, :, 1] * slope
-            P = f.F @ P @ np.swapaxes(f.F, 1, 2) + f.Q
-            P = 0.5 * (P + np.swapaxes(P, 1, 2))
-    return total if math.isfinite(total.sum()) else np.full((3, 3), math.nan)
+            x = (f.F @ x[:, :, None])[:, :, 0] + f.g[:, :, 0] * (delta[k] + f.zero)[:, None] + f.g[:, :, 1] * slope
+    return Likelihood(total, score, squared)

@@ -186,7 +186,7 @@ def show(results: ResultFile, cells: Sequence[Cell]) -> bool:
     """Print a row a cell, then what is pooled and the worst; return whether a limit is missed."""
     print(
         f"{'cell':<72}{'n':>4}{'ref':>4}{'not':>4}{'cover':>7}{'/bound':>8}{'error':>8}{'CPU s':>7}{'x calm':>7}"
-        f"{'psi deg':>9}{'pos m':>8}  used (ref: refused, not: not converged, error: rms of the worst coefficient)"
+        f"{'psi deg':>9}{'pos m':>8}  used (ref: refused, not: not converged, error: rms of the worst coefficient, %)"
     )
     scores: dict[str, Score] = {}
     for cell in cells:
@@ -202,7 +202,7 @@ def row(name: str, s: Score) -> str:
     """Return a cell's row."""
     return (
         f"{name:<72}{s.records:>4}{s.refused:>4}{s.unconverged:>4}{s.coverage:>7.2f}{_dash(s.ratio):>8}"
-        f"{100 * s.error:>7.2g}%{s.seconds:>7.1f}{s.slower:>7.1f}{s.heading:>9.2f}{_dash(s.position):>8}  {s.used}"
+        f"{100 * s.error:>8.3g}{s.seconds:>7.1f}{s.slower:>7.1f}{s.heading:>9.2f}{_dash(s.position):>8}  {s.used}"
     )
 
 
