@@ -1,10 +1,11 @@
 """The craft of `waves.py` and `criteria.py`: equations written anew, with true values."""
 
 import math
+from collections.abc import Sequence
 from functools import cache, partial
 
 import numpy as np
-from simulated_seas import Craft, Helm, Rates
+from simulated_seas import Craft, Helm
 
 import seatrial as st
 from seatrial.physics.models.thruster_layout import CommandInput, Damping, ThrustCurve, Thruster, ThrusterLayout
@@ -69,7 +70,7 @@ def waterjet() -> Craft:
     )  # fmt: skip
 
 
-def _waterjet(p: dict[str, float], nu: tuple[float, float, float], inputs: list[float]) -> tuple[float, float, float]:
+def _waterjet(p: dict[str, float], nu: Sequence[float], inputs: Sequence[float]) -> tuple[float, float, float]:
     """Song et al. 2025, eqs. (1) to (3) with their misprints corrected."""
     (u, v, r), (delta, v_j), L = nu, inputs, p["L"]
     U, r_L, q = math.hypot(u, v), L * r, 0.5 * p["rho"] * L * p["d"]
@@ -113,7 +114,7 @@ def thruster_craft() -> Craft:
 
 
 def _thrusters(
-    p: dict[str, float], columns: list[tuple[float, float, float]], nu: tuple[float, float, float], inputs: list[float]
+    p: dict[str, float], columns: list[tuple[float, float, float]], nu: Sequence[float], inputs: Sequence[float]
 ) -> tuple[float, float, float]:
     """Fossen 2021, eqs. (6.14) and (6.40), diagonal damping; thrust grows with the square of the command."""
     u, v, r = nu
@@ -151,7 +152,7 @@ def mmg() -> Craft:
     )  # fmt: skip
 
 
-def _mmg(p: dict[str, float], nu: tuple[float, float, float], inputs: list[float]) -> tuple[float, float, float]:
+def _mmg(p: dict[str, float], nu: Sequence[float], inputs: Sequence[float]) -> tuple[float, float, float]:
     """Yasukawa & Yoshimura 2015: hull, propeller and rudder ahead; equations of motion with x_G."""
     (u, v, r), (delta, n), L, rho = nu, inputs, p["L"], p["rho"]
     U = math.hypot(u, v)
@@ -190,4 +191,3 @@ def _rudder_force(p: dict[str, float], u_P: float, K_T: float, J: float, side: f
 
 
 CRAFT = {"nomoto": nomoto, "waterjet": waterjet, "thrusters": thruster_craft, "mmg": mmg}
-_: Rates = partial(_mmg, {})  # the protocol of all equations here

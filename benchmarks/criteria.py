@@ -77,7 +77,7 @@ def beside() -> list[Case]:
         ("lost rows 10 %, zigzag", nomoto(), replace(zigzag, lost=0.1)),
         ("lost rows 10 %, autopilot, gusts and waves", nomoto(), replace(autopilot, lost=0.1, gusts=LIGHT, sea=WAVES)),
     ]
-    return [Case(FIRST + i, f"{FIRST + i} {name}", *rest) for i, (name, *rest) in enumerate(kinds)]
+    return [Case(FIRST + i, f"{FIRST + i} {name}", craft, c) for i, (name, craft, c) in enumerate(kinds)]
 
 
 def cases(grid_cells: int) -> list[Case]:

@@ -6,6 +6,7 @@ sum of e_i' S^-1 e_j + tr(S^-1 S_i S^-1 S_j) / 2, subscripts for derivatives (Ka
 Signal Processing: Estimation Theory, eq. (3.31)).
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -101,32 +102,46 @@ def _filters(craft: Craft, conditions: Conditions, step: float, points: Array) -
     return _Filters(F, g, Q, np.tile(P, (len(points), 1, 1)), H, R, points[:, 2])
 
 
-def _likelihood(filters: _Filters, run: SimulatedRun) -> Likelihood:
-    f, record = filters, run.record
+@dataclass(frozen=True, eq=False)
+class _Covariances:
+    """Of a sample: S^-1 at the truth, S^-1 dS by unknown, (3, m, m), and the gain of each filter."""
+
+    inverse: Array
+    weighed: Array
+    gain: Array
+
+
+def _covariances(f: _Filters) -> Iterator[_Covariances]:
+    """Return covariances sample by sample, always the same ones once they have settled."""
+    P, settled, widths = f.P, False, 2.0 * np.array(STEPS)
+    while True:
+        PH = P @ f.H.T
+        S = f.H @ PH + f.R
+        inverse, gain = np.linalg.inv(S[0]), PH @ np.linalg.inv(S)
+        sample = _Covariances(inverse, inverse @ (S[1:4] - S[4:7]) / widths[:, None, None], gain)
+        yield sample
+        while settled:
+            yield sample
+        before = P
+        P = f.F @ (P - gain @ np.swapaxes(PH, 1, 2)) @ np.swapaxes(f.F, 1, 2) + f.Q
+        P = 0.5 * (P + np.swapaxes(P, 1, 2))
+        settled = np.allclose(P, before, rtol=SETTLED, atol=0.0)
+
+
+def _likelihood(f: _Filters, run: SimulatedRun) -> Likelihood:
+    record = run.record
     names = ["psi", "r"] if "r" in record.channels else ["psi"]
     y, delta = np.stack([record[n] for n in names], axis=1), record["delta"]
-    x, P = np.zeros((len(f.F), f.F.shape[1])), f.P
+    x = np.zeros((len(f.F), f.F.shape[1]))
     x[:, -1] = y[0, 0]
     total, score, widths, squared = np.zeros((3, 3)), np.zeros(3), 2.0 * np.array(STEPS), np.zeros(len(y))
-    settled, half = False, np.zeros(3)
-    for k in range(len(y)):
+    slopes = np.append(np.diff(delta) / run.step, 0.0)
+    for k, at in zip(range(len(y)), _covariances(f), strict=False):
         e = y[k] - x @ f.H.T
-        if not settled:  # what depends on covariances alone
-            PH = P @ f.H.T
-            S = f.H @ PH + f.R
-            inverse, gain = np.linalg.inv(S[0]), PH @ np.linalg.inv(S)
-            weighed = inverse @ (S[1:4] - S[4:7]) / widths[:, None, None]
-            spread, half = 0.5 * np.einsum("aij,bji->ab", weighed, weighed), 0.5 * np.trace(weighed, axis1=1, axis2=2)
-            before = P
-            P = f.F @ (P - gain @ np.swapaxes(PH, 1, 2)) @ np.swapaxes(f.F, 1, 2) + f.Q
-            P = 0.5 * (P + np.swapaxes(P, 1, 2))
-            settled = np.allclose(P, before, rtol=SETTLED, atol=0.0)
-        de, error = (e[1:4] - e[4:7]) / widths[:, None], inverse @ e[0]
-        total += de @ inverse @ de.T + spread
-        score += -de @ error + 0.5 * (weighed @ error) @ e[0] - half
+        de, error = (e[1:4] - e[4:7]) / widths[:, None], at.inverse @ e[0]
+        total += de @ at.inverse @ de.T + 0.5 * np.einsum("aij,bji->ab", at.weighed, at.weighed)
+        score += -de @ error + 0.5 * ((at.weighed @ error) @ e[0] - np.trace(at.weighed, axis1=1, axis2=2))
         squared[k] = e[0] @ error
-        x = x + (gain @ e[:, :, None])[:, :, 0]
-        if k < len(y) - 1:
-            slope = (delta[k + 1] - delta[k]) / run.step
-            x = (f.F @ x[:, :, None])[:, :, 0] + f.g[:, :, 0] * (delta[k] + f.zero)[:, None] + f.g[:, :, 1] * slope
+        x = x + (at.gain @ e[:, :, None])[:, :, 0]
+        x = (f.F @ x[:, :, None])[:, :, 0] + f.g[:, :, 0] * (delta[k] + f.zero)[:, None] + f.g[:, :, 1] * slopes[k]
     return Likelihood(total, score, squared)

@@ -419,7 +419,9 @@ def _recorded_inputs(craft: Craft, conditions: Conditions, inputs: Array, orders
     return {name: values[:, i] - (conditions.zero if name == "delta" else 0.0) for i, name in enumerate(craft.inputs)}
 
 
-def _spoilt(table: pd.DataFrame, conditions: Conditions, rng: np.random.Generator) -> tuple[pd.DataFrame, Array]:
+def _spoilt(
+    table: pd.DataFrame, conditions: Conditions, rng: np.random.Generator
+) -> tuple[pd.DataFrame, NDArray[np.intp]]:
     """Return the table with spikes of the heading and without its lost rows, and the numbers of those that are left."""
     hit = rng.random(len(table)) < conditions.spikes
     size = math.radians(30.0) * rng.choice([-1.0, 1.0], len(table))  # rad, a spike; chosen
