@@ -56,8 +56,8 @@ class Case:
 
 def beside() -> list[Case]:
     """Return the cells in which model or sensors are not what the fit takes them for."""
-    zigzag, steps = Conditions("zigzag", channels=("psi",)), Conditions("steps", channels=("psi",))
-    autopilot = Conditions("autopilot", channels=("psi", "r"))
+    zigzag, steps = Conditions("zigzag"), Conditions("steps")
+    autopilot = Conditions("autopilot", channels=("psi", "r", "u"))
     kinds: list[tuple[str, Craft, Conditions]] = [
         ("second order, zigzag", second_order(), zigzag),
         ("second order, autopilot", second_order(), autopilot),
@@ -66,7 +66,7 @@ def beside() -> list[Case]:
         ("order for angle, autopilot", nomoto(), replace(autopilot, is_order=True)),
         ("order for angle, zigzag, gusts", nomoto(), replace(zigzag, is_order=True, gusts=LIGHT)),
         *((f"compass filter {lag:g} s, steps", nomoto(), replace(steps, lag=lag, rate=2.0)) for lag in (0.5, 1.5, 3.0)),
-        ("compass filter 1.5 s, autopilot", nomoto(), replace(autopilot, lag=1.5, channels=("psi",))),
+        ("compass filter 1.5 s, autopilot", nomoto(), replace(autopilot, lag=1.5, channels=("psi", "u"))),
         ("backlash 1 deg, zigzag", nomoto(), replace(zigzag, backlash=DEGREE)),
         ("backlash 1 deg, autopilot, waves", nomoto(), replace(autopilot, backlash=DEGREE, sea=WAVES)),
         ("zero 2 deg, zigzag", nomoto(), replace(zigzag, zero=2.0 * DEGREE)),

@@ -62,7 +62,7 @@ class Conditions:
 
     Attributes:
         gusts: rms of a first-order Markov acceleration over the craft's `gust`; rate: of the record [Hz].
-        seconds: of the record; 0: the craft's own. channels: that are recorded besides the inputs; empty: all.
+        seconds: of the record; 0: the craft's own. channels: that are recorded besides the inputs.
         lag: of a filter in the compass [s]; backlash: of the rudder [rad]; zero: of its recorded angle [rad].
         is_order: whether the order is recorded in place of the angle; spikes, lost: shares of rows.
     """
@@ -71,7 +71,7 @@ class Conditions:
     sea: Sea = Sea()
     gusts: float = 0.0
     rate: float = 1.0
-    channels: tuple[str, ...] = ("psi",)
+    channels: tuple[str, ...] = ("psi", "u")
     seconds: float = 0.0
     lag: float = 0.0
     backlash: float = 0.0
@@ -397,9 +397,7 @@ def _measured(
     channels = {name: shown[name] + moved[name] for name in moved}
     if conditions.lag:
         channels["psi"] = _filtered(channels["psi"], conditions.lag * conditions.rate)
-    recorded = {
-        n: channels[n] + white[n] for n in channels if n in craft.noise and (n == "u" or n in conditions.channels)
-    }
+    recorded = {n: channels[n] + white[n] for n in channels if n in craft.noise and n in conditions.channels}
     recorded["psi"] = RESOLUTION * np.round(recorded["psi"] / RESOLUTION)
     return recorded
 

@@ -42,7 +42,10 @@ MANOEUVRES: dict[str, tuple[Manoeuvre, ...]] = {"thrusters": ("zigzag", "steps",
 STEERED: tuple[Manoeuvre, ...] = ("zigzag", "steps", "autopilot")
 # deg: rms of yaw by waves, a cell without waves for four with; rad/s: frequencies of encounter; Hz: rates of records
 RMS, FREQUENCIES, RATES = (0.0, 0.2, 0.2, 1.0, 1.0), (0.4, 0.8, 1.3), (1.0, 2.0, 10.0)
-CHANNELS = (("psi",), ("psi", "r"), ("psi", "r", "v", "x0", "y0"))
+POSITIONS, SPEEDS = ("x0", "y0"), ("u", "v")
+CHANNELS = {"nomoto": (("psi", "u"), ("psi", "r", "u"), ("psi", "r", *SPEEDS, *POSITIONS))}
+# models of three degrees of freedom start from velocities or positions: without these they are refused, rightly
+PLANAR = (("psi", *POSITIONS), ("psi", "r", *POSITIONS), ("psi", "r", *SPEEDS, *POSITIONS))
 SHORT = 2.0 / 3.0  # 1, length of a record at 10 Hz over those at less, for the time that fits take; chosen
 UNCOUNTED = 0.002  # 1, half width over value below which an interval is not counted
 POOLED, LEAST, RATIO = (0.92, 0.98), 0.80, (0.90, 1.20)  # 1: coverage, of a cell, and RMSE over the bound
@@ -64,7 +67,8 @@ class Cell:
         waves = f"{math.degrees(sea.rms):.1f} deg {sea.frequency:g} rad/s" if sea.rms else "no waves"
         kind = f" x{sea.peaks} {'force' if sea.is_force else 'sensor'}" if sea.rms else ""
         gusts = "gusts" if c.gusts else "calm"
-        channels = {1: "psi", 2: "psi+r", 5: "all"}[len(c.channels)]
+        all_of = "all" if "v" in c.channels else "psi+r" if "r" in c.channels else "psi"
+        channels = all_of + ("+positions" if "x0" in c.channels and all_of != "all" else "")
         return f"{self.number:03d} {self.craft} {c.manoeuvre} {waves}{kind} {gusts} {c.rate:g} Hz {channels}"
 
 
@@ -81,7 +85,7 @@ def grid() -> list[Cell]:
             (False, True),
             (0.0, MODERATE),
             RATES,
-            CHANNELS,
+            CHANNELS.get(craft, PLANAR),
         )
         columns = [rng.permutation(np.arange(count) % len(factor)) for factor in levels]
         for row in zip(*columns, strict=True):
@@ -254,7 +258,7 @@ def run_cells(cells: Sequence[Cell], seeds: int | None, results: ResultFile) -> 
 
 def sample() -> list[Cell]:
     """Return four small cells of Nomoto: calm, waves on the sensors, as a force, and with gusts."""
-    base = Conditions("zigzag", Sea(), 0.0, 1.0, ("psi", "r"))
+    base = Conditions("zigzag", Sea(), 0.0, 1.0, CHANNELS["nomoto"][1])
     seas = (Sea(), Sea(math.radians(0.5)), Sea(math.radians(0.5), is_force=True))
     kinds = [*(replace(base, sea=sea) for sea in seas), replace(base, sea=seas[1], gusts=MODERATE)]
     return [Cell(900 + i, "nomoto", kind) for i, kind in enumerate(kinds)]

@@ -22,7 +22,7 @@ from benchmarks.waves import grid, run_cells, sample
 
 from seatrial.physics.simulate import replay
 
-ALL = ("psi", "r", "v", "x0", "y0")
+ALL = ("psi", "r", "u", "v", "x0", "y0")
 
 
 @pytest.mark.parametrize("name", CRAFT)
@@ -78,14 +78,14 @@ def test_the_design_takes_every_level_equally_often() -> None:
 
 
 def test_more_noise_admits_less_and_gusts_less_still() -> None:
-    calm = Conditions("zigzag", channels=("psi", "r"), seconds=300.0)
+    calm = Conditions("zigzag", channels=("psi", "r", "u"), seconds=300.0)
     waves, gusts = replace(calm, sea=Sea(0.02)), replace(calm, sea=Sea(0.02), gusts=MODERATE)
     errors = [standard_errors(nomoto(), c, simulated(nomoto(), c, [3]))["T"] for c in (calm, waves, gusts)]
     assert errors == sorted(errors)
 
 
 def test_a_filter_with_the_true_disturbance_is_left_with_white_innovations() -> None:
-    conditions = Conditions("autopilot", Sea(0.02, 0.8, 2), MODERATE, 2.0, ("psi", "r"), 300.0)
+    conditions = Conditions("autopilot", Sea(0.02, 0.8, 2), MODERATE, 2.0, ("psi", "r", "u"), 300.0)
     squared = [likelihood(nomoto(), conditions, simulated(nomoto(), conditions, [k])).squared[5:] for k in range(3)]
     assert np.mean(squared) == pytest.approx(2.0, abs=0.15)  # four standard errors of 3 * 596 values of variance 4
 
