@@ -100,27 +100,25 @@ def grid() -> list[Cell]:
 
 _WARM: set[tuple[str, tuple[str, ...]]] = set()
 """Craft and channels whose code is compiled in this process."""
+BRIEF = 120.0  # s, of the record that is fitted first so that its code is compiled; chosen
 
 
 def fit_record(cell: Cell, draw: int) -> tuple[Outcome, str]:
     """Simulate and identify one record of a cell, and the same without waves; return outcome and hash of the data."""
     craft, conditions = CRAFT[cell.craft](), cell.conditions
-    settings = st.EstimateSettings()
+    entropy = (SEED, cell.number, draw)
 
-    def fitted(these: Conditions) -> tuple[Outcome, str, dict[str, float]]:
-        train = simulated(craft, these, [SEED, cell.number, draw], "train")
-        held = simulated(craft, these, [SEED, cell.number, draw, 1], "held_out")
-        trial = trial_of(craft, train, held, settings, draw)
-        if (kind := (cell.craft, these.channels)) not in _WARM:
-            _WARM.add(kind)
-            outcome(trial, held, draw)
-        return outcome(trial, held, draw), digest([train, held]), standard_errors(craft, these, train)
+    def fitted(these: Conditions) -> tuple[Outcome, str]:
+        train, held = simulated(craft, these, entropy, "train"), simulated(craft, these, (*entropy, 1), "held_out")
+        found = outcome(trial_of(craft, train, held, st.EstimateSettings(), draw), held, draw)
+        return replace(found, bound=standard_errors(craft, these, train)), digest([train, held])
 
-    found, data, bound = fitted(conditions)
-    if not conditions.sea.rms:
-        return replace(found, bound=bound, extra={"calm_seconds": found.seconds}), data
-    calm, _, _ = fitted(replace(conditions, sea=replace(conditions.sea, rms=0.0)))
-    return replace(found, bound=bound, extra={"calm_seconds": calm.seconds}), data
+    if (kind := (cell.craft, conditions.channels)) not in _WARM:
+        _WARM.add(kind)
+        fitted(replace(conditions, seconds=BRIEF, rate=1.0))
+    found, data = fitted(conditions)
+    calm = fitted(replace(conditions, sea=replace(conditions.sea, rms=0.0)))[0] if conditions.sea.rms else found
+    return replace(found, extra={"calm_seconds": calm.seconds}), data
 
 
 @dataclass(frozen=True)
