@@ -33,6 +33,7 @@ SWELL = 0.6  # 1, frequency of the swell over that of the sea; chosen
 MEMORY = 5.0  # s, of the gusts, as in the benchmark problem nomoto-gusts
 MODERATE = 0.3  # 1, rms of moderate gusts over what the helm does, as there
 LEG = (60.0, 120.0)  # s, shortest and longest time on a course, at a step or at a place; chosen
+PLACE = 2.0  # m, farthest next place of station keeping, north and east; chosen
 RATE_FILTER = 2.0  # s, lag of the helm's derivative of the heading; chosen
 
 
@@ -313,8 +314,8 @@ class Steersman:
         if self.manoeuvre == "steps":
             self.until = time + 0.25 * (self.until - time)  # shorter than a course, chosen
         self.levels = self.helm.amplitude * draws[3:]
-        self.reference = self.reference + np.array([2.0 * draws[1], 2.0 * draws[2], self.helm.course * (0.5 * draws[0] +
-                                                    math.copysign(0.5, draws[1]))])  # fmt: skip
+        change = self.helm.course * (math.copysign(0.5, draws[1]) + 0.5 * draws[0])  # to either side
+        self.reference = self.reference + np.array([PLACE * draws[1], PLACE * draws[2], change])
 
     def _station(self, measured: Array, speed: Array) -> Array:
         gap = self.reference - measured - self.helm.station_rate * speed

@@ -13,6 +13,7 @@ left-out run against the craft's own motion.
     python benchmarks/waves.py --cell 3 17 --seeds 2                      single cells
     python benchmarks/waves.py --part 1/2 --out half_1.json               every second cell, for two processes
     python benchmarks/waves.py --show half_1.json half_2.json             tables of files that are there
+    python benchmarks/waves.py --show new.json --against old.json         and CPU over that of another version
 
 `--out` keeps each cell as it ends; the same command continues what was interrupted. No campaign: cells differ in how
 the truth is made, which no trial file says.
@@ -184,8 +185,8 @@ def _is_inside(one: Outcome, name: str, truth: float) -> bool:
     return (low is None or low <= truth) and (high is None or truth <= high)
 
 
-def show(results: ResultFile, cells: Sequence[Cell]) -> bool:
-    """Print a row a cell, then what is pooled and the worst; return whether a limit is missed."""
+def show(results: ResultFile, cells: Sequence[Cell], base: ResultFile) -> bool:
+    """Print a row a cell, what is pooled, the worst, and CPU over that of `base`; return whether a limit is missed."""
     print(
         f"{'cell':<72}{'n':>4}{'ref':>4}{'not':>4}{'cover':>7}{'/bound':>8}{'error':>8}{'CPU s':>7}{'x calm':>7}"
         f"{'psi deg':>9}{'pos m':>8}  used (ref: refused, not: not converged, error: rms of the worst coefficient, %)"
@@ -197,7 +198,22 @@ def show(results: ResultFile, cells: Sequence[Cell]) -> bool:
             print(row(cell.name, one), flush=True)
     if not scores:
         return False
-    return _show_pooled(scores)
+    missed = _show_pooled(scores)
+    return _show_slower(results, cells, base) or missed
+
+
+def _show_slower(results: ResultFile, cells: Sequence[Cell], base: ResultFile) -> bool:
+    """Print by how much cells take longer than they did; return whether any does."""
+    slower = {}
+    for cell in cells:
+        before = {o.draw: o.seconds for o in base.outcomes(cell.name)}
+        if both := [(o.seconds, before[o.draw]) for o in results.outcomes(cell.name) if o.draw in before]:
+            slower[cell.name] = sum(now for now, _ in both) / sum(then for _, then in both)
+    if slower:
+        print(f"CPU over that of the other file, median of {len(slower)} cells: {_median(list(slower.values())):.2f}")
+        for name in sorted(slower, key=lambda n: -slower[n])[:10]:  # the worst ten, chosen
+            print(f"  {name}: {slower[name]:.2f}")
+    return any(ratio > 1.0 for ratio in slower.values())
 
 
 def row(name: str, s: Score) -> str:
@@ -294,6 +310,7 @@ def main(arguments: list[str]) -> int:
     )
     parser.add_argument("--out", type=Path, metavar="FILE.json")
     parser.add_argument("--show", nargs="*", type=Path, metavar="FILE.json", help="tables of these files only")
+    parser.add_argument("--against", type=Path, metavar="FILE.json", help="results of another version, for CPU")
     parser.add_argument("--list", action="store_true", help="names of the cells only")
     given = parser.parse_args(arguments)
     cells = chosen_cells(given)
@@ -307,7 +324,7 @@ def main(arguments: list[str]) -> int:
     if not given.show:
         run_cells(cells, given.seeds, results)
     print("data: " + " ".join(f"{key[:3]}:{kept['data']}" for key, kept in results.cells.items()))
-    return int(show(results, cells))
+    return int(show(results, cells, ResultFile(given.against)))
 
 
 if __name__ == "__main__":
