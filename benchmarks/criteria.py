@@ -129,7 +129,10 @@ def score(outcomes: Sequence[Outcome], names: Sequence[str]) -> Score:
         errors = {c: [getattr(o, part).get("psi_deg", math.inf) for o in some] for c, some in by.items()}
         return {c: float(np.sqrt(np.mean(np.square(np.maximum(e, FLOOR))))) for c, e in errors.items()}
 
-    kinds = [o.criterion.partition(" over ")[0].partition(" with ")[0] + ": " + o.disturbance for o in by[AUTO]]
+    kinds = [
+        "refused" if o.refusal else o.criterion.partition(" over ")[0].partition(" with ")[0] + ": " + o.disturbance
+        for o in by[AUTO]
+    ]
     used = max(set(kinds), key=kinds.count)
     refused = {c: sum(bool(o.refusal) for o in some) for c, some in by.items()}
     return Score(len(by[AUTO]), rms("whole"), rms("motion"), rms("windows"), refused, f"{used} {kinds.count(used)}")
@@ -158,11 +161,16 @@ def show(results: ResultFile, some: Sequence[Case]) -> bool:
         return False
     both = [all(s.holds) for s in scores.values()]
     for text, ratio, limit in (("whole", 0, WHOLE), ("motion", 1, WHOLE), ("windows", 2, WINDOWS)):
-        values = np.nan_to_num([s.ratios[ratio] for s in scores.values()], nan=math.inf)
+        values = np.array([_or_refused(s.ratios[ratio]) for s in scores.values()])
         print(f"{text} <= {limit}: {np.mean(values <= limit):.0%} of {len(values)} cells, worst {np.max(values):.2f}")
-    worst = max(float(np.nan_to_num(max(s.ratios[0], s.ratios[2]), nan=math.inf)) for s in scores.values())
+    worst = max(max(_or_refused(s.ratios[0]), _or_refused(s.ratios[2])) for s in scores.values())
     print(f"both: {np.mean(both):.0%} of the cells; limits {SHARE:.0%}, and {WORST} in all")
     return bool(np.mean(both) < SHARE or worst > WORST)
+
+
+def _or_refused(ratio: float) -> float:
+    """Return a ratio, infinite where every criterion refuses."""
+    return math.inf if math.isnan(ratio) else ratio
 
 
 def run_cells(some: Sequence[Case], records: int, results: ResultFile, *, has_delay: bool) -> None:
