@@ -22,13 +22,14 @@ the truth is made, which no trial file says.
 import argparse
 import math
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from craft_in_seas import CRAFT
 from measure import Line, machine
+from numpy.typing import NDArray
 from seas_bound import standard_errors
 from seas_fits import Outcome, ResultFile, commit, digest, outcome, trial_of
 from simulated_seas import MODERATE, Conditions, Manoeuvre, Sea, simulated
@@ -171,7 +172,7 @@ def score(outcomes: Sequence[Outcome], truth: dict[str, float]) -> Score:
     )  # fmt: skip
 
 
-def _median(values: Sequence[float]) -> float:
+def _median(values: Sequence[float] | NDArray[np.float64]) -> float:
     return float(np.median(values)) if len(values) else math.nan
 
 
@@ -198,8 +199,38 @@ def show(results: ResultFile, cells: Sequence[Cell], base: ResultFile) -> bool:
             print(row(cell.name, one), flush=True)
     if not scores:
         return False
+    _show_factors(scores, cells)
     missed = _show_pooled(scores)
     return _show_slower(results, cells, base) or missed
+
+
+def _show_factors(scores: dict[str, Score], cells: Sequence[Cell]) -> None:
+    """Print what is pooled over the cells with each level of a factor."""
+    factors: dict[str, Callable[[Cell], object]] = {
+        "craft": lambda c: c.craft,
+        "manoeuvre": lambda c: c.conditions.manoeuvre,
+        "waves, deg": lambda c: round(math.degrees(c.conditions.sea.rms), 3),
+        "waves, rad/s": lambda c: c.conditions.sea.frequency if c.conditions.sea.rms else "none",
+        "peaks": lambda c: c.conditions.sea.peaks if c.conditions.sea.rms else "none",
+        "waves as": lambda c: ("force" if c.conditions.sea.is_force else "motion") if c.conditions.sea.rms else "none",
+        "gusts": lambda c: c.conditions.gusts,
+        "rate, Hz": lambda c: c.conditions.rate,
+        "channels": lambda c: c.name.split()[-1],
+    }
+    print("pooled by factor: records, refused, not converged, coverage, RMSE/bound, median |error|/bound")
+    for factor, level_of in factors.items():
+        levels: dict[object, list[Score]] = {}
+        for cell in cells:
+            if cell.name in scores:
+                levels.setdefault(level_of(cell), []).append(scores[cell.name])
+        for level, some in sorted(levels.items(), key=lambda pair: str(pair[0])):
+            counts = [sum(getattr(s, part) for s in some) for part in ("records", "refused", "unconverged")]
+            inside, of = sum(s.inside for s in some), sum(s.of for s in some)
+            ratios = np.abs([r for s in some for r in s.ratios])
+            rms = float(np.sqrt(np.mean(ratios**2))) if len(ratios) else math.nan
+            share = inside / of if of else math.nan
+            print(f"  {factor:<14}{level!s:<16}" + "".join(f"{n:>6}" for n in counts)
+                  + f"{share:>8.3f}{_dash(rms):>9}{_dash(_median(ratios)):>8}")  # fmt: skip
 
 
 def _show_slower(results: ResultFile, cells: Sequence[Cell], base: ResultFile) -> bool:
