@@ -18,6 +18,7 @@ import against_shipmmg
 import autopilots
 import campaign
 import checking
+import criteria
 import design
 import follow
 import fusion
@@ -39,6 +40,7 @@ import verification
 import warm_start
 import waterjet_regressions
 import wave_observer
+import waves
 from measure import Line, machine
 
 BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
@@ -49,6 +51,8 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "against_optimisers": against_optimisers.run,
     "montecarlo": montecarlo.run,
     "gusts": gusts.run,
+    "waves": waves.run,
+    "criteria": criteria.run,
     "kvlcc2_zigzags": kvlcc2_zigzags.run,
     "waterjet_regressions": waterjet_regressions.run,
     "fusion": fusion.run,
