@@ -28,13 +28,17 @@ _NOT_READ = "not-read"
 
 @dataclass(frozen=True, eq=False)
 class TrialRecord:
-    """One record ready for use: canonical, trimmed, resampled; with the findings of its checks."""
+    """One record ready for use: canonical, trimmed, resampled; with the findings of its checks.
+
+    run: the run that it is, or is a part of.
+    """
 
     record: Record
     role: Role
     session: str
     waves: WaveEncounter | None = None
     findings: tuple[Finding, ...] = ()
+    run: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +101,8 @@ def load_records(trial: Trial) -> tuple[tuple[TrialRecord, ...], tuple[Finding, 
     if not trial.runs:
         where = f"{trial.path}: " if trial.path else ""
         raise InputError(f"{where}there are no [[records]] to read; add them, or plan a trial with 'seatrial design'")
-    read = [_load_unless_bad(run, trial.reference_point) for run in trial.runs if run.role is not Role.LEAVE_OUT]
+    used = (run for run in trial.runs if run.role is not Role.LEAVE_OUT)
+    read = [part for run in used for part in _load_unless_bad(run, trial.reference_point)]
     records = tuple(r for r in read if isinstance(r, TrialRecord))
     unread = tuple(r for r in read if isinstance(r, Finding))
     for channel, deviation in trial.noise.items():
@@ -115,15 +120,15 @@ def _answered(finding: Finding, trial: Trial) -> Finding:
     return replace(finding, severity=Severity.INFO, advice=advice, consequence="")
 
 
-def _load_unless_bad(run: TrialRun, reference_point: float) -> TrialRecord | Finding:
-    """The run, or of a validation run that cannot be read the finding that says why."""
+def _load_unless_bad(run: TrialRun, reference_point: float) -> tuple[TrialRecord | Finding, ...]:
+    """The parts of the run, or of a validation run that cannot be read the finding that says why."""
     try:
-        return load_run(run, reference_point)
+        return load_parts(run, reference_point)
     except InputError as error:
         if run.role is not Role.VALIDATE:
             raise
         advice = "correct the file, or leave the run out; the fit does not rest on it"
-        return Finding(Severity.ERROR, _NOT_READ, f"a validation run cannot be read: {error}", "", advice)
+        return (Finding(Severity.ERROR, _NOT_READ, f"a validation run cannot be read: {error}", "", advice),)
 
 
 def _craft_findings(trial: Trial, records: tuple[TrialRecord, ...]) -> tuple[Finding, ...]:
@@ -165,7 +170,22 @@ def _refuse_absurd_noise(channel: str, deviation: float, records: Sequence[Recor
 
 
 def load_run(run: TrialRun, reference_point: float) -> TrialRecord:
+    """Return the longest of `load_parts` under the name of the run, with the findings on all of it.
+
+    Raises:
+        InputError: as `load_parts`.
+    """
+    parts = load_parts(run, reference_point)
+    longest = max(parts, key=lambda part: len(part.record))
+    findings = tuple(finding for part in parts for finding in part.findings)
+    return replace(longest, record=longest.record.renamed(longest.run), findings=findings)
+
+
+def load_parts(run: TrialRun, reference_point: float) -> tuple[TrialRecord, ...]:
     """Return one run repaired and checked, in standard conventions, with its wave forces, trimmed and resampled.
+
+    Holes longer than the craft's memory cut it into parts that begin anew, called after it and numbered; of a decay from
+    its release the longest is kept.
 
     reference_point: m forward of midship to which velocities and positions are referred.
 
@@ -173,12 +193,32 @@ def load_run(run: TrialRun, reference_point: float) -> TrialRecord:
         InputError: the file cannot be parsed, or trimming leaves nothing.
     """
     examined = examined_record(run.raw_record())
-    record = canonical_record(examined.record, reference_point)
+    is_one = run.trimming.from_release or run.trimming.skip_acceleration
+    parts = [examined.record] if is_one else _parts_within(examined.parts, run.trimming)
+    records = [_prepared(part, run, reference_point) for part in parts]
+    names = [""] if len(records) == 1 else [f"-{k}" for k in range(1, len(records) + 1)]
+    return tuple(
+        TrialRecord(
+            record.renamed(f"{record.name}{name}"), run.role, run.session, run.waves,
+            (*(examined.findings if k == 0 else ()), *completed(release_findings(record), record)), record.name,
+        )
+        for k, (record, name) in enumerate(zip(records, names, strict=True))
+    )  # fmt: skip
+
+
+def _parts_within(parts: Sequence[Record], trimming: Trimming) -> Sequence[Record]:
+    """The parts of which trimming leaves something; all where it leaves nothing of any."""
+    start = -np.inf if trimming.from_s is None else trimming.from_s
+    stop = np.inf if trimming.to_s is None else trimming.to_s
+    return [one for one in parts if float(one.time[-2]) > start and float(one.time[1]) < stop] or parts[:1]
+
+
+def _prepared(record: Record, run: TrialRun, reference_point: float) -> Record:
+    """A part of a run as the estimate takes it."""
+    record = canonical_record(record, reference_point)
     if run.waves is not None and run.waves.spectrum is None:
         record = with_wave_forces(record, run.waves.excitation, run.waves.U, run.waves.beta)
-    kept = apply_trimming(record, run.trimming)
-    findings = (*examined.findings, *completed(release_findings(kept), kept))
-    return TrialRecord(kept, run.role, run.session, run.waves, findings)
+    return apply_trimming(record, run.trimming)
 
 
 def apply_trimming(record: Record, trimming: Trimming) -> Record:

@@ -1,5 +1,6 @@
 """Open-loop prediction of a run: initial state from its first seconds, nothing else taken from it."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -87,17 +88,17 @@ def observables_record(model: Model, record: Record, y: Array) -> Record:
 
 
 def rms_errors(measured: Record, simulated: Record) -> dict[str, float]:
-    """Return root-mean-square differences over the samples that both hold; what is never compared is absent.
+    """Return root-mean-square differences over the samples that were measured and are simulated.
 
-    Angles in degrees, position and heave in m, u, v in m/s, r in rad/s. A track that never moves is not modelled.
+    What is never compared is absent. Angles in degrees, position and heave in m, u, v in m/s, r in rad/s. A track that never moves is not modelled.
     """
     both = set(measured.channels) & set(simulated.channels)
-    squares = {s: (simulated[s] - measured[s]) ** 2 for s in both}
+    squares = {s: _mean_square(simulated[s] - measured.measured(s)) for s in both}
     factors = {"psi_deg": ("psi", np.degrees(1.0)), "theta_deg": ("theta", np.degrees(1.0)),
                "phi_deg": ("phi", np.degrees(1.0)), **{s: (s, 1.0) for s in ("z", "u", "v", "r")}}  # fmt: skip
-    errors = {name: factor * _root_mean(squares[s]) for name, (s, factor) in factors.items() if s in both}
+    errors = {name: factor * math.sqrt(squares[s]) for name, (s, factor) in factors.items() if s in both}
     if {"x0", "y0"} <= both and has_moving_track(simulated):
-        errors["position_m"] = _root_mean(squares["x0"] + squares["y0"])
+        errors["position_m"] = math.sqrt(squares["x0"] + squares["y0"])
     return {name: errors[name] for name in _ERROR_ORDER if name in errors and np.isfinite(errors[name])}
 
 
@@ -107,9 +108,10 @@ def has_moving_track(simulated: Record) -> bool:
     return any(span > 0.0 for span in spans)
 
 
-def _root_mean(squares: Array) -> float:
-    finite = squares[np.isfinite(squares)]
-    return float(np.sqrt(np.mean(finite))) if len(finite) else float("nan")
+def _mean_square(errors: Array) -> float:
+    """Of the errors where something was measured; NaN without any."""
+    finite = errors[np.isfinite(errors)]
+    return float(np.mean(finite**2)) if len(finite) else math.nan
 
 
 def is_steered(record: Record, model: Model) -> bool:
