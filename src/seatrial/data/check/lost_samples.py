@@ -157,7 +157,7 @@ def complete_parts(bridge: BridgedRecord) -> tuple[Record, ...]:
 
 
 def lost_sample_findings(record: Record, bridge: BridgedRecord, parts: tuple[Record, ...]) -> tuple[Finding, ...]:
-    """Return what is said of empty cells, slower channels and long holes, a line each; record: before it was bridged."""
+    """Return what is said of slower channels, empty cells and long holes; record: before it was bridged."""
     return (*_slower_findings(record), *_cell_findings(bridge), *_hole_findings(record, parts))
 
 

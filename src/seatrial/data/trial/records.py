@@ -182,10 +182,10 @@ def load_run(run: TrialRun, reference_point: float) -> TrialRecord:
 
 
 def load_parts(run: TrialRun, reference_point: float) -> tuple[TrialRecord, ...]:
-    """Return one run repaired and checked, in standard conventions, with its wave forces, trimmed and resampled.
+    """Return one run repaired and checked, in standard conventions, with wave forces, trimmed and resampled.
 
-    Holes longer than the craft's memory cut it into parts that begin anew, called after it and numbered; of a decay from
-    its release the longest is kept.
+    Holes longer than the craft's memory cut it into parts that begin anew, called after it and numbered; of a decay
+    from its release the longest is kept.
 
     reference_point: m forward of midship to which velocities and positions are referred.
 

@@ -90,7 +90,7 @@ def observables_record(model: Model, record: Record, y: Array) -> Record:
 def rms_errors(measured: Record, simulated: Record) -> dict[str, float]:
     """Return root-mean-square differences over the samples that were measured and are simulated.
 
-    What is never compared is absent. Angles in degrees, position and heave in m, u, v in m/s, r in rad/s. A track that never moves is not modelled.
+    What is never compared is absent.
     """
     both = set(measured.channels) & set(simulated.channels)
     squares = {s: _mean_square(simulated[s] - measured.measured(s)) for s in both}

@@ -8,7 +8,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index, InputError, Record, channel_hint
-from seatrial.estimation.problem.initial_states import TRACK, nearest_velocity, readings_about
+from seatrial.estimation.problem.initial_states import Beginnings
 from seatrial.physics.sensors import Sensors
 from seatrial.physics.simulate.actuators import ActuatorHistory
 from seatrial.physics.simulate.channels import inputs_of
@@ -23,8 +23,7 @@ class Segments:
         offsets: (segments + 1,); run, session: (segments,), indices into `runs` and `sessions`.
         outputs: observables that are compared, in order; dt: s.
         history: commands of the whole runs, where the model has states that follow them; None: it has none.
-        between_readings: (segments, ny), outputs at the first rows, straight between the readings of the whole run.
-        nearest_velocity: (segments, 2), surge and sway there by the fixes nearest to them; None: no track is compared.
+        beginnings: what the whole runs say of the first rows; None: nothing.
     """
 
     inputs: Array
@@ -37,8 +36,7 @@ class Segments:
     outputs: tuple[str, ...]
     dt: float
     history: ActuatorHistory | None = None
-    between_readings: Array | None = None
-    nearest_velocity: Array | None = None
+    beginnings: Beginnings | None = None
 
     @property
     def count(self) -> int:
@@ -61,13 +59,8 @@ class Segments:
             run=self.run[indices],
             session=self.session[indices],
             history=None if self.history is None else self.history.selected(indices),
-            **self.beginnings_of(indices),
+            beginnings=None if self.beginnings is None else self.beginnings.selected(indices),
         )
-
-    def beginnings_of(self, indices: Index) -> dict[str, Array | None]:
-        """Return what is known of the beginnings of some segments, by the attributes that hold it."""
-        known = {"between_readings": self.between_readings, "nearest_velocity": self.nearest_velocity}
-        return {name: None if values is None else values[indices] for name, values in known.items()}
 
 
 def _still_channels(model: Model) -> tuple[str, ...]:
@@ -158,7 +151,7 @@ def segments_between(
         InputError: as `cut_segments`.
     """
     dt = records[0].dt
-    of_runs, inputs, measured, firsts, lengths, runs, between, velocities = [], [], [], [], [], [], [], []
+    of_runs, inputs, measured, firsts, lengths, runs, beginnings = [], [], [], [], [], [], []
     for index, (record, of_record) in enumerate(zip(records, bounds, strict=True)):
         if abs(record.dt - dt) > 1e-3 * dt:  # share by which time steps may differ; chosen
             raise InputError(
@@ -170,10 +163,7 @@ def segments_between(
         u = inputs_of(model, record)
         y = _measured(model, record, outputs)
         of_runs.append(u)
-        between.append(readings_about(y, [first for first, _ in of_record]))
-        if set(TRACK) <= set(outputs):
-            track = (y[:, outputs.index(name)] for name in TRACK)
-            velocities.append(nearest_velocity(*track, dt, of_record))
+        beginnings.append(Beginnings.of_run(y, outputs, dt, of_record))
         for first, last in of_record:
             inputs.append(u[first:last])
             firsts.append(first)
@@ -196,6 +186,5 @@ def segments_between(
         outputs,
         dt,
         ActuatorHistory.from_runs(model, of_runs, dt, run, np.array(firsts, dtype=np.int64), session),
-        np.concatenate(between),
-        np.concatenate(velocities) if velocities else None,
+        Beginnings.joined(beginnings),
     )
