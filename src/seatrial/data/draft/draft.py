@@ -18,7 +18,14 @@ from seatrial.data.draft.header_sizes import HeaderSize, sizes_in_header
 from seatrial.data.draft.held_out import NOTHING_HELD_OUT, HeldOutRuns, can_judge, held_out_runs
 from seatrial.data.draft.log_files import survey_logs
 from seatrial.data.draft.log_partition import parts_without_gaps
-from seatrial.data.draft.manoeuvres import find_stretches, is_decay, numbered, offered_parts, two_thirds_and_a_third
+from seatrial.data.draft.manoeuvres import (
+    changes_course,
+    find_stretches,
+    is_decay,
+    numbered,
+    offered_parts,
+    two_thirds_and_a_third,
+)
 from seatrial.data.draft.one_speed import OtherSpeed, runs_by_speed, stated_options
 from seatrial.data.draft.runs_of_logs import LogRun, runs_of_logs
 from seatrial.data.draft.sample_rate import thinned_rate
@@ -164,7 +171,8 @@ def draft_trial(
     held_out = held_out_runs(model, pieces, _kinds(runs, stretches, parts))
     is_model_test = model.has_forces_of_a_ship and is_in_basin((g for one in guesses[longest[0]] for g in one), size)
     session = session_line(runs, is_in_basin=is_model_test)
-    if model.has_thrusters and len(runs) == 1 and records[0] is not None and not held_out.has_several:
+    shows_all = model.has_thrusters or changes_course(stretches[0])
+    if shows_all and len(runs) == 1 and records[0] is not None and not held_out.has_several:
         parts, held_out = _in_two(model, runs, records[0], stretches[0]) or (parts, held_out)
     blocks = _blocks(runs, guesses, stretches, parts, longest[0])
     is_released = model.swings and need_release(list(pieces.values()))
@@ -289,9 +297,9 @@ def _decays(
 def _in_two(
     model: StartingModel, runs: Sequence[LogRun], record: Record, stretches: Sequence[LogStretch]
 ) -> tuple[tuple[tuple[LogStretch, ...], ...], HeldOutRuns] | None:
-    """Return the parts of the only log of a craft with thrusters, a third of it held out whose orders the rest holds.
+    """Return the parts of the only log, a third of it held out whose orders the rest holds; nothing is left out.
 
-    Whatever such a craft does shows its thrusters, so that nothing is left out. None where no third can be held out, or
+    Whatever a craft with thrusters does shows these, and every change of course a rudder. None where no third can be held out, or
     an autopilot's modes cut the log.
     """
     if len(autopilot_modes(runs[0].sources, record)) > 1:

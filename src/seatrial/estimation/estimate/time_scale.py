@@ -61,7 +61,7 @@ def _shows_speed(record: Record) -> bool:
 def yaw_time(records: Sequence[Record]) -> float:
     """Return the time [s] in which the yaw rate changes: 1/omega of its dominant period, the median of the records.
 
-    For steering models of records that show no speed.
+    For steering models of records that show no speed. Records that never swing say nothing of it.
 
     Raises:
         InputError: no record holds r or psi, or none swings.
@@ -70,7 +70,16 @@ def yaw_time(records: Sequence[Record]) -> float:
     rates = [(r["r"] if "r" in r else np.gradient(r["psi"], r.dt), r.dt) for r in turning]
     if not rates:
         raise InputError("the records show neither speed nor yaw; give r or psi, or set estimate.segment_s")
-    return float(np.median([dominant_period(rate, dt) for rate, dt in rates])) / (2.0 * math.pi)
+    periods = []
+    for rate, dt in rates:
+        try:
+            periods.append(dominant_period(rate, dt))
+        except InputError:
+            if len(rates) == 1:
+                raise
+    if not periods:
+        raise InputError("no record swings about its mean; give a longer one, or set estimate.segment_s")
+    return float(np.median(periods)) / (2.0 * math.pi)
 
 
 def is_pure_roll(model: Model) -> bool:
