@@ -29,9 +29,9 @@ from seatrial.data.draft.manoeuvres import (
 from seatrial.data.draft.one_speed import OtherSpeed, runs_by_speed, stated_options
 from seatrial.data.draft.runs_of_logs import LogRun, runs_of_logs
 from seatrial.data.draft.sample_rate import thinned_rate
-from seatrial.data.draft.session_text import session_line
+from seatrial.data.draft.session_text import is_one_place, session_line
 from seatrial.data.draft.ship_estimates import UNSTATED, StatedSize
-from seatrial.data.draft.starting_model import StartingModel, starting_model, with_wind
+from seatrial.data.draft.starting_model import StartingModel, in_a_current, share_current, starting_model, with_wind
 from seatrial.data.draft.stated_columns import CHANNELS, NOTHING_STATED, StatedColumns
 from seatrial.data.draft.stretch import LogStretch, used_parts
 from seatrial.data.draft.survey import LogSurvey, apart_by_sheet, with_common_ranges
@@ -170,7 +170,11 @@ def draft_trial(
     guesses = [with_wind_role(parts, is_taken=has_wind) for parts in guesses]
     held_out = held_out_runs(model, pieces, _kinds(runs, stretches, parts))
     is_model_test = model.has_forces_of_a_ship and is_in_basin((g for one in guesses[longest[0]] for g in one), size)
-    session = session_line(runs, is_in_basin=is_model_test)
+    if not is_model_test:
+        model = in_a_current(model, symbols, list(pieces.values()))
+    session = session_line(
+        runs, is_in_basin=is_model_test, is_one_place=is_one_place(runs, guesses) and share_current(records)
+    )
     shows_all = model.has_thrusters or changes_course(stretches[0])
     if shows_all and len(runs) == 1 and records[0] is not None and not held_out.has_several:
         parts, held_out = _in_two(model, runs, records[0], stretches[0]) or (parts, held_out)
