@@ -35,7 +35,7 @@ from seatrial.data.draft.starting_model import StartingModel, in_a_current, shar
 from seatrial.data.draft.stated_columns import CHANNELS, NOTHING_STATED, StatedColumns
 from seatrial.data.draft.stretch import LogStretch, used_parts
 from seatrial.data.draft.survey import LogSurvey, apart_by_sheet, with_common_ranges
-from seatrial.data.draft.tables_text import tables_text
+from seatrial.data.draft.tables_text import OPEN_SPEED, tables_text
 from seatrial.data.draft.unlike_decays import unlike_decays_text
 from seatrial.data.draft.velocity_place import with_velocities_of_antenna
 from seatrial.data.draft.waves_text import ASSUMED
@@ -106,6 +106,11 @@ class DraftTrial:
     def lacks_antenna(self) -> bool:
         """Whether a receiver shows the track, and neither its log nor anybody says where its antenna stands."""
         return NO_ANTENNA in self.text
+
+    @property
+    def lacks_speed(self) -> bool:
+        """Whether the speed through the water is to be stated: fixes on one course do not show it."""
+        return OPEN_SPEED in self.text
 
     @property
     def assumed(self) -> tuple[str, ...]:
@@ -303,8 +308,8 @@ def _in_two(
 ) -> tuple[tuple[tuple[LogStretch, ...], ...], HeldOutRuns] | None:
     """Return the parts of the only log, a third of it held out whose orders the rest holds; nothing is left out.
 
-    Whatever a craft with thrusters does shows these, and every change of course a rudder. None where no third can be held out, or
-    an autopilot's modes cut the log.
+    Whatever a craft with thrusters does shows these, and every change of course a rudder. None where no third can be
+    held out, or an autopilot's modes cut the log.
     """
     if len(autopilot_modes(runs[0].sources, record)) > 1:
         return None

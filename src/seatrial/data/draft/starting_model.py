@@ -135,13 +135,15 @@ def with_wind(model: StartingModel, size: StatedSize) -> StartingModel:
 def in_a_current(model: StartingModel, symbols: Set[str], records: Sequence[Record]) -> StartingModel:
     """Return the model with what fixes, or velocities over ground, show of the speed through the water.
 
+    Where several courses separate it from a current, the speed at which the forces balance is estimated as well.
+
     symbols: channels that are used; records: of the runs.
     """
     is_over_ground = bool(symbols & {"lat", "x0", "sog"}) and not symbols & {"u", "stw"}
     if not is_over_ground or not model.has_forces_of_a_ship:
         return model
     model = replace(model, water=speed_through_water(records))
-    if not model.is_in_current or model.water is None:
+    if model.water is None or model.is_speed_open:
         return model
     free = (*model.free, "U_n") if model.has_derivatives else model.free
     return replace(model, speed=model.water.speed, free=free)

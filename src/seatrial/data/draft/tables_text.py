@@ -21,6 +21,8 @@ _LEVER_OF_BEAM, _LEVER_OF_LENGTH = 0.38, 0.15
 _FORMULAS = ("yoshimura", "zhou", "interaction", "propulsion", "displacement")
 _CURRENT = 0.3  # m/s, standard deviation of an unknown current; as the advice of the checks
 _LEAST_SPEED_ERROR = 0.005  # of a speed, for what its model of turns leaves out; chosen
+OPEN_SPEED = "# OPEN U_n"
+"""Begins the line that asks for the speed through the water."""
 _UNNAMED = "craft"  # a craft whose name is not stated; ours
 _NO_CURRENT = (
     f"# current = {_CURRENT:g}    # m/s: taken for a model in a basin, where none runs; uncomment it for open water"
@@ -91,14 +93,15 @@ def _speed_lines(model: StartingModel) -> list[str]:
     water = model.water
     if water is not None and model.is_speed_open:
         return [
-            f"# OPEN U_n: m/s through the water, which was not recorded; on one course it is not to be told from a "
-            f"current. The runs show {model.speed:.2f} over ground: right in still water, else write the log's speed",
+            f"{OPEN_SPEED}: m/s through the water, which was not recorded; on one course no current can be told from it. "
+            f" The runs show {model.speed:.2f} over ground: right in still water, else write the log's speed",
             f"# U_n = {model.speed:.2f}",
         ]
-    if water is not None and model.is_in_current:
+    if water is not None:
+        left = f"what {_current_text(water)} leaves of" if model.is_in_current else "no current shows in"
         return [
-            f"U_n = {water.speed:.2f}    # m/s through the water: what {_current_text(water)} leaves of the speeds over "
-            "ground on several courses; estimated with it"
+            f"U_n = {water.speed:.2f}    # m/s through the water: {left} the speeds over ground on several courses; "
+            "estimated, within what they show"
         ]
     return [f"U_n = {model.speed:.2f}    # m/s, speed at which the runs begin, as recorded"]
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from seatrial.core.text.words import enumeration
 from seatrial.core.values import Finding, InputError, Record, Severity
 from seatrial.data.check import canonical_record, examined_record
 from seatrial.data.check.approach_phase import first_execution
@@ -13,6 +14,7 @@ from seatrial.data.check.copies import copies
 from seatrial.data.check.kinematic_consistency import ESTIMATE_CURRENT
 from seatrial.data.check.roll_release import release_findings
 from seatrial.data.check.thrusters import thruster_findings
+from seatrial.data.check.water_speed import speed_through_water
 from seatrial.data.trial.roll_decay_start import trim_to_decay_start
 from seatrial.data.trial.trial import Role, Trial, TrialRun, Trimming
 from seatrial.physics.models.thruster_layout import ThrusterLayout
@@ -134,7 +136,25 @@ def _load_unless_bad(run: TrialRun, reference_point: float) -> tuple[TrialRecord
 def _craft_findings(trial: Trial, records: tuple[TrialRecord, ...]) -> tuple[Finding, ...]:
     """What all runs together show of the thrusters that the model has."""
     layout = trial.model.equations.layout
-    return thruster_findings(ThrusterLayout.from_text(layout), [r.record for r in records]) if layout else ()
+    of_thrusters = thruster_findings(ThrusterLayout.from_text(layout), [r.record for r in records]) if layout else ()
+    return (*of_thrusters, *_one_course_findings(trial, records))
+
+
+def _one_course_findings(trial: Trial, records: tuple[TrialRecord, ...]) -> tuple[Finding, ...]:
+    """A warning where a current is estimated and positions on one course are all that shows a speed."""
+    if not trial.estimate.current or "u" not in trial.model.states or any("u" in r.record for r in records):
+        return ()
+    sessions = {r.session: [s.record for s in records if s.session == r.session] for r in records}
+    shown = {name: speed_through_water(runs) for name, runs in sessions.items()}
+    lone = [name for name, water in shown.items() if water is not None and not water.is_separate]
+    if not lone or any(water is not None and water.is_separate for water in shown.values()):
+        return ()
+    return (Finding(
+        Severity.WARNING, "velocity-over-ground",
+        "speed through the water was not recorded, and on one course alone a current cannot be told from it",
+        f"sessions {enumeration(lone)}", "record a run on the opposite course, or the speed through the water; runs of "
+        'one outing share its current: session = "all"', "a current ends in the coefficients of surge",
+    ),)  # fmt: skip
 
 
 def _without_copies(records: tuple[TrialRecord, ...]) -> tuple[tuple[TrialRecord, ...], tuple[Finding, ...]]:

@@ -21,6 +21,9 @@ from seatrial.physics.simulate.divergence import require_bounded
 _ERROR_ORDER = ("psi_deg", "position_m", "theta_deg", "phi_deg", "z", "u", "v", "r")
 
 
+_OF_SPEED = ("approach_speed", "speed_loss", "steady_diameter_L")  # measures that speeds are in
+
+
 @dataclass(frozen=True, eq=False)
 class OpenLoopRun:
     """One run simulated: all observables of the model as channels, and the state it began with.
@@ -124,16 +127,27 @@ def compare_measures(
 ) -> dict[str, Measure]:
     """Return measures of a run and of its simulation, both at the measured executes, but for the rudder's order.
 
-    Of a simulation that diverges those are read that lie within the time it lasted.
+    Of a simulation that diverges those are read that lie within the time it lasted. Where speeds were measured by
+    positions alone, those of the simulation are over ground as well.
     """
     recognised = ObservedManoeuvre.from_record(record)
     of_measured = measures(record, length, reference=recognised)
     if divergence is None:
         of_simulated = measures(simulated, length, reference=recognised)
+        if "u" not in record and {"u", "x0", "y0"} <= set(simulated.channels):
+            over_ground = measures(_with_speed_over_ground(simulated), length, reference=recognised)
+            of_simulated |= {name: over_ground[name] for name in _OF_SPEED if name in over_ground}
         names = dict.fromkeys([*of_measured, *of_simulated])
     else:
         of_simulated, names = _measures_until(record, simulated, length, divergence), dict.fromkeys(of_measured)
     return {k: Measure(of_measured.get(k), of_simulated.get(k)) for k in names if k != ORDERED_MEASURE}
+
+
+def _with_speed_over_ground(simulated: Record) -> Record:
+    """The simulated record, its velocities those of its track: a current is in them."""
+    along, across = (np.gradient(simulated[symbol], simulated.dt) for symbol in ("x0", "y0"))
+    surge = simulated.channel("u").with_values(np.hypot(along, across))
+    return simulated.without("v").with_channel("u", surge)
 
 
 def _measures_until(record: Record, simulated: Record, length: float, divergence: Divergence) -> dict[str, float]:
