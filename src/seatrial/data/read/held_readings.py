@@ -7,14 +7,17 @@ import numpy as np
 from seatrial.core.values import Array
 from seatrial.core.values.arrays import Mask
 
-REPEATED = "what repeats them is no measurement"
-"""End of the sentence that says so, by which a check knows it."""
 _TOGETHER = (("lat", "lon"), ("x0", "y0"), ("u", "v"), ("sog", "cog"), ("q_w", "q_x", "q_y", "q_z"))
 _ALONE = ("stw", "r", "p", "psi", "psi_magnetic", "phi", "theta", "z", "u_dot", "v_dot")
 _FEWEST = 8  # steps of a channel by which its rate is judged; chosen: a run of ten seconds at 1 Hz
 _JUMP = 1.5  # resolutions; a channel of every row that moves by more in one row moves in the next row too
 _HELD_SHARE = 0.8  # of its jumps that stand between repeats, from which on a channel is held; chosen
 _JUMPS_SHARE = 0.3  # of its steps that must be jumps: others may be any coarse channel's; chosen
+_SLOWER = 1.5  # rows between two readings, from which on a channel is slower than its table; chosen
+# rows for which a frozen channel stays at least, and how many times as far as it usually moves it then jumps; chosen
+_FROZEN_ROWS, _CATCHES_UP = 5, 6.0
+_USUAL = 0.98  # quantile of steps and stays that are usual; chosen: few are of a frozen channel
+_LOST = 1.5  # steps of the table, above which a row is missing; chosen
 _SAME_ROWS = 0.5  # share of the steps of the rarer of two channels in rows where the other steps too; chosen
 _SAME = 64.0 * float(np.finfo(float).eps)  # of the largest value, by which steps that are one differ; representation
 
@@ -26,6 +29,8 @@ def slower_channels(values: Mapping[str, Array], time: Array) -> dict[str, Mask]
     read in every row: one in coarse steps moves by one of them at a time. Channels of one message (a fix) are renewed
     together, or in turn. A stay longer than the usual one is of new readings of the same value, one after the other.
 
+    A channel of every row that stays and then jumps by far more than it ever moves was frozen for so long.
+
     Args:
         values: readings (n,) of one table, in the units of its cells; NaN where there is none. Inputs are left alone.
         time: stamps (n,) [s].
@@ -35,7 +40,9 @@ def slower_channels(values: Mapping[str, Array], time: Array) -> dict[str, Mask]
         present = [symbol for symbol in group if symbol in values]
         if present:
             for part in _renewed_together(present, values):
-                mask = _renewals([values[symbol] for symbol in part], time)
+                columns = [values[symbol] for symbol in part]
+                mask = _renewals(columns, time)
+                mask = _unfrozen(columns) if mask is None else mask
                 masks |= {} if mask is None else dict.fromkeys(part, mask)
     return masks
 
@@ -46,8 +53,11 @@ def held_text(masks: Mapping[str, Mask], time: Array) -> str:
         return ""
     periods = {symbol: float(np.nanmedian(np.diff(time[mask]))) for symbol, mask in masks.items()}
     step = float(np.nanmedian(np.diff(time)))
-    named = ", ".join(f"'{symbol}' every {period:.3g} s" for symbol, period in periods.items())
-    return f"readings are new more slowly than the rows of {step:.3g} s: {named}; {REPEATED}"
+    slower = ", ".join(f"'{symbol}' every {p:.3g} s" for symbol, p in periods.items() if p > _SLOWER * step)
+    frozen = ", ".join(f"'{symbol}'" for symbol, p in periods.items() if p <= _SLOWER * step)
+    texts = [f"readings are new more slowly than the rows of {step:.3g} s: {slower}"] if slower else []
+    texts += [f"{frozen} stay and then jump to what was missed"] if frozen else []
+    return f"{'; '.join(texts)}; what repeats a reading is no measurement"
 
 
 def between_readings(values: Array, is_measured: Mask, *, is_angle: bool) -> Array:
@@ -94,9 +104,34 @@ def _renewals(columns: Sequence[Array], time: Array) -> Mask | None:
     moments = time[known]
     if not np.all(np.diff(moments) > 0.0):  # rounded stamps: rows count
         moments = np.arange(len(known), dtype=np.float64)
+    late = steps[np.diff(moments)[steps - 1] > _LOST * float(np.median(np.diff(moments)))]  # new in a row that is lost
     mask = np.zeros(len(columns[0]), dtype=np.bool_)
-    mask[known[_with_unchanged(moments, steps)]] = True
+    mask[known[np.setdiff1d(_with_unchanged(moments, steps), late)]] = True
     return mask
+
+
+def _unfrozen(columns: Sequence[Array]) -> Mask | None:
+    """Rows in which a group of columns of every row was measured; None where it never froze."""
+    known = np.flatnonzero(np.all(np.isfinite(columns), axis=0))
+    steps = np.flatnonzero(_stepping_rows([values[known] for values in columns]))
+    if len(steps) < _FEWEST:
+        return None
+    stays = np.diff(steps, prepend=0)
+    sizes = np.max([np.abs(np.diff(v[known]))[steps - 1] / max(_usual_step(v[known]), 1e-300) for v in columns], axis=0)
+    longest = max(_FROZEN_ROWS, 2.0 * float(np.quantile(stays, _USUAL)))
+    caught_up = np.flatnonzero((sizes > _CATCHES_UP) & (stays >= longest))
+    if not caught_up.size:
+        return None
+    mask = np.ones(len(columns[0]), dtype=np.bool_)
+    for k in caught_up:
+        mask[known[steps[k] - stays[k] + 1 : steps[k]]] = False
+    return mask
+
+
+def _usual_step(values: Array) -> float:
+    """By how much a column moves where it does."""
+    sizes = np.abs(np.diff(values))
+    return float(np.quantile(sizes[sizes > 0.0], _USUAL)) if np.any(sizes > 0.0) else 0.0
 
 
 def _step_sizes(values: Array, steps: np.ndarray) -> Array:
