@@ -94,9 +94,9 @@ def _is_input(symbol: str, channel: Channel) -> bool:
     return symbol in INPUT_CHANNELS or channel.is_command
 
 
-def usual_rows(known: RowIndices) -> float:
+def usual_rows(readings: RowIndices) -> float:
     """Return the usual distance of two readings of a channel [rows]."""
-    return float(np.median(np.diff(known))) if len(known) > 1 else 1.0
+    return float(np.median(np.diff(readings))) if len(readings) > 1 else 1.0
 
 
 def bridged_rows(record: Record) -> int:
@@ -129,20 +129,20 @@ def _memory_rows(record: Record) -> int:
     return least + int(np.argmax(correlation[least:] < _FORGOTTEN * correlation[least]))
 
 
-def _run_on(symbol: str, channel: Channel, known: RowIndices) -> Channel:
+def _run_on(symbol: str, channel: Channel, readings: RowIndices) -> Channel:
     """The channel without NaN: angles along the shorter arc, commands held, the ends as the nearest reading."""
     rows = np.arange(len(channel.values))
     is_known = np.isfinite(channel.values)
     if is_known.all():
         return channel
     if channel.is_command:
-        before = np.clip(np.searchsorted(known, rows, side="right") - 1, 0, None)
-        return channel.with_values(channel.values[known[before]])
+        before = np.clip(np.searchsorted(readings, rows, side="right") - 1, 0, None)
+        return channel.with_values(channel.values[readings[before]])
     values = np.array(channel.values)
     smooth = unwrapped(channel.values) if channel.unit == "rad" else channel.values
     missing = np.flatnonzero(~is_known)
-    before = known[np.clip(np.searchsorted(known, missing) - 1, 0, None)]
-    values[missing] = np.interp(missing, known, smooth[known]) + channel.values[before] - smooth[before]
+    before = readings[np.clip(np.searchsorted(readings, missing) - 1, 0, None)]
+    values[missing] = np.interp(missing, readings, smooth[readings]) + channel.values[before] - smooth[before]
     whole = channel.with_values(values)
     if _is_input(symbol, channel):
         return whole

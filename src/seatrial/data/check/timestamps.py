@@ -201,5 +201,5 @@ def _lost_row_findings(record: Record, grid: EvenBase, lost: RowIndices) -> tupl
     ends = moment(record.time[longest], record.time[longest + 1])
     evidence = f"{count * grid.step:.4g} s lost in {counted(int(np.sum(lost > 0)), 'place')}, the longest from {ends}"
     advice = "no action needed: nothing is compared there, and a hole longer than the craft's memory begins a new run"
-    severity = Severity.WARNING if count > MOST_LOST * total or grid.gaps.size else Severity.INFO
+    severity = Severity.WARNING if count > MOST_LOST * total else Severity.INFO
     return (Finding(severity, "time-gap", text, evidence, advice),)

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from seatrial.core.values import Record
-from seatrial.data.check.water_speed import WaterSpeed, speed_through_water
+from seatrial.data.check.water_speed import SpeedAndCurrent, speed_through_water
 from seatrial.data.draft.ship_estimates import UNSTATED, EstimatedValue, StatedSize, hull_rudder_propeller, wind_areas
 from seatrial.physics.manoeuvres.track import speed
 from seatrial.physics.models.typical_wind import SYMMETRIC
@@ -57,11 +57,11 @@ class StartingModel:
     speed: float = 0.0
     particulars: tuple[EstimatedValue, ...] = ()
     has_wind: bool = False
-    water: WaterSpeed | None = None
+    water: SpeedAndCurrent | None = None
 
     @property
     def is_speed_open(self) -> bool:
-        """Whether one course alone was sailed over ground, which does not separate speed and current."""
+        """Whether the runs are over ground and on one course, which does not separate speed and current."""
         return self.water is not None and not self.water.is_separate
 
     @property

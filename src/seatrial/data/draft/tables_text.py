@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from seatrial.data.check.water_speed import WaterSpeed
+from seatrial.data.check.water_speed import SpeedAndCurrent
 from seatrial.data.draft.basin import is_in_basin
 from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.ship_estimates import StatedSize, added_masses, mass_properties, stated_values
@@ -106,7 +106,7 @@ def _speed_lines(model: StartingModel) -> list[str]:
     return [f"U_n = {model.speed:.2f}    # m/s, speed at which the runs begin, as recorded"]
 
 
-def _current_text(water: WaterSpeed) -> str:
+def _current_text(water: SpeedAndCurrent) -> str:
     towards = np.degrees(np.arctan2(water.east, water.north)) % 360.0
     return f"a current of {water.current:.2f} m/s towards {towards:.0f} deg"
 

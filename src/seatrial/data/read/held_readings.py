@@ -15,7 +15,7 @@ _HELD_SHARE = 0.8  # of its jumps that stand between repeats, from which on a ch
 _JUMPS_SHARE = 0.3  # of its steps that must be jumps: others may be any coarse channel's; chosen
 _SLOWER = 1.5  # rows between two readings, from which on a channel is slower than its table; chosen
 # rows for which a frozen channel stays at least, and how many times as far as it usually moves it then jumps; chosen
-_FROZEN_ROWS, _CATCHES_UP = 5, 6.0
+_FROZEN_ROWS, _CATCHES_UP = 5, 3.0
 _USUAL = 0.98  # quantile of steps and stays that are usual; chosen: few are of a frozen channel
 _LOST = 1.5  # steps of the table, above which a row is missing; chosen
 _SAME_ROWS = 0.5  # share of the steps of the rarer of two channels in rows where the other steps too; chosen
@@ -117,7 +117,8 @@ def _unfrozen(columns: Sequence[Array]) -> Mask | None:
     if len(steps) < _FEWEST:
         return None
     stays = np.diff(steps, prepend=0)
-    sizes = np.max([np.abs(np.diff(v[known]))[steps - 1] / max(_usual_step(v[known]), 1e-300) for v in columns], axis=0)
+    moving = [values[known] for values in columns if np.ptp(values[known]) > 0.0]
+    sizes = np.max([np.abs(np.diff(values))[steps - 1] / _usual_step(values) for values in moving], axis=0)
     longest = max(_FROZEN_ROWS, 2.0 * float(np.quantile(stays, _USUAL)))
     caught_up = np.flatnonzero((sizes > _CATCHES_UP) & (stays >= longest))
     if not caught_up.size:

@@ -151,7 +151,7 @@ def _one_course_findings(trial: Trial, records: tuple[TrialRecord, ...]) -> tupl
         return ()
     return (Finding(
         Severity.WARNING, "velocity-over-ground",
-        "speed through the water was not recorded, and on one course alone a current cannot be told from it",
+        "speed through the water was not recorded, and one course alone does not separate a current from it",
         f"sessions {enumeration(lone)}", "record a run on the opposite course, or the speed through the water; runs of "
         'one outing share its current: session = "all"', "a current ends in the coefficients of surge",
     ),)  # fmt: skip
