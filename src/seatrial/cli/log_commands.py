@@ -113,6 +113,8 @@ def init(
     questions = draft.open_questions
     if questions:
         print_lines([f"{counted(len(questions), 'column')} to decide, marked OPEN in the file"])
+    if draft.lacks_speed:
+        print_lines(["U_n to decide, marked OPEN in the file: fixes on one course show speed and current as one"])
     if draft.assumed:
         print_lines([f"ASSUMED, so correct what was not so: {', '.join(draft.assumed)} under [records.waves]"])
     if draft.estimated:
@@ -155,7 +157,7 @@ def _after_draft(draft: "DraftTrial", out: Path) -> str:
         why = "".join(f" ({note})" for note in notes[:1] if note)
         first = f"{log.name} has no time column that is recognised{why}; name it in {out}"
         return f"{first}, seatrial check {in_shell(log)} lists all"
-    steps = [f"decide what is OPEN in {out}"] if draft.open_questions else []
+    steps = [f"decide what is OPEN in {out}"] if draft.open_questions or draft.lacks_speed else []
     steps += [f"put the length of the craft after 'L =' in {out} (init --length does)"] if draft.lacks_length else []
     if draft.lacks_input and draft.unrecognised:
         one = in_shell(f"{draft.unrecognised[0]}=CHANNEL")

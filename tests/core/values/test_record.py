@@ -150,3 +150,15 @@ def test_bad_records_are_refused() -> None:
 def test_an_absent_channel_is_named(record: Record) -> None:
     with pytest.raises(InputError, match="'run 1' has no channel 'psi'"):
         record["psi"]
+
+
+def test_what_was_not_measured_stays_marked_through_cuts_and_rates() -> None:
+    time = 0.1 * np.arange(100)
+    plain = Record.from_arrays("run", time, {"u": time})
+    record = plain.with_channel("u", plain.channel("u").with_measured(np.arange(100) % 10 == 3))
+    assert np.flatnonzero(np.isfinite(record.measured("u")))[:2].tolist() == [3, 13]
+    np.testing.assert_allclose(record.channel("u").readings[:2], [0.3, 1.3])
+    assert np.isfinite(record.between(1.0, 2.0).measured("u")).sum() == 1
+    slow = record.resampled(2.0)  # every fifth row: what was read in between counts at the nearest
+    assert np.flatnonzero(np.isfinite(slow.measured("u")))[:2].tolist() == [1, 3]
+    assert np.isfinite(plain.measured("u")).all() and plain.channel("u").with_measured(time >= 0.0).is_measured is None

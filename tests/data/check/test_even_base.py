@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seatrial.core.values import Array, Record, Severity
+from seatrial.core.values import Array, Channel, Record, Severity
 from seatrial.data.check.dropped_rows import dropped_rows_findings
 from seatrial.data.check.even_base import even_base
 from seatrial.data.check.examine import examined_record
@@ -49,27 +49,23 @@ def test_a_step_without_rounding_is_exact() -> None:
     assert base.is_even and base.gaps.tolist() == [299] and base.index[300] == 303
 
 
-def test_rows_that_a_repair_drops_are_an_error_with_the_edit() -> None:
+def test_rows_that_a_repair_drops_are_an_error() -> None:
     time = 0.1 * np.arange(3000)
     whole = record(time)
-    values = np.array(whole["u"])
-    values[1000:1400] = np.nan
-    holed = whole.with_channel("u", whole.channel("u").with_values(values))
-    (finding,) = [one for one in examined_record(holed).findings if one.severity is Severity.ERROR]
-    assert finding.code == "rows-dropped" and "drops 47% of its rows" in finding.message
-    assert 'parts = [{ name = "run-1", from = "140 s", to = "299.9 s" }' in finding.advice
-    assert dropped_rows_findings(whole, whole, whole.between(0.0, 290.0)) == ()
-    (finding,) = dropped_rows_findings(whole, whole, whole.between(0.0, 200.0))
+    assert dropped_rows_findings(whole, [whole.between(0.0, 290.0)]) == ()
+    assert dropped_rows_findings(whole, [whole.between(0.0, 140.0), whole.between(145.0, 299.9)]) == ()
+    (finding,) = dropped_rows_findings(whole, [whole.between(0.0, 200.0)])
+    assert finding.severity is Severity.ERROR and "drops 33% of its rows" in finding.message
     assert "2001 of 3000 rows remain" in finding.evidence
 
 
-def test_a_channel_that_is_mostly_empty_is_named() -> None:
+def test_an_input_that_is_mostly_empty_is_named() -> None:
     time = 0.1 * np.arange(3000)
     whole = record(time)
-    values = np.where(np.arange(3000) % 50 < 10, whole["r"], np.nan)
-    holed = whole.with_channel("r", whole.channel("r").with_values(values))
+    values = np.where(np.arange(3000) % 1000 < 10, 0.1, np.nan)
+    holed = whole.with_channel("delta", Channel.from_notation("delta", values))
     (finding,) = [one for one in examined_record(holed).findings if one.code == "rows-dropped"]
-    assert "remove channels.r, which is empty in 2400 rows" in finding.advice
+    assert "remove channels.delta, which is empty in 2970 rows" in finding.advice
 
 
 def test_each_lost_second_of_a_clock_counts() -> None:

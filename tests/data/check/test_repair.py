@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 from tests.data.check.ship import with_values, zigzag
 
 from seatrial.core.values import InputError
-from seatrial.data.check import complete_segments, repair
+from seatrial.data.check import repair
+from seatrial.data.check.repair import repaired_parts
 
 
 def spoilt(symbol: str, rows: slice | list[int], value: float | np.ndarray):
@@ -66,11 +67,17 @@ def test_short_holes_are_interpolated_on_the_shorter_arc() -> None:
     np.testing.assert_allclose(np.exp(1j * record["psi"]), np.exp(1j * psi), atol=1e-9)
 
 
-def test_of_a_record_with_a_long_hole_the_longest_part_is_kept() -> None:
+def test_a_hole_of_one_output_is_not_measured_and_cuts_nothing() -> None:
     record, findings = repair(spoilt("u", slice(700, 900), np.nan))
+    assert len(record) == 3000 and np.isnan(record.channel("u").measured).sum() == 200
+    assert [f.code for f in findings] == ["empty-cells"] and "u 200" in findings[0].evidence
+
+
+def test_of_a_record_with_a_long_hole_of_an_input_the_longest_part_is_kept() -> None:
+    record, findings = repair(spoilt("delta", slice(700, 900), np.nan))
     assert len(record) == 2100 and record.time[0] == pytest.approx(90.0)
     assert findings[-1].code == "empty-rows" and "2 complete parts" in findings[-1].message
-    assert [len(part) for part in complete_segments(spoilt("u", slice(700, 900), np.nan))] == [700, 2100]
+    assert [len(part) for part in repaired_parts(spoilt("delta", slice(700, 900), np.nan))[0]] == [700, 2100]
 
 
 def test_a_channel_without_values_is_refused() -> None:

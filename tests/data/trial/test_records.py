@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Finding, InputError, Record, RecordKind, Severity
-from seatrial.data.trial import Trimming, checked_records, load_records, load_trial, refuse_errors
-from seatrial.data.trial.records import apply_trimming
+from seatrial.data.trial import Role, TrialRun, Trimming, checked_records, load_records, load_trial, refuse_errors
+from seatrial.data.trial.records import apply_trimming, load_parts, load_run
 
 
 def test_records_come_in_the_notation_tables_conventions(trial_file: Path) -> None:
@@ -100,3 +100,14 @@ def test_the_ready_trial_files_pass_the_checks(
     records, findings = load_records(load_trial(repository / "examples" / f"{example}.toml"))
     assert len(records) >= runs
     assert not [f for f in findings if f.severity is Severity.ERROR]
+
+
+def test_a_long_hole_makes_two_runs_of_one_session() -> None:
+    time = np.delete(np.arange(0.0, 600.0), np.arange(200, 300))
+    psi = 0.5 * np.sin(2.0 * np.pi * time / 60.0)
+    record = Record.from_arrays("log", time, {"psi": psi, "delta": 0.3 * np.cos(2.0 * np.pi * time / 60.0)})
+    parts = load_parts(TrialRun(record, Role.TRAIN, "day"), 0.0)
+    assert [(part.record.name, len(part.record), part.session, part.run) for part in parts] == [
+        ("log-1", 200, "day", "log"), ("log-2", 300, "day", "log"),
+    ]  # fmt: skip
+    assert load_run(TrialRun(record, Role.TRAIN, "day"), 0.0).record.name == "log"

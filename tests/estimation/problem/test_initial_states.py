@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Record
-from seatrial.estimation.problem.initial_states import measured_initial_states, start_velocity
+from seatrial.estimation.problem.initial_states import initial_state_weights, measured_initial_states, start_velocity
 from seatrial.estimation.problem.segments import cut_segments
 from seatrial.physics.models import model_named
 
@@ -39,3 +39,20 @@ def test_segments_of_a_track_begin_under_way_and_not_at_rest(rng: np.random.Gene
     np.testing.assert_allclose(np.hypot(local[:, 0], local[:, 1]), 2.0, atol=0.1)
     np.testing.assert_array_equal(local[:, 2], 0.0)  # of a yaw rate, nothing is known
     np.testing.assert_array_equal(local[:, 3], psi[data.offsets[:-1] - np.arange(data.count)])
+
+
+def test_a_thin_beginning_starts_with_the_fixes_of_the_run_and_a_prior(rng: np.random.Generator) -> None:
+    """Fixes of 1 Hz in rows of 10 Hz: a segment of 2 s holds two of them."""
+    t, psi, north, east = track(rng)
+    channels = {"psi": psi, "x0": north, "y0": east, "delta": 0.0 * t, "v_j": 0.0 * t}
+    record = Record.from_arrays("a", t, channels)
+    for name in ("x0", "y0"):
+        record = record.with_channel(name, record.channel(name).with_measured(np.arange(len(t)) % 10 == 4))
+    data = cut_segments(model_named("waterjet"), [record], ("psi", "x0", "y0"), 2.0)
+    local = measured_initial_states(data, ("u", "v", "x0", "y0"))
+    np.testing.assert_allclose(np.hypot(local[:, 0], local[:, 1]), 2.0, atol=0.3)
+    rows = data.offsets[:-1] - np.arange(data.count)
+    np.testing.assert_allclose(local[1:, 2], north[rows][1:], atol=0.2)  # straight between the fixes about them
+    weights = initial_state_weights(data, ("u", "v", "x0", "y0"))
+    assert np.all(weights[:, 0] > 0.0) and np.all(weights[:, 2] > 0.0)
+    assert not initial_state_weights(cut_segments(model_named("waterjet"), [record], ("psi",), 2.0), ("u",)).any()

@@ -4,7 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Self
 
-from seatrial.core.values.arrays import Array, frozen
+import numpy as np
+
+from seatrial.core.values.arrays import Array, Mask, frozen
 from seatrial.core.values.notation import quantity
 
 
@@ -20,6 +22,8 @@ class Channel:
         reference_point: metres forward of midship to which the channel refers.
         label: the name in the file it came from.
         is_command: whether it holds orders, which stay until the next one and are never corrected.
+        is_measured: shape (n,), False where nothing was measured and `values` only run on from sample to sample, as in
+            lost rows or between the readings of a slower sensor; None: every finite value was measured.
     """
 
     values: Array
@@ -29,6 +33,7 @@ class Channel:
     reference_point: float = 0.0
     label: str = ""
     is_command: bool = False
+    is_measured: Mask | None = None
 
     @classmethod
     def from_notation(cls, symbol: str, values: Array) -> Self:
@@ -42,9 +47,29 @@ class Channel:
         keys = ("unit", "frame", "positive", "reference_point", "label")
         return {key: getattr(self, key) for key in keys}
 
+    @property
+    def measured(self) -> Array:
+        """The values, NaN where nothing was measured."""
+        return self.values if self.is_measured is None else np.where(self.is_measured, self.values, np.nan)
+
+    @property
+    def readings(self) -> Array:
+        """The values that were measured, in order."""
+        return self.values if self.is_measured is None else self.values[self.is_measured]
+
     def with_values(self, values: Array) -> Self:
-        """Return the channel with other values."""
-        return replace(self, values=frozen(values))
+        """Return the channel with other values; of another number of samples all count as measured."""
+        is_same_base = self.is_measured is not None and len(values) == len(self.is_measured)
+        return replace(self, values=frozen(values), is_measured=self.is_measured if is_same_base else None)
+
+    def with_measured(self, is_measured: Mask) -> Self:
+        """Return the channel with what of it was measured, shape (n,)."""
+        return replace(self, is_measured=None if bool(np.all(is_measured)) else np.array(is_measured, dtype=np.bool_))
+
+    def rows(self, index: slice) -> Self:
+        """Return the samples of a slice."""
+        is_measured = None if self.is_measured is None else self.is_measured[index]
+        return replace(self, values=self.values[index], is_measured=is_measured)
 
 
 @dataclass(frozen=True)

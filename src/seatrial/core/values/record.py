@@ -101,6 +101,10 @@ class Record(PickledByConstructor):
     def __getitem__(self, symbol: str) -> Array:
         return self.channel(symbol).values
 
+    def measured(self, symbol: str) -> Array:
+        """Return the values of a channel, (n,), NaN where nothing was measured."""
+        return self.channel(symbol).measured
+
     def channel(self, symbol: str) -> Channel:
         """Return the channel of a symbol.
 
@@ -164,8 +168,7 @@ class Record(PickledByConstructor):
 
     def rows(self, index: slice) -> Self:
         """Return the samples of a slice."""
-        cut = {s: replace(c, values=c.values[index]) for s, c in self.channels.items()}
-        return replace(self, time=self.time[index], channels=cut)
+        return replace(self, time=self.time[index], channels={s: c.rows(index) for s, c in self.channels.items()})
 
     def between(self, start: float, stop: float) -> Self:
         """Return the samples with start <= t <= stop, in s.
@@ -184,7 +187,8 @@ class Record(PickledByConstructor):
     def resampled(self, rate: float) -> Self:
         """Return every k-th sample where `rate` [Hz] divides the record's own; otherwise linear interpolation.
 
-        No filter is applied: estimators compare point samples with point samples.
+        No filter is applied: estimators compare point samples with point samples. What was measured within half a new
+        step of a new sample counts as measured there.
 
         Raises:
             InputError: an uneven time base, or more than `MAX_SAMPLES` samples.
@@ -196,11 +200,18 @@ class Record(PickledByConstructor):
             )
         ratio = 1.0 / (self.dt * rate)
         if ratio >= 1 and abs(ratio - round(ratio)) < _WHOLE_RATIO:
-            return self.rows(slice(None, None, round(ratio)))
-        count = int(np.floor(self.duration * rate * (1 + _ROUNDING))) + 1
-        time = self.time[0] + np.arange(count) / rate
-        channels = {s: c.with_values(np.interp(time, self.time, c.values)) for s, c in self.channels.items()}
-        return replace(self, time=frozen(time), channels=channels).with_step(f"resampled to {rate:g} Hz")
+            thinned = self.rows(slice(None, None, round(ratio)))
+        else:
+            count = int(np.floor(self.duration * rate * (1 + _ROUNDING))) + 1
+            time = self.time[0] + np.arange(count) / rate
+            channels = {s: c.with_values(np.interp(time, self.time, c.values)) for s, c in self.channels.items()}
+            thinned = replace(self, time=frozen(time), channels=channels).with_step(f"resampled to {rate:g} Hz")
+        nearest = np.clip(np.round((self.time - self.time[0]) * rate).astype(int), 0, len(thinned) - 1)
+        for symbol, channel in self.channels.items():
+            if channel.is_measured is not None:
+                count = np.bincount(nearest, channel.is_measured, len(thinned))
+                thinned = thinned.with_channel(symbol, thinned.channel(symbol).with_measured(count > 0.0))
+        return thinned
 
     def plot(self, length: float = 0.0) -> "Figure":
         """Draw the track and every channel over time as a Matplotlib figure.

@@ -1,45 +1,87 @@
 """Repair of a record: wild samples, held positions, empty cells; everything is reported."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
 from seatrial.core.text.words import counted
 from seatrial.core.values import Channel, Finding, InputError, Record, Severity
-from seatrial.core.values.notation import COMMANDS, REFERENCES
 from seatrial.data.check.jumps import spike_rows, track_jumps
+from seatrial.data.check.lost_samples import (
+    INPUT_CHANNELS,
+    BridgedRecord,
+    bridged,
+    complete_parts,
+    lost_sample_findings,
+    usual_rows,
+)
 from seatrial.data.check.run_clock import moment
-from seatrial.data.check.signal import RowIndices, mask_intervals, unwrapped
+from seatrial.data.check.signal import RowIndices, unwrapped
 from seatrial.data.check.timestamps import without_empty_ends
-
-INPUT_CHANNELS = ("delta", "n", "v_j", *COMMANDS, *REFERENCES)
-# holes up to so many s or samples are interpolated; chosen: what a sensor loses now and then
-SHORT_GAP_S, SHORT_GAP_SAMPLES = 1.0, 5
 
 
 def repair(record: Record) -> tuple[Record, tuple[Finding, ...]]:
-    """Return the record without holes and wild samples, and a finding for each kind of change.
+    """Return the longest part of `repaired_parts`, and its findings.
 
-    Empty rows at the ends are cut; single wild samples and positions a receiver held are interpolated, as are holes
-    of up to one second or five samples; of a record with longer holes the longest complete part is kept
-    (`complete_segments` gives them all). Inputs are never smoothed. The time base should be even (`rebuild_time_base`).
+    Raises:
+        InputError: as `repaired_parts`.
+    """
+    parts, findings = repaired_parts(record)
+    return max(parts, key=len), findings
+
+
+def repaired_parts(record: Record) -> tuple[tuple[Record, ...], tuple[Finding, ...]]:
+    """Return the parts of a record without holes and wild samples, and a finding for each kind of change.
+
+    Empty rows at the ends are cut; single wild samples and positions a receiver held are interpolated. What is missing
+    for no longer than the craft remembers is interpolated and counts as not measured; where a hole is longer a new part
+    begins (`bridged`). Inputs are never smoothed. The time base should be even (`rebuild_time_base`).
 
     Raises:
         InputError: a channel holds no value, or nothing complete remains.
     """
+    record, findings = _without_wild_samples(record)
+    bridge = bridged(record)
+    parts = complete_parts(bridge)
+    if not parts:
+        raise InputError(f"record '{record.name}': no sample has a value in every channel; leave out the emptiest one")
+    return _with_steps(record, bridge, parts), findings + lost_sample_findings(record, bridge, parts)
+
+
+def repaired_whole(record: Record) -> Record:
+    """Return a record without wild samples that runs on over all holes between its first and last complete samples.
+
+    Raises:
+        InputError: as `repaired_parts`.
+    """
+    bridge = bridged(_without_wild_samples(record)[0])
+    complete = np.flatnonzero(~bridge.is_hole)
+    if complete.size == 0:
+        raise InputError(f"record '{record.name}': no sample has a value in every channel; leave out the emptiest one")
+    return bridge.record.rows(slice(int(complete[0]), int(complete[-1]) + 1))
+
+
+def _without_wild_samples(record: Record) -> tuple[Record, tuple[Finding, ...]]:
     record, findings = without_empty_ends(record)
     _require_values(record)
     record, spiked = _interpolate_spikes(record)
     record, jumped = _repair_position_jumps(record)
-    record, filled = _fill_short_gaps(record)
-    record, cut = _longest_complete_segment(record)
-    return record, findings + spiked + jumped + filled + cut
+    return record, findings + spiked + jumped
 
 
-def complete_segments(record: Record) -> tuple[Record, ...]:
-    """Return the complete stretches of a record, in order: no NaN in any channel or stamp."""
-    holes = np.any([np.isnan(c.values) for c in record.channels.values()], axis=0) | np.isnan(record.time)
-    return tuple(record.rows(slice(first, last)) for first, last in mask_intervals(~holes))
+def _with_steps(record: Record, bridge: BridgedRecord, parts: tuple[Record, ...]) -> tuple[Record, ...]:
+    """The parts with what was done in their provenance."""
+    total = sum(bridge.filled.values())
+    filled = record.with_step(f"{counted(total, 'empty cell')} interpolated") if total else record
+    return tuple(
+        replace(part, provenance=filled.provenance)
+        if len(part) == len(record)
+        else replace(part, provenance=filled.provenance).with_step(
+            f"complete part: {part.time[0]:.6g} to {part.time[-1]:.6g} s"
+        )
+        for part in parts
+    )
 
 
 def interpolate_rows(channel: Channel, rows: RowIndices) -> Channel:
@@ -91,7 +133,8 @@ def _repair_position_jumps(record: Record) -> tuple[Record, tuple[Finding, ...]]
     finite = np.flatnonzero(np.isfinite(record["x0"]) & np.isfinite(record["y0"]))
     if len(finite) < 3:
         return record, ()
-    jumps = track_jumps(record["x0"][finite], record["y0"][finite])
+    known, finite = finite, _without_gaps(finite)  # a lost row is no jump
+    jumps = track_jumps(*(np.interp(finite, known, record[s][known]) for s in ("x0", "y0")))
     if jumps.rows.size == 0:
         return record, ()
     held = finite[jumps.held]
@@ -108,44 +151,13 @@ def _repair_position_jumps(record: Record) -> tuple[Record, tuple[Finding, ...]]
     if held.size == 0:
         return record, (finding,)
     step = f"{held.size} held positions interpolated"
-    repaired = {s: interpolate_rows(record.channel(s), held) for s in ("x0", "y0")}
+    is_read = np.isin(np.arange(len(record)), np.setdiff1d(known, held))
+    repaired = {s: interpolate_rows(record.channel(s), held).with_measured(is_read) for s in ("x0", "y0")}
     return replace(record, channels={**record.channels, **repaired}).with_step(step), (finding,)
 
 
-def _fill_short_gaps(record: Record) -> tuple[Record, tuple[Finding, ...]]:
-    """Short holes between known samples interpolated, channel by channel."""
-    steps = np.diff(record.time)
-    dt = float(np.nanmedian(steps)) if steps.size else 1.0
-    limit = max(SHORT_GAP_SAMPLES, round(SHORT_GAP_S / dt)) if dt > 0 else SHORT_GAP_SAMPLES
-    counts: dict[str, int] = {}
-    for symbol, channel in record.channels.items():
-        empty = mask_intervals(np.isnan(channel.values))
-        short = [np.arange(a, b) for a, b in empty if b - a <= limit and a > 0 and b < len(record)]
-        if short:
-            rows = np.concatenate(short)
-            counts[symbol] = rows.size
-            record = record.with_channel(symbol, interpolate_rows(channel, rows))
-    if not counts:
-        return record, ()
-    named = ", ".join(f"{s} {n}" for s, n in counts.items())
-    text = f"record '{record.name}': {counted(sum(counts.values()), 'cell')} in short holes interpolated"
-    evidence = f"{named}; holes of up to {limit} samples"
-    finding = Finding(Severity.WARNING, "empty-cells", text, evidence, "no action needed for a few")
-    return record.with_step(f"{counted(sum(counts.values()), 'empty cell')} interpolated"), (finding,)
-
-
-def _longest_complete_segment(record: Record) -> tuple[Record, tuple[Finding, ...]]:
-    segments = complete_segments(record)
-    if not segments:
-        raise InputError(f"record '{record.name}': no sample has a value in every channel; leave out the emptiest one")
-    best = max(segments, key=len)
-    if len(best) == len(record):
-        return record, ()
-    empty = {s: int(np.isnan(c.values).sum()) for s, c in record.channels.items() if np.isnan(c.values).any()}
-    text = f"record '{record.name}' has long holes; of {counted(len(segments), 'complete part')} the longest is kept"
-    ends, cells = f"{best.time[0]:.6g} to {best.time[-1]:.6g} s", ", ".join(f"{s} {n}" for s, n in empty.items())
-    evidence = f"{moment(best.time[0], best.time[-1])}, {len(best)} of {len(record)} samples; empty cells: {cells}"
-    advice = "split the file at the holes to use the other parts, or leave out the channel that is empty"
-    finding = Finding(Severity.WARNING, "empty-rows", text, evidence, advice)
-    step = f"longest complete part kept: {ends}"
-    return best.with_step(step), (finding,)
+def _without_gaps(rows: RowIndices) -> RowIndices:
+    """Rows of readings, and those in which readings were due."""
+    usual = round(usual_rows(rows))
+    due = [np.arange(a + usual, b, usual) for a, b in pairwise(rows.tolist()) if b - a > usual]
+    return np.unique(np.concatenate([rows, *due]))

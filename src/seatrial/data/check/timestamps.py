@@ -7,11 +7,14 @@ import numpy as np
 from seatrial.core.text.words import counted
 from seatrial.core.values import Finding, InputError, Record, Severity
 from seatrial.data.check.even_base import GAP_STEPS, EvenBase, even_base
+from seatrial.data.check.lost_samples import SLOWER, usual_rows
 from seatrial.data.check.run_clock import moment
-from seatrial.data.check.signal import unwrapped
+from seatrial.data.check.signal import RowIndices, unwrapped
 
 # differences of steps over the mean step that are rounding, and that are worth a warning; chosen
 SMALL_UNEVENNESS, LARGE_UNEVENNESS = 1e-3, 0.5
+# share of the rows that may be missing as a note; the project's rule for rows that are dropped
+MOST_LOST = 0.05
 # rows of the even base over those of the record, counted as so many at least, from which on its clock jumps; chosen
 MOST_GROWTH, FEWEST_ROWS = 20, 10_000
 
@@ -98,16 +101,27 @@ def _placed_on_grid(record: Record, grid: EvenBase) -> Record:
 
 
 def _interpolated_on_grid(record: Record, grid: EvenBase) -> Record:
-    time, rows = np.unique(record.time, return_index=True)
-    count = int(np.floor((time[-1] - time[0]) / grid.step * (1 + 1e-12))) + 1  # rounding of the division
-    even = time[0] + grid.step * np.arange(count)
-    right = np.clip(np.searchsorted(time, even), 1, len(time) - 1)
-    inside_gap = (time[right] - time[right - 1] > GAP_STEPS * grid.step) & ~np.isin(even, time)
+    """Values straight between the readings of each channel; nothing in its gaps, nor between those of a slower one."""
+    count = int(np.floor((record.time[-1] - record.time[0]) / grid.step * (1 + 1e-12))) + 1  # rounding of the division
+    even = record.time[0] + grid.step * np.arange(count)
     channels = {}
     for symbol, channel in record.channels.items():
-        values = unwrapped(channel.values) if channel.unit == "rad" else channel.values
-        values = np.interp(even, time, values[rows])
-        values[inside_gap] = np.nan
+        known = np.flatnonzero(np.isfinite(channel.values))
+        time, first = np.unique(record.time[known], return_index=True)
+        readings = channel.values[known[first]]
+        values = (
+            np.interp(even, time, unwrapped(readings) if channel.unit == "rad" else readings) if known.size else even
+        )
+        right = np.clip(np.searchsorted(time, even), 1, max(len(time) - 1, 1))
+        if usual_rows(known) >= SLOWER:
+            is_read = np.zeros(count, dtype=np.bool_)
+            is_read[np.clip(np.round((time - even[0]) / grid.step).astype(int), 0, count - 1)] = True
+        elif len(time) > 1:
+            is_read = (time[right] - time[right - 1] <= GAP_STEPS * grid.step) | np.isin(even, time)
+            is_read &= (even >= time[0] - grid.step) & (even <= time[-1] + grid.step)
+        else:
+            is_read = np.isin(even, time)
+        values = np.where(is_read, values, np.nan)
         channels[symbol] = channel.with_values(values)
     return replace(record, time=even, channels=channels)
 
@@ -157,7 +171,8 @@ def _without_duplicates(record: Record) -> tuple[Record, tuple[Finding, ...]]:
 def _time_base_findings(record: Record, grid: EvenBase) -> tuple[Finding, ...]:
     steps = np.diff(record.time)
     findings = []
-    regular = np.delete(steps, grid.gaps)
+    lost = np.maximum(np.diff(grid.index) - 1, 0) if grid.is_even else np.zeros(len(steps), dtype=np.intp)
+    regular = np.delete(steps - lost * grid.step, grid.gaps)  # as without the rows that are lost
     if regular.size and not grid.is_even and not grid.repeated:
         text = f"record '{record.name}' is sampled unevenly; values are interpolated at even steps of {grid.step:.6g} s"
         evidence = f"steps {regular.min():.4g} to {regular.max():.4g} s"
@@ -171,11 +186,20 @@ def _time_base_findings(record: Record, grid: EvenBase) -> tuple[Finding, ...]:
         advice = "give more decimals of time if the logger has them"
         severity = Severity.WARNING if is_rough else Severity.INFO
         findings.append(Finding(severity, "time-base", text, evidence, advice))
-    if grid.gaps.size:
-        longest = int(grid.gaps[np.argmax(steps[grid.gaps])])
-        text = f"record '{record.name}' has {counted(grid.gaps.size, 'gap')} in time"
-        ends = moment(record.time[longest], record.time[longest + 1])
-        evidence = f"{steps[grid.gaps].sum() - grid.gaps.size * grid.step:.4g} s lost, the longest from {ends}"
-        advice = "short gaps are interpolated; split the run at long ones"
-        findings.append(Finding(Severity.WARNING, "time-gap", text, evidence, advice))
-    return tuple(findings)
+    lost[grid.gaps] = np.maximum(np.round(steps[grid.gaps] / grid.step).astype(int) - 1, 1)
+    return (*findings, *_lost_row_findings(record, grid, lost))
+
+
+def _lost_row_findings(record: Record, grid: EvenBase, lost: RowIndices) -> tuple[Finding, ...]:
+    """One line on the rows that are missing; lost: so many behind each row."""
+    count = int(lost.sum())
+    if count == 0:
+        return ()
+    total = len(record) + count
+    longest = int(np.argmax(lost))
+    text = f"record '{record.name}': {count} of {total} rows are missing; the others stay where they are"
+    ends = moment(record.time[longest], record.time[longest + 1])
+    evidence = f"{count * grid.step:.4g} s lost in {counted(int(np.sum(lost > 0)), 'place')}, the longest from {ends}"
+    advice = "no action needed: nothing is compared there, and a hole longer than the craft's memory begins a new run"
+    severity = Severity.WARNING if count > MOST_LOST * total else Severity.INFO
+    return (Finding(severity, "time-gap", text, evidence, advice),)

@@ -10,7 +10,7 @@ import numpy as np
 from seatrial.core.values import InputError, Record
 from seatrial.data.check.conventions import with_standard_signs
 from seatrial.data.check.motion import recorded_motion
-from seatrial.data.check.repair import repair
+from seatrial.data.check.repair import repaired_whole
 from seatrial.data.check.rudder import (
     CERTAIN_T,
     DOUBTFUL_T,
@@ -100,7 +100,7 @@ def run_record(
         else:
             record = record_of_sources("run", sources)
         even, _ = rebuild_time_base(without_sentinels(record)[0])
-        return with_standard_signs(repair(even)[0])
+        return with_standard_signs(repaired_whole(even))
     except (InputError, IndexError, StopIteration):
         return None
 

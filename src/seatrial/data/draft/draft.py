@@ -18,17 +18,24 @@ from seatrial.data.draft.header_sizes import HeaderSize, sizes_in_header
 from seatrial.data.draft.held_out import NOTHING_HELD_OUT, HeldOutRuns, can_judge, held_out_runs
 from seatrial.data.draft.log_files import survey_logs
 from seatrial.data.draft.log_partition import parts_without_gaps
-from seatrial.data.draft.manoeuvres import find_stretches, is_decay, numbered, offered_parts, two_thirds_and_a_third
+from seatrial.data.draft.manoeuvres import (
+    changes_course,
+    find_stretches,
+    is_decay,
+    numbered,
+    offered_parts,
+    two_thirds_and_a_third,
+)
 from seatrial.data.draft.one_speed import OtherSpeed, runs_by_speed, stated_options
 from seatrial.data.draft.runs_of_logs import LogRun, runs_of_logs
 from seatrial.data.draft.sample_rate import thinned_rate
-from seatrial.data.draft.session_text import session_line
+from seatrial.data.draft.session_text import is_one_place, session_line
 from seatrial.data.draft.ship_estimates import UNSTATED, StatedSize
-from seatrial.data.draft.starting_model import StartingModel, starting_model, with_wind
+from seatrial.data.draft.starting_model import StartingModel, in_a_current, share_current, starting_model, with_wind
 from seatrial.data.draft.stated_columns import CHANNELS, NOTHING_STATED, StatedColumns
 from seatrial.data.draft.stretch import LogStretch, used_parts
 from seatrial.data.draft.survey import LogSurvey, apart_by_sheet, with_common_ranges
-from seatrial.data.draft.tables_text import tables_text
+from seatrial.data.draft.tables_text import OPEN_SPEED, tables_text
 from seatrial.data.draft.unlike_decays import unlike_decays_text
 from seatrial.data.draft.velocity_place import with_velocities_of_antenna
 from seatrial.data.draft.waves_text import ASSUMED
@@ -101,6 +108,11 @@ class DraftTrial:
         return NO_ANTENNA in self.text
 
     @property
+    def lacks_speed(self) -> bool:
+        """Whether the speed through the water is to be stated: fixes on one course do not show it."""
+        return OPEN_SPEED in self.text
+
+    @property
     def assumed(self) -> tuple[str, ...]:
         """Keys of the file that hold what is usual."""
         return self._marked(ASSUMED)
@@ -163,8 +175,13 @@ def draft_trial(
     guesses = [with_wind_role(parts, is_taken=has_wind) for parts in guesses]
     held_out = held_out_runs(model, pieces, _kinds(runs, stretches, parts))
     is_model_test = model.has_forces_of_a_ship and is_in_basin((g for one in guesses[longest[0]] for g in one), size)
-    session = session_line(runs, is_in_basin=is_model_test)
-    if model.has_thrusters and len(runs) == 1 and records[0] is not None and not held_out.has_several:
+    if not is_model_test:
+        model = in_a_current(model, symbols, list(pieces.values()))
+    session = session_line(
+        runs, is_in_basin=is_model_test, is_one_place=is_one_place(runs, guesses) and share_current(records)
+    )
+    shows_all = model.has_thrusters or changes_course(stretches[0])
+    if shows_all and len(runs) == 1 and records[0] is not None and not held_out.has_several:
         parts, held_out = _in_two(model, runs, records[0], stretches[0]) or (parts, held_out)
     blocks = _blocks(runs, guesses, stretches, parts, longest[0])
     is_released = model.swings and need_release(list(pieces.values()))
@@ -289,10 +306,10 @@ def _decays(
 def _in_two(
     model: StartingModel, runs: Sequence[LogRun], record: Record, stretches: Sequence[LogStretch]
 ) -> tuple[tuple[tuple[LogStretch, ...], ...], HeldOutRuns] | None:
-    """Return the parts of the only log of a craft with thrusters, a third of it held out whose orders the rest holds.
+    """Return the parts of the only log, a third of it held out whose orders the rest holds; nothing is left out.
 
-    Whatever such a craft does shows its thrusters, so that nothing is left out. None where no third can be held out, or
-    an autopilot's modes cut the log.
+    Whatever a craft with thrusters does shows these, and every change of course a rudder. None where no third can be
+    held out, or an autopilot's modes cut the log.
     """
     if len(autopilot_modes(runs[0].sources, record)) > 1:
         return None

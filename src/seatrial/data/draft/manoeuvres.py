@@ -60,13 +60,18 @@ def offered_parts(
 ) -> tuple[tuple[LogStretch, ...], ...]:
     """Return the stretches of each run that are offered as runs of their own; empty where the run stays whole.
 
-    Straight ones are left out where there are others. A run stays whole where it is one roll decay, or manoeuvres fill
-    it and it is one of several runs or holds but one.
+    Straight ones are left out where there are others. A run stays whole where it is one roll decay, where manoeuvres
+    fill it and it is one of several runs or holds but one, and where it changes from one straight course to the next.
     """
     return tuple(
         () if record is not None and _is_whole(record, run, len(records)) else _without_straight(run)
         for record, run in zip(records, stretches, strict=True)
     )
+
+
+def changes_course(stretches: Sequence[LogStretch]) -> bool:
+    """Return whether a run holds nothing but straight courses: what lies between them is what its rudder does."""
+    return len(stretches) > 1 and all(one.name.startswith(STRAIGHT) for one in stretches)
 
 
 def two_thirds_and_a_third(record: Record, stretches: Sequence[LogStretch], *, is_last: bool) -> tuple[LogStretch, ...]:
@@ -93,7 +98,7 @@ def _without_straight(stretches: Sequence[LogStretch]) -> tuple[LogStretch, ...]
 def _is_whole(record: Record, stretches: Sequence[LogStretch], count: int) -> bool:
     if len(stretches) == 1 and is_decay(stretches[0]):
         return True
-    return _fills(record, stretches) and (count > 1 or len(stretches) == 1)
+    return changes_course(stretches) or (_fills(record, stretches) and (count > 1 or len(stretches) == 1))
 
 
 def _fills(record: Record, stretches: Sequence[LogStretch]) -> bool:

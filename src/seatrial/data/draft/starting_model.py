@@ -2,10 +2,12 @@
 
 from collections.abc import Sequence, Set
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
 from seatrial.core.values import Record
+from seatrial.data.check.water_speed import SpeedAndCurrent, speed_through_water
 from seatrial.data.draft.ship_estimates import UNSTATED, EstimatedValue, StatedSize, hull_rudder_propeller, wind_areas
 from seatrial.physics.manoeuvres.track import speed
 from seatrial.physics.models.typical_wind import SYMMETRIC
@@ -43,6 +45,8 @@ class StartingModel:
         speed: m/s at which the runs begin; 0 where it is not recorded.
         particulars: of hull, rudder and propeller, where the model needs them.
         has_wind: whether the recorded wind is an input.
+        water: what velocities over ground show of speed and current; None: nothing, or the speed through the water is
+            recorded.
     """
 
     name: str
@@ -53,6 +57,17 @@ class StartingModel:
     speed: float = 0.0
     particulars: tuple[EstimatedValue, ...] = ()
     has_wind: bool = False
+    water: SpeedAndCurrent | None = None
+
+    @property
+    def is_speed_open(self) -> bool:
+        """Whether the runs are over ground and on one course, which does not separate speed and current."""
+        return self.water is not None and not self.water.is_separate
+
+    @property
+    def is_in_current(self) -> bool:
+        """Whether the runs show a current, and the speed through the water with it."""
+        return self.water is not None and self.water.is_separate and self.water.has_current
 
     @property
     def has_derivatives(self) -> bool:
@@ -115,6 +130,30 @@ def with_wind(model: StartingModel, size: StatedSize) -> StartingModel:
     reason = f"{model.free_reason}; the recorded wind"
     particulars = (*model.particulars, *wind_areas(size))
     return replace(model, free=(*model.free, *SYMMETRIC), free_reason=reason, particulars=particulars, has_wind=True)
+
+
+def in_a_current(model: StartingModel, symbols: Set[str], records: Sequence[Record]) -> StartingModel:
+    """Return the model with what fixes, or velocities over ground, show of the speed through the water.
+
+    Where several courses separate it from a current, the speed at which the forces balance is estimated as well.
+
+    symbols: channels that are used; records: of the runs.
+    """
+    is_over_ground = bool(symbols & {"lat", "x0", "sog"}) and not symbols & {"u", "stw"}
+    if not is_over_ground or not model.has_forces_of_a_ship:
+        return model
+    model = replace(model, water=speed_through_water(records))
+    if model.water is None or model.is_speed_open:
+        return model
+    free = (*model.free, "U_n") if model.has_derivatives else model.free
+    return replace(model, speed=model.water.speed, free=free)
+
+
+def share_current(records: Sequence[Record | None]) -> bool:
+    """Return whether no two runs show currents that differ."""
+    fits = [speed_through_water([one]) for one in records if one is not None]
+    known = [one for one in fits if one is not None and one.is_separate]
+    return all(one.agrees_with(other) for one, other in pairwise(known))
 
 
 def _steered_model(

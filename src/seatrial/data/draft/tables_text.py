@@ -1,7 +1,11 @@
 """The tables of a drafted trial file that stand before its records: ship, model, thrusters, sensors, offsets."""
 
+import math
 from collections.abc import Sequence
 
+import numpy as np
+
+from seatrial.data.check.water_speed import SpeedAndCurrent
 from seatrial.data.draft.basin import is_in_basin
 from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.ship_estimates import StatedSize, added_masses, mass_properties, stated_values
@@ -16,6 +20,9 @@ _LEVER_OF_BEAM, _LEVER_OF_LENGTH = 0.38, 0.15
 # formulas for what the records leave open, as 'seatrial models mmg' lists them
 _FORMULAS = ("yoshimura", "zhou", "interaction", "propulsion", "displacement")
 _CURRENT = 0.3  # m/s, standard deviation of an unknown current; as the advice of the checks
+_LEAST_SPEED_ERROR = 0.005  # of a speed, for what its model of turns leaves out; chosen
+OPEN_SPEED = "# OPEN U_n"
+"""Begins the line that asks for the speed through the water."""
 _UNNAMED = "craft"  # a craft whose name is not stated; ours
 _NO_CURRENT = (
     f"# current = {_CURRENT:g}    # m/s: taken for a model in a basin, where none runs; uncomment it for open water"
@@ -45,6 +52,7 @@ def tables_text(
         f'name = "{model.name}"    # {model.why}',
         *(_prior_lines(model) if model.has_propeller else []),
         *([f"free = [{names}]    # {model.free_reason}"] if model.free else []),
+        *_speed_prior_lines(model),
         *(["", "[model.fixed]", *(one.line for one in added_masses(size))] if model.has_derivatives else []),
         *(thruster_tables(guesses, size) if model.has_thrusters else []),
         "",
@@ -67,7 +75,7 @@ def _ship_lines(model: StartingModel, size: StatedSize) -> list[str]:
     lines += [one.line for one in model.particulars]
     if model.has_derivatives:
         lines += [one.line for one in mass_properties(size)]
-        lines.append(f"U_n = {model.speed:.2f}    # m/s, speed at which the runs begin, as recorded")
+        lines += _speed_lines(model)
     if model.has_waves and size.length:
         lines += [one.line for one in ship_in_waves(size)]
     if model.has_thrusters and size.mass:
@@ -78,6 +86,42 @@ def _ship_lines(model: StartingModel, size: StatedSize) -> list[str]:
         lines += _roll_lines(size)
     written = {line.partition(" =")[0] for line in lines}
     return [*lines, *(one.line for one in stated_values(size) if one.key not in written)]
+
+
+def _speed_lines(model: StartingModel) -> list[str]:
+    """The speed through the water at which the runs begin; OPEN where only that over ground is known."""
+    water = model.water
+    if water is not None and model.is_speed_open:
+        return [
+            f"{OPEN_SPEED}: m/s through the water, which was not recorded; one course does not show it beside a "
+            f"current. The runs show {model.speed:.2f} over ground: right in still water, else write the log's speed",
+            f"# U_n = {model.speed:.2f}",
+        ]
+    if water is not None:
+        left = f"what {_current_text(water)} leaves of" if model.is_in_current else "no current shows in"
+        return [
+            f"U_n = {water.speed:.2f}    # m/s through the water: {left} the speeds over ground on several courses; "
+            "estimated, within what they show"
+        ]
+    return [f"U_n = {model.speed:.2f}    # m/s, speed at which the runs begin, as recorded"]
+
+
+def _current_text(water: SpeedAndCurrent) -> str:
+    towards = np.degrees(np.arctan2(water.east, water.north)) % 360.0
+    return f"a current of {water.current:.2f} m/s towards {towards:.0f} deg"
+
+
+def _speed_prior_lines(model: StartingModel) -> list[str]:
+    """What the runs show of the speed that is estimated with the current."""
+    if model.water is None or "U_n" not in model.free:
+        return []
+    spread = max(model.water.speed_error, _LEAST_SPEED_ERROR * model.water.speed)
+    return [
+        "",
+        "[model.priors.U_n]",
+        f"mean = {model.water.speed:.3f}",
+        f"sd = {spread:.2g}    # m/s, standard error of the speed that the fixes of all runs show",
+    ]
 
 
 def _roll_lines(size: StatedSize) -> list[str]:
@@ -148,15 +192,19 @@ def _offset_lines(
         return []
     shows_current = _is_over_ground(guesses) or any(g.is_used and g.symbol in ("lat", "x0") for g in guesses)
     is_still = model.has_forces_of_a_ship and is_in_basin(guesses, size)
-    current = (
-        _NO_CURRENT
-        if is_still
-        else f"current = {_CURRENT:g}    # m/s, of which nothing is known but that it is of this size"
-    )
+    current = _NO_CURRENT if is_still else _current_line(model)
     zero = 'offsets = ["delta"]    # the zero of the rudder\'s indicator'
     lines = [f"rate = {rate:.4g}    # Hz, of residuals: the log has more samples than the ship moves"] if rate else []
     lines += [*([current] if shows_current else []), *([zero] if model.has_forces_of_a_ship else [])]
     return ["[estimate]", *lines, ""] if lines else []
+
+
+def _current_line(model: StartingModel) -> str:
+    """The size of a current: as the runs show it, else as usual."""
+    if model.water is None or not model.is_in_current:
+        return f"current = {_CURRENT:g}    # m/s, of which nothing is known but that it is of this size"
+    size = max(_CURRENT, math.ceil(10.0 * model.water.current) / 10.0)
+    return f"current = {size:g}    # m/s, of its size: the runs show {_current_text(model.water)}"
 
 
 def _is_over_ground(guesses: Sequence[ColumnGuess]) -> bool:

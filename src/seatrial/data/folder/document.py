@@ -40,14 +40,22 @@ def npz_arrays(content: bytes) -> dict[str, Array]:
         raise ValueError(f"arrays.npz: {error}") from None
 
 
+_MEASURED = " is measured"  # behind a symbol, of the array that says so
+
+
 def record_arrays(record: Record, prefix: str) -> dict[str, Array]:
-    """Return the record's numbers under `prefix/symbol`."""
-    return {f"{prefix}/t": record.time} | {f"{prefix}/{s}": c.values for s, c in record.channels.items()}
+    """Return the record's numbers under `prefix/symbol`, and which of them were measured where not all were."""
+    masks = {f"{prefix}/{s}{_MEASURED}": c.is_measured for s, c in record.channels.items() if c.is_measured is not None}
+    values = {f"{prefix}/{s}": c.values for s, c in record.channels.items()}
+    return {f"{prefix}/t": record.time, **values, **{name: frozen(mask) for name, mask in masks.items()}}
 
 
 def record_from_arrays(table: Mapping[str, Any], arrays: Mapping[str, Array], prefix: str) -> Record:
     """Return the record of its metadata and arrays, the inverse of `Record.metadata` and `record_arrays`."""
     channels = {s: Channel(arrays[f"{prefix}/{s}"], **metadata) for s, metadata in table["channels"].items()}
+    for symbol, channel in channels.items():
+        if (mask := arrays.get(f"{prefix}/{symbol}{_MEASURED}")) is not None:
+            channels[symbol] = channel.with_measured(mask > 0.0)
     provenance = Provenance.from_metadata(table["provenance"])
     return Record(table["name"], arrays[f"{prefix}/t"], channels, RecordKind(table["kind"]), provenance)
 

@@ -1,7 +1,7 @@
 """From the cells of logs to a record in SI units, conventions as declared."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +11,7 @@ from seatrial.core.values.files import plain_name
 from seatrial.core.values.froude import froude_scaled
 from seatrial.data.read.clock import stamps
 from seatrial.data.read.derive import Measured, derived_channels
+from seatrial.data.read.held_readings import between_readings, held_text, slower_channels
 from seatrial.data.read.join import Series, common_time, ordered_series, values_at
 from seatrial.data.read.layout import ColumnSpec, Layout
 from seatrial.data.read.log import Log
@@ -43,8 +44,9 @@ def assemble_record(log: Log, layout: Layout, sha256: str) -> Record:
     _require_increasing_time(read.seconds, table, layout)
     measured = {column.symbol: _measured(column, table) for column in layout.columns}
     measured, emptied = without_fixes_at_zero(measured, read.seconds)
+    measured, held = _once_each(measured, read.seconds)
     channels = derived_channels(measured, layout.geometry, log.file)
-    provenance = Provenance(plain_name(log.file), sha256, _notes(f"read as {layout.format}", read.note, emptied))
+    provenance = Provenance(plain_name(log.file), sha256, _notes(f"read as {layout.format}", read.note, emptied, held))
     return _record(record_name(log.file), read.seconds, channels, layout.scale, provenance)
 
 
@@ -101,10 +103,13 @@ def _series(source: LogSource) -> _SourceSeries:
         columns = [column for column in layout.columns if log.table_of(column) is table]
         measured, fixes = without_fixes_at_zero({c.symbol: _measured(c, table) for c in columns}, time)
         emptied.append(fixes)
-        for one in measured.values():
-            cleaned, text = without_sentinel(one, time)
+        for symbol, one in measured.items():
+            measured[symbol], text = without_sentinel(one, time)
             emptied.append(text)
-            series.append(ordered_series(one.column, time, cleaned.values, one.label, f"{log.file} {table.topic}"))
+        measured, held = _once_each(measured, time)
+        emptied.append(held)
+        topic = f"{log.file} {table.topic}"
+        series += [ordered_series(one.column, time, _readings(one), one.label, topic) for one in measured.values()]
     order = [column.symbol for column in layout.columns]
     return _SourceSeries(sorted(series, key=lambda one: order.index(one.column.symbol)), _notes(*emptied))
 
@@ -128,12 +133,38 @@ def _measured(column: ColumnSpec, table: RawTable) -> Measured:
     return Measured(column, values, table.label(column))
 
 
+def _once_each(measured: dict[str, Measured], time: Array) -> tuple[dict[str, Measured], str]:
+    """The columns of a table with what slower ones repeat marked, and straight between their readings; a sentence."""
+    cells = {
+        symbol: one.values / one.column.si_factor(one.column.quantity.unit)
+        for symbol, one in measured.items()
+        if not one.column.is_held and one.column.span == 1.0
+    }
+    masks = slower_channels(cells, time)
+    slower = {
+        symbol: replace(
+            measured[symbol],
+            values=between_readings(
+                measured[symbol].values, mask, is_angle=measured[symbol].column.quantity.unit == "rad"
+            ),
+            is_measured=mask,
+        )
+        for symbol, mask in masks.items()
+    }
+    return measured | slower, held_text(masks, time)
+
+
+def _readings(one: Measured) -> Array:
+    """The values of a column, NaN where it repeats an earlier reading."""
+    return one.values if one.is_measured is None else np.where(one.is_measured, one.values, np.nan)
+
+
 def _notes(*notes: str) -> tuple[str, ...]:
     return tuple(note for note in notes if note)
 
 
 def _record(name: str, time: Array, measured: dict[str, Measured], scale: float, provenance: Provenance) -> Record:
-    channels = {symbol: _channel(one.column, one.values, one.label) for symbol, one in measured.items()}
+    channels = {symbol: _channel(one.column, _readings(one), one.label) for symbol, one in measured.items()}
     return froude_scaled(Record(name, time, channels, provenance=provenance), scale)
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from seatrial.core.values import Array, InputError
+from seatrial.core.values.arrays import Mask
 from seatrial.data.read.layout import ColumnSpec, Geometry
 from seatrial.data.read.quantities import LOG_QUANTITIES
 
@@ -15,16 +16,20 @@ _ENU_PAIRS = (("x0", "y0"), ("u", "v"), ("u_dot", "v_dot"))
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """A column in SI units, shape (n,), with what is declared about it."""
+    """A column in SI units, shape (n,), with what is declared about it.
+
+    is_measured: shape (n,), False in rows that repeat an earlier reading; None: every row is a reading.
+    """
 
     column: ColumnSpec
     values: Array
     label: str
+    is_measured: Mask | None = None
 
     def turned_into(self, symbol: str, values: Array, *, frame: str = "", reference_point: float = 0.0) -> "Measured":
         """Return a channel derived from this one, in the notation table's sign."""
         column = ColumnSpec(symbol, self.column.source, "", frame, "", reference_point)
-        return Measured(column, values, self.label)
+        return Measured(column, values, self.label, self.is_measured)
 
 
 _Measurements = dict[str, Measured]
@@ -178,13 +183,14 @@ def _in_north_east(present: _Measurements, geometry: Geometry) -> _Measurements:
         pair = _pair(present, one, other)
         if pair is None or frames != {"enu"}:
             raise InputError(f"frame = \"enu\" must be declared for both of '{one}' and '{other}'; add it")
-        for symbol, values, kept in ((one, pair[1].values, pair[0]), (other, pair[0].values, pair[1])):
-            turned[symbol] = Measured(replace(kept.column, frame="earth"), values, kept.label)
+        for symbol, read, kept in ((one, pair[1], pair[0]), (other, pair[0], pair[1])):
+            column = replace(kept.column, frame="earth")
+            turned[symbol] = Measured(column, read.values, kept.label, read.is_measured)
     for symbol in ("psi", "r"):
         if symbol in present and present[symbol].column.frame == "enu":
             one = present[symbol]
             values = np.pi / 2.0 - one.values if symbol == "psi" else -one.values
-            turned[symbol] = Measured(replace(one.column, frame="", positive=""), values, one.label)
+            turned[symbol] = replace(one, column=replace(one.column, frame="", positive=""), values=values)
     return turned
 
 

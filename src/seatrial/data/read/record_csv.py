@@ -25,10 +25,10 @@ def write_record_csv(record: Record, path: Path) -> None:
 def record_csv(record: Record) -> str:
     """The record as CSV: a comment line with the metadata, ``time [s],u [m/s],...``, then one line a sample.
 
-    Numbers in shortest exact form, NaN as an empty cell.
+    Numbers in shortest exact form; what is NaN or was not measured as an empty cell.
     """
     header = ["time [s]", *(f"{symbol} [{channel.unit}]" for symbol, channel in record.channels.items())]
-    columns = [record.time, *(channel.values for channel in record.channels.values())]
+    columns = [record.time, *(channel.measured for channel in record.channels.values())]
     rows = (",".join(map(_cell_text, row)) for row in np.stack(columns, axis=1).tolist())
     return "\n".join([f"{RECORD_MARK} {json.dumps(record.metadata)}", ",".join(header), *rows]) + "\n"
 

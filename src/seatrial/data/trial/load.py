@@ -100,8 +100,22 @@ def load_trial(path: str | Path, own_model: Model | None = None, read_result: Re
         InputError: one sentence naming file, key and what to do.
     """
     path = Path(path)
-    trial = trial_of_tables(parse_trial(path), path, own_model, read_result)
+    try:
+        trial = trial_of_tables(parse_trial(path), path, own_model, read_result)
+    except InputError as error:
+        left_open = [name for name in _open_names(path) if re.search(rf"\b{name}\b", str(error))]
+        if not left_open:
+            raise
+        raise InputError(f"{error}; the line '# OPEN {left_open[0]}' says what to choose") from None
     return with_estimates_named(trial, path.read_text(encoding="utf-8"))
+
+
+def _open_names(path: Path) -> list[str]:
+    """What a drafted file leaves to choose; nothing of one that cannot be read."""
+    try:
+        return _OPEN.findall(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return []
 
 
 def trial_of_tables(

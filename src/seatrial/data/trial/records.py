@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from seatrial.core.text.words import enumeration
 from seatrial.core.values import Finding, InputError, Record, Severity
 from seatrial.data.check import canonical_record, examined_record
 from seatrial.data.check.approach_phase import first_execution
@@ -13,6 +14,7 @@ from seatrial.data.check.copies import copies
 from seatrial.data.check.kinematic_consistency import ESTIMATE_CURRENT
 from seatrial.data.check.roll_release import release_findings
 from seatrial.data.check.thrusters import thruster_findings
+from seatrial.data.check.water_speed import speed_through_water
 from seatrial.data.trial.roll_decay_start import trim_to_decay_start
 from seatrial.data.trial.trial import Role, Trial, TrialRun, Trimming
 from seatrial.physics.models.thruster_layout import ThrusterLayout
@@ -28,13 +30,17 @@ _NOT_READ = "not-read"
 
 @dataclass(frozen=True, eq=False)
 class TrialRecord:
-    """One record ready for use: canonical, trimmed, resampled; with the findings of its checks."""
+    """One record ready for use: canonical, trimmed, resampled; with the findings of its checks.
+
+    run: the run that it is, or is a part of.
+    """
 
     record: Record
     role: Role
     session: str
     waves: WaveEncounter | None = None
     findings: tuple[Finding, ...] = ()
+    run: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +103,8 @@ def load_records(trial: Trial) -> tuple[tuple[TrialRecord, ...], tuple[Finding, 
     if not trial.runs:
         where = f"{trial.path}: " if trial.path else ""
         raise InputError(f"{where}there are no [[records]] to read; add them, or plan a trial with 'seatrial design'")
-    read = [_load_unless_bad(run, trial.reference_point) for run in trial.runs if run.role is not Role.LEAVE_OUT]
+    used = (run for run in trial.runs if run.role is not Role.LEAVE_OUT)
+    read = [part for run in used for part in _load_unless_bad(run, trial.reference_point)]
     records = tuple(r for r in read if isinstance(r, TrialRecord))
     unread = tuple(r for r in read if isinstance(r, Finding))
     for channel, deviation in trial.noise.items():
@@ -115,21 +122,39 @@ def _answered(finding: Finding, trial: Trial) -> Finding:
     return replace(finding, severity=Severity.INFO, advice=advice, consequence="")
 
 
-def _load_unless_bad(run: TrialRun, reference_point: float) -> TrialRecord | Finding:
-    """The run, or of a validation run that cannot be read the finding that says why."""
+def _load_unless_bad(run: TrialRun, reference_point: float) -> tuple[TrialRecord | Finding, ...]:
+    """The parts of the run, or of a validation run that cannot be read the finding that says why."""
     try:
-        return load_run(run, reference_point)
+        return load_parts(run, reference_point)
     except InputError as error:
         if run.role is not Role.VALIDATE:
             raise
         advice = "correct the file, or leave the run out; the fit does not rest on it"
-        return Finding(Severity.ERROR, _NOT_READ, f"a validation run cannot be read: {error}", "", advice)
+        return (Finding(Severity.ERROR, _NOT_READ, f"a validation run cannot be read: {error}", "", advice),)
 
 
 def _craft_findings(trial: Trial, records: tuple[TrialRecord, ...]) -> tuple[Finding, ...]:
     """What all runs together show of the thrusters that the model has."""
     layout = trial.model.equations.layout
-    return thruster_findings(ThrusterLayout.from_text(layout), [r.record for r in records]) if layout else ()
+    of_thrusters = thruster_findings(ThrusterLayout.from_text(layout), [r.record for r in records]) if layout else ()
+    return (*of_thrusters, *_one_course_findings(trial, records))
+
+
+def _one_course_findings(trial: Trial, records: tuple[TrialRecord, ...]) -> tuple[Finding, ...]:
+    """A warning where a current is estimated and positions on one course are all that shows a speed."""
+    if not trial.estimate.current or "u" not in trial.model.states or any("u" in r.record for r in records):
+        return ()
+    sessions = {r.session: [s.record for s in records if s.session == r.session] for r in records}
+    shown = {name: speed_through_water(runs) for name, runs in sessions.items()}
+    lone = [name for name, water in shown.items() if water is not None and not water.is_separate]
+    if not lone or any(water is not None and water.is_separate for water in shown.values()):
+        return ()
+    return (Finding(
+        Severity.WARNING, "velocity-over-ground",
+        "speed through the water was not recorded, and one course alone does not separate a current from it",
+        f"sessions {enumeration(lone)}", "record a run on the opposite course, or the speed through the water; runs of "
+        'one outing share its current: session = "all"', "a current ends in the coefficients of surge",
+    ),)  # fmt: skip
 
 
 def _without_copies(records: tuple[TrialRecord, ...]) -> tuple[tuple[TrialRecord, ...], tuple[Finding, ...]]:
@@ -165,7 +190,22 @@ def _refuse_absurd_noise(channel: str, deviation: float, records: Sequence[Recor
 
 
 def load_run(run: TrialRun, reference_point: float) -> TrialRecord:
-    """Return one run repaired and checked, in standard conventions, with its wave forces, trimmed and resampled.
+    """Return the longest of `load_parts` under the name of the run, with the findings on all of it.
+
+    Raises:
+        InputError: as `load_parts`.
+    """
+    parts = load_parts(run, reference_point)
+    longest = max(parts, key=lambda part: len(part.record))
+    findings = tuple(finding for part in parts for finding in part.findings)
+    return replace(longest, record=longest.record.renamed(longest.run), findings=findings)
+
+
+def load_parts(run: TrialRun, reference_point: float) -> tuple[TrialRecord, ...]:
+    """Return one run repaired and checked, in standard conventions, with wave forces, trimmed and resampled.
+
+    Holes longer than the craft's memory cut it into parts that begin anew, called after it and numbered; of a decay
+    from its release the longest is kept.
 
     reference_point: m forward of midship to which velocities and positions are referred.
 
@@ -173,12 +213,32 @@ def load_run(run: TrialRun, reference_point: float) -> TrialRecord:
         InputError: the file cannot be parsed, or trimming leaves nothing.
     """
     examined = examined_record(run.raw_record())
-    record = canonical_record(examined.record, reference_point)
+    is_one = run.trimming.from_release or run.trimming.skip_acceleration
+    parts = [examined.record] if is_one else _parts_within(examined.parts, run.trimming)
+    records = [_prepared(part, run, reference_point) for part in parts]
+    names = [""] if len(records) == 1 else [f"-{k}" for k in range(1, len(records) + 1)]
+    return tuple(
+        TrialRecord(
+            record.renamed(f"{record.name}{name}"), run.role, run.session, run.waves,
+            (*(examined.findings if k == 0 else ()), *completed(release_findings(record), record)), record.name,
+        )
+        for k, (record, name) in enumerate(zip(records, names, strict=True))
+    )  # fmt: skip
+
+
+def _parts_within(parts: Sequence[Record], trimming: Trimming) -> Sequence[Record]:
+    """The parts of which trimming leaves something; all where it leaves nothing of any."""
+    start = -np.inf if trimming.from_s is None else trimming.from_s
+    stop = np.inf if trimming.to_s is None else trimming.to_s
+    return [one for one in parts if float(one.time[-2]) > start and float(one.time[1]) < stop] or parts[:1]
+
+
+def _prepared(record: Record, run: TrialRun, reference_point: float) -> Record:
+    """A part of a run as the estimate takes it."""
+    record = canonical_record(record, reference_point)
     if run.waves is not None and run.waves.spectrum is None:
         record = with_wave_forces(record, run.waves.excitation, run.waves.U, run.waves.beta)
-    kept = apply_trimming(record, run.trimming)
-    findings = (*examined.findings, *completed(release_findings(kept), kept))
-    return TrialRecord(kept, run.role, run.session, run.waves, findings)
+    return apply_trimming(record, run.trimming)
 
 
 def apply_trimming(record: Record, trimming: Trimming) -> Record:

@@ -415,7 +415,8 @@ def _fit_intensities(problem: PredictionError, estimate: PointEstimate) -> Array
 def third_difference_noise(runs: OutputError) -> Array:
     """White noise on each channel from third differences, median over runs; at most the residuals', 1 % at least."""
     pieces = [runs.data.measured[a:b] for a, b in pairwise(runs.data.offsets)]
-    columns = [[p[:, i] for p in pieces if np.any(np.isfinite(np.diff(p[:, i], 3)))] for i in range(len(runs.noise))]
+    readings = [[p[np.isfinite(p[:, i]), i] for p in pieces] for i in range(len(runs.noise))]
+    columns = [[one for one in of_channel if len(one) > 3] for of_channel in readings]  # a third difference at least
     noise = np.array([np.median([sample_noise(c) for c in mine]) if mine else np.inf for mine in columns])
     return np.clip(noise, 1e-2 * runs.noise, runs.noise)  # a hundredth of the residuals at least; chosen
 

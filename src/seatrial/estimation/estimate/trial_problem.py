@@ -68,7 +68,9 @@ class TrialProblem:
         scaled = np.where(np.isfinite(problem.data.measured), difference / problem.noise, 0.0)
         forces = [term.scaled_rows(self._values(shared), ())[0].ravel() for term in self._forces]
         mean, weight = problem.priors
-        return np.concatenate([scaled.ravel(), *forces, np.sqrt(weight) * (shared - mean)])
+        first, known = problem.initial_prior
+        begun = np.sqrt(known) * (local - first)
+        return np.concatenate([scaled.ravel(), *forces, np.sqrt(weight) * (shared - mean), begun.ravel()])
 
     def jacobian(self, point: Array) -> Array:
         """Return the derivatives of the residuals by the unknowns, (m, n)."""
@@ -83,8 +85,8 @@ class TrialProblem:
             columns = np.concatenate([problem.columns_of(int(data.session[s])), local_columns])
             rows[first:last, :, columns] = slopes[first:last]
         forces = [self._force_rows(term, shared, len(point)) for term in self._forces]
-        priors = np.eye(problem.size, len(point)) * np.sqrt(problem.priors[1])[:, None]
-        return np.concatenate([rows.reshape(-1, len(point)), *forces, priors])
+        weights = np.concatenate([problem.priors[1], problem.initial_prior[1].ravel()])
+        return np.concatenate([rows.reshape(-1, len(point)), *forces, np.diag(np.sqrt(weights))])
 
     def fitness(self, points: Array) -> Array:
         """Return half the sum of squared residuals at each row of points (k, n), (k,); infinite after a divergence."""

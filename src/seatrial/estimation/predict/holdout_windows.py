@@ -76,10 +76,10 @@ def window_errors(
             raise InputError(
                 f"the simulation of run '{piece.name}' from {piece.time[0]:g} s diverges; check the bounds"
             )
-        error = track - piece.matrix(_TRACK)
+        error = track - np.stack([piece.measured(channel) for channel in _TRACK], axis=1)
         if not np.all(np.any(np.isfinite(error), axis=0)):
             continue
-        position = float(np.sqrt(np.nanmean(error[:, 0] ** 2 + error[:, 1] ** 2)))
+        position = float(np.sqrt(np.nanmean(error[:, 0] ** 2) + np.nanmean(error[:, 1] ** 2)))
         heading = float(np.degrees(np.sqrt(np.nanmean(error[:, 2] ** 2))))
         errors.append(WindowError(piece.name, labels[int(index)], fold, float(piece.time[0]), position, heading))
     return errors

@@ -43,7 +43,9 @@ def _template(model: Model, record: Record, offsets: Sequence[SessionOffset]) ->
     """The problem whose unknowns of a session are these offsets, weighted by the noise of the record's samples."""
     outputs = compared_outputs(model, [record])
     noise = [
-        np.nanmax([sample_noise(record[name]), _LEAST_NOISE * np.nanmax(np.abs(record[name])), _SMALLEST])
+        np.nanmax(
+            [sample_noise(record.channel(name).readings), _LEAST_NOISE * np.nanmax(np.abs(record[name])), _SMALLEST]
+        )
         for name in outputs
     ]
     held = model.with_parameters(model.parameters.fixed(*model.parameters.names))

@@ -1,5 +1,6 @@
 """Open-loop prediction of a run: initial state from its first seconds, nothing else taken from it."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +19,9 @@ from seatrial.physics.simulate.channels import inputs_of, record_of
 from seatrial.physics.simulate.divergence import require_bounded
 
 _ERROR_ORDER = ("psi_deg", "position_m", "theta_deg", "phi_deg", "z", "u", "v", "r")
+
+
+_OF_SPEED = ("approach_speed", "speed_loss", "steady_diameter_L")  # measures that speeds are in
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,17 +91,17 @@ def observables_record(model: Model, record: Record, y: Array) -> Record:
 
 
 def rms_errors(measured: Record, simulated: Record) -> dict[str, float]:
-    """Return root-mean-square differences over the samples that both hold; what is never compared is absent.
+    """Return root-mean-square differences over the samples that were measured and are simulated.
 
-    Angles in degrees, position and heave in m, u, v in m/s, r in rad/s. A track that never moves is not modelled.
+    What is never compared is absent.
     """
     both = set(measured.channels) & set(simulated.channels)
-    squares = {s: (simulated[s] - measured[s]) ** 2 for s in both}
+    squares = {s: _mean_square(simulated[s] - measured.measured(s)) for s in both}
     factors = {"psi_deg": ("psi", np.degrees(1.0)), "theta_deg": ("theta", np.degrees(1.0)),
                "phi_deg": ("phi", np.degrees(1.0)), **{s: (s, 1.0) for s in ("z", "u", "v", "r")}}  # fmt: skip
-    errors = {name: factor * _root_mean(squares[s]) for name, (s, factor) in factors.items() if s in both}
+    errors = {name: factor * math.sqrt(squares[s]) for name, (s, factor) in factors.items() if s in both}
     if {"x0", "y0"} <= both and has_moving_track(simulated):
-        errors["position_m"] = _root_mean(squares["x0"] + squares["y0"])
+        errors["position_m"] = math.sqrt(squares["x0"] + squares["y0"])
     return {name: errors[name] for name in _ERROR_ORDER if name in errors and np.isfinite(errors[name])}
 
 
@@ -107,9 +111,10 @@ def has_moving_track(simulated: Record) -> bool:
     return any(span > 0.0 for span in spans)
 
 
-def _root_mean(squares: Array) -> float:
-    finite = squares[np.isfinite(squares)]
-    return float(np.sqrt(np.mean(finite))) if len(finite) else float("nan")
+def _mean_square(errors: Array) -> float:
+    """Of the errors where something was measured; NaN without any."""
+    finite = errors[np.isfinite(errors)]
+    return float(np.mean(finite**2)) if len(finite) else math.nan
 
 
 def is_steered(record: Record, model: Model) -> bool:
@@ -122,16 +127,27 @@ def compare_measures(
 ) -> dict[str, Measure]:
     """Return measures of a run and of its simulation, both at the measured executes, but for the rudder's order.
 
-    Of a simulation that diverges those are read that lie within the time it lasted.
+    Of a simulation that diverges those are read that lie within the time it lasted. Where speeds were measured by
+    positions alone, those of the simulation are over ground as well.
     """
     recognised = ObservedManoeuvre.from_record(record)
     of_measured = measures(record, length, reference=recognised)
     if divergence is None:
         of_simulated = measures(simulated, length, reference=recognised)
+        if "u" not in record and {"u", "x0", "y0"} <= set(simulated.channels):
+            over_ground = measures(_with_speed_over_ground(simulated), length, reference=recognised)
+            of_simulated |= {name: over_ground[name] for name in _OF_SPEED if name in over_ground}
         names = dict.fromkeys([*of_measured, *of_simulated])
     else:
         of_simulated, names = _measures_until(record, simulated, length, divergence), dict.fromkeys(of_measured)
     return {k: Measure(of_measured.get(k), of_simulated.get(k)) for k in names if k != ORDERED_MEASURE}
+
+
+def _with_speed_over_ground(simulated: Record) -> Record:
+    """The simulated record, its velocities those of its track: a current is in them."""
+    along, across = (np.gradient(simulated[symbol], simulated.dt) for symbol in ("x0", "y0"))
+    surge = simulated.channel("u").with_values(np.hypot(along, across))
+    return simulated.without("v").with_channel("u", surge)
 
 
 def _measures_until(record: Record, simulated: Record, length: float, divergence: Divergence) -> dict[str, float]:

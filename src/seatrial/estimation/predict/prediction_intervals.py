@@ -127,7 +127,7 @@ def _measure_spread(
     model: Model, record: Record, simulation: OpenLoopRun, runs: Array, length: float, rng: np.random.Generator
 ) -> dict[str, float]:
     place = {c: model.observables.index(model.observable_of(c)) for c in model.channels}
-    noise = {c: sample_noise(record[c]) for c in MEASURE_CHANNELS if c in record and c in place}
+    noise = {c: sample_noise(record.channel(c).readings) for c in MEASURE_CHANNELS if c in record and c in place}
     reference = ObservedManoeuvre.from_record(record)
     centre = measures(simulation.record, length, reference=reference)
     values_by_measure: dict[str, list[float]] = {name: [] for name in centre}
@@ -206,7 +206,7 @@ def track_holdout_error(
 
 
 def _channel_errors(record: Record, simulation: OpenLoopRun, channels: dict[str, Array]) -> HoldoutError:
-    errors = {c: simulation.record[c] - record[c] for c in channels if c in record}
+    errors = {c: simulation.record[c] - record.measured(c) for c in channels if c in record}
     return HoldoutError(record.name, record.dt, errors, {c: channels[c] for c in errors})
 
 

@@ -27,7 +27,7 @@ def reading_errors(record: Record, length: float, rng: np.random.Generator) -> d
     """
     reference = ObservedManoeuvre.from_record(record)
     centre = measures(record, length, reference=reference)
-    noise = {c: sample_noise(record[c]) for c in MEASURE_CHANNELS if c in record}
+    noise = {c: sample_noise(record.channel(c).readings) for c in MEASURE_CHANNELS if c in record}
     values: dict[str, list[float]] = {name: [] for name in centre}
     for _ in range(READINGS):
         again = record

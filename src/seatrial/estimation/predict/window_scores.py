@@ -127,7 +127,8 @@ def _score(
         lasting = spread if run.divergence is None else {}
         sds = {c: p.discrepancy.channel_sd(c, sd, piece.dt, index) for c, sd in lasting.items()}
         # a measured sample lies about the true one by its sensor's noise
-        halves.append({c: t * np.hypot(sd, sample_noise(piece[c])) for c, sd in sds.items() if c in piece})
+        noise = {c: sample_noise(piece.channel(c).readings) for c in sds if c in piece}
+        halves.append({c: t * np.hypot(sds[c], sd) for c, sd in noise.items()})
     scores = {
         key: _channel_score(pieces, simulated, halves, channels, factor)
         for key, (channels, factor) in _SCORES.items()
@@ -143,13 +144,14 @@ def _score(
 
 def _is_compared(windows: list[Record], simulated: list[Record], channels: tuple[str, ...]) -> bool:
     pairs = list(zip(windows, simulated, strict=True))
-    held = all(c in w and c in s and np.isfinite(w[c]).any() for w, s in pairs for c in channels)
+    held = all(c in w and c in s and np.isfinite(w.measured(c)).any() for w, s in pairs for c in channels)
     return held and (channels != ("x0", "y0") or any(has_moving_track(s) for s in simulated))
 
 
 def _errors(windows: Sequence[Record], simulated: Sequence[Record], channel: str) -> Array:
     """Errors where something was measured, (n,); infinite after a divergence."""
-    pairs = [(s[channel] - w[channel], np.isfinite(w[channel])) for w, s in zip(windows, simulated, strict=True)]
+    read = [w.measured(channel) for w in windows]
+    pairs = [(s[channel] - w, np.isfinite(w)) for w, s in zip(read, simulated, strict=True)]
     errors = np.concatenate([e[measured] for e, measured in pairs])
     return np.where(np.isfinite(errors), errors, np.inf)
 
@@ -165,29 +167,25 @@ def _channel_score(
 
     The share inside the band is that of windows with one, where most have one.
     """
-    squares, about_mean, inside, widths = 0.0, 0.0, [], []
+    mean_square, variance, inside, widths = 0.0, 0.0, [], []
     for channel in channels:
         errors = _errors(windows, simulated, channel)
-        measured = np.concatenate([w[channel][np.isfinite(w[channel])] for w in windows])
-        squares += float(errors @ errors)
-        about_mean += float(np.sum((measured - np.mean(measured)) ** 2))
+        is_read = [np.isfinite(w.measured(channel)) for w in windows]
+        mean_square += float(np.mean(errors**2))
+        variance += float(np.var(np.concatenate([w[channel][m] for w, m in zip(windows, is_read, strict=True)])))
         with_band = [h for h in halves if channel in h]
         if 2 * len(with_band) > len(windows):
-            half = [
-                h.get(channel, np.full(len(w), np.nan))[np.isfinite(w[channel])]
-                for h, w in zip(halves, windows, strict=True)
-            ]
+            half = [h.get(channel, np.full(len(m), np.nan))[m] for h, m in zip(halves, is_read, strict=True)]
             judged = np.isfinite(np.concatenate(half))
             inside.append((np.abs(errors) <= np.concatenate(half))[judged])
             widths.append(float(np.mean(np.square(np.concatenate(half)[judged]))))
-    count = sum(int(np.isfinite(w[channels[0]]).sum()) for w in windows)
-    share = squares / about_mean if about_mean > 0.0 else np.inf
+    share = mean_square / variance if variance > 0.0 else np.inf
     return ChannelScore(
-        factor * float(np.sqrt(squares / count)),
+        factor * float(np.sqrt(mean_square)),
         100.0 * (1.0 - float(np.sqrt(share))),  # MathWorks, System Identification Toolbox, compare: NRMSE
         1.0 - share,
         float(np.mean(np.concatenate(inside))) if inside else None,
-        float(np.sqrt(sum(widths) / (about_mean / count))) if widths and about_mean > 0.0 else None,
+        float(np.sqrt(sum(widths) / variance)) if widths and variance > 0.0 else None,
     )
 
 
@@ -204,5 +202,4 @@ def pooled_rms(windows: Sequence[Record], simulated: Sequence[Record], channels:
 
     In the channels' own unit.
     """
-    errors = [_errors(windows, simulated, channel) for channel in channels]
-    return float(np.sqrt(np.mean(np.sum(np.square(errors), axis=0))))
+    return float(np.sqrt(sum(np.mean(_errors(windows, simulated, channel) ** 2) for channel in channels)))

@@ -13,7 +13,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index, Prior
-from seatrial.estimation.problem.initial_states import measured_initial_states
+from seatrial.estimation.problem.initial_states import initial_state_weights, measured_initial_states
 from seatrial.estimation.problem.population import SessionPopulation
 from seatrial.estimation.problem.segments import Segments
 from seatrial.numerics.optimise import NormalEquations
@@ -202,6 +202,11 @@ class OutputError:
         """Return the initial states of each segment as measured, (segments, len(starts)), SI."""
         return measured_initial_states(self.data, self.starts)
 
+    @cached_property
+    def initial_prior(self) -> tuple[Array, Array]:
+        """Mean and weight (1/variance, 0 without a prior) of the initial states, both (segments, len(starts))."""
+        return self.measured_initial_states(), initial_state_weights(self.data, self.starts)
+
     def unpack(self, shared: Array, local: Array) -> tuple[Array, Array, Array]:
         """Return full initial states, model parameters and corrections of each segment."""
         count, parameters = self.data.count, self.model.parameters
@@ -314,7 +319,9 @@ class OutputError:
 
     def cost(self, shared: Array, local: Array) -> float:
         """Return half the (robust) sum of squares and the prior's; infinite if any segment diverges."""
-        return self.cost_of_outputs(self.simulated_outputs(shared, local), shared)
+        mean, weight = self.initial_prior
+        known = 0.5 * float(np.sum(weight * (local - mean) ** 2))
+        return self.cost_of_outputs(self.simulated_outputs(shared, local), shared) + known
 
     def cost_of_outputs(self, simulated: Array, shared: Array) -> float:
         """Return the cost of simulated outputs, (rows, ny), and of the shared unknowns behind them."""
@@ -333,7 +340,7 @@ class OutputError:
         return self._loss(scaled)[1] * scaled / self.noise
 
     def segment_normals(self, shared: Array, local: Array) -> "SegmentNormals":
-        """Return Gauss-Newton blocks of every segment, prior left out."""
+        """Return Gauss-Newton blocks of every segment, prior of shared unknowns left out."""
         start, values, corrections = self.unpack(shared, local)
         n, m = len(self.free) + self.unknowns_per_session, len(self.starts)
         by_actuator = self._actuator_slopes(values, corrections)
@@ -356,6 +363,10 @@ class OutputError:
 
         parts = map_in_threads(piece, self._work_ranges(), workers=self.workers)
         costs, gradients, hessians = (np.concatenate([p[i] for p in parts]) for i in range(3))
+        mean, weight = self.initial_prior
+        costs += 0.5 * np.sum(weight * (local - mean) ** 2, axis=1)
+        gradients[:, n:] += weight * (local - mean)
+        hessians[:, range(n, n + m), range(n, n + m)] += weight
         return SegmentNormals(costs, gradients, hessians, n)
 
     def slopes(self, shared: Array, local: Array) -> Array:

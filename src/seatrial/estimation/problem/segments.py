@@ -9,6 +9,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index, InputError, Record, channel_hint
+from seatrial.estimation.problem.initial_states import Beginnings
 from seatrial.numerics.resolution import resolution
 from seatrial.physics.sensors import Sensors
 from seatrial.physics.simulate.actuators import ActuatorHistory
@@ -24,6 +25,7 @@ class Segments:
         offsets: (segments + 1,); run, session: (segments,), indices into `runs` and `sessions`.
         outputs: observables that are compared, in order; dt: s.
         history: commands of the whole runs, where the model has states that follow them; None: it has none.
+        beginnings: what the whole runs say of the first rows; None: nothing.
     """
 
     inputs: Array
@@ -36,6 +38,7 @@ class Segments:
     outputs: tuple[str, ...]
     dt: float
     history: ActuatorHistory | None = None
+    beginnings: Beginnings | None = None
 
     @cached_property
     def rounding_noise(self) -> Array:
@@ -64,6 +67,7 @@ class Segments:
             run=self.run[indices],
             session=self.session[indices],
             history=None if self.history is None else self.history.selected(indices),
+            beginnings=None if self.beginnings is None else self.beginnings.selected(indices),
         )
 
 
@@ -98,8 +102,11 @@ def compared_outputs(model: Model, records: Sequence[Record], requested: Sequenc
 
 
 def _measured(model: Model, record: Record, outputs: tuple[str, ...]) -> Array:
-    """Return the outputs of a record, (rows, ny): NaN where it holds none, and where a receiver held its last fix."""
-    measured = np.stack([record[o] if o in record else np.full(len(record), np.nan) for o in outputs], axis=1)
+    """Return the outputs of a record, (rows, ny): NaN where it holds none, or only runs on from a reading.
+
+    Repeated positions count as such as well where the trial says that they stay between fixes.
+    """
+    measured = np.stack([record.measured(o) if o in record else np.full(len(record), np.nan) for o in outputs], axis=1)
     if not model.equations.sensors or not Sensors.from_text(model.equations.sensors).position_hold:
         return measured
     columns = [i for i, output in enumerate(outputs) if output in ("x0", "y0")]
@@ -152,7 +159,7 @@ def segments_between(
         InputError: as `cut_segments`.
     """
     dt = records[0].dt
-    of_runs, inputs, measured, firsts, lengths, runs = [], [], [], [], [], []
+    of_runs, inputs, measured, firsts, lengths, runs, beginnings = [], [], [], [], [], [], []
     for index, (record, of_record) in enumerate(zip(records, bounds, strict=True)):
         if abs(record.dt - dt) > 1e-3 * dt:  # share by which time steps may differ; chosen
             raise InputError(
@@ -164,6 +171,7 @@ def segments_between(
         u = inputs_of(model, record)
         y = _measured(model, record, outputs)
         of_runs.append(u)
+        beginnings.append(Beginnings.of_run(y, outputs, dt, of_record))
         for first, last in of_record:
             inputs.append(u[first:last])
             firsts.append(first)
@@ -186,4 +194,5 @@ def segments_between(
         outputs,
         dt,
         ActuatorHistory.from_runs(model, of_runs, dt, run, np.array(firsts, dtype=np.int64), session),
+        Beginnings.joined(beginnings),
     )

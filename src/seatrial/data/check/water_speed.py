@@ -1,0 +1,146 @@
+"""The speed through the water and the current that velocities over ground on several courses show together."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from seatrial.core.values import Array, Record
+from seatrial.data.check.signal import jackknife_least_squares, least_squares, smoothed, smoothed_derivative
+
+_SMOOTHING_S = 3.0  # s over which velocities and yaw rate are smoothed; chosen: short against a turn
+_FEWEST_ROWS = 60  # of all runs together, for a fit of some eight coefficients; chosen
+_MOST_ROWS = 6000  # of all runs together that are fitted; chosen: some tenths of a second
+_SPEED, _SHARED = 2, 5  # place of the speed among the coefficients, and number of those that runs share
+_SEPARATE = 0.04  # of a speed, up to which its standard error separates a current from it; chosen
+_SEVERAL = np.radians(60.0)  # sector of headings that are several courses; chosen: a wide zigzag is none
+_CLEAR, _LEAST_CURRENT = 4.0, 0.05  # standard errors and share of the speed from which on there is a current; chosen
+_TIMES_S = (0.0, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0)  # s in which a craft's speed recovers, that are tried; chosen
+
+
+@dataclass(frozen=True)
+class SpeedAndCurrent:
+    """What fixes and headings of some runs show.
+
+    Attributes:
+        speeds: through the water at the start of each run that has fixes [m/s].
+        speed_error: standard error of their mean [m/s].
+        north, east: the current [m/s]; current_error: standard error of each.
+        courses: the sector that holds all headings [rad].
+    """
+
+    speeds: tuple[float, ...]
+    speed_error: float
+    north: float
+    east: float
+    current_error: float
+    courses: float
+
+    @property
+    def speed(self) -> float:
+        """The median over the runs [m/s]."""
+        return float(np.median(self.speeds))
+
+    @property
+    def current(self) -> float:
+        """m/s."""
+        return float(np.hypot(self.north, self.east))
+
+    @property
+    def is_separate(self) -> bool:
+        """Whether the courses of the runs separate the speed through the water from the current."""
+        return self.courses >= _SEVERAL and self.speed_error <= _SEPARATE * self.speed
+
+    @property
+    def has_current(self) -> bool:
+        """Whether a current shows beyond its error, and matters beside the speed."""
+        return self.current > max(_CLEAR * self.current_error, _LEAST_CURRENT * self.speed)
+
+    def agrees_with(self, other: "SpeedAndCurrent") -> bool:
+        """Return whether the currents are one within their errors, or within what does not matter."""
+        difference = float(np.hypot(self.north - other.north, self.east - other.east))
+        error = float(np.hypot(self.current_error, other.current_error))
+        return difference <= max(_CLEAR * error, _LEAST_CURRENT * max(self.speed, other.speed))
+
+
+def speed_through_water(records: Sequence[Record]) -> SpeedAndCurrent | None:
+    """Return the speeds and the current that runs share, by least squares; None without headings and positions.
+
+    Without positions u and v must be over ground.
+
+    The velocity over ground is R(psi) [u, v] + current (Fossen 2021, section 10.3). To first order in what a turn does,
+    surge falls with the square of the yaw rate and recovers in a time of its own (the one of some that fits best), and
+    sway follows the yaw rate. Standard errors leave out one of eight stretches of the runs at a time.
+    """
+    tracks = [track for record in records if (track := _Track.from_record(record)) is not None]
+    if not tracks or sum(len(track.c) for track in tracks) < _FEWEST_ROWS:
+        return None
+    every = 1 + sum(len(track.c) for track in tracks) // _MOST_ROWS
+    target = np.concatenate([track.target(every) for track in tracks])
+
+    def features(seconds: float) -> Array:
+        return np.concatenate([
+            track.features(seconds, place, len(tracks), every) for place, track in enumerate(tracks)
+        ])  # fmt: skip
+
+    best = min(_TIMES_S, key=lambda seconds: least_squares(features(seconds), target)[1])
+    table = features(best)
+    values, errors = jackknife_least_squares(table, target)
+    starts = values[_SHARED:] + values[_SPEED]
+    return SpeedAndCurrent(
+        tuple(map(float, starts)), float(errors[_SPEED]), float(values[0]), float(values[1]),
+        float(np.hypot(*errors[:2]) / np.sqrt(2.0)),
+        _sector(np.concatenate([np.arctan2(track.s, track.c) for track in tracks])),
+    )  # fmt: skip
+
+
+def _sector(headings: Array) -> float:
+    """The smallest sector [rad] that holds all headings."""
+    sorted_ones = np.sort(headings % (2.0 * np.pi))
+    gaps = np.diff(sorted_ones, append=sorted_ones[0] + 2.0 * np.pi)
+    return float(2.0 * np.pi - np.max(gaps))
+
+
+@dataclass(frozen=True, eq=False)
+class _Track:
+    """Smoothed velocity over ground [m/s], heading as cosine and sine, yaw rate [rad/s] of a run, each (n,)."""
+
+    north: Array
+    east: Array
+    c: Array
+    s: Array
+    rate: Array
+    dt: float
+
+    @classmethod
+    def from_record(cls, record: Record) -> "_Track | None":
+        if "psi" not in record or not ({"x0", "y0"} <= set(record.channels) or {"u", "v"} <= set(record.channels)):
+            return None
+        length = max(3, round(_SMOOTHING_S / record.dt)) | 1
+        if len(record) < 4 * length:
+            return None
+        c, s = (smoothed(turned(record["psi"]), length) for turned in (np.cos, np.sin))
+        rate = smoothed_derivative(np.unwrap(record["psi"]), record.dt, length)
+        if "x0" in record:
+            north, east = (smoothed_derivative(record[symbol], record.dt, length) for symbol in ("x0", "y0"))
+        else:
+            u, v = (smoothed(record[symbol], length) for symbol in ("u", "v"))
+            north, east = c * u - s * v, s * u + c * v  # R(psi) [u, v], Fossen 2021, eq. (2.41)
+        return cls(north, east, c, s, rate, record.dt)
+
+    def target(self, every: int) -> Array:
+        return np.stack([self.north, self.east], axis=1)[::every].ravel()
+
+    def features(self, seconds: float, place: int, runs: int, every: int) -> Array:
+        """Current north and east, speed, loss of speed, sway, and the speed of each run at its start over that."""
+        c, s, one, zero = self.c, self.s, np.ones(len(self.c)), np.zeros(len(self.c))
+        from scipy.signal import lfilter
+
+        kept = np.exp(-self.dt * np.arange(len(c)) / seconds) if seconds else zero
+        share = 1.0 - np.exp(-self.dt / seconds) if seconds else 1.0
+        loss = lfilter([share], [1.0, share - 1.0], self.rate**2)
+        starts = np.zeros((runs, len(c)))
+        starts[place] = kept
+        north = [one, zero, c, -c * loss, -s * self.rate, *(c * starts)]
+        east = [zero, one, s, -s * loss, c * self.rate, *(s * starts)]
+        return np.array([north, east]).transpose(2, 0, 1)[::every].reshape(-1, len(north))

@@ -1,0 +1,45 @@
+"""The speed through the water and the current, from fixes on several courses."""
+
+import numpy as np
+import pytest
+
+from seatrial.core.values import Record
+from seatrial.data.check.water_speed import speed_through_water
+
+DT = 0.5
+
+
+def craft(course: float, turn: float, current: tuple[float, float], rng: np.random.Generator) -> Record:
+    """Three minutes at 3 m/s, slower and drifting in the turns, in a current [m/s north, east]; fixes of 5 cm."""
+    time = DT * np.arange(360)
+    rate = turn * np.sin(2.0 * np.pi * time / 60.0) + 0.02 * (time > 90.0) * (turn > 0.05)
+    psi = course + DT * np.cumsum(rate)
+    u, v = 3.0 - 40.0 * rate**2, -1.5 * rate
+    north = u * np.cos(psi) - v * np.sin(psi) + current[0]
+    east = u * np.sin(psi) + v * np.cos(psi) + current[1]
+    track = {
+        name: DT * np.cumsum(way) + 0.05 * rng.standard_normal(len(time)) for name, way in (("x0", north), ("y0", east))
+    }
+    return Record.from_arrays(f"run {course:g}", time, {"psi": psi, **track})
+
+
+@pytest.mark.parametrize("current", [(0.4, 1.2), (0.0, 0.0)])
+def test_two_courses_show_speed_and_current(current: tuple[float, float], rng: np.random.Generator) -> None:
+    shown = speed_through_water([craft(0.5, 0.06, current, rng), craft(3.6, 0.06, current, rng)])
+    assert shown is not None and shown.is_separate
+    assert shown.speed == pytest.approx(3.0, abs=0.06)
+    assert (shown.north, shown.east) == pytest.approx(current, abs=0.04)
+    assert shown.has_current == (current != (0.0, 0.0))
+
+
+def test_one_course_does_not(rng: np.random.Generator) -> None:
+    straight = [craft(0.5, 0.004, (0.4, 1.2), rng)]
+    shown = speed_through_water(straight)
+    assert shown is not None and not shown.is_separate
+    assert speed_through_water([straight[0].without("psi")]) is None
+
+
+def test_currents_of_two_outings_disagree(rng: np.random.Generator) -> None:
+    ebb, flood = (speed_through_water([craft(0.5, 0.06, (one, 0.0), rng)]) for one in (-0.8, 0.8))
+    assert ebb is not None and flood is not None
+    assert not ebb.agrees_with(flood) and ebb.agrees_with(ebb)
