@@ -1,0 +1,49 @@
+"""The step in which numbers were written: the resolution of a clock's stamps or of a sensor's values."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+_FINEST_SHARE = 10  # smallest step looked for, as a part of the median gap between neighbouring values; chosen
+_LEVELS = 3  # gaps, gaps between gaps, and theirs: stamps of milliseconds 200 ms apart need the second; chosen
+_AGREEMENT = 1e-3  # of a step, within which a gap counts as so many whole steps; chosen, above what conversions round
+_NEAR = 0.1  # of a step, within which a gap helps to measure the step; chosen
+_ROUNDING = 8.0 * float(np.finfo(np.float64).eps)  # of the largest value: what conversions of units leave; chosen
+_LEAST_SHARE = 0.95  # of the gaps that are whole steps: a few values may have been interpolated; chosen
+
+
+def resolution(values: NDArray[np.float64]) -> float:
+    """Return the coarsest step on whose multiples, counted from any origin, the values lie, in their unit.
+
+    0 where there is none: fewer than two distinct values, or values with as many digits as a computer has. Of a channel
+    that took two values only it is their distance, which may be far above the sensor's own step.
+
+    Args:
+        values: any shape; what is not finite counts for nothing.
+    """
+    finite = np.unique(np.asarray(values, dtype=np.float64)[np.isfinite(values)])
+    rounding = _ROUNDING * float(np.max(np.abs(finite), initial=0.0))
+    gaps = _gaps(finite, rounding)
+    further = gaps
+    for _ in range(_LEVELS):
+        if further.size == 0:
+            return 0.0
+        usual = float(further[(further.size - 1) // 2])
+        for parts in range(1, _FINEST_SHARE + 1):
+            step = usual / parts
+            tolerance = max(_AGREEMENT * step, 2.0 * rounding)  # both ends of a gap are rounded
+            if tolerance > 0.1 * step:  # digits end here: any number would agree; chosen
+                break
+            counts = np.round(gaps / step)
+            near = (np.abs(gaps - step * counts) <= _NEAR * step) & (counts > 0.0)
+            if np.sum(near) > 2:  # by many gaps: one alone is rounded, and two numbers agree by chance
+                step = float(counts[near] @ gaps[near] / (counts[near] @ counts[near]))
+            if np.mean(np.abs(gaps - step * counts) <= tolerance) >= _LEAST_SHARE:
+                return step
+        further = _gaps(further, 2.0 * rounding)
+    return 0.0
+
+
+def _gaps(ordered: NDArray[np.float64], rounding: float) -> NDArray[np.float64]:
+    """Return the distances of neighbouring values, in order, without those that rounding makes."""
+    gaps = np.sort(np.diff(ordered))
+    return gaps[gaps > rounding]
