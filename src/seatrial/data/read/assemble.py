@@ -145,7 +145,8 @@ def _channel(column: ColumnSpec, values: Array, label: str) -> Channel:
         column.declared_positive,
         column.reference_point,
         label,
-        column.is_held,
+        column.kind,
+        column.between,
     )
 
 

@@ -10,6 +10,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index, InputError, Record, channel_hint
 from seatrial.physics.sensors import Sensors
 from seatrial.physics.simulate.actuators import ActuatorHistory
+from seatrial.physics.simulate.batch import RunInputs
 from seatrial.physics.simulate.channels import inputs_of
 
 
@@ -22,6 +23,7 @@ class Segments:
         offsets: (segments + 1,); run, session: (segments,), indices into `runs` and `sessions`.
         outputs: observables that are compared, in order; dt: s.
         history: commands of the whole runs, where the model has states that follow them; None: it has none.
+        run_inputs: inputs of the whole runs, from which delayed ones are taken; None: the segments' own alone.
     """
 
     inputs: Array
@@ -34,6 +36,7 @@ class Segments:
     outputs: tuple[str, ...]
     dt: float
     history: ActuatorHistory | None = None
+    run_inputs: RunInputs | None = None
 
     @property
     def count(self) -> int:
@@ -56,6 +59,7 @@ class Segments:
             run=self.run[indices],
             session=self.session[indices],
             history=None if self.history is None else self.history.selected(indices),
+            run_inputs=None if self.run_inputs is None else self.run_inputs.selected(indices),
         )
 
 
@@ -178,4 +182,12 @@ def segments_between(
         outputs,
         dt,
         ActuatorHistory.from_runs(model, of_runs, dt, run, np.array(firsts, dtype=np.int64), session),
+        _run_inputs(of_runs, run, np.array(firsts, dtype=np.int64)),
     )
+
+
+def _run_inputs(inputs: Sequence[Array], run: Index, first: Index) -> RunInputs:
+    """Return the inputs of whole runs, (rows, nu) each; run, first: of each segment, and its first row in that run."""
+    edges = np.concatenate([[0], np.cumsum([len(u) for u in inputs])]).astype(np.int64)
+    place = np.column_stack([edges[run] + first, edges[run], edges[run + 1]])
+    return RunInputs(np.concatenate(inputs), np.ascontiguousarray(place, dtype=np.int64))

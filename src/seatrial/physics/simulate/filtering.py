@@ -71,13 +71,10 @@ class KalmanFilter(SegmentBatch):
         return TangentPointer(self.model.compiled.rates_tangent), TangentPointer(self.model.compiled.outputs_tangent)
 
     @cached_property
-    def _rise(self) -> Array:
-        """1 for inputs that run straight from sample to sample, 0 for those that linear models hold, (nu,)."""
-        return np.array([0.0 if self.model.is_affine and i.is_held else 1.0 for i in self.model.inputs])
-
-    @cached_property
     def _steps_per_sample(self) -> int:
-        """Runge-Kutta steps in a sample: more where an input is held, as samples may then lie far apart."""
+        """Runge-Kutta steps in a sample: more where a linear model holds an input, as samples may then lie far apart."""
+        if not self.model.is_affine:
+            return self.substeps
         is_moving = np.ptp(self.inputs, axis=0) > 0.0
         return max(self.substeps, HELD_SUBSTEPS) if np.any(is_moving & (self._rise == 0.0)) else self.substeps
 
