@@ -7,9 +7,11 @@ deviation dt / sqrt(12), of a uniform distribution over the interval, in every s
 import math
 from collections.abc import Sequence
 
+import numpy as np
+
 from seatrial.core.equations import Model
 from seatrial.core.values import NOTATION, Prior, Record
-from seatrial.core.values.between import travel
+from seatrial.core.values.between import Travel, travel
 from seatrial.data.trial import EstimateSettings
 from seatrial.estimation.problem.output_error import Nuisance
 from seatrial.physics.simulate.batch import InputCorrection
@@ -19,10 +21,6 @@ _NOT_SET = ("wind_speed", "wind_direction", "alpha_w", "u", "omega_e")
 
 _FORCE_UNITS = ("N", "N m")
 """Units of inputs that are forces of waves."""
-
-_LEAST_SHARE = 0.5
-"""Of an input's travel, what steps within single samples make of it where it is held: 1 for steps, 0 for a slewing
-rudder; chosen."""
 
 _OWN_RATE = 1.001
 """Ratio of the time step of a record to that of an input's source up to which they are one; chosen."""
@@ -56,18 +54,16 @@ def with_held_inputs(model: Model, records: Sequence[Record]) -> Model:
 
 
 def _is_held(name: str, records: Sequence[Record]) -> bool:
-    total = steps = 0.0
-    for record in records:
-        if name not in record:
-            continue
-        channel = record.channel(name)
-        whole, within = travel(channel.values)
-        total += whole
-        if channel.between or channel.is_command:
-            steps += whole if channel.is_held else 0.0
-        elif not _is_resampled(record, name):
-            steps += within
-    return total > 0.0 and steps >= _LEAST_SHARE * total
+    return sum((_judged_travel(record, name) for record in records if name in record), Travel()).is_stepped
+
+
+def _judged_travel(record: Record, name: str) -> Travel:
+    """Return the travel of a channel, all or nothing of it in steps where that is declared or cannot be judged."""
+    channel = record.channel(name)
+    seen = travel(channel.values)
+    if channel.between or channel.is_command:
+        return Travel(seen.whole, seen.whole if channel.is_held else 0.0)
+    return Travel(seen.whole, 0.0) if _is_resampled(record, name) else seen
 
 
 def _is_resampled(record: Record, name: str) -> bool:
@@ -83,7 +79,7 @@ def timing_nuisances(model: Model, records: Sequence[Record], settings: Estimate
             is_spread_fixed=True,
         )
         for name in set_inputs(model)
-        if name not in settings.delays and any(name in r and travel(r[name])[0] > 0.0 for r in records)
+        if name not in settings.delays and any(name in r and np.ptp(r[name]) > 0.0 for r in records)
     )  # fmt: skip
 
 

@@ -9,7 +9,7 @@ import math
 import numpy as np
 from numba import njit, void
 
-from seatrial.numerics.kernels.integrate import DIVERGED, effective_input
+from seatrial.numerics.kernels.integrate import DIVERGED, delayed_sample, effective_input
 from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.simd import LANES, add_multiple, aligned_scratch, gather_scaled
 from seatrial.numerics.kernels.types import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, TABLE, TANGENT, VECTOR
@@ -26,10 +26,9 @@ def input_derivatives(inputs, first, last, k, gain, delay, dt, out):
     for j in range(gain.size):
         delayed = k - delay[j] / dt
         place = min(max(delayed, first * 1.0), last - 1.0)
-        left = min(int(place), last - 2)
-        rise = inputs[left + 1, j] - inputs[left, j]
         out[3 * j + OFFSET] = 1.0
-        out[3 * j + GAIN] = inputs[left, j] + (place - left) * rise
+        out[3 * j + GAIN] = delayed_sample(inputs, first, last, j, place, False)
+        rise = delayed_sample(inputs, first, last, j, place, True)
         out[3 * j + DELAY] = -gain[j] * rise / dt if place == delayed else 0.0
 
 
@@ -233,6 +232,15 @@ def step_tables(chain, link_p, s, width):
     direct[0] = link_p[:, 0] * width + link_p[:, 1]
     direct[1] = (_ADDED * nx + link_p[:, 0]) * columns + link_p[:, 2]
     return gathered, direct
+
+
+@kernel(void(MATRIX, F8, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX), **OPTIONS)
+def correct(inputs, dt, gain, offset, delay, out, weights):
+    """Set the effective inputs of a whole run, (rows, nu), and their derivatives, (rows, 3 nu)."""
+    rows = inputs.shape[0]
+    for k in range(rows):
+        effective_input(inputs, 0, rows, k, gain, offset, delay, dt, out[k])
+        input_derivatives(inputs, 0, rows, k, gain, delay, dt, weights[k])
 
 
 @kernel(void(TANGENT, MATRIX, MATRIX, MATRIX, F8, MATRIX, CUBE), **OPTIONS)

@@ -138,8 +138,8 @@ class SegmentBatch:
         inputs, place = self._run_inputs.values, self._run_inputs.place[first:last]
         gain, zero, delay = (a[first:last] for a in self._correction_values(corrections))
         compiled = self.model.compiled
-        replay(compiled.rates, compiled.outputs, inputs, place, self._rise, offsets, 0, last - first, self.dt, self.substeps,
-               np.ascontiguousarray(start[first:last]), np.ascontiguousarray(parameters[first:last]),
+        replay(compiled.rates, compiled.outputs, inputs, place, self._rise, offsets, 0, last - first, self.dt,
+               self.substeps, np.ascontiguousarray(start[first:last]), np.ascontiguousarray(parameters[first:last]),
                gain, zero, delay, self._output_columns, len(self.model.outputs), y, failed)  # fmt: skip
         return y, failed
 
