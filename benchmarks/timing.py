@@ -1,11 +1,11 @@
 """Coverage and efficiency of intervals where nobody recorded when an input took effect.
 
 A Nomoto craft (K 0.12, T 9 s), its rudder 10 degrees to either side in turn, simulated exactly and fitted as `identify`
-does by default. A cell is a coefficient x time step x timing x noise. Timing: orders held from sample to sample; held
-and switching anywhere within a sample; a rudder slewing at 2.5 deg/s; the same recorded late by 0.3 of a step, or with
-its corners anywhere within a sample; held orders at the starts of segments of 10 s, fitted by multiple shooting, whose
-free initial states cost more than the bound knows. The bound is that of Cramer and Rao with the delay
-free under its prior. `--craft waterjet`: the example series, its nozzle recorded late by `--late` seconds.
+does by default. A cell is a coefficient x time step x timing x noise. Timing: orders held from sample to sample, and
+switching anywhere within a sample; a rudder slewing at 2.5 deg/s; the same recorded late by 0.3 of a step, or with its
+corners anywhere within a sample; held orders at the starts of segments of 10 s, fitted by multiple shooting, whose free
+initial states cost more than the bound knows. The bound is that of Cramer and Rao with the delay free under its prior.
+ `--craft waterjet`: the example series, its nozzle recorded late by `--late` seconds.
 """
 
 import argparse

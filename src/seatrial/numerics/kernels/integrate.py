@@ -18,8 +18,8 @@ DIVERGED = 1e9  # summed size of states, SI, that no ship reaches; chosen
 def delayed_sample(inputs, first, last, j, place, by_place):
     """Return input j at a place among rows first..last, clamped to them, or its slope by the place.
 
-    Cubic convolution (Keys 1981, IEEE Trans. ASSP 29, 1153, eq. (8)): exact for parabolas, so that what is moved in time
-    is not smeared, and with a continuous slope, so that a search meets no kink.
+    Cubic convolution (Keys 1981, IEEE Trans. ASSP 29, 1153, eq. (8)): exact for parabolas, so that what is moved in
+    time is not smeared, and with a continuous slope, so that a search meets no kink.
     """
     left = int(place)
     f = place - left
