@@ -5,7 +5,7 @@ does by default. A cell is a coefficient x time step x timing x noise. Timing: o
 switching anywhere within a sample; a rudder slewing at 2.5 deg/s; the same recorded late by 0.3 of a step, or with its
 corners anywhere within a sample; held orders at the starts of segments of 10 s, fitted by multiple shooting, whose free
 initial states cost more than the bound knows. The bound is that of Cramer and Rao with the delay free under its prior.
- `--craft waterjet`: the example series, its nozzle recorded late by `--late` seconds.
+`--craft waterjet`: the example series, its nozzle recorded late by `--late` seconds.
 """
 
 import argparse
