@@ -14,7 +14,7 @@ import math
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -209,7 +209,10 @@ def waterjet(given: argparse.Namespace) -> list[str]:
     for seed in range(given.first, given.first + given.seeds):
         (run, *_), craft = demo_series(seed, executes=given.executes)
         moved = np.interp(run.time - given.late, run.time, run["delta"])
-        record = run.with_channel("delta", run.channel("delta").with_values(moved)).resampled(given.rate)
+        late = run.with_channel("delta", run.channel("delta").with_values(moved)).resampled(given.rate)
+        # as a file has it: nothing says at what rate the nozzle was simulated
+        bare = {s: replace(c, sample_s=0.0, between="") for s, c in late.channels.items()}
+        record = replace(late, channels=bare)
         trial = st.Trial(st.Ship("waterjet", {"L": 9.8}), (st.TrialRun(record),), craft)
         fit = st.identify(trial)
         free = [c for c in fit.coefficients if c.lower is not None and c.upper is not None]
