@@ -131,7 +131,9 @@ def own_steps(model: st.Model, draw: RandomStates) -> Array:
                       np.ascontiguousarray(draw.states), y, failed)  # fmt: skip
     else:
         none, code = np.zeros((count, nu)), model.compiled
-        replay(code.rates, code.outputs, inputs, offsets, 0, count, STEP, 1, np.ascontiguousarray(draw.states),
+        place = np.ascontiguousarray(np.column_stack([offsets[:-1], offsets[:-1], offsets[1:]]))
+        replay(code.rates, code.outputs, inputs, place, np.ones(nu), offsets, 0, count, STEP, 1,
+               np.ascontiguousarray(draw.states),
                np.tile(values, (count, 1)), np.ones_like(none), none, none, select, 0, y, failed)  # fmt: skip
     return y[1::2]
 

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from standard_craft import CRAFT
 
 from seatrial.core.values import InputError, Record
+from seatrial.data.trial import EstimateSettings
 from seatrial.estimation.estimate.fit import estimate_model
 from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions
@@ -95,7 +96,10 @@ def outcome(item: Item) -> Outcome:
     nothing = np.full(len(names), np.nan)
     try:
         fit = estimate_model(
-            blank, Runs.one_session_each([item.record], craft.length), None, EstimatorOptions(workers=1)
+            blank,
+            Runs.one_session_each([item.record], craft.length),
+            EstimateSettings().with_known_timing(blank.input_names),  # as in the bound
+            EstimatorOptions(workers=1),
         )
     except InputError as error:
         spent = time.process_time() - began

@@ -14,8 +14,9 @@ def step_response(model: Model) -> Array:
     """Yaw rate after a rudder step of 0.2 rad from rest; r_rest starts where r' - K T_3 delta / (T_1 T_2) puts it."""
     n = len(model.states)
     y, failed = np.empty((ROWS, 1)), np.full(1, -1)
-    replay(model.compiled.rates, model.compiled.outputs, np.full((ROWS, 1), STEP), np.array([0, ROWS]), 0, 1, DT, 1,
-           np.zeros((1, n)), model.parameters.values[None].copy(), np.ones((1, 1)), np.zeros((1, 1)), np.zeros((1, 1)),
+    replay(model.compiled.rates, model.compiled.outputs, np.full((ROWS, 1), STEP),
+           np.array([[0, 0, ROWS]]), np.ones(1), np.array([0, ROWS]), 0, 1, DT, 1, np.zeros((1, n)),
+           model.parameters.values[None].copy(), np.ones((1, 1)), np.zeros((1, 1)), np.zeros((1, 1)),
            np.array([0]), 0, y, failed)  # fmt: skip
     return y[:, 0]
 

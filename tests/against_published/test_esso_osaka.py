@@ -33,8 +33,9 @@ def errors(path: Path) -> list[tuple[float, float]]:
     for first in range(0, min(len(x) - WINDOW, WINDOW) + 1, WINDOW):
         rows = slice(first, first + WINDOW)
         y, failed = np.empty((WINDOW, 6)), np.full(1, -1)
-        replay(model.compiled.rates, model.compiled.outputs, np.ascontiguousarray(u[rows]), np.array([0, WINDOW]), 0, 1,
-               0.1, 1, x[rows][:1].copy(), model.parameters.values[None].copy(), np.ones((1, 4)), np.zeros((1, 4)),
+        replay(model.compiled.rates, model.compiled.outputs, np.ascontiguousarray(u[rows]),
+               np.array([[0, 0, WINDOW]]), np.ones(4), np.array([0, WINDOW]), 0, 1, 0.1, 1, x[rows][:1].copy(),
+               model.parameters.values[None].copy(), np.ones((1, 4)), np.zeros((1, 4)),
                np.zeros((1, 4)), np.arange(6), 0, y, failed)  # fmt: skip
         assert failed[0] == -1
         gap = y - x[rows]

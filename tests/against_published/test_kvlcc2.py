@@ -31,7 +31,8 @@ def turn(angle: float) -> Array:
     inputs = np.column_stack([rudder, np.full(rows, propeller_rate(SPEED)), np.zeros((rows, 2))])
     x0, y, failed = np.zeros((1, 6)), np.empty((rows, 6)), np.full(1, -1)
     x0[0, 0] = SPEED
-    replay(model.compiled.rates, model.compiled.outputs, inputs, np.array([0, rows]), 0, 1, dt, 1, x0,
+    replay(model.compiled.rates, model.compiled.outputs, inputs, np.array([[0, 0, rows]]), np.ones(4),
+           np.array([0, rows]), 0, 1, dt, 1, x0,
            model.parameters.values[None].copy(), np.ones((1, 4)), np.zeros((1, 4)), np.zeros((1, 4)), np.arange(6), 0,
            y, failed)  # fmt: skip
     assert failed[0] == -1

@@ -111,7 +111,7 @@ def _coefficients_alone(trial: Trial, model: Model, train: Sequence[TrialRecord]
     plain = EstimateSettings(
         segment_s=trial.estimate.segment_s, segment_lengths=trial.estimate.segment_lengths,
         channels=trial.estimate.channels,
-    )  # fmt: skip
+    ).with_known_timing(model.input_names)  # fmt: skip  # coefficients alone: nothing that sessions have of their own
     seconds = with_segment_seconds(plain, model, runs).segment_s or np.inf
     return output_error_problem(model, runs, seconds, plain, workers=1)
 

@@ -30,7 +30,8 @@ class DisturbanceLimit:
 def limit_of(craft: DisturbedCraft, disturbance: Disturbance, record: Record) -> DisturbanceLimit:
     """Return what the likelihood of the true disturbance admits on this record."""
     model = craft.model
-    problem = output_error_problem(model, Runs.one_session_each([record], craft.length), np.inf, EstimateSettings(), 1)
+    settings = EstimateSettings().with_known_timing(model.input_names)  # the records were simulated sample by sample
+    problem = output_error_problem(model, Runs.one_session_each([record], craft.length), np.inf, settings, 1)
     problem = replace(problem, noise=np.array([craft.sensors[o] for o in problem.data.outputs]))
     local = np.array([[craft.start.get(s, 0.0) for s in problem.starts]])
     optimum = Optimum(

@@ -76,7 +76,7 @@ def craft_draw(craft: KnownCraft, box: Box, start: Array) -> ProblemDraw:
 
     trial = Trial(
         craft.ship, tuple(map(TrialRun, craft.records)), start_within(craft.model, names, start, box),
-        craft.settings, dict(craft.noise),
+        craft.settings.with_known_timing(craft.model.input_names), dict(craft.noise),
     )  # fmt: skip
     units = tuple(craft.model.parameters[name].unit for name in names)
     return ProblemDraw(names, units, box, fitness, KnownTruth(truth, bound), start, held, trial)

@@ -22,6 +22,7 @@ from seatrial.core.values.channel_text import (
 )
 from seatrial.physics.simulate.channels import inputs_of
 from seatrial.physics.simulate.divergence import state_limits
+from seatrial.physics.simulate.filtering import corrected_inputs as delayed_inputs
 from seatrial.reporting.document import environment
 from seatrial.reporting.runs import badness
 
@@ -125,7 +126,7 @@ def _document(p: Prediction, fit: Fit) -> dict[str, Any]:
         "dt": p.measured.dt, "count": len(p.measured), "limits": state_limits(model).tolist(),
         "start": [float(p.simulated[s][0]) for s in model.states],
         "inputs": [_coded(column) for column in corrected_inputs(p, fit).T],
-        "parameters": values, "reference": p.reference_word,
+        "held": [i.is_held for i in model.inputs], "parameters": values, "reference": p.reference_word,
         "channels": [_channel(p, name, model.states.index(name)) for name in names],
     }  # fmt: skip
 
@@ -133,14 +134,13 @@ def _document(p: Prediction, fit: Fit) -> dict[str, Any]:
 def corrected_inputs(p: Prediction, fit: Fit) -> Array:
     """Return the inputs with which the run was simulated, in the model's signs, shape (n, nu).
 
-    Each is gain times the recorded one, `delay` seconds earlier, plus zero; linear between samples.
+    Each is gain times the recorded one, `delay` seconds earlier, plus zero.
     """
-    inputs, time = inputs_of(fit.model, p.measured).copy(), np.arange(len(p.measured)) * p.measured.dt
-    for j, name in enumerate(fit.model.input_names):
-        gain, zero, delay = (p.offsets.get(f"{name} {kind}", neutral) for kind, neutral in _CORRECTIONS)
-        late = np.interp(time - delay, time, inputs[:, j]) if delay else inputs[:, j]
-        inputs[:, j] = gain * late + zero
-    return inputs
+    gain, zero, delay = (
+        np.array([p.offsets.get(f"{name} {kind}", neutral) for name in fit.model.input_names])
+        for kind, neutral in _CORRECTIONS
+    )
+    return delayed_inputs(inputs_of(fit.model, p.measured), p.measured.dt, gain, zero, delay)[0]
 
 
 _CORRECTIONS = (

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 
 from seatrial.core.results import Study
 from seatrial.core.values import versions
@@ -24,6 +25,8 @@ def study(*, quick: bool, seed: int, report_progress: Callable[[str], None] | No
     """
     began = time.perf_counter()
     trial = packaged_trial("kvlcc2_hsva.toml")
+    # as in the paper, whose towing tank records the rudder on the clock of the motions
+    trial = replace(trial, estimate=trial.estimate.with_known_timing(trial.model.input_names))
     made = reproduce_benchmark(trial, quick=quick, seed=seed, report_progress=report_progress)
     return Study(
         name="alexandersson2022",

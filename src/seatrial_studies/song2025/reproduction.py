@@ -9,6 +9,7 @@ from seatrial.core.equations import Model
 from seatrial.core.results import RowScore
 from seatrial.core.values import Array, Finding, InputError, Record
 from seatrial.data.example_series import JET_VELOCITY, SENSOR_NOISE, SLEW_RATE, with_sensor_noise
+from seatrial.data.trial import EstimateSettings
 from seatrial.estimation.estimate import Runs, estimate_model
 from seatrial.estimation.regress import (
     Central,
@@ -311,9 +312,11 @@ def _output_error(measured: Record) -> tuple[EstimatorResult, EstimatorResult, A
     own = manoeuvre(
         TRUTH.craft(), programme(PublishedManoeuvre.CONSECUTIVE), inputs={"v_j": JET_VELOCITY}, slew_rate=SLEW_RATE
     )
-    exact = estimate_model(craft_without_coefficients(), Runs.one_session_each([own], length))
+    blank = craft_without_coefficients()
+    known = EstimateSettings().with_known_timing(blank.input_names)  # simulated records, inputs as they ran
+    exact = estimate_model(blank, Runs.one_session_each([own], length), known)
     noisy = replace(Runs.one_session_each([measured], length), noise=dict(SENSOR_NOISE))
-    found = estimate_model(craft_without_coefficients(), noisy)
+    found = estimate_model(blank, noisy, known)
     count = len(COEFFICIENTS)
     errors = found.interval.standard_error[:count] / np.abs(true_coefficients())
     rows = [RegressionEstimate(f.estimate.common_parameters[:count]) for f in (exact, found)]

@@ -29,7 +29,8 @@ def clean() -> Record:
     everything, offsets = np.arange(len(model.states)), np.array([0, count])
     compiled, p = model.compiled, model.parameters.values[None]
     replay(
-        compiled.rates, compiled.outputs, inputs, offsets, 0, 1, dt, 1, start, p, ones, zeros, zeros,
+        compiled.rates, compiled.outputs, inputs, np.array([[0, 0, count]]), np.ones(2), offsets, 0, 1, dt, 1,
+        start, p, ones, zeros, zeros,
         everything, 0, out, failed,
     )  # fmt: skip
     record = Record.from_arrays("waterjet", time, {s: out[:, i] for i, s in enumerate(model.states)})

@@ -36,7 +36,7 @@ def test_topics_meet_on_the_base_of_the_slowest_and_commands_are_held() -> None:
         gyro={"time": TIME, "psi": np.mod(20.0 * TIME, 360.0)},
         order={"time": order_time, "pwm": np.array([1500.0, 1700.0, 1300.0])},
     )
-    command = ColumnSpec("command_1", "order/pwm", "us", zero=1500.0, span=400.0, is_held=True)
+    command = ColumnSpec("command_1", "order/pwm", "us", zero=1500.0, span=400.0, kind="command")
     columns = (ColumnSpec("u", "gnss/speed", "m/s"), ColumnSpec("psi", "gyro/psi", "deg"), command)
     record = assemble_record(topics, layout(*columns), "")
     np.testing.assert_allclose(record.time, slow[slow <= TIME[-1]], atol=1e-9)

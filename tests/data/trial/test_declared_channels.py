@@ -76,7 +76,7 @@ def test_what_clashes_is_refused(declared: str, records: str, says: str, tmp_pat
 def test_nothing_declared_is_nothing() -> None:
     assert declared_channels({}) == NO_DECLARED
     one = declared_channels({"flap": DeclaredChannel(meaning="angle", unit="deg")})["flap"]
-    assert one.quantity.unit == "rad" and not one.is_command
+    assert one.quantity.unit == "rad" and one.kind == "measured"
     one.require_side(None, "here")
 
 

@@ -29,7 +29,8 @@ def problem_of_a_noisy_run(stated: Mapping[str, float]) -> ConcentratedLikelihoo
     noisy = {n: run.channel(n).with_values(run[n] + s * rng.standard_normal(len(time))) for n, s in NOISE.items()}
     run = replace(run, channels={"delta": run.channel("delta")} | noisy)
     runs = Runs.one_session_each([run], 10.0)
-    problem = output_error_problem(truth, runs, np.inf, EstimateSettings(method=FitCriterion.OUTPUT_ERROR))
+    settings = EstimateSettings(method=FitCriterion.OUTPUT_ERROR, delays={"delta": 0.0})
+    problem = output_error_problem(truth, runs, np.inf, settings)
     inflation = np.where([o == "r" for o in problem.data.outputs], 3.0, 1.0)
     return ConcentratedLikelihood(replace(problem, inflation=inflation), stated)
 

@@ -33,7 +33,7 @@ def run() -> Record:
 def test_the_end_with_the_lowest_loss_is_used_and_all_are_reported(run: Record) -> None:
     model = model_named("nomoto").with_values({"U": 0.0})
     runs = Runs.one_session_each([run], 10.0)
-    settings = EstimateSettings(method=FitCriterion.OUTPUT_ERROR)
+    settings = EstimateSettings(method=FitCriterion.OUTPUT_ERROR, delays={"delta": 0.0})
     problem = output_error_problem(model, runs, np.inf, settings)
     start = find_start(problem, runs.records, 10.0)
     # a start from which the yaw rate answers the rudder the other way

@@ -29,7 +29,7 @@ def model() -> Model:
 @pytest.fixture(scope="module")
 def problem(model: Model) -> TrialProblem:
     runs = (TrialRun(steered_record(model, "a")), TrialRun(steered_record(model, "b")))
-    settings = EstimateSettings(segment_s=10.0, offsets={"delta": 0.05}, channels=("psi", "r"))
+    settings = EstimateSettings(segment_s=10.0, offsets={"delta": 0.05}, delays={"delta": 0.0}, channels=("psi", "r"))
     return Trial(SHIP, runs, model, estimate=settings, noise={"psi": 0.01}).problem()
 
 

@@ -5,6 +5,7 @@ import pytest
 
 from seatrial.core.equations import Sheet
 from seatrial.core.values import InputError, Record
+from seatrial.data.trial import EstimateSettings
 from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.time_scale import ship_length_seconds
 from seatrial.estimation.identify import estimate_model
@@ -25,7 +26,8 @@ def test_a_model_of_yaw_rate_alone_is_predicted_without_measures(rng: np.random.
     truth = replay(model, Record.from_arrays("run", time, {"delta": rudder, "u": np.ones(1500)}), {"r": 0.0})
     noisy = truth["r"] + 1e-3 * rng.standard_normal(1500)
     record = Record.from_arrays("run", time, {"r": noisy, "delta": rudder, "u": np.ones(1500)})
-    found = estimate_model(model.with_values({"T": 3.0, "K": 0.1}), Runs.one_session_each([record], 10.0))
+    settings = EstimateSettings().with_known_timing(model.input_names)
+    found = estimate_model(model.with_values({"T": 3.0, "K": 0.1}), Runs.one_session_each([record], 10.0), settings)
     run = simulate_open_loop(
         found.estimate.problem,
         found.model,

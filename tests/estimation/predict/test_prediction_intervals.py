@@ -71,7 +71,10 @@ def test_the_same_seed_gives_the_same_intervals(model: Model) -> None:
 
 
 def test_the_first_seconds_of_a_run_move_its_offsets_where_required(model: Model) -> None:
-    rng, settings = np.random.default_rng(8), EstimateSettings(segment_s=20.0, offsets={"delta": 0.02})
+    rng, settings = (
+        np.random.default_rng(8),
+        EstimateSettings(segment_s=20.0, offsets={"delta": 0.02}, delays={"delta": 0.0}),
+    )
     runs = [simulated_run(model, f"run {i}", ANGLES[i], rng) for i in range(RUNS)]
     items = [TrialRecord(r, Role.VALIDATE if i == RUNS - 1 else Role.TRAIN, r.name) for i, r in enumerate(runs)]
     found = estimate_model(model, Runs.one_session_each(runs[:-1], 8.0), settings, EstimatorOptions(workers=1))

@@ -20,7 +20,7 @@ from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.simulate.steer import manoeuvre
 
 ZEROS = np.radians([1.3, 0.8, 1.1, 0.9, 1.4])
-SETTINGS = EstimateSettings(method="output-error", offsets={"delta": np.radians(2.0)})
+SETTINGS = EstimateSettings(method="output-error", offsets={"delta": np.radians(2.0)}, delays={"delta": 0.0})
 OPTIONS = EstimatorOptions(workers=1)
 
 

@@ -34,7 +34,8 @@ def records() -> list[Record]:
 @pytest.fixture(scope="module")
 def problem(records: list[Record]) -> OutputError:
     runs = Runs.one_session_each(records, 1.0)
-    return output_error_problem(model_named("thrusters"), runs, 10.0, EstimateSettings())
+    model = model_named("thrusters")
+    return output_error_problem(model, runs, 10.0, EstimateSettings().with_known_timing(model.input_names))
 
 
 def nothing(records: list[Record]) -> np.ndarray:

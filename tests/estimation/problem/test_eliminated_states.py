@@ -18,9 +18,8 @@ from seatrial.physics.models.nomoto import nomoto
 def test_the_cost_is_that_of_the_best_initial_states(segment: float | None) -> None:
     rng = np.random.default_rng(2)
     run = steered(nomoto().with_values(TRUTH), square(400), rng, NOISE)
-    estimation = estimate_model(
-        nomoto(), Runs.one_session_each((run,), 8.0), EstimateSettings(segment_s=segment) if segment else None
-    )
+    settings = EstimateSettings(segment_s=segment, delays={"delta": 0.0})
+    estimation = estimate_model(nomoto(), Runs.one_session_each((run,), 8.0), settings)
     problem, optimum = estimation.estimate.problem, estimation.estimate.optimum
     point, error = estimation.estimate.common_parameters, estimation.interval.standard_error
     near = EliminatedStates.about(problem, point, optimum.local, optimum.normal)

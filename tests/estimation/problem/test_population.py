@@ -114,3 +114,21 @@ def test_further_kinds_stand_behind_as_declared() -> None:
     np.testing.assert_array_equal(wider.mean, [0.4, 1.0])
     np.testing.assert_array_equal(wider.deviation, [2.0, 0.1])
     np.testing.assert_array_equal(wider.means(np.array([3.0, 4.0])), [0.4, 1.0])
+
+
+def test_records_that_show_nothing_leave_the_spread_as_it_is() -> None:
+    """The difference of two equal precisions may round below zero; the spread must not grow without end."""
+    declared = [Prior(0.0, 0.577, "declared")]
+    population = SessionPopulation.as_declared(declared, np.zeros((1, 1)))
+    precision = np.array([[0.577**-2.0 * (1.0 - 1e-9)]])
+    for _ in range(10):
+        population = population.fitted(np.array([[0.1]]), precision, np.zeros((1, 1)))
+    assert 0.1 < population.deviation[0] < 2.0
+
+
+def test_a_fixed_spread_stays_as_declared_and_the_mean_moves() -> None:
+    declared = [Prior(0.0, 0.1, "declared")]
+    population = SessionPopulation.as_declared(declared, np.zeros((4, 1))).with_fixed_spread([True])
+    offsets, precision = np.array([[0.4], [0.5], [0.45], [0.42]]), np.diag(np.full(4, 1e4 + 100.0))
+    fitted = population.fitted(offsets, precision, np.zeros((4, 1)))
+    assert fitted.deviation[0] == 0.1 and 0.2 < fitted.mean[0] < 0.5

@@ -25,6 +25,14 @@ class KernelCase:
     gain: tuple[float, ...] = field(default=())
     offset: tuple[float, ...] = field(default=())
     delay: tuple[float, ...] = field(default=())
+    held: tuple[int, ...] = field(default=())
+
+    @property
+    def run_inputs(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Inputs, where each segment lies among them, and which of them run straight."""
+        first, last = self.offsets[:-1], self.offsets[1:]
+        place = np.ascontiguousarray(np.column_stack([first, first, last]), dtype=np.int64)
+        return self.inputs, place, np.array([0.0 if j in self.held else 1.0 for j in range(len(self.model.inputs))])
 
     @property
     def segments(self) -> int:
@@ -45,7 +53,7 @@ class KernelCase:
         y, failed = np.full((len(self.inputs), len(self.select)), 7.0), np.full(self.segments, -1)
         gain, offset, delay = self.corrections()
         replay(
-            *(c.rates, c.outputs, self.inputs, np.array(self.offsets), 0, self.segments, self.dt, self.substeps),
+            *(c.rates, c.outputs, *self.run_inputs, np.array(self.offsets), 0, self.segments, self.dt, self.substeps),
             *(self.start, self.p, gain, offset, delay, self.select, len(self.model.outputs), y, failed),
         )
         return y, failed
@@ -82,7 +90,7 @@ class KernelCase:
         start_column = np.array([columns.index(("start", i)) for i in range(self.start.shape[1])])
         gain, offset, delay = self.corrections()
         replay_tangent(
-            *(c.rates_tangent, c.outputs_tangent, self.inputs, np.array(self.offsets), 0, self.segments, self.dt),
+            *(c.rates_tangent, c.outputs_tangent, *self.run_inputs, np.array(self.offsets), 0, self.segments, self.dt),
             *(self.substeps, self.start, self.p, gain, offset, delay),
             *self.links(c.rates_pattern),
             *self.links(c.outputs_pattern),

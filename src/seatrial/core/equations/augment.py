@@ -139,4 +139,4 @@ def _extended(
 
 def _augmented(model: Model, key: tuple[str, ...], write: Callable[[], ModelEquations], *more: Parameter) -> Model:
     equations = stored_equations((model.equation_hash, *key), write)
-    return Model(equations, Parameters((*model.parameters, *more)))
+    return replace(model, equations=equations, parameters=Parameters((*model.parameters, *more)))

@@ -52,7 +52,7 @@ class Binding:
 class Input:
     """An input channel; `positive` is its positive direction where it differs from the notation table's.
 
-    `is_held`: constant from sample to sample in the exact propagation of linear models.
+    `is_held`: constant from sample to sample; straight between samples, or smooth in linear models, where it is not.
     """
 
     name: str

@@ -1,6 +1,6 @@
 """A model: equations, written once, and the values of their parameters."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Self
 
@@ -25,10 +25,16 @@ def channel_of(observable: str) -> str:
 
 @dataclass(frozen=True)
 class Model:
-    """Equations with the parameters, free and fixed, in the equations' order."""
+    """Equations with the parameters, free and fixed, in the equations' order.
+
+    Attributes:
+        held: inputs that stay constant from sample to sample in the records it is used with, besides those that a
+            linear model holds by itself.
+    """
 
     equations: ModelEquations
     parameters: Parameters
+    held: frozenset[str] = frozenset()
 
     def __repr__(self) -> str:
         inputs = ", ".join(self.input_names) or "none"
@@ -46,8 +52,8 @@ class Model:
 
     @property
     def inputs(self) -> tuple[Input, ...]:
-        """The input channels."""
-        return self.equations.inputs
+        """The input channels, held where equations or records hold them."""
+        return tuple(replace(i, is_held=i.is_held or i.name in self.held) for i in self.equations.inputs)
 
     @property
     def input_names(self) -> tuple[str, ...]:
@@ -103,6 +109,10 @@ class Model:
         if parameters.names != self.parameters.names:
             raise InputError(f"the parameters do not belong to model '{self.name}'")
         return replace(self, parameters=parameters)
+
+    def with_held(self, names: Iterable[str]) -> Self:
+        """Return the model with these of its inputs constant from sample to sample, the others as its equations say."""
+        return replace(self, held=frozenset(names) & frozenset(self.input_names))
 
     def with_values(self, values: Mapping[str, float], source: str | None = None) -> Self:
         """Return the model with other parameter values."""

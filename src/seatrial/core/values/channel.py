@@ -7,6 +7,7 @@ from typing import Any, Self
 import numpy as np
 
 from seatrial.core.values.arrays import Array, Mask, frozen
+from seatrial.core.values.between import Between, Kind
 from seatrial.core.values.notation import quantity
 
 
@@ -21,9 +22,12 @@ class Channel:
         positive: positive direction, e.g. ``starboard`` or ``port``.
         reference_point: metres forward of midship to which the channel refers.
         label: the name in the file it came from.
-        is_command: whether it holds orders, which stay until the next one and are never corrected.
         is_measured: shape (n,), False where nothing was measured and `values` only run on from sample to sample, as in
             lost rows or between the readings of a slower sensor; None: every finite value was measured.
+        kind: who set it: an order (``command``, never corrected), a sensor (``measured``), or nobody says.
+        between: how it runs between samples: ``held`` or ``straight``; empty: a command is held, of another one its
+            steps decide.
+        sample_s: s between the samples of its source; 0: as in the record.
     """
 
     values: Array
@@ -32,8 +36,10 @@ class Channel:
     positive: str
     reference_point: float = 0.0
     label: str = ""
-    is_command: bool = False
     is_measured: Mask | None = None
+    kind: Kind = ""
+    between: Between = ""
+    sample_s: float = 0.0
 
     @classmethod
     def from_notation(cls, symbol: str, values: Array) -> Self:
@@ -42,10 +48,21 @@ class Channel:
         return cls(frozen(values), q.unit, q.frame, q.positive)
 
     @property
+    def is_command(self) -> bool:
+        """Whether it holds orders."""
+        return self.kind == "command"
+
+    @property
+    def is_held(self) -> bool:
+        """Whether it is declared to stay until the next sample; where nothing is declared, whether it is a command."""
+        return self.between == "held" if self.between else self.is_command
+
+    @property
     def metadata(self) -> dict[str, str | float]:
         """Everything but the values: ``Channel(values, **channel.metadata)`` is the channel again."""
         keys = ("unit", "frame", "positive", "reference_point", "label")
-        return {key: getattr(self, key) for key in keys}
+        more = {key: getattr(self, key) for key in ("kind", "between", "sample_s") if getattr(self, key)}
+        return {key: getattr(self, key) for key in keys} | more
 
     @property
     def measured(self) -> Array:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from seatrial.core.values.arrays import Array, frozen
+from seatrial.core.values.between import BETWEEN, KINDS
 from seatrial.core.values.channel import Channel
 from seatrial.core.values.channel_names import channel_hint
 from seatrial.core.values.errors import InputError, spelling_hint
@@ -15,6 +16,9 @@ from seatrial.core.values.units import si_unit
 
 if TYPE_CHECKING:
     import pandas
+
+
+_CHOICES: Mapping[str, tuple[str, ...]] = {"kind": KINDS, "between": BETWEEN}
 
 
 @dataclass(frozen=True)
@@ -26,12 +30,16 @@ class ColumnDeclarations:
         frames: ``body``, ``earth`` or ``none``.
         positive: positive direction.
         reference_points: metres forward of midship.
+        kind: ``command`` or ``measured``.
+        between: ``held`` or ``straight`` between samples.
     """
 
     units: Mapping[str, str] = field(default_factory=dict)
     frames: Mapping[str, str] = field(default_factory=dict)
     positive: Mapping[str, str] = field(default_factory=dict)
     reference_points: Mapping[str, float] = field(default_factory=dict)
+    kind: Mapping[str, str] = field(default_factory=dict)
+    between: Mapping[str, str] = field(default_factory=dict)
 
     def require_symbols(self, symbols: list[str]) -> None:
         """Refuse a declaration about a channel that the frame does not hold.
@@ -39,7 +47,7 @@ class ColumnDeclarations:
         Raises:
             InputError: which argument names which unknown channel.
         """
-        tables = {name: getattr(self, name) for name in ("units", "frames", "positive", "reference_points")}
+        tables = {name: getattr(self, name) for name in ("units", "frames", "positive", "reference_points", *_CHOICES)}
         for argument, table in tables.items():
             for symbol in table:
                 if symbol not in symbols and (argument, symbol) != ("units", "time"):
@@ -67,9 +75,18 @@ class ColumnDeclarations:
                 f"positive: '{symbol}' is {declared.positive} or {OPPOSITE.get(declared.positive, 'nothing else')}, "
                 f"not '{positive}'"
             )
+        chosen = {name: self._choice(name, symbol, getattr(declared, name)) for name in _CHOICES}
         values = numbers * _si_factor(symbol, self.units[symbol], declared.unit) if symbol in self.units else numbers
         place = self.reference_points.get(symbol, declared.reference_point)
-        return Channel(frozen(values), declared.unit, frame, positive, place, declared.label)
+        about = {**declared.metadata, "frame": frame, "positive": positive, "reference_point": place, **chosen}
+        return Channel(frozen(values), **about)
+
+    def _choice(self, argument: str, symbol: str, usual: str) -> str:
+        """What is declared of a channel's kind, or of how it runs between samples."""
+        word = getattr(self, argument).get(symbol, usual)
+        if word and word not in _CHOICES[argument]:
+            raise InputError(f"{argument}: '{symbol}' must be {' or '.join(_CHOICES[argument])}, not '{word}'")
+        return word
 
     def seconds(self, stamps: "pandas.Index | pandas.Series") -> Array:
         """Return time stamps as s, shape (n,): numbers as they are, dates and durations from the first one.

@@ -48,10 +48,12 @@ def froude_scaled(record: Record, ratio: float) -> Record:
     """
     if ratio == 1.0:
         return record
-    length = froude_factor("m", ratio)
+    length, seconds = froude_factor("m", ratio), froude_factor("s", ratio)
     channels = {}
     for symbol, channel in record.channels.items():
         scaled = channel.with_values(channel.values * froude_factor(channel.unit, ratio))
-        channels[symbol] = replace(scaled, reference_point=channel.reference_point * length)
-    time = record.time * froude_factor("s", ratio)
+        channels[symbol] = replace(
+            scaled, reference_point=channel.reference_point * length, sample_s=channel.sample_s * seconds
+        )
+    time = record.time * seconds
     return replace(record, time=time, channels=channels).with_step(f"Froude-scaled by {ratio:g}")

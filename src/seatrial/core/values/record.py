@@ -11,6 +11,7 @@ import numpy as np
 
 from seatrial.core.text.words import NAMES_SHOWN, enumeration
 from seatrial.core.values.arrays import Array, frozen
+from seatrial.core.values.between import held_rows
 from seatrial.core.values.channel import Channel, Provenance
 from seatrial.core.values.channel_names import channel_hint
 from seatrial.core.values.dataframe import ColumnDeclarations, channel_columns, column_numbers
@@ -187,7 +188,8 @@ class Record(PickledByConstructor):
     def resampled(self, rate: float) -> Self:
         """Return every k-th sample where `rate` [Hz] divides the record's own; otherwise linear interpolation.
 
-        No filter is applied: estimators compare point samples with point samples. What was measured within half a new
+        No filter is applied: estimators compare point samples with point samples. Of a channel that is declared to be
+        held the mean until the next sample remains, or the value that holds there. What was measured within half a new
         step of a new sample counts as measured there.
 
         Raises:
@@ -200,18 +202,36 @@ class Record(PickledByConstructor):
             )
         ratio = 1.0 / (self.dt * rate)
         if ratio >= 1 and abs(ratio - round(ratio)) < _WHOLE_RATIO:
-            thinned = self.rows(slice(None, None, round(ratio)))
+            thinned = self._every(round(ratio))
         else:
             count = int(np.floor(self.duration * rate * (1 + _ROUNDING))) + 1
             time = self.time[0] + np.arange(count) / rate
-            channels = {s: c.with_values(np.interp(time, self.time, c.values)) for s, c in self.channels.items()}
-            thinned = replace(self, time=frozen(time), channels=channels).with_step(f"resampled to {rate:g} Hz")
+            before = np.searchsorted(self.time, time + _SAME_TIME, side="right") - 1
+            channels = {
+                s: c.with_values(c.values[before] if c.is_held else np.interp(time, self.time, c.values))
+                for s, c in self.channels.items()
+            }
+            thinned = replace(self, time=frozen(time), channels=channels)._timed_by(self.dt)
+            thinned = thinned.with_step(f"resampled to {rate:g} Hz")
         nearest = np.clip(np.round((self.time - self.time[0]) * rate).astype(int), 0, len(thinned) - 1)
         for symbol, channel in self.channels.items():
             if channel.is_measured is not None:
                 count = np.bincount(nearest, channel.is_measured, len(thinned))
                 thinned = thinned.with_channel(symbol, thinned.channel(symbol).with_measured(count > 0.0))
         return thinned
+
+    def _every(self, ratio: int) -> Self:
+        """Return every `ratio`-th sample."""
+        kept = self.rows(slice(None, None, ratio))
+        if ratio == 1:
+            return kept
+        means = {s: c.with_values(held_rows(c.values, ratio)) for s, c in self.channels.items() if c.is_held}
+        return replace(kept, channels={**kept.channels, **means})._timed_by(self.dt)
+
+    def _timed_by(self, step: float) -> Self:
+        """Return the record with the time step [s] of its source in channels that do not know theirs."""
+        channels = {s: c if c.sample_s else replace(c, sample_s=step) for s, c in self.channels.items()}
+        return replace(self, channels=channels)
 
     def plot(self, length: float = 0.0) -> "Figure":
         """Draw the track and every channel over time as a Matplotlib figure.
@@ -244,6 +264,8 @@ class Record(PickledByConstructor):
         frames: Mapping[str, str] | None = None,
         positive: Mapping[str, str] | None = None,
         reference_points: Mapping[str, float] | None = None,
+        kind: Mapping[str, str] | None = None,
+        between: Mapping[str, str] | None = None,
     ) -> Self:
         """Make a record of a data frame; a frame of `to_dataframe` is restored, its metadata included.
 
@@ -256,11 +278,16 @@ class Record(PickledByConstructor):
             frames: channel symbol -> ``body``, ``earth`` or ``none``.
             positive: channel symbol -> positive direction, e.g. ``port``.
             reference_points: channel symbol -> metres forward of midship.
+            kind: channel symbol -> ``command`` (an order) or ``measured``.
+            between: channel symbol -> ``held`` or ``straight`` between samples; a command is held unless this says
+                otherwise, of other inputs their steps decide.
 
         Raises:
             InputError: a column is missing or holds text, or a symbol, unit, frame or direction is unknown.
         """
-        declared = ColumnDeclarations(units or {}, frames or {}, positive or {}, reference_points or {})
+        declared = ColumnDeclarations(
+            units or {}, frames or {}, positive or {}, reference_points or {}, kind or {}, between or {}
+        )
         chosen = channel_columns(frame, time, columns)
         declared.require_symbols(list(chosen))
         metadata = frame.attrs.get("channels", {})

@@ -48,6 +48,8 @@ CONSEQUENCES: dict[str, str] = {
     "empty-cells": "an input is taken as straight between its readings; nothing else is compared there",
     "repeated-rows": "repeated rows would count twice; they are dropped",
     "resolution": "steps of the sensor count as noise",
+    "integration-step": "time constants come out wrong by up to half a step",
+    "stepped-input": "as straight lines between samples the steps would come half a sample early",
     "feedback": "output error would take disturbances that are answered for the ship's response",
 }
 """Code -> consequence; findings of one severity come in this order."""

@@ -22,6 +22,7 @@ from seatrial.data.check.resting_level import resting_level_findings
 from seatrial.data.check.rudder import rudder_findings
 from seatrial.data.check.run_phases import phase_findings
 from seatrial.data.check.sentinels import without_sentinels
+from seatrial.data.check.stepped_inputs import integration_step_findings, stepped_input_findings
 from seatrial.data.check.timestamps import rebuild_time_base
 from seatrial.data.check.velocity_conventions import velocity_convention_findings
 from seatrial.data.check.yaw_rate_consistency import yaw_rate_findings
@@ -93,6 +94,8 @@ def _comparison_findings(record: Record) -> list[Finding]:
         *approach_findings(record),
         *feedback_findings(record),
         *resting_level_findings(record),
+        *stepped_input_findings(record),
+        *integration_step_findings(record),
     ]
 
 

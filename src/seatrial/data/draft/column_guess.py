@@ -67,7 +67,7 @@ class ColumnGuess:
             zero=self.zero,
             span=self.span,
             factor=self.scale,
-            is_held=self.kind == "command" or self.symbol.startswith("command_"),
+            kind="command" if self.kind == "command" or self.symbol.startswith("command_") else "",
         )
 
     def with_evidence(self, text: str) -> "ColumnGuess":

@@ -84,7 +84,8 @@ def model_text(file: ModelFile) -> str:
     equations = {"name": model.name, "equation_hash": model.equation_hash, "source": model.equations.source}
     parts = {"layout": model.equations.layout, "sensors": model.equations.sensors}
     equations |= {key: text for key, text in parts.items() if text}
-    table: dict[str, Any] = {"format": FORMAT, "model": equations | {"conventions": CONVENTIONS}}
+    held = {"held": sorted(model.held)} if model.held else {}
+    table: dict[str, Any] = {"format": FORMAT, "model": equations | held | {"conventions": CONVENTIONS}}
     if file.ship is not None:
         table["ship"] = model_tables.ship_table(file.ship)
     table["approach"] = number_table(file.approach)
@@ -189,4 +190,4 @@ def _model_with_equations(entry: Mapping[str, Any], where: str, own_model: Model
             f"model file '{where}' was written for other equations of model '{name}' "
             f"(hash {equation_hash[:12]}, here {model.equation_hash[:12]}); identify again"
         )
-    return model
+    return model.with_held(str(name) for name in entry.get("held", ()))

@@ -76,13 +76,15 @@ def record_of_sources(name: str, sources: Sequence[LogSource]) -> Record:
     step = f"{topics} topics of {len(files.split(', '))} files joined every {time[1] - time[0]:.6g} s"
     digest = sources[0].sha256 if len(sources) == 1 else " ".join(source.sha256 for source in sources)
     emptied = [text for part in read for text in part.emptied]
-    return _record(
-        name,
-        time,
-        channels,
-        layout.scale,
-        Provenance(files, digest, (*emptied, step)),
-    )
+    record = _record(name, time, channels, 1.0, Provenance(files, digest, (*emptied, step)))
+    return froude_scaled(_with_source_steps(record, series), layout.scale)
+
+
+def _with_source_steps(record: Record, series: Sequence[Series]) -> Record:
+    """Return the record with the sample interval of its own source in each channel that is one column."""
+    steps = {one.column.symbol: one.step for one in series if np.isfinite(one.step) and one.column.symbol in record}
+    timed = {symbol: replace(record.channel(symbol), sample_s=step) for symbol, step in steps.items()}
+    return replace(record, channels={**record.channels, **timed})
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,7 +178,8 @@ def _channel(column: ColumnSpec, values: Array, label: str) -> Channel:
         column.declared_positive,
         column.reference_point,
         label,
-        column.is_held,
+        column.kind,
+        column.between,
     )
 
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from seatrial.core.values import Array, InputError, si_unit
+from seatrial.core.values.between import Between, Kind
 from seatrial.core.values.notation import NOTATION, Quantity, positive_direction
 from seatrial.data.read.quantities import log_quantity
 
@@ -28,7 +29,8 @@ class ColumnSpec:
         reference_point: metres forward of midship, at the scale of the file.
         label: the name to keep; empty: the file's own, or ``column k``.
         zero, span, factor, offset: the number in `unit` is (cell - zero) / span * factor + offset.
-        is_held: whether a value holds until the next one (commands), in place of a straight line between them.
+        kind: who set it: an order (``command``), a sensor (``measured``), or nobody says.
+        between: how it runs between samples, ``held`` or ``straight``; empty: a command is held.
         declared: what the trial file declares a channel of its own to be; None: the notation table has it.
     """
 
@@ -43,8 +45,14 @@ class ColumnSpec:
     span: float = 1.0
     factor: float = 1.0
     offset: float = 0.0
-    is_held: bool = False
+    kind: Kind = ""
+    between: Between = ""
     declared: Quantity | None = None
+
+    @property
+    def is_held(self) -> bool:
+        """Whether a value holds until the next one, in place of a straight line between them."""
+        return self.between == "held" if self.between else self.kind == "command"
 
     @property
     def quantity(self) -> Quantity:

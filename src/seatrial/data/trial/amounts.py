@@ -56,7 +56,7 @@ class Amount(StrictTable):
 class StandardDeviation(StrictTable):
     """A standard deviation with its unit; without one it is SI."""
 
-    sd: Annotated[float, Field(gt=0)] | None = None
+    sd: Annotated[float, Field(ge=0)] | None = None
     unit: Unit | None = None
 
     @property
@@ -95,8 +95,9 @@ class InSi:
     def _in_si(self, amount: Amount | StandardDeviation) -> float | None:
         if self.unit and amount.unit and si_unit(amount.unit)[1] != self.unit:
             raise InputError(f"'{amount.unit}' is no unit of what is measured in {self.unit}; write one that is")
-        if self.is_positive and isinstance(amount, Amount) and not amount.value > 0.0:
-            raise InputError(f"{amount.value:g} is not positive; give a positive one")
+        number = amount.value if isinstance(amount, Amount) else amount.sd
+        if self.is_positive and number is not None and not number > 0.0:
+            raise InputError(f"{number:g} is not positive; give a positive one")
         return amount.in_si
 
 
@@ -112,4 +113,5 @@ PositiveLength = Annotated[float, InSi("m", is_positive=True)]
 PositiveDuration = Annotated[float, InSi("s", is_positive=True)]
 PositiveSpeed = Annotated[float, InSi("m/s", is_positive=True)]
 PositiveAngle = Annotated[float, InSi("rad", is_positive=True)]
-Deviation = Annotated[float | None, InSi(table=StandardDeviation)]
+Deviation = Annotated[float | None, InSi(is_positive=True, table=StandardDeviation)]
+DelayDeviation = Annotated[float | None, InSi("s", table=StandardDeviation)]  # 0: the delay is known to be none

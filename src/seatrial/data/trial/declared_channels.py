@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from seatrial.core.values import NOTATION, InputError, si_unit
+from seatrial.core.values.between import Between, Kind
 from seatrial.core.values.notation import OPPOSITE, Quantity
 from seatrial.data.read.quantities import LOG_QUANTITIES
 from seatrial.data.trial.schema import DeclaredChannel
@@ -12,10 +13,11 @@ from seatrial.data.trial.schema import DeclaredChannel
 
 @dataclass(frozen=True)
 class DeclaredQuantity:
-    """What a declared channel means, and whether it holds orders."""
+    """What a declared channel means, who sets it, and how it runs between samples."""
 
     quantity: Quantity
-    is_command: bool
+    kind: Kind
+    between: Between = ""
 
     def require_side(self, positive: str | None, where: str) -> None:
         """Refuse a column whose positive direction is neither the declared one nor its opposite.
@@ -51,4 +53,4 @@ def _declared(symbol: str, table: DeclaredChannel) -> DeclaredQuantity:
         raise InputError(f"channels.{symbol} is known already ({known.meaning}); use it undeclared, or rename yours")
     unit = si_unit(table.unit)[1]
     meaning = Quantity(symbol, table.meaning, unit, table.frame, table.positive, symbol, symbol)
-    return DeclaredQuantity(meaning, table.kind == "command")
+    return DeclaredQuantity(meaning, table.kind, table.between or "")

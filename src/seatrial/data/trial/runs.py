@@ -227,7 +227,7 @@ def _column(symbol: str, column: ChannelColumn, where: str, declared: DeclaredQu
         raise InputError(f"{where}.unit: '{column.unit}' is no unit of {known.meaning}, which is in {known.unit}")
     if declared is not None:
         declared.require_side(column.positive, where)
-    usual = "command" if symbol.startswith("command_") or (declared is not None and declared.is_command) else "measured"
+    usual = declared.kind if declared is not None else "command" if symbol.startswith("command_") else ""
     return ColumnSpec(
         symbol,
         column.column,
@@ -239,6 +239,7 @@ def _column(symbol: str, column: ChannelColumn, where: str, declared: DeclaredQu
         span=column.span,
         factor=column.scale,
         offset=column.offset,
-        is_held=(column.kind or usual) == "command",
+        kind=column.kind or usual,
+        between=column.between or ("" if declared is None else declared.between),
         declared=None if declared is None else declared.quantity,
     )

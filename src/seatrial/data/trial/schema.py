@@ -104,6 +104,7 @@ class ChannelColumn(StrictTable):
     scale: NonZero = 1.0
     offset: float = 0.0
     kind: Literal["command", "measured"] | None = None
+    between: Literal["held", "straight"] | None = None
 
 
 class DeclaredChannel(StrictTable):
@@ -114,6 +115,7 @@ class DeclaredChannel(StrictTable):
     frame: Literal["body", "earth", "none"] = "none"
     positive: str = "none"
     kind: Literal["command", "measured"] = "measured"
+    between: Literal["held", "straight"] | None = None
 
 
 class WavesTable(StrictTable):

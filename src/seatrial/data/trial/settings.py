@@ -1,13 +1,13 @@
 """Settings of the estimator and of the comparison of models: tables of a trial file, values in Python."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Annotated, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 from pydantic.dataclasses import dataclass
 
-from seatrial.data.trial.amounts import STRICT_FIELDS, Deviation
+from seatrial.data.trial.amounts import STRICT_FIELDS, DelayDeviation, Deviation
 from seatrial.data.trial.estimate_method import EstimateMethod, FitCriterion, method_named
 from seatrial.data.trial.schema_errors import raises_input_error
 from seatrial.data.trial.search_settings import SearchSettings
@@ -21,6 +21,7 @@ def _as_deviations(value: object) -> object:
 Positive = Annotated[float, Field(gt=0)]
 Method = Annotated[EstimateMethod, BeforeValidator(method_named)]
 Deviations = Annotated[Mapping[str, Deviation], BeforeValidator(_as_deviations)]
+DelayDeviations = Annotated[Mapping[str, DelayDeviation], BeforeValidator(_as_deviations)]
 
 
 @raises_input_error
@@ -39,7 +40,8 @@ class EstimateSettings:
         offsets: channel -> prior standard deviation (SI, None: the estimator's own) of its zero, one for each session.
         covariates: channel of `offsets` -> input on whose rms over a session its zero may depend, linearly.
         gains: channel -> prior standard deviation (None: the estimator's own) of its gain, one for each session.
-        delays: input -> prior standard deviation [s] (None: the estimator's own) of its delay, one for each session.
+        delays: input -> prior standard deviation [s] (None: the estimator's own) of its delay, one for each session; 0:
+            its timing is known. Inputs that are not named are taken to be uncertain by their source's sample interval.
         current: prior standard deviation of a uniform current in each run [m/s]; 0: none is estimated.
         starts: points from which to search; None: 6 for craft with thrusters, else one.
         initial_s: s of a validation run from which its initial state is estimated; None: L/U.
@@ -56,7 +58,7 @@ class EstimateSettings:
     offsets: Deviations = Field(default_factory=dict)
     covariates: Mapping[str, str] = Field(default_factory=dict)
     gains: Deviations = Field(default_factory=dict)
-    delays: Deviations = Field(default_factory=dict)
+    delays: DelayDeviations = Field(default_factory=dict)
     current: Annotated[float, Field(ge=0)] = 0.0
     starts: Annotated[int, Field(ge=1, le=100)] | None = None
     initial_s: Positive | None = None
@@ -66,6 +68,10 @@ class EstimateSettings:
     def criterion(self) -> FitCriterion:
         """Return what the package's own estimate minimises."""
         return self.method.criterion
+
+    def with_known_timing(self, inputs: Iterable[str]) -> "EstimateSettings":
+        """Return these settings with no delay of these inputs, but for those that the settings name."""
+        return replace(self, delays={**dict.fromkeys(inputs, 0.0), **self.delays})
 
     def with_method(self, name: str) -> "EstimateSettings":
         """Return these settings with the method of that name.

@@ -9,6 +9,7 @@ from seatrial.core.values import NOTATION, InputError, Prior
 from seatrial.data.trial import EstimateSettings
 from seatrial.estimation.estimate.joint_prior import joint_prior_term
 from seatrial.estimation.estimate.runs import Runs
+from seatrial.estimation.estimate.timing import timing_nuisances, with_held_inputs
 from seatrial.estimation.problem.output_error import Nuisance, OutputError
 from seatrial.estimation.problem.segments import compared_outputs, cut_segments
 from seatrial.estimation.problem.static_forces import StaticForces
@@ -46,7 +47,9 @@ def _nuisances(model: Model, settings: EstimateSettings) -> Iterator[Nuisance]:
     for name, deviation in settings.gains.items():
         yield Nuisance(InputCorrection(name, "gain"), Prior(1.0, deviation or _GAIN_DEVIATION, _SOURCE), "1")
     for name, deviation in settings.delays.items():
-        yield Nuisance(InputCorrection(name, "delay"), Prior(0.0, deviation or _DELAY_DEVIATION, _SOURCE), "s")
+        if deviation != 0.0:  # no deviation at all: its timing is known
+            spread = _DELAY_DEVIATION if deviation is None else deviation
+            yield Nuisance(InputCorrection(name, "delay"), Prior(0.0, spread, _SOURCE), "s")
 
 
 def _current_priors(settings: EstimateSettings) -> tuple[tuple[str, Prior], ...]:
@@ -61,12 +64,14 @@ def output_error_problem(
 ) -> OutputError:
     """Return the runs in segments of `segment_s` [s] (infinite: whole runs) as an output-error problem.
 
-    The noise of each channel is a tenth of its spread. Force points and carried information stand with the runs.
+    The noise of each channel is a tenth of its spread. Force points and carried information stand with the runs. Inputs
+    are held between samples where the records hold them, and late by what their sample interval leaves open.
 
     Raises:
         InputError: a covariate that is no input, outputs that cannot be compared, time steps that differ, a record of
             fewer than three samples, or force points that the model cannot be compared with.
     """
+    model = with_held_inputs(model, runs.records)
     outputs = compared_outputs(model, runs.records, settings.channels)
     data = cut_segments(model, runs.records, outputs, None if np.isinf(segment_s) else segment_s, runs.sessions)
     spread = np.nanstd(data.measured, axis=0)
@@ -74,7 +79,7 @@ def output_error_problem(
         model,
         data,
         np.maximum(_NOISE_SHARE * spread, _LEAST_NOISE),
-        tuple(_nuisances(model, settings)),
+        (*_nuisances(model, settings), *timing_nuisances(model, runs.records, settings)),
         _current_priors(settings),
         workers=workers,
         extra_terms=(*(StaticForces(model, points) for points in runs.forces), *runs.carried),

@@ -16,6 +16,7 @@ from seatrial.estimation.identify.antenna_place import antenna_findings
 from seatrial.estimation.identify.box_scale import stands_on_box
 from seatrial.estimation.identify.closed_loop_findings import closed_loop_findings
 from seatrial.estimation.identify.course_stability import course_finding
+from seatrial.estimation.identify.delay_findings import delay_findings
 from seatrial.estimation.identify.estimated_values_effect import (
     errors_of,
     estimated_value_shifts,
@@ -106,6 +107,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
             *antenna_findings(predicted.predictions, runs.length),
             *narrow_band_findings(predicted.predictions),
             *short_time_constant_findings(estimation),
+            *delay_findings(estimation),
             *one_speed_finding(roll, runs.records),
             *gyradius_findings(trial.ship, roll.gyradius if roll else None),
         ),

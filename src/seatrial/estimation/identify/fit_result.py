@@ -150,7 +150,8 @@ def bounds_hit(estimation: Estimation) -> list[Finding]:
     problem, shared = estimation.estimate.problem, estimation.estimate.common_parameters
     gradient, hessian = estimation.estimate.optimum.normal.without_local()
     findings = []
-    for i in np.flatnonzero((shared <= problem.lower) | (shared >= problem.upper)):
+    count = len(problem.free)  # what sessions have of their own is no coefficient, and has no bound
+    for i in np.flatnonzero(((shared <= problem.lower) | (shared >= problem.upper))[:count]):
         side = "lower" if shared[i] <= problem.lower[i] else "upper"
         curvature = float(hessian[i, i])
         # minimum of the parabola of Gauss and Newton in this coefficient alone

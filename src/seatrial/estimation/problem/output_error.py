@@ -52,6 +52,7 @@ class Nuisance:
     Attributes:
         prior: about its mean over sessions; its standard deviation is also the first guess of how sessions differ.
         is_stated: whether the trial declares it; the prior of another one is only there to be exceeded.
+        is_spread_fixed: whether sessions differ as the prior says, whatever the records show: what is known of timing.
         covariate: the input on whose rms over a session the correction may depend linearly; empty: none.
     """
 
@@ -60,6 +61,7 @@ class Nuisance:
     unit: str
     is_stated: bool = True
     covariate: str = ""
+    is_spread_fixed: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +110,7 @@ class OutputError:
         batch = batch_class(self.model)(
             self.model, self.data.inputs, self.data.offsets, self.data.dt, self.observables,
             (*self.free, *(name for name, _ in self.session_parameters)),
-            tuple(n.correction for n in self.nuisances), (), self.substeps,
+            tuple(n.correction for n in self.nuisances), (), self.substeps, self.data.run_inputs,
         )  # fmt: skip
         return replace(batch, initial_states=(*self._starts_of(batch), *self._actuators))
 
@@ -170,7 +172,10 @@ class OutputError:
     def declared_population(self) -> SessionPopulation:
         """What is assumed of sessions before any record."""
         declared = [p for _, p in self.session_parameters] + [n.prior for n in self.nuisances]
-        return SessionPopulation.as_declared(declared, self.session_covariates, len(self.session_parameters))
+        population = SessionPopulation.as_declared(declared, self.session_covariates, len(self.session_parameters))
+        return population.with_fixed_spread([False] * len(self.session_parameters) + [
+            n.is_spread_fixed for n in self.nuisances
+        ])  # fmt: skip
 
     @cached_property
     def session_covariates(self) -> Array:

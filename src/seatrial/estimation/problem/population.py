@@ -31,6 +31,8 @@ class SessionPopulation:
         trend_covariance: of mean and slope, (2k, 2k).
         covariate_mean, covariate_deviation: (k,), over the sessions that were fitted; 0 where none is declared.
         is_centred: (k,), whether the mean is the declared one: a current of another day has no direction of its own.
+        is_spread_fixed: (k,), whether the deviation is the declared one: estimated, it would take model error for a
+            delay that changes from session to session.
     """
 
     declared: tuple[Prior, ...]
@@ -41,6 +43,7 @@ class SessionPopulation:
     covariate_mean: Array
     covariate_deviation: Array
     is_centred: NDArray[np.bool_]
+    is_spread_fixed: NDArray[np.bool_]
 
     @classmethod
     def as_declared(cls, declared: Sequence[Prior], covariates: Array, centred: int = 0) -> "SessionPopulation":
@@ -54,13 +57,19 @@ class SessionPopulation:
         spread = np.std(covariates, axis=0)
         return cls(
             tuple(declared), mean, np.zeros(k), deviation, np.zeros((2 * k, 2 * k)), covariates.mean(axis=0), spread,
-            np.arange(k) < centred,
+            np.arange(k) < centred, np.zeros(k, dtype=np.bool_),
         )  # fmt: skip
+
+    def with_fixed_spread(self, is_fixed: Sequence[bool]) -> "SessionPopulation":
+        """Return the population with the deviation of these kinds as declared for good."""
+        return replace(self, is_spread_fixed=np.array(is_fixed, dtype=np.bool_))
 
     def with_kinds(self, declared: Sequence[Prior]) -> "SessionPopulation":
         """Return the population with further kinds behind its own, as declared, without covariates."""
         more = self.as_declared(declared, np.zeros((1, len(declared))))
-        arrays = ("mean", "slope", "deviation", "covariate_mean", "covariate_deviation", "is_centred")
+        arrays = (
+            "mean", "slope", "deviation", "covariate_mean", "covariate_deviation", "is_centred", "is_spread_fixed",
+        )  # fmt: skip
         joined = {name: np.concatenate([getattr(self, name), getattr(more, name)]) for name in arrays}
         size = 2 * len(joined["mean"])  # the trend is estimated again with all kinds
         return replace(self, declared=(*self.declared, *declared), trend_covariance=np.zeros((size, size)), **joined)
@@ -102,7 +111,7 @@ class SessionPopulation:
             covariates: (sessions, k).
         """
         weight = np.tile(self.deviation**-2.0, len(offsets))
-        records = precision - np.diag(weight)
+        records = _non_negative(precision - np.diag(weight))
         # at the optimum the gradient of the records' cost is the opposite of the population's
         pull = records @ offsets.ravel() + weight * (offsets - self.means(covariates)).ravel()
         now = self
@@ -135,6 +144,7 @@ class SessionPopulation:
             _likeliest_deviation(float(s), sessions - 1 - int(v), float(d))
             for s, v, d in zip(squares.reshape(sessions, k).sum(axis=0), varies, prior_deviation, strict=True)
         ])  # fmt: skip
+        deviation = np.where(self.is_spread_fixed, prior_deviation, deviation)
         mean, slope = point[sessions * k :].reshape(2, k)
         is_estimated = np.concatenate([is_free, np.ones(k)])
         return replace(
@@ -142,6 +152,16 @@ class SessionPopulation:
             deviation=deviation,
             trend_covariance=covariance[sessions * k :, sessions * k :] * np.outer(is_estimated, is_estimated),
         )  # fmt: skip
+
+
+def _non_negative(information: Array) -> Array:
+    """Return the information of the records without directions of negative curvature, which rounding leaves.
+
+    Where records show nothing of an offset, the difference of two equal numbers may be less than nothing, and the
+    spread between sessions would grow without end.
+    """
+    values, vectors = np.linalg.eigh(0.5 * (information + information.T))
+    return (vectors * np.maximum(values, 0.0)) @ vectors.T
 
 
 def _likeliest_deviation(square_sum: float, freedom: int, declared: float) -> float:

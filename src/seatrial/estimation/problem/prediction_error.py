@@ -135,7 +135,7 @@ class PredictionError:
         names = (*runs.free, *(name for name, _ in runs.session_parameters))
         return KalmanFilter(
             runs.model, runs.data.inputs, runs.data.offsets, runs.data.dt, runs.observables, names,
-            tuple(n.correction for n in runs.nuisances), (), runs.substeps, self.process, self.waves,
+            tuple(n.correction for n in runs.nuisances), (), runs.substeps, driven=self.process, waves=self.waves,
         )  # fmt: skip
 
     def filter_point(self, shared: Array) -> FilterPoint:

@@ -13,6 +13,7 @@ from seatrial.estimation.problem.initial_states import Beginnings
 from seatrial.numerics.resolution import resolution
 from seatrial.physics.sensors import Sensors
 from seatrial.physics.simulate.actuators import ActuatorHistory
+from seatrial.physics.simulate.batch import RunInputs
 from seatrial.physics.simulate.channels import inputs_of
 
 
@@ -26,6 +27,7 @@ class Segments:
         outputs: observables that are compared, in order; dt: s.
         history: commands of the whole runs, where the model has states that follow them; None: it has none.
         beginnings: what the whole runs say of the first rows; None: nothing.
+        run_inputs: inputs of the whole runs, from which delayed ones are taken; None: the segments' own alone.
     """
 
     inputs: Array
@@ -39,6 +41,7 @@ class Segments:
     dt: float
     history: ActuatorHistory | None = None
     beginnings: Beginnings | None = None
+    run_inputs: RunInputs | None = None
 
     @cached_property
     def rounding_noise(self) -> Array:
@@ -68,6 +71,7 @@ class Segments:
             session=self.session[indices],
             history=None if self.history is None else self.history.selected(indices),
             beginnings=None if self.beginnings is None else self.beginnings.selected(indices),
+            run_inputs=None if self.run_inputs is None else self.run_inputs.selected(indices),
         )
 
 
@@ -195,4 +199,12 @@ def segments_between(
         dt,
         ActuatorHistory.from_runs(model, of_runs, dt, run, np.array(firsts, dtype=np.int64), session),
         Beginnings.joined(beginnings),
+        _run_inputs(of_runs, run, np.array(firsts, dtype=np.int64)),
     )
+
+
+def _run_inputs(inputs: Sequence[Array], run: Index, first: Index) -> RunInputs:
+    """Return the inputs of whole runs, (rows, nu) each; run, first: of each segment, and its first row in that run."""
+    edges = np.concatenate([[0], np.cumsum([len(u) for u in inputs])]).astype(np.int64)
+    place = np.column_stack([edges[run] + first, edges[run], edges[run + 1]])
+    return RunInputs(np.concatenate(inputs), np.ascontiguousarray(place, dtype=np.int64))

@@ -70,8 +70,6 @@ class WeakForm:
     @cached_property
     def _mean_inputs(self) -> list[Array]:
         """Inputs by which the trapezoidal rule is exact: where one is held, the mean of its values on both sides."""
-        if not self.model.is_affine:  # other models take all inputs as straight between samples
-            return list(self.inputs)
         is_held = np.array([i.is_held for i in self.model.inputs])
         before = [np.concatenate([u[:1], u[:-1]]) for u in self.inputs]
         return [np.where(is_held, 0.5 * (u + b), u) for u, b in zip(self.inputs, before, strict=True)]

@@ -1,4 +1,4 @@
-"""Fixed-step Runge-Kutta integration of any model with replayed inputs, which run linearly between samples.
+"""Fixed-step Runge-Kutta integration of any model with replayed inputs, held or straight between samples.
 
 Classical fourth-order scheme (Hairer, Norsett & Wanner 1993, table II.1.2).
 """
@@ -9,21 +9,57 @@ import numpy as np
 from numba import njit, void
 
 from seatrial.numerics.kernels.kernel import kernel
-from seatrial.numerics.kernels.types import F8, FUNCTION, I8, INDEX, LEAN, MATRIX, OPTIONS, VECTOR
+from seatrial.numerics.kernels.types import F8, FUNCTION, I8, INDEX, LEAN, MATRIX, OPTIONS, TABLE, VECTOR
 
 DIVERGED = 1e9  # summed size of states, SI, that no ship reaches; chosen
 
 
 @njit(inline="always", **OPTIONS)
+def delayed_sample(inputs, first, last, j, place, by_place):
+    """Return input j at a place among rows first..last, clamped to them, or its slope by the place.
+
+    Cubic convolution (Keys 1981, IEEE Trans. ASSP 29, 1153, eq. (8)): exact for parabolas, so that what is moved in
+    time is not smeared, and with a continuous slope, so that a search meets no kink.
+    """
+    left = int(place)
+    f = place - left
+    total = 0.0
+    for m in range(4):
+        value = inputs[min(max(left + m - 1, first), last - 1), j]
+        if by_place:
+            if m == 0:
+                w = f * (2.0 - 1.5 * f) - 0.5
+            elif m == 1:
+                w = f * (4.5 * f - 5.0)
+            elif m == 2:
+                w = f * (4.0 - 4.5 * f) + 0.5
+            else:
+                w = f * (1.5 * f - 1.0)
+        elif m == 0:
+            w = f * (f * (1.0 - 0.5 * f) - 0.5)
+        elif m == 1:
+            w = f * f * (1.5 * f - 2.5) + 1.0
+        elif m == 2:
+            w = f * (f * (2.0 - 1.5 * f) + 0.5)
+        else:
+            w = 0.5 * f * f * (f - 1.0)
+        total += w * value
+    return total
+
+
+@njit(inline="always", **OPTIONS)
 def effective_input(inputs, first, last, k, gain, offset, delay, dt, out):
-    """Set out_j = gain_j * input_j(t_k - delay_j) + offset_j, linear between samples, clamped to the segment."""
+    """Set out_j = gain_j * input_j(t_k - delay_j) + offset_j, clamped to rows first..last.
+
+    The same number stands for an input that is held over the sample from t_k on: moved in time, its area, its first and
+    its second moment stay what they are.
+    """
     for j in range(out.size):
         if delay[j] == 0.0:
             raw = inputs[k, j]
         else:
             place = min(max(k - delay[j] / dt, first * 1.0), last - 1.0)
-            left = min(int(place), last - 2)
-            raw = inputs[left, j] + (place - left) * (inputs[left + 1, j] - inputs[left, j])
+            raw = delayed_sample(inputs, first, last, j, place, False)
         out[j] = gain[j] * raw + offset[j]
 
 
@@ -57,15 +93,15 @@ def rk4_step(f, t, x, u0, um, u1, p, h, k1, k2, k3, k4, y):
 
 @kernel(
     void(
-        *(FUNCTION, FUNCTION, MATRIX, INDEX, I8, I8, F8, I8, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX),
+        *(FUNCTION, FUNCTION, MATRIX, TABLE, VECTOR, INDEX, I8, I8, F8, I8, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX),
         *(INDEX, MATRIX, INDEX),
         *(MATRIX, MATRIX, VECTOR),
     ),
     **LEAN,
 )
 def _replay(
-    f, g, inputs, offsets, seg_from, seg_to, dt, substeps, x0, p, gain, offset, delay, select, y_out, failed,
-    work_x, work_u, g_value,
+    f, g, inputs, place, rise, offsets, seg_from, seg_to, dt, substeps, x0, p, gain, offset, delay, select, y_out,
+    failed, work_x, work_u, g_value,
 ):  # fmt: skip
     nx, nu = x0.shape[1], inputs.shape[1]
     x, y, k1, k2, k3, k4 = work_x[0], work_x[1], work_x[2], work_x[3], work_x[4], work_x[5]
@@ -80,7 +116,8 @@ def _replay(
             x[i] = x0[s, i]
         par = p[s]
         gain_s, offset_s, delay_s = gain[s], offset[s], delay[s]
-        effective_input(inputs, first, last, first, gain_s, offset_s, delay_s, dt, u0)
+        here, low, high = place[s, 0], place[s, 1], place[s, 2]
+        effective_input(inputs, low, high, here, gain_s, offset_s, delay_s, dt, u0)
         for row in range(first, last):
             t = (row - first) * dt
             if needs_g:
@@ -89,16 +126,16 @@ def _replay(
                 y_out[row, i] = x[select[i]] if select[i] < nx else g_value[select[i] - nx]
             if row == last - 1:
                 break
-            effective_input(inputs, first, last, row + 1, gain_s, offset_s, delay_s, dt, u1)
+            effective_input(inputs, low, high, here + row + 1 - first, gain_s, offset_s, delay_s, dt, u1)
             size = 0.0
             for m in range(substeps):
                 for j in range(nu):
-                    half = 0.5 * (u1[j] - u0[j]) / (substeps - m)
+                    half = 0.5 * rise[j] * (u1[j] - u0[j]) / (substeps - m)
                     um[j] = u0[j] + half
                     ub[j] = um[j] + half
                 size += rk4_step(f, t + m * h, x, u0, um, ub, par, h, k1, k2, k3, k4, y)
                 for j in range(nu):
-                    u0[j] = ub[j]
+                    u0[j] = ub[j] if rise[j] != 0.0 or m < substeps - 1 else u1[j]
             if not size < DIVERGED:
                 failed[s] = row + 1 - first
                 for late in range(row + 1, last):
@@ -115,13 +152,16 @@ def evaluate(f, states, inputs, p, dt, out):
 
 
 def replay(
-    f, g, inputs, offsets, seg_from, seg_to, dt, substeps, x0, p, gain, offset, delay, select, ng, y_out, failed
-):
+    f, g, inputs, place, rise, offsets, seg_from, seg_to, dt, substeps, x0, p, gain, offset, delay, select, ng, y_out,
+    failed,
+):  # fmt: skip
     """Integrate segments seg_from..seg_to with recorded inputs; write selected outputs at every sample.
 
-    Segment s owns rows offsets[s]..offsets[s+1] of inputs and y_out. Outputs: index < nx is a state, nx + i is g_i.
+    Segment s owns rows offsets[s]..offsets[s+1] of y_out; place[s]: its first row in inputs, and the rows of its run
+    there, first and behind the last, (segments, 3). rise (nu,): 1 for inputs that run straight from sample to sample, 0
+    for those that are held. Outputs: index < nx is a state, nx + i is g_i.
     failed[s] becomes the sample at which the solution left all bounds (or was not finite), else stays -1.
     """
     nx, nu = x0.shape[1], inputs.shape[1]
-    _replay(f, g, inputs, offsets, seg_from, seg_to, dt, substeps, x0, p, gain, offset, delay, select, y_out, failed,
-            np.empty((6, nx)), np.empty((4, nu)), np.empty(max(ng, 1)))  # fmt: skip
+    _replay(f, g, inputs, place, rise, offsets, seg_from, seg_to, dt, substeps, x0, p, gain, offset, delay, select,
+            y_out, failed, np.empty((6, nx)), np.empty((4, nu)), np.empty(max(ng, 1)))  # fmt: skip

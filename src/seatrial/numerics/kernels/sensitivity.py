@@ -9,7 +9,7 @@ import math
 import numpy as np
 from numba import njit, void
 
-from seatrial.numerics.kernels.integrate import DIVERGED, effective_input
+from seatrial.numerics.kernels.integrate import DIVERGED, delayed_sample, effective_input
 from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.simd import LANES, add_multiple, aligned_scratch, gather_scaled
 from seatrial.numerics.kernels.types import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, TABLE, TANGENT, VECTOR
@@ -26,10 +26,9 @@ def input_derivatives(inputs, first, last, k, gain, delay, dt, out):
     for j in range(gain.size):
         delayed = k - delay[j] / dt
         place = min(max(delayed, first * 1.0), last - 1.0)
-        left = min(int(place), last - 2)
-        rise = inputs[left + 1, j] - inputs[left, j]
         out[3 * j + OFFSET] = 1.0
-        out[3 * j + GAIN] = inputs[left, j] + (place - left) * rise
+        out[3 * j + GAIN] = delayed_sample(inputs, first, last, j, place, False)
+        rise = delayed_sample(inputs, first, last, j, place, True)
         out[3 * j + DELAY] = -gain[j] * rise / dt if place == delayed else 0.0
 
 
@@ -110,14 +109,14 @@ def rk4_tangent_step(f, chain, direct, link_u, t, x, w, blocks, u0, um, u1, w0, 
 
 @kernel(
     void(
-        *(TANGENT, TANGENT, MATRIX, INDEX, I8, I8, F8, I8, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX),
+        *(TANGENT, TANGENT, MATRIX, TABLE, VECTOR, INDEX, I8, I8, F8, I8, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX),
         *(TABLE, TABLE, TABLE, TABLE, INDEX, INDEX, MATRIX, CUBE, INDEX),
         *(MATRIX, VECTOR, MATRIX, TABLE, TABLE, MATRIX, MATRIX, MATRIX, VECTOR, MATRIX, VECTOR, MATRIX),
     ),
     **LEAN,
 )
 def _replay_tangent(
-    f, g, inputs, offsets, seg_from, seg_to, dt, substeps, x0, p, gain, offset, delay,
+    f, g, inputs, place, rise, offsets, seg_from, seg_to, dt, substeps, x0, p, gain, offset, delay,
     link_u, g_chain, g_link_p, g_link_u, start_column, select, y_out, s_out, failed,
     work_x, w, s, chain, direct, work_u, work_w, jac, entries, g_jac, g_value, g_s,
 ):  # fmt: skip
@@ -139,9 +138,10 @@ def _replay_tangent(
             x[i] = x0[seg, i]
             for j in range(s.shape[1]):
                 s[i, j] = 1.0 if j == start_column[i] else 0.0
-        effective_input(inputs, first, last, first, gain_s, offset_s, delay_s, dt, u0)
+        begin, low, high = place[seg, 0], place[seg, 1], place[seg, 2]
+        effective_input(inputs, low, high, begin, gain_s, offset_s, delay_s, dt, u0)
         if needs_w:
-            input_derivatives(inputs, first, last, first, gain_s, delay_s, dt, w0)
+            input_derivatives(inputs, low, high, begin, gain_s, delay_s, dt, w0)
         for row in range(first, last):
             t = (row - first) * dt
             if needs_g:
@@ -159,27 +159,27 @@ def _replay_tangent(
                         s_out[row, i, j] = g_s[here - nx, j]
             if row == last - 1:
                 break
-            effective_input(inputs, first, last, row + 1, gain_s, offset_s, delay_s, dt, u1)
+            effective_input(inputs, low, high, begin + row + 1 - first, gain_s, offset_s, delay_s, dt, u1)
             if needs_w:
-                input_derivatives(inputs, first, last, row + 1, gain_s, delay_s, dt, w1)
+                input_derivatives(inputs, low, high, begin + row + 1 - first, gain_s, delay_s, dt, w1)
             size = 0.0
             for m in range(substeps):
                 for j in range(nu):
-                    half = 0.5 * (u1[j] - u0[j]) / (substeps - m)
+                    half = 0.5 * rise[j] * (u1[j] - u0[j]) / (substeps - m)
                     um[j] = u0[j] + half
                     ub[j] = um[j] + half
                 if needs_w:
                     for j in range(3 * nu):
-                        half = 0.5 * (w1[j] - w0[j]) / (substeps - m)
+                        half = 0.5 * rise[j // 3] * (w1[j] - w0[j]) / (substeps - m)  # three slots an input
                         wm[j] = w0[j] + half
                         wb[j] = wm[j] + half
                 size += rk4_tangent_step(f, chain, direct, link_u, t + m * h, x, w, blocks, u0, um, ub,
                                          w0, wm, wb, par, h, jac, entries, k, y, acc)  # fmt: skip
                 for j in range(nu):
-                    u0[j] = ub[j]
+                    u0[j] = ub[j] if rise[j] != 0.0 or m < substeps - 1 else u1[j]
                 if needs_w:
                     for j in range(3 * nu):
-                        w0[j] = wb[j]
+                        w0[j] = wb[j] if rise[j // 3] != 0.0 or m < substeps - 1 else w1[j]
             if not size < DIVERGED:
                 failed[seg] = row + 1 - first
                 for late in range(row + 1, last):
@@ -191,7 +191,7 @@ def _replay_tangent(
 
 
 def replay_tangent(
-    f, g, inputs, offsets, seg_from, seg_to, dt, substeps, x0, p, gain, offset, delay,
+    f, g, inputs, place, rise, offsets, seg_from, seg_to, dt, substeps, x0, p, gain, offset, delay,
     chain, link_p, link_u, g_chain, g_link_p, g_link_u, start_column, select, ng, y_out, s_out, failed,
 ):  # fmt: skip
     """Integrate as `replay` with sensitivities: s_out[row, i, c] = d output_i / d column_c.
@@ -202,7 +202,7 @@ def replay_tangent(
     width, rows = nx + nu + p.shape[1], max(ng, 1)
     w, s = step_scratch(nx, ncol)
     jac = np.zeros((nx, width))
-    _replay_tangent(f, g, inputs, offsets, seg_from, seg_to, dt, substeps, x0, p, gain, offset, delay,
+    _replay_tangent(f, g, inputs, place, rise, offsets, seg_from, seg_to, dt, substeps, x0, p, gain, offset, delay,
                     link_u, g_chain, g_link_p, g_link_u, start_column, select, y_out, s_out, failed,
                     np.empty((4, nx)), w, s, *step_tables(chain, link_p, s, width), np.empty((4, nu)),
                     np.zeros((4, 3 * nu)), jac, jac.reshape(-1), np.zeros((rows, width)), np.empty(rows),
@@ -232,6 +232,15 @@ def step_tables(chain, link_p, s, width):
     direct[0] = link_p[:, 0] * width + link_p[:, 1]
     direct[1] = (_ADDED * nx + link_p[:, 0]) * columns + link_p[:, 2]
     return gathered, direct
+
+
+@kernel(void(MATRIX, F8, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX), **OPTIONS)
+def correct(inputs, dt, gain, offset, delay, out, weights):
+    """Set the effective inputs of a whole run, (rows, nu), and their derivatives, (rows, 3 nu)."""
+    rows = inputs.shape[0]
+    for k in range(rows):
+        effective_input(inputs, 0, rows, k, gain, offset, delay, dt, out[k])
+        input_derivatives(inputs, 0, rows, k, gain, delay, dt, weights[k])
 
 
 @kernel(void(TANGENT, MATRIX, MATRIX, MATRIX, F8, MATRIX, CUBE), **OPTIONS)

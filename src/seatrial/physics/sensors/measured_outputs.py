@@ -46,7 +46,7 @@ def with_sensors(model: Model, sensors: Sensors) -> Model:
     layout = model.equations.layout  # no part of the hash
     key = (model.equation_hash, layout, "sensors", sensors.text())
     equations = stored_equations(key, lambda: _Writer(model, sensors, parameters).equations())
-    return Model(equations, Parameters((*model.parameters, *parameters)))
+    return replace(model, equations=equations, parameters=Parameters((*model.parameters, *parameters)))
 
 
 def _required_states(sensors: Sensors) -> set[str]:

@@ -31,8 +31,28 @@ class InputCorrection:
 
 
 @dataclass(frozen=True, eq=False)
+class RunInputs:
+    """Inputs of whole runs, so that a delayed one is known beyond the ends of a segment.
+
+    Attributes:
+        values: of the runs one after another, (rows, nu), in the model's own signs.
+        place: of each segment, its first row there, and the rows of its run, first and behind the last, (segments, 3).
+    """
+
+    values: Array
+    place: Index
+
+    def selected(self, segments: Index) -> "RunInputs":
+        """Return the inputs with the place of these segments only."""
+        return RunInputs(self.values, np.ascontiguousarray(self.place[segments]))
+
+
+@dataclass(frozen=True, eq=False)
 class SegmentBatch:
     """Segments laid end to end: rows offsets[s]..offsets[s+1] of `inputs` belong to segment s.
+
+    Inputs that the model's records hold are constant over a sample, the others straight. A delayed one is clamped to
+    its run where `run_inputs` are known, else to its segment.
 
     Attributes:
         inputs: shape (rows, nu), in the model's own signs.
@@ -51,6 +71,7 @@ class SegmentBatch:
     corrections: tuple[InputCorrection, ...] = ()
     initial_states: tuple[str, ...] = ()
     substeps: int = 1
+    run_inputs: RunInputs | None = None
 
     @property
     def segment_count(self) -> int:
@@ -94,6 +115,18 @@ class SegmentBatch:
             made[c.kind][:, self.model.input_names.index(c.input)] = corrections[:, m]
         return made["gain"], made["zero"], made["delay"]
 
+    @cached_property
+    def _rise(self) -> Array:
+        """1 for inputs that run straight from sample to sample, 0 for those that are held, (nu,)."""
+        return np.array([0.0 if i.is_held else 1.0 for i in self.model.inputs])
+
+    @cached_property
+    def _run_inputs(self) -> RunInputs:
+        if self.run_inputs is not None:
+            return self.run_inputs
+        firsts, behind = self.offsets[:-1], self.offsets[1:]
+        return RunInputs(self.inputs, np.ascontiguousarray(np.column_stack([firsts, firsts, behind]), dtype=np.int64))
+
     def simulate(
         self, first: int, last: int, start: Array, parameters: Array, corrections: Array
     ) -> tuple[Array, Index]:
@@ -101,11 +134,12 @@ class SegmentBatch:
 
         start (segments, nx), parameters (segments, np) all of the model's, corrections (segments, n): for all segments.
         """
-        offsets, inputs, failed, y = self._segment_rows(first, last)
+        offsets, failed, y = self._segment_rows(first, last)
+        inputs, place = self._run_inputs.values, self._run_inputs.place[first:last]
         gain, zero, delay = (a[first:last] for a in self._correction_values(corrections))
         compiled = self.model.compiled
-        replay(compiled.rates, compiled.outputs, inputs, offsets, 0, last - first, self.dt, self.substeps,
-               np.ascontiguousarray(start[first:last]), np.ascontiguousarray(parameters[first:last]),
+        replay(compiled.rates, compiled.outputs, inputs, place, self._rise, offsets, 0, last - first, self.dt,
+               self.substeps, np.ascontiguousarray(start[first:last]), np.ascontiguousarray(parameters[first:last]),
                gain, zero, delay, self._output_columns, len(self.model.outputs), y, failed)  # fmt: skip
         return y, failed
 
@@ -113,7 +147,8 @@ class SegmentBatch:
         self, first: int, last: int, start: Array, parameters: Array, corrections: Array
     ) -> tuple[Array, Array, Index]:
         """Return what `simulate` does, with d(output)/d(column), shape (rows, ny, width)."""
-        offsets, inputs, failed, y = self._segment_rows(first, last)
+        offsets, failed, y = self._segment_rows(first, last)
+        inputs, place = self._run_inputs.values, self._run_inputs.place[first:last]
         gain, zero, delay = (a[first:last] for a in self._correction_values(corrections))
         column = np.full(len(self.model.states), -1, dtype=np.int64)
         for m, state in enumerate(self.initial_states):
@@ -121,17 +156,17 @@ class SegmentBatch:
         s = np.empty((len(y), len(self.outputs), self.column_count))
         compiled = self.model.compiled
         rates, seen = _tangent_pointer(compiled.rates_tangent), _tangent_pointer(compiled.outputs_tangent)
-        replay_tangent(rates, seen, inputs, offsets, 0, last - first, self.dt, self.substeps,
+        replay_tangent(rates, seen, inputs, place, self._rise, offsets, 0, last - first, self.dt, self.substeps,
                        np.ascontiguousarray(start[first:last]), np.ascontiguousarray(parameters[first:last]),
                        gain, zero, delay, *self._links, column, self._output_columns, len(self.model.outputs),
                        y, s, failed)  # fmt: skip
         return y, s, failed
 
-    def _segment_rows(self, first: int, last: int) -> tuple[Index, Array, Index, Array]:
+    def _segment_rows(self, first: int, last: int) -> tuple[Index, Index, Array]:
         rows = slice(self.offsets[first], self.offsets[last])
         offsets = np.ascontiguousarray(self.offsets[first : last + 1] - self.offsets[first])
         y = np.empty((rows.stop - rows.start, len(self.outputs)))
-        return offsets, self.inputs[rows], np.full(last - first, -1, dtype=np.int64), y
+        return offsets, np.full(last - first, -1, dtype=np.int64), y
 
     def influential_states(self) -> tuple[str, ...]:
         """Return states whose initial value reaches any of the outputs."""

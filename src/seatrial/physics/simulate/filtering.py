@@ -8,7 +8,7 @@ import numpy as np
 from seatrial.core.equations.model import channel_of
 from seatrial.core.values import Array, Index
 from seatrial.numerics.kernels.compiled_function import TangentPointer
-from seatrial.numerics.kernels.sensitivity import DELAY, GAIN, OFFSET
+from seatrial.numerics.kernels.sensitivity import correct
 from seatrial.physics.sensors.wave_motion import STILL, WaveMotion
 from seatrial.physics.simulate.batch import SegmentBatch
 from seatrial.physics.simulate.linear import batch_class
@@ -77,13 +77,10 @@ class KalmanFilter(SegmentBatch):
         return TangentPointer(self.model.compiled.rates_tangent), TangentPointer(self.model.compiled.outputs_tangent)
 
     @cached_property
-    def _rise(self) -> Array:
-        """1 for inputs that run straight from sample to sample, 0 for those that linear models hold, (nu,)."""
-        return np.array([0.0 if self.model.is_affine and i.is_held else 1.0 for i in self.model.inputs])
-
-    @cached_property
     def _steps_per_sample(self) -> int:
-        """Runge-Kutta steps in a sample: more where an input is held, as samples may then lie far apart."""
+        """Runge-Kutta steps in a sample: more where a linear model holds an input, as samples may lie far apart."""
+        if not self.model.is_affine:
+            return self.substeps
         is_moving = np.ptp(self.inputs, axis=0) > 0.0
         return max(self.substeps, HELD_SUBSTEPS) if np.any(is_moving & (self._rise == 0.0)) else self.substeps
 
@@ -227,17 +224,8 @@ def corrected_inputs(inputs: Array, dt: float, gain: Array, zero: Array, delay: 
 
     The derivatives by zero, gain and delay stand in that order for every input (`kernels.sensitivity`).
     """
-    rows, nu = inputs.shape
-    made, weights = np.empty((rows, nu)), np.empty((rows, 3 * nu))
-    for j in range(nu):
-        delayed = np.arange(rows) - delay[j] / dt
-        place = np.clip(delayed, 0.0, rows - 1.0)
-        left = np.minimum(place.astype(np.int64), rows - 2)
-        rise = inputs[left + 1, j] - inputs[left, j]
-        raw = inputs[left, j] + (place - left) * rise
-        made[:, j] = gain[j] * raw + zero[j]
-        weights[:, 3 * j + OFFSET], weights[:, 3 * j + GAIN] = 1.0, raw
-        weights[:, 3 * j + DELAY] = np.where(place == delayed, -gain[j] * rise / dt, 0.0)
+    made, weights = np.empty(inputs.shape), np.empty((len(inputs), 3 * inputs.shape[1]))
+    correct(np.ascontiguousarray(inputs), dt, gain, zero, delay, made, weights)
     return made, weights
 
 

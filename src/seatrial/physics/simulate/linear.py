@@ -19,6 +19,7 @@ from seatrial.numerics.kernels.sensitivity import DELAY, GAIN
 from seatrial.numerics.kernels.spline import spline_points, spline_slopes
 from seatrial.physics.simulate.batch import INPUT_KINDS, SegmentBatch
 
+_SAME_SAMPLE = 1e-9  # samples by which a place is rounded; chosen
 SUBSTEPS = 8  # straight pieces of a spline in one sample; chosen
 
 
@@ -122,7 +123,7 @@ class LinearBatch(SegmentBatch):
 
     def _prepare(self, first: int, last: int, corrections: Array) -> tuple[Index, Index, Array, Array, Array]:
         """Offsets, failures, room for y, fine inputs with the constant 1, and their slopes by the corrections."""
-        offsets, _, failed, y = self._segment_rows(first, last)
+        offsets, failed, y = self._segment_rows(first, last)
         fine = [self._corrected_inputs(s, corrections[s]) for s in range(first, last)]
         return offsets, failed, y, np.concatenate([u for u, _ in fine]), np.concatenate([w for _, w in fine])
 
@@ -162,13 +163,22 @@ class LinearBatch(SegmentBatch):
         """Return input j at the fine step, late by `delay` [s], and its rate of change; clamped to the segment."""
         samples, slopes = (np.ascontiguousarray(a[segment][:, j : j + 1]) for a in (self._samples, self._slopes))
         place = np.arange((len(samples) - 1) * self._steps_per_sample + 1) / self._steps_per_sample - delay / self.dt
+        if j in self._held_inputs:
+            return self._held_mean(samples[:, 0], place)
         inside = (place >= 0.0) & (place <= len(samples) - 1.0)
         place = np.clip(place, 0.0, len(samples) - 1.0)
-        if j in self._held_inputs:
-            # samples of rounding; chosen
-            return samples[np.minimum(np.floor(place + 1e-9).astype(int), len(samples) - 1), 0], np.zeros(len(place))
         value, rise = spline_points(samples, slopes, place)
         return value[:, 0], np.where(inside, rise[:, 0] / self.dt, 0.0)
+
+    def _held_mean(self, samples: Array, place: Array) -> tuple[Array, Array]:
+        """Return the mean of a held input over each fine step, from `place` on [samples], and its rate of change."""
+        steps, last = self._steps_per_sample, len(samples) - 1
+        left = np.floor(place + _SAME_SAMPLE)
+        after = (place - left) * steps + 1.0 - steps  # share of the step behind the next sample
+        switches = after > -steps * _SAME_SAMPLE
+        after = np.clip(after, 0.0, 1.0)
+        before, behind = (samples[np.clip(left + k, 0, last).astype(int)] for k in (0, 1))
+        return before + after * (behind - before), np.where(switches, (behind - before) * steps / self.dt, 0.0)
 
     @cached_property
     def _held_inputs(self) -> list[int]:

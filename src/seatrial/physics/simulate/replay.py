@@ -7,6 +7,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import NOTATION, Array, InputError, Provenance, Record, spelling_hint
+from seatrial.core.values.between import Between
 from seatrial.physics.simulate.channels import inputs_of, record_of
 from seatrial.physics.simulate.divergence import require_bounded
 from seatrial.physics.simulate.linear import batch_class
@@ -33,9 +34,19 @@ def replay(model: Model, record: Record, initial: Mapping[str, float] | None = N
     inputs = inputs_of(model, record)
     states, outputs = trajectory(model, inputs, record.dt, initial_state(model, record, initial or {}), substeps)
     require_bounded(model, record.time, states, f"record '{record.name}'")
-    made = record_of(model, record.name, record.time, states, outputs, inputs)
+    made = _with_input_course(model, record_of(model, record.name, record.time, states, outputs, inputs))
     step = f"inputs of '{record.name}' replayed through model '{model.name}'"
     return replace(made, provenance=Provenance(record.provenance.source, record.provenance.sha256, (step,)))
+
+
+def _with_input_course(model: Model, record: Record) -> Record:
+    """Return the record with how each input ran between samples, which a simulation knows."""
+    runs = {i.name: replace(record.channel(i.name), between=_course(i.is_held)) for i in model.inputs}
+    return replace(record, channels={**record.channels, **runs})
+
+
+def _course(is_held: bool) -> Between:
+    return "held" if is_held else "straight"
 
 
 def trajectory(model: Model, inputs: Array, dt: float, start: Array, substeps: int = 1) -> tuple[Array, Array]:

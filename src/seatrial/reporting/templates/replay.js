@@ -1,8 +1,8 @@
 "use strict";
 // A run simulated again: the scheme of seatrial/numerics/kernels/integrate.py (Hairer, Norsett & Wanner 1993, table
-// II.1.2), inputs linear between samples. `limits`: magnitudes of the states that no ship exceeds.
+// II.1.2), inputs linear between samples, or held (`held`). `limits`: magnitudes of the states that no ship exceeds.
 // Returns the states sample by sample, and the sample at which one left its limits (-1: none did).
-function replay(rates, { dt, count, start, inputs, limits }, p) {
+function replay(rates, { dt, count, start, inputs, held, limits }, p) {
   const n = start.length, width = inputs.length, x = Float64Array.from(start);
   const [k1, k2, k3, k4, y] = Array.from({ length: 5 }, () => new Float64Array(n));
   const [u0, um, u1] = Array.from({ length: 3 }, () => new Float64Array(width));
@@ -14,7 +14,7 @@ function replay(rates, { dt, count, start, inputs, limits }, p) {
     for (let i = 0; i < n; i++) states[i][row] = x[i];
     if (row === count - 1) break;
     for (let j = 0; j < width; j++) {
-      const half = 0.5 * (value(j, row + 1) - u0[j]);
+      const half = held[j] ? 0.0 : 0.5 * (value(j, row + 1) - u0[j]);
       um[j] = u0[j] + half;
       u1[j] = um[j] + half;
     }
@@ -26,7 +26,7 @@ function replay(rates, { dt, count, start, inputs, limits }, p) {
     for (let i = 0; i < n; i++) y[i] = x[i] + dt * k3[i];
     rates(y, u1, p, k4);
     for (let i = 0; i < n; i++) x[i] += dt / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
-    u0.set(u1);
+    for (let j = 0; j < width; j++) u0[j] = held[j] ? value(j, row + 1) : u1[j];
   }
   return { states, failed: -1 };
 }

@@ -46,7 +46,10 @@ class WindowSearch(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class ContinuedSearch:
-    """Output error over whole runs, from the last optimum; `schedule` says when to check it by one from nowhere."""
+    """Output error over whole runs, from the last optimum; `schedule` says when to check it by one from nowhere.
+
+    When inputs took effect counts as known, unless the trial names their delays.
+    """
 
     trial: Trial
     schedule: SearchSchedule
@@ -55,7 +58,9 @@ class ContinuedSearch:
     def estimate(self, phase: KeptPhase, records: Sequence[Record]) -> WindowEstimate:
         """As `WindowSearch.estimate`."""
         model, runs = self.trial.model, _runs(self.trial, phase, records)
-        settings = with_segment_seconds(self.trial.estimate, model, runs)
+        # a delay that is estimated has no place in the filter that takes over between searches
+        known = self.trial.estimate.with_known_timing(model.input_names)
+        settings = with_segment_seconds(known, model, runs)
         warm = None
         if not isinstance(phase, WarmUp):
             warm = warm_start(phase.estimate, model, runs, settings)
