@@ -58,9 +58,9 @@ _FEEDBACK = (
     "a disturbance is estimated, however faint"
 )
 SPREAD = "intervals cover the spread between the disturbance models"
-ALIKE = 0.25
+ALIKE = 0.3
 """Relative difference of errors on left-out quarters up to which criteria predict alike; chosen on simulated records of
-17 kinds: 0.18 at most where the likeliest disturbance is the true one, 0.55 at least where model or sensor differ."""
+17 kinds: 0.25 at most where the likeliest disturbance is the true one, 0.55 at least where model or sensor differ."""
 # residuals over whole runs over those within segments that count as equal, ours
 _MAX_RESIDUAL_GROWTH = 1.05
 # rad from sample to sample, ours: straight lines between samples then lose 1 % of an input
