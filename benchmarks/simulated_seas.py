@@ -356,7 +356,9 @@ def _steered(
     """Return motion at the samples, the inputs that act, and those that were ordered."""
     helm, step, is_linear = craft.helm, 1.0 / conditions.rate, craft.linear is not None
     steersman = Steersman(craft, conditions.manoeuvre, step, rng)
-    x = np.zeros(len(craft.linear[0])) if craft.linear is not None else np.array([craft.start, 0, 0, 0, 0, 0], float)
+    x = np.zeros(6 if craft.linear is None else len(craft.linear[0]))
+    if not is_linear and conditions.manoeuvre != "station":
+        x[0] = craft.start
     heading, place = -1 if is_linear else 3, np.zeros(2)
     states, inputs, orders = [], [np.array(helm.mean)], []
     weights, fine, play = np.arange(parts + 1) / parts, step / parts, 0.5 * conditions.backlash
