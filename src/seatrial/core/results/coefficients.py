@@ -228,8 +228,8 @@ class DisturbanceCandidate:
     left_out_error: Annotated[
         Number | None,
         Field(
-            description="geometric mean of the errors on quarters of the runs, each simulated by the estimate without "
-            "it, over that of the best criterion; null: not judged"
+            description="geometric mean of the errors on runs, or quarters of few, each simulated by the estimate "
+            "without it, over that of the best criterion; null: not judged"
         ),
     ]
     is_chosen: Annotated[bool, Field(description="whether it is behind the estimate")]

@@ -1,7 +1,7 @@
 """How far the motions of a run spread: what errors of its prediction are compared with."""
 
 import math
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Container, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -52,12 +52,3 @@ def motion_spreads(names: Container[str], measured: Record) -> dict[str, MotionS
 def _own_spreads(names: Container[str], measured: Record) -> dict[str, MotionSpread]:
     compared = (name for name, channels in MOTIONS.items() if name in names and all(c in measured for c in channels))
     return {name: motion_spread(name, [measured[c] for c in MOTIONS[name]]) for name in compared}
-
-
-def is_lost(errors: Mapping[str, float], measured: Record) -> bool:
-    """Return whether a simulation is further off than the mean of a motion, or diverges.
-
-    errors: rms errors as in `Prediction.rms`; empty: the simulation diverges.
-    """
-    spreads = _own_spreads(errors, measured)
-    return not errors or any(errors[name] > spread.size for name, spread in spreads.items())

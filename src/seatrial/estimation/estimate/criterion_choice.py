@@ -12,9 +12,9 @@ from seatrial.estimation.estimate.disturbance_choice import DisturbanceChoice, c
 from seatrial.estimation.estimate.disturbance_screen import HINT, spectral_hint
 from seatrial.estimation.estimate.input_offsets import with_input_offsets
 from seatrial.estimation.estimate.intervals import RUNS_FOR_JACKKNIFE
-from seatrial.estimation.estimate.left_out_quarters import (
+from seatrial.estimation.estimate.left_out_parts import (
+    Parts,
     WindowSeconds,
-    are_judged,
     innovation_points,
     left_out_errors,
     output_error_points,
@@ -59,7 +59,7 @@ _FEEDBACK = (
 )
 SPREAD = "intervals cover the spread between the disturbance models"
 ALIKE = 0.3
-"""Relative difference of errors on left-out quarters up to which criteria predict alike; chosen on simulated records of
+"""Relative difference of errors on left-out parts up to which criteria predict alike; chosen on simulated records of
 17 kinds: 0.25 at most where the likeliest disturbance is the true one, 0.55 at least where model or sensor differ."""
 # residuals over whole runs over those within segments that count as equal, ours
 _MAX_RESIDUAL_GROWTH = 1.05
@@ -174,14 +174,15 @@ def choose_criterion(
     best = disturbances.chosen.noise
     if over_runs is not None and over_runs.whiteness.is_white and not disturbances.chosen.unknown_count:
         return replace(over_runs.with_reasons(disturbances.summary), disturbances=disturbances)
-    if is_closed and not are_judged(runs):
+    parts = Parts.of(runs)
+    if is_closed and parts is None:
         return _with_disturbance(shot, disturbances, _FEEDBACK)
-    if are_judged(runs):
+    if parts is not None:
         shots = [] if np.isinf(seconds) else [(shooting, shot.criterion)]
         over = whole or fit_whole_runs()
         plain = [(over, WHOLE_RUNS), *shots] if over is not None else shots
         freed = [output_error_choice(_with_free_zeros(e, noise, report_progress), name) for e, name in plain]
-        return _best_predicting(shot, freed, disturbances, runs, windows)
+        return _best_predicting(shot, freed, disturbances, runs, parts, windows, (_FEEDBACK,) if is_closed else ())
     if best.test.is_nearly_white:
         return _with_disturbance(shot, disturbances)
     return _without_filter(shot, disturbances, _SEGMENTED)
@@ -215,32 +216,29 @@ def _with_free_zeros(
 
 def _best_predicting(
     shot: CriterionChoice, plain: Sequence[CriterionChoice], disturbances: DisturbanceChoice, runs: Runs,
-    windows: WindowSeconds,
+    parts: Parts, windows: WindowSeconds, reasons: tuple[str, ...],
 ) -> CriterionChoice:  # fmt: skip
-    """The criterion that predicts left-out quarters best; of those that predict alike the likeliest disturbance.
+    """The criterion that predicts left-out parts best; of those that predict alike the likeliest disturbance.
 
-    Candidates are `plain`, by output error, and every disturbance that was searched to its end.
+    Candidates are `plain`, by output error, and every disturbance that was searched to its end. reasons: for these.
     """
     plain = [c for c in plain if not is_lost(c.estimate.problem, c.estimate.common_parameters)]
     searched = [f for f in disturbances.fitted if f.unknown_count and f.promise == 0.0]
-    errors = [
-        left_out_errors(c.estimate.problem, output_error_points(c.estimate), runs, windows).mean() for c in plain
-    ] + [
-        left_out_errors(f.noise.as_point_estimate().problem, innovation_points(f.noise), runs, windows).mean()
-        for f in searched
-    ]  # fmt: skip
+    candidates = [(c.estimate.problem, output_error_points(c.estimate, parts)) for c in plain]
+    candidates += [(f.noise.as_point_estimate().problem, innovation_points(f.noise, parts)) for f in searched]
+    errors = [float(left_out_errors(p, points, runs, parts, windows).mean()) for p, points in candidates]
     names = [*(c.criterion for c in plain), *(f"{PREDICTION_ERROR}, {f.noise.disturbance_model}" for f in searched)]
     if not np.any(np.isfinite(errors)):
         return _without_filter(shot, disturbances, _SEGMENTED)
     least = float(np.min(errors))
-    text = "errors on left-out quarters of the runs over the least: " + "; ".join(
+    text = f"errors on {parts} over the least: " + "; ".join(
         f"{name} {np.exp(error - least):.2f}" for name, error in zip(names, errors, strict=True)
     )
     judged = {id(f): float(np.exp(e - least)) for f, e in zip(searched, errors[len(plain) :], strict=True)}
     fitted = tuple(replace(f, left_out_error=judged.get(id(f))) for f in disturbances.fitted)
     alike = [f for f in fitted if f.left_out_error is not None and f.left_out_error <= 1.0 + ALIKE]
     if alike:
-        return _with_disturbance(shot, DisturbanceChoice(likeliest(alike), fitted), text)
+        return _with_disturbance(shot, DisturbanceChoice(likeliest(alike), fitted), *reasons, text)
     used = plain[int(np.argmin(errors[: len(plain)]))]
     return _without_filter(replace(used, reasons=shot.reasons), replace(disturbances, fitted=fitted), text)
 

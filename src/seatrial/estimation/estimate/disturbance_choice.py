@@ -54,7 +54,7 @@ class FittedDisturbance:
     Attributes:
         unknown_count: unknowns that describe the disturbance.
         promise: what a Newton step would add to its log-likelihood; 0 where it was searched to the end.
-        left_out_error: error on left-out quarters of the runs over that of the best criterion; None: not judged.
+        left_out_error: error on left-out parts of the runs over that of the best criterion; None: not judged.
     """
 
     noise: ProcessNoise

@@ -24,7 +24,7 @@ from seatrial.estimation.estimate.intervals import (
     with_spread,
 )
 from seatrial.estimation.estimate.large_records import choice_over_all, choice_runs
-from seatrial.estimation.estimate.left_out_quarters import WindowSeconds
+from seatrial.estimation.estimate.left_out_parts import WindowSeconds
 from seatrial.estimation.estimate.plausibility import implausible_coefficients, refuse_implausible
 from seatrial.estimation.estimate.point_estimate import PointEstimate, fit_output_error, refuse_unstarted
 from seatrial.estimation.estimate.process_noise import ProcessNoise

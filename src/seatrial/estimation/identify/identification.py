@@ -12,7 +12,6 @@ from seatrial.estimation.estimate.runs import training_runs
 from seatrial.estimation.estimate.settings import INITIAL_STATE_SHIP_LENGTHS
 from seatrial.estimation.estimate.time_scale import characteristic_time
 from seatrial.estimation.identify.box_scale import box_scale, stands_on_box
-from seatrial.estimation.identify.criterion_by_whole_runs import preferred_estimation
 from seatrial.estimation.information.symmetries import refuse_unidentifiable, structural_symmetries
 from seatrial.estimation.problem.segments import compared_outputs
 from seatrial.estimation.problem.static_forces import StaticForces
@@ -85,12 +84,7 @@ class Identification:
             InputError: the outputs do not determine the free coefficients, or what `estimate_model` raises.
         """
         refuse_unidentifiable(self.trial.model, self.outputs, self._force_names)
-        estimation = estimate_model(self.trial.model, self.runs, self.settings, self.options, self.report_progress)
-        if "psi" not in self.trial.model.states:  # in waves and rolling, recorded forces or initial states decide
-            return estimation
-        return preferred_estimation(
-            estimation, self.runs, self.settings, self.options, self.initial_seconds, self.report_progress
-        )
+        return estimate_model(self.trial.model, self.runs, self.settings, self.options, self.report_progress)
 
     @property
     def _force_names(self) -> tuple[str, ...]:

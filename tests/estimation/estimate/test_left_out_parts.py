@@ -1,4 +1,4 @@
-"""Errors on left-out quarters: steps against refits, and what they are there for, an order recorded for the angle."""
+"""Errors on left-out parts: steps against refits, and what they are there for, an order recorded for the angle."""
 
 from dataclasses import replace
 
@@ -8,8 +8,8 @@ import pytest
 from seatrial.core.values import Record
 from seatrial.estimation.estimate.criterion_choice import PREDICTION_ERROR
 from seatrial.estimation.estimate.fit import estimate_model
-from seatrial.estimation.estimate.left_out_quarters import (
-    QUARTERS,
+from seatrial.estimation.estimate.left_out_parts import (
+    Parts,
     WindowSeconds,
     innovation_points,
     kinds_of,
@@ -26,6 +26,7 @@ from seatrial.physics.models.nomoto import nomoto
 
 K, T, DT, ROWS = 0.1, 8.0, 0.5, 1200
 NOISE = np.radians(0.1)
+PARTS = Parts(4, are_runs=False)
 
 
 def record_of(rng: np.random.Generator, late: float = 0.0) -> Record:
@@ -54,11 +55,11 @@ def estimate() -> PointEstimate:
 
 
 def test_a_step_leads_to_the_refit_without_the_quarter(estimate: PointEstimate) -> None:
-    points, problem = output_error_points(estimate), estimate.problem
-    assert points.shape == (QUARTERS, 2)
-    for k in range(QUARTERS):
+    points, problem = output_error_points(estimate, PARTS), estimate.problem
+    assert points.shape == (PARTS.count, 2)
+    for k in range(PARTS.count):
         measured = problem.data.measured.copy()
-        measured[k * ROWS // QUARTERS : (k + 1) * ROWS // QUARTERS] = np.nan
+        measured[k * ROWS // PARTS.count : (k + 1) * ROWS // PARTS.count] = np.nan
         rest = replace(problem, data=replace(problem.data, measured=measured))
         refit = fit_output_error(rest, estimate.common_parameters, estimate.optimum.local, {"psi": NOISE})
         moved = refit.common_parameters - estimate.common_parameters
@@ -69,9 +70,9 @@ def test_without_a_disturbance_both_criteria_predict_alike(estimate: PointEstima
     noise = fit_prediction_error(estimate, {"psi": NOISE}, thorough=True)
     record = record_of(np.random.default_rng(4))
     runs, seconds = Runs.one_session_each([record], 40.0), WindowSeconds(10.0, 4.0)
-    errors = left_out_errors(estimate.problem, output_error_points(estimate), runs, seconds)
-    others = left_out_errors(noise.as_point_estimate().problem, innovation_points(noise), runs, seconds)
-    assert errors.shape == others.shape == (QUARTERS, 2, 1)
+    errors = left_out_errors(estimate.problem, output_error_points(estimate, PARTS), runs, PARTS, seconds)
+    others = left_out_errors(noise.as_point_estimate().problem, innovation_points(noise, PARTS), runs, PARTS, seconds)
+    assert errors.shape == others.shape == (PARTS.count, 2, 1)
     np.testing.assert_allclose(errors, others, atol=0.1)
     assert np.all(np.exp(errors) < 5.0 * NOISE)  # the state at which a window begins is known by a few samples
 
@@ -82,7 +83,7 @@ def test_an_order_in_place_of_the_angle_is_no_disturbance() -> None:
     estimation = estimate_model(nomoto(), Runs.one_session_each([record], 40.0), options=EstimatorOptions(workers=1))
     assert estimation.criterion != PREDICTION_ERROR
     assert estimation.estimate.common_parameters[0] == pytest.approx(K, rel=0.05)
-    assert any("errors on left-out quarters" in reason for reason in estimation.reasons)
+    assert any("errors on quarters of the runs left out" in reason for reason in estimation.reasons)
     judged = [c.left_out_error for c in estimation.noise_model.candidates if c.left_out_error is not None]
     assert min(judged) > 1.25
 
@@ -90,3 +91,16 @@ def test_an_order_in_place_of_the_angle_is_no_disturbance() -> None:
 def test_kinds_of_channels() -> None:
     assert kinds_of(("u", "psi", "x0", "y0")) == [("psi",), ("x0", "y0")]
     assert kinds_of(("z", "theta")) == [("z",), ("theta",)]
+
+
+def test_whole_runs_where_they_are_enough() -> None:
+    record = record_of(np.random.default_rng(4))
+    few, many = (Runs.one_session_each([record.renamed(f"run {k}") for k in range(n)], 40.0) for n in (3, 9))
+    quarters, runs = Parts.of(few), Parts.of(many)
+    assert quarters == Parts(4, are_runs=False) and quarters.rows(few, 1)[0] == (ROWS // 4, ROWS // 2)
+    assert runs == Parts(8, are_runs=True)
+    assert [b for _, b in runs.rows(many, 0)] == [ROWS, *[0] * 7, ROWS], "every eighth run"
+    data = cut_segments(nomoto(), many.records, ("psi",), 50.0)
+    pieces = np.split(runs.of_rows(data), data.offsets[1:-1])
+    assert [set(piece) for piece in pieces] == [{r % 8} for r in data.run]
+    assert Parts.of(Runs.one_session_each([record.rows(slice(0, 30))], 40.0)) is None
