@@ -178,8 +178,8 @@ def _channel(column: ColumnSpec, values: Array, label: str) -> Channel:
         column.declared_positive,
         column.reference_point,
         label,
-        column.kind,
-        column.between,
+        kind=column.kind,
+        between=column.between,
     )
 
 
