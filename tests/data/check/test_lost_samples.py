@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from tests.data.check.ship import with_values, zigzag
 
-from seatrial.core.values import Array, Record, Severity
+from seatrial.core.values import Record, Severity
+from seatrial.core.values.arrays import Mask
 from seatrial.data.check.examine import examined_record, without_repeats
 from seatrial.data.check.lost_samples import bridged, bridged_rows, read_stretch, usual_rows
 from seatrial.data.check.repair import repaired_parts, repaired_whole
@@ -18,7 +19,7 @@ def turns(step: float = 1.0, seconds: float = 600.0) -> Record:
     return Record.from_arrays("run", time, {"psi": np.radians(psi), "delta": 0.3 * np.cos(2.0 * np.pi * time / 60.0)})
 
 
-def without_rows(record: Record, is_lost: Array) -> Record:
+def without_rows(record: Record, is_lost: Mask) -> Record:
     kept = {s: c.with_values(c.values[~is_lost]) for s, c in record.channels.items()}
     return Record(record.name, record.time[~is_lost], kept)
 

@@ -44,3 +44,9 @@ def test_runs_of_one_model_in_a_basin_share_its_rudder(tmp_path: Path) -> None:
 def test_clocks_without_a_date_that_go_on_are_of_one_day(tmp_path: Path) -> None:
     later = [_run(tmp_path, name, first) for name, first in (("a", "07:30:"), ("b", "08:10:"))]
     assert session_line(later).startswith('session = "all"    # clocks without a date go on')
+
+
+def test_runs_of_one_place_without_dates_are_of_one_outing(tmp_path: Path) -> None:
+    runs = [_run(tmp_path, k, "07:30:") for k in "ab"]
+    assert session_line(runs, is_one_place=True).startswith('session = "all"    # of one place by their fixes')
+    assert session_line([_run(tmp_path, k, f"2026-08-1{k}T07:30:") for k in "45"], is_one_place=True) == ""

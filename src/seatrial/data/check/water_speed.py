@@ -11,7 +11,7 @@ from seatrial.data.check.signal import jackknife_least_squares, least_squares, s
 _SMOOTHING_S = 3.0  # s over which velocities and yaw rate are smoothed; chosen: short against a turn
 _FEWEST_ROWS = 60  # of all runs together, for a fit of some eight coefficients; chosen
 _MOST_ROWS = 6000  # of all runs together that are fitted; chosen: some tenths of a second
-_SPEED, _SHARED = 2, 5  # place of the speed among the coefficients, and number of those that runs share
+_SPEED = 2  # place of the speed among the coefficients
 _SEPARATE = 0.04  # of a speed, up to which its standard error separates a current from it; chosen
 _SEVERAL = np.radians(60.0)  # sector of headings that are several courses; chosen: a wide zigzag is none
 _CLEAR, _LEAST_CURRENT = 4.0, 0.05  # standard errors and share of the speed from which on there is a current; chosen
@@ -23,23 +23,17 @@ class SpeedAndCurrent:
     """What fixes and headings of some runs show.
 
     Attributes:
-        speeds: through the water at the start of each run that has fixes [m/s].
-        speed_error: standard error of their mean [m/s].
+        speed, speed_error: through the water when it has recovered from turns [m/s], and its standard error.
         north, east: the current [m/s]; current_error: standard error of each.
         courses: the sector that holds all headings [rad].
     """
 
-    speeds: tuple[float, ...]
+    speed: float
     speed_error: float
     north: float
     east: float
     current_error: float
     courses: float
-
-    @property
-    def speed(self) -> float:
-        """The median over the runs [m/s]."""
-        return float(np.median(self.speeds))
 
     @property
     def current(self) -> float:
@@ -64,7 +58,7 @@ class SpeedAndCurrent:
 
 
 def speed_through_water(records: Sequence[Record]) -> SpeedAndCurrent | None:
-    """Return the speeds and the current that runs share, by least squares; None without headings and positions.
+    """Return the speed and the current that runs share, by least squares; None without headings and positions.
 
     Without positions u and v must be over ground.
 
@@ -86,9 +80,8 @@ def speed_through_water(records: Sequence[Record]) -> SpeedAndCurrent | None:
     best = min(_TIMES_S, key=lambda seconds: least_squares(features(seconds), target)[1])
     table = features(best)
     values, errors = jackknife_least_squares(table, target)
-    starts = values[_SHARED:] + values[_SPEED]
     return SpeedAndCurrent(
-        tuple(map(float, starts)), float(errors[_SPEED]), float(values[0]), float(values[1]),
+        float(values[_SPEED]), float(errors[_SPEED]), float(values[0]), float(values[1]),
         float(np.hypot(*errors[:2]) / np.sqrt(2.0)),
         _sector(np.concatenate([np.arctan2(track.s, track.c) for track in tracks])),
     )  # fmt: skip

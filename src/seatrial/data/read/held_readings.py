@@ -42,7 +42,8 @@ def slower_channels(values: Mapping[str, Array], time: Array) -> dict[str, Mask]
             for part in _renewed_together(present, values):
                 columns = [values[symbol] for symbol in part]
                 mask = _renewals(columns, time)
-                mask = _unfrozen(columns) if mask is None else mask
+                if mask is None and group[0] in _ALONE:  # held positions are found as jumps of the track
+                    mask = _unfrozen(columns)
                 masks |= {} if mask is None else dict.fromkeys(part, mask)
     return masks
 
@@ -162,6 +163,7 @@ def _with_unchanged(moments: Array, steps: np.ndarray) -> np.ndarray:
     first, last = float(moments[steps[0]]), float(moments[-1])
     due = [np.arange(first - period, moments[0] - tolerance, -period)]
     ends = [*(moments[steps[1:]] - 0.5 * period), last + tolerance]
-    due += [np.arange(moments[begin] + period, end, period) for begin, end in zip(steps, ends, strict=True)]
+    begins = moments[steps].tolist()
+    due += [np.arange(begin + period, float(end), period) for begin, end in zip(begins, ends, strict=True)]
     rows = np.searchsorted(moments, np.concatenate(due) - tolerance)
     return np.unique(np.concatenate([steps, np.minimum(rows, len(moments) - 1)]))
