@@ -1,13 +1,16 @@
 """The integrator against the matrix exponential, and what it does at the edges."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numba import njit
 from scipy.linalg import expm
 from tests.numerics.kernels.case import KernelCase
 
-from seatrial.core.equations import Model
+from seatrial.core.equations import Model, Sheet
 from seatrial.numerics.kernels.feedback import steer
+from seatrial.numerics.kernels.sensitivity import DELAY, correct
 from seatrial.numerics.kernels.types import COMMAND_SIGNATURE
 
 K, C, B = 1.5, 0.3, 0.8
@@ -134,3 +137,26 @@ def test_both_ways_agree_on_a_constant_input(nonlinear: Model, which: str) -> No
 @njit(COMMAND_SIGNATURE)
 def _idle(t, x, memory, u):
     """Leaves the input as it is."""
+
+
+def test_a_delayed_parabola_is_itself_earlier_and_its_slope_is_exact() -> None:
+    """Cubic convolution is exact for parabolas, also between samples; at the ends it is clamped."""
+    dt, delay = 0.5, np.array([0.3])
+    time = dt * np.arange(12)
+    inputs = (0.2 * time**2 - 0.4 * time)[:, None]
+    made, weights = np.empty((12, 1)), np.empty((12, 3))
+    correct(inputs, dt, np.ones(1), np.zeros(1), delay, made, weights)
+    late = time - delay[0]
+    np.testing.assert_allclose(made[2:-1, 0], (0.2 * late**2 - 0.4 * late)[2:-1], atol=1e-12)
+    np.testing.assert_allclose(weights[2:-1, DELAY], -(0.4 * late - 0.4)[2:-1], atol=1e-12)
+    assert made[0, 0] == inputs[0, 0] and weights[0, DELAY] == 0.0
+
+
+def test_a_held_input_acts_at_once_and_whole() -> None:
+    """One step of an integrator: the area of an order is its value times the time, none of the one that follows."""
+    sheet = Sheet("integrator", "the sum of an input over time")
+    (x,) = sheet.states("x")
+    sheet.rate(x, sheet.parameter("k", 1.0) * sheet.input("force"), "x' = k force")
+    case = KernelCase(sheet.model(), np.array([[1.0], [3.0], [3.0]]), (0, 3), 0.5, np.zeros((1, 1)), np.ones((1, 1)))
+    np.testing.assert_allclose(replace(case, held=(0,)).run()[0][:, 0], [0.0, 0.5, 2.0])
+    np.testing.assert_allclose(case.run()[0][:, 0], [0.0, 1.0, 2.5])

@@ -24,17 +24,17 @@ _LEAST_SHARE = 0.5  # of the travel that lies within single samples where an inp
 class Travel:
     """How far values move in all, and how far of it in steps within a single sample, in their unit."""
 
-    whole: float = 0.0
+    total: float = 0.0
     steps: float = 0.0
 
     def __add__(self, more: "Travel") -> "Travel":
         """Return the travel of two records together."""
-        return Travel(self.whole + more.whole, self.steps + more.steps)
+        return Travel(self.total + more.total, self.steps + more.steps)
 
     @property
     def is_stepped(self) -> bool:
         """Whether most of it lies within single samples: of orders all, of a slewing rudder hardly any."""
-        return self.whole > 0.0 and self.steps >= _LEAST_SHARE * self.whole
+        return self.total > 0.0 and self.steps >= _LEAST_SHARE * self.total
 
 
 def travel(values: Array) -> Travel:

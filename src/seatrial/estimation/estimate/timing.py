@@ -62,8 +62,8 @@ def _judged_travel(record: Record, name: str) -> Travel:
     channel = record.channel(name)
     seen = travel(channel.values)
     if channel.between or channel.is_command:
-        return Travel(seen.whole, seen.whole if channel.is_held else 0.0)
-    return Travel(seen.whole, 0.0) if _is_resampled(record, name) else seen
+        return Travel(seen.total, seen.total if channel.is_held else 0.0)
+    return Travel(seen.total, 0.0) if _is_resampled(record, name) else seen
 
 
 def _is_resampled(record: Record, name: str) -> bool:

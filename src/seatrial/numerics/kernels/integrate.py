@@ -26,24 +26,15 @@ def delayed_sample(inputs, first, last, j, place, by_place):
     total = 0.0
     for m in range(4):
         value = inputs[min(max(left + m - 1, first), last - 1), j]
+        near = abs(f + 1.0 - m)  # samples from the place to sample m of the four around it
         if by_place:
-            if m == 0:
-                w = f * (2.0 - 1.5 * f) - 0.5
-            elif m == 1:
-                w = f * (4.5 * f - 5.0)
-            elif m == 2:
-                w = f * (4.0 - 4.5 * f) + 0.5
-            else:
-                w = f * (1.5 * f - 1.0)
-        elif m == 0:
-            w = f * (f * (1.0 - 0.5 * f) - 0.5)
-        elif m == 1:
-            w = f * f * (1.5 * f - 2.5) + 1.0
-        elif m == 2:
-            w = f * (f * (2.0 - 1.5 * f) + 0.5)
+            side = 1.0 if f + 1.0 >= m else -1.0
+            weight = side * (near * (4.5 * near - 5.0) if near < 1.0 else 5.0 * near - 1.5 * near**2 - 4.0)  # Keys (8)'
+        elif near < 1.0:
+            weight = 1.0 + near**2 * (1.5 * near - 2.5)  # Keys, eq. (8)
         else:
-            w = 0.5 * f * f * (f - 1.0)
-        total += w * value
+            weight = 2.0 - near * (4.0 - near * (2.5 - 0.5 * near))  # Keys, eq. (8)
+        total += weight * value
     return total
 
 
