@@ -121,7 +121,7 @@ class Fitted:
 def simulated(cell: Cell, seed: int) -> tuple[st.Record, list[Piece]]:
     """Return the record of a cell with noise, and the rudder that steered it."""
     rng = np.random.default_rng([seed, int(1000 * cell.dt), TIMINGS.index(cell.timing)])
-    time = np.arange(round(DURATION / cell.dt) + 1) * cell.dt
+    time = np.asarray(np.arange(round(DURATION / cell.dt) + 1) * cell.dt, dtype=np.float64)
     pieces = rudder(cell, rng)
     y = motion(pieces, time, (TRUE["K"], TRUE["T"], 0.0, 0.0, 0.0))
     recorded = rudder_at(pieces, time - LATE * cell.dt if cell.timing == "late" else time)
@@ -215,8 +215,9 @@ def waterjet(given: argparse.Namespace) -> list[str]:
         record = replace(late, channels=bare)
         trial = st.Trial(st.Ship("waterjet", {"L": 9.8}), (st.TrialRun(record),), craft)
         fit = st.identify(trial)
-        free = [c for c in fit.coefficients if c.lower is not None and c.upper is not None]
-        inside += [c.lower <= craft.parameters[c.name].value <= c.upper for c in free]
+        for c in fit.coefficients:
+            if c.lower is not None and c.upper is not None:
+                inside.append(c.lower <= float(craft.parameters[c.name].value or 0.0) <= c.upper)
         delays += [o.estimate for o in fit.offsets if o.name == "delta delay"]
     return [
         f"waterjet, nozzle late by {given.late:g} s, {given.rate:g} Hz: {np.mean(inside):.3f} of {len(inside)} inside; "

@@ -331,10 +331,10 @@ def _negative_log_likelihood(e: Array, v: Array) -> float:
 
 def _mean_information(e: Array, v: Array, de: Array) -> tuple[Array, Array]:
     """Return sum e de / v and sum de de' / v: gradient and information by the mean."""
-    with np.errstate(invalid="ignore"):  # the cost is infinite there
+    with np.errstate(invalid="ignore", over="ignore"):  # the cost is infinite there, or a step away
         root = np.sqrt(v)
-    jacobian = (de / root[:, :, None]).reshape(-1, de.shape[2])
-    return jacobian.T @ (e / root).ravel(), jacobian.T @ jacobian
+        jacobian = (de / root[:, :, None]).reshape(-1, de.shape[2])
+        return jacobian.T @ (e / root).ravel(), jacobian.T @ jacobian
 
 
 def _variance_information(e: Array, v: Array, dv: Array) -> tuple[Array, Array]:

@@ -29,7 +29,8 @@ def delayed_sample(inputs, first, last, j, place, by_place):
         near = abs(f + 1.0 - m)  # samples from the place to sample m of the four around it
         if by_place:
             side = 1.0 if f + 1.0 >= m else -1.0
-            weight = side * (near * (4.5 * near - 5.0) if near < 1.0 else 5.0 * near - 1.5 * near**2 - 4.0)  # Keys (8)'
+            # derivatives of the weights below by the distance
+            weight = side * (near * (4.5 * near - 5.0) if near < 1.0 else 5.0 * near - 1.5 * near**2 - 4.0)
         elif near < 1.0:
             weight = 1.0 + near**2 * (1.5 * near - 2.5)  # Keys, eq. (8)
         else:
