@@ -14,16 +14,16 @@ _LARGEST_ERROR = 0.1  # samples, standard error of a lag above which nothing is 
 
 def stepped_input_findings(record: Record) -> tuple[Finding, ...]:
     """Return a note on the inputs of a clean record that are taken as held because they step within single samples."""
-    stepped = [
-        s
-        for s in INPUT_CHANNELS
-        if s in record and not _is_declared(record, s) and travel(record.channel(s).values).is_stepped
-    ]
+    travels = {
+        s: travel(record.channel(s).values) for s in INPUT_CHANNELS if s in record and not _is_declared(record, s)
+    }
+    stepped = [s for s, one in travels.items() if one.is_stepped]
     if not stepped:
         return ()
     names, verb = enumeration(stepped, len(stepped)), "changes" if len(stepped) == 1 else "change"
     text = f"record '{record.name}': {names} {verb} within single samples, as orders do"
-    evidence = "held from sample to sample; the instants of the steps are known to one sample"
+    share = min(travels[s].steps / travels[s].total for s in stepped)
+    evidence = f"{100.0 * share:.0f} % of their travel; held from sample to sample, steps known to one sample"
     advice = 'declare between = "straight" for a sensor that moved evenly between samples'
     return (Finding(Severity.INFO, "stepped-input", text, evidence, advice),)
 
