@@ -60,7 +60,7 @@ def record_from_arrays(table: Mapping[str, Any], arrays: Mapping[str, Array], pr
     return Record(table["name"], arrays[f"{prefix}/t"], channels, RecordKind(table["kind"]), provenance)
 
 
-FORMAT = 2
+FORMAT = 3
 """Of every document; 1 described a fit twice and kept nothing of a design, a tuning or a study to render."""
 T = TypeVar("T")
 Table = dict[str, Any]

@@ -187,7 +187,10 @@ def load_result(folder: str | Path, own_model: Model | None = None) -> Result:
         table = parse_json(read_table_text(folder / kind.document))
         written_format = table.get("format", 1)  # studies of format 1 do not name it
         if written_format != FORMAT:
-            raise InputError(f"'{folder}' is of format {written_format}, this version reads {FORMAT}; run {command}")
+            raise InputError(
+                f"'{folder}' is of format {written_format}, this version reads {FORMAT} and may estimate other values "
+                f"(CHANGELOG.md says where); run {command}"
+            )
         arrays, fields = _companions(kind, folder, table["files"], own_model, command)
         return read_document(kind.result, table | fields, arrays)
     except OSError as error:
