@@ -141,6 +141,7 @@ def simulate(
     rudder_rate: float | None = None,
     seed: int = 0,
     session: str | None = None,
+    waves: bool = False,
 ) -> "Record":
     """Simulate a manoeuvre, or the inputs of a record, with a model and return the record of it.
 
@@ -152,17 +153,44 @@ def simulate(
         speed: approach speed, m/s; without it the speed at which surge balances.
         inputs, duration, rudder_rate, seed: of a manoeuvre, as in `steering`; its angles and commands are true ones.
         session: of a measured record, as in `predict`: what the fit found its inputs to be off by is corrected.
+        waves: whether sensors show the waves of the training runs on top of the craft's motion; drawn by `seed`.
 
     Raises:
-        InputError: unknown manoeuvre, a rudder that cannot move, an input or speed that nothing states, or a simulation
-            that diverges.
+        InputError: unknown manoeuvre, a rudder that cannot move, an input or speed that nothing states, a simulation
+            that diverges, or waves where the training runs showed none.
     """
     file = as_model_file(model)
     _refuse_no_number(speed)
-    if not isinstance(manoeuvre, str):
-        return _replayed(file, manoeuvre, speed, session)
-    steer = steering(file, manoeuvre, speed=speed, inputs=inputs, duration=duration, rudder_rate=rudder_rate, seed=seed)
-    return steer(file.model)
+    if isinstance(manoeuvre, str):
+        record = steering(
+            file, manoeuvre, speed=speed, inputs=inputs, duration=duration, rudder_rate=rudder_rate, seed=seed
+        )(file.model)
+    else:
+        record = _replayed(file, manoeuvre, speed, session)
+    return in_waves(file, record, seed) if waves else record
+
+
+def in_waves(model: "Fit | ModelFile | Model", record: "Record", seed: int = 0) -> "Record":
+    """Return a simulated record as sensors show it in the waves of the training runs.
+
+    seed: of the waves.
+
+    Raises:
+        InputError: the training runs showed none.
+    """
+    import numpy as np
+
+    from seatrial.physics.sensors.wave_motion import realised
+
+    file, rng = as_model_file(model), np.random.default_rng(seed)
+    if not file.waves:
+        raise InputError("the model's training runs showed no waves that its sensors could show; leave out --waves")
+    for peak in file.waves:
+        for channel, motion in realised(peak.rms, peak.frequency, peak.damping, record.time, rng).items():
+            if channel in record:
+                moved = record.channel(channel)
+                record = record.with_channel(channel, moved.with_values(moved.values + motion))
+    return record
 
 
 def _refuse_no_number(speed: float | None) -> None:

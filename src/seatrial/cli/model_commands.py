@@ -132,6 +132,9 @@ def simulate(
         str | None,
         typer.Option(help="Fitted session whose offsets the record has, or new; default: the run's, or the only one."),
     ] = None,
+    waves: Annotated[
+        bool, typer.Option("--waves", help="Add the waves that the sensors of the training runs showed.")
+    ] = False,
     model: OwnModelPath = None,
     json: Json = None,
     seed: Seed = 0,
@@ -154,6 +157,8 @@ def simulate(
         raise InputError("give either --manoeuvre or --inputs")
     writable_folder(out.parent)
     if model_file.suffix == ".fmu":
+        if waves:
+            raise InputError("an FMU holds no waves; leave out --waves")
         if inputs is None:
             raise InputError("an FMU is run with the inputs of a record: give --inputs, such as a simulated manoeuvre")
         measured, _ = _measured_run(inputs, trial)
@@ -188,7 +193,7 @@ def simulate(
             intervals = api.measure_intervals(file, steer)
         except InputError as error:
             print(f"seatrial: {error}", file=sys.stderr)
-    write_record_csv(record, out)
+    write_record_csv(api.in_waves(file, record, seed) if waves else record, out)
     reference = measured if measured is not None and {"psi", "delta"} <= set(measured.channels) else None
     measures = api.measures(file, record, reference) if manoeuvre or "psi" in record else {}
     leaving = api.extrapolation(file, record)

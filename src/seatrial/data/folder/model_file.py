@@ -4,7 +4,7 @@ The equations are known by name and hash: a built-in model is found by its name,
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,7 @@ import numpy as np
 import tomli_w
 
 from seatrial.core.equations import Model
-from seatrial.core.results import IntervalBasis, SessionOffset
+from seatrial.core.results import IntervalBasis, SessionOffset, Waves
 from seatrial.core.values import Array, InputError, Parameters, Ship, frozen
 from seatrial.core.values.files import write_atomically
 from seatrial.core.values.tables import parse_toml, read_table_text
@@ -58,6 +58,7 @@ class ModelFile:
         approach: steady state and inputs from which a manoeuvre starts by default, symbol -> SI value.
         interval_basis: what intervals of predictions are made of; None where none were estimated.
         offsets: by which the inputs of the fit's sessions were logged wrong, and parameters that each session has.
+        waves: that the sensors of the training runs showed.
     """
 
     model: Model
@@ -67,6 +68,7 @@ class ModelFile:
     approach: Mapping[str, float] = field(default_factory=dict)
     interval_basis: IntervalBasis | None = None
     offsets: tuple[SessionOffset, ...] = ()
+    waves: tuple[Waves, ...] = ()
 
     @property
     def rudder_rate(self) -> RudderRate:
@@ -94,6 +96,8 @@ def model_text(file: ModelFile) -> str:
         table["covariance"] = {"parameters": list(free), "rows": matrix_rows(covariance)}
     if file.offsets:
         table["offsets"] = [model_tables.offset_table(one) for one in file.offsets]
+    if file.waves:
+        table["waves"] = [asdict(one) for one in file.waves]
     if file.interval_basis is not None:
         table["interval_basis"] = interval_basis_table(file.interval_basis)
     return tomli_w.dumps(table | {"provenance": model_tables.provenance_table(file.provenance)})
@@ -170,7 +174,13 @@ def _model_file(table: Mapping[str, Any], where: str, own_model: Model | None) -
         number_table(table["approach"]),
         interval_basis(table, where, parameters),
         tuple(model_tables.session_offset(one, model.input_names, parameters) for one in table.get("offsets", ())),
+        tuple(_waves(one) for one in table.get("waves", ())),
     )
+
+
+def _waves(entry: Mapping[str, Any]) -> Waves:
+    numbers = {name: finite_number(entry[name], f"waves.{name}") for name in ("frequency", "damping")}
+    return Waves(**numbers, rms={c: finite_number(v, f"waves.rms.{c}") for c, v in entry["rms"].items()})
 
 
 def _model_with_equations(entry: Mapping[str, Any], where: str, own_model: Model | None) -> Model:

@@ -83,7 +83,8 @@ def model_of_fit(fit: Fit) -> ModelFile:
     provenance = ModelProvenance(sources, fit.method.criterion, fit.seed, dict(fit.versions), warnings)
     approach = approach_condition([r for r, role in roles if role == "training"], fit.model)
     offsets = session_offsets_of(fit.offsets, fit.offset_populations)
-    return ModelFile(fit.model, fit.covariance, provenance, fit.ship, approach, fit.interval_basis, offsets)
+    waves = fit.noise_model.waves if fit.noise_model else ()
+    return ModelFile(fit.model, fit.covariance, provenance, fit.ship, approach, fit.interval_basis, offsets, waves)
 
 
 def _fields_of_fit(file: ModelFile) -> dict[str, Any]:

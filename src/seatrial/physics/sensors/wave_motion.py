@@ -9,7 +9,7 @@ A heading and a yaw rate show the same motion, xi and xi'; so do roll and pitch 
 are common to all motions of a peak: wind sea is one, swell may be another.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -127,3 +127,25 @@ def _exact(omega: complex, zeta: complex, dt: float) -> tuple[np.ndarray, np.nda
         square - phi[2] ** 2 - square * phi[3] ** 2,
     ])  # fmt: skip
     return phi, noise
+
+
+def realised(
+    rms: Mapping[str, float], frequency: float, damping: float, time: Array, rng: np.random.Generator
+) -> dict[str, Array]:
+    """Return a realisation of one peak's motion in each channel, channel -> (n,), an angle and its rate of the same.
+
+    Args:
+        rms: channel -> standard deviation, SI; frequency [rad/s] and relative damping of the peak.
+        time: evenly spaced [s], (n,).
+    """
+    phi, noise = (part.real for part in _exact(frequency, damping, float(time[1] - time[0])))
+    kick = np.linalg.cholesky(noise[np.array([[0, 1], [1, 2]])])
+    pairs = dict[str, Array]()
+    for motion in dict.fromkeys(map(motion_of, rms)):
+        states = np.empty((len(time), 2))
+        states[0] = rng.standard_normal(2) * [1.0, frequency]
+        for row, drawn in enumerate(rng.standard_normal((len(time) - 1, 2))):
+            states[row + 1] = phi.reshape(2, 2) @ states[row] + kick @ drawn
+        pairs[motion] = states
+    scale = {motion_of(c): size / (1.0 if motion_of(c) == c else frequency) for c, size in rms.items()}
+    return {c: scale[motion_of(c)] * pairs[motion_of(c)][:, int(motion_of(c) != c)] for c in rms}
