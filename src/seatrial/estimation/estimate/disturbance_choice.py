@@ -162,12 +162,18 @@ def choose_disturbance(
     if np.isfinite(white.newton_decrement):
         fitted.append(FittedDisturbance(white, count))
     has_room = not white.output_error.extra_terms  # force points know the caller's parameters only
-    models = [gusts(white, white.problem.process, white_intensities(white))] if has_room else []
-    gusty = list(_begun(models, white, evaluations, report))
+    peaks = _peaks(none) if has_room else []
+    waves = list(_begun(wave_motion(none, peaks), white, evaluations, report)) if any(p.is_high for p in peaks) else []
+    gusty = []
+    is_sea = bool(waves) and waves[0].noise.test.is_nearly_white and likeliest([*fitted, *waves]) is waves[0]
+    if has_room and not is_sea:  # waves alone leave next to nothing for gusts alone
+        model = gusts(white, white.problem.process, white_intensities(white))
+        gusty = list(_begun([model], white, evaluations, report))
     fitted += gusty
     eligible = int(needs_disturbance and len(fitted) > 1)  # the first to choose from
-    if has_room and not likeliest(fitted[eligible:]).noise.test.is_white:
-        fitted += _in_waves(none, [f.noise for f in gusty], white, evaluations, report)
+    if waves or (has_room and not likeliest(fitted[eligible:]).noise.test.is_white):
+        waves = waves or list(_begun(wave_motion(none, peaks), white, evaluations, report))
+        fitted += [*waves, *_beside_waves(none, waves, [f.noise for f in gusty], peaks, white, evaluations, report)]
     if not likeliest(fitted[eligible:]).noise.test.is_nearly_white:
         fitted += _begun(list(sensor_models(white)), white, evaluations, report)
     fitted = _searched(fitted, white, report, needs_disturbance=needs_disturbance)
@@ -179,26 +185,23 @@ def choose_disturbance(
     return DisturbanceChoice(likeliest(fitted[eligible:]), tuple(fitted))
 
 
-def _in_waves(
-    none: ProcessNoise, gusty: Sequence[ProcessNoise], white: ProcessNoise, evaluations: int, report: ProgressReporter
-) -> Iterator[FittedDisturbance]:
-    """Yield waves on the sensors alone, and gusts beside them, where residuals without a disturbance peak.
+def _beside_waves(
+    none: ProcessNoise, waves: Sequence[FittedDisturbance], gusty: Sequence[ProcessNoise],
+    peaks: Sequence[SpectralPeak], white: ProcessNoise, evaluations: int, report: ProgressReporter,
+) -> Iterator[FittedDisturbance]:  # fmt: skip
+    """Yield gusts beside waves on the sensors.
 
     Gusts begin beside the waves that the spectra show or that explain most alone, or the waves beside the gusts that
     do; not at all where waves alone leave white innovations that no gust of the grid makes likelier.
     """
-    peaks, driven, whites = _peaks(none), white.problem.process, white_intensities(white)
-    start = wave_motion(none, peaks)
-    motion = next(_begun(start, white, evaluations, report), None)
-    if motion is None:
-        return
-    yield motion
-    bases = [motion.noise, *(_unsearched(white, one) for one in start)]
-    scanned = likeliest_start([gusts(base, driven, share * whites) for base in bases for share in _BESIDE_WAVES])
-    is_likelier = scanned.problem.cost(scanned.point, _NO_INITIAL_STATES) < motion.noise.optimum.normal.cost
-    if not motion.noise.test.is_white or is_likelier:
-        starts = [scanned, *(start for base in gusty for start in wave_motion(base, peaks))]
-        yield from _begun([likeliest_start(starts)], white, evaluations, report)
+    driven, whites = white.problem.process, white_intensities(white)
+    for motion in waves:
+        bases = [motion.noise, *(_unsearched(white, start) for start in wave_motion(none, peaks))]
+        scanned = likeliest_start([gusts(base, driven, share * whites) for base in bases for share in _BESIDE_WAVES])
+        is_likelier = scanned.problem.cost(scanned.point, _NO_INITIAL_STATES) < motion.noise.optimum.normal.cost
+        if not motion.noise.test.is_white or is_likelier:
+            starts = [scanned, *(start for base in gusty for start in wave_motion(base, peaks))]
+            yield from _begun([likeliest_start(starts)], white, evaluations, report)
 
 
 def _unsearched(white: ProcessNoise, model: DisturbanceModel) -> ProcessNoise:

@@ -13,6 +13,7 @@ _AVERAGES = 4  # stretches in all samples, which overlap by half; chosen
 _ASIDE = 1.7  # factor between a peak and the places to both sides that it is compared with; chosen
 _SMOOTHED = 3  # neighbouring frequencies that are averaged; chosen
 _LEAST_EXCESS = float(np.log(2.0))  # of a peak over the power law through both sides; chosen: slopes' knees reach 0.4
+_HIGH_EXCESS = float(np.log(8.0))  # of a peak that is waves beyond doubt; chosen
 _SHARED_EXCESS = float(np.log(1.25))  # of the other channels there, whose noise hides more; chosen
 _APART = 1.2  # least factor between two peaks; chosen
 _BAND = 1.4  # factor to both sides of a peak within which its variance lies; chosen
@@ -25,11 +26,13 @@ class SpectralPeak:
     Attributes:
         variance: of each channel in its band, above what lies beside, (ny,), 0 where it does not peak there.
         floor: variance of white noise with the least density of each channel's spectrum, (ny,).
+        is_high: whether a channel exceeds its sides there as nothing but waves does.
     """
 
     frequency: float
     variance: Array
     floor: Array
+    is_high: bool = False
 
 
 def spectral_peaks(pieces: Sequence[Array], dt: float, most: int) -> list[SpectralPeak]:
@@ -94,4 +97,5 @@ def _peak(omega: Array, density: Array, excess: Array, place: int) -> SpectralPe
     variance = step * np.sum(np.maximum(density[is_inside] - beside, 0.0), axis=0)
     near = slice(max(place - 1, 0), place + 2)
     variance = np.where(np.max(excess[near], axis=0) >= _SHARED_EXCESS, variance, 0.0)
-    return SpectralPeak(float(frequency), variance, np.min(density, axis=0) * float(omega[-1]))
+    is_high = bool(np.max(excess[near]) >= _HIGH_EXCESS)
+    return SpectralPeak(float(frequency), variance, np.min(density, axis=0) * float(omega[-1]), is_high)
