@@ -180,7 +180,8 @@ def choose_disturbance(
     eligible = int(needs_disturbance and len(fitted) > 1)
     best = likeliest(fitted[eligible:])
     if best.noise.problem.waves.peaks and not best.noise.test.is_white:
-        more = _begun(wave_motion(best.noise, _peaks(best.noise)), white, evaluations, report)
+        peaks = [p for p in _peaks(best.noise) if p.is_high or not best.noise.test.is_nearly_white]
+        more = _begun(wave_motion(best.noise, peaks), white, evaluations, report)
         fitted = _searched([*fitted, *more], white, report, needs_disturbance=needs_disturbance)
     return DisturbanceChoice(likeliest(fitted[eligible:]), tuple(fitted))
 
@@ -192,14 +193,14 @@ def _beside_waves(
     """Yield gusts beside waves on the sensors.
 
     Gusts begin beside the waves that the spectra show or that explain most alone, or the waves beside the gusts that
-    do; not at all where waves alone leave white innovations that no gust of the grid makes likelier.
+    do; not at all where waves alone leave nearly white innovations that no gust of the grid makes likelier.
     """
     driven, whites = white.problem.process, white_intensities(white)
     for motion in waves:
         bases = [motion.noise, *(_unsearched(white, start) for start in wave_motion(none, peaks))]
         scanned = likeliest_start([gusts(base, driven, share * whites) for base in bases for share in _BESIDE_WAVES])
         is_likelier = scanned.problem.cost(scanned.point, _NO_INITIAL_STATES) < motion.noise.optimum.normal.cost
-        if not motion.noise.test.is_white or is_likelier:
+        if not motion.noise.test.is_nearly_white or is_likelier:
             starts = [scanned, *(start for base in gusty for start in wave_motion(base, peaks))]
             yield from _begun([likeliest_start(starts)], white, evaluations, report)
 
