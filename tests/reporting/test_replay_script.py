@@ -35,7 +35,7 @@ def replayed(node: str, folder: Path, model: Model, starts: Array, inputs: Array
     """States of every run, (runs, samples, states), from starts (runs, states) and inputs (runs, samples, nu)."""
     runs = [
         {"dt": dt, "count": len(columns), "start": start.tolist(), "inputs": columns.T.tolist(),
-         "limits": [1e9] * len(start)}
+         "held": [i.is_held for i in model.inputs], "limits": [1e9] * len(start)}
         for start, columns in zip(starts, inputs, strict=True)
     ]  # fmt: skip
     (folder / "runs.json").write_text(json.dumps({"runs": runs, "p": model.parameters.values.tolist()}))
@@ -58,8 +58,9 @@ def test_a_step_is_that_of_the_simulation(name: str, node: str, tmp_path: Path, 
     assert np.max(np.abs(there - here)[fine] / size[fine]) <= STEP_TOLERANCE
 
 
-def test_a_run_stays_with_the_simulation(node: str, tmp_path: Path) -> None:
-    model, record = waterjet(), zigzag("zigzag_20_20", 20.0)
+@pytest.mark.parametrize("held", [(), ("delta",)])
+def test_a_run_stays_with_the_simulation(held: tuple[str, ...], node: str, tmp_path: Path) -> None:
+    model, record = waterjet().with_held(held), zigzag("zigzag_20_20", 20.0)
     inputs = inputs_of(model, record)
     start = np.array([record[s][0] for s in model.states])
     here, _ = trajectory(model, inputs, record.dt, start)

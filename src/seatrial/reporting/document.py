@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from jinja2 import Environment
 
 _ANY_COLOUR = re.compile(r'"(#[0-9a-f]{6})(?:[0-9a-f]{2})?"')
+_UNREAD = re.compile(r"^ *(?://.*\n)?", re.MULTILINE)  # indentation of a script, and its lines of comment
 # places of a template that are filled once its text is known
 _PLOT_SCRIPTS, _NIGHT_COLOURS = "<!-- PLOT-SCRIPTS -->", "NIGHT-COLOURS"
 
@@ -36,6 +37,7 @@ def environment() -> "Environment":
     templates = shell.environment("seatrial.reporting")
     templates.filters["duration"] = duration
     templates.filters["significant"] = significant
+    templates.filters["run_only"] = lambda script: _UNREAD.sub("", script)
     templates.filters["math"] = lambda latex: Markup(inline(latex))
     templates.filters["breakable"] = lambda latex: Markup("".join(pieces(latex)))
     return templates
