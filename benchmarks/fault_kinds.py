@@ -181,7 +181,7 @@ KINDS = (
     FaultKind("yaw rate stuck for a tenth", _stuck, "stuck", "'r'"),
     FaultKind("five wild headings", _wild, "outlier", "'psi'"),
     FaultKind("a jump of 50 steps", _jump, "jump"),
-    FaultKind("a gap of a minute", _gap, "rows-dropped"),
+    FaultKind("a gap of a minute", _gap, "time-gap"),
     FaultKind("fifty rows repeated", _repeated, "repeated-rows"),
     FaultKind("yaw rate called roll rate", _mislabelled, "mislabelled"),
     FaultKind("rudder that never moves", _still, "no-excitation"),

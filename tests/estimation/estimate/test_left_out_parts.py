@@ -96,11 +96,11 @@ def test_kinds_of_channels() -> None:
 def test_whole_runs_where_they_are_enough() -> None:
     record = record_of(np.random.default_rng(4))
     few, many = (Runs.one_session_each([record.renamed(f"run {k}") for k in range(n)], 40.0) for n in (3, 9))
-    quarters, runs = Parts.of(few), Parts.of(many)
+    quarters, runs = Parts.for_runs(few), Parts.of(many)
     assert quarters == Parts(4, are_runs=False) and quarters.rows(few, 1)[0] == (ROWS // 4, ROWS // 2)
     assert runs == Parts(8, are_runs=True)
     assert [b for _, b in runs.rows(many, 0)] == [ROWS, *[0] * 7, ROWS], "every eighth run"
     data = cut_segments(nomoto(), many.records, ("psi",), 50.0)
     pieces = np.split(runs.of_rows(data), data.offsets[1:-1])
     assert [set(piece) for piece in pieces] == [{r % 8} for r in data.run]
-    assert Parts.of(Runs.one_session_each([record.rows(slice(0, 30))], 40.0)) is None
+    assert Parts.for_runs(Runs.one_session_each([record.rows(slice(0, 30))], 40.0)) is None

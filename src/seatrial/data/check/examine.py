@@ -26,7 +26,7 @@ from seatrial.data.check.stepped_inputs import integration_step_findings, steppe
 from seatrial.data.check.timestamps import rebuild_time_base
 from seatrial.data.check.velocity_conventions import velocity_convention_findings
 from seatrial.data.check.yaw_rate_consistency import yaw_rate_findings
-from seatrial.data.read.held_readings import slower_channels
+from seatrial.data.held_readings import slower_channels
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,9 +9,9 @@ import numpy as np
 from seatrial.core.values import Array, Channel, InputError, Provenance, Record, frozen
 from seatrial.core.values.files import plain_name
 from seatrial.core.values.froude import froude_scaled
+from seatrial.data.held_readings import between_readings, held_text, slower_channels
 from seatrial.data.read.clock import stamps
 from seatrial.data.read.derive import Measured, derived_channels
-from seatrial.data.read.held_readings import between_readings, held_text, slower_channels
 from seatrial.data.read.join import Series, common_time, ordered_series, values_at
 from seatrial.data.read.layout import ColumnSpec, Layout
 from seatrial.data.read.log import Log

@@ -174,7 +174,7 @@ def choose_criterion(
     best = disturbances.chosen.noise
     if over_runs is not None and over_runs.whiteness.is_white and not disturbances.chosen.unknown_count:
         return replace(over_runs.with_reasons(disturbances.summary), disturbances=disturbances)
-    parts = Parts.of(runs)
+    parts = Parts.for_runs(runs)
     if is_closed and parts is None:
         return _with_disturbance(shot, disturbances, _FEEDBACK)
     if parts is not None:

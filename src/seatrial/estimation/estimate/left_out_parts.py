@@ -45,7 +45,7 @@ class Parts:
     are_runs: bool
 
     @classmethod
-    def of(cls, runs: Runs) -> "Parts | None":
+    def for_runs(cls, runs: Runs) -> "Parts | None":
         """Return whole runs where they are enough for a jackknife, else quarters; None where these say nothing."""
         if len(runs) >= RUNS_FOR_JACKKNIFE:
             return cls(min(len(runs), _MOST_GROUPS), True)

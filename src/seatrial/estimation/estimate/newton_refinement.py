@@ -70,7 +70,7 @@ class _Coordinates:
     is_log: NDArray[np.bool_]
 
     @classmethod
-    def at(cls, problem: PredictionError, point: Array, hessian: Array) -> "_Coordinates":
+    def near(cls, problem: PredictionError, point: Array, hessian: Array) -> "_Coordinates":
         """Return those that suit a point: what is positive by its bounds, and variances that are not near zero."""
         error = 1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-300))  # above zero, for a division
         is_variance = np.arange(len(point)) >= problem.runs.size
@@ -102,7 +102,7 @@ class _Coordinates:
 def _descend(problem: PredictionError, point: Array, count: int) -> _Descent:
     """Step until no more than `_MAX_DECREMENT` is promised, or until no step decreases the cost."""
     normal = problem.normal(point, _NO_INITIAL_STATES)
-    coordinates = _Coordinates.at(problem, point, normal.hessian)
+    coordinates = _Coordinates.near(problem, point, normal.hessian)
     here = coordinates.normal(normal, point)
     hessian, is_expected = here.hessian, True
     while True:

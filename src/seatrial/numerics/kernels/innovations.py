@@ -159,10 +159,10 @@ def turn_waves(x, s, nx, pairs, first, size, peaks):
 def _filter_innovations(
     f, g, inputs, weights, rise, dt, substeps, x0, variance0, p,
     chain, link_p, link_u, g_link_p, g_link_u, select, noisy_states, process, measurement, measured,
-    pairs, size, shown, e_out, v_out, de_out, dv_out, variance_out, state_out,
+    pairs, size, wave_states, e_out, v_out, de_out, dv_out, variance_out, state_out,
     work_x, work_s, work_u, work_w, jac, g_jac, g_value, covariance, work, covariance_times_h,
 ):  # fmt: skip
-    nx, ny, rows, peaks = x0.size, select.size, measured.shape[0], shown.shape[1]
+    nx, ny, rows, peaks = x0.size, select.size, measured.shape[0], wave_states.shape[1]
     width, covs, n = de_out.shape[2], covariance.shape[0], x0.size + 2 * size.size
     quiet, measurements = width - (covs - 1), 1 + noisy_states.size + 2 * peaks + size.size
     x, k, y, acc, ahead, h, gain = work_x[0], work_x[1], work_x[2], work_x[3], work_x[4], work_x[5], work_x[6]
@@ -205,9 +205,9 @@ def _filter_innovations(
             for i in range(nx, n):
                 h[i] = 0.0
             for peak in range(peaks):
-                if shown[channel, peak] >= 0:
-                    h[shown[channel, peak]] = 1.0
-                    e -= x[shown[channel, peak]]
+                if wave_states[channel, peak] >= 0:
+                    h[wave_states[channel, peak]] = 1.0
+                    e -= x[wave_states[channel, peak]]
             for m in range(covs):
                 for i in range(n):
                     total = 0.0
@@ -299,7 +299,7 @@ def _filter_innovations(
 def filter_innovations(
     f, g, inputs, weights, rise, dt, substeps, x0, variance0, p,
     chain, link_p, link_u, g_link_p, g_link_u, select, ng, noisy_states, process, measurement, measured,
-    pairs, size, shown, e_out, v_out, de_out, dv_out, variance_out, state_out,
+    pairs, size, wave_states, e_out, v_out, de_out, dv_out, variance_out, state_out,
 ):  # fmt: skip
     """Filter one run: innovations e_out (measured - predicted) and their variances v_out, (rows, ny).
 
@@ -308,10 +308,10 @@ def filter_innovations(
     inputs (rows, nu), corrected; weights (rows, 3 nu), their derivatives by offset, gain and delay, or (rows, 0) where
     no column needs them; rise (nu,): 1 for inputs that run straight from sample to sample, 0 for those that are held;
     x0, variance0 (nx,): mean and variance of the initial state. process: variance a second of each state's white
-    noise, (nx,); measurement: variance of each channel, (ny,). Waves: pairs (k, 22), the same number of each
-    peak, peak after peak; size (k,), variance of each displacement; shown (ny, peaks), the state behind the craft's
-    that a channel shows of each peak, -1 for none. de_out (rows, ny, columns): sensitivities of e, columns as the links
-    say (counted from nx, the first nx being the transition matrix), the last ones by process of `noisy_states`, by
+    noise, (nx,); measurement: variance of each channel, (ny,). Waves: pairs (k, 22), the same number of each peak, peak
+    after peak; size (k,), variance of each displacement; wave_states (ny, peaks), the state behind the craft's that a
+    channel shows of each peak, -1 for none. de_out (rows, ny, columns): sensitivities of e, columns as the links say
+    (counted from nx, the first nx being the transition matrix), the last ones by process of `noisy_states`, by
     frequency and damping of each peak, by sizes, by measurement; dv_out (rows, ny, noise columns) those of v; without
     columns the likelihood alone. variance_out (rows or 0, nx): of the craft's states before each sample; state_out
     (rows or 0, nx + 2 k): means of all after it. A missing sample has e = 0 and v = 1.
@@ -321,7 +321,7 @@ def filter_innovations(
     outputs = ng if np.any(select >= nx) else 0
     return _filter_innovations(f, g, inputs, weights, rise, dt, substeps, x0, variance0, p,
                      chain, link_p, link_u, g_link_p, g_link_u, select, noisy_states, process, measurement, measured,
-                     pairs, size, shown, e_out, v_out, de_out, dv_out, variance_out, state_out,
+                     pairs, size, wave_states, e_out, v_out, de_out, dv_out, variance_out, state_out,
                      np.empty((7, n)),  # 7 vectors of states, taken apart at the kernel's head
                      np.zeros((4, n, nx + width)), np.empty((3, nu)), np.empty((3, 3 * nu)),
                      np.zeros((nx, whole)), np.zeros((outputs, whole)), np.empty(outputs), np.zeros((covs, n, n)),

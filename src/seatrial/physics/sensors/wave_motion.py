@@ -55,7 +55,7 @@ class WaveMotion:
         """Number of unknowns."""
         return 2 * self.peaks + self.pair_count
 
-    def shown(self, channels: Sequence[str], states: int) -> Index:
+    def shown_states(self, channels: Sequence[str], states: int) -> Index:
         """Return the state that a channel shows of each peak, counted behind `states`, -1: none, (channels, peaks)."""
         table = np.full((len(channels), self.peaks), -1, dtype=np.int64)
         for row, channel in enumerate(channels):

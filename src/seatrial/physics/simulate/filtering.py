@@ -148,16 +148,16 @@ class KalmanFilter(SegmentBatch):
         pairs, _ = self.waves.pairs(waves, self.dt)
         now = states.copy()
         for step in range(steps + 1 if self.waves.peaks else 0):
-            for column, places in enumerate(self.shown):
+            for column, places in enumerate(self.wave_states):
                 ahead[:, step, column] = now[:, places[places >= 0]].sum(axis=1)
             for a, pair in zip(range(len(self.model.states), states.shape[1], 2), pairs, strict=True):
                 now[:, a : a + 2] = now[:, a : a + 2] @ pair[:4].reshape(2, 2).T
         return ahead
 
     @cached_property
-    def shown(self) -> Index:
+    def wave_states(self) -> Index:
         """State that each output shows of each peak of the waves, -1: none, (ny, peaks)."""
-        return self.waves.shown([channel_of(o) for o in self.outputs], len(self.model.states))
+        return self.waves.shown_states([channel_of(o) for o in self.outputs], len(self.model.states))
 
     def transitions(self, segment: int, start: Array, parameters: Array, corrections: Array) -> tuple[Array, Array]:
         """Return transition matrices from sample to sample, (rows - 1, nx, nx), and outputs by states, (rows, ny, nx).
@@ -207,7 +207,7 @@ class KalmanFilter(SegmentBatch):
             *self._functions, inputs, weights, self._rise, self.dt,
             self._steps_per_sample, point.start[segment], point.start_variance[segment], point.parameters[segment],
             chain, link_p, link_u, g_link_p, g_link_u, self._output_columns, len(self.model.outputs), self._driven,
-            process, point.deviation**2, np.ascontiguousarray(measured[a:b]), pairs, size, self.shown,
+            process, point.deviation**2, np.ascontiguousarray(measured[a:b]), pairs, size, self.wave_states,
             e, v, de, dv, variance, states,
         )  # fmt: skip
         return _FilteredSegment(e, v, de, dv, variance, states, failed >= 0)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Array
-from seatrial.data.read.held_readings import between_readings, held_text, slower_channels
+from seatrial.data.held_readings import between_readings, held_text, slower_channels
 
 
 def fixes(time: Array, period: float, phase: float = 0.0) -> Array:
