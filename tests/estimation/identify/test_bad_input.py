@@ -58,11 +58,17 @@ def nothing(_: Path) -> None:
     pass
 
 
+KNOWN_TIMING = "\n[estimate]\ndelays = { delta = 0 }"
+
 CASES: dict[str, tuple[str, Spoil, str]] = {
     "no excitation": ("", still, "no excitation: 'delta' never moves in a, b; record a zigzag"),
     "no influence": ("free = ['K', 'T', 'U']", nothing, "U enters no equation that reaches r or psi"),
     "too short to tell": ("", shortened(2), "record 'a' has 2 samples; at least three are needed"),
-    "diverging": ("fixed = { T = -3.0 }", nothing, "determine none of the free coefficients K: every standard error"),
+    "diverging": (
+        f"fixed = {{ T = -3.0 }}{KNOWN_TIMING}",
+        nothing,
+        "determine none of the free coefficients K: every standard error",
+    ),
     "diverging at once": ("fixed = { T = -0.02 }", nothing, r"cannot begin: .* model 'nomoto' diverges in run 'a', \d"),
     "nothing free": ("free = []", nothing, "no free parameter"),
     "unknown parameter": ("fixed = { TT = 3.0 }", nothing, "unknown parameter 'TT'; did you mean 'T'"),

@@ -15,7 +15,7 @@ from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.identify import identify
 
 ZEROS = {"a": 0.02, "b": -0.03, "c": 0.0, "v_1": 0.05}
-OFFSETS = "[estimate]\noffsets = { delta = { sd = 3, unit = 'deg' } }"
+OFFSETS = "[estimate]\noffsets = { delta = { sd = 3, unit = 'deg' } }\ndelays = { delta = 0 }"
 
 
 def test_training_runs_are_fitted_and_validation_runs_predicted(trial_of: WriteTrial) -> None:

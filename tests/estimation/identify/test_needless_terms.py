@@ -10,7 +10,7 @@ import pytest
 from seatrial.core.results import Fit, Prediction
 from seatrial.core.results.identifiability import Stability
 from seatrial.core.values import Record, Ship
-from seatrial.data.trial import Role, Trial, TrialRun
+from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRun
 from seatrial.estimation.estimate import Estimation
 from seatrial.estimation.identify import assembled_fit, identify
 from seatrial.estimation.identify.needless_terms import needless_term_findings
@@ -37,8 +37,8 @@ def fitted(alpha: float, *free: str) -> Fit:
     roles = (*(Role.TRAIN for _ in trained), Role.VALIDATE)
     model = nomoto()
     model = model.with_parameters(model.parameters.only_free(("K", "T", *free)))
-    trial = Trial(Ship("boat", {"L": 6.0}), tuple(map(TrialRun, runs, roles)), model)
-    return identify(trial)
+    timing = EstimateSettings(delays={"delta": 0.0})  # simulated: known
+    return identify(Trial(Ship("boat", {"L": 6.0}), tuple(map(TrialRun, runs, roles)), model, estimate=timing))
 
 
 def test_a_term_that_worsens_the_held_out_run_is_named_with_both_errors() -> None:

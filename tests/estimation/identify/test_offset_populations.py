@@ -23,8 +23,8 @@ def populations(covariates: dict[str, str]) -> tuple[OffsetPopulation, ...]:
     for i, (helm, zero) in enumerate(zip(HELM, ZEROS, strict=True)):
         run = manoeuvre(truth, programme(f"zigzag:{helm:g}/10"), dt=0.5, speed=1.0, duration=90.0).renamed(f"run_{i}")
         records.append(run.with_channel("delta", run.channel("delta").with_values(run["delta"] - zero)))
-    offsets = {"delta": np.radians(2.0)}
-    settings = EstimateSettings(method="output-error", offsets=offsets, covariates=covariates)
+    offsets, timing = {"delta": np.radians(2.0)}, {"delta": 0.0}
+    settings = EstimateSettings(method="output-error", offsets=offsets, covariates=covariates, delays=timing)
     runs = Runs.one_session_each(records, 7.0)
     return offset_populations(estimate_model(truth, runs, settings, EstimatorOptions(workers=1)))
 

@@ -13,7 +13,7 @@ from seatrial.core.results import Fit, Posterior
 from seatrial.core.values import Record
 from seatrial.data.folder.earlier_result import joint_prior
 from seatrial.data.folder.result_folder import load_fit, model_of_fit, save_result
-from seatrial.data.trial import load_trial
+from seatrial.data.trial import EstimateSettings, load_trial
 from seatrial.data.trial.earlier_result import EarlierResult
 from seatrial.estimation.estimate import IntervalMethod
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
@@ -25,7 +25,7 @@ from seatrial.numerics.sampling import ChainSettings
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.problems.disturbed_craft import Disturbance, independent_nomoto
 
-OFFSETS = "[estimate]\noffsets = { delta = { sd = 3, unit = 'deg' } }"
+OFFSETS = "[estimate]\noffsets = { delta = { sd = 3, unit = 'deg' } }\ndelays = { delta = 0 }"
 Z_95 = 1.96
 """Standard deviations of a normal distribution in half of its 95 % interval."""
 
@@ -38,7 +38,8 @@ def records() -> tuple[Record, ...]:
 
 
 def estimated(records: tuple[Record, ...], workers: int = 1) -> Estimation:
-    return estimate_model(nomoto(), Runs.one_session_each(records, 8.0), options=EstimatorOptions(workers=workers))
+    settings = EstimateSettings(delays={"delta": 0.0})  # simulated: the timing is known
+    return estimate_model(nomoto(), Runs.one_session_each(records, 8.0), settings, EstimatorOptions(workers=workers))
 
 
 def assert_agrees_with_the_bound(posterior: Posterior, estimation: Estimation) -> None:

@@ -17,6 +17,10 @@ _LOST_FACTOR = 30.0
 """The same from which a search begins anew: further out the likelihood hardly depends on it; chosen."""
 
 
+class OutsidePhysicsError(InputError):
+    """States which coefficients a search got lost with."""
+
+
 def implausible_coefficients(estimate: PointEstimate, standard_error: Array) -> str:
     """Return the coefficients with which the search got lost, with their standard errors; empty where it did not.
 
@@ -41,11 +45,11 @@ def refuse_implausible(estimate: PointEstimate, standard_error: Array) -> None:
     """Refuse an estimate that is no number, or so far outside the size of its coefficients that the search got lost.
 
     Raises:
-        InputError: which coefficients, their values, and what to try.
+        OutsidePhysicsError: which coefficients, their values, and what to try.
     """
     lost = implausible_coefficients(estimate, standard_error)
     if lost:
-        raise InputError(
+        raise OutsidePhysicsError(
             f"the search ended outside physics: {lost}; either the runs do not show these apart: fix some under "
             "[model.fixed] or give priors under [model.priors]; or no values repeat all runs: leave out those that "
             f"differ most in speed or orders, or take a model with what they differ by{_without_velocity(estimate)}"

@@ -10,6 +10,7 @@ from seatrial.core.values import InputError, ProgressReporter
 from seatrial.data.trial import EstimateMethod, FitCriterion, Role, Trial, checked_records
 from seatrial.estimation.estimate import EstimatorOptions, IntervalMethod
 from seatrial.estimation.estimate.criterion_choice import is_explained
+from seatrial.estimation.estimate.plausibility import OutsidePhysicsError
 from seatrial.estimation.estimate.settings import WEAK_FORM_SHIP_LENGTHS
 from seatrial.estimation.identify.baselines import with_baselines, with_search_baselines
 from seatrial.estimation.identify.identification import Identification
@@ -149,5 +150,13 @@ def identification_situation(task: Identification) -> Situation:
         task.train,
         has_force_points=bool(task.trial.forces),
         is_criterion_free=task.settings.criterion is FitCriterion.AUTO,
-        is_explained=lambda: is_explained(task.estimation.shooting),
+        is_explained=lambda: _is_explained_by_its_start(task),
     )
+
+
+def _is_explained_by_its_start(task: Identification) -> bool:
+    """Whether the initial states explain the motion; a search that they lead outside physics says that they do not."""
+    try:
+        return is_explained(task.estimation.shooting)
+    except OutsidePhysicsError:
+        return False

@@ -36,6 +36,8 @@ HOLDOUT_WINDOW_SHIP_LENGTHS = 4.0
 FREED_PRIOR_SHARE = 0.1
 """Prior standard deviation of a parameter that a structure frees, over its characteristic size."""
 
+_ALIKE = 1e-3  # share of an error below which a difference is none, however regular; chosen
+
 
 @dataclass(frozen=True)
 class ModelVariant:
@@ -324,9 +326,9 @@ def _standard_error(excess: Array) -> float:
 
 
 def _is_tied(excess: Array) -> bool:
-    """Whether scores of runs are worse by no more than their scatter explains."""
+    """Whether scores of runs are worse by no more than their scatter explains, or than matters."""
     level = stdtrit(max(len(excess) - 1, 1), 0.95)  # one-sided level; chosen
-    return bool(excess.mean() <= level * _standard_error(excess))
+    return bool(excess.mean() <= max(level * _standard_error(excess), _ALIKE))
 
 
 def _candidate(f: FittedVariant, mean: Mapping[str, float], *, tied: bool, used: bool) -> CandidateModel:

@@ -108,14 +108,15 @@ def _with_outages(record: Record, symbols: tuple[str, ...], starts: tuple[int, .
     return record
 
 
-def test_one_second_without_motions_costs_accuracy_that_is_stated(outages):
-    """Holes of a second are interpolated straight, as in a batch fit: some per cent, and coloured residuals."""
+def test_a_second_without_motions_costs_its_samples_alone(outages):
+    """Cells that were filled are no measurements: errors grow by about as much as information is lost."""
     trial, record, truth = outages
     best = feed(OnlineEstimator(trial), record, trial)
     snapshot = feed(OnlineEstimator(trial), _with_outages(record, ("z", "theta"), (200, 555, 900)), trial)
     assert snapshot.phase is EstimatorPhase.WINDOW
-    assert np.mean(np.abs(snapshot.value / truth - 1.0)) < 0.04
-    assert np.all(snapshot.standard_error > 1.5 * best.standard_error)
+    assert np.all(np.abs(snapshot.value - truth) < 4.0 * snapshot.standard_error)
+    growth = snapshot.standard_error / best.standard_error
+    assert np.all((growth > 1.0) & (growth < 1.1))  # 30 of 1201 samples; 1.3 % if all were worth the same
 
 
 def test_a_logger_that_stops_for_a_second_goes_on_in_a_new_run(outages):
