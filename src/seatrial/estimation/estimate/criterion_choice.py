@@ -8,7 +8,7 @@ import numpy as np
 
 from seatrial.core.values import Array, ProgressReporter
 from seatrial.data.trial import EstimateSettings, FitCriterion
-from seatrial.estimation.estimate.disturbance_choice import DisturbanceChoice, choose_disturbance, likeliest
+from seatrial.estimation.estimate.disturbance_choice import ALIKE, DisturbanceChoice, choose_disturbance, likeliest
 from seatrial.estimation.estimate.disturbance_screen import HINT, spectral_hint
 from seatrial.estimation.estimate.input_offsets import with_input_offsets
 from seatrial.estimation.estimate.intervals import RUNS_FOR_JACKKNIFE
@@ -58,9 +58,6 @@ _FEEDBACK = (
     "a disturbance is estimated, however faint"
 )
 SPREAD = "intervals cover the spread between the disturbance models"
-ALIKE = 0.3
-"""Relative difference of errors on left-out parts up to which criteria predict alike; chosen on simulated records of
-17 kinds: 0.25 at most where the likeliest disturbance is the true one, 0.55 at least where model or sensor differ."""
 # residuals over whole runs over those within segments that count as equal, ours
 _MAX_RESIDUAL_GROWTH = 1.05
 # rad from sample to sample, ours: straight lines between samples then lose 1 % of an input
@@ -240,7 +237,11 @@ def _best_predicting(
     if alike:
         return _with_disturbance(shot, DisturbanceChoice(likeliest(alike), fitted), *reasons, text)
     used = plain[int(np.argmin(errors[: len(plain)]))]
-    return _without_filter(replace(used, reasons=shot.reasons), replace(disturbances, fitted=fitted), text)
+    disturbances = replace(disturbances, fitted=fitted)
+    return replace(
+        used.with_reasons(*shot.reasons, disturbances.choice_text, text),
+        process_intensities=disturbances.chosen.noise.process_intensities, disturbances=disturbances,
+    )  # fmt: skip
 
 
 def is_coarsely_sampled(problem: OutputError) -> bool:

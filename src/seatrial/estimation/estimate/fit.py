@@ -279,7 +279,7 @@ def _uncertainty(choice: CriterionChoice, options: EstimatorOptions, report_prog
         return innovations_uncertainty(choice.process_noise, choice.disturbances, options.intervals)
     rng = np.random.default_rng(options.seed)
     uncertainty = estimate_uncertainty(choice.estimate, choice.inflation, options.intervals, rng, counted)
-    if choice.disturbances is None or choice.whiteness.is_white:
+    if choice.disturbances is None or not choice.disturbances.rivals or choice.whiteness.is_white:
         return uncertainty
     estimate = choice.estimate
     widened = with_spread(uncertainty.interval, choice.disturbances, estimate.problem.free, estimate.common_parameters)
