@@ -31,7 +31,7 @@ EXCEPTIONS: dict[str, str] = {
     "estimation/estimate: better_estimate": _WINDOW,
     "estimation/estimate: cold_start": _WINDOW,
     "estimation/estimate: force_consistency": "tests/estimation/identify/test_fusion.py reads its findings",
-    "estimation/estimate: newton_step": "tests/problems/test_craft_problems.py reads the limit that it gives",
+    "estimation/estimate: newton_step": "a bound under gusts takes it; tests/problems/test_craft_problems.py runs that",
     "estimation/estimate: refuse_diverging": _WINDOW,
     "estimation/estimate: refuse_unmeasured_waves": "its sentence is that of tests/estimation/identify/test_waves.py",
     "estimation/estimate: warm_start": _WINDOW,

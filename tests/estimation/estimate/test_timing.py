@@ -11,7 +11,7 @@ from seatrial.estimation.estimate.assemble import output_error_problem
 from seatrial.estimation.estimate.fit import estimate_model
 from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.timing import set_inputs, timing_nuisances, with_held_inputs
-from seatrial.physics.models import heave_pitch, mmg, nomoto, waterjet
+from seatrial.physics.models import heave_pitch, mmg, model_named, nomoto, waterjet
 
 K, T = 0.12, 9.0
 DT = 1.0
@@ -58,6 +58,14 @@ def test_the_prior_is_that_of_the_source_and_not_of_the_rate(rng: np.random.Gene
     (nuisance,) = timing_nuisances(nomoto(), [run], EstimateSettings())
     assert nuisance.prior.standard_deviation == pytest.approx(DT / math.sqrt(12.0)) and nuisance.is_spread_fixed
     assert timing_nuisances(nomoto(), [run], EstimateSettings(delays={"delta": None})) == ()
+
+
+def test_commands_that_are_one_in_all_runs_have_no_time_between_them(rng: np.random.Generator) -> None:
+    commands = {f"command_{k}": rng.uniform(-1.0, 1.0, 50) for k in (1, 2)}
+    alike = dict.fromkeys(commands, commands["command_1"])
+    runs = [Record.from_arrays("run", DT * np.arange(50), channels) for channels in (commands, alike)]
+    counts = [len(timing_nuisances(model_named("thrusters"), some, EstimateSettings())) for some in (runs, runs[1:])]
+    assert counts == [2, 0]
 
 
 def test_an_input_that_never_moves_has_no_delay(rng: np.random.Generator) -> None:

@@ -72,15 +72,25 @@ def _is_resampled(record: Record, name: str) -> bool:
 
 
 def timing_nuisances(model: Model, records: Sequence[Record], settings: EstimateSettings) -> tuple[Nuisance, ...]:
-    """Return a delay for each set input that moves in the records and that the settings do not name."""
+    """Return a delay for each set input that moves in the records and that the settings do not name.
+
+    Inputs that are the same in all records have none: a time between them would separate what no record does.
+    """
+    names = set_inputs(model)
     return tuple(
         Nuisance(
             InputCorrection(name, "delay"), Prior(0.0, _sample_interval(name, records) / UNIFORM, SOURCE), "s",
             is_spread_fixed=True,
         )
-        for name in set_inputs(model)
-        if name not in settings.delays and any(name in r and np.ptp(r[name]) > 0.0 for r in records)
+        for name in names
+        if name not in settings.delays
+        and any(name in r and np.ptp(r[name]) > 0.0 for r in records)
+        and not any(_are_same(name, other, records) for other in names if other != name)
     )  # fmt: skip
+
+
+def _are_same(name: str, other: str, records: Sequence[Record]) -> bool:
+    return all(name in r and other in r and np.array_equal(r[name], r[other], equal_nan=True) for r in records)
 
 
 def _sample_interval(name: str, records: Sequence[Record]) -> float:
