@@ -96,7 +96,7 @@ def test_kinds_of_channels() -> None:
 def test_whole_runs_where_they_are_enough() -> None:
     record = record_of(np.random.default_rng(4))
     few, many = (Runs.one_session_each([record.renamed(f"run {k}") for k in range(n)], 40.0) for n in (3, 9))
-    quarters, runs = Parts.for_runs(few), Parts.of(many)
+    quarters, runs = Parts.for_runs(few), Parts.for_runs(many)
     assert quarters == Parts(4, are_runs=False) and quarters.rows(few, 1)[0] == (ROWS // 4, ROWS // 2)
     assert runs == Parts(8, are_runs=True)
     assert [b for _, b in runs.rows(many, 0)] == [ROWS, *[0] * 7, ROWS], "every eighth run"
