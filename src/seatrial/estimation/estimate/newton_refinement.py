@@ -34,15 +34,16 @@ def refine_by_newton(problem: PredictionError, optimum: Optimum) -> tuple[Predic
     search went so far that the steps of differences no longer suit, it goes on with new ones.
     """
     point = optimum.solution.point
-    exact = replace(problem, steps=problem.difference_steps(point, optimum.normal.hessian))
+    used = problem.difference_steps(point, optimum.normal.hessian)
+    exact = replace(problem, steps=used)
     near = _descend(replace(exact, is_one_sided=True), point, 0)
     end = _descend(exact, near.point, near.count)
     for _ in range(_RENEWALS):
         steps = problem.difference_steps(end.point, end.normal.hessian)
-        is_wrong = np.abs(np.log(steps / np.where(exact.steps > 0.0, exact.steps, steps))) > np.log(_WRONG_STEPS)
+        is_wrong = np.abs(np.log(steps / np.where(used > 0.0, used, steps))) > np.log(_WRONG_STEPS)
         if not np.any(is_wrong & (problem.lower < problem.upper)):
             break
-        exact = replace(problem, steps=steps)
+        used, exact = steps, replace(problem, steps=steps)
         end = _descend(exact, end.point, end.count)
     slope = end.decrement
     solution = replace(

@@ -65,10 +65,20 @@ def _density(pieces: Sequence[Array], dt: float) -> tuple[Array, Array]:
     shortest, most = _SEGMENT_LENGTHS
     length = int(np.clip(2 ** int(np.log2(max(rows // _AVERAGES, 1))), shortest, most))
     length = min(length, longest)
-    made = [(welch(np.nan_to_num(p), 1.0 / dt, nperseg=length, detrend="linear", axis=0), len(p))
-            for p in pieces if len(p) >= length]  # fmt: skip
-    density = sum(d * n for (_, d), n in made) / sum(n for _, n in made)
-    return 2.0 * np.pi * made[0][0][0][1:], density[1:] / (2.0 * np.pi)
+    long_enough = [p for p in pieces if len(p) >= length]
+    spectra = [
+        np.asarray(welch(np.nan_to_num(p), 1.0 / dt, nperseg=length, detrend=_without_trend, axis=0)[1])
+        for p in long_enough
+    ]
+    density = np.average(spectra, axis=0, weights=[len(p) for p in long_enough])
+    return 2.0 * np.pi * np.fft.rfftfreq(length, dt)[1:], density[1:] / (2.0 * np.pi)
+
+
+def _without_trend(values: Array) -> Array:
+    """Return values without the straight line through them, along the last axis."""
+    from scipy.signal import detrend
+
+    return np.asarray(detrend(values))
 
 
 def _excess(omega: Array, density: Array) -> Array:

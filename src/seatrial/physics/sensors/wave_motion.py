@@ -107,7 +107,9 @@ def _pair(omega: float, zeta: float, dt: float) -> Array:
     """Return one pair: exact transition over dt, the variance gained in it at unit variance, and derivatives."""
     step = _COMPLEX_STEP * 1j
     values = [_exact(omega, zeta, dt), _exact(omega + step, zeta, dt), _exact(omega, zeta + step, dt)]
-    phi, noise = ([v[i].real if k == 0 else v[i].imag / _COMPLEX_STEP for k, v in enumerate(values)] for i in range(2))
+    phi, noise = (
+        [np.real(v[i]) if k == 0 else np.imag(v[i]) / _COMPLEX_STEP for k, v in enumerate(values)] for i in range(2)
+    )
     return np.concatenate([*phi, *noise, [omega**2]])
 
 
@@ -138,7 +140,7 @@ def realised(
         rms: channel -> standard deviation, SI; frequency [rad/s] and relative damping of the peak.
         time: evenly spaced [s], (n,).
     """
-    phi, noise = (part.real for part in _exact(frequency, damping, float(time[1] - time[0])))
+    phi, noise = (np.real(part) for part in _exact(frequency, damping, float(time[1] - time[0])))
     kick = np.linalg.cholesky(noise[np.array([[0, 1], [1, 2]])])
     pairs = dict[str, Array]()
     for motion in dict.fromkeys(map(motion_of, rms)):
