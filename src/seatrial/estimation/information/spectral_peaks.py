@@ -71,7 +71,8 @@ def _density(pieces: Sequence[Array], dt: float) -> tuple[Array, Array]:
         for p in long_enough
     ]
     density = np.average(spectra, axis=0, weights=[len(p) for p in long_enough])
-    return 2.0 * np.pi * np.fft.rfftfreq(length, dt)[1:], density[1:] / (2.0 * np.pi)
+    omega = np.asarray(2.0 * np.pi * np.fft.rfftfreq(length, dt), dtype=np.float64)
+    return omega[1:], density[1:] / (2.0 * np.pi)
 
 
 def _without_trend(values: Array) -> Array:
