@@ -58,17 +58,10 @@ def nothing(_: Path) -> None:
     pass
 
 
-KNOWN_TIMING = "\n[estimate]\ndelays = { delta = 0 }"
-
 CASES: dict[str, tuple[str, Spoil, str]] = {
     "no excitation": ("", still, "no excitation: 'delta' never moves in a, b; record a zigzag"),
     "no influence": ("free = ['K', 'T', 'U']", nothing, "U enters no equation that reaches r or psi"),
     "too short to tell": ("", shortened(2), "record 'a' has 2 samples; at least three are needed"),
-    "diverging": (
-        f"fixed = {{ T = -3.0 }}{KNOWN_TIMING}",
-        nothing,
-        "determine none of the free coefficients K: every standard error",
-    ),
     "diverging at once": ("fixed = { T = -0.02 }", nothing, r"cannot begin: .* model 'nomoto' diverges in run 'a', \d"),
     "nothing free": ("free = []", nothing, "no free parameter"),
     "unknown parameter": ("fixed = { TT = 3.0 }", nothing, "unknown parameter 'TT'; did you mean 'T'"),
@@ -95,3 +88,11 @@ def test_one_sentence_and_exit_code_2(
     assert last.startswith("seatrial: ")
     assert re.search(says, last), last
     assert not list(out.glob("*"))
+
+
+def test_runs_that_a_wrong_value_cannot_repeat_are_said_to_diverge(
+    trial_of: WriteTrial, run_command: Callable[..., int], capsys: pytest.CaptureFixture
+) -> None:
+    path = trial_of({"a": 0.0, "b": 0.0}, model="fixed = { T = -3.0 }")
+    assert run_command("identify", path, "--out", path.parent / "result") == 0
+    assert "warning [diverged] training run 'a' diverges" in capsys.readouterr().out
