@@ -104,3 +104,19 @@ def test_whole_runs_where_they_are_enough() -> None:
     pieces = np.split(runs.of_rows(data), data.offsets[1:-1])
     assert [set(piece) for piece in pieces] == [{r % 8} for r in data.run]
     assert Parts.for_runs(Runs.one_session_each([record.rows(slice(0, 30))], 40.0)) is None
+
+
+def test_parts_of_uneven_length_and_without_a_channel(estimate: PointEstimate) -> None:
+    """Quarters of 66 rows hold one or two of the shortest windows; a part without headings has no error of them."""
+    record = record_of(np.random.default_rng(4)).rows(slice(0, 66))
+    psi = np.where(np.arange(66) < 40, np.nan, record["psi"])
+    gappy = record.with_channel("psi", record.channel("psi").with_values(psi))
+    points = np.tile(estimate.common_parameters, (PARTS.count, 1))
+    for one, missing in ((record, 0), (gappy, 2)):
+        runs = Runs.one_session_each([one], 40.0)
+        data = cut_segments(nomoto(), runs.records, ("psi",), None)
+        problem = replace(estimate.problem, data=data)
+        errors = left_out_errors(problem, points, runs, PARTS, WindowSeconds(10.0, 4.0))
+        assert errors.shape == (PARTS.count, 2, 1)
+        assert np.isnan(errors[:, 0, 0]).sum() == missing
+        assert np.isfinite(errors[missing:]).all()

@@ -223,7 +223,7 @@ def _best_predicting(
     searched = [f for f in disturbances.fitted if f.unknown_count and f.promise == 0.0]
     candidates = [(c.estimate.problem, output_error_points(c.estimate, parts)) for c in plain]
     candidates += [(f.noise.as_point_estimate().problem, innovation_points(f.noise, parts)) for f in searched]
-    errors = [float(left_out_errors(p, points, runs, parts, windows).mean()) for p, points in candidates]
+    errors = [float(np.nanmean(left_out_errors(p, points, runs, parts, windows))) for p, points in candidates]
     names = [*(c.criterion for c in plain), *(f"{PREDICTION_ERROR}, {f.noise.disturbance_model}" for f in searched)]
     if not np.any(np.isfinite(errors)):
         return _without_filter(shot, disturbances, _SEGMENTED)

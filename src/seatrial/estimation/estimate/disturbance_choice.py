@@ -42,8 +42,8 @@ _REACH = 3.0
 # variance inflation of innovations near an optimum, beyond which its last steps do not make them white; chosen
 _HOPELESS_INFLATION = 3.0
 ALIKE = 0.3
-"""Relative difference of errors on left-out parts up to which criteria predict alike; chosen on simulated records of
-17 kinds: 0.25 at most where the likeliest disturbance is the true one, 0.55 at least where model or sensor differ."""
+"""Relative difference of errors on left-out parts up to which criteria predict alike; chosen on simulated records:
+above what chance leaves between true disturbances, below what lags and orders do (benchmarks/criteria.py judges it)."""
 _FAR_LESS_LIKELY = 12.0  # nats below the likeliest from which on a candidate says nothing of its spread; chosen
 _PEAKS = 3  # of the residuals' spectra at which waves are sought, the likeliest is searched from; chosen
 # intensities of gusts beside waves, over those of white noise, which had to explain the waves too; chosen

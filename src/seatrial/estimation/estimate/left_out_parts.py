@@ -110,8 +110,9 @@ def left_out_errors(
 ) -> Array:  # fmt: skip
     """Return logarithms of rms errors of each part by the unknowns without it, (parts, lengths, kinds).
 
-    Lengths: parts as a whole, and windows. Kinds: heading and position, or without both every channel. Errors below
-    half the resolution of a channel's values count as that; infinite where a simulation diverges.
+    Lengths: parts as a whole, and windows, where these are too long the whole again. Kinds: heading and position, or
+    without both every channel; NaN where a part has no sample of one. Errors below half the resolution of a channel's
+    values count as that; infinite where a simulation diverges.
     """
     return np.array([_errors_of_part(problem, points[k], runs, seconds, parts, k) for k in range(parts.count)])
 
@@ -128,10 +129,10 @@ def _errors_of_part(
     dt, rows = runs.records[0].dt, parts.rows(runs, k)
     shortest = min(b - a for a, b in rows if b > a)
     steps = max(min(round(seconds.length / dt), shortest // _FEWEST_WINDOWS), 2 * _LEAST_START)
-    lengths = [[[(a, b)] if b > a else [] for a, b in rows], [_cut(a, b, steps) for a, b in rows]]
+    whole, windows = [[(a, b)] if b > a else [] for a, b in rows], [_cut(a, b, steps) for a, b in rows]
     return np.array([
         _rms_logarithms(problem, point, runs, bounds, max(min(round(seconds.beginning / dt), steps // 2), _LEAST_START))
-        for bounds in lengths if any(bounds)
+        for bounds in (whole, windows if any(windows) else whole)
     ])  # fmt: skip
 
 
@@ -158,6 +159,10 @@ def _rms_logarithms(
     for kind in kinds_of(data.outputs):
         columns = [data.outputs.index(c) for c in kind]
         is_lost = ~np.isfinite(error[:, columns]) & np.isfinite(data.measured[:, columns])
-        square = np.inf if np.any(is_lost) else float(np.sum(np.nanmean(error[:, columns] ** 2, axis=0)))
+        counts = np.isfinite(data.measured[:, columns]).sum(axis=0)
+        if not np.all(counts):
+            logarithms.append(np.nan)
+            continue
+        square = np.inf if np.any(is_lost) else float(np.sum(np.nansum(error[:, columns] ** 2, axis=0) / counts))
         logarithms.append(0.5 * np.log(max(square, float(np.sum(floor[columns] ** 2)), np.finfo(float).tiny)))
     return np.array(logarithms)
