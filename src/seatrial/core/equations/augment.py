@@ -18,8 +18,14 @@ if TYPE_CHECKING:
     import sympy as sp
 
 SENSOR_LAG = "sensor_lag"
+DAMPINGS = (0.005, 0.7)
+"""Relative damping of waves: from a swell that hardly varies to a band without a peak (zeta = 1 / sqrt 2); chosen."""
 MEMORY_PREFIX = "gust_memory_"
+WAVE = "wave_"
+"""What names of states and parameters of wave forces begin with."""
+_FREQUENCY = "_force_frequency"
 _SOURCE = "augmented model"
+_WAVE_SOURCE = "Saelid, Jenssen & Balchen 1983; Fossen 2011, section 8.2.6"
 
 
 def gust_name(state: str) -> str:
@@ -30,6 +36,21 @@ def gust_name(state: str) -> str:
 def memory_name(state: str) -> str:
     """Name of the parameter that holds the memory of a gust on `state`."""
     return f"{MEMORY_PREFIX}{state}"
+
+
+def wave_names(state: str, peak: int) -> tuple[str, str]:
+    """Names of the states that hold the acceleration of `state` by waves at a peak, integrated and as it is."""
+    return f"{WAVE}{peak}_{state}", f"{WAVE}{peak}_rate_{state}"
+
+
+def band_names(peak: int) -> tuple[str, str]:
+    """Names of the parameters that hold frequency and relative damping of wave forces at a peak."""
+    return f"{WAVE}{peak}{_FREQUENCY}", f"{WAVE}{peak}_force_damping"
+
+
+def force_peaks(model: Model) -> int:
+    """Return the number of peaks at which waves force the model."""
+    return sum(name.endswith(_FREQUENCY) for name in model.parameters.names)
 
 
 def bias_name(channel: str) -> str:
@@ -67,6 +88,35 @@ def with_gusts(model: Model, memories: Mapping[str, float]) -> Model:
 
     constants = [_time_constant(memory_name(s), value, f"memory of gusts on {s}") for s, value in memories.items()]
     return _augmented(model, ("gusts", *memories), write, *constants)
+
+
+def with_wave_forces(model: Model, driven: Sequence[str], peak: int, frequency: float, damping: float) -> Model:
+    """Return the model with accelerations by waves on states, in a narrow band, frequency and damping free.
+
+    They are the rates xi' of xi'' + 2 zeta omega xi' + omega^2 xi = noise: first-order loads have no mean.
+
+    peak: number of the band, from 1; frequency: omega [rad/s], damping: zeta, start values.
+
+    Raises:
+        InputError: the model has one of the new names already.
+    """
+    names = band_names(peak)
+
+    def write() -> ModelEquations:
+        omega, zeta = map(_symbol, names)
+        forces = {s: _symbol(wave_names(s, peak)[1]) for s in driven}
+        rates = [b.bound_to(b.expression + forces[b.name]) if b.name in forces else b for b in model.equations.rates]
+        for s, eta in forces.items():
+            xi = _symbol(wave_names(s, peak)[0])
+            rates.append(Binding.from_expression(str(xi), eta, _WAVE_SOURCE))
+            rates.append(Binding.from_expression(str(eta), -(omega**2) * xi - 2 * zeta * omega * eta, _WAVE_SOURCE))
+        return _extended(model, "wave forces", rates, new=names)
+
+    what = f"of the waves' force at peak {peak}"
+    band = _time_constant(names[0], frequency, f"frequency {what}"), Parameter(
+        names[1], damping, "1", *DAMPINGS, damping, None, True, _SOURCE, f"relative damping {what}", ""
+    )  # fmt: skip
+    return _augmented(model, (f"wave forces {peak}", *driven), write, *band)
 
 
 def with_biases(model: Model, channels: Sequence[str]) -> Model:

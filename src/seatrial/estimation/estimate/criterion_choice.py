@@ -179,6 +179,8 @@ def choose_criterion(
         over = whole or fit_whole_runs()
         plain = [(over, WHOLE_RUNS), *shots] if over is not None else shots
         freed = [output_error_choice(_with_free_zeros(e, noise, report_progress), name) for e, name in plain]
+        if is_closed and best.test.is_nearly_white:
+            freed = []  # by output error no answer of the loop is told from the craft's own
         return _best_predicting(shot, freed, disturbances, runs, parts, windows, (_FEEDBACK,) if is_closed else ())
     if best.test.is_nearly_white:
         return _with_disturbance(shot, disturbances)
@@ -220,7 +222,7 @@ def _best_predicting(
     Candidates are `plain`, by output error, and every disturbance that was searched to its end. reasons: for these.
     """
     plain = [c for c in plain if not is_lost(c.estimate.problem, c.estimate.common_parameters)]
-    searched = [f for f in disturbances.fitted if f.unknown_count and f.promise == 0.0]
+    searched = [f for f in disturbances.fitted if f.unknown_count and f.is_searched]
     candidates = [(c.estimate.problem, output_error_points(c.estimate, parts)) for c in plain]
     candidates += [(f.noise.as_point_estimate().problem, innovation_points(f.noise, parts)) for f in searched]
     errors = [float(np.nanmean(left_out_errors(p, points, runs, parts, windows))) for p, points in candidates]

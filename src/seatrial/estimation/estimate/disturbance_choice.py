@@ -5,7 +5,7 @@ log-likelihood exceeds what chance gives once in a thousand cases (Wilks 1938; 1
 see weak disturbances far too rarely to decide (benchmarks/gusts.py).
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -13,13 +13,16 @@ from itertools import pairwise
 import numpy as np
 from scipy.special import gammaincinv
 
+from seatrial.core.equations.augment import force_peaks, gust_name
 from seatrial.core.results import DisturbanceCandidate
 from seatrial.core.values import Array, ProgressReporter
 from seatrial.estimation.estimate.disturbance_models import (
+    MOST_PEAKS,
     DisturbanceModel,
     gusts,
     likeliest_start,
     sensor_models,
+    wave_forces,
     wave_motion,
     white_intensities,
 )
@@ -39,6 +42,8 @@ _EVALUATIONS = 60
 _NEGLIGIBLE = 1e-3
 # promises of one Newton step within which the end of a search lies; chosen: 1.45 at most in nine searches of two craft
 _REACH = 3.0
+# nats a sample that the end of a search lies from where the gain as given leads, at most; chosen: 0.022 in ten searches
+_MOST_GAIN = 0.05
 # variance inflation of innovations near an optimum, beyond which its last steps do not make them white; chosen
 _HOPELESS_INFLATION = 3.0
 ALIKE = 0.3
@@ -46,6 +51,7 @@ ALIKE = 0.3
 above what chance leaves between true disturbances, below what lags and orders do (benchmarks/criteria.py judges it)."""
 _FAR_LESS_LIKELY = 12.0  # nats below the likeliest from which on a candidate says nothing of its spread; chosen
 _PEAKS = 3  # of the residuals' spectra at which waves are sought, the likeliest is searched from; chosen
+_ADDITIONS = 2  # parts that are added in turn to the likeliest where that leaves coloured innovations; chosen
 # intensities of gusts beside waves, over those of white noise, which had to explain the waves too; chosen
 _BESIDE_WAVES = (0.03, 0.3)
 
@@ -56,24 +62,19 @@ class FittedDisturbance:
 
     Attributes:
         unknown_count: unknowns that describe the disturbance.
-        promise: what a Newton step would add to its log-likelihood; 0 where it was searched to the end.
+        is_searched: whether it was searched to the end.
         left_out_error: error on left-out parts of the runs over that of the best criterion; None: not judged.
     """
 
     noise: ProcessNoise
     unknown_count: int
-    promise: float = 0.0
+    is_searched: bool = True
     left_out_error: float | None = None
 
     @property
     def log_likelihood(self) -> float:
         """As far as it was searched, up to a constant that all candidates share."""
         return -self.noise.optimum.normal.cost
-
-    @property
-    def reachable(self) -> float:
-        """The log-likelihood that a search to the end may find at most."""
-        return self.log_likelihood + _REACH * self.promise
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +140,7 @@ class DisturbanceChoice:
         likely = max(f.log_likelihood for f in self.fitted) - _FAR_LESS_LIKELY
         return tuple(
             f for f in self.fitted
-            if f.unknown_count and f.promise == 0.0 and f.log_likelihood >= likely
+            if f.unknown_count and f.is_searched and f.log_likelihood >= likely
             and (f.left_out_error is None or f.left_out_error <= 1.0 + ALIKE)
         )  # fmt: skip
 
@@ -167,61 +168,91 @@ def choose_disturbance(
         needs_disturbance: whether a disturbance is used even where none is likelier (inputs follow outputs); what the
             likelihood would be without one is still in the table.
     """
-    report = report_progress or (lambda _: None)
-    count = len(white.problem.process)
-    none = without_disturbance(white, plain, evaluations, report)
+    search = _Search(white, evaluations, report_progress or (lambda _: None), needs_disturbance)
+    none = without_disturbance(white, plain, evaluations, search.report)
     fitted = [FittedDisturbance(none, 0)]
     if np.isfinite(white.newton_decrement):
-        fitted.append(FittedDisturbance(white, count))
-    has_room = not white.output_error.extra_terms  # force points know the caller's parameters only
-    peaks = _peaks(none) if has_room else []
-    waves = list(_begun(wave_motion(none, peaks), white, evaluations, report)) if any(p.is_high for p in peaks) else []
-    gusty = []
-    is_sea = bool(waves) and waves[0].noise.test.is_nearly_white and likeliest([*fitted, *waves]) is waves[0]
-    if has_room and not is_sea:  # waves alone leave next to nothing for gusts alone
-        model = gusts(white, white.problem.process, white_intensities(white))
-        gusty = list(_begun([model], white, evaluations, report))
-    fitted += gusty
-    eligible = int(needs_disturbance and len(fitted) > 1)  # the first to choose from
-    if waves or (has_room and not likeliest(fitted[eligible:]).noise.test.is_white):
-        waves = waves or list(_begun(wave_motion(none, peaks), white, evaluations, report))
-        fitted += [*waves, *_beside_waves(none, waves, [f.noise for f in gusty], peaks, white, evaluations, report)]
-    if not likeliest(fitted[eligible:]).noise.test.is_nearly_white:
-        fitted += _begun(list(sensor_models(white)), white, evaluations, report)
-    fitted = _searched(fitted, white, report, needs_disturbance=needs_disturbance)
-    eligible = int(needs_disturbance and len(fitted) > 1)
-    best = likeliest(fitted[eligible:])
-    if best.noise.problem.waves.peaks and not best.noise.test.is_white:
-        peaks = [p for p in _peaks(best.noise) if p.is_high or not best.noise.test.is_nearly_white]
-        more = _begun(wave_motion(best.noise, peaks), white, evaluations, report)
-        fitted = _searched([*fitted, *more], white, report, needs_disturbance=needs_disturbance)
-    return DisturbanceChoice(likeliest(fitted[eligible:]), tuple(fitted))
+        fitted.append(FittedDisturbance(white, len(white.problem.process)))
+    if not white.output_error.extra_terms:  # force points know the caller's parameters only
+        fitted += _with_states_of_their_own(search, fitted)
+    if not search.likeliest(fitted).noise.test.is_nearly_white:
+        fitted += search.begun(sensor_models(white))
+    fitted = search.ended(fitted)
+    for _ in range(_ADDITIONS):
+        best = search.likeliest(fitted).noise
+        more = [] if best.test.is_white else search.begun(_additions(best, white))
+        if not more:
+            break
+        fitted = search.ended([*fitted, *more])
+    return DisturbanceChoice(search.likeliest(fitted), tuple(fitted))
+
+
+def _with_states_of_their_own(search: "_Search", simplest: Sequence[FittedDisturbance]) -> list[FittedDisturbance]:
+    """Gusts, waves on the sensors, both, and forces by waves, as far as the ones before leave something to explain."""
+    white, none = search.white, simplest[0].noise
+    driven, peaks = white.problem.process, _peaks(none)
+    waves = search.begun(_waves(none, peaks, white)) if any(p.is_high for p in peaks) else []
+    is_sea = bool(waves) and waves[-1].noise.test.is_nearly_white and likeliest([*simplest, *waves]) in waves
+    # waves alone leave next to nothing for gusts alone
+    gusty = [] if is_sea else search.begun([gusts(white, driven, white_intensities(white))])
+    if not waves and search.likeliest([*simplest, *gusty]).noise.test.is_white:
+        return gusty
+    waves = waves or search.begun(_waves(none, peaks, white))
+    fitted = [*gusty, *waves, *search.begun(_beside_waves(none, waves, gusty, peaks, white))]
+    if not search.likeliest([*simplest, *fitted]).noise.test.is_white:
+        fitted += search.begun(wave_forces(none, driven, peaks))
+    return fitted
+
+
+def _waves(none: ProcessNoise, peaks: Sequence[SpectralPeak], white: ProcessNoise) -> list[DisturbanceModel]:
+    """Waves on the sensors alone: at one peak, and where the spectra show more at two."""
+    one = wave_motion(none, peaks)
+    return [*one, *(m for start in one for m in wave_motion(_unsearched(white, start), _apart(peaks, start)))]
+
+
+def _apart(peaks: Sequence[SpectralPeak], start: DisturbanceModel) -> list[SpectralPeak]:
+    """The peaks other than the one at which waves begin."""
+    begun = start.problem.wave_unknowns(start.point)[0]
+    return [p for p in peaks if p.frequency != begun]
 
 
 def _beside_waves(
-    none: ProcessNoise, waves: Sequence[FittedDisturbance], gusty: Sequence[ProcessNoise],
-    peaks: Sequence[SpectralPeak], white: ProcessNoise, evaluations: int, report: ProgressReporter,
-) -> Iterator[FittedDisturbance]:  # fmt: skip
-    """Yield gusts beside waves on the sensors.
+    none: ProcessNoise, waves: Sequence[FittedDisturbance], gusty: Sequence[FittedDisturbance],
+    peaks: Sequence[SpectralPeak], white: ProcessNoise,
+) -> list[DisturbanceModel]:  # fmt: skip
+    """Gusts beside the likeliest waves on the sensors.
 
     Gusts begin beside the waves that the spectra show or that explain most alone, or the waves beside the gusts that
     do; not at all where waves alone leave nearly white innovations that no gust of the grid makes likelier.
     """
-    driven, whites = white.problem.process, white_intensities(white)
-    for motion in waves:
-        bases = [motion.noise, *(_unsearched(white, start) for start in wave_motion(none, peaks))]
-        scanned = likeliest_start([gusts(base, driven, share * whites) for base in bases for share in _BESIDE_WAVES])
-        is_likelier = scanned.problem.cost(scanned.point, _NO_INITIAL_STATES) < motion.noise.optimum.normal.cost
-        if not motion.noise.test.is_nearly_white or is_likelier:
-            starts = [scanned, *(start for base in gusty for start in wave_motion(base, peaks))]
-            yield from _begun([likeliest_start(starts)], white, evaluations, report)
+    if not waves:
+        return []
+    driven, whites, motion = white.problem.process, white_intensities(white), likeliest(waves).noise
+    bases = [motion, *(_unsearched(white, start) for start in wave_motion(none, peaks))]
+    scanned = likeliest_start([gusts(base, driven, share * whites) for base in bases for share in _BESIDE_WAVES])
+    is_likelier = scanned.problem.cost(scanned.point, _NO_INITIAL_STATES) < motion.optimum.normal.cost
+    if motion.test.is_nearly_white and not is_likelier:
+        return []
+    return [likeliest_start([scanned, *(start for base in gusty for start in wave_motion(base.noise, peaks))])]
+
+
+def _additions(best: ProcessNoise, white: ProcessNoise) -> list[DisturbanceModel]:
+    """What may explain the rest beside waves: another peak, or gusts beside their forces."""
+    driven, motions, forces = white.problem.process, best.problem.waves.peaks, force_peaks(best.problem.runs.model)
+    peaks = [p for p in _peaks(best) if p.is_high or not best.test.is_nearly_white] if motions or forces else []
+    more = wave_motion(best, peaks) if 0 < motions < MOST_PEAKS else []
+    if 0 < forces < MOST_PEAKS:
+        more += wave_forces(best, driven, peaks)
+    if forces and gust_name(driven[0]) not in best.problem.process:
+        more.append(gusts(best, driven, white_intensities(white)))
+    return more
 
 
 def _unsearched(white: ProcessNoise, model: DisturbanceModel) -> ProcessNoise:
     """The candidate where its search begins."""
     normal = model.problem.normal(model.point, _NO_INITIAL_STATES)
     optimum = Optimum(Solution(model.point, normal.cost, Status.STALLED, 1), _NO_INITIAL_STATES, normal)
-    return _candidate(white, model.name, model.unknown_count, model.problem, optimum, np.inf).noise
+    return _tested(white, model.name, model.problem, optimum, np.inf)
 
 
 def _peaks(noise: ProcessNoise) -> list[SpectralPeak]:
@@ -265,57 +296,78 @@ def without_disturbance(
     return ProcessNoise(problem, optimum, 0.0, verdict, white.output_error, "none")
 
 
-def _begun(
-    models: Sequence[DisturbanceModel], white: ProcessNoise, evaluations: int, report: ProgressReporter
-) -> Iterator[FittedDisturbance]:
-    """Yield candidates near their optima, where the search with the gain as given ends; none that leaves physics."""
-    for one in models:
-        report(f"disturbances compared: {one.name}")
-        if not np.isfinite(one.problem.cost(one.point, _NO_INITIAL_STATES)):
-            continue
-        with suppress(np.linalg.LinAlgError):  # sensitivities overflow: the search has left physics
-            near = search_with_frozen_gain(one.problem, one.point, evaluations, report)
-            if is_lost(white.output_error, near.solution.point):
-                continue
-            exact = replace(one.problem, steps=one.problem.difference_steps(near.solution.point, near.normal.hessian))
-            promise = newton_optimum(one.problem, near, 1.0).decrement
-            yield _candidate(white, one.name, one.unknown_count, exact, near, promise, promise)
+@dataclass(frozen=True, eq=False)
+class _Search:
+    """How candidates are searched.
 
-
-def _searched(
-    begun: Sequence[FittedDisturbance], white: ProcessNoise, report: ProgressReporter, *, needs_disturbance: bool
-) -> list[FittedDisturbance]:
-    """Return candidates, searched to the end where they may be the likeliest there, the most promising first.
-
-    Not where innovations stay so coloured that none would be used, unless one is needed; without what leaves physics.
+    Attributes:
+        white: the optimum with white noise, against which they are tested; evaluations: most of each search.
+        needs_disturbance: whether one is used even where none is likelier.
     """
-    ends: list[FittedDisturbance | None] = list(begun)
-    for k in sorted(range(len(begun)), key=lambda k: -begun[k].reachable):
-        one, best = begun[k], max(f.log_likelihood for f in ends if f is not None)
-        is_hopeless = not needs_disturbance and np.max(one.noise.test.inflation) > _HOPELESS_INFLATION
-        if one.promise > 0.0 and not is_hopeless and one.reachable > best - critical_gain(one.unknown_count):
-            report(f"disturbances compared: {one.noise.disturbance_model}")
-            ends[k] = None
-            with suppress(np.linalg.LinAlgError):  # as above
-                exact, optimum, decrement = refine_by_newton(one.noise.problem, one.noise.optimum)
-                if not is_lost(white.output_error, optimum.solution.point):
-                    name = one.noise.disturbance_model
-                    ends[k] = _candidate(white, name, one.unknown_count, exact, optimum, decrement)
-    return [f for f in ends if f is not None]
+
+    white: ProcessNoise
+    evaluations: int
+    report: ProgressReporter
+    needs_disturbance: bool
+
+    def likeliest(self, fitted: Sequence[FittedDisturbance]) -> FittedDisturbance:
+        """The candidate to be used by likelihood; the first is none."""
+        return likeliest(fitted[int(self.needs_disturbance and len(fitted) > 1) :])
+
+    def begun(self, models: Iterable[DisturbanceModel]) -> list[FittedDisturbance]:
+        """Candidates where the search with the gain as given ends, near their optima; none that leaves physics."""
+        near = []
+        for one in models:
+            self.report(f"disturbances compared: {one.name}")
+            if not np.isfinite(one.problem.cost(one.point, _NO_INITIAL_STATES)):
+                continue
+            with suppress(np.linalg.LinAlgError):  # sensitivities overflow: the search has left physics
+                optimum = search_with_frozen_gain(one.problem, one.point, self.evaluations, self.report)
+                if not is_lost(self.white.output_error, optimum.solution.point):
+                    noise = _tested(self.white, one.name, one.problem, optimum, np.inf)
+                    near.append(FittedDisturbance(noise, one.unknown_count, is_searched=False))
+        return near
+
+    def ended(self, begun: Sequence[FittedDisturbance]) -> list[FittedDisturbance]:
+        """Candidates, searched to the end where they may be the likeliest there, the most promising first.
+
+        Not where innovations stay so coloured that none would be used, unless one is needed; without what leaves
+        physics.
+        """
+        ends: list[FittedDisturbance | None] = list(begun)
+        for k in sorted(range(len(begun)), key=lambda k: -begun[k].log_likelihood):
+            one = begun[k]
+            best = max((f.log_likelihood for f in ends if f is not None and f.is_searched), default=-np.inf)
+            is_hopeless = not self.needs_disturbance and np.max(one.noise.test.inflation) > _HOPELESS_INFLATION
+            if not one.is_searched and not is_hopeless and _may_reach(one, best - critical_gain(one.unknown_count)):
+                ends[k] = self._ended(one)
+        return [f for f in ends if f is not None]
+
+    def _ended(self, one: FittedDisturbance) -> FittedDisturbance | None:
+        name = one.noise.disturbance_model
+        self.report(f"disturbances compared: {name}")
+        with suppress(np.linalg.LinAlgError):  # as in `begun`
+            exact, optimum, decrement = refine_by_newton(one.noise.problem, one.noise.optimum)
+            if not is_lost(self.white.output_error, optimum.solution.point):
+                return FittedDisturbance(_tested(self.white, name, exact, optimum, decrement), one.unknown_count)
+        return None
 
 
-def _candidate(
-    white: ProcessNoise,
-    name: str,
-    unknown_count: int,
-    problem: PredictionError,
-    optimum: Optimum,
-    decrement: float,
-    promise: float = 0.0,
-) -> FittedDisturbance:
+def _may_reach(one: FittedDisturbance, log_likelihood: float) -> bool:
+    """Whether a search to the end may lead so far: by its distance, and where that is short by a Newton step."""
+    missing = log_likelihood - one.log_likelihood
+    if missing <= 0.0:
+        return True
+    if missing > _MOST_GAIN * np.isfinite(one.noise.problem.runs.data.measured).sum():
+        return False
+    return missing < _REACH * newton_optimum(one.noise.problem, one.noise.optimum, 1.0).decrement
+
+
+def _tested(
+    white: ProcessNoise, name: str, problem: PredictionError, optimum: Optimum, decrement: float
+) -> ProcessNoise:
     """The candidate at this optimum of its problem, tested against none as `white` is."""
     without = white.optimum.normal.cost + 0.5 * white.test.likelihood_ratio
     verdict = likelihood_ratio_test(problem, optimum.solution.point, optimum.normal.cost, without, None)
     verdict = replace(verdict, inflation_without=white.test.inflation_without)
-    noise = ProcessNoise(problem, optimum, decrement, verdict, white.output_error, name)
-    return FittedDisturbance(noise, unknown_count, promise)
+    return ProcessNoise(problem, optimum, decrement, verdict, white.output_error, name)

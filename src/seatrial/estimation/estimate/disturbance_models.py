@@ -12,11 +12,14 @@ from seatrial.core.equations import Model
 from seatrial.core.equations.augment import (
     bias_name,
     biased_name,
+    force_peaks,
     gust_name,
     lagged_name,
+    wave_names,
     with_biases,
     with_gusts,
     with_lags,
+    with_wave_forces,
 )
 from seatrial.core.equations.model import channel_of
 from seatrial.core.values import Array, InputError, Record
@@ -29,8 +32,9 @@ from seatrial.physics.sensors.wave_motion import RATES, WaveMotion, motion_of
 POSITIONS, VELOCITIES = ("x0", "y0"), ("u", "v")
 GUSTS = "first-order Markov"
 """Name of gusts with a memory."""
-SEAS = {1: "waves on the sensors", 2: "sea and swell on the sensors"}
-"""Name of waves with so many peaks."""
+SEAS = {1: "waves", 2: "sea and swell"}
+"""Name of waves with so many peaks, which force the craft or move what its sensors show."""
+MOST_PEAKS = len(SEAS)
 # memories of gusts from which the search starts: from so many samples to a tenth of the longest run, so many values
 _FEWEST_MEMORY_SAMPLES, _LONGEST_MEMORY_SHARE, _MEMORIES = 5.0, 0.1, 4
 FEWEST_SAMPLES = round(_FEWEST_MEMORY_SAMPLES / _LONGEST_MEMORY_SHARE)
@@ -42,6 +46,10 @@ _INTENSITY_FACTORS = (0.5, 1.5, 5.0, 15.0)
 _LEAST_SHARE, _SMALLEST = 0.01, 1e-12
 # relative damping of waves from which the search starts: swell, a sea's spectrum (Fossen 2011, section 8.2.6)
 _WAVE_DAMPINGS = (0.03, 0.1)
+# variance of what waves force over what residuals show of it, where the search starts; chosen
+_FORCE_SHARES, _LEAST_FORCE = (0.3, 1.0), 1e-4  # the latter of a state that shows none, over that which shows most
+# channels that show a state's motion integrated
+_SHOWN_BY = {"r": ("psi",), "u": ("x0", "y0"), "v": ("x0", "y0"), "p": ("phi",), "q": ("theta",), "w": ("z",)}
 # lag of a log from which the search starts, samples, ours
 _LAG_SAMPLES = 2.0
 # s in which a bias changes by the noise of its channel, where the search starts, ours
@@ -94,6 +102,39 @@ def gusts(base: ProcessNoise, driven: Sequence[str], whites: Array) -> Disturban
     return likeliest_start([_gusts(base, driven, float(m), f * whites) for m in memories for f in _INTENSITY_FACTORS])
 
 
+def wave_forces(base: ProcessNoise, driven: Sequence[str], peaks: Sequence[SpectralPeak]) -> list[DisturbanceModel]:
+    """Accelerations of driven states by waves at one more peak than `base` has: one start, none without peaks.
+
+    base: what else is between craft and record, white noise on states taken away; peaks: where it may lie.
+    """
+    points = [
+        _wave_forces(base, driven, peak, damping, share)
+        for peak in peaks for damping in _WAVE_DAMPINGS for share in _FORCE_SHARES
+    ]  # fmt: skip
+    return [likeliest_start(points)] if points else []
+
+
+def _wave_forces(
+    base: ProcessNoise, driven: Sequence[str], peak: SpectralPeak, damping: float, share: float
+) -> DisturbanceModel:
+    omega, number = peak.frequency, force_peaks(base.problem.runs.model) + 1
+    model = with_wave_forces(base.problem.runs.model, driven, number, omega, damping)
+    shown = dict(zip(map(channel_of, base.problem.runs.observables), peak.variance, strict=True))
+    speeds = [max([shown.get(s, 0.0), *(omega**2 * shown.get(c, 0.0) for c in _SHOWN_BY.get(s, ()))]) for s in driven]
+    least = max(_LEAST_FORCE * max(speeds), _SMALLEST)
+    variance, squared = {}, {}
+    for state, speed in zip(driven, speeds, strict=True):
+        (xi, eta), size = wave_names(state, number), share * max(speed, least)
+        variance |= {xi: size, eta: omega**2 * size}
+        squared[eta] = 4.0 * damping * omega**3 * size  # of these stationary variances
+    return _augmented(base, _NewStates(model, _kept_intensities(base) | squared, (omega, damping), variance))
+
+
+def _kept_intensities(base: ProcessNoise) -> dict[str, float]:
+    """Squared intensities of what has states of its own: white noise on the craft's states is taken away."""
+    return {s: v for s, v in _squared_intensities(base).items() if s not in base.output_error.model.states}
+
+
 def wave_motion(base: ProcessNoise, peaks: Sequence[SpectralPeak]) -> list[DisturbanceModel]:
     """Waves on the sensors at one more peak than `base` has, on the channels that show it: one start, none without.
 
@@ -137,20 +178,26 @@ def _wave_motion(base: ProcessNoise, peak: SpectralPeak, damping: float) -> Dist
     deviations = np.where(is_waved, np.minimum(point[-len(channels) :], peak.floor), point[-len(channels) :])
     problem = replace(old, waves=waves, steps=None)
     moved = np.concatenate([point[:first], unknowns, deviations])
-    gusty = [s for s in base.output_error.model.states if gust_name(s) in old.process]
-    return DisturbanceModel(
-        problem, np.clip(moved, problem.lower, problem.upper), _name(gusty, waves.peaks),
-        len(old.process) + len(base.added_constants) + waves.size,
-    )  # fmt: skip
+    return _described(base, problem, np.clip(moved, problem.lower, problem.upper))
 
 
 def _motions(channels: Sequence[str], peak: SpectralPeak) -> list[str]:
     return [motion_of(c) for c, v in zip(channels, peak.variance, strict=True) if v > 0.0]
 
 
-def _name(gusty: Sequence[str], peaks: int) -> str:
-    parts = [f"{GUSTS} on {', '.join(gusty)}"] if gusty else []
-    return " and ".join([*parts, *([SEAS[peaks]] if peaks else [])])
+def _described(base: ProcessNoise, problem: PredictionError, point: Array, other: str = "") -> DisturbanceModel:
+    """A candidate with its name and the count of its unknowns; other: what its states do not tell."""
+    states, process, model = base.output_error.model.states, problem.process, problem.runs.model
+    parts = ["white"] if any(s in states for s in process) else []
+    gusty = [s for s in states if gust_name(s) in process]
+    parts += [f"{GUSTS} on {', '.join(gusty)}"] if gusty else []
+    forces, motions = force_peaks(model), problem.waves.peaks
+    forced = [s for s in states if forces and wave_names(s, 1)[1] in process]
+    parts += [f"{SEAS[forces]} forcing {', '.join(forced)}"] if forced else []
+    parts += [f"{SEAS[motions]} on the sensors"] if motions else []
+    parts += [other] if other else []
+    constants = len(problem.runs.free) - len(base.output_error.free)
+    return DisturbanceModel(problem, point, " and ".join(parts), len(process) + constants + problem.waves.size)
 
 
 def sensor_models(base: ProcessNoise) -> Iterator[DisturbanceModel]:
@@ -202,15 +249,14 @@ def likeliest_start(points: list[DisturbanceModel]) -> DisturbanceModel:
 
 def _gusts(base: ProcessNoise, driven: Sequence[str], memory: float, intensities: Array) -> DisturbanceModel:
     """White noise on the states becomes white noise on accelerations of the same effect over longer times."""
-    model = with_gusts(base.output_error.model, dict.fromkeys(driven, memory))
+    model = with_gusts(base.problem.runs.model, dict.fromkeys(driven, memory))
     # stationary variance of a Gauss-Markov process whose integral spreads like white noise: q^2 / (2 memory)
     variance = {
         gust_name(s): _SPREAD_FACTOR**2 * float(q) ** 2 / (2.0 * memory)
         for s, q in zip(driven, intensities, strict=True)
     }
     squared = {gust_name(s): float(q / memory) ** 2 for s, q in zip(driven, intensities, strict=True)}
-    new = _NewStates(model, squared, (memory,) * len(driven), variance)
-    return _augmented(base, new, _name(driven, base.problem.waves.peaks), 2 * len(driven) + base.problem.waves.size)
+    return _augmented(base, _NewStates(model, _kept_intensities(base) | squared, (memory,) * len(driven), variance))
 
 
 def _biases(base: ProcessNoise, channels: tuple[str, ...]) -> DisturbanceModel:
@@ -219,7 +265,7 @@ def _biases(base: ProcessNoise, channels: tuple[str, ...]) -> DisturbanceModel:
     variance = {bias_name(c): base.measurement_noise[c] ** 2 for c in channels}
     squared = {**_squared_intensities(base), **{s: v / _DRIFT_SECONDS for s, v in variance.items()}}
     new = _NewStates(model, squared, (), variance, {}, {c: biased_name(c) for c in channels})
-    return _augmented(base, new, f"white, and wandering biases of {', '.join(channels)}", len(squared))
+    return _augmented(base, new, f"wandering biases of {', '.join(channels)}")
 
 
 def _lags(base: ProcessNoise, channels: tuple[str, ...], lag: float) -> DisturbanceModel:
@@ -230,7 +276,7 @@ def _lags(base: ProcessNoise, channels: tuple[str, ...], lag: float) -> Disturba
     mean = {lagged_name(c): base.problem.start[:, index(c)] for c in channels}
     squared = _squared_intensities(base)
     new = _NewStates(model, squared, (lag,), variance, mean, {c: lagged_name(c) for c in channels})
-    return _augmented(base, new, f"white, and lags of {', '.join(channels)}", len(squared) + 1)
+    return _augmented(base, new, f"lags of {', '.join(channels)}")
 
 
 def _squared_intensities(base: ProcessNoise) -> dict[str, float]:
@@ -238,8 +284,8 @@ def _squared_intensities(base: ProcessNoise) -> dict[str, float]:
     return dict(zip(base.problem.process, map(float, squared), strict=True))
 
 
-def _augmented(base: ProcessNoise, new: _NewStates, name: str, unknown_count: int) -> DisturbanceModel:
-    old, runs = base.problem, base.output_error
+def _augmented(base: ProcessNoise, new: _NewStates, other: str = "") -> DisturbanceModel:
+    old, runs = base.problem, base.problem.runs
     data = replace(runs.data, outputs=tuple(new.renamed.get(o, o) for o in runs.data.outputs))
     means = [new.mean.get(s, np.zeros(len(old.start))) for s in new.variance]
     problem = replace(
@@ -250,8 +296,7 @@ def _augmented(base: ProcessNoise, new: _NewStates, name: str, unknown_count: in
         start_variance=np.hstack([old.start_variance, np.tile(list(new.variance.values()), (len(old.start), 1))]),
         steps=None,
     )
-    own, free, ny = base.common_parameters, len(runs.free), len(data.outputs)
-    point = base.optimum.solution.point
-    waves, deviations = old.wave_unknowns(point), point[-ny:]
+    point, free, ny = base.optimum.solution.point, len(runs.free), len(data.outputs)
+    own, waves, deviations = point[: runs.size], old.wave_unknowns(point), point[-ny:]
     point = np.concatenate([own[:free], new.constants, own[free:], list(new.squared.values()), waves, deviations])
-    return DisturbanceModel(problem, np.clip(point, problem.lower, problem.upper), name, unknown_count)
+    return _described(base, problem, np.clip(point, problem.lower, problem.upper), other)

@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from seatrial.core.equations.augment import gust_name, memory_name
+from seatrial.core.equations.augment import WAVE, band_names, force_peaks, gust_name, memory_name, wave_names
 from seatrial.core.results import Waves
 from seatrial.core.values import Array, Index, InputError, ProgressReporter, spelling_hint
 from seatrial.data.check.signal import sample_noise
@@ -34,6 +34,7 @@ from seatrial.numerics.optimise import (
     Status,
     levenberg_marquardt,
 )
+from seatrial.physics.sensors.wave_motion import motion_of
 
 KINEMATIC_STATES = ("psi", "phi", "theta", "x0", "y0", "z0", "z")
 # standard deviation of a measured initial state over its channel's noise, ours
@@ -127,29 +128,45 @@ class ProcessNoise:
     @property
     def measurement_noise(self) -> dict[str, float]:
         """Standard deviation of each channel about the craft's own motion, SI: noise, and waves where there are any."""
-        point, outputs = self.optimum.solution.point, self.output_error.data.outputs
-        waves = self.problem.waves.variances(self.problem.wave_unknowns(point), outputs)
-        total = np.sqrt(self.problem.split(point)[2] ** 2 + waves.sum(axis=0))
-        return dict(zip(outputs, map(float, total), strict=True))
+        noise = self.problem.split(self.optimum.solution.point)[2] ** 2
+        for one in self.waves:
+            noise += [one.rms.get(c, 0.0) ** 2 for c in self.output_error.data.outputs]
+        return dict(zip(self.output_error.data.outputs, map(float, np.sqrt(noise)), strict=True))
 
     @property
     def waves(self) -> tuple[Waves, ...]:
-        """The waves that sensors show, one of each peak."""
+        """The waves that sensors show, one of each peak: motion beside the craft's own, or caused by their forces."""
         unknowns, outputs = self.problem.wave_unknowns(self.optimum.solution.point), self.output_error.data.outputs
         rms = np.sqrt(self.problem.waves.variances(unknowns, outputs))
-        return tuple(
+        shown = tuple(
             Waves(float(omega), float(zeta), {c: float(s) for c, s in zip(outputs, sizes, strict=True) if s > 0.0})
             for (omega, zeta), sizes in zip(unknowns[: 2 * len(rms)].reshape(-1, 2), rms, strict=True)
         )
+        return shown + tuple(self._forced_waves(peak + 1) for peak in range(force_peaks(self.problem.runs.model)))
+
+    def _forced_waves(self, peak: int) -> Waves:
+        """What forces at a peak cause: speeds as if nothing but inertia held the craft, angles that over frequency."""
+        names, q = self.problem.process, self.problem.split(self.optimum.solution.point)[1]
+        intensity, outputs = dict(zip(names, map(float, q), strict=True)), self.output_error.data.outputs
+        omega, zeta = (self.added_constants[name] for name in band_names(peak))
+        rms: dict[str, float] = {}
+        for state in self.output_error.model.states:
+            eta = wave_names(state, peak)[1]
+            if eta in intensity:
+                speed = intensity[eta] / np.sqrt(4.0 * zeta * omega**3)  # stationary; Fossen 2011, section 8.2.6
+                rms |= {motion_of(state): speed / omega, state: speed}  # in this order: one without an angle is its own
+        return Waves(omega, zeta, {c: float(v) for c, v in rms.items() if c in outputs and v > 0.0})
 
     @property
     def wave_cost(self) -> float | None:
         """Median over the coefficients of their standard errors over those without waves; None where there are none."""
         if not self.waves:
             return None
-        point, first = self.optimum.solution.point.copy(), self.problem.runs.size + len(self.problem.process)
-        point[first + 2 * self.problem.waves.peaks : first + self.problem.waves.size] = 0.0
-        plain, k, kept = replace(self.problem, steps=None), len(self.output_error.free), self.problem.runs.size
+        problem, point = self.problem, self.optimum.solution.point.copy()
+        sizes = problem.runs.size + np.flatnonzero([state.startswith(WAVE) for state in problem.process])
+        first = problem.runs.size + len(problem.process)
+        point[sizes] = point[first + 2 * problem.waves.peaks : first + problem.waves.size] = 0.0
+        plain, k, kept = replace(problem, steps=None), len(self.output_error.free), problem.runs.size
         waved, still = (
             np.diag(inverse(plain.normal(p, _NO_INITIAL_STATES).hessian[:kept, :kept]))[:k]
             for p in (self.optimum.solution.point, point)

@@ -13,6 +13,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from seatrial.core.equations.augment import DAMPINGS
 from seatrial.core.values import Array, Index
 from seatrial.estimation.problem.output_error import OutputError, SegmentNormals
 from seatrial.numerics.optimise import NormalEquations
@@ -20,8 +21,6 @@ from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.sensors.wave_motion import STILL, WaveMotion
 from seatrial.physics.simulate.filtering import FilterPoint, KalmanFilter
 
-LEAST_WAVE_DAMPING, MOST_WAVE_DAMPING = 0.005, 0.7
-"""Relative damping of waves, from a swell that hardly varies to a band without a peak (zeta = 1 / sqrt 2); chosen."""
 FEWEST_WAVE_PERIODS = 3.0
 """Periods of the slowest waves in the longest run: slower ones are no band; chosen."""
 
@@ -105,7 +104,7 @@ class PredictionError:
         """Bounds of what describes the waves; frequencies up to that of the samples: an angle's rate may show them."""
         data, peaks, sizes = self.runs.data, self.waves.peaks, self.waves.pair_count
         slowest = 2.0 * np.pi * FEWEST_WAVE_PERIODS / (data.dt * float(np.max(np.diff(data.offsets))))
-        low, high = (slowest, LEAST_WAVE_DAMPING), (2.0 * np.pi / data.dt, MOST_WAVE_DAMPING)
+        low, high = (slowest, DAMPINGS[0]), (2.0 * np.pi / data.dt, DAMPINGS[1])
         return (
             np.concatenate([np.tile(low, peaks), np.zeros(sizes)]),
             np.concatenate([np.tile(high, peaks), np.full(sizes, np.inf)]),

@@ -2,7 +2,8 @@
 
 Between samples the mean follows the Runge-Kutta scheme of `integrate`, its transition matrix the same scheme
 differentiated (`sensitivity`); white process noise enters half before and half after (Strang splitting). Samples are
-taken one scalar after the other (Jazwinski 1970, example 7.5; Bierman 1977, section II.6); NaN is no sample.
+taken one scalar after the other (Jazwinski 1970, example 7.5; Bierman 1977, section II.6), each by the few states that
+it shows and on the lower triangles of covariances; NaN is no sample.
 
 Behind the craft's states stand pairs of states of first-order wave motion, a displacement and its rate, which channels
 show on top of the craft's own motion. They are linear and apart from the craft, so that each has its exact block of
@@ -63,13 +64,17 @@ def turn_pair(covariance, m, a, pairs, q, place, transition, nx, turned):
 def propagate_covariance(transition, nx, pairs, size, peaks, covariance, process, noisy_states, dt, work):
     """Set the covariance to Phi (P + Q/2) Phi' + Q/2 of the craft's states, to Phi P Phi' + Q of those of waves.
 
-    covariance[0] is P, the others its derivatives by the variances of the noisy states, then by frequency and damping
-    of each peak, by the variances of the pairs, by those of the measurements. Phi has the craft's block, the first nx
-    rows and columns of `transition`, then a block of two for each pair. The last derivatives come first: those by
-    frequency and damping need P as it was.
+    Its lower triangle comes in, the whole goes out. covariance[0] is P, the others its derivatives by the variances of
+    the noisy states, then by frequency and damping of each peak, by the variances of the pairs, by those of the
+    measurements. Phi has the craft's block, the first nx rows and columns of `transition`, then a block of two for each
+    pair. The last derivatives come first: those by frequency and damping need P as it was.
     """
     n = covariance.shape[1]
     shapes, sizes = 1 + noisy_states.size, 1 + noisy_states.size + 2 * peaks
+    for m in range(covariance.shape[0]):
+        for i in range(n):
+            for j in range(i):
+                covariance[m, j, i] = covariance[m, i, j]
     for m in range(covariance.shape[0] - 1, -1, -1):
         for half in range(2):
             if m == 0:
@@ -82,10 +87,11 @@ def propagate_covariance(transition, nx, pairs, size, peaks, covariance, process
                 break
             for i in range(nx):
                 for j in range(n):
-                    total = 0.0
-                    for k in range(nx):
-                        total += transition[i, k] * covariance[m, k, j]
-                    work[i, j] = total
+                    work[i, j] = 0.0
+                for k in range(nx):
+                    if transition[i, k] != 0.0:
+                        for j in range(n):
+                            work[i, j] += transition[i, k] * covariance[m, k, j]
             for i in range(nx, n):
                 a, q = i - (i - nx) % 2, (i - nx) // 2
                 column = PHI + 2 * ((i - nx) % 2)
@@ -152,7 +158,7 @@ def turn_waves(x, s, nx, pairs, first, size, peaks):
         *(TABLE, TABLE, TABLE, TABLE, TABLE, INDEX, INDEX, VECTOR, VECTOR, MATRIX),
         *(MATRIX, VECTOR, TABLE),
         *(MATRIX, MATRIX, CUBE, CUBE, MATRIX, MATRIX),
-        *(MATRIX, CUBE, MATRIX, MATRIX, MATRIX, MATRIX, VECTOR, CUBE, MATRIX, MATRIX),
+        *(MATRIX, CUBE, MATRIX, MATRIX, MATRIX, MATRIX, VECTOR, CUBE, MATRIX, MATRIX, INDEX),
     ),
     **LEAN,
 )
@@ -160,7 +166,7 @@ def _filter_innovations(
     f, g, inputs, weights, rise, dt, substeps, x0, variance0, p,
     chain, link_p, link_u, g_link_p, g_link_u, select, noisy_states, process, measurement, measured,
     pairs, size, wave_states, e_out, v_out, de_out, dv_out, variance_out, state_out,
-    work_x, work_s, work_u, work_w, jac, g_jac, g_value, covariance, work, covariance_times_h,
+    work_x, work_s, work_u, work_w, jac, g_jac, g_value, covariance, work, covariance_times_h, shown,
 ):  # fmt: skip
     nx, ny, rows, peaks = x0.size, select.size, measured.shape[0], wave_states.shape[1]
     width, covs, n = de_out.shape[2], covariance.shape[0], x0.size + 2 * size.size
@@ -193,37 +199,41 @@ def _filter_innovations(
                     dv_out[row, channel, m - 1] = 0.0
                 continue
             e, v = measured[row, channel], measurement[channel]
+            count = 0
             if here < 0:
                 e -= x[here + nx]
-                for i in range(nx):
-                    h[i] = 1.0 if i == here + nx else 0.0
+                shown[0], h[0], count = here + nx, 1.0, 1
             else:
                 e -= g_value[here]
                 for i in range(nx):
-                    h[i] = g_jac[here, i]
-                    e -= h[i] * (x[i] - ahead[i])
-            for i in range(nx, n):
-                h[i] = 0.0
+                    if g_jac[here, i] != 0.0:
+                        e -= g_jac[here, i] * (x[i] - ahead[i])
+                        shown[count], h[count] = i, g_jac[here, i]
+                        count += 1
             for peak in range(peaks):
                 if wave_states[channel, peak] >= 0:
-                    h[wave_states[channel, peak]] = 1.0
                     e -= x[wave_states[channel, peak]]
+                    shown[count], h[count] = wave_states[channel, peak], 1.0
+                    count += 1
             for m in range(covs):
                 for i in range(n):
-                    total = 0.0
-                    for j in range(n):
-                        total += covariance[m, i, j] * h[j]
-                    covariance_times_h[m, i] = total
-            for i in range(n):
-                v += h[i] * covariance_times_h[0, i]
+                    covariance_times_h[m, i] = 0.0
+                for a in range(count):
+                    j = shown[a]
+                    for i in range(j):
+                        covariance_times_h[m, i] += covariance[m, j, i] * h[a]
+                    for i in range(j, n):
+                        covariance_times_h[m, i] += covariance[m, i, j] * h[a]
+            for a in range(count):
+                v += h[a] * covariance_times_h[0, shown[a]]
             for i in range(n):
                 gain[i] = covariance_times_h[0, i] / v
             e_out[row, channel], v_out[row, channel] = e, v
             magnitude += e * e / v
             for c in range(width):
                 total = 0.0
-                for i in range(n):
-                    total -= h[i] * s[i, nx + c]
+                for a in range(count):
+                    total -= h[a] * s[shown[a], nx + c]
                 de_out[row, channel, c] = total
             if here >= 0:
                 for m in range(g_link_p.shape[0]):
@@ -240,8 +250,8 @@ def _filter_innovations(
                     s[i, nx + c] += gain[i] * de_out[row, channel, c]
             for m in range(1, covs):
                 dv = 1.0 if m - measurements == channel else 0.0
-                for i in range(n):
-                    dv += h[i] * covariance_times_h[m, i]
+                for a in range(count):
+                    dv += h[a] * covariance_times_h[m, shown[a]]
                 dv_out[row, channel, m - 1] = dv
                 for i in range(n):
                     s[i, nx + quiet + m - 1] += (covariance_times_h[m, i] - gain[i] * dv) * (e / v)
@@ -250,7 +260,7 @@ def _filter_innovations(
                 covariance_times_h[0, i] *= 0.5
             for m in range(covs):
                 for i in range(n):
-                    for j in range(n):
+                    for j in range(i + 1):
                         covariance[m, i, j] -= covariance_times_h[m, i] * gain[j] + gain[i] * covariance_times_h[m, j]
         if state_out.shape[0] > 0:
             for i in range(n):
@@ -325,4 +335,4 @@ def filter_innovations(
                      np.empty((7, n)),  # 7 vectors of states, taken apart at the kernel's head
                      np.zeros((4, n, nx + width)), np.empty((3, nu)), np.empty((3, 3 * nu)),
                      np.zeros((nx, whole)), np.zeros((outputs, whole)), np.empty(outputs), np.zeros((covs, n, n)),
-                     np.empty((n, n)), np.empty((covs, n)))  # fmt: skip
+                     np.empty((n, n)), np.empty((covs, n)), np.empty(n, dtype=np.int64))  # fmt: skip
