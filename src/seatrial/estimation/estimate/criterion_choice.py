@@ -141,7 +141,7 @@ def choose_criterion(
             return _required_choice(shot, settings, noise, SET_BY_TRIAL)
         case FitCriterion.PREDICTION_ERROR:
             white = fit_prediction_error(first, noise, other=other, thorough=True, report_progress=report_progress)
-            disturbances = choose_disturbance(white, plain=first, report_progress=report_progress)
+            disturbances = choose_disturbance(white, [first], report_progress=report_progress)
             reasons = ("it is set by the trial", disturbances.summary)
             return prediction_error_choice(disturbances.chosen.noise, disturbances, *reasons)
         case FitCriterion.AUTO if is_unforced and is_explained(shooting):
@@ -167,21 +167,24 @@ def choose_criterion(
     white = fit_prediction_error(first, noise, other=other, thorough=not in_waves, report_progress=report_progress)
     if np.isnan(white.newton_decrement):  # not searched: no disturbance makes such innovations white
         return replace(shot.with_reasons(white.test.summary, _SEGMENTED), process_intensities=white.process_intensities)
-    disturbances = choose_disturbance(white, plain=first, needs_disturbance=is_closed, report_progress=report_progress)
-    best = disturbances.chosen.noise
-    if over_runs is not None and over_runs.whiteness.is_white and not disturbances.chosen.unknown_count:
-        return replace(over_runs.with_reasons(disturbances.summary), disturbances=disturbances)
-    parts = Parts.for_runs(runs)
-    if is_closed and parts is None:
-        return _with_disturbance(shot, disturbances, _FEEDBACK)
+    parts, plain = Parts.for_runs(runs), list[CriterionChoice]()
     if parts is not None:
         shots = [] if np.isinf(seconds) else [(shooting, shot.criterion)]
         over = whole or fit_whole_runs()
-        plain = [(over, WHOLE_RUNS), *shots] if over is not None else shots
-        freed = [output_error_choice(_with_free_zeros(e, noise, report_progress), name) for e, name in plain]
+        fitted = [(over, WHOLE_RUNS), *shots] if over is not None else shots
+        plain = [output_error_choice(_with_free_zeros(e, noise, report_progress), name) for e, name in fitted]
+    disturbances = choose_disturbance(
+        white, [first, *(c.estimate for c in plain)], needs_disturbance=is_closed, report_progress=report_progress
+    )
+    best = disturbances.chosen.noise
+    if over_runs is not None and over_runs.whiteness.is_white and not disturbances.chosen.unknown_count:
+        return replace(over_runs.with_reasons(disturbances.summary), disturbances=disturbances)
+    if is_closed and parts is None:
+        return _with_disturbance(shot, disturbances, _FEEDBACK)
+    if parts is not None:
         if is_closed and best.test.is_nearly_white:
-            freed = []  # by output error no answer of the loop is told from the craft's own
-        return _best_predicting(shot, freed, disturbances, runs, parts, windows, (_FEEDBACK,) if is_closed else ())
+            plain = []  # by output error no answer of the loop is told from the craft's own
+        return _best_predicting(shot, plain, disturbances, runs, parts, windows, (_FEEDBACK,) if is_closed else ())
     if best.test.is_nearly_white:
         return _with_disturbance(shot, disturbances)
     return _without_filter(shot, disturbances, _SEGMENTED)

@@ -52,6 +52,8 @@ above what chance leaves between true disturbances, below what lags and orders d
 _FAR_LESS_LIKELY = 12.0  # nats below the likeliest from which on a candidate says nothing of its spread; chosen
 _PEAKS = 3  # of the residuals' spectra at which waves are sought, the likeliest is searched from; chosen
 _ADDITIONS = 2  # parts that are added in turn to the likeliest where that leaves coloured innovations; chosen
+# frequencies of another peak that is not seen, and its variance, over those of the first, where it is sought; chosen
+_SIDES, _SIDE_SHARE = (1.0 / 1.5, 1.5), 0.3
 # intensities of gusts beside waves, over those of white noise, which had to explain the waves too; chosen
 _BESIDE_WAVES = (0.03, 0.3)
 
@@ -154,8 +156,8 @@ class DisturbanceChoice:
 
 def choose_disturbance(
     white: ProcessNoise,
+    plain: Sequence[PointEstimate] = (),
     *,
-    plain: PointEstimate | None = None,
     needs_disturbance: bool = False,
     evaluations: int = _EVALUATIONS,
     report_progress: ProgressReporter | None = None,
@@ -164,7 +166,7 @@ def choose_disturbance(
 
     Args:
         white: the optimum with white noise on the states.
-        plain: an estimate by output error, from which noise of the sensors alone may begin, too.
+        plain: estimates by output error, from which noise of the sensors alone may begin, too.
         needs_disturbance: whether a disturbance is used even where none is likelier (inputs follow outputs); what the
             likelihood would be without one is still in the table.
     """
@@ -192,8 +194,8 @@ def _with_states_of_their_own(search: "_Search", simplest: Sequence[FittedDistur
     white, none = search.white, simplest[0].noise
     driven, peaks = white.problem.process, _peaks(none)
     waves = search.begun(_waves(none, peaks, white)) if any(p.is_high for p in peaks) else []
-    is_sea = bool(waves) and waves[-1].noise.test.is_nearly_white and likeliest([*simplest, *waves]) in waves
-    # waves alone leave next to nothing for gusts alone
+    is_sea = bool(waves) and waves[0].noise.test.is_nearly_white and likeliest([*simplest, waves[0]]) is waves[0]
+    # waves at one peak leave next to nothing for gusts alone; a second one may stand for gusts
     gusty = [] if is_sea else search.begun([gusts(white, driven, white_intensities(white))])
     if not waves and search.likeliest([*simplest, *gusty]).noise.test.is_white:
         return gusty
@@ -220,14 +222,14 @@ def _beside_waves(
     none: ProcessNoise, waves: Sequence[FittedDisturbance], gusty: Sequence[FittedDisturbance],
     peaks: Sequence[SpectralPeak], white: ProcessNoise,
 ) -> list[DisturbanceModel]:  # fmt: skip
-    """Gusts beside the likeliest waves on the sensors.
+    """Gusts beside waves at one peak on the sensors.
 
     Gusts begin beside the waves that the spectra show or that explain most alone, or the waves beside the gusts that
     do; not at all where waves alone leave nearly white innovations that no gust of the grid makes likelier.
     """
     if not waves:
         return []
-    driven, whites, motion = white.problem.process, white_intensities(white), likeliest(waves).noise
+    driven, whites, motion = white.problem.process, white_intensities(white), waves[0].noise
     bases = [motion, *(_unsearched(white, start) for start in wave_motion(none, peaks))]
     scanned = likeliest_start([gusts(base, driven, share * whites) for base in bases for share in _BESIDE_WAVES])
     is_likelier = scanned.problem.cost(scanned.point, _NO_INITIAL_STATES) < motion.optimum.normal.cost
@@ -239,13 +241,21 @@ def _beside_waves(
 def _additions(best: ProcessNoise, white: ProcessNoise) -> list[DisturbanceModel]:
     """What may explain the rest beside waves: another peak, or gusts beside their forces."""
     driven, motions, forces = white.problem.process, best.problem.waves.peaks, force_peaks(best.problem.runs.model)
-    peaks = [p for p in _peaks(best) if p.is_high or not best.test.is_nearly_white] if motions or forces else []
+    peaks = _further_peaks(best) if motions or forces else []
     more = wave_motion(best, peaks) if 0 < motions < MOST_PEAKS else []
     if 0 < forces < MOST_PEAKS:
         more += wave_forces(best, driven, peaks)
     if forces and gust_name(driven[0]) not in best.problem.process:
         more.append(gusts(best, driven, white_intensities(white)))
     return more
+
+
+def _further_peaks(best: ProcessNoise) -> list[SpectralPeak]:
+    """Where waves may have another peak: where the innovations show one, and to both sides of the first."""
+    waves, outputs = best.waves[0], best.output_error.data.outputs
+    sizes = _SIDE_SHARE * np.array([waves.rms.get(c, 0.0) ** 2 for c in outputs])
+    sides = [SpectralPeak(f * waves.frequency, sizes, np.full(len(outputs), np.inf)) for f in _SIDES]
+    return [*(p for p in _peaks(best) if p.is_high or not best.test.is_nearly_white), *sides]
 
 
 def _unsearched(white: ProcessNoise, model: DisturbanceModel) -> ProcessNoise:
@@ -280,15 +290,14 @@ def critical_gain(unknown_count: int) -> float:
 
 
 def without_disturbance(
-    white: ProcessNoise, plain: PointEstimate | None, evaluations: int, report: ProgressReporter
+    white: ProcessNoise, plain: Sequence[PointEstimate], evaluations: int, report: ProgressReporter
 ) -> ProcessNoise:
     """The optimum of the same likelihood with noise of the sensors only; `plain`: where it may begin, too."""
     problem = replace(white.problem, process=(), steps=None)
     point, size = white.optimum.solution.point, white.problem.runs.size
     deviations = point[size + white.problem.waves.size + len(white.problem.process) :]
     starts = [np.concatenate([point[:size], deviations])]
-    if plain is not None:
-        starts.append(np.concatenate([plain.common_parameters, plain.problem.noise**2]))
+    starts += [np.concatenate([one.common_parameters, one.problem.noise**2]) for one in plain]
     begin = min(starts, key=lambda start: problem.cost(start, _NO_INITIAL_STATES))
     report("disturbances compared: none")
     optimum = levenberg_marquardt(problem, begin, _NO_INITIAL_STATES, negligible=_NEGLIGIBLE, evaluations=evaluations)

@@ -21,8 +21,8 @@ from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.sensors.wave_motion import STILL, WaveMotion
 from seatrial.physics.simulate.filtering import FilterPoint, KalmanFilter
 
-FEWEST_WAVE_PERIODS = 3.0
-"""Periods of the slowest waves in the longest run: slower ones are no band; chosen."""
+FEWEST_WAVE_PERIODS, LONGEST_WAVE_PERIOD = 3.0, 60.0
+"""Periods of the slowest waves in the longest run, and the longest of encounter [s]: slower motion is no band; chosen."""
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -103,7 +103,8 @@ class PredictionError:
     def wave_bounds(self) -> tuple[Array, Array]:
         """Bounds of what describes the waves; frequencies up to that of the samples: an angle's rate may show them."""
         data, peaks, sizes = self.runs.data, self.waves.peaks, self.waves.pair_count
-        slowest = 2.0 * np.pi * FEWEST_WAVE_PERIODS / (data.dt * float(np.max(np.diff(data.offsets))))
+        longest = min(LONGEST_WAVE_PERIOD, data.dt * float(np.max(np.diff(data.offsets))) / FEWEST_WAVE_PERIODS)
+        slowest = 2.0 * np.pi / longest
         low, high = (slowest, DAMPINGS[0]), (2.0 * np.pi / data.dt, DAMPINGS[1])
         return (
             np.concatenate([np.tile(low, peaks), np.zeros(sizes)]),
