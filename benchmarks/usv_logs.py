@@ -40,7 +40,7 @@ def log(name: str, rng: np.random.Generator) -> Array:
     model, orders = CRAFTS["two-fixed"].truth.with_values(STEADIER), commands(LOGS[name])
     inputs = {"command_1": orders[:, 0], "command_2": orders[:, 1]}
     planned = Record.from_arrays(name, DT * np.arange(len(orders)), inputs)
-    simulated = replay(model, planned, dict.fromkeys(model.states, 0.0))
+    simulated = replay(model.with_held(model.input_names), planned, dict.fromkeys(model.states, 0.0))
     run = noisy(Record.from_arrays(name, simulated.time, {c: simulated[c] for c in NOISE}), rng)
     yaw = np.degrees(np.mod(run["psi"], 2.0 * np.pi))
     pulses = ZERO_US + SPAN_US * orders
