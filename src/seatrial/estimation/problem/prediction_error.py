@@ -22,7 +22,7 @@ from seatrial.physics.sensors.wave_motion import STILL, WaveMotion
 from seatrial.physics.simulate.filtering import FilterPoint, KalmanFilter
 
 FEWEST_WAVE_PERIODS, LONGEST_WAVE_PERIOD = 3.0, 60.0
-"""Periods of the slowest waves in the longest run, and the longest of encounter [s]: slower motion is no band; chosen."""
+"""Periods of the slowest waves in the longest run; the longest of encounter [s]: what is slower is no band; chosen."""
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
