@@ -111,9 +111,9 @@ def cubic_ship(seed: int) -> Record:
             moment = 1e-3 * np.sin(0.21 * at) * np.sin(0.013 * at + seed)
             r += step * ((0.15 * angle - r - 20.0 * r**3) / 8.0 + moment)
             psi += step * r
-    return Record.from_arrays("run", time, {
-        "delta": delta, "r": rates + 2e-4 * rng.standard_normal(count), "psi": headings + 1e-3 * rng.standard_normal(count)
-    })  # fmt: skip
+    read = {"r": np.array(rates) + 2e-4 * rng.standard_normal(count)}
+    read["psi"] = np.array(headings) + 1e-3 * rng.standard_normal(count)
+    return Record.from_arrays("run", time, {"delta": delta, **read})
 
 
 def narrowly_known(*further: str) -> Model:
