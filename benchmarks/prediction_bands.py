@@ -6,6 +6,7 @@ Models, priors and settings are those of the example trials; every run is left o
 """
 
 import argparse
+import os
 import sys
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -13,22 +14,25 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from measure import machine
+from measure import Line, at_least, at_most, machine
 
 from seatrial.core.results import Prediction
 from seatrial.core.results.window_scores import ChannelScore
 from seatrial.core.values import InputError
 from seatrial.data.trial import Role, Trial, TrialRecord, checked_records, load_trial
+from seatrial.data.trial.window_lengths import window_lengths
 from seatrial.estimation.estimate import INITIAL_STATE_SHIP_LENGTHS, estimate_model, ship_length_seconds
 from seatrial.estimation.estimate.fit import with_segment_seconds
 from seatrial.estimation.estimate.runs import training_runs
 from seatrial.estimation.predict.predict_runs import predict_runs
-from seatrial.estimation.predict.window_scores import window_lengths
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 CHANNELS = ("psi_deg", "position_m")
 THREES = 4
 """Splits of the tanker's twelve runs; run number k is left out in split k modulo this."""
+LEAST_INSIDE, WIDEST = 0.92, 2.7
+"""Share of samples that a 95 % band must hold at least, and its half width over the rms error at most; a normal error
+of known size has 0.95 and 1.96."""
 BLUEBOAT_KINDS: Mapping[str, tuple[str, ...]] = {
     "spins": ("226", "228"), "turns": ("220", "224", "225"), "astern": ("221", "223"), "ahead": ("218", "222"),
 }  # fmt: skip
@@ -159,9 +163,24 @@ def table_rows(name: str, splits: Sequence[str] = ()) -> list[Row]:
     return pooled(list(left_out(trial, items, table, splits)))
 
 
+def run() -> list[Line]:
+    """The tanker's bands, of all splits."""
+    if not os.environ.get("SEATRIAL_DATA"):
+        return []
+    lines = []
+    for row in table_rows("kvlcc2"):
+        for name, inside, width in zip(("heading", "position"), row.inside, row.width, strict=True):
+            what = f"three of twelve zigzags left out, windows of {row.window}: {name}"
+            lines += [
+                at_least(f"{what} inside the 95 % band", inside, "", LEAST_INSIDE),
+                at_most(f"{what}, half width over error", width, "", WIDEST),
+            ]
+    return lines
+
+
 def main() -> None:
     """Print the tables."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--tables", default=",".join(TABLES), help="names, separated by commas")
     arguments = parser.parse_args()
     print(machine())

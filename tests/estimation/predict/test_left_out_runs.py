@@ -1,5 +1,7 @@
 """Bands in windows against what a craft then does whose moments no model has: own equations, Euler steps of 10 ms."""
 
+from typing import cast
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,11 @@ from seatrial.core.results import Fit
 from seatrial.core.values import Record, Ship
 from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRun
 from seatrial.estimation.identify import identify
+from seatrial.estimation.information.discrepancy import NO_DISCREPANCY, HoldoutError
+from seatrial.estimation.predict.draws import PredictionUncertainty
+from seatrial.estimation.predict.left_out_runs import HoldoutRun, HoldoutRuns, RunErrors
+from seatrial.estimation.predict.prediction_intervals import HoldoutModel
+from seatrial.estimation.problem.output_error import OutputError
 from seatrial.physics.models.nomoto import nomoto
 
 STEP, EVERY = 0.01, 50
@@ -68,3 +75,19 @@ def test_the_noise_of_sensors_counts_once() -> None:
     inside, width = shares(fit_of(0.0, held_out=2), 0)
     assert 0.92 <= inside <= 0.98
     assert width < 2.5
+
+
+def known(size: float, kind: str, number: int) -> RunErrors:
+    """One window of ten samples, missed by so much, nothing of it foreseen."""
+    sides = size * np.where(np.arange(10) % 2, 1.0, -1.0)
+    return RunErrors(kind, (HoldoutError(f"{kind} {number}", 0.5, {"psi": sides}, {"psi": np.zeros(10)}),))
+
+
+def test_a_kind_of_manoeuvre_with_runs_enough_is_calibrated_by_itself() -> None:
+    kinds = [known(1.0, "zigzag", k) for k in range(3)] + [known(7.0, "turning-circle", k) for k in range(2)]
+    record = Record.from_arrays("run", 0.5 * np.arange(100.0), {"psi": np.zeros(100)})
+    held = HoldoutRun(record, cast(HoldoutModel, None), cast(PredictionUncertainty, None), 1.0)
+    runs = HoldoutRuns(cast(OutputError, None), (held,), 1.0, NO_DISCREPANCY, 0, of_length={10: kinds})
+    pooled = np.sqrt((3.0 * 1.0 + 2.0 * 49.0) / 5.0)
+    for kind, expected in (("zigzag", 1.0), ("turning-circle", pooled), ("", pooled)):
+        assert runs.discrepancy(5.0, kind).sd_by_time["psi"] == pytest.approx(np.full(10, expected))

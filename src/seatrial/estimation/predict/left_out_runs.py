@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from seatrial.core.values import Array, Record
+from seatrial.core.values import Array, InputError, Record
 from seatrial.data.check.signal import sample_noise
 from seatrial.estimation.information.discrepancy import Discrepancy, HoldoutError, discrepancy
 from seatrial.estimation.predict.draws import PredictionUncertainty, StartStates
@@ -17,12 +17,13 @@ from seatrial.estimation.predict.prediction_intervals import HoldoutModel, windo
 from seatrial.estimation.predict.windows import Windows
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.numerics.workers import map_in_threads
+from seatrial.physics.manoeuvres.recognition import ManoeuvreKind, recognise_manoeuvre
 
 _WINDOWS = 20  # of each run left out, evenly spread; chosen: neighbours err alike
 
 
 @dataclass(frozen=True, eq=False)
-class LeftOutRun:
+class HoldoutRun:
     """A training run, and what is known of it without it.
 
     Attributes:
@@ -37,32 +38,51 @@ class LeftOutRun:
 
 
 @dataclass(frozen=True, eq=False)
-class LeftOutRuns:
+class RunErrors:
+    """How the windows of a run of some kind of manoeuvre are missed."""
+
+    kind: str
+    errors: tuple[HoldoutError, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class HoldoutRuns:
     """Runs left out that calibrate windows of any length, each length once.
 
     Attributes:
         template: the problem whose outputs, noise and nuisances are used; seed: of what is drawn.
         seconds: of a window's beginning, for its initial state, at most.
-        whole: discrepancy of whole runs, for windows that fewer runs hold than a discrepancy needs.
-        of_length: discrepancies found so far, by number of steps.
+        whole_runs: their discrepancy, for windows that fewer runs hold than a discrepancy needs.
+        of_length: what is known so far, by number of steps.
     """
 
     template: OutputError
-    runs: tuple[LeftOutRun, ...]
+    runs: tuple[HoldoutRun, ...]
     seconds: float
-    whole: Discrepancy
+    whole_runs: Discrepancy
     seed: int
     workers: int | None = None
-    of_length: dict[int, Discrepancy] = field(default_factory=dict)
+    of_length: dict[int, list[RunErrors]] = field(default_factory=dict)
 
-    def discrepancy(self, seconds: float) -> Discrepancy:
-        """Return what windows of this length [s] of runs left out miss beyond what is foreseen and sensors add."""
-        steps = Windows.steps_of(seconds, self.runs[0].record.dt) if self.runs else 0
+    def discrepancy(self, seconds: float, kind: str = "") -> Discrepancy:
+        """Return what windows of this length [s] of runs left out miss beyond what is foreseen and sensors add.
+
+        kind: of manoeuvre (`manoeuvre_kind`), by whose runs alone it is found where there are enough of them.
+        """
+        if not self.runs:
+            return self.whole_runs
+        runs = self.errors_of_length(seconds)
+        pooled = discrepancy([error for run in runs for error in run.errors], self.whole_runs)
+        return discrepancy([error for run in runs if kind and run.kind == kind for error in run.errors], pooled)
+
+    def errors_of_length(self, seconds: float) -> list[RunErrors]:
+        """Return how windows of this length [s] of each run are missed."""
+        steps = Windows.steps_of(seconds, self.runs[0].record.dt)
         if steps not in self.of_length:
-            found = map_in_threads(
-                lambda i: list(self._errors(i, seconds)), range(len(self.runs)), workers=self.workers
-            )
-            self.of_length[steps] = discrepancy([e for errors in found for e in errors], self.whole)
+            self.of_length[steps] = map_in_threads(
+                lambda i: RunErrors(manoeuvre_kind(self.runs[i].record), tuple(self._errors(i, seconds))),
+                range(len(self.runs)), workers=self.workers,
+            )  # fmt: skip
         return self.of_length[steps]
 
     def _errors(self, number: int, seconds: float) -> Iterator[HoldoutError]:
@@ -72,6 +92,17 @@ class LeftOutRuns:
         initial = windows.initial_seconds(self.seconds)
         found = band_errors(self.template, run.holdout, windows, initial, run.uncertainty, rng)
         yield from (replace(error, index=run.index) for error in found)
+
+
+def manoeuvre_kind(record: Record) -> str:
+    """Return the kind of manoeuvre that a run shows; empty where it is none of those with a name, or has no rudder."""
+    if not {"psi", "delta"} <= set(record.channels):
+        return ""
+    try:
+        kind = recognise_manoeuvre(record)
+    except InputError:  # nothing but gaps
+        return ""
+    return "" if kind is ManoeuvreKind.OTHER else kind.value
 
 
 def band_errors(

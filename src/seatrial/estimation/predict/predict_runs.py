@@ -1,14 +1,16 @@
 """All runs of a trial predicted: training runs to see the fit, the others to see what it is worth, with intervals."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.results import IntervalBasis, Prediction
+from seatrial.core.results import Extrapolation, IntervalBasis, Prediction
 from seatrial.core.values import Array, Finding, InputError, ProgressReporter, Record
 from seatrial.data.trial import Role, TrialRecord
+from seatrial.data.trial.window_lengths import WindowLength
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.information.discrepancy import Discrepancy, HoldoutError, discrepancy
@@ -20,7 +22,7 @@ from seatrial.estimation.information.extrapolation import (
 )
 from seatrial.estimation.predict.divergence import divergence_finding, not_predicted_finding
 from seatrial.estimation.predict.draws import PredictionUncertainty
-from seatrial.estimation.predict.left_out_runs import LeftOutRun, LeftOutRuns
+from seatrial.estimation.predict.left_out_runs import HoldoutRun, HoldoutRuns, manoeuvre_kind
 from seatrial.estimation.predict.open_loop import (
     compare_measures,
     predict_run,
@@ -43,7 +45,7 @@ from seatrial.estimation.predict.session_offsets import (
     updated_by_start,
 )
 from seatrial.estimation.predict.window_baselines import window_baselines
-from seatrial.estimation.predict.window_scores import WindowLength, WindowPredictor, window_scores
+from seatrial.estimation.predict.window_scores import WindowPredictor, window_scores
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.simulate.channels import inputs_of
@@ -71,7 +73,7 @@ class IntervalCalibration:
 
     uncertainty: PredictionUncertainty
     discrepancy: Discrepancy
-    left_out: LeftOutRuns
+    left_out: HoldoutRuns
 
 
 def prediction_uncertainty(estimation: Estimation) -> PredictionUncertainty:
@@ -124,7 +126,7 @@ def calibrate_intervals(
     workers = estimation.estimate.problem.workers
     errors = [e for e in map_in_threads(one, range(len(runs)), workers=workers) if e is not None]
     whole = discrepancy(errors)
-    return IntervalCalibration(uncertainty, whole, LeftOutRuns(problem, runs, seconds, whole, seed, workers))
+    return IntervalCalibration(uncertainty, whole, HoldoutRuns(problem, runs, seconds, whole, seed, workers))
 
 
 def left_out_runs(
@@ -135,14 +137,14 @@ def left_out_runs(
     *,
     offsets_from_start: bool = False,
     is_session_known: bool = False,
-) -> tuple[LeftOutRun, ...]:
+) -> tuple[HoldoutRun, ...]:
     """Return each training run with what is known of it by the others; none where none can be left out."""
     uncertainty, points = prediction_uncertainty(estimation), estimation.uncertainty.leave_one_out
     problem, sessions = replace(estimation.estimate.problem, workers=1), [item.session for item in train]
     runs = []
-    for i, item in enumerate(train if points is not None else ()):
+    for i, (item, point) in enumerate(zip(train, () if points is None else points, strict=points is not None)):
         record, is_known = item.record, is_session_known and sessions.count(item.session) > 1
-        holdout = holdout_model(problem, points[i], item.session, record, is_session_known=is_known)
+        holdout = holdout_model(problem, point, item.session, record, is_session_known=is_known)
         if is_known:
             own = session_offsets(estimation, item.session, record).covariance
         elif offsets_from_start:
@@ -152,7 +154,7 @@ def left_out_runs(
         else:
             own = uncertainty.offsets
         index = extrapolation_index(moved[i], [*moved[:i], *moved[i + 1 :]], problem.model.equations.layout)
-        runs.append(LeftOutRun(record, holdout, replace(uncertainty, offsets=own), index))
+        runs.append(HoldoutRun(record, holdout, replace(uncertainty, offsets=own), index))
     return tuple(runs)
 
 
@@ -229,6 +231,7 @@ def predict_runs(
     }  # fmt: skip
     streams = np.random.SeedSequence((seed, 1)).spawn(len(items))
     held_out = [item for item in items if item.role is not Role.TRAIN]
+    kinds = {manoeuvre_kind(item.record) for item in train}
     baselines = window_baselines(problem, estimation.model, [i.record for i in train], seconds) if held_out else {}
     predictions = []
     for item, run, reached, own, stream in zip(items, runs, moved_as, offsets, streams, strict=True):
@@ -236,7 +239,7 @@ def predict_runs(
         one = predict_run(estimation.model, item.record, role, run, seconds, length)
         by_name = dict(zip(problem.session_unknowns, map(float, own.expected), strict=True))
         one = replace(one, offsets=by_name, session=item.session)
-        one = replace(one, extrapolation=extrapolation(reached, covered, layout))
+        one = replace(one, extrapolation=_extrapolation(extrapolation(reached, covered, layout), item, kinds))
         if run.divergence is not None:
             findings.append(divergence_finding(estimation.model, one, run.divergence))
         calibration = by_session[item.role is not Role.TRAIN and _is_session_known(problem, item)]
@@ -259,7 +262,7 @@ def predict_runs(
                 estimation.model,
                 own.expected,
                 uncertainty,
-                calibration.left_out.discrepancy,
+                partial(calibration.left_out.discrepancy, kind=manoeuvre_kind(item.record)),
                 baselines,
                 length,
                 seconds,
@@ -268,6 +271,12 @@ def predict_runs(
         predictions.append(one)
     basis = _interval_basis(estimation, by_session[False], covered, tied)
     return RunPredictions(tuple(predictions), basis, tuple(findings))
+
+
+def _extrapolation(reached: Extrapolation | None, item: TrialRecord, kinds: Set[str]) -> Extrapolation | None:
+    """How far a run leaves the training runs, which show these kinds of manoeuvre, with its own where it is another."""
+    kind = manoeuvre_kind(item.record)
+    return replace(reached, untrained_kind=kind) if reached is not None and kind and kind not in kinds else reached
 
 
 def _is_session_known(problem: OutputError, item: TrialRecord) -> bool:

@@ -1,6 +1,5 @@
 """Validation runs predicted in windows: errors, share inside the band, and baselines over the same windows."""
 
-import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -10,6 +9,7 @@ from seatrial.core.equations import Model
 from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
 from seatrial.core.results.window_scores import ChannelScore, WindowBaseline, WindowScore
 from seatrial.core.values import Array, InputError, Record
+from seatrial.data.trial.window_lengths import WindowLength
 from seatrial.estimation.estimate.time_scale import characteristic_time
 from seatrial.estimation.information.discrepancy import Discrepancy
 from seatrial.estimation.predict.draws import PredictionUncertainty, StartStates
@@ -34,32 +34,6 @@ _SCORES: Mapping[str, tuple[tuple[str, ...], float]] = {
 
 Predictor = Callable[[Windows, float], Sequence[Record]]
 """Windows and the seconds of their beginning that may be used -> the windows predicted; NaN where one diverges."""
-
-
-@dataclass(frozen=True)
-class WindowLength:
-    """Length of a window; `unit`: s, or L for the time of a ship length at the run's speed."""
-
-    value: float
-    unit: str
-
-    def __str__(self) -> str:
-        return f"{self.value:g} {self.unit}"
-
-
-def window_lengths(text: str) -> tuple[WindowLength, ...]:
-    """Return the lengths that a text such as ``10s,5L`` names.
-
-    Raises:
-        InputError: a part is no positive number with s or L.
-    """
-    lengths = []
-    for part in filter(None, (p.strip() for p in text.split(","))):
-        match = re.fullmatch(r"(\d+\.?\d*|\.\d+)\s*([sL])", part)
-        if match is None or not float(match[1]) > 0.0:
-            raise InputError(f"--windows: '{part}' is no length of a window; write seconds or ship lengths, as 10s,5L")
-        lengths.append(WindowLength(float(match[1]), match[2]))
-    return tuple(lengths)
 
 
 @dataclass(frozen=True, eq=False)
