@@ -170,7 +170,7 @@ def run() -> list[Line]:
     lines = []
     for row in table_rows("kvlcc2"):
         for name, inside, width in zip(("heading", "position"), row.inside, row.width, strict=True):
-            what = f"three of twelve zigzags left out, windows of {row.window}: {name}"
+            what = f"zigzags left out, windows of {row.window}: {name}"
             lines += [
                 at_least(f"{what} inside the 95 % band", inside, "", LEAST_INSIDE),
                 at_most(f"{what}, half width over error", width, "", WIDEST),
