@@ -24,7 +24,7 @@ NOISE = {"r": 5e-4, "psi": 1e-3}
 def run(number: int, wander: float, seconds: float = 240.0) -> Record:
     """A zigzag of a first-order ship, K 0.15/s and T 8 s, moved by a moment that forgets itself in 20 s."""
     rng, count = np.random.default_rng((7, number)), round(seconds / STEP / EVERY)
-    time = STEP * EVERY * np.arange(count)
+    time = STEP * EVERY * np.arange(count, dtype=np.float64)
     size = 5 * number % 8
     delta = np.radians(10.0 + size) * np.sign(np.sin(2.0 * np.pi * (time + 3.0 * number) / (50.0 + 3.0 * size)))
     r, psi, moment, rates, headings = 0.0, 0.0, 0.0, [], []
