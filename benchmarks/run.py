@@ -20,6 +20,7 @@ import campaign
 import checking
 import criteria
 import design
+import estimation_folds
 import follow
 import fusion
 import generation
@@ -32,6 +33,7 @@ import memory
 import montecarlo
 import numpy as np
 import population
+import prediction_bands
 import proposals
 import roll_decay
 import simulation
@@ -54,6 +56,8 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "waves": waves.run,
     "criteria": criteria.run,
     "kvlcc2_zigzags": kvlcc2_zigzags.run,
+    "estimation_folds": estimation_folds.run,
+    "prediction_bands": prediction_bands.run,
     "waterjet_regressions": waterjet_regressions.run,
     "fusion": fusion.run,
     "checking": checking.run,

@@ -209,7 +209,7 @@ def identify(
         method: takes the place of the trial's ``[estimate] method``: ``auto``, ``output-error``, ...; or a published
             one such as ``iwho`` or ``svr``, which is compared with the package's own estimate.
         windows: lengths of windows in which validation runs are predicted as well, in seconds or ship lengths:
-            ``10s,5L``; empty: chosen by the length of each run.
+            ``10s,5L``; empty: those of the trial, else chosen by the length of each run.
         horizons: how far ahead the fit's Kalman filter predicts from every moment, in samples or seconds:
             ``1,10,5s``; empty: chosen by the length of the runs.
 

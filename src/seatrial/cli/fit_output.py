@@ -221,7 +221,8 @@ def _print_extrapolation(e: "Extrapolation") -> None:
     side = largest if largest.startswith("rudder to ") else ""
     reason = "by the drift angle that the model has" if largest == "drift" else f"no run trained so much {side}"
     source = f" ({reason})" if note and (side or largest == "drift") else ""
-    print_lines([f"extrapolation index {fixed(e.index, 2)}{source}{note}"], "  ")
+    kind = f"; no training run is a {e.untrained_kind.replace('-', ' ')}: extrapolated" if e.untrained_kind else ""
+    print_lines([f"extrapolation index {fixed(e.index, 2)}{source}{note}{kind}"], "  ")
 
 
 def _print_details(fit: "Fit") -> None:

@@ -166,6 +166,9 @@ def is_extrapolated(m: CraftMeasure) -> bool:
 def extrapolation_text(e: Extrapolation) -> str:
     """Return how far a run leaves the training runs, and how to read its intervals."""
     index = ratio_text(e.index)
+    if e.untrained_kind:
+        kind = e.untrained_kind.replace("-", " ")
+        return f"{index}; no training run is a {kind}: this one is extrapolated. Read its intervals as lower limits."
     if extrapolation_zone(e.index) == "inside":
         return f"{index}: the run stays inside what the training runs covered."
     outside = sorted((item for item in e.ratios.items() if item[1] > INSIDE_INDEX), key=lambda item: -item[1])

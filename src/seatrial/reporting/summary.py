@@ -5,8 +5,6 @@ from seatrial.core.results.method_comparison import inside_own_intervals
 from seatrial.core.text.numbers import duration, exact, percent
 from seatrial.core.text.words import counted, enumeration
 
-# distance of an estimate from its prior's mean, in the prior's standard deviations, from which on they disagree
-PRIOR_DISAGREEMENT = 3.0
 # offset of a rudder or nozzle, and the coefficients of models that have the same effect: hull, side forces of a screw
 _STEERING_ZERO, _ASYMMETRIES = "delta zero", ("Y_0", "N_0", "Y_T", "N_T")
 
@@ -27,8 +25,8 @@ def facts(fit: Fit) -> list[str]:
 
 
 def coefficient_sentences(fit: Fit) -> list[str]:
-    """Return which coefficients differ from zero, contain a known value, or disagree with their prior."""
-    parts = [_significance(fit), _truth_coverage(fit), _prior_disagreement(fit)]
+    """Return which coefficients differ from zero, or contain a known value."""
+    parts = [_significance(fit), _truth_coverage(fit)]
     return [text for text in parts if text]
 
 
@@ -66,23 +64,6 @@ def _truth_coverage(fit: Fit) -> str:
         return ""
     inside = [c for c in comparable if c.lower <= c.truth <= c.upper]  # type: ignore[operator]
     return f"{len(inside)} of {len(comparable)} 95 % intervals contain the comparable value of the coefficient."
-
-
-def _prior_disagreement(fit: Fit) -> str:
-    off = [
-        c.name
-        for c in _free_coefficients(fit)
-        if c.prior_mean is not None
-        and c.prior_standard_deviation
-        and abs(c.estimate - c.prior_mean) > PRIOR_DISAGREEMENT * c.prior_standard_deviation
-    ]
-    if not off:
-        return ""
-    return (
-        f"{counted(len(off), 'coefficient').capitalize()} ended more than {PRIOR_DISAGREEMENT:g} prior "
-        "standard deviations from "
-        f"the prior ({enumeration(off)}): records and prior disagree there."
-    )
 
 
 def residual_sentence(fit: Fit) -> str:

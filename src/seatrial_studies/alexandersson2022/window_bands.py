@@ -10,13 +10,7 @@ from seatrial.core.values import Array, InputError
 from seatrial.data.trial import TrialRecord
 from seatrial.estimation.estimate import Estimation
 from seatrial.estimation.information import HoldoutError, discrepancy, extrapolation_index
-from seatrial.estimation.predict import (
-    HoldoutProtocol,
-    holdout_model,
-    prediction_uncertainty,
-    split_windows,
-    track_holdout_error,
-)
+from seatrial.estimation.predict import HoldoutProtocol, Windows, band_errors, holdout_model, prediction_uncertainty
 
 
 @dataclass(frozen=True)
@@ -59,9 +53,9 @@ def holdout_windows(
     ) -> tuple[HoldoutError, ...]:
         index = extrapolation_index(item.record, [o.record for o in training_runs])
         by = holdout_model(problem, point, item.session, item.record)
-        pieces = split_windows(item.record, protocol)
-        made = [track_holdout_error(problem, by, piece, protocol.initial_s, scatter, rng) for piece in pieces]
-        return tuple(replace(m, index=index) for m in made if m is not None)
+        windows = Windows.cut([item.record], protocol.window_s, protocol.max_windows)
+        found = band_errors(problem, by, windows, protocol.initial_s, scatter, rng)
+        return tuple(replace(error, index=index) for error in found)
 
     trained = tuple(
         predict_windows_of(item, left_out[i], [*train[:i], *train[i + 1 :]]) for i, item in enumerate(train)

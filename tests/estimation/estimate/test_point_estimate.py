@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from seatrial.core.equations import Model
-from seatrial.core.values import Record
+from seatrial.core.values import Prior, Record
+from seatrial.estimation.estimate.concentrated_likelihood import ConcentratedLikelihood
 from seatrial.estimation.estimate.point_estimate import (
+    COLOUR_ROUNDS,
     PointEstimate,
     fit_output_error,
     residual_correlation,
@@ -93,3 +95,61 @@ def test_coloured_residuals_are_seen(model: Model, clean: Record, rng: np.random
     made = made_from(model, clean.with_channel("psi", shaky))
     inflation = residual_correlation(made.problem, made.residuals())[1]
     assert inflation[1] > 5.0
+
+
+def cubic_ship(seed: int) -> Record:
+    """A first-order ship with a cubic term and a slow moment that no model has: own equations, Euler steps of 10 ms."""
+    rng, step, every, count = np.random.default_rng(seed), 0.01, 20, 1000
+    time = step * every * np.arange(count)
+    delta = 0.35 * np.sign(np.sin(2.0 * np.pi * time / 60.0))
+    r, psi, rates, headings = 0.0, 0.0, [], []
+    for k, angle in enumerate(delta):
+        rates.append(r)
+        headings.append(psi)
+        for j in range(every):
+            at = time[k] + step * j
+            moment = 1e-3 * np.sin(0.21 * at) * np.sin(0.013 * at + seed)
+            r += step * ((0.15 * angle - r - 20.0 * r**3) / 8.0 + moment)
+            psi += step * r
+    read = {"r": np.array(rates) + 2e-4 * rng.standard_normal(count)}
+    read["psi"] = np.array(headings) + 1e-3 * rng.standard_normal(count)
+    return Record.from_arrays("run", time, {"delta": delta, **read})
+
+
+def narrowly_known(*further: str) -> Model:
+    """Return Nomoto's ship with priors far from that ship; further: coefficients freed about 0."""
+    known = {"K": Prior(0.1, 0.02, "test"), "T": Prior(10.0, 2.0, "test"), "alpha": Prior(0.0, 50.0, "test")}
+    parameters = nomoto().with_values({"K": 0.1, "T": 10.0}).parameters.freed(*further)
+    return nomoto().with_parameters(parameters.with_priors({n: known[n] for n in ("K", "T", *further)}))
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_a_model_that_contains_another_never_fits_worse_by_the_objective_held(seed: int) -> None:
+    record = cubic_ship(seed)
+    small, large = (
+        OutputError(m, cut_segments(m, [record], ("r", "psi"), 30.0), np.array([1e-2, 1e-1]), workers=1)
+        for m in (narrowly_known(), narrowly_known("alpha"))
+    )
+    inner = fit_output_error(small, small.start(), small.measured_initial_states(), {})
+    assert inner.problem.inflation is not None
+    held = replace(large, noise=inner.problem.noise, inflation=inner.problem.inflation)
+    contained = np.append(inner.common_parameters, 0.0)
+    outer = fit_output_error(held, contained, inner.optimum.local, {}, colour_rounds=0)
+    np.testing.assert_array_equal(outer.problem.inflation, inner.problem.inflation)
+    objective = ConcentratedLikelihood(held, {})
+    gain = objective.cost(contained, inner.optimum.local) - objective.cost(outer.common_parameters, outer.optimum.local)
+    assert inner.is_settled
+    assert outer.is_settled
+    assert gain > 0.0
+
+
+def test_effective_numbers_are_held_after_the_first_rounds() -> None:
+    problem = OutputError(
+        narrowly_known(), cut_segments(narrowly_known(), [cubic_ship(0)], ("r", "psi"), 30.0), np.array([1e-2, 1e-1]),
+        workers=1,
+    )  # fmt: skip
+    start = problem.start(), problem.measured_initial_states()
+    begun = fit_output_error(problem, *start, {}, rounds=COLOUR_ROUNDS)
+    settled = fit_output_error(problem, *start, {})
+    assert begun.problem.inflation is not None
+    np.testing.assert_array_equal(settled.problem.inflation, begun.problem.inflation)

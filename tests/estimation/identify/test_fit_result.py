@@ -10,10 +10,12 @@ from seatrial.core.results import Coefficient
 from seatrial.core.values import InputError, Prior
 from seatrial.estimation.identify.fit_result import (
     bounds_hit,
+    coefficients,
     open_signs,
     refuse_unidentified,
     unconverged,
 )
+from seatrial.estimation.information.covariance import Interval
 from seatrial.numerics.optimise import Status
 from seatrial.physics.models import model_named
 from seatrial.physics.models.waterjet import WATERJET_COEFFICIENTS as COEFFICIENTS
@@ -96,3 +98,18 @@ def test_a_bound_of_the_model_is_not_to_be_widened(bound: float, says: str) -> N
     )
     (finding,) = bounds_hit(SimpleNamespace(estimate=estimate))  # type: ignore[arg-type]
     assert says in finding.advice
+    assert f"{name} is not determined by these records: it ends on its lower bound" in finding.text
+
+
+def test_what_ends_on_a_bound_has_no_interval_but_that_of_a_profile() -> None:
+    model = model_named("nomoto")
+    problem = SimpleNamespace(model=model, free=("K", "T"), lower=np.array([-1.0, 5.0]), upper=np.array([1.0, 50.0]))
+    estimation: Any = SimpleNamespace(
+        estimate=SimpleNamespace(problem=problem, common_parameters=np.array([0.1, 5.0])),
+        interval=Interval(np.diag([1e-4, 0.25]), np.inf, "test"),
+    )
+    known, stopped = (c for c in coefficients(estimation, {}) if not c.fixed)
+    assert (known.standard_error, known.lower is None) == (pytest.approx(0.01), False)
+    assert (stopped.estimate, stopped.standard_error, stopped.lower, stopped.upper) == (5.0, None, None, None)
+    profiled = coefficients(estimation, {}, {"T": (None, 6.0)})
+    assert next(c for c in profiled if c.name == "T").upper == 6.0

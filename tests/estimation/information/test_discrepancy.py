@@ -103,6 +103,16 @@ def test_chance_adds_next_to_nothing_to_what_was_foreseen() -> None:
     assert np.mean(excess) < 0.14  # of the variance foreseen; set to zero at every sample where negative: 0.154
 
 
+def test_what_is_foreseen_too_widely_late_does_not_cancel_what_is_missed_early() -> None:
+    """Errors of 1 throughout, foreseen as 0.1 and later as 10: whole runs together would have an excess of nothing."""
+    rng, foreseen = np.random.default_rng(2), np.where(np.arange(400) < 40, 0.1, 10.0)
+    held = [
+        HoldoutError(f"run {k}", 0.2, {"psi": rng.standard_normal(400)}, {"psi": foreseen}) for k in range(20)
+    ]  # fmt: skip
+    curve = discrepancy(held).sd_by_time["psi"]
+    assert np.mean(curve[:10]) == pytest.approx(1.0, rel=0.1)
+
+
 def test_kinds_nobody_saw_get_the_factor(rng: np.random.Generator) -> None:
     """Overshoots miss ten times what was foreseen."""
     found = discrepancy([missed(k, rng) for k in range(400)])

@@ -7,10 +7,19 @@ from tests.estimation.predict.test_divergence import GENTLE, run
 
 from seatrial.core.results import Fit
 from seatrial.core.values import InputError, Record, Ship
-from seatrial.data.trial import Role, Trial, TrialRun
+from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRun
+from seatrial.data.trial.window_lengths import WindowLength, window_lengths
 from seatrial.estimation.identify import identify
-from seatrial.estimation.predict.window_baselines import ARX, CONSTANT_COURSE, NARX, at_rest, constant_course
-from seatrial.estimation.predict.window_scores import WindowLength, pooled_rms, window_lengths
+from seatrial.estimation.predict.window_baselines import (
+    ARX,
+    CONSTANT_COURSE,
+    NARX,
+    STAYS,
+    at_rest,
+    constant_course,
+    stays,
+)
+from seatrial.estimation.predict.window_scores import pooled_rms
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.roll import roll
 from seatrial.physics.simulate.replay import trajectory
@@ -35,11 +44,23 @@ def test_lengths_are_seconds_or_ship_lengths() -> None:
             window_lengths(text)
 
 
+def test_the_trial_states_windows_unless_the_command_does() -> None:
+    rng = np.random.default_rng(4)
+    runs = [run(name, GENTLE, rng, phase) for name, phase in (("a", 0.0), ("v", 3.0))]
+    roles = (Role.TRAIN, Role.VALIDATE)
+    trial = Trial(Ship("craft", {"L": 8.0}), tuple(map(TrialRun, runs, roles)), nomoto(),
+                  estimate=EstimateSettings(windows="40s"))  # fmt: skip
+    assert [w.window for w in identify(trial).validation[0].windows] == ["40 s"]
+    assert [w.window for w in identify(trial, windows="5L").validation[0].windows] == ["5 L"]
+    with pytest.raises(InputError, match="'40 m' is no length of a window"):
+        EstimateSettings(windows="40 m")
+
+
 def test_windows_of_both_units_are_scored_with_baselines(fit: Fit) -> None:
     in_seconds, in_lengths = fit.validation[0].windows
     assert (in_seconds.seconds, in_seconds.count) == (50.0, 4)
     assert in_lengths.seconds == pytest.approx(5.0 * 8.0 / 2.0)
-    assert {b.name for b in in_seconds.baselines} == {CONSTANT_COURSE, ARX, NARX}
+    assert {b.name for b in in_seconds.baselines} == {CONSTANT_COURSE, STAYS, ARX, NARX}
     assert fit["T"].estimate == pytest.approx(TRUTH["T"], rel=0.1)
     score = in_seconds.scores["r"]
     assert score.fit_percent > 80.0
@@ -91,6 +112,10 @@ def test_straight_on_is_exact_on_a_straight_course() -> None:
     for channel in values:
         np.testing.assert_allclose(predicted[channel], record[channel], atol=1e-9)
     assert not np.any(at_rest(record, 5.0)["psi"])
+    still = stays(record, 5.0)
+    assert still["x0"] == pytest.approx(np.full(40, np.mean(values["x0"][:11])))
+    assert still["psi"] == pytest.approx(values["psi"])
+    assert not np.any(still["u"])
 
 
 def test_errors_of_several_channels_pool_as_their_norm() -> None:

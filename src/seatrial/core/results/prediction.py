@@ -39,6 +39,10 @@ class Extrapolation:
             "as a share of their largest angle, where that side was used less"
         ),
     ]
+    untrained_kind: Annotated[
+        str,
+        Field(description="kind of manoeuvre, as zigzag, that no training run shows; empty: none"),
+    ] = ""
 
 
 @dataclass(frozen=True)

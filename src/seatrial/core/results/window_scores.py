@@ -28,6 +28,13 @@ class ChannelScore:
     ] = None
 
     @property
+    def band_over_error(self) -> float | None:
+        """Return the rms half width of the band over the rms error, about 2 where the band is right; None: no band."""
+        if self.band_share is None or not self.r_squared < 1.0:
+            return None
+        return self.band_share / math.sqrt(1.0 - self.r_squared)  # the error is that share of the motion
+
+    @property
     def is_band_too_wide(self) -> bool:
         """Whether the band is wider than the motion itself, so that the mean of the motion would lie inside it, too."""
         return self.band_share is not None and self.band_share > 1.0

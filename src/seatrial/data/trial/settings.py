@@ -4,18 +4,29 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Annotated, Self
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 from pydantic.dataclasses import dataclass
 
+from seatrial.core.values import InputError
 from seatrial.data.trial.amounts import STRICT_FIELDS, DelayDeviation, Deviation
 from seatrial.data.trial.estimate_method import EstimateMethod, FitCriterion, method_named
 from seatrial.data.trial.schema_errors import raises_input_error
 from seatrial.data.trial.search_settings import SearchSettings
+from seatrial.data.trial.window_lengths import window_lengths
 
 
 def _as_deviations(value: object) -> object:
     """Names alone have the estimator's own priors."""
     return dict.fromkeys(value) if isinstance(value, list | tuple) else value
+
+
+def _checked_windows(value: str) -> str:
+    """Lengths that can be read."""
+    try:
+        window_lengths(value)
+    except InputError as error:
+        raise ValueError(str(error)) from None
+    return value
 
 
 Positive = Annotated[float, Field(gt=0)]
@@ -46,6 +57,8 @@ class EstimateSettings:
         starts: points from which to search; None: 6 for craft with thrusters, else one.
         initial_s: s of a validation run from which its initial state is estimated; None: L/U.
         offsets_from_start: whether these seconds of a run of a new session move what is expected of its offsets, too.
+        windows: in which validation runs are predicted, by the longest of which the fit is judged, as ``10s,5L``;
+            empty: by the length of the run.
     """
 
     method: Method = EstimateMethod.AUTO
@@ -63,6 +76,7 @@ class EstimateSettings:
     starts: Annotated[int, Field(ge=1, le=100)] | None = None
     initial_s: Positive | None = None
     offsets_from_start: bool = False
+    windows: Annotated[str, AfterValidator(_checked_windows)] = ""
 
     @property
     def criterion(self) -> FitCriterion:

@@ -25,6 +25,9 @@ _SUFFICIENT = 1e-4
 _ROUNDS = 25
 # of a search before noise levels are estimated anew, ours
 _FEW_EVALUATIONS = 12
+COLOUR_ROUNDS = 2
+"""Rounds in which effective numbers of samples follow the residuals, before they are held; chosen: the first has the
+residuals of the start, the second those of a model that nearly fits (benchmarks/estimation_folds.py)."""
 # of a channel, over its largest value
 _ROUNDING = 1e-9
 
@@ -110,16 +113,18 @@ def fit_output_error(
     known_noise: Mapping[str, float],
     *,
     rounds: int = _ROUNDS,
+    colour_rounds: int = COLOUR_ROUNDS,
     evaluations: int = 60,  # of the residuals, at most; chosen
     report_progress: ProgressReporter | None = None,
 ) -> PointEstimate:
-    """Alternate short searches with estimates of the noise, its colour and the sessions' population until all settle.
+    """Alternate short searches with estimates of the noise and the sessions' population until both settle.
 
-    Then search to the end.
+    Then search to the end. The evaluations of all of them are counted.
 
-    The evaluations of all of them are counted.
-
-    Coloured channels count as their effective number of samples throughout (`OutputError.inflation`).
+    Coloured channels count as their effective number of samples throughout (`OutputError.inflation`). These follow the
+    residuals in the first `colour_rounds` rounds and are held after them, 0: as the problem has them. All further
+    rounds then decrease one objective, the likelihood with the noise concentrated out (`ConcentratedLikelihood`):
+    followed throughout, a worse fit is more correlated, counts less against the priors, and fits worse still.
     """
     stated_noise = np.array([known_noise.get(o, np.nan) for o in problem.data.outputs])
     problem = replace(problem, noise=np.where(np.isfinite(stated_noise), stated_noise, problem.noise))
@@ -135,7 +140,11 @@ def fit_output_error(
             problem,
             noise=noise,
             population=estimate.population if problem.unknowns_per_session else None,
-            inflation=effective_inflation(residual_correlation(estimate.problem, estimate.residuals())[1]),
+            inflation=(
+                effective_inflation(residual_correlation(estimate.problem, estimate.residuals())[1])
+                if k < colour_rounds
+                else estimate.problem.inflation
+            ),
         )
         settled = _is_settled(estimate.problem, again)
         estimate = _search(

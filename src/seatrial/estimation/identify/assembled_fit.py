@@ -9,6 +9,7 @@ from seatrial.core.results import Fit, Identifiability, Posterior, Profile
 from seatrial.core.values import Finding
 from seatrial.core.values.versions import versions
 from seatrial.data.trial.approach import approach_condition
+from seatrial.data.trial.window_lengths import window_lengths
 from seatrial.estimation.estimate import Estimation, IntervalMethod
 from seatrial.estimation.identify import fit_result
 from seatrial.estimation.identify.abandoned_criterion import abandoned_criterion_finding
@@ -34,6 +35,7 @@ from seatrial.estimation.identify.other_optima import other_optima
 from seatrial.estimation.identify.physical_limits import unphysical_finding
 from seatrial.estimation.identify.posterior import sample_posterior, sampling_findings
 from seatrial.estimation.identify.profile import innovation_profiles, profiles
+from seatrial.estimation.identify.refuted_priors import refuted_prior_findings
 from seatrial.estimation.identify.response_findings import response_findings
 from seatrial.estimation.identify.roll_characteristics import one_speed_finding, roll_characteristics
 from seatrial.estimation.identify.roll_inertia import gyradius_findings
@@ -41,11 +43,11 @@ from seatrial.estimation.identify.seakeeping import seakeeping
 from seatrial.estimation.identify.short_records import default_profiles, short_record_findings
 from seatrial.estimation.identify.short_time_constants import short_time_constant_findings
 from seatrial.estimation.identify.thruster_craft import thruster_craft
+from seatrial.estimation.identify.untrained_manoeuvres import untrained_manoeuvre_findings
 from seatrial.estimation.identify.varying_gain import varying_gain_finding
 from seatrial.estimation.information.frequency_response import frequency_responses
 from seatrial.estimation.predict.k_step import horizon_list, k_step_errors
 from seatrial.estimation.predict.predict_runs import RunPredictions, predict_runs
-from seatrial.estimation.predict.window_scores import window_lengths
 
 
 def assembled_fit(task: Identification, selected: SelectedModel, findings: Sequence[Finding] = ()) -> Fit:
@@ -91,6 +93,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
             *selected.findings, *findings, *fit_result.open_signs(estimation.model, coefficients),
             *unphysical_finding(estimation.model, runs.records, errors_of(shifts, free), roll),
             *fit_result.bounds_hit(estimation), *fit_result.unconverged(estimation), *other_optima(estimation),
+            *refuted_prior_findings(estimation),
             *abandoned_criterion_finding(estimation, runs.records),
             *held_couplings(selected.estimation),
             *course_finding(estimation.model, assessment.stability, approach),
@@ -106,6 +109,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
             *response_findings(responses),
             *antenna_findings(predicted.predictions, runs.length),
             *narrow_band_findings(predicted.predictions),
+            *untrained_manoeuvre_findings(predicted.predictions),
             *short_time_constant_findings(estimation),
             *delay_findings(estimation),
             *one_speed_finding(roll, runs.records),

@@ -1,6 +1,7 @@
 """An estimate read in the field's terms: coefficients, offsets, noise, residuals, method, and what to warn of."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
@@ -26,10 +27,13 @@ def coefficients(
 ) -> tuple[Coefficient, ...]:
     """Return every parameter with its interval, prior and, if known, true value.
 
+    What ends on a bound is where the search was stopped, not where the records have it: without limits of its own it
+    has no interval.
+
     limits: ends of intervals that no standard error gives, of profiles or draws.
     """
-    problem = estimation.estimate.problem
-    return coefficient_table(
+    problem, stopped = estimation.estimate.problem, set(at_bounds(estimation)) - set(limits)
+    table = coefficient_table(
         problem.model.parameters,
         problem.free,
         estimation.estimate.common_parameters,
@@ -37,6 +41,7 @@ def coefficients(
         truth,
         limits,
     )
+    return tuple(replace(c, standard_error=None, lower=None, upper=None) if c.name in stopped else c for c in table)
 
 
 def coefficient_table(
@@ -145,19 +150,26 @@ def method(estimation: Estimation, *, has_profiles: bool) -> Method:
     )
 
 
+def at_bounds(estimation: Estimation) -> tuple[str, ...]:
+    """Return the free coefficients that end on a bound."""
+    problem, shared = estimation.estimate.problem, estimation.estimate.common_parameters
+    on_bound = (shared <= problem.lower) | (shared >= problem.upper)
+    return tuple(name for name, is_on in zip(problem.free, on_bound, strict=False) if is_on)
+
+
 def bounds_hit(estimation: Estimation) -> list[Finding]:
     """A warning for every coefficient that ends on a bound: which one, and how much the records gain beyond it."""
     problem, shared = estimation.estimate.problem, estimation.estimate.common_parameters
     gradient, hessian = estimation.estimate.optimum.normal.without_local()
     findings = []
-    count = len(problem.free)  # what sessions have of their own is no coefficient, and has no bound
-    for i in np.flatnonzero(((shared <= problem.lower) | (shared >= problem.upper))[:count]):
+    for i in map(problem.free.index, at_bounds(estimation)):
         side = "lower" if shared[i] <= problem.lower[i] else "upper"
         curvature = float(hessian[i, i])
         # minimum of the parabola of Gauss and Newton in this coefficient alone
         gain = 0.5 * float(gradient[i]) ** 2 / curvature if curvature > 0.0 else 0.0
         findings.append(Finding(
-            Severity.WARNING, "bound-hit", f"coefficient {problem.free[i]} ends on its {side} bound",
+            Severity.WARNING, "bound-hit",
+            f"coefficient {problem.free[i]} is not determined by these records: it ends on its {side} bound",
             f"{shared[i]:g}; beyond it, this coefficient alone would lower the negative log-likelihood by {gain:.2g}",
             _advice_at_bound(gain, is_own=_is_models_own(problem.model, problem.free[i], float(shared[i]))),
         ))  # fmt: skip

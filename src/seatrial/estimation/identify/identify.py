@@ -8,6 +8,7 @@ from types import MappingProxyType
 from seatrial.core.results import Fit
 from seatrial.core.values import InputError, ProgressReporter
 from seatrial.data.trial import EstimateMethod, FitCriterion, Role, Trial, checked_records
+from seatrial.data.trial.window_lengths import window_lengths
 from seatrial.estimation.estimate import EstimatorOptions, IntervalMethod
 from seatrial.estimation.estimate.criterion_choice import is_explained
 from seatrial.estimation.estimate.plausibility import OutsidePhysicsError
@@ -26,7 +27,6 @@ from seatrial.estimation.identify.strategies.unknown_waves import identify_in_un
 from seatrial.estimation.identify.strategies.wave_spectrum import identify_by_wave_spectrum
 from seatrial.estimation.identify.unexcited_thrust import single_order_findings, with_unexcited_thrust_held
 from seatrial.estimation.predict.k_step import horizon_list
-from seatrial.estimation.predict.window_scores import window_lengths
 
 STRATEGIES: Mapping[Situation, Callable[[Identification], Fit]] = MappingProxyType({
     Situation.STEERED: identify_steered,
@@ -62,7 +62,8 @@ def identify(
         choose: whether the best member of the family takes the place of the trial's model.
         compare: whether regressions on the same training runs, for a linear model searches as well, are compared with
             the fit.
-        windows: in which validation runs are predicted as well, as ``10s,5L``; empty: by the length of the run.
+        windows: in which validation runs are predicted as well, as ``10s,5L``; empty: as the trial has them, else by
+            the length of the run.
         horizons: of the k-step errors, samples or seconds, as ``1,10,5s``; empty: by the length of the runs.
 
     Raises:
@@ -76,7 +77,7 @@ def identify(
     checked = checked_records(trial)
     window_lengths(windows)  # what is misspelt is refused before the fit
     horizon_list(horizons)
-    options = EstimatorOptions(intervals, seed, windows=windows, horizons=horizons)
+    options = EstimatorOptions(intervals, seed, windows=windows or trial.estimate.windows, horizons=horizons)
     own_progress = own_estimate_progress(report_progress) if method.is_published else report_progress
     train = [r.record for r in checked.records if r.role is Role.TRAIN]
     model, held = with_unexcited_thrust_held(trial.model, train)

@@ -21,7 +21,7 @@ from seatrial.data.trial import EstimateSettings, ModelFamily
 from seatrial.estimation.estimate.assemble import output_error_problem
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
 from seatrial.estimation.estimate.intervals import RUNS_FOR_JACKKNIFE
-from seatrial.estimation.estimate.point_estimate import PointEstimate, fit_output_error
+from seatrial.estimation.estimate.point_estimate import COLOUR_ROUNDS, PointEstimate, fit_output_error
 from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions
 from seatrial.estimation.identify.left_out_scores import holdout_scores
@@ -250,11 +250,16 @@ class _Fitter:
                 problem, noise=old.noise, inflation=old.inflation, huber=old.huber, population=old.population
             )
             shared = _warm_start(base, problem.free, problem.start())
-            if variant.segment_factor == 1.0:  # segments of several lengths cannot be cut again by one length
+            is_same_data = variant.segment_factor == 1.0
+            if is_same_data:  # segments of several lengths cannot be cut again by one length
                 problem, local = replace(problem, data=old.data), base.optimum.local
             else:
                 local = problem.measured_initial_states()
-            estimate = fit_output_error(problem, shared, local, runs.noise, evaluations=self.options.evaluations)
+            # on the same data all members are compared by one objective, samples counted as for the trial's own
+            estimate = fit_output_error(
+                problem, shared, local, runs.noise, colour_rounds=0 if is_same_data else COLOUR_ROUNDS,
+                evaluations=self.options.evaluations,
+            )  # fmt: skip
             scores = holdout_scores(estimate, varied, runs.records, self.window_s)
         except InputError as error:
             return FittedVariant(variant, varied, None, np.empty((0, 2)), str(error))

@@ -89,10 +89,10 @@ def measure_kind(measure: str) -> str:
     return "_".join(part for part in measure.split("_") if not part.isdigit())
 
 
-def discrepancy(holdout_errors: Sequence[HoldoutError]) -> Discrepancy:
-    """What these misses have in excess of what was foreseen; none where there are too few runs."""
+def discrepancy(holdout_errors: Sequence[HoldoutError], otherwise: Discrepancy = NO_DISCREPANCY) -> Discrepancy:
+    """Return what these errors have in excess of what was foreseen; `otherwise`, where they are of too few runs."""
     if len({m.run for m in holdout_errors}) < _FEWEST_RUNS:
-        return NO_DISCREPANCY
+        return otherwise
     pairs: dict[str, list[tuple[float, float, float]]] = {}
     for miss in holdout_errors:
         for name, pair in miss.measures.items():
@@ -114,20 +114,25 @@ def discrepancy(holdout_errors: Sequence[HoldoutError]) -> Discrepancy:
 def _elapsed_excess_sd(holdout_errors: Sequence[HoldoutError], channel: str) -> Array:
     """Excess standard deviation by elapsed time; it grows, so isotonic regression of the excess variance.
 
-    That of each sample is taken with its sign: set to zero where it is negative, chance alone would add to it.
+    That of each sample is taken with its sign: set to zero where it is negative, chance alone would add to it. A normal
+    error's square varies by twice its variance squared, and counts by that: what is foreseen too widely late in a run
+    does not cancel what is missed early.
     """
     longest = max(len(m.errors[channel]) for m in holdout_errors)
     error, expected = np.full((2, len(holdout_errors), longest), np.nan)
     for row, miss in enumerate(holdout_errors):
         error[row, : len(miss.errors[channel])] = miss.errors[channel]
         expected[row, : len(miss.predicted_sd[channel])] = miss.predicted_sd[channel]
-    count = np.maximum(np.isfinite(error).sum(axis=0), 1e-9)  # where nothing is measured; chosen
+    is_read = np.isfinite(error)
     grown = np.array([[discrepancy_growth(miss.index)] for miss in holdout_errors])
     from scipy.optimize import isotonic_regression
 
-    weight = np.maximum(np.sum(np.isfinite(error) * grown**2, axis=0), 1e-9)  # above zero, for a division
-    excess = np.nansum(error**2 - expected**2, axis=0) / weight
-    return np.sqrt(np.maximum(isotonic_regression(excess, weights=count).x, 0.0))
+    count = np.maximum(is_read.sum(axis=0), 1e-9)  # above zero, for a division, where nothing is measured
+    weight = np.maximum(np.sum(is_read * grown**2, axis=0), 1e-9)
+    square, foreseen = (np.sum(np.where(is_read, v, 0.0) ** 2, axis=0) for v in (error, expected))
+    variance = np.maximum(isotonic_regression(square / count, weights=count).x, foreseen / count)
+    precision = count / np.maximum(variance / np.max(variance, initial=1e-300), 1e-6) ** 2  # rounding of a quotient
+    return np.sqrt(np.maximum(isotonic_regression((square - foreseen) / weight, weights=precision).x, 0.0))
 
 
 def excess_sd(errors: Array, predicted_sd: Array, growth_factors: Array) -> Array:

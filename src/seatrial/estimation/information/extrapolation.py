@@ -25,7 +25,7 @@ REST_SHARE = 0.1
 COMMAND = "command "
 """What names of a thruster's ranges begin with; its name follows, then the direction of thrust and of motion."""
 COMMAND_GAIN = 1.0
-"""Growth of the index over the whole range of commands (benchmarks/thrusters_bands.py)."""
+"""Growth of the index over the whole range of commands (benchmarks/prediction_bands.py)."""
 
 
 PROPELLER_RATE = "propeller_rate"

@@ -1,17 +1,19 @@
 """All runs of a trial predicted: training runs to see the fit, the others to see what it is worth, with intervals."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.results import IntervalBasis, Prediction
+from seatrial.core.results import Extrapolation, IntervalBasis, Prediction
 from seatrial.core.values import Array, Finding, InputError, ProgressReporter, Record
 from seatrial.data.trial import Role, TrialRecord
+from seatrial.data.trial.window_lengths import WindowLength
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import PointEstimate
-from seatrial.estimation.information.discrepancy import NO_DISCREPANCY, Discrepancy, HoldoutError, discrepancy
+from seatrial.estimation.information.discrepancy import Discrepancy, HoldoutError, discrepancy
 from seatrial.estimation.information.extrapolation import (
     extrapolation,
     extrapolation_index,
@@ -20,6 +22,7 @@ from seatrial.estimation.information.extrapolation import (
 )
 from seatrial.estimation.predict.divergence import divergence_finding, not_predicted_finding
 from seatrial.estimation.predict.draws import PredictionUncertainty
+from seatrial.estimation.predict.left_out_runs import HoldoutRun, HoldoutRuns, manoeuvre_kind
 from seatrial.estimation.predict.open_loop import (
     compare_measures,
     predict_run,
@@ -33,7 +36,6 @@ from seatrial.estimation.predict.prediction_intervals import (
     holdout_error,
     holdout_model,
     prediction_spread,
-    track_holdout_error,
     with_intervals,
 )
 from seatrial.estimation.predict.session_offsets import (
@@ -43,8 +45,7 @@ from seatrial.estimation.predict.session_offsets import (
     updated_by_start,
 )
 from seatrial.estimation.predict.window_baselines import window_baselines
-from seatrial.estimation.predict.window_scores import WindowLength, WindowPredictor, window_scores
-from seatrial.estimation.predict.windows import Windows
+from seatrial.estimation.predict.window_scores import WindowPredictor, window_scores
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.simulate.channels import inputs_of
@@ -52,8 +53,6 @@ from seatrial.physics.simulate.filtering import FilterPoint, KalmanFilter
 
 _MOTION = frozenset({"u", "v", "r"})
 """Channels that show how a craft with thrusters moved; where they are not recorded, the fit's own runs show it."""
-PIECE_S = 15.0
-"""Length of the pieces of runs of craft with thrusters by which bands are calibrated [s]; chosen: some manoeuvres."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,10 +65,15 @@ class TiedModel:
 
 @dataclass(frozen=True, eq=False)
 class IntervalCalibration:
-    """What intervals of predictions are made of: what is foreseen, and what runs left out missed beyond it."""
+    """What intervals of predictions are made of: what is foreseen, and what runs left out missed beyond it.
+
+    Attributes:
+        discrepancy: of whole runs; left_out: runs by which that of windows is found, by their length.
+    """
 
     uncertainty: PredictionUncertainty
     discrepancy: Discrepancy
+    left_out: HoldoutRuns
 
 
 def prediction_uncertainty(estimation: Estimation) -> PredictionUncertainty:
@@ -97,36 +101,61 @@ def calibrate_intervals(
     seed: int,
     *,
     offsets_from_start: bool = False,
+    is_session_known: bool = False,
 ) -> IntervalCalibration:
     """Return what intervals of a fit's predictions rest on: every training run is predicted by the estimate without it.
 
     moved: how the training runs moved, by which they extrapolate from one another; seconds: of a run's beginning, for
-    its initial state. Craft with thrusters often wait before they move, so that pieces of `PIECE_S` of their runs count
-    as well as whole runs.
+    its initial state; is_session_known: whether the predictions are of runs of sessions that were fitted, as far as
+    the training runs' are without them.
     """
-    scatter, left_out = prediction_uncertainty(estimation), estimation.uncertainty.leave_one_out
-    if left_out is None:
-        return IntervalCalibration(scatter, NO_DISCREPANCY)
+    uncertainty = prediction_uncertainty(estimation)
     problem = replace(estimation.estimate.problem, workers=1)
-    streams = np.random.SeedSequence(seed).spawn(len(train))
+    runs = left_out_runs(
+        estimation, train, moved, seconds, offsets_from_start=offsets_from_start, is_session_known=is_session_known
+    )
+    streams = np.random.SeedSequence(seed).spawn(len(runs))
 
-    layout = problem.model.equations.layout
+    def one(i: int) -> HoldoutError | None:
+        run, rng = runs[i], np.random.default_rng(streams[i])
+        error = holdout_error(
+            problem, run.holdout, run.record, seconds, length, run.uncertainty, rng, holdout_draws(len(runs))
+        )
+        return None if error is None else replace(error, index=run.index)
 
-    def one(i: int) -> list[HoldoutError]:
-        record, rng = train[i].record, np.random.default_rng(streams[i])
-        by, own = holdout_model(problem, left_out[i], train[i].session, record), scatter
-        if offsets_from_start:
-            expected = SessionOffsets(by.nuisances, scatter.offsets)
-            moved_offsets = updated_by_start(problem, by.model, expected, record, seconds)
-            by, own = replace(by, nuisances=moved_offsets.expected), replace(scatter, offsets=moved_offsets.covariance)
-        missed = [holdout_error(problem, by, record, seconds, length, own, rng, holdout_draws(len(train)))]
-        pieces = Windows.cut([record], PIECE_S).pieces[1:] if layout else []
-        missed += [track_holdout_error(problem, by, piece, seconds, own, rng) for piece in pieces]
-        index = extrapolation_index(moved[i], [*moved[:i], *moved[i + 1 :]], layout)
-        return [replace(miss, index=index) for miss in missed if miss is not None]
+    workers = estimation.estimate.problem.workers
+    errors = [e for e in map_in_threads(one, range(len(runs)), workers=workers) if e is not None]
+    whole = discrepancy(errors)
+    return IntervalCalibration(uncertainty, whole, HoldoutRuns(problem, runs, seconds, whole, seed, workers))
 
-    misses = map_in_threads(one, range(len(train)), workers=estimation.estimate.problem.workers)
-    return IntervalCalibration(scatter, discrepancy([miss for missed in misses for miss in missed]))
+
+def left_out_runs(
+    estimation: Estimation,
+    train: Sequence[TrialRecord],
+    moved: Sequence[Record],
+    seconds: float,
+    *,
+    offsets_from_start: bool = False,
+    is_session_known: bool = False,
+) -> tuple[HoldoutRun, ...]:
+    """Return each training run with what is known of it by the others; none where none can be left out."""
+    uncertainty, points = prediction_uncertainty(estimation), estimation.uncertainty.leave_one_out
+    problem, sessions = replace(estimation.estimate.problem, workers=1), [item.session for item in train]
+    runs = []
+    for i, (item, point) in enumerate(zip(train, () if points is None else points, strict=points is not None)):
+        record, is_known = item.record, is_session_known and sessions.count(item.session) > 1
+        holdout = holdout_model(problem, point, item.session, record, is_session_known=is_known)
+        if is_known:
+            own = session_offsets(estimation, item.session, record).covariance
+        elif offsets_from_start:
+            expected = SessionOffsets(holdout.nuisances, uncertainty.offsets)
+            updated = updated_by_start(problem, holdout.model, expected, record, seconds)
+            holdout, own = replace(holdout, nuisances=updated.expected), updated.covariance
+        else:
+            own = uncertainty.offsets
+        index = extrapolation_index(moved[i], [*moved[:i], *moved[i + 1 :]], problem.model.equations.layout)
+        runs.append(HoldoutRun(record, holdout, replace(uncertainty, offsets=own), index))
+    return tuple(runs)
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,11 +222,16 @@ def predict_runs(
     ]
     covered = motion_envelope(moved, layout)
     report("intervals of predictions: runs left out")
-    calibration = calibrate_intervals(
-        estimation, train, moved, seconds, length, seed, offsets_from_start=offsets_from_start
-    )
+    by_session = {
+        is_known: calibrate_intervals(
+            estimation, train, moved, seconds, length, seed, offsets_from_start=offsets_from_start,
+            is_session_known=is_known,
+        )
+        for is_known in {False} | {_is_session_known(problem, i) for i in items if i.role is not Role.TRAIN}
+    }  # fmt: skip
     streams = np.random.SeedSequence((seed, 1)).spawn(len(items))
     held_out = [item for item in items if item.role is not Role.TRAIN]
+    kinds = {manoeuvre_kind(item.record) for item in train}
     baselines = window_baselines(problem, estimation.model, [i.record for i in train], seconds) if held_out else {}
     predictions = []
     for item, run, reached, own, stream in zip(items, runs, moved_as, offsets, streams, strict=True):
@@ -205,9 +239,10 @@ def predict_runs(
         one = predict_run(estimation.model, item.record, role, run, seconds, length)
         by_name = dict(zip(problem.session_unknowns, map(float, own.expected), strict=True))
         one = replace(one, offsets=by_name, session=item.session)
-        one = replace(one, extrapolation=extrapolation(reached, covered, layout))
+        one = replace(one, extrapolation=_extrapolation(extrapolation(reached, covered, layout), item, kinds))
         if run.divergence is not None:
             findings.append(divergence_finding(estimation.model, one, run.divergence))
+        calibration = by_session[item.role is not Role.TRAIN and _is_session_known(problem, item)]
         uncertainty = replace(calibration.uncertainty, offsets=own.covariance)
         if run.divergence is None:
             alone = _process_noise_floor(estimation, item.record, run.start.values[0], own.expected, one.rms)
@@ -227,15 +262,26 @@ def predict_runs(
                 estimation.model,
                 own.expected,
                 uncertainty,
-                calibration.discrepancy,
+                partial(calibration.left_out.discrepancy, kind=manoeuvre_kind(item.record)),
                 baselines,
                 length,
                 seconds,
             )
             one = replace(one, windows=window_scores(predictor, item.record, windows, index, rng))
         predictions.append(one)
-    basis = _interval_basis(estimation, calibration, covered, tied)
+    basis = _interval_basis(estimation, by_session[False], covered, tied)
     return RunPredictions(tuple(predictions), basis, tuple(findings))
+
+
+def _extrapolation(reached: Extrapolation | None, item: TrialRecord, kinds: Set[str]) -> Extrapolation | None:
+    """How far a run leaves the training runs, which show these kinds of manoeuvre, with its own where it is another."""
+    kind = manoeuvre_kind(item.record)
+    return replace(reached, untrained_kind=kind) if reached is not None and kind and kind not in kinds else reached
+
+
+def _is_session_known(problem: OutputError, item: TrialRecord) -> bool:
+    """Whether runs of its session were fitted."""
+    return item.session in problem.data.sessions
 
 
 def _process_noise_floor(

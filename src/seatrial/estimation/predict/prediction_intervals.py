@@ -155,9 +155,16 @@ class HoldoutModel:
     nuisances: Array
 
 
-def holdout_model(template: OutputError, point: Array, session: str, record: Record) -> HoldoutModel:
-    """Return the model at the shared unknowns `point`, which were estimated without this record of the session."""
+def holdout_model(
+    template: OutputError, point: Array, session: str, record: Record, *, is_session_known: bool = False
+) -> HoldoutModel:
+    """Return the model at the shared unknowns `point`, which were estimated without this record of the session.
+
+    is_session_known: whether the session's other runs say what the run has of its own, else other sessions do.
+    """
     model = template.model.with_values(dict(zip(template.free, point, strict=False)))
+    if is_session_known:
+        return HoldoutModel(model, point[template.offset_columns(template.data.sessions.index(session))])
     return HoldoutModel(model, offsets_without(template, point, session, record))
 
 
@@ -186,23 +193,6 @@ def holdout_error(
         if n in spread.measures and m.measured is not None and m.simulated is not None
     }
     return replace(_channel_errors(record, run, spread.channels), measures=of_measures)
-
-
-def track_holdout_error(
-    template: OutputError,
-    holdout: HoldoutModel,
-    piece: Record,
-    seconds: float,
-    uncertainty: PredictionUncertainty,
-    rng: np.random.Generator,
-) -> HoldoutError | None:
-    """Return `holdout_error` for a piece of a run, heading and track only."""
-    try:
-        run = simulate_open_loop(template, holdout.model, piece, holdout.nuisances, seconds)
-    except InputError:
-        return None
-    runs = _drawn_about(template, holdout.model, piece, run, holdout.nuisances, uncertainty, rng, HOLDOUT_DRAWS)
-    return _channel_errors(piece, run, _channel_spread(holdout.model, run.record, runs)) if len(runs) else None
 
 
 def _channel_errors(record: Record, simulation: OpenLoopRun, channels: dict[str, Array]) -> HoldoutError:

@@ -48,7 +48,7 @@ def session_offsets(estimation: Estimation, session: str, record: Record) -> Ses
     if session not in problem.data.sessions:
         return new_session_offsets(estimate, record)
     index = problem.data.sessions.index(session)
-    own = problem.columns_of(index)[len(problem.free) :]
+    own = problem.offset_columns(index)
     return SessionOffsets(estimate.session_offsets[index], estimation.interval.covariance[np.ix_(own, own)])
 
 

@@ -1,4 +1,4 @@
-"""Predictions to beat: constant course and speed, coefficients that were not fitted, regressions without physics."""
+"""Predictions to beat: constant course and speed, no motion, unfitted coefficients, regressions without physics."""
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
@@ -14,7 +14,7 @@ from seatrial.estimation.predict.windows import Windows, like_window
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.physics.sensors.measured_outputs import SENSOR_SOURCE
 
-CONSTANT_COURSE, AT_REST = "constant course and speed", "no motion"
+CONSTANT_COURSE, AT_REST, STAYS = "constant course and speed", "no motion", "stays where it is"
 UNFITTED, ARX, NARX = "prior coefficients, unfitted", "ARX", "NARX"
 
 
@@ -26,9 +26,10 @@ def window_baselines(
     seconds: of a window's beginning, for its initial state; ten times as long are the windows that regressions are
     chosen by.
     """
-    is_steered = "psi" in model.states
-    kept: Callable[[Record, float], Record] = constant_course if is_steered else at_rest
-    baselines: dict[str, Predictor] = {CONSTANT_COURSE if is_steered else AT_REST: partial(_each, kept)}
+    without_fit: Mapping[str, Callable[[Record, float], Record]] = (
+        {CONSTANT_COURSE: constant_course, STAYS: stays} if "psi" in model.states else {AT_REST: at_rest}
+    )
+    baselines: dict[str, Predictor] = {name: partial(_each, predict) for name, predict in without_fit.items()}
     expected = prior_means(model)
     if expected:
         baselines[UNFITTED] = partial(_unfitted, template, model.with_values(expected))
@@ -62,6 +63,13 @@ def at_rest(window: Record, seconds: float) -> Record:
     """Return a window in which nothing moves; `seconds` are not used."""
     del seconds
     return like_window(window, {c: np.zeros(len(window)) for c in window.channels})
+
+
+def stays(window: Record, seconds: float) -> Record:
+    """Return a window in which the craft keeps the mean place and heading of its first seconds, without speed."""
+    first = window.time - window.time[0] <= max(seconds, 2.0 * window.dt)
+    kept = {c: np.full(len(window), _mean(window[c][first])) for c in ("psi", "x0", "y0") if c in window}
+    return like_window(window, kept | {c: np.zeros(len(window)) for c in ("u", "v", "r") if c in window})
 
 
 def constant_course(window: Record, seconds: float) -> Record:

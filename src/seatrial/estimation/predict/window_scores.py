@@ -1,6 +1,5 @@
 """Validation runs predicted in windows: errors, share inside the band, and baselines over the same windows."""
 
-import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -10,10 +9,11 @@ from seatrial.core.equations import Model
 from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
 from seatrial.core.results.window_scores import ChannelScore, WindowBaseline, WindowScore
 from seatrial.core.values import Array, InputError, Record
-from seatrial.data.check.signal import sample_noise
+from seatrial.data.trial.window_lengths import WindowLength
 from seatrial.estimation.estimate.time_scale import characteristic_time
 from seatrial.estimation.information.discrepancy import Discrepancy
 from seatrial.estimation.predict.draws import PredictionUncertainty, StartStates
+from seatrial.estimation.predict.left_out_runs import with_sensor_noise
 from seatrial.estimation.predict.open_loop import has_moving_track, open_loop_runs
 from seatrial.estimation.predict.prediction_intervals import window_spreads
 from seatrial.estimation.predict.windows import Windows
@@ -25,7 +25,6 @@ DEFAULT_LENGTHS = (1.0, 5.0, 20.0)
 """Windows that are scored where none are required [ship lengths]: those that a run holds twice; chosen."""
 THRUSTER_LENGTHS = (5.0, 10.0, 30.0)
 """The same of craft with thrusters, which turn on the spot [s]; chosen."""
-_INITIAL_SHARE = 0.2  # of a window, from which its initial state is estimated at most; chosen
 _DEGREES = float(np.degrees(1.0))
 # score -> channels and factor to its unit
 _SCORES: Mapping[str, tuple[tuple[str, ...], float]] = {
@@ -37,41 +36,18 @@ Predictor = Callable[[Windows, float], Sequence[Record]]
 """Windows and the seconds of their beginning that may be used -> the windows predicted; NaN where one diverges."""
 
 
-@dataclass(frozen=True)
-class WindowLength:
-    """Length of a window; `unit`: s, or L for the time of a ship length at the run's speed."""
-
-    value: float
-    unit: str
-
-    def __str__(self) -> str:
-        return f"{self.value:g} {self.unit}"
-
-
-def window_lengths(text: str) -> tuple[WindowLength, ...]:
-    """Return the lengths that a text such as ``10s,5L`` names.
-
-    Raises:
-        InputError: a part is no positive number with s or L.
-    """
-    lengths = []
-    for part in filter(None, (p.strip() for p in text.split(","))):
-        match = re.fullmatch(r"(\d+\.?\d*|\.\d+)\s*([sL])", part)
-        if match is None or not float(match[1]) > 0.0:
-            raise InputError(f"--windows: '{part}' is no length of a window; write seconds or ship lengths, as 10s,5L")
-        lengths.append(WindowLength(float(match[1]), match[2]))
-    return tuple(lengths)
-
-
 @dataclass(frozen=True, eq=False)
 class WindowPredictor:
-    """What windows are predicted with: the fit, what its bands are made of, and baselines by name."""
+    """What windows are predicted with: the fit, what its bands are made of, and baselines by name.
+
+    discrepancy: by the length of the windows [s].
+    """
 
     template: OutputError
     model: Model
     nuisances: Array
     uncertainty: PredictionUncertainty
-    discrepancy: Discrepancy
+    discrepancy: Callable[[float], Discrepancy]
     baselines: Mapping[str, Predictor]
     length: float
     seconds: float
@@ -117,18 +93,15 @@ def _usual_length(many: float, unit: float | None, *, is_steered: bool) -> Windo
 def _score(
     p: WindowPredictor, windows: Windows, name: str, seconds: float, index: float, rng: np.random.Generator
 ) -> WindowScore:
-    initial, nuisances, pieces = min(p.seconds, _INITIAL_SHARE * seconds), p.nuisances[None], windows.pieces
+    initial, nuisances, pieces = windows.initial_seconds(p.seconds), p.nuisances[None], windows.pieces
     runs = open_loop_runs(p.template, p.model, windows, nuisances, initial)
     simulated, starts = [run.record for run in runs], StartStates.joined([run.start for run in runs])
     spreads = window_spreads(p.template, p.model, windows, simulated, starts, nuisances, p.uncertainty, rng)
     t = two_sided_quantile(STORED_LEVEL, p.uncertainty.degrees_of_freedom)
-    halves = []
+    discrepancy, halves = p.discrepancy(seconds), []
     for piece, run, spread in zip(pieces, runs, spreads, strict=True):
-        lasting = spread if run.divergence is None else {}
-        sds = {c: p.discrepancy.channel_sd(c, sd, piece.dt, index) for c, sd in lasting.items()}
-        # a measured sample lies about the true one by its sensor's noise
-        noise = {c: sample_noise(piece.channel(c).readings) for c in sds if c in piece}
-        halves.append({c: t * np.hypot(sds[c], sd) for c, sd in noise.items()})
+        sds = with_sensor_noise(piece, spread if run.divergence is None else {})
+        halves.append({c: t * discrepancy.channel_sd(c, sd, piece.dt, index) for c, sd in sds.items()})
     scores = {
         key: _channel_score(pieces, simulated, halves, channels, factor)
         for key, (channels, factor) in _SCORES.items()

@@ -17,6 +17,8 @@ from seatrial.physics.simulate.channels import inputs_of
 
 MIN_STEPS = 4
 """Steps of the shortest window, and of the shortest beginning that an initial state is estimated from; chosen."""
+INITIAL_SHARE = 0.2
+"""Share of a window from which its initial state is estimated at most; chosen."""
 _ROUNDING = 1e-9  # share of a step by which a length counts as a whole number of them; chosen
 
 
@@ -46,14 +48,23 @@ class Windows:
 
         each: the first so many of a run; None: all. A run shorter than a window has none.
         """
-        steps = max(round(seconds / records[0].dt), MIN_STEPS)
+        steps = cls.steps_of(seconds, records[0].dt)
         counts = [(len(record) - 1) // steps for record in records]
         counts = counts if each is None else [min(n, each) for n in counts]
         first = np.concatenate([steps * np.arange(n) for n in counts])
         return cls(records, np.repeat(np.arange(len(records)), counts), first, steps)
 
+    @staticmethod
+    def steps_of(seconds: float, dt: float) -> int:
+        """Return the number of steps of windows of this length."""
+        return max(round(seconds / dt), MIN_STEPS)
+
     def __len__(self) -> int:
         return len(self.run)
+
+    def initial_seconds(self, most: float) -> float:
+        """Return the seconds of a window's beginning from which its initial state is estimated."""
+        return min(most, INITIAL_SHARE * self.steps * self.dt)
 
     def evenly_spread(self, count: int) -> "Windows":
         """Return at most so many of them, evenly spread."""

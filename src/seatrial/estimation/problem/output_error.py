@@ -200,8 +200,11 @@ class OutputError:
 
     def columns_of(self, session: int) -> np.ndarray:
         """Return positions among the shared unknowns of a session's sensitivity columns."""
-        own = len(self.free) + session * self.unknowns_per_session
-        return np.concatenate([np.arange(len(self.free)), own + np.arange(self.unknowns_per_session)])
+        return np.concatenate([np.arange(len(self.free)), self.offset_columns(session)])
+
+    def offset_columns(self, session: int) -> np.ndarray:
+        """Return positions among the shared unknowns of what a session has of its own."""
+        return len(self.free) + session * self.unknowns_per_session + np.arange(self.unknowns_per_session)
 
     def measured_initial_states(self) -> Array:
         """Return the initial states of each segment as measured, (segments, len(starts)), SI."""

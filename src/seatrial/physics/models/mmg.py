@@ -45,10 +45,17 @@ class _Motion:
     delta_R: sp.Symbol
 
 
-def _coefficient(sheet: Sheet, name: str, meaning: str = "", *, free: bool = False) -> sp.Symbol:
+_HULL_SIZE = 0.02
+"""Characteristic size of a dimensionless coefficient of the hull; chosen."""
+_ASTERN_SIDE_SIZE = 1e-3
+"""The same of the side force astern: a tenth of the thrust, which is 2 K_T D_P^2/(L d) = 0.01 with K_T 0.22; chosen."""
+
+
+def _coefficient(
+    sheet: Sheet, name: str, meaning: str = "", *, free: bool = False, size: float = _HULL_SIZE
+) -> sp.Symbol:
     latex = f"{name[0]}'_{{{name[2:].replace('_', ' ')}}}"
-    # 0.02: characteristic size of a dimensionless coefficient; chosen
-    return sheet.parameter(name, 0.0, "1", meaning or derivative_meaning(name), free=free, scale=0.02, latex=latex)
+    return sheet.parameter(name, 0.0, "1", meaning or derivative_meaning(name), free=free, scale=size, latex=latex)
 
 
 def _motion(sheet: Sheet, u: sp.Symbol, v: sp.Symbol, r: sp.Symbol, delta: sp.Symbol) -> _Motion:
@@ -125,7 +132,7 @@ def _propeller(sheet: Sheet, motion: _Motion, n: sp.Symbol) -> _Propeller:
     Y_T = _coefficient(sheet, "Y_T", "side force over thrust of a single screw")
     N_T = _coefficient(sheet, "N_T", "yaw moment over thrust times L of a single screw")
     Y_nn, Y_nu, N_nn, N_nu = (
-        _coefficient(sheet, name, "side force or moment of the propeller astern")
+        _coefficient(sheet, name, "side force or moment of the propeller astern", size=_ASTERN_SIDE_SIZE)
         for name in ("Y_nn", "Y_nu", "N_nn", "N_nu")
     )
     u_P = _propeller_inflow(sheet, motion)

@@ -33,9 +33,11 @@ def _stream(name: str) -> tuple[Trial, Record]:
 
 
 def _off(snapshot: Snapshot, fit: Fit) -> np.ndarray:
+    """Differences in standard errors, of what ends on a bound and has none in prior ones."""
     batch = {c.name: c for c in fit.coefficients}
     pairs = zip(snapshot.names, snapshot.value, strict=True)
-    return np.array([(v - batch[n].estimate) / batch[n].standard_error for n, v in pairs])
+    errors = {n: c.standard_error or c.prior_standard_deviation or abs(c.estimate) or 1.0 for n, c in batch.items()}
+    return np.array([(v - batch[n].estimate) / errors[n] for n, v in pairs])
 
 
 @pytest.fixture(scope="module")
@@ -52,8 +54,10 @@ def test_zigzags_end_at_the_batch_estimate(zigzags):
     trial, estimator, _, ended = zigzags
     fit = identify(replace(trial, runs=estimator.raw_runs()))
     assert np.max(np.abs(_off(ended, fit))) < 0.01
-    errors = [c.standard_error for c in fit.coefficients if not c.fixed]
-    np.testing.assert_allclose(ended.standard_error, errors, rtol=0.02)
+    pairs = zip(ended.standard_error, [c.standard_error for c in fit.coefficients if not c.fixed], strict=True)
+    known = np.array([(own, batch) for own, batch in pairs if batch is not None])  # none of what ends on a bound
+    assert len(known) >= len(ended.names) - 1
+    np.testing.assert_allclose(known[:, 0], known[:, 1], rtol=0.02)
 
 
 def test_what_small_zigzags_do_not_tell_is_said(zigzags):
