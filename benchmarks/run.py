@@ -34,6 +34,7 @@ import numpy as np
 import population
 import proposals
 import roll_decay
+import sample_rates
 import simulation
 import tune
 import verification
@@ -68,6 +69,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "verification": verification.run,
     "proposals": proposals.run,
     "roll_decay": roll_decay.run,
+    "sample_rates": sample_rates.run,
     "follow": follow.run,
     "campaign": campaign.run,
     "memory": memory.run,

@@ -11,6 +11,7 @@ from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.start import weak_form_start
 from seatrial.estimation.identify import estimate_model
 from seatrial.physics.manoeuvres.programme import programme
+from seatrial.physics.models import model_named
 from seatrial.physics.models.nomoto import nomoto, nomoto2
 from seatrial.physics.models.waterjet import WATERJET_COEFFICIENTS as COEFFICIENTS
 from seatrial.physics.models.waterjet import waterjet
@@ -79,3 +80,17 @@ def test_a_hidden_state_leaves_the_start_to_the_model() -> None:
     assert "r_rest" in found.start_method
     values = [found.model.parameters[n].value for n in ("K", "T_1", "T_2", "T_3")]
     np.testing.assert_allclose(values, [0.15, 15.0, 3.0, 5.0], rtol=1e-6)
+
+
+def test_a_roll_of_two_periods_is_searched_from_its_period(rng: np.random.Generator) -> None:
+    """45 s of a light decay of 19 s: the weak form alone leads to a damping of 1.6 for 0.006 1/s."""
+    time = np.arange(0.0, 45.0, 0.1)
+    damping, frequency = 0.00314, math.sqrt(0.1075)
+    phi = 0.035 + 0.26 * np.exp(-0.5 * damping * time) * np.cos(frequency * time)
+    record = Record.from_arrays("decay", time, {"phi": phi + 3e-4 * rng.standard_normal(len(time))})
+    model = model_named("roll")
+    model = model.with_parameters(model.parameters.only_free(("b_1", "b_2", "c_1", "c_3", "phi_0")))
+    fit = estimate_model(model, Runs.one_session_each([record], 30.0))
+    assert fit.start_method.startswith("the period of the records")
+    assert fit.model.parameters["c_1"].value == pytest.approx(0.1075, rel=0.01)
+    assert fit.model.parameters["b_1"].value == pytest.approx(damping, abs=0.003)

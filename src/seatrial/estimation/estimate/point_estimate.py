@@ -9,6 +9,7 @@ import numpy as np
 
 from seatrial.core.text.words import counted
 from seatrial.core.values import Array, InputError, ProgressReporter
+from seatrial.estimation.estimate.integration_steps import sufficient_steps_of_optimum
 from seatrial.estimation.estimate.settings import WHITE_INFLATION
 from seatrial.estimation.information.autocorrelation import autocorrelation, variance_inflation
 from seatrial.estimation.information.covariance import inverse
@@ -127,6 +128,9 @@ def fit_output_error(
     spent, settled = estimate.optimum.solution.evaluations, False
     if estimate.optimum.solution.status is Status.FAILED:
         return estimate
+    substeps = problem.substeps  # at a start far off more than near the optimum
+    if substeps > 1:
+        substeps = sufficient_steps_of_optimum(problem, estimate.optimum, 1)
     for k in range(rounds):
         noise = np.where(
             np.isfinite(stated_noise), stated_noise, residual_spread(estimate.problem, estimate.residuals())
@@ -136,8 +140,13 @@ def fit_output_error(
             noise=noise,
             population=estimate.population if problem.unknowns_per_session else None,
             inflation=effective_inflation(residual_correlation(estimate.problem, estimate.residuals())[1]),
+            substeps=substeps,
         )
         settled = _is_settled(estimate.problem, again)
+        if settled or k == rounds - 1:
+            substeps = sufficient_steps_of_optimum(estimate.problem, estimate.optimum, substeps)
+            again = replace(again, substeps=substeps)
+            settled = settled and substeps == estimate.problem.substeps
         estimate = _search(
             again,
             estimate.common_parameters,

@@ -7,12 +7,17 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Record
+from seatrial.estimation.estimate.integration_steps import with_steps_of_start
 from seatrial.estimation.estimate.point_estimate import residual_spread
+from seatrial.estimation.estimate.time_scale import dominant_period, is_pure_roll
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.regress.weak import WeakForm
 from seatrial.numerics.optimise import levenberg_marquardt
 from seatrial.physics.simulate.channels import inputs_of
 from seatrial.physics.simulate.states import hidden_states, measured_states
+
+RESTORING = "c_1"
+"""Of a model of roll: the square of its natural frequency at small angles."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,17 +33,25 @@ class SearchStart:
 def find_start(problem: OutputError, records: Sequence[Record], seconds: float) -> SearchStart:
     """Coefficients by the weak form with windows of half width `seconds`, initial states as measured.
 
-    The model's own values take their place where a state is hidden, or where the weak form's diverge.
+    The model's own values take their place where a state is hidden, or where the weak form's diverge; the period of the
+    records does where it explains more of a roll.
     """
     local = problem.measured_initial_states()
     hidden, origin = hidden_states(problem.model, records), "weak form of the equations, no guess"
     if hidden:
         origin = f"the model's own values: nobody measures {', '.join(hidden)}, a state of the weak form"
     shared = _with_coefficients(problem, weak_form_start(problem.model, records, seconds))
+    problem = with_steps_of_start(problem, shared, local)
     simulated = problem.simulated_outputs(shared, local)
     if not np.all(np.isfinite(simulated)):
         shared, origin = problem.start(), "the model's own values: those of the weak form diverge"
+        problem = with_steps_of_start(problem, shared, local)
         simulated = problem.simulated_outputs(shared, local)
+    if is_pure_roll(problem.model):
+        swinging = _with_period(problem, records)
+        if not problem.cost(swinging, local) >= problem.cost(shared, local):
+            shared, origin = swinging, "the period of the records, as the weak form explains less"
+            simulated = problem.simulated_outputs(shared, local)
     if np.all(np.isfinite(simulated)):
         left = simulated - problem.data.measured
         problem = replace(problem, noise=residual_spread(replace(problem, huber=1.0), left))
@@ -49,6 +62,15 @@ def _with_coefficients(problem: OutputError, point: Array) -> Array:
     shared = problem.start()
     names = problem.model.parameters.free_names
     shared[: len(problem.free)] = [point[names.index(n)] for n in problem.free]
+    return shared
+
+
+def _with_period(problem: OutputError, records: Sequence[Record]) -> Array:
+    """Return the model's own values with the restoring of the records' median period, (2 pi / T)^2."""
+    shared, roll = problem.start(), problem.model.states[0]
+    if RESTORING in problem.free:
+        period = float(np.median([dominant_period(record[roll], record.dt) for record in records]))
+        shared[problem.free.index(RESTORING)] = (2.0 * np.pi / period) ** 2
     return shared
 
 
