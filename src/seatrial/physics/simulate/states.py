@@ -40,6 +40,12 @@ def hidden_states(model: Model, records: Sequence[Record]) -> tuple[str, ...]:
     return tuple(s for s in hidden if s not in following)
 
 
+def rest_parameter(model: Model, state: str) -> str:
+    """Return the parameter for a state's value at rest, ``phi_0`` of ``phi``; empty where the model has none."""
+    name = f"{state}_0"
+    return name if state in model.states and name in model.parameters else ""
+
+
 def unobserved_states(model: Model, record: Record) -> tuple[str, ...]:
     """States of the model that the record neither holds nor implies."""
     found = _available_states(model, record)
