@@ -59,8 +59,12 @@ def test_decays_that_rest_at_other_heels_share_all_else(rng: np.random.Generator
 def test_a_state_without_a_rest_has_none(tmp_path: Path) -> None:
     """Of a steered ship, psi is no offset; the angle of rest of a roll is not free beside those of the sessions."""
     file = tmp_path / "t.toml"
-    file.write_text('[ship]\nname = "a"\nL = 10\n[model]\nname = "nomoto"\n[estimate]\noffsets = ["psi"]\n[[records]]\nfiles = ["a.csv"]\nchannels.psi = { column = "psi", unit = "deg" }\n')
-    with pytest.raises(InputError, match="unknown name .psi."):
+    lines = (
+        '[ship]', 'name = "a"', 'L = 10', '[model]', 'name = "nomoto"', '[estimate]', 'offsets = ["psi"]',
+        '[[records]]', 'files = ["a.csv"]', 'channels.psi = { column = "psi", unit = "deg" }',
+    )  # fmt: skip
+    file.write_text("\n".join(lines))
+    with pytest.raises(InputError, match=r"unknown name .psi."):
         load_trial(file)
     runs = decays_of_other_heels(np.random.default_rng(0))
     problem = output_error_problem(model_named("roll"), runs, np.inf, EstimateSettings(offsets={"phi": 0.03}))
