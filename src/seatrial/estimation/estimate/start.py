@@ -13,6 +13,7 @@ from seatrial.estimation.estimate.time_scale import dominant_period, is_pure_rol
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.regress.weak import WeakForm
 from seatrial.numerics.optimise import levenberg_marquardt
+from seatrial.physics.models.nomoto import course_unstable
 from seatrial.physics.simulate.channels import inputs_of
 from seatrial.physics.simulate.states import hidden_states, measured_states
 
@@ -86,13 +87,25 @@ def weak_form_start(model: Model, records: Sequence[Record], seconds: float, rou
     states = tuple(measured_states(model, r) for r in records)
     inputs = tuple(inputs_of(model, r) for r in records)
     problem = WeakForm(model, states, inputs, records[0].dt, seconds, np.ones(len(model.states)))
-    point = np.clip(point, problem.lower, problem.upper)
+    found, misfit = _solved(problem, point, rounds)
+    if (unstable := course_unstable(model)) is not model:
+        # a search does not pass through the infinite time constant between a stable and an unstable ship
+        other, left = _solved(problem, np.array([p.value for p in unstable.parameters.free]), rounds)
+        found = other if left < misfit else found
+    return found
+
+
+def _solved(problem: WeakForm, point: Array, rounds: int) -> tuple[Array, float]:
+    """Return the weak form's solution from a point, and the sum of the logarithms of what it leaves of each rate."""
+    states, point = problem.states, np.clip(point, problem.lower, problem.upper)
     is_varying = np.all([np.ptp(x, axis=0) > 0 for x in states], axis=0)
     floor = 1e-9 * np.max(np.abs(np.concatenate(states)), axis=0)  # share of the largest value that is rounding; chosen
+
+    def spread(at: Array) -> Array:
+        return np.maximum(np.sqrt(np.mean(problem.linearised(at)[0] ** 2, axis=0)), floor)
+
     for _ in range(rounds):
-        residual = problem.linearised(point)[0]
-        spread = np.maximum(np.sqrt(np.mean(residual**2, axis=0)), floor)
-        problem = replace(problem, residual_sd=np.where(is_varying, spread, np.inf))
+        problem = replace(problem, residual_sd=np.where(is_varying, spread(point), np.inf))
         # of the weak form, at most; chosen
         point = levenberg_marquardt(problem, point, np.zeros((0, 0)), evaluations=30).solution.point
-    return point
+    return point, float(np.sum(np.log(spread(point)[is_varying])))
