@@ -12,7 +12,7 @@ from seatrial.estimation.estimate.start import weak_form_start
 from seatrial.estimation.identify import estimate_model
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models import model_named
-from seatrial.physics.models.nomoto import course_unstable, nomoto, nomoto2
+from seatrial.physics.models.nomoto import nomoto, nomoto2
 from seatrial.physics.models.waterjet import WATERJET_COEFFICIENTS as COEFFICIENTS
 from seatrial.physics.models.waterjet import waterjet
 from seatrial.physics.simulate.states import measured_states
@@ -122,10 +122,3 @@ def test_a_ship_that_turns_by_itself_is_found_from_the_default_start(rng: np.ran
     model = nomoto().with_parameters(nomoto().parameters.only_free(("K", "T", "alpha")))
     found = weak_form_start(model, [unstable_zigzag(angle, rng) for angle in (10.0, 20.0)], 30.0)
     np.testing.assert_allclose(found, [-0.03, -60.0, -1.0 / math.radians(0.3) ** 2], rtol=0.1)
-
-
-def test_only_a_steering_model_of_open_signs_has_an_unstable_twin() -> None:
-    assert course_unstable(waterjet()) is waterjet()
-    held = nomoto().with_parameters(nomoto().parameters.fixed("K"))
-    assert course_unstable(held) is held
-    assert course_unstable(nomoto2()).parameters["T_1"].value == -nomoto2().parameters["T_1"].value

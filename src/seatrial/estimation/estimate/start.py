@@ -101,8 +101,8 @@ def _solved(problem: WeakForm, point: Array, rounds: int) -> tuple[Array, float]
     is_varying = np.all([np.ptp(x, axis=0) > 0 for x in states], axis=0)
     floor = 1e-9 * np.max(np.abs(np.concatenate(states)), axis=0)  # share of the largest value that is rounding; chosen
 
-    def spread(at: Array) -> Array:
-        return np.maximum(np.sqrt(np.mean(problem.linearised(at)[0] ** 2, axis=0)), floor)
+    def spread(values: Array) -> Array:
+        return np.maximum(np.sqrt(np.mean(problem.linearised(values)[0] ** 2, axis=0)), floor)
 
     for _ in range(rounds):
         problem = replace(problem, residual_sd=np.where(is_varying, spread(point), np.inf))
