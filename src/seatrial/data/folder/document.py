@@ -227,8 +227,8 @@ class _Stored:
         """Return the record; the same object wherever the document names it."""
         if name not in self._read:
             try:
-                table = _adapter(_RecordTable).validate_python(self.records[name])
-                self._read[name] = record_from_arrays(table, self.arrays, name)
+                _adapter(_RecordTable).validate_python(self.records[name])
+                self._read[name] = record_from_arrays(self.records[name], self.arrays, name)
             except ValidationError as error:
                 raise ValueError(f"{STORED_RECORDS}.{name}.{_first_error(error)}") from None
             except (KeyError, ValueError) as error:
