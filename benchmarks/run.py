@@ -36,6 +36,7 @@ import population
 import prediction_bands
 import proposals
 import roll_decay
+import sample_rates
 import simulation
 import tune
 import verification
@@ -72,6 +73,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "verification": verification.run,
     "proposals": proposals.run,
     "roll_decay": roll_decay.run,
+    "sample_rates": sample_rates.run,
     "follow": follow.run,
     "campaign": campaign.run,
     "memory": memory.run,

@@ -21,7 +21,8 @@ MARK = "<!-- written by write_reference.py -->\n"
 HEAD = """# Command line
 
 Each command is also a function of the same name in Python ([Names in Python](api.md)). Exit codes: 0 done, 2 bad
-input (one sentence on standard error says what, where and what to do), 70 an error of the program, 130 interrupted.
+input (one sentence on standard error says what, where and what to do) or errors that `check` finds, 70 an error of
+the program, 130 interrupted.
 Files are written whole or not at all.
 """
 COMMAND = re.compile(r"seatrial [a-z].+|--[a-z-]+(?: [^\s,]+)?")

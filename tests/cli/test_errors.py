@@ -11,6 +11,8 @@ import pytest
 from seatrial import InputError, api
 from seatrial.cli import INPUT_EXIT_CODE, INTERNAL_EXIT_CODE, INTERRUPT_EXIT_CODE
 from seatrial.cli.errors import is_of_input
+from seatrial.core.values import Finding, Severity
+from seatrial.data.trial.correction import Correction
 
 
 @pytest.fixture
@@ -95,3 +97,23 @@ def test_output_that_cannot_go_anywhere_is_no_traceback(target: str, codes: set[
 def test_the_module_is_the_command() -> None:
     done = subprocess.run([sys.executable, "-m", "seatrial", "--version"], capture_output=True, text=True, check=False)
     assert done.returncode == 0 and done.stdout.startswith("seatrial ")
+
+
+def test_errors_that_check_finds_are_its_exit_code(
+    run_command: Callable[..., int],
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+) -> None:
+    """Those across blocks too, which `--fix` does not judge by itself."""
+    file = tmp_path / "t.toml"
+    file.touch()
+    error = Finding(Severity.ERROR, "copied-run", "runs a and b are the same", "", "leave one out")
+    monkeypatch.setattr(api, "check", lambda *_: (error,))
+    monkeypatch.setattr(api, "correct_trial", lambda _: Correction("", (), ()))
+    assert run_command("check", str(file)) == INPUT_EXIT_CODE
+    assert run_command("check", str(file), "--fix") == INPUT_EXIT_CODE
+    assert "no error has an edit that removes it" in capsys.readouterr().out
+    monkeypatch.setattr(api, "check", lambda *_: ())
+    assert run_command("check", str(file)) == 0
+    assert run_command("check", str(file), "--fix") == 0

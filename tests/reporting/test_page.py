@@ -6,11 +6,13 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 import numpy as np
+import pytest
 from tests.reporting.complete_fit import complete_fit
 from tests.reporting.fabricated import fabricated_fit
 
 from seatrial.core.results import Fit
-from seatrial.core.values import Ship
+from seatrial.core.values import InputError, Ship
+from seatrial.reporting import identifiability_chapter
 from seatrial.reporting.page import html
 
 LARGEST = 1_000_000
@@ -89,3 +91,14 @@ def test_gaps_and_absent_channels_render(fit: Fit) -> None:
     changed = record.with_channel("v", record.channel("v").with_values(holes)).without("u")
     with_holes = replace(fit, records=(changed,), predictions=(replace(fit.predictions[0], measured=changed),))
     assert not re.search(r"\bnan\b", html(with_holes))
+
+
+def test_a_chapter_that_cannot_be_written_is_a_sentence(fit: Fit, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object) -> None:
+        raise InputError("the curve needs 2.31 rad/s")
+
+    whole = complete_fit(fit)
+    monkeypatch.setattr(identifiability_chapter, "identifiability_chapter", refuse)
+    text = html(whole)
+    assert "without the chapter" in text and "the curve needs 2.31 rad/s" in text
+    assert 'id="coefficients"' in text

@@ -47,6 +47,23 @@ def print_findings(
     print_lines([f"{count_sentence(findings)}{hidden}{where}"])
 
 
+def has_errors(findings: "Sequence[Finding]") -> bool:
+    """Return whether any of the findings is an error."""
+    return any(finding.severity.value == "error" for finding in findings)
+
+
+def exit_if_errors(findings: "Sequence[Finding]") -> None:
+    """End the command where findings are errors, as bad input does.
+
+    Raises:
+        Exit: there are any.
+    """
+    from seatrial.cli import INPUT_EXIT_CODE
+
+    if has_errors(findings):
+        raise typer.Exit(INPUT_EXIT_CODE)
+
+
 def print_warnings(findings: "Sequence[Finding]", rest: str = "the report lists them") -> None:
     """Print errors and warnings of a result, the latest codes first, under a heading; with --verbose notes, too."""
     if findings:

@@ -8,7 +8,7 @@ import typer
 from seatrial.cli.application import Json, OwnModelPath, Seed, TrialPath, app, own_model, result_document, write_json
 from seatrial.cli.correction_output import write_correction
 from seatrial.cli.design_output import print_design
-from seatrial.cli.finding_output import print_findings
+from seatrial.cli.finding_output import exit_if_errors, print_findings
 from seatrial.cli.fit_output import print_fit
 from seatrial.cli.follow_output import journal_path, live_display, print_outcome, stop_on_signal, stream_heading
 from seatrial.cli.next_steps import after_check, after_fit
@@ -58,13 +58,14 @@ def check(
             raise InputError("--fix corrects a trial file; draft one from the log with 'seatrial init'")
         print_surveys(trial, api.survey_logs(trial), show_all=show_all)
         return
-    if fix:
-        write_correction(api.correct_trial(trial), trial, FINDINGS_PER_CODE)
-        return
     findings = api.check(trial if model is None else api.load_trial(trial, own_model(model)))
+    if fix:
+        write_correction(api.correct_trial(trial), trial, findings, FINDINGS_PER_CODE)
+        return
     print_findings(findings, len(findings) if show_all else FINDINGS_PER_CODE)
     print_next(after_check(findings, trial))
     write_json(json, lambda: findings_document(findings))
+    exit_if_errors(findings)
 
 
 @app.command()

@@ -1,7 +1,7 @@
 """The page of a fit: one self-contained HTML file with style and figures; nothing is fetched or fitted."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 
 from markupsafe import Markup
 
@@ -10,6 +10,7 @@ from seatrial.core.figures.run import NARROW
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Fit
 from seatrial.core.results.fit_charts import coefficients_chart
+from seatrial.core.results.missing_parts import MissingParts
 from seatrial.core.text.words import common_prefix
 from seatrial.core.values.arrays import correlation_matrix
 from seatrial.reporting import (
@@ -67,18 +68,14 @@ def html(fit: Fit) -> str:
     is_steered = "psi" in fit.model.states or "delta" in fit.model.input_names
     shown = runs.drawn_predictions(fit.predictions)
     drawn_names = {p.record for p in shown}
+    parts = MissingParts()
+    chapters: dict[str, object] = {
+        name: parts.computed(f"the chapter '{TITLES[title]}'", compute, None)
+        for name, title, compute in _chapters(fit, length)
+    }
     sections: dict[str, object] = {
-        "published": published_chapter.published_chapter(fit),
-        "identifiability": identifiability_chapter.identifiability_chapter(fit),
-        "craft": thruster_chapter.thruster_chapter(fit.thruster_craft),
-        "rolling": fit.roll
-        and {"tables": roll_chapter.tables(fit.roll, fit.ship.scale), "figures": roll_chapter.figures(fit.roll)},
-        "waves": (sea := fit.seakeeping)
-        and {"tables": seakeeping_chapter.tables(sea, length), "figures": seakeeping_chapter.figures(sea)},
-        "findings": tables.finding_groups(fit.findings),
-        "ahead": ahead.k_step_chapter(fit),
-        "frequency": ahead.frequency_chapter(fit),
-        "baselines": baselines.baseline_chapter(fit),
+        **chapters,
+        "findings": tables.finding_groups((*fit.findings, *parts.findings)),
         "noise": tables.noise(fit.channel_noise),
         "offsets": tables.offsets(fit.offsets),
         # they are for ships of 100 m and more
@@ -132,6 +129,23 @@ def html(fit: Fit) -> str:
         "citations": citations,
     }
     return page_text("report.html", sections | context)
+
+
+def _chapters(fit: Fit, length: float) -> Iterator[tuple[str, str, Callable[[], object]]]:
+    """Yield name, key of the title and contents of each chapter that a report may be without."""
+    yield "published", "published", lambda: published_chapter.published_chapter(fit)
+    yield "identifiability", "identifiability", lambda: identifiability_chapter.identifiability_chapter(fit)
+    yield "craft", "thrusters", lambda: thruster_chapter.thruster_chapter(fit.thruster_craft)
+    roll, sea = fit.roll, fit.seakeeping
+    yield "rolling", "rolling", lambda: roll and {
+        "tables": roll_chapter.tables(roll, fit.ship.scale), "figures": roll_chapter.figures(roll)
+    }  # fmt: skip
+    yield "waves", "waves", lambda: sea and {
+        "tables": seakeeping_chapter.tables(sea, length), "figures": seakeeping_chapter.figures(sea)
+    }  # fmt: skip
+    yield "ahead", "ahead", lambda: ahead.k_step_chapter(fit)
+    yield "frequency", "frequency", lambda: ahead.frequency_chapter(fit)
+    yield "baselines", "baselines", lambda: baselines.baseline_chapter(fit)
 
 
 def _titles(fit: Fit, sections: Mapping[str, object]) -> dict[str, str]:

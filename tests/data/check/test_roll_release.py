@@ -1,9 +1,16 @@
 """A heel that is held before the release is found, with how long it lasts."""
 
 import numpy as np
+import pytest
 
 from seatrial.core.values import Record
-from seatrial.data.check.roll_release import begins_before_release, is_free_decay, release_findings, release_row
+from seatrial.data.check.roll_release import (
+    begins_before_release,
+    is_free_decay,
+    is_in_waves,
+    release_findings,
+    release_row,
+)
 
 TIME = np.arange(0.0, 60.0, 0.05)
 
@@ -39,3 +46,37 @@ def test_a_heel_that_wanders_while_it_is_pulled_is_held_to_its_end() -> None:
     phi = np.radians(np.where(time < 25.0, 12.7 + wander, rolling))
     noise = np.radians(0.02) * np.random.default_rng(5).standard_normal(time.size)
     assert 25.0 - 0.2 < time[release_row(phi + noise)] < 25.0 + 0.5
+
+
+def pumped(steady: float) -> np.ndarray:
+    """Driven from side to side for 33 s, to the same angle for so many of them, then left alone; rad."""
+    size = np.where(TIME < 33.0, np.minimum(1.0, 0.2 + 0.8 * TIME / (33.0 - steady)), np.exp(-0.1 * (TIME - 33.0)))
+    return 0.18 * size * np.cos(2.5 * (TIME - 33.0))
+
+
+@pytest.mark.parametrize("steady", [0.0, 10.0])
+def test_a_ship_that_people_drive_is_released_at_their_last_swing(steady: float, rng: np.random.Generator) -> None:
+    phi = pumped(steady) + 1e-3 * rng.standard_normal(len(TIME))
+    record = Record.from_arrays("decay", TIME, {"phi": phi})
+    assert TIME[release_row(phi)] == pytest.approx(33.0, abs=1.4), "half a period before at most"
+    assert begins_before_release(record) and not is_in_waves(phi)
+    (finding,) = release_findings(record)
+    assert finding.code == "held-roll" and "driven before it is released" in finding.message
+
+
+def test_a_light_decay_is_not_driven() -> None:
+    """Swings of one side lose 3 % each: as many are nearly as large as the first."""
+    phi = np.exp(-0.0125 * TIME) * np.cos(2.5 * TIME)
+    assert release_row(phi) == 0
+
+
+def test_groups_of_waves_are_no_decays_and_releases_no_waves(rng: np.random.Generator) -> None:
+    """A lightly damped roll driven by noise, by an own recursion of the damped oscillator."""
+    time = np.arange(0.0, 1800.0, 0.5)
+    turn = np.exp((-0.05 + 0.8j) * 0.5)
+    swing, sea = 0.0j, np.empty(len(time))
+    for row in range(len(time)):
+        swing = turn * swing + rng.standard_normal() + 1j * rng.standard_normal()
+        sea[row] = swing.real
+    assert is_in_waves(sea)
+    assert not is_in_waves(np.tile(np.exp(-0.05 * TIME) * np.cos(2.5 * TIME), 5)), "five releases in one record"

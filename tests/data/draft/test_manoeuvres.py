@@ -225,3 +225,12 @@ def test_the_only_log_of_a_craft_with_thrusters_is_cut_in_two_and_nothing_is_lef
         rest = record[name][~inside]
         slack = 0.25 * np.ptp(rest)
         assert rest.min() - slack <= record[name][inside].min() and record[name][inside].max() <= rest.max() + slack
+
+
+def test_a_record_at_rest_before_its_release_has_a_decay_from_there(rng: np.random.Generator) -> None:
+    """Roll in steps of 0.1 deg, so that its first swings have no angle at all."""
+    time = np.arange(0.0, 120.0, 0.1)
+    swing = np.where(time < 30.0, 0.0, 10.0 * np.exp(-0.04 * (time - 30.0)) * np.cos(0.785 * (time - 30.0)))
+    phi = np.radians(np.round(swing + 0.03 * rng.standard_normal(len(time)), 1))
+    (decay,) = decays(Record.from_arrays("run", time, {"phi": phi}))
+    assert decay.start == pytest.approx(30.0, abs=1.0), "an eighth of a period"

@@ -263,3 +263,31 @@ def test_a_result_replaces_one_of_another_kind(tmp_path: Path) -> None:
     assert {file.name for file in folder.iterdir()} == {
         "result.json", "model.toml", "arrays.npz", "report.html", "notes.txt",
     }  # fmt: skip
+
+
+EDITS = [
+    (("solution", "value"), "lost"), (("solution", "point"), 3.0), (("coefficients", 0, "estimate"), "lost"),
+    (("coefficients", 0, "name"), None), (("residuals", 0, "autocorrelation"), {}), (("findings", 0, "text"), 1.0),
+    (("stored_records", "record0", "channels"), "lost"), (("stored_records", "record0", "provenance", "steps"), [1]),
+    (("stored_records", "record0", "channels", "u", "unit"), None), (("stored_records", "record0", "name"), 3),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("path", "value"), EDITS)
+def test_a_field_that_was_edited_is_refused_by_its_name(
+    tmp_path: Path, fit: Fit, path: tuple[str | int, ...], value: object
+) -> None:
+    """Whatever stands there instead; `lost`: the entry is gone."""
+    file = save_result(fit, tmp_path / "r") / "result.json"
+    table = json.loads(file.read_text())
+    entry = table
+    for key in path[:-1]:
+        entry = entry[key]
+    if value == "lost":
+        del entry[path[-1]]
+    else:
+        entry[path[-1]] = value
+    file.write_text(json.dumps(table))
+    names = [str(key) for key in path if isinstance(key, str)]
+    with pytest.raises(InputError, match=rf"is damaged .*({names[0]}|{names[-1]})"):
+        load_result(file.parent)

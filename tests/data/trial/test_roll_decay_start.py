@@ -69,3 +69,11 @@ def test_a_motion_that_lasts_is_no_decay(growth: float) -> None:
     with pytest.raises(InputError, match="record 'run': the roll does not decay"):
         require_decay(lasting)
     require_decay(trim_to_decay_start(decay()))
+
+
+def test_a_decay_that_people_swung_up_begins_at_their_last_swing() -> None:
+    size = np.where(TIME < 30.0, 0.2 + 0.8 * TIME / 30.0, np.exp(-0.1 * (TIME - 30.0)))
+    phi = 0.18 * size * np.cos(2.5 * (TIME - 30.0))
+    record = Record.from_arrays("decay", TIME, {"phi": phi})
+    assert need_release([record])
+    assert trim_to_decay_start(record).time[0] == pytest.approx(30.0, abs=0.1)

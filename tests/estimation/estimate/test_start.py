@@ -11,6 +11,7 @@ from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.start import weak_form_start
 from seatrial.estimation.identify import estimate_model
 from seatrial.physics.manoeuvres.programme import programme
+from seatrial.physics.models import model_named
 from seatrial.physics.models.nomoto import nomoto, nomoto2
 from seatrial.physics.models.waterjet import WATERJET_COEFFICIENTS as COEFFICIENTS
 from seatrial.physics.models.waterjet import waterjet
@@ -79,3 +80,45 @@ def test_a_hidden_state_leaves_the_start_to_the_model() -> None:
     assert "r_rest" in found.start_method
     values = [found.model.parameters[n].value for n in ("K", "T_1", "T_2", "T_3")]
     np.testing.assert_allclose(values, [0.15, 15.0, 3.0, 5.0], rtol=1e-6)
+
+
+def test_a_roll_of_two_periods_is_searched_from_its_period(rng: np.random.Generator) -> None:
+    """45 s of a light decay of 19 s: the weak form alone leads to a damping of 1.6 for 0.006 1/s."""
+    time = np.arange(0.0, 45.0, 0.1)
+    damping, frequency = 0.00314, math.sqrt(0.1075)
+    phi = 0.035 + 0.26 * np.exp(-0.5 * damping * time) * np.cos(frequency * time)
+    record = Record.from_arrays("decay", time, {"phi": phi + 3e-4 * rng.standard_normal(len(time))})
+    model = model_named("roll")
+    model = model.with_parameters(model.parameters.only_free(("b_1", "b_2", "c_1", "c_3", "phi_0")))
+    fit = estimate_model(model, Runs.one_session_each([record], 30.0))
+    assert fit.start_method.startswith("the period of the records")
+    assert fit.model.parameters["c_1"].value == pytest.approx(0.1075, rel=0.01)
+    assert fit.model.parameters["b_1"].value == pytest.approx(damping, abs=0.003)
+
+
+def unstable_zigzag(angle: float, rng: np.random.Generator) -> Record:
+    """A tanker that turns by itself, 60 r' = 0.03 delta + r - r^3 / (0.3 deg/s)^2, in a zigzag; Euler, 0.02 s."""
+    r, psi, delta, order, rows = 0.0, 0.0, 0.0, math.radians(angle), []
+    rate, step, limit = math.radians(2.5), 0.02, math.radians(0.3)
+    for k in range(75_000):
+        if k % 50 == 0:
+            rows.append((r, psi, delta))
+        if psi * order > 0.0 and abs(psi) > math.radians(angle):
+            order = -order
+        delta += min(max(order - delta, -rate * step), rate * step)
+        r += step * (0.03 * delta + r - r**3 / limit**2) / 60.0
+        psi += step * r
+    columns = np.array(rows)
+    noisy = columns + np.array([math.radians(0.005), math.radians(0.05), 0.0]) * rng.standard_normal(columns.shape)
+    return Record.from_arrays(
+        f"zigzag {angle:g}",
+        np.arange(len(columns), dtype=np.float64),
+        dict(zip(("r", "psi", "delta"), noisy.T, strict=True)),
+    )
+
+
+def test_a_ship_that_turns_by_itself_is_found_from_the_default_start(rng: np.random.Generator) -> None:
+    """K = -0.03 1/s, T = -60 s: between them and the start values lies an infinite time constant."""
+    model = nomoto().with_parameters(nomoto().parameters.only_free(("K", "T", "alpha")))
+    found = weak_form_start(model, [unstable_zigzag(angle, rng) for angle in (10.0, 20.0)], 30.0)
+    np.testing.assert_allclose(found, [-0.03, -60.0, -1.0 / math.radians(0.3) ** 2], rtol=0.1)

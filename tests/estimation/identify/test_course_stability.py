@@ -91,3 +91,13 @@ def test_a_craft_that_loses_its_course_at_speed_is_judged_up_to_the_fastest_of_i
     assert beyond.stable_below == pytest.approx(limit, abs=2e-3)
     assert f"below about {significant(limit, 2)} m/s it is course stable" in beyond.text
     assert "ends in a turn of" in course_finding(craft, beyond, {})[0].evidence
+
+
+@pytest.mark.parametrize(("T", "is_unstable"), [(-60.0, True), (60.0, False)])
+def test_a_model_of_steering_alone_is_judged_without_a_speed(T: float, is_unstable: bool) -> None:
+    ship = model_named("nomoto").with_values({"K": math.copysign(0.03, T), "T": T})
+    course = course_stability(ship, np.diag([1e-4, 1.0]) ** 2, math.inf, {}, 300.0)
+    assert course is not None and course.speed is None
+    assert course.growth_rate == pytest.approx(-1.0 / T)
+    assert course.is_unstable == is_unstable
+    assert [f.evidence[:11] for f in course_finding(ship, course, {})] == ["growth rate"] * is_unstable

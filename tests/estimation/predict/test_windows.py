@@ -27,7 +27,7 @@ def records() -> list[Record]:
         inputs = {"command_1": commands[:, 0], "command_2": commands[:, 1]}
         planned = Record.from_arrays(name, 0.1 * np.arange(len(commands)), inputs)
         start = dict.fromkeys(model.states, 0.0) | {"c_port": commands[0, 0], "c_starboard": commands[0, 1]}
-        runs.append(replay(model, planned, start))
+        runs.append(replay(model, planned, start, substeps=1))  # as the problem below takes
     return runs
 
 

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import InputError, Record
+from seatrial.physics.hydro.tabulated import WaveTable
+from seatrial.physics.hydro.transfer_file import TabulatedExcitation
 from seatrial.physics.sea.spectrum import ittc
 from seatrial.physics.sea.wave_forces import force_density, with_wave_forces
 from seatrial_studies.seaway import SPEED, SeawayScenario, box_hull, simulate_seaway_run
@@ -76,3 +78,30 @@ def test_the_density_of_the_force_holds_its_variance(heading: int) -> None:
         whole = np.trapezoid(np.abs(force) ** 2 * ittc(2.27).density(omega), omega)
         assert np.sum(density[:, j, j].real * np.diff(edges)) == pytest.approx(whole, rel=2e-3)
     np.testing.assert_allclose(density[:, 0, 1], density[:, 1, 0].conj())
+
+
+def table_to(highest: float) -> TabulatedExcitation:
+    """The box's own forces in head seas, tabulated from 0.1 rad/s."""
+    omega = np.linspace(0.1, highest, 400)
+    forces = np.stack(box_hull().forces(omega, SPEED, np.pi), axis=1)[:, None, :]
+    return TabulatedExcitation(WaveTable("own table", omega, np.array([np.pi]), forces))
+
+
+def test_a_table_need_not_reach_the_noise_of_the_probe(rng: np.random.Generator) -> None:
+    """The sea ends near 2 rad/s; 2 cm of probe noise reach to the record's last frequency."""
+    made = bare(simulate_seaway_run(SeawayScenario(180, duration=400.0), np.random.default_rng(1)).record)
+    noisy = made.with_channel(
+        "zeta", made.channel("zeta").with_values(made["zeta"] + 0.02 * rng.standard_normal(len(made)))
+    )
+    wide, narrow = (with_wave_forces(noisy, table_to(high), SPEED, np.pi) for high in (20.0, 3.0))
+    step = narrow.provenance.steps[-1]
+    assert "0.1 to 3 rad/s" in step and "of the energy of 'zeta'" in step
+    assert "beyond" not in wide.provenance.steps[-1]
+    for name in ("F3", "M5"):
+        assert np.std(narrow[name] - wide[name]) < 0.02 * np.std(wide[name])
+
+
+def test_a_table_that_lacks_the_sea_is_refused() -> None:
+    made = bare(simulate_seaway_run(SeawayScenario(180, duration=400.0), np.random.default_rng(1)).record)
+    with pytest.raises(InputError, match=r"forces are known from 0.1 to 0.7 rad/s; beyond lies .* give forces"):
+        with_wave_forces(made, table_to(0.7), SPEED, np.pi)

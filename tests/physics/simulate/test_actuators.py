@@ -27,7 +27,7 @@ def record() -> Record:
     steps = dict(zip(model.input_names, commands.T, strict=True))
     planned = Record.from_arrays("steps", 0.1 * np.arange(len(commands)), steps)
     start = dict.fromkeys(model.states, 0.0) | {"c_port": commands[0, 0], "c_starboard": commands[0, 1]}
-    full = replay(model, planned, start)
+    full = replay(model, planned, start, substeps=1)  # as the problem below takes
     return replace(full, channels={n: c for n, c in full.channels.items() if n in (*MEASURED, *model.input_names)})
 
 

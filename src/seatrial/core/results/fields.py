@@ -78,7 +78,10 @@ class FieldFormat:
             if isinstance(value, self.type):
                 return value
             stored: Any = info.context
-            return self.read(value, stored)
+            try:
+                return self.read(value, stored)
+            except (TypeError, LookupError, AttributeError) as error:  # else the name of the field would be lost
+                raise ValueError(f"no {self.type.__name__} ({type(error).__name__}: {error})") from None
 
         write = core_schema.plain_serializer_function_ser_schema(self.write)
         return core_schema.with_info_plain_validator_function(validate, serialization=write)

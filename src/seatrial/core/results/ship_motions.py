@@ -60,6 +60,12 @@ class RollCharacteristics:
         ),
     ] = ()
 
+    def __post_init__(self) -> None:
+        curves = ("damping", "damping_lower", "damping_upper", "period", "period_lower", "period_upper")
+        for name in curves:
+            if len(getattr(self, name)) != len(self.amplitude):
+                raise ValueError(f"{name} has {len(getattr(self, name))} values over {len(self.amplitude)} amplitudes")
+
 
 @dataclass(frozen=True)
 class PointMotion:

@@ -1,13 +1,12 @@
 """Straight runs, spirals, stops and roll decays in a log."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from seatrial.core.values import Array, Record
-from seatrial.data.check.roll_release import release_row
+from seatrial.data.check.roll_release import HalfSwing, driven_swings, half_swings, is_in_waves, release_row
 from seatrial.data.check.signal import Mask, mask_intervals
 from seatrial.data.draft.stretch import LogStretch, elapsed, padded, smooth_speed
 
@@ -24,9 +23,7 @@ _LOOK_S = 0.5  # s between two looks at the rudder; chosen: short against a hold
 _HALF_SWINGS, _SHRINKS, _PERIOD_SCATTER = 6, 2.0, 0.25
 # of the first swing, by which later ones grow where slow forces disturb a decay, and no more than a tail is; chosen
 _DISTURBED = 0.15
-_AS_LARGE = 0.95  # of the largest swing, from which on one is as large; chosen: a free one loses more in a period
 _HELD = 1.5  # of the time of the half swings that follow, beyond which the first one was held; chosen
-_NOISE_SAMPLES = 2  # samples of a swing that is but noise about zero; chosen
 _SMALLEST_ROLL = np.radians(2.0)  # rad, of the first swing of a decay; chosen
 
 
@@ -125,30 +122,30 @@ def _propulsion(record: Record, first: int, last: int) -> str:
     return "propeller astern" if is_astern else "coasting"
 
 
-@dataclass(frozen=True)
-class _HalfSwing:
-    """The roll between two times at rest: its first row, the row after its last, and its largest angle [rad]."""
-
-    first: int
-    stop: int
-    angle: float
-
-
 def decays(record: Record) -> list[LogStretch]:
-    """Return stretches in which the roll swings evenly and dies out, each to where it is released anew."""
+    """Return stretches in which the roll swings evenly and dies out, each to where it is released anew.
+
+    A record in waves has none: groups of swings die out in it that nobody released.
+    """
     if "phi" not in record:
         return []
     phi = record["phi"] - float(np.median(record["phi"]))
-    time, stretches, chain = elapsed(record), list[LogStretch](), list[_HalfSwing]()
-    for swing in [*_half_swings(phi), _HalfSwing(len(phi), len(phi), np.inf)]:
+    if is_in_waves(phi):
+        return []
+    time, stretches = elapsed(record), list[LogStretch]()
+    before, chain = list[HalfSwing](), list[HalfSwing]()
+    for swing in [*half_swings(phi), HalfSwing(len(phi), len(phi), np.inf)]:
         if chain and swing.angle > _smallest_level(chain) + _DISTURBED * chain[0].angle:
             even = [one for one in chain if one.angle > _DISTURBED * chain[0].angle]
-            driven = _driven(even)
+            driven = max(driven_swings([*before, *even]) - len(before), 0)
             free = even[driven:]
             if _dies_out(free):
                 text = f"roll swings {len(free)} half periods from {np.degrees(free[0].angle):.1f} deg down"
                 start, stop = _peak(phi, free[0]) if driven else _release(phi, free), chain[-1].stop - 1
                 stretches.append(LogStretch(DECAY, float(time[start]), float(time[stop]), text))
+                before = []
+            else:
+                before += chain
             chain = []
         chain.append(swing)
     return stretches
@@ -156,37 +153,20 @@ def decays(record: Record) -> list[LogStretch]:
 
 def half_swing_angles(phi: Array) -> Array:
     """Return the largest angle of each swing to one side, rad; phi: about its rest."""
-    return np.array([one.angle for one in _half_swings(phi)])
+    return np.array([one.angle for one in half_swings(phi)])
 
 
-def _half_swings(phi: Array) -> list[_HalfSwing]:
-    """The swings to one side each, without those that are but noise about zero."""
-    edges = np.flatnonzero(np.diff(phi >= 0.0)) + 1
-    swings = (_HalfSwing(int(a), int(b), float(np.max(np.abs(phi[a:b])))) for a, b in pairwise(edges))
-    return [swing for swing in swings if swing.stop - swing.first > _NOISE_SAMPLES]
-
-
-def _driven(chain: Sequence[_HalfSwing]) -> int:
-    """How many of the first swings were driven, by people who run from side to side: they are as large as later ones.
-
-    Two are those of a first one that was held and of its neighbour.
-    """
-    largest = max(one.angle for one in chain)
-    last = max(k for k, one in enumerate(chain) if one.angle >= _AS_LARGE * largest)
-    return last if last > 1 else 0
-
-
-def _peak(phi: Array, swing: _HalfSwing) -> int:
+def _peak(phi: Array, swing: HalfSwing) -> int:
     """The row of its largest angle."""
     return swing.first + int(np.argmax(np.abs(phi[swing.first : swing.stop])))
 
 
-def _smallest_level(chain: Sequence[_HalfSwing]) -> float:
+def _smallest_level(chain: Sequence[HalfSwing]) -> float:
     """The smallest angle [rad] so far that swings to both sides stayed within: one rest angle is no growth."""
     return min((max(a.angle, b.angle) for a, b in pairwise(chain)), default=chain[0].angle)
 
 
-def _release(phi: Array, chain: Sequence[_HalfSwing]) -> int:
+def _release(phi: Array, chain: Sequence[HalfSwing]) -> int:
     """The row of the release: of a first swing that was held, else before it, or its own where nothing shows one."""
     first = chain[0].first
     if chain[0].stop - first > _HELD * float(np.median([one.stop - one.first for one in chain[1:]])):
@@ -196,7 +176,7 @@ def _release(phi: Array, chain: Sequence[_HalfSwing]) -> int:
     return start + release_row(phi[start:first]) if first > start else first
 
 
-def _dies_out(chain: Sequence[_HalfSwing]) -> bool:
+def _dies_out(chain: Sequence[HalfSwing]) -> bool:
     lengths = np.array([one.stop - one.first for one in chain[1:]], dtype=float)  # the first one may have been held
     return (
         len(chain) >= _HALF_SWINGS

@@ -10,11 +10,12 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
-from typing import Any, TypeVar
+from typing import Any, NotRequired, TypeVar
 
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaWarningKind
+from typing_extensions import TypedDict  # that of Python 3.11 is refused by pydantic
 
 from seatrial.core.results.fields import ABSENT, STORED_KEY, NamedValues, ReportedFinding, StoredValue
 from seatrial.core.values import Array, Channel, Finding, Provenance, Record, RecordKind, frozen
@@ -102,8 +103,13 @@ def read_document(kind: type[T], table: Table, arrays: Mapping[str, Array]) -> T
     try:
         return _adapter(kind).validate_python(table, context=_Stored(arrays, table.get(STORED_RECORDS, {})))
     except ValidationError as error:
-        first = error.errors()[0]
-        raise ValueError(f"{'.'.join(str(part) for part in first['loc'])}: {first['msg']}") from None
+        raise ValueError(_first_error(error)) from None
+
+
+def _first_error(error: ValidationError) -> str:
+    """Return the first entry that is wrong, and how."""
+    first = error.errors()[0]
+    return f"{'.'.join(str(part) for part in first['loc'])}: {first['msg']}"
 
 
 def document_schema(kind: type) -> Table:
@@ -176,6 +182,36 @@ def _is_stored(entry: object) -> bool:
     return STORED_KEY in entry or _is_stored(entry.get("items")) or _is_stored(entry.get("additionalProperties"))
 
 
+class _ChannelTable(TypedDict):
+    """As `Channel.metadata`."""
+
+    unit: str
+    frame: str
+    positive: str
+    reference_point: float
+    label: str
+    kind: NotRequired[str]
+    between: NotRequired[str]
+    sample_s: NotRequired[float]
+
+
+class _ProvenanceTable(TypedDict):
+    """As `Provenance.from_metadata` reads it."""
+
+    source: str
+    sha256: str
+    steps: list[str]
+
+
+class _RecordTable(TypedDict):
+    """As `Record.metadata`."""
+
+    name: str
+    kind: str
+    provenance: _ProvenanceTable
+    channels: dict[str, _ChannelTable]
+
+
 @dataclass(frozen=True)
 class _Stored:
     """The arrays of a folder and what their records mean."""
@@ -190,7 +226,13 @@ class _Stored:
     def record(self, name: str) -> Record:
         """Return the record; the same object wherever the document names it."""
         if name not in self._read:
-            self._read[name] = record_from_arrays(self.records[name], self.arrays, name)
+            try:
+                _adapter(_RecordTable).validate_python(self.records[name])
+                self._read[name] = record_from_arrays(self.records[name], self.arrays, name)
+            except ValidationError as error:
+                raise ValueError(f"{STORED_RECORDS}.{name}.{_first_error(error)}") from None
+            except (KeyError, ValueError) as error:
+                raise ValueError(f"{STORED_RECORDS}.{name}: {error}") from None
         return self._read[name]
 
 

@@ -29,6 +29,7 @@ from seatrial.data.trial.schema_errors import schema_error
 from seatrial.data.trial.thruster_table import layout_text
 from seatrial.data.trial.trial import Trial, TrialRun
 from seatrial.data.trial.used_records import refuse_used_records
+from seatrial.physics.simulate.states import rest_parameter
 
 _OPEN = re.compile(r"^# OPEN (\w+):", re.MULTILINE)  # as `seatrial init` marks what a person must choose
 
@@ -138,8 +139,9 @@ def trial_of_tables(
         symbols = {*NOTATION, *declared}
         _refuse_unknown_names("noise", list(file.noise), symbols)
         _refuse_unknown_names("estimate.channels", list(file.estimate.channels), set(model.observables))
-        for key, names in (("offsets", file.estimate.offsets), ("gains", file.estimate.gains)):
-            _refuse_unknown_names(f"estimate.{key}", list(names), set(model.input_names), _correction_hint)
+        resting = {state for state in model.states if rest_parameter(model, state)}
+        for key, names, known in (("offsets", file.estimate.offsets, resting), ("gains", file.estimate.gains, set())):
+            _refuse_unknown_names(f"estimate.{key}", list(names), {*model.input_names, *known}, _correction_hint)
         _refuse_unknown_names("estimate.delays", list(file.estimate.delays), set(model.input_names))
         if file.feedback is not None:
             _refuse_unknown_names("feedback.input", [file.feedback.input], set(model.input_names))

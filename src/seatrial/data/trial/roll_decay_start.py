@@ -5,12 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from seatrial.core.values import Array, InputError, Record
-from seatrial.data.check.roll_release import begins_before_release, release_row
+from seatrial.data.check.roll_release import begins_before_release, is_in_waves, release_row
 from seatrial.data.check.signal import sample_noise
 
 # first angle over noise; largest angle of the last third over that of the first, ours
 _MIN_SIGNAL_TO_NOISE, _MAX_AMPLITUDE_RATIO = 5.0, 0.9
-# share of the largest angle that counts as a swing before it, and how many of them are allowed, ours
+# share of the largest angle that counts as a swing, and how many before it need as many after it, ours
 _EARLY_SWING_FRACTION, _MAX_EARLY_SWINGS = 0.2, 4
 # fewest samples of a decay, ours
 _MIN_ROWS = 20
@@ -20,6 +20,8 @@ _MAX_ROLL_ANGLE = np.pi / 2.0
 
 def trim_to_decay_start(record: Record) -> Record:
     """The record from its release on: the last time that its roll angle, about that it ends at, is the largest.
+
+    People who run from side to side may have driven it before.
 
     Raises:
         InputError: no roll angle, a start that is not above the noise or beyond 90 deg of heel, a motion that does
@@ -42,7 +44,8 @@ def trim_to_decay_start(record: Record) -> Record:
             f"record '{record.name}': the decay starts at {np.degrees(largest):.4g} deg, beyond 90 deg of heel; "
             "check the unit of channel 'phi'"
         )
-    if _swing_count(swing[:first], _EARLY_SWING_FRACTION * largest) > _MAX_EARLY_SWINGS:
+    early, late = (_swing_count(part, _EARLY_SWING_FRACTION * largest) for part in (swing[:first], swing[first:]))
+    if early > _MAX_EARLY_SWINGS and (late < _MAX_EARLY_SWINGS or is_in_waves(swing)):
         raise InputError(
             f"record '{record.name}': the roll grows, to {np.degrees(largest):.2g} deg at {record.time[first]:g} s, "
             "instead of decaying from a release; leave the run out"

@@ -14,6 +14,7 @@ from seatrial.estimation.problem.output_error import Nuisance, OutputError
 from seatrial.estimation.problem.segments import compared_outputs, cut_segments
 from seatrial.estimation.problem.static_forces import StaticForces
 from seatrial.physics.simulate.batch import InputCorrection
+from seatrial.physics.simulate.states import rest_parameter
 
 _ZERO_DEVIATIONS = {"rad": float(np.radians(2.0)), "m/s": 0.1, "rps": 0.1}
 """Prior standard deviation of a sensor's zero, SI, by unit: 2 deg, 0.1 m/s, 0.1 rps; chosen."""
@@ -33,10 +34,17 @@ _NOISE_SHARE, _LEAST_NOISE = 0.1, 1e-9
 _SOURCE = "house default"
 
 
+def _zero_deviation(name: str, deviation: float | None) -> tuple[str, float]:
+    """Return the unit of a channel, and the standard deviation of its zero, SI: as given, or by the unit."""
+    unit = NOTATION[name].unit if name in NOTATION else "1"
+    return unit, deviation or _ZERO_DEVIATIONS.get(unit, _OTHER_ZERO_DEVIATION)
+
+
 def _nuisances(model: Model, settings: EstimateSettings) -> Iterator[Nuisance]:
     for name, deviation in settings.offsets.items():
-        unit = NOTATION[name].unit if name in NOTATION else "1"
-        spread = deviation or _ZERO_DEVIATIONS.get(unit, _OTHER_ZERO_DEVIATION)
+        if rest_parameter(model, name):
+            continue
+        unit, spread = _zero_deviation(name, deviation)
         covariate = settings.covariates.get(name, "")
         if covariate and covariate not in model.input_names:
             raise InputError(
@@ -52,11 +60,14 @@ def _nuisances(model: Model, settings: EstimateSettings) -> Iterator[Nuisance]:
             yield Nuisance(InputCorrection(name, "delay"), Prior(0.0, spread, _SOURCE), "s")
 
 
-def _current_priors(settings: EstimateSettings) -> tuple[tuple[str, Prior], ...]:
-    if settings.current <= 0:
-        return ()
-    prior = Prior(0.0, settings.current, _SOURCE)
-    return (("current_north", prior), ("current_east", prior))
+def _session_parameters(model: Model, settings: EstimateSettings) -> Iterator[tuple[str, Prior]]:
+    """Yield the model parameters that each session has of its own: a current, and what states have at rest."""
+    if settings.current > 0:
+        prior = Prior(0.0, settings.current, _SOURCE)
+        yield from (("current_north", prior), ("current_east", prior))
+    for state, deviation in settings.offsets.items():
+        if name := rest_parameter(model, state):
+            yield name, Prior(model.parameters[name].value, _zero_deviation(state, deviation)[1], _SOURCE)
 
 
 def output_error_problem(
@@ -72,6 +83,8 @@ def output_error_problem(
             fewer than three samples, or force points that the model cannot be compared with.
     """
     model = with_held_inputs(model, runs.records)
+    own = tuple(_session_parameters(model, settings))
+    model = model.with_parameters(model.parameters.fixed(*(name for name, _ in own)))
     outputs = compared_outputs(model, runs.records, settings.channels)
     data = cut_segments(model, runs.records, outputs, None if np.isinf(segment_s) else segment_s, runs.sessions)
     spread = np.nanstd(data.measured, axis=0)
@@ -80,7 +93,7 @@ def output_error_problem(
         data,
         np.maximum(_NOISE_SHARE * spread, _LEAST_NOISE),
         (*_nuisances(model, settings), *timing_nuisances(model, runs.records, settings)),
-        _current_priors(settings),
+        own,
         workers=workers,
         extra_terms=(*(StaticForces(model, points) for points in runs.forces), *runs.carried),
         prior_terms=tuple(joint_prior_term(model.parameters, prior) for prior in runs.joint_priors),

@@ -15,6 +15,7 @@ from seatrial.estimation.estimate.assemble import output_error_problem
 from seatrial.estimation.estimate.closed_loop import LoopEvidence, closed_loop, loop_evidence
 from seatrial.estimation.estimate.criterion_choice import PREDICTION_ERROR, CriterionChoice, choose_criterion
 from seatrial.estimation.estimate.disturbance_models import refuse_short_runs
+from seatrial.estimation.estimate.integration_steps import integration_text, with_steps_of_start
 from seatrial.estimation.estimate.intervals import (
     RUNS_FOR_JACKKNIFE,
     Uncertainty,
@@ -189,6 +190,8 @@ def estimate_model(
     if some is not None:
         report("start values: all samples")
         choice = choice_over_all(choice, runs)
+    if more := integration_text(choice.estimate.problem):
+        choice = choice.with_reasons(more)
     criterion = f"{choice.criterion}, Huber loss" if settings.robust else choice.criterion
     uncertainty = _uncertainty(choice, options, report)
     estimate = choice.estimate
@@ -324,9 +327,11 @@ def _fit_whole_runs(
         output_error_problem(model, runs, np.inf, settings, options.workers),
         noise=shooting.problem.noise,
         huber=shooting.problem.huber,
+        substeps=shooting.problem.substeps,
     )
     firsts = [int(np.flatnonzero(shooting.problem.data.run == r)[0]) for r in range(len(problem.data.runs))]
     local = shooting.optimum.local[firsts]
+    problem = with_steps_of_start(problem, shooting.common_parameters, local)
     if not np.isfinite(problem.cost(shooting.common_parameters, local)):
         return None
     return fit_output_error(

@@ -9,6 +9,7 @@ import numpy as np
 
 from seatrial.core.text.words import counted
 from seatrial.core.values import Array, InputError, ProgressReporter
+from seatrial.estimation.estimate.integration_steps import sufficient_steps_of_optimum
 from seatrial.estimation.estimate.settings import WHITE_INFLATION
 from seatrial.estimation.information.autocorrelation import autocorrelation, variance_inflation
 from seatrial.estimation.information.covariance import inverse
@@ -132,6 +133,9 @@ def fit_output_error(
     spent, settled = estimate.optimum.solution.evaluations, False
     if estimate.optimum.solution.status is Status.FAILED:
         return estimate
+    substeps = problem.substeps  # at a start far off more than near the optimum
+    if substeps > 1:
+        substeps = sufficient_steps_of_optimum(problem, estimate.optimum, 1)
     for k in range(rounds):
         noise = np.where(
             np.isfinite(stated_noise), stated_noise, residual_spread(estimate.problem, estimate.residuals())
@@ -145,8 +149,13 @@ def fit_output_error(
                 if k < colour_rounds
                 else estimate.problem.inflation
             ),
+            substeps=substeps,
         )
         settled = _is_settled(estimate.problem, again)
+        if settled or k == rounds - 1:
+            substeps = sufficient_steps_of_optimum(estimate.problem, estimate.optimum, substeps)
+            again = replace(again, substeps=substeps)
+            settled = settled and substeps == estimate.problem.substeps
         estimate = _search(
             again,
             estimate.common_parameters,

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from seatrial.core.results import Fit, Identifiability, Posterior, Profile
+from seatrial.core.results.missing_parts import MissingParts
 from seatrial.core.values import Finding
 from seatrial.core.values.versions import versions
 from seatrial.data.trial.approach import approach_condition
@@ -65,15 +66,36 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
     estimation = with_model_spread(selected.estimation, selected.tied)
     approach = approach_condition(runs.records, trial.model)
     assessment = _identifiability(task, estimation, approach, predicted.interval_basis.training_envelope)
-    shifts = estimated_value_shifts(estimation)
+    parts = MissingParts()
+    shifts = parts.computed("the effect of estimated values", lambda: estimated_value_shifts(estimation), ())
     given = {name for symmetry in assessment.structural for name in symmetry.parameters}  # said of all coefficients
     widened = with_estimated_values(estimation, [shift for shift in shifts if shift.name not in given])
     coefficients = fit_result.coefficients(widened, trial.truth, interval_ends(assessment.profiles, posterior))
     free = estimation.estimate.problem.free
-    responses = frequency_responses(estimation.model, predicted.predictions, task.outputs)
+    responses = parts.computed(
+        "the frequency responses",
+        lambda: frequency_responses(estimation.model, predicted.predictions, task.outputs),
+        (),
+    )
     predicted_runs = {p.record for p in predicted.predictions}
     scored = [r for r in task.records if r.record.name in predicted_runs]
-    roll = roll_characteristics(estimation.model, estimation.interval, free, runs.records, trial.ship)
+    roll = parts.computed(
+        "period, damping and metacentric height of roll",
+        lambda: roll_characteristics(estimation.model, estimation.interval, free, runs.records, trial.ship), None,
+    )  # fmt: skip
+    waves = parts.computed("the motions in waves", lambda: seakeeping(estimation.model, task.train, runs.length), None)
+    craft = parts.computed(
+        "speed, turn and stop of the craft",
+        lambda: thruster_craft(
+            estimation.model, runs.records, predicted.interval_basis, trial.ship.particulars.get("L", 1.0),
+            [p.measured for p in predicted.predictions if p.role == "validation"],
+        ),
+        None,
+    )  # fmt: skip
+    k_steps = parts.computed(
+        "the prediction some samples ahead",
+        lambda: k_step_errors(selected.estimation, scored, horizon_list(task.options.horizons)), (),
+    )  # fmt: skip
     return Fit(
         question=trial.question
         or f"Which {trial.model.name} model explains these records, and how well does it predict?",
@@ -95,7 +117,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
             *fit_result.bounds_hit(estimation), *fit_result.unconverged(estimation), *other_optima(estimation),
             *refuted_prior_findings(estimation),
             *abandoned_criterion_finding(estimation, runs.records),
-            *held_couplings(selected.estimation),
+            *parts.computed("the couplings held at zero", lambda: held_couplings(selected.estimation), ()),
             *course_finding(estimation.model, assessment.stability, approach),
             *varying_gain_finding(estimation, runs.records),
             *misfit_disturbance(
@@ -104,7 +126,10 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
             ),
             *short_record_findings(estimation, assessment.profiles), *closed_loop_findings(estimation),
             *(sampling_findings(posterior) if posterior else ()),
-            *needless_term_findings(estimation, predicted.predictions, assessment.stability),
+            *parts.computed(
+                "the terms that predictions do not need",
+                lambda: needless_term_findings(estimation, predicted.predictions, assessment.stability), (),
+            ),
             *predicted.findings,
             *response_findings(responses),
             *antenna_findings(predicted.predictions, runs.length),
@@ -114,6 +139,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
             *delay_findings(estimation),
             *one_speed_finding(roll, runs.records),
             *gyradius_findings(trial.ship, roll.gyradius if roll else None),
+            *parts.findings,
         ),
         records=tuple(r.record for r in task.records),
         seed=task.options.seed,
@@ -123,15 +149,12 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         noise_model=estimation.noise_model,
         candidate_models=selected.candidates,
         interval_basis=predicted.interval_basis,
-        seakeeping=seakeeping(estimation.model, task.train, runs.length),
+        seakeeping=waves,
         roll=roll,
         search_attempts=estimation.search_attempts,
-        thruster_craft=thruster_craft(
-            estimation.model, runs.records, predicted.interval_basis, trial.ship.particulars.get("L", 1.0),
-            [p.measured for p in predicted.predictions if p.role == "validation"],
-        ),
+        thruster_craft=craft,
         posterior=posterior,
-        k_step_errors=k_step_errors(selected.estimation, scored, horizon_list(task.options.horizons)),
+        k_step_errors=k_steps,
         frequency_responses=responses,
     )  # fmt: skip
 

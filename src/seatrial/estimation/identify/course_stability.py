@@ -28,7 +28,7 @@ def course_stability(
     model: Model, covariance: Array, degrees_of_freedom: float, approach: Mapping[str, float], length: float,
     ahead: float = DEFAULT_AHEAD, fastest: float = math.inf,
 ) -> Stability | None:  # fmt: skip
-    """Return the stability of the straight course; None where there is no yaw rate or no steady speed ahead.
+    """Return the stability of the straight course; None without a yaw rate, or a speed ahead that counts.
 
     Args:
         covariance: of the free coefficients, (n, n).
@@ -49,7 +49,7 @@ def course_stability(
         except InputError:  # it has no steady speed ahead
             return None
     speed = approach.get("u", 0.0)
-    if speed <= 0.0:
+    if speed <= 0.0 and "u" in model.states:
         return None
     inputs = np.array(
         [
@@ -57,7 +57,7 @@ def course_stability(
             for i in model.inputs
         ]
     )
-    return stability(model, covariance, degrees_of_freedom, speed, inputs, length)
+    return stability(model, covariance, degrees_of_freedom, speed if speed > 0.0 else None, inputs, length)
 
 
 def _over_speeds(
@@ -92,11 +92,19 @@ def course_finding(model: Model, course: Stability | None, approach: Mapping[str
         return ()
     return (Finding(
         Severity.INFO, COURSE_UNSTABLE, course.text,
-        f"C = {significant(course.index, 2)} [{significant(course.lower, 2)}, {significant(course.upper, 2)}]"
+        _index_text(course)
         + _turn_text(model, approach, course.speed),
         "steer it in a simulation by a helmsman or an autopilot, and judge predictions by windows",
         "without steering it leaves a straight course, and errors of open-loop predictions grow at that rate",
     ),)  # fmt: skip
+
+
+def _index_text(course: Stability) -> str:
+    """The index C; without the speed that makes it a number, the growth rate."""
+    if course.speed is not None or course.growth_rate is None:
+        return f"C = {significant(course.index, 2)} [{significant(course.lower, 2)}, {significant(course.upper, 2)}]"
+    low, high = (significant(end or 0.0, 2) for end in (course.growth_lower, course.growth_upper))
+    return f"growth rate {significant(course.growth_rate, 2)} 1/s [{low}, {high}]"
 
 
 def _turn_text(model: Model, approach: Mapping[str, float], speed: float | None) -> str:

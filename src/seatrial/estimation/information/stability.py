@@ -62,35 +62,35 @@ def growth_rate(model: Model, speed: float, inputs: Array) -> float:
 
 
 def stability(
-    model: Model, covariance: Array, degrees_of_freedom: float, speed: float, inputs: Array, length: float
+    model: Model, covariance: Array, degrees_of_freedom: float, speed: float | None, inputs: Array, length: float
 ) -> Stability | None:
     """Return index and growth rate with 95 % intervals, by the delta method over the free coefficients.
 
     The growth rate is the largest real part of the eigenvalues of sway and yaw. None where the model has no yaw rate.
 
     Args:
-        covariance: of the free coefficients, (n, n). speed: straight ahead, m/s. inputs: (nu,), the model's signs.
-        length: m.
+        covariance: of the free coefficients, (n, n). inputs: (nu,), the model's signs. length: m.
+        speed: straight ahead, m/s; None: not known, of a model that does not depend on it. C is then that of a second.
     """
     if not lateral_states(model):
         return None
-    unit = length / speed
+    unit, ahead = (1.0, 1.0) if speed is None else (length / speed, speed)
 
     def index_of(one: Model) -> float:
-        return _index(straight_course_rates(one, speed, inputs), unit)
+        return _index(straight_course_rates(one, ahead, inputs), unit)
 
     def growth_of(one: Model) -> float:
-        return growth_rate(one, speed, inputs)
+        return growth_rate(one, ahead, inputs)
 
     t = two_sided_quantile(STORED_LEVEL, degrees_of_freedom)
     (index, wide), (growth, open_by) = (
         (value_of(model), t * _deviation(model, value_of, covariance)) for value_of in (index_of, growth_of)
     )
-    starboard, port = (_index(rates, unit) for rates in one_sided_rates(model, speed, inputs))
+    starboard, port = (_index(rates, unit) for rates in one_sided_rates(model, ahead, inputs))
     noun = "craft" if model.equations.layout else "ship"
     is_known = abs(index) > wide or abs(growth) > open_by
     text = _stability_text(noun, speed, is_known=is_known, is_stable=growth < 0.0)
-    text += _growth_text(growth, open_by, unit)
+    text += _growth_text(growth, open_by, None if speed is None else unit)
     return Stability(
         index, index - wide, index + wide, text + _asymmetry_text(starboard, port), speed, growth, growth - open_by,
         growth + open_by,
@@ -111,13 +111,14 @@ def _deviation(model: Model, value_of: Callable[[Model], float], covariance: Arr
     return float(np.sqrt(max(np.array(slope) @ covariance @ np.array(slope), 0.0)))
 
 
-def _stability_text(noun: str, speed: float, *, is_known: bool, is_stable: bool) -> str:
+def _stability_text(noun: str, speed: float | None, *, is_known: bool, is_stable: bool) -> str:
+    at = "" if speed is None else f" at {significant(speed, 2)} m/s"
     if is_known:
-        return f"the {noun} is course {'stable' if is_stable else 'unstable'} at {significant(speed, 2)} m/s"
-    return f"whether the {noun} is course stable at {significant(speed, 2)} m/s cannot be determined"
+        return f"the {noun} is course {'stable' if is_stable else 'unstable'}{at}"
+    return f"whether the {noun} is course stable{at} cannot be determined"
 
 
-def _growth_text(growth: float, half: float, unit: float) -> str:
+def _growth_text(growth: float, half: float, unit: float | None) -> str:
     """Return how fast a deviation dies out or grows; with the interval of that time where the rate has one sign."""
     if growth == 0.0:
         return ""
@@ -127,8 +128,8 @@ def _growth_text(growth: float, half: float, unit: float) -> str:
     else:
         seconds += " s"
     verb = "dies out" if growth < 0 else "grows"
-    lengths = significant(abs(1.0 / growth) / unit, 2)
-    return f": at the estimate a deviation {verb} by a factor e in {seconds}, {lengths} ship lengths"
+    lengths = "" if unit is None else f", {significant(abs(1.0 / growth) / unit, 2)} ship lengths"
+    return f": at the estimate a deviation {verb} by a factor e in {seconds}{lengths}"
 
 
 def _asymmetry_text(starboard: float, port: float) -> str:

@@ -100,7 +100,7 @@ def simulate_points(
         dt,
         model.observables,
         corrections=tuple(n.correction for n in template.nuisances),
-        substeps=template.substeps,
+        substeps=template.substeps_at(dt),
     )
     y, _ = batch.simulate(0, count, start, values, np.ascontiguousarray(nuisances[:, split:]))
     return y.reshape(count, rows, -1)

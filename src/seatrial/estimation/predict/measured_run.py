@@ -8,6 +8,7 @@ from seatrial.core.equations import Model
 from seatrial.core.results import SessionOffset
 from seatrial.core.values import InputError, Prior, Record
 from seatrial.data.check import sample_noise
+from seatrial.estimation.estimate.integration_steps import with_steps_of_start
 from seatrial.estimation.estimate.settings import INITIAL_STATE_SHIP_LENGTHS
 from seatrial.estimation.estimate.time_scale import characteristic_time
 from seatrial.estimation.predict.open_loop import simulate_open_loop
@@ -36,7 +37,9 @@ def simulate_measured(
     """
     seconds = _start_seconds(model, record, length)
     values = np.array([one.value_in(session) for one in offsets])
-    return simulate_open_loop(_template(model, record, offsets), model, record, values, seconds).record, seconds
+    template = _template(model, record, offsets)
+    template = with_steps_of_start(template, values, template.measured_initial_states())
+    return simulate_open_loop(template, model, record, values, seconds).record, seconds
 
 
 def _template(model: Model, record: Record, offsets: Sequence[SessionOffset]) -> OutputError:

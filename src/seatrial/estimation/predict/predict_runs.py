@@ -367,7 +367,7 @@ def process_noise_floor(
     inputs = inputs_of(model, record)
     run = KalmanFilter(
         model, inputs, np.array([0, len(inputs)]), record.dt, template.data.outputs,
-        corrections=tuple(n.correction for n in template.nuisances), substeps=template.substeps,
+        corrections=tuple(n.correction for n in template.nuisances), substeps=template.substeps_at(record.dt),
         driven=tuple(intensities),
     )  # fmt: skip
     at = FilterPoint(start[None], np.zeros((1, len(start))), values[None], nuisances[None, split:],

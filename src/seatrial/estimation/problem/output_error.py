@@ -18,6 +18,7 @@ from seatrial.estimation.problem.population import SessionPopulation
 from seatrial.estimation.problem.segments import Segments
 from seatrial.numerics.optimise import NormalEquations
 from seatrial.numerics.workers import map_in_threads
+from seatrial.physics.simulate.actuators import ActuatorHistory
 from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch
 from seatrial.physics.simulate.linear import batch_class
 
@@ -76,6 +77,7 @@ class OutputError:
         session_parameters: model parameters estimated once a session (a current), with their priors.
         population: how nuisances and session parameters are distributed over sessions; None: as declared.
         pinned: shared unknowns held at these values, for predictions: only initial states move.
+        substeps: Runge-Kutta steps in a sample (`integration_steps`).
         extra_terms: data besides the records that say something about the model parameters (static force points).
         prior_terms: what is known of several model parameters together, besides the priors of each.
     """
@@ -114,9 +116,18 @@ class OutputError:
         )  # fmt: skip
         return replace(batch, initial_states=(*self._starts_of(batch), *self._actuators))
 
+    def substeps_at(self, dt: float) -> int:
+        """Return the number of steps in a sample of `dt` [s] that are no longer than the problem's own."""
+        # rounding of a quotient of time steps; chosen
+        return max(1, int(np.ceil(self.substeps * dt / self.data.dt - 1e-6)))
+
+    @cached_property
+    def _history(self) -> ActuatorHistory | None:
+        return None if self.data.history is None else replace(self.data.history, substeps=self.substeps)
+
     @property
     def _actuators(self) -> tuple[str, ...]:
-        return () if self.data.history is None else self.data.history.states
+        return () if self._history is None else self._history.states
 
     def _starts_of(self, batch: SegmentBatch) -> tuple[str, ...]:
         return tuple(s for s in batch.influential_states() if s not in self._actuators)
@@ -226,9 +237,9 @@ class OutputError:
         start = np.zeros((count, len(self.model.states)))
         start[:, [self.model.states.index(s) for s in self.starts]] = local
         corrections = np.ascontiguousarray(own[:, split:])
-        if self.data.history is not None:
+        if self._history is not None:
             first = self._first_segments
-            known = self.data.history.starts(values[first], corrections[first], self._batch.corrections)
+            known = self._history.starts(values[first], corrections[first], self._batch.corrections)
             start[:, [self.model.states.index(s) for s in self._actuators]] = known
         return start, values, corrections
 
@@ -241,10 +252,10 @@ class OutputError:
 
     def _actuator_slopes(self, values: Array, corrections: Array) -> Array | None:
         """Derivatives of the known initial states by a session's columns, (segments, actuators, n)."""
-        if self.data.history is None:
+        if self._history is None:
             return None
         first, batch = self._first_segments, self._batch
-        return self.data.history.slopes(batch.parameters, values[first], corrections[first], batch.corrections)
+        return self._history.slopes(batch.parameters, values[first], corrections[first], batch.corrections)
 
     def _differentiate(
         self, bounds: tuple[int, int], start: Array, values: Array, corrections: Array, by_actuator: Array | None

@@ -3,9 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, Channel, InputError, Record, frozen
 from seatrial.physics.hydro.dispersion import G
-from seatrial.physics.hydro.excitation import Complex, Excitation, encounter_frequency
+from seatrial.physics.hydro.excitation import BoxHull, Complex, Excitation, encounter_frequency
 from seatrial.physics.sea.encounter import speed_factor, wave_frequency
 from seatrial.physics.sea.spectrum import Spectrum
 
@@ -18,6 +19,8 @@ _DRIFT_BINS = 4
 # periods of the slowest waves by which the record is continued, and from which; ridge of the predictor
 _EXTRAPOLATED_PERIODS, _PREDICTOR_PERIODS, _RIDGE = 2.0, 1.5, 1e-7
 _MARGINS = 0.8, 1.2  # of the band's ends, within which the filter passes; chosen
+_MOTIONS = ("z", "theta")
+_MOST_BEYOND = 0.01  # of a motion's energy beyond the range of the forces: a tenth of its amplitude there; chosen
 _STEPS_PER_PERIOD = 5.0  # of the predictor, in the shortest period; chosen
 
 
@@ -31,7 +34,7 @@ def with_wave_forces(record: Record, excitation: Excitation, U: float, beta: flo
 
     Raises:
         InputError: no elevation, gaps in it, a following sea (one frequency of encounter has three waves there), or a
-            record too short for its longest waves.
+            record too short for its longest waves, or one in which waves beyond the range of the forces matter.
     """
     if {"F3", "M5"} <= set(record.channels):
         return _with_encounter_channels(record, U)
@@ -54,13 +57,49 @@ def with_wave_forces(record: Record, excitation: Excitation, U: float, beta: flo
             f"record '{record.name}' of {record.duration:.3g} s is too short for its longest waves, met every "
             f"{2.0 * np.pi / band[0]:.3g} s; record at least {_NEEDED_PERIODS * lost:.0f} s"
         )
+    range_step = _beyond_forces(record, band, excitation, U, beta)
     forces = _filtered_forces(level, record.dt, band, excitation, U, beta, record.channel("zeta").reference_point)
     made = {name: Channel.from_notation(name, frozen(forces[:, j])) for j, name in enumerate(("F3", "M5"))}
     whole = Record(
         record.name, record.time, {**record.channels, **made}, record.kind,
-        record.provenance.with_step("wave forces from the elevation"),
+        record.provenance.with_step(f"wave forces from the elevation{range_step}"),
     )  # fmt: skip
     return _with_encounter_channels(whole.between(float(record.time[0]) + lost, float(record.time[-1]) - lost), U)
+
+
+def _known_range(excitation: Excitation) -> tuple[float, float]:
+    """Return the wave frequencies [rad/s] that have forces; those of a box beyond its own range are small."""
+    return (0.0, np.inf) if isinstance(excitation, BoxHull) else excitation.frequency_range
+
+
+def _beyond_forces(record: Record, band: tuple[float, float], excitation: Excitation, U: float, beta: float) -> str:
+    """Return what lies beyond the frequencies of the forces, to be said with the record; empty where nothing does.
+
+    Raises:
+        InputError: motions of which so much lies there that the forces left out would show in them.
+    """
+    low, high = _known_range(excitation)
+    omega_e = 2.0 * np.pi * np.fft.rfftfreq(len(record), record.dt)
+    met = (omega_e >= _MARGINS[0] * band[0]) & (omega_e <= _MARGINS[1] * band[1])
+    omega = np.zeros(len(omega_e))
+    omega[met] = wave_frequency(omega_e[met], U, beta)
+    beyond = met & ((omega < low) | (omega > high))
+    if not np.any(beyond):
+        return ""
+    shares = {name: _share(record[name], beyond, met) for name in ("zeta", *_MOTIONS) if name in record}
+    text = f"{low:g} to {high:g} rad/s; beyond lies " + enumeration(
+        [f"{100.0 * share:.2g} % of the energy of '{name}'" for name, share in shares.items()]
+    )
+    if max((share for name, share in shares.items() if name != "zeta"), default=0.0) > _MOST_BEYOND:
+        raise InputError(f"record '{record.name}': the wave forces are known from {text}; give forces of a wider range")
+    return f" at {text}"
+
+
+def _share(values: Array, beyond: NDArray[np.bool_], met: NDArray[np.bool_]) -> float:
+    """Return the share of a channel's energy at the frequencies that are met which lies beyond, -."""
+    known = np.nan_to_num(values - np.nanmean(values))
+    power = np.abs(np.fft.rfft(known * np.hanning(len(known)))) ** 2
+    return float(np.sum(power[beyond]) / max(np.sum(power[met]), 1e-300))  # above zero, for a division
 
 
 def _with_encounter_channels(record: Record, U: float) -> Record:
@@ -106,7 +145,10 @@ def _filtered_forces(
     omega_e = 2.0 * np.pi * np.fft.rfftfreq(len(padded), dt)
     inside = (omega_e >= _MARGINS[0] * band[0]) & (omega_e <= _MARGINS[1] * band[1])
     transfer: NDArray[np.complex128] = np.zeros((len(omega_e), 2), dtype=np.complex128)
+    low, high = _known_range(excitation)
     omega = wave_frequency(omega_e[inside], U, beta)
+    inside[inside] = (omega >= low) & (omega <= high)
+    omega = omega[(omega >= low) & (omega <= high)]
     to_midship = np.exp(1j * omega**2 / G * place * np.cos(beta))
     F3, M5 = excitation.forces(omega, U, beta)
     transfer[inside, 0], transfer[inside, 1] = to_midship * F3, to_midship * M5

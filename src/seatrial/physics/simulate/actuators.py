@@ -9,6 +9,7 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.values import NOTATION, Array, Index
 from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch
+from seatrial.physics.simulate.steps import is_within_range, sufficient_substeps
 
 _SETTLING_STEP_S = 0.05  # of a simulation until actuators have settled; chosen: the least lag there is
 _SETTLING_S = 60.0
@@ -54,6 +55,7 @@ class ActuatorHistory:
         offsets: (runs + 1,), where each run's rows begin.
         run, row: of each segment, its run and the row of its first sample, both (segments,).
         session: of each run, (runs,).
+        substeps: Runge-Kutta steps in a sample.
     """
 
     model: Model
@@ -63,6 +65,7 @@ class ActuatorHistory:
     run: Index
     row: Index
     session: Index
+    substeps: int = 1
 
     @classmethod
     def from_runs(
@@ -116,7 +119,9 @@ class ActuatorHistory:
         return np.zeros((len(self.offsets) - 1, len(self.model.states)))
 
     def _batch(self, names: tuple[str, ...], kinds: tuple[InputCorrection, ...]) -> SegmentBatch:
-        return SegmentBatch(self.model, self.inputs, self.offsets, self.dt, self.model.states, names, kinds)
+        return SegmentBatch(
+            self.model, self.inputs, self.offsets, self.dt, self.model.states, names, kinds, (), self.substeps
+        )
 
 
 def actuator_motion(model: Model, inputs: Array, dt: float) -> dict[str, Array]:
@@ -126,7 +131,11 @@ def actuator_motion(model: Model, inputs: Array, dt: float) -> dict[str, Array]:
     if history is None:
         return {}
     every = replace(history, run=np.zeros(len(inputs), dtype=np.int64), row=history.row[0] + np.arange(len(inputs)))
-    columns = every.starts(model.parameters.values[None], np.zeros((1, 0)), ())
+
+    def motion(substeps: int) -> Array:
+        return replace(every, substeps=substeps).starts(model.parameters.values[None], np.zeros((1, 0)), ())
+
+    columns = motion(sufficient_substeps(motion, is_within_range))
     return dict(zip(every.states, columns.T, strict=True))
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 
@@ -11,11 +12,14 @@ from seatrial.core.values.between import Between
 from seatrial.physics.simulate.channels import inputs_of, record_of
 from seatrial.physics.simulate.divergence import require_bounded
 from seatrial.physics.simulate.linear import batch_class
+from seatrial.physics.simulate.steps import is_within_range, sufficient_substeps
 
 ZERO_STARTS = ("x0", "y0", "psi")
 
 
-def replay(model: Model, record: Record, initial: Mapping[str, float] | None = None, substeps: int = 1) -> Record:
+def replay(
+    model: Model, record: Record, initial: Mapping[str, float] | None = None, substeps: int | None = None
+) -> Record:
     """Simulate `model` from the record's inputs: classical Runge-Kutta, inputs linear between samples; exact if affine.
 
     Args:
@@ -23,7 +27,8 @@ def replay(model: Model, record: Record, initial: Mapping[str, float] | None = N
         record: its input channels are used, whatever their sign; absent wind channels mean still air.
         initial: state -> value in SI units and notation signs; the others start at the record's first sample where it
             has the channel, x0, y0 and psi otherwise at zero.
-        substeps: Runge-Kutta steps, or pieces of a smooth input of an affine model, in each sample.
+        substeps: Runge-Kutta steps, or pieces of a smooth input of an affine model, in each sample; by default as many
+            as the motion needs (`steps.sufficient_substeps`).
 
     Returns:
         A simulated record on the same time base: states, measurable outputs, inputs.
@@ -49,19 +54,30 @@ def _course(is_held: bool) -> Between:
     return "held" if is_held else "straight"
 
 
-def trajectory(model: Model, inputs: Array, dt: float, start: Array, substeps: int = 1) -> tuple[Array, Array]:
+def trajectory(
+    model: Model, inputs: Array, dt: float, start: Array, substeps: int | None = None
+) -> tuple[Array, Array]:
     """Return states (n, nx) and outputs (n, ny) from inputs (n, nu) in the model's signs; NaN after a divergence.
+
+    substeps: as of `replay`.
 
     Raises:
         InputError: a parameter has no value, or `substeps` is less than one.
     """
     if model.parameters.missing:
         raise InputError(f"model '{model.name}' has no value for {', '.join(model.parameters.missing)}")
-    if substeps < 1:
+    if substeps is not None and substeps < 1:
         raise InputError(f"{substeps} sub-steps are less than one")
-    nx = len(model.states)
-    batch = batch_class(model)(model, inputs, np.array([0, len(inputs)]), dt, model.observables, substeps=substeps)
-    y, _ = batch.simulate(0, 1, start[None], model.parameters.values[None], np.empty((1, 0)))
+    batch = batch_class(model)(model, inputs, np.array([0, len(inputs)]), dt, model.observables)
+
+    @cache
+    def simulated(count: int) -> Array:
+        one = replace(batch, substeps=count)
+        return one.simulate(0, 1, start[None], model.parameters.values[None], np.empty((1, 0)))[0]
+
+    if substeps is None:
+        substeps = 1 if model.is_affine else sufficient_substeps(simulated, is_within_range)
+    y, nx = simulated(substeps), len(model.states)
     return np.ascontiguousarray(y[:, :nx]), y[:, nx:]
 
 

@@ -13,13 +13,24 @@ from seatrial.physics.simulate.channels import inputs_of
 
 _WITH_HEADING = ", or positions and heading"  # from which u and v are derived
 _SMOOTHING_SAMPLES = 15  # window of the local polynomials, samples; chosen
+_LEAST_SAMPLES = 5  # of a window whose cubic is not fixed by its samples
+_PERIOD_SHARE = 0.5  # of the period of most power: the longest window along which a cubic follows it; chosen
 
 
 def _slope(record: Record, symbol: str) -> Array:
-    """Derivative by local cubic polynomials (Savitzky & Golay 1964) over 15 samples."""
+    """Derivative by local cubic polynomials (Savitzky & Golay 1964) over 15 samples, fewer where the motion is fast."""
     values = record[symbol]
-    width = min(_SMOOTHING_SAMPLES, len(values) - 1 + len(values) % 2)
+    width = min(_smoothing_width(values), len(values) - 1 + len(values) % 2)
     return smoothed_locally(values, width, min(3, width - 1), 1, record.dt)
+
+
+def _smoothing_width(values: Array) -> int:
+    """Return the samples of a window, odd: no more of them than a share of the period at which values vary most."""
+    known = values[np.isfinite(values)]
+    power = np.abs(np.fft.rfft(known - known.mean())) if len(known) else np.zeros(1)
+    cycles = int(np.argmax(power))
+    longest = int(_PERIOD_SHARE * len(known) / cycles) if cycles else _SMOOTHING_SAMPLES
+    return min(max(longest - 1 + longest % 2, _LEAST_SAMPLES), _SMOOTHING_SAMPLES)
 
 
 def hidden_states(model: Model, records: Sequence[Record]) -> tuple[str, ...]:
@@ -27,6 +38,12 @@ def hidden_states(model: Model, records: Sequence[Record]) -> tuple[str, ...]:
     hidden = tuple(s for s in model.states if s not in NOTATION and not is_late(s) and not all(s in r for r in records))
     following = actuator_states(model) if hidden else ()
     return tuple(s for s in hidden if s not in following)
+
+
+def rest_parameter(model: Model, state: str) -> str:
+    """Return the parameter for a state's value at rest, ``phi_0`` of ``phi``; empty where the model has none."""
+    name = f"{state}_0"
+    return name if state in model.states and name in model.parameters else ""
 
 
 def unobserved_states(model: Model, record: Record) -> tuple[str, ...]:

@@ -95,7 +95,12 @@ def warm_start(previous: WindowEstimate, model: Model, runs: Runs, settings: Est
         InputError: the records cannot be fitted at all.
     """
     last = _reweighted_problem(previous)
-    problem = replace(output_error_problem(model, runs, np.inf, settings), noise=last.noise, inflation=last.inflation)
+    problem = replace(
+        output_error_problem(model, runs, np.inf, settings),
+        noise=last.noise,
+        inflation=last.inflation,
+        substeps=last.substeps,
+    )
     shared = problem.start()
     shared[: len(problem.free)] = previous.value
     local = problem.measured_initial_states()
@@ -113,7 +118,7 @@ def refuse_diverging(estimate: PointEstimate, runs: Runs, settings: EstimateSett
         InputError: they do.
     """
     problem = output_error_problem(estimate.problem.model, runs, np.inf, settings)
-    problem = replace(problem, nuisances=estimate.problem.nuisances)
+    problem = replace(problem, nuisances=estimate.problem.nuisances, substeps=estimate.problem.substeps)
     with np.errstate(all="ignore"):
         simulated = problem.simulated_outputs(estimate.common_parameters, problem.measured_initial_states())
     if not np.all(np.isfinite(simulated)):
