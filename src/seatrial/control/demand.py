@@ -22,7 +22,7 @@ from seatrial.core.values import (
     frozen,
 )
 from seatrial.physics.loops import TransferLoop
-from seatrial.physics.loops.autopilot import FeedForward, acceleration_feed_forward, mean_pole
+from seatrial.physics.loops.autopilot import START, FeedForward, acceleration_feed_forward, working_frequency
 from seatrial.physics.simulate.closed_loop import REFERENCE, ActuatorLimits, ClosedLoop
 
 DEMAND = "demand"
@@ -193,10 +193,11 @@ def _programmes(task: TuningTask, loop: TransferLoop, gains: Array, demand: Dema
 
 
 def reference_rate(task: TuningTask, loop: TransferLoop, demand: Demand) -> float:
-    """Return the rate of the output that half the actuator's limit keeps up, at the plant's mean pole at most."""
-    omega = 1.0 / demand.time_constant
-    if np.any(loop.plant.poles != 0.0):
-        omega = min(omega, mean_pole(loop.plant))
+    """Return the rate of the output that half the actuator's limit keeps up, at the reference's frequency.
+
+    At most at the first bandwidth of the gains: faster references are not followed in any case.
+    """
+    omega = min(1.0 / demand.time_constant, START * working_frequency(loop.plant))
     return 0.5 * task.constraints.limit * omega * float(np.abs(loop.plant.frequency_response(np.array([omega])))[0])
 
 

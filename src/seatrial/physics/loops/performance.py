@@ -65,7 +65,7 @@ class Performance:
                 f"loop '{self.loop.name}' in {self.spectrum.description} knows no motion at "
                 f"{', '.join(f'{x:g} m' for x in sorted(points))} forward of the origin"
             )
-        dead = self.spectrum.omega_e[self.loop.plant.frequency_response(self.spectrum.omega_e) == 0.0]
+        dead = self.spectrum.omega_e[self.loop.plant_response(self.spectrum.omega_e) == 0.0]
         if dead.size:
             raise InputError(
                 f"the actuator {self.loop.actuator} of loop '{self.loop.name}' does not move {self.loop.output} at "
@@ -77,7 +77,7 @@ class Performance:
         """What |S|^2, |L S|^2 and both weigh at each node: |W D|^2 and |W D / P|^2 times the energy; see the module."""
         w = self.spectrum.omega_e
         free = np.abs(self.loop.disturbance.frequency_response(w)) ** 2 * self.spectrum.energy
-        moved = free / np.abs(self.loop.plant.frequency_response(w)) ** 2
+        moved = free / np.abs(self.loop.plant_response(w)) ** 2
         outputs = [row.magnitude(w) ** 2 * free for row in self.variances if row.signal is LoopSignal.OUTPUT]
         actuators = [row.magnitude(w) ** 2 * moved for row in self.variances if row.signal is LoopSignal.ACTUATOR]
         points = [row.magnitude(w) ** 2 * self._point_energies(row.x)
@@ -88,7 +88,7 @@ class Performance:
         """Return energies of q and r and their cross spectrum's two parts at the point x, (4, n)."""
         place = [point.x for point in self.loop.points].index(x)
         q, w = self.spectrum.points[place], self.spectrum.omega_e
-        ratio = self.loop.points[place].plant.frequency_response(w) / self.loop.plant.frequency_response(w)
+        ratio = self.loop.points[place].plant.frequency_response(w) / self.loop.plant_response(w)
         moved = ratio * self.loop.disturbance.frequency_response(w)
         common = np.conj(moved) * q.cross
         of_r = q.energy - 2.0 * common.real + np.abs(moved) ** 2 * self.spectrum.energy

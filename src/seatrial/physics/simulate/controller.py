@@ -10,9 +10,10 @@ from functools import reduce
 import numpy as np
 from scipy.linalg import expm
 
-from seatrial.core.values import Array
+from seatrial.core.values import Array, InputError
 from seatrial.physics.loops import Block, TransferLoop
-from seatrial.physics.loops.state_space import controllable_form
+from seatrial.physics.loops.autopilot import working_frequency
+from seatrial.physics.loops.block import controllable_form
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,8 +22,7 @@ class ControllerStateSpace:
 
     Attributes:
         A: (n, n); b, c: (n,).
-        is_slow: which states belong to terms with a pole nearer the origin than every pole of the plant but its
-            integrators, (n,): those that wind up.
+        is_slow: which states belong to terms with a pole below the plant's working frequency, (n,): those that wind up.
         slow_rate: row (n + 1,) over [x, e] that gives the rate of change of the slow terms' share of the order.
     """
 
@@ -56,7 +56,7 @@ def controller_state_space(loop: TransferLoop, gains: Array) -> ControllerStateS
     """Return sensor, terms with those gains (g,), filters and servo in a row."""
     seen = reduce(_append_block, loop.sensor, _UNIT_GAIN)
     made = replace(seen, c=np.zeros(len(seen.c)), d=0.0)
-    slowest = _slowest_pole(loop.plant)
+    slowest = _slow_below(loop.plant)
     for gain, term in zip(gains, loop.terms, strict=True):
         made = _add_term(made, seen, float(gain), term.block, slowest)
     share = float(np.prod([np.sign(block.gain) for block in (*loop.filters, *loop.servo)]))
@@ -70,10 +70,12 @@ def controller_state_space(loop: TransferLoop, gains: Array) -> ControllerStateS
 _AT_ORIGIN = 1e-9  # rad/s, below which a pole integrates: rounding
 
 
-def _slowest_pole(plant: Block) -> float:
-    """Return the plant's pole nearest the origin but not at it, rad/s; zero where it has none."""
-    sizes = np.abs(plant.poles)
-    return float(sizes[sizes > _AT_ORIGIN].min(initial=np.inf)) if np.any(sizes > _AT_ORIGIN) else 0.0
+def _slow_below(plant: Block) -> float:
+    """Return the working frequency of the plant [rad/s]; zero where it has none."""
+    try:
+        return working_frequency(plant)
+    except InputError:
+        return 0.0
 
 
 def _append_block(first: ControllerStateSpace, block: Block) -> ControllerStateSpace:
