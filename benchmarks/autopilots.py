@@ -22,7 +22,7 @@ from seatrial.core.values import Array
 from seatrial.physics.loops.autopilot import heading_gains_at, working_frequency
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
-BANDWIDTHS = (0.75, 1.5, 3.0)  # of the closed loops of rivals over the plant's working frequency; spread about the usual
+BANDWIDTHS = (0.75, 1.5, 3.0)  # of rivals' closed loops over the plant's working frequency; spread about the usual
 
 
 def run() -> list[Line]:

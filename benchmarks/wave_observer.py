@@ -28,7 +28,7 @@ WAVE_DAMPING, NOTCH_DAMPING = 0.1, 1.0  # of the observer's waves and of the not
 SHARES = (0.1, 0.25, 0.5)  # rms of the rudder rate over the largest that the loop file allows; spread
 GENERATIONS, POPULATION, SEED = 80, 12, 1  # of the search
 PENALTY = 10.0  # of what is not kept, on the logarithm of the heading's rms
-SAMPLES, LOWEST, HIGHEST = 400, 1e-2, 1e3  # frequencies of Ms, from and to these multiples of the plant's working frequency
+SAMPLES, LOWEST, HIGHEST = 400, 1e-2, 1e3  # frequencies of Ms, as multiples of the plant's working frequency
 DECADES = 2.0  # about the gains of pole placement, that are searched
 
 
@@ -84,7 +84,8 @@ class Course:
     @cached_property
     def gains(self) -> Array:
         """KP, KI, KD of pole placement at one and a half times the working frequency."""
-        return np.array([*heading_gains_at(self.task.loop.plant, 1.5 * working_frequency(self.task.loop.plant)).values()])
+        plant = self.task.loop.plant
+        return np.array([*heading_gains_at(plant, 1.5 * working_frequency(plant)).values()])
 
     def is_stable(self, one: Controller) -> bool:
         A, b, c, _ = self.plant

@@ -55,7 +55,7 @@ def _candidates(judge: GainEvaluator, front: ParetoFront) -> list[_Candidate]:
 
 
 def _candidates_by_rate(judge: GainEvaluator, front: ParetoFront) -> list[_Candidate]:
-    """Return the gains that leave least of the motion at rates of the actuator spread evenly over the front, in decades.
+    """Return the gains that leave least of the motion at actuator rates spread evenly over the front, in decades.
 
     Rates are those of the worst disturbance. Each set is pressed against its rate, so that the candidates are what the
     loop is and not where a search has met its front.

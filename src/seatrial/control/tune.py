@@ -118,7 +118,7 @@ def tune(
         robustness=_robustness(task, choice, own.designs, rivals),
         track=checks.track,
         station=checks.station,
-        discrete=discrete_controller(choice.evaluator.loop.with_gains(choice.gains), task.sample_s),
+        discrete=discrete_controller(task, choice.evaluator.loop.with_gains(choice.gains)),
     )
 
 

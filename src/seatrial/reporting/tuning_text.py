@@ -214,6 +214,19 @@ def demand_sentence(m: ManoeuvreResponse) -> str:
     return f"{text}."
 
 
+def reference_sentence(tuning: Tuning) -> str:
+    """Return what the loop follows in place of an order; nothing where it follows none."""
+    made = None if tuning.discrete is None else tuning.discrete.reference
+    if made is None:
+        return ""
+    text = f"What is ordered goes through a critically damped filter of {significant(made.time_constant, 3)} s"
+    if math.isfinite(made.rate):
+        factor, unit = channel_display_unit(tuning.output)
+        ending = "1/s" if unit == "1" else f"{unit}/s"
+        text += f", no faster than {significant(made.rate * factor, 3)} {ending}"
+    return f"{text}."
+
+
 def _overshoot_text(share: float) -> str:
     return f"overshoots by {percent(share)}" if share > 0.0 else "does not overshoot"
 

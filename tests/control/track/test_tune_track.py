@@ -40,7 +40,7 @@ def made(task: TuningTask, demand: TrackDemand) -> TrackKeeping:
 def test_margins_are_those_of_python_control(made: TrackKeeping, task: TuningTask) -> None:
     """The heading loop closed by its feedback, the guidance as a transfer function."""
     heading = heading_loop_of(task, task.loop)
-    K = python_control.controller_transfer_function(task.loop)
+    K = python_control.controller_transfer_function(task.loop.continuous)
     rudder_to_y = control.tf(list(heading.rudder.track.num), list(heading.rudder.track.den))
     rudder_to_psi = control.tf(list(heading.rudder.heading.num), list(heading.rudder.heading.den))
     ordered = control.feedback(K, rudder_to_psi)

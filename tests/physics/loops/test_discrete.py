@@ -33,7 +33,7 @@ def test_at_low_frequencies_it_answers_as_the_block(block: Block) -> None:
     np.testing.assert_allclose(response, block.frequency_response(omega), rtol=1e-3)
 
 
-def test_the_default_sample_time_costs_three_degrees_where_the_loop_is_frailest() -> None:
+def test_the_default_sample_time_costs_six_degrees_where_the_loop_is_frailest() -> None:
     T = default_sample_time(fin_loop())
     assert T in (0.01, 0.02, 0.05, 0.1)
 

@@ -13,6 +13,7 @@ from seatrial.core.results.tuning import CornerResponse
 from seatrial.core.values import Array, Channel, DivergedError, InputError, Provenance, Record, RecordKind, frozen
 from seatrial.physics.loops import TransferLoop
 from seatrial.physics.simulate.closed_loop import ActuatorLimits, ClosedLoop
+from seatrial.physics.simulate.sampled_controller import simulation_step
 from seatrial.physics.simulate.track_following import LineOfSight, PlannedTrack, TrackRun, follow_track
 
 # time constants Delta / U of the track before and after the corner; chosen
@@ -59,8 +60,10 @@ class CornerTrial:
 
     @property
     def _step(self) -> float:
-        fastest = float(np.abs(self.heading.loop.closed_loop_poles).max())
-        return max(_STEP_SHARE / fastest, (_BEFORE + _AFTER) * self._time / _MOST_STEPS)
+        loop = self.heading.loop
+        moving = loop.closed_loop_poles if loop.sampling is None else loop.plant.poles
+        longest = max(_STEP_SHARE / float(np.abs(moving).max()), (_BEFORE + _AFTER) * self._time / _MOST_STEPS)
+        return simulation_step(loop.sampling, longest)
 
     def _run(self, ship: TrimmedShip, track: PlannedTrack) -> TrackRun:
         """Return the run of a craft that a steady current sets towards the outside of the turn."""

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.control.demand import (
+    feed_forward,
     reference_model,
     reference_rate,
     relative_overshoot,
@@ -26,7 +27,7 @@ from seatrial.core.results.verification import VerifiedChange, VerifiedQuantity
 from seatrial.core.values import Array, InputError, Record, frozen
 from seatrial.core.values.channel_text import channel_unit
 from seatrial.physics.loops import TransferLoop
-from seatrial.physics.loops.autopilot import FeedForward, acceleration_feed_forward
+from seatrial.physics.loops.autopilot import FeedForward
 from seatrial.physics.simulate.closed_loop import ActuatorLimits
 
 SHIPS, WEATHERS = 40, 10  # ships drawn from the fit, and moments of the log's weather for each; chosen
@@ -100,6 +101,7 @@ def verify_changes(task: TuningTask, gains: Array, records: Sequence[Record], se
 def _answer(task: TuningTask, ship: TrimmedShip, loop: TransferLoop, gains: Array, change: LoggedChange) -> _Answer:
     """Return what a ship does with the change as it was ordered, without weather."""
     demand: Demand = task.demand  # type: ignore[assignment]
+    loop = loop.continuous
     fastest = float(np.abs(loop.closed_loop_poles).max())
     parts = max(1, math.ceil(change.dt * fastest / _STEP_SHARE))
     count, dt = (len(change.order) - 1) * parts + 1, change.dt / parts
@@ -107,10 +109,10 @@ def _answer(task: TuningTask, ship: TrimmedShip, loop: TransferLoop, gains: Arra
     rate = reference_rate(task, loop, demand) if change.is_step else math.inf
     motion = reference_model(order, dt, demand.time_constant, rate)
     level, law = motion.level, FeedForward(0.0, 0.0, 0.0)
-    if not change.is_step:
+    if change.is_step:
+        law = feed_forward(loop, demand)
+    else:
         level = np.interp(np.arange(count), parts * np.arange(len(change.order)), change.order)
-    elif demand.feeds_forward:
-        law = acceleration_feed_forward(loop.plant, 1.0 / demand.time_constant)
     limits = ActuatorLimits(task.constraints.limit, task.constraints.rate)
     output, moved = simulate_tracking(ship, loop, gains, limits, dt, level, motion.fed_forward(law))
     return _Answer((output - output[0])[::parts], (moved - moved[0])[::parts])

@@ -51,14 +51,39 @@ class DiscreteBlock:
     gain: Annotated[str, Field(description="name of the gain that multiplies a term; empty for a filter")]
     b: Annotated[tuple[float, ...], Field(description="of the input, newest first")]
     a: Annotated[tuple[float, ...], Field(description="the first is 1")]
+    hold: Annotated[
+        int,
+        Field(
+            description="of a term that keeps its last output where the actuator is at a limit, the sign of its share "
+            "of the order; 0: it keeps none"
+        ),
+    ] = 0
+
+
+@dataclass(frozen=True)
+class ReferenceFilter:
+    """What the loop follows in place of an order r: x'' + 2 w x' + w^2 x = w^2 r, |x'| <= rate, w = 1 / time_constant.
+
+    To the actuator's order level x + velocity x' + acceleration x'' is added, each times SI; zero without feed-forward.
+    """
+
+    time_constant: Annotated[float, Field(description="s")]
+    rate: Annotated[Number, Field(description="fastest change of the output asked, SI per second; null: any")]
+    level: float = 0.0
+    velocity: float = 0.0
+    acceleration: float = 0.0
 
 
 @dataclass(frozen=True)
 class DiscreteController:
-    """The chosen controller by Tustin's rule, from what the sensor gives to the servo's order."""
+    """The chosen controller by Tustin's rule, from what the sensor gives to the servo's order, as it was simulated."""
 
-    sample_s: Annotated[float, Field(description="s")]
+    sample_s: Annotated[float, Field(description="s; the order stands for as long")]
     blocks: tuple[DiscreteBlock, ...]
+    dead_time: Annotated[float, Field(description="s from the order to the servo, as it was simulated")] = 0.0
+    noise: Annotated[float, Field(description="rms of each sample of the output, SI, as it was simulated")] = 0.0
+    resolution: Annotated[float, Field(description="step in which the output is read, SI, as it was simulated")] = 0.0
+    reference: Annotated[ReferenceFilter | None, Field(description="null: no demand is followed")] = None
 
 
 @dataclass(frozen=True)

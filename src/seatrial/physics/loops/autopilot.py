@@ -61,6 +61,8 @@ def heading_loop(
     name: str = "autopilot",
     parts: tuple[str, ...] = ("KP", "KI", "KD"),
     derivative_filter: float | None = None,
+    shortest_filter: float = 0.0,
+    delay: float = 0.0,
     integral_lag: float = math.inf,
     actuator: str = "delta",
     disturbance_input: str = "",
@@ -69,7 +71,9 @@ def heading_loop(
 
     Args:
         plant: from the rudder to the heading; it may be unstable, and turn either way. parts: gains to have.
-        derivative_filter: tau [s]; by default a tenth of 1 / omega of the fastest loop within the bounds.
+        derivative_filter: tau [s]; by default a tenth of 1 / omega of the fastest loop within the bounds, but no
+            shorter than `shortest_filter` [s].
+        delay: s, of dead time and half a sample, that no loop is fast against.
         integral_lag: T [s] of a slow lag T / (T s + 1) in place of 1 / s.
 
     Raises:
@@ -77,9 +81,9 @@ def heading_loop(
     """
     if plant.order < 2:
         raise InputError(f"block '{plant.name}' is no heading: its denominator needs the integrator s from yaw rate")
-    scale = working_frequency(plant)
-    gains, sign = _gain_ranges([heading_gains_at(plant, c * scale) for c in (SLOWEST, START, FASTEST)], "KP")
-    tau = _FILTER_RATIO / (FASTEST * scale) if derivative_filter is None else derivative_filter
+    bandwidths = _bandwidths(plant, delay)
+    gains, sign = _gain_ranges([heading_gains_at(plant, omega) for omega in bandwidths], "KP")
+    tau = max(_FILTER_RATIO / bandwidths[-1], shortest_filter) if derivative_filter is None else derivative_filter
     names = ("psi", actuator, disturbance_input)
     return _pid_loop(name, plant, disturbance, servo, sign, gains, parts, tau, integral_lag, names)
 
@@ -90,16 +94,18 @@ def speed_loop(
     servo: tuple[Block, ...],
     *,
     name: str = "speed control",
+    delay: float = 0.0,
     actuator: str = "n",
     disturbance_input: str = "",
 ) -> TransferLoop:
     """Return PI on the speed error, from u to the propulsion input (propeller rate or jet velocity, its SI unit).
 
+    delay: as of `heading_loop`.
+
     Raises:
         InputError: the plant has no working frequency.
     """
-    scale = working_frequency(plant)
-    gains, sign = _gain_ranges([speed_gains_at(plant, c * scale) for c in (SLOWEST, START, FASTEST)], "KI")
+    gains, sign = _gain_ranges([speed_gains_at(plant, omega) for omega in _bandwidths(plant, delay)], "KI")
     parts, names = ("KP", "KI"), ("u", actuator, disturbance_input)
     return _pid_loop(name, plant, disturbance, servo, sign, gains, parts, math.inf, math.inf, names)
 
@@ -112,6 +118,7 @@ def pitch_loop(
     name: str = "pitch fin",
     parts: tuple[str, ...] = ("KP", "KI", "KD"),
     derivative_filter: float | None = None,
+    shortest_filter: float = 0.0,
     output: str = "theta",
     actuator: str = "delta_f1",
     disturbance_input: str = "M5",
@@ -132,7 +139,7 @@ def pitch_loop(
     stiff = 1.0 / abs(plant.gain)
     most = {"KP": 2.0 * stiff, "KI": 0.5 * top * stiff, "KD": _LARGEST_KD * damped / top}
     sign = math.copysign(1.0, (1.0 / there).imag)
-    tau = _FILTER_RATIO / top if derivative_filter is None else derivative_filter
+    tau = max(_FILTER_RATIO / top, shortest_filter) if derivative_filter is None else derivative_filter
     gains = {gain: (0.0, start[gain], most[gain]) for gain in start}
     names = (output, actuator, disturbance_input)
     return _pid_loop(name, plant, disturbance, servo, sign, gains, parts, tau, math.inf, names)
@@ -189,6 +196,16 @@ def _unit_frequency(plant: Block) -> float:
         lambda u: math.log(abs(complex(plant.frequency_response(np.array([math.exp(u)]))[0]))), *ends, xtol=_TOLERANCE
     )
     return math.exp(float(found))  # type: ignore[arg-type]
+
+
+def _bandwidths(plant: Block, delay: float) -> tuple[float, float, float]:
+    """Return the least, first and largest bandwidth [rad/s]: multiples of the working frequency, and slow for a delay.
+
+    At the largest the delay costs a radian of phase at most; the others keep their ratio to it.
+    """
+    largest = FASTEST * working_frequency(plant)
+    largest = min(largest, 1.0 / delay) if delay > 0.0 else largest
+    return largest * SLOWEST / FASTEST, largest * START / FASTEST, largest
 
 
 def lag_frequency(plant: Block) -> float:

@@ -43,9 +43,9 @@ class StabilityMargins:
 def frequency_band(loop: TransferLoop) -> tuple[float, float]:
     """Return frequencies [rad/s] between which everything of the loop happens.
 
-    A little more than from the slowest to the fastest of its poles and zeros, of a sampled loop to its Nyquist frequency;
-    beside the open ones those that swing when it is closed at its own gains or with all at their upper bounds, as
-    integrators let it.
+    A little more than from the slowest to the fastest of its poles and zeros, of a sampled loop to its Nyquist
+    frequency; beside the open ones those that swing when it is closed at its own gains or with all at their upper
+    bounds, as integrators let it.
     """
     d, n = loop.polynomials
     bounds = np.array([gain.upper for gain in loop.gains])

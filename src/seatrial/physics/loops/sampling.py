@@ -29,12 +29,16 @@ _NYQUIST_SHARE = 0.999  # of the Nyquist frequency, up to which a sampled loop i
 class Sampling:
     """How a controller works in time: its sample time [s], and the dead time [s] from its order to the servo.
 
+    noise, resolution: of each sample of the output, its unit: rms of white noise, and the step of what is read.
+
     Raises:
         InputError: a time that is none, or a dead time of too many samples.
     """
 
     sample_s: float
     dead_time: float = 0.0
+    noise: float = 0.0
+    resolution: float = 0.0
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.sample_s) and self.sample_s > 0.0 and 0.0 <= self.dead_time < math.inf):
@@ -47,6 +51,13 @@ class Sampling:
                 f"a dead time of {self.dead_time:g} s is more than {MOST_SAMPLES} samples of {self.sample_s:g} s; give "
                 f"a sample time of {self.dead_time / MOST_SAMPLES:.2g} s or more"
             )
+
+    @property
+    def noise_variance(self) -> float:
+        """Return the variance of a sample's error; a step of reading adds its square over 12 (Widrow & Kollar 2008,
+        Quantization Noise, section 1.1).
+        """
+        return self.noise**2 + self.resolution**2 / 12.0
 
     @property
     def highest(self) -> float:
