@@ -83,8 +83,15 @@ def findings(
                               "all gains does", "give it another seed"))  # fmt: skip
     points, between = checks.schedule.points, checks.schedule.check
     if wanting := [point for point in points if not point.is_feasible]:
-        found.append(_warning("schedule-infeasible", f"in {len(wanting)} of {len(points)} conditions no gains "
-                              "keep the restrictions; the nearest are given", "slow down or turn there"))  # fmt: skip
+        first = wanting[0]
+        lacks = f": at {first.U:.3g} m/s, {math.degrees(first.beta):.0f} deg, {'; '.join(first.lacks)}"
+        found.append(_warning("schedule-infeasible", f"in {len(wanting)} of {len(points)} conditions the gains do not "
+                              f"keep all that is asked{lacks if first.lacks else ''}",
+                              "slow down or turn there"))  # fmt: skip
+    if points and between is None:
+        found.append(_warning("schedule-not-smooth", "no one set of gains keeps the restrictions in all conditions, so "
+                              "that each has its own and neighbours may differ by any step",
+                              "schedule fewer speeds or heights, or allow more Ms"))  # fmt: skip
     if between is not None and between.feasible < between.conditions:
         found.append(_warning("schedule-between", f"with interpolated gains {between.conditions - between.feasible} of "
                               f"{between.conditions} conditions on and between the schedule's break the restrictions",

@@ -59,7 +59,7 @@ def test_the_axis_a_vanished_leading_coefficient_and_nan_are_not_stable(row: tup
 
 
 def drawn(rng: np.random.Generator) -> tuple[np.ndarray, ...]:
-    """L_i at 37 frequencies, weights, noise last, what makes every loop stable but the last: gains k of s^2 + k_0 s + k_1."""
+    """L_i at 37 frequencies, weights, noise last; all loops are stable but the last: gains k of s^2 + k_0 s + k_1."""
     re, im = rng.normal(size=(2, 2, 37))
     return re, im, rng.random((2, 37)), rng.random((1, 37)), rng.random((4, 37)), rng.random((2, 37))
 

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -11,7 +12,7 @@ from seatrial.control.loopfile.disturbances import loop_disturbances, refuse_cal
 from seatrial.control.loopfile.extended_structures import extended_structure
 from seatrial.control.loopfile.loop import loop_from_tables
 from seatrial.control.loopfile.objectives import objective, objective_places
-from seatrial.control.loopfile.plant import LoopPlant, hull_factor, plant_from_table
+from seatrial.control.loopfile.plant import LoopPlant, hull_factor, plant_at_speed, plant_from_table
 from seatrial.control.loopfile.plausibility import refuse_reversed_plant, refuse_reversed_servo, refuse_wild_motion
 from seatrial.control.loopfile.quantities import angle_value, positive_value, rate_value, si_value, symbol_unit
 from seatrial.control.loopfile.schema import (
@@ -82,7 +83,19 @@ def tuning_task(path: Path, own_model: Model | None = None, model_file: Path | N
     file = parse_loop(path)
     try:
         home = path.resolve().parent
-        return _task_from_tables(file, plant_from_table(file.plant, home, own_model, model_file), home)
+        plant = plant_from_table(file.plant, home, own_model, model_file)
+        task = _task_from_tables(file, plant, home)
+        if task.schedule_grid is None or task.demand is None:
+            return task
+
+        def at_speed(U: float) -> TuningTask:
+            alone = file.model_copy(update={"schedule": None, "track": None, "station": None})
+            there = plant_at_speed(file.plant, plant, U, home, own_model, model_file)
+            return _task_from_tables(alone, there, home)
+
+        for U in task.schedule_grid.speeds:
+            at_speed(U)
+        return replace(task, at_speed=lru_cache(at_speed))
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
 

@@ -75,6 +75,45 @@ def plant_from_table(
     )  # fmt: skip
 
 
+def plant_at_speed(
+    table: PlantTable, plant: LoopPlant, U: float, home: Path, own_model: Model | None, model_file: Path | None
+) -> LoopPlant:
+    """Return the plant of the table at another speed [m/s]: trimmed there where the model has surge, else by similarity.
+
+    Hydrodynamic forces grow with the square of the speed, so that a course answers a rudder alike in time over U / L:
+    P(s) becomes P(s U_0 / U). Of a Nomoto ship K grows with U and T with 1 / U (Fossen 2021, section 7.2).
+
+    Raises:
+        InputError: nothing is known of other speeds.
+    """
+    if U == plant.U:
+        return plant
+    ship = plant.trimmed_ship
+    if ship is not None and "u" in (*ship.model.states, *ship.model.input_names):
+        there = table.model_copy(update={"speed": Amount(value=U)})
+        return plant_from_table(there, home, own_model, model_file)
+    if plant.output != "psi" or plant.disturbed_by != plant.actuator:
+        raise InputError(
+            f"schedule.speeds: how {plant.output} answers {plant.actuator} is known at {plant.U:.4g} m/s alone; give "
+            "this speed, or a model with surge"
+        )
+    response = _in_time(plant.response, plant.U / U)
+    return replace(
+        plant, response=response, disturbance=response, U=U, trimmed_ship=None,
+        description=f"{plant.description}, carried to {U:.4g} m/s by similarity",
+    )  # fmt: skip
+
+
+def _in_time(block: Block, factor: float) -> Block:
+    """Return P(factor s)."""
+
+    def stretched(coefficients: tuple[float, ...]) -> tuple[float, ...]:
+        top = len(coefficients) - 1
+        return tuple(c * factor ** (top - i) for i, c in enumerate(coefficients))
+
+    return replace(block, num=stretched(block.num), den=stretched(block.den))
+
+
 def yaw_acceleration_path(plant: LoopPlant) -> Block:
     """Return the transfer function from a yaw acceleration [rad/s^2] to the heading.
 

@@ -171,7 +171,10 @@ class ParetoFront:
 
 @dataclass(frozen=True, eq=False)
 class OperatingPoint:
-    """One condition of the schedule; a cost is the output's rms over that without control."""
+    """One condition of the schedule; a cost is the output's rms over that without control.
+
+    Of a loop that follows a demand it is the rms itself, SI: a heading has none without control.
+    """
 
     U: Annotated[float, Field(description="m/s")]
     beta: Annotated[float, Field(description="rad, 0: following sea, pi: head sea")]
@@ -182,6 +185,9 @@ class OperatingPoint:
     saturation: Number
     baseline_costs: Annotated[dict[str, Number], Field(description="name of other gains -> their cost there")]
     is_feasible: bool
+    lacks: Annotated[
+        tuple[str, ...], Field(description="what is not kept there, in simulation too, a phrase each; empty: nothing")
+    ] = ()
 
 
 @dataclass(frozen=True)

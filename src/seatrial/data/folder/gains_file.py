@@ -164,13 +164,14 @@ def schedule_csv(tuning: Tuning) -> str:
         return ""
     first = tuning.schedule[0]
     costs = [f"cost {name}" for name in first.baseline_costs]
-    heads = ["U [m/s]", "heading [deg]", "height [m]", *first.gains, "cost", *costs, "Ms", "saturation", "feasible"]
+    judged = ("cost", *costs, "Ms", "saturation", "feasible", "lacks")
+    heads = ["U [m/s]", "heading [deg]", "height [m]", *first.gains, *judged]
     rows = [[_csv_cell(head) for head in heads]]
     for s in tuning.schedule:
         numbers = (s.U, math.degrees(s.beta), s.height, *s.gains.values(), s.cost, *s.baseline_costs.values(), s.Ms,
                    s.saturation)  # fmt: skip
         texts = [f"{x:.8g}" if math.isfinite(x) else "" for x in numbers]  # digits of a single-precision number
-        rows.append([*texts, "yes" if s.is_feasible else "no"])
+        rows.append([*texts, "yes" if s.is_feasible else "no", _csv_cell("; ".join(s.lacks))])
     return "\n".join(",".join(cells) for cells in rows) + "\n"
 
 
@@ -253,6 +254,7 @@ def _schedule_entry(point: OperatingPoint) -> dict[str, Any]:
         "gains": _finite_numbers(point.gains),
         **_finite_numbers({"cost": point.cost, "Ms": point.Ms, "saturation": point.saturation}),
         "feasible": bool(point.is_feasible),
+        "lacks": list(point.lacks),
     }
 
 
