@@ -49,6 +49,7 @@ class _Programme:
     reference: Array
     fed_forward: Array
     step_samples: tuple[int, ...]
+    is_to_settle: bool
 
 
 def simulate_manoeuvres(
@@ -183,13 +184,16 @@ def _programmes(task: TuningTask, loop: TransferLoop, gains: Array, demand: Dema
         zigzag[first:] = 0.5 * demand.change * (-1.0) ** leg
     law = feed_forward(loop, demand)
 
-    def programme(name: str, steps: Array, legs: tuple[int, ...]) -> _Programme:
+    def programme(name: str, steps: Array, legs: tuple[int, ...], *, is_to_settle: bool) -> _Programme:
         motion = reference_model(steps[::every], every * dt, demand.time_constant, rate)
         level, fed = (np.repeat(one, every)[: count + 1] for one in (motion.level, motion.fed_forward(law)))
-        return _Programme(name, dt, steps, level, fed, legs)
+        return _Programme(name, dt, steps, level, fed, legs, is_to_settle)
 
     changed = _CHANGE_NAMES.get(loop.output, f"change of {loop.output}")
-    return programme(changed, change, (every,)), programme("zigzag", zigzag, begun)
+    return (
+        programme(changed, change, (every,), is_to_settle=True),
+        programme("zigzag", zigzag, begun, is_to_settle=False),
+    )
 
 
 def _clock(loop: TransferLoop, demand: Demand) -> tuple[float, int]:
@@ -254,6 +258,7 @@ def _simulate_manoeuvre(
         draws=stable_and_drawn[1],
         worst_overshoot=math.inf if is_lost else worst,
         sampled_outputs=frozen(drawn_answers),
+        is_to_settle=programme.is_to_settle,
     )
 
 

@@ -204,7 +204,10 @@ def comparison_sentence(pair: PairedDifference) -> str:
 def demand_sentence(m: ManoeuvreResponse) -> str:
     """Return the response to a demand, of the ship as identified and of those drawn from its covariance."""
     text = f"In the {m.name} it {_overshoot_text(m.overshoot)}"
-    text += f" and settles in {significant(m.settling, 3)} s" if math.isfinite(m.settling) else " and does not settle"
+    if math.isfinite(m.settling):
+        text += f" and settles in {significant(m.settling, 3)} s"
+    elif m.is_to_settle:
+        text += " and does not settle"
     if m.draws:
         text += f"; {m.stable_draws} of {m.draws} ships that the fit allows are stable"
         if math.isfinite(m.worst_overshoot):

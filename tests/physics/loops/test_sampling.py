@@ -12,6 +12,7 @@ from seatrial.physics.loops import Block, LoopSignal, Performance, Sampling, mar
 from seatrial.physics.loops.discrete import ringing_blocks
 from seatrial.physics.loops.encounter_spectrum import disturbance_spectrum
 from seatrial.physics.loops.fin import SERVO, fin_loop
+from seatrial.physics.loops.performance import calm_actuator
 from seatrial.physics.loops.sampling import held
 
 SAMPLINGS = [Sampling(1.0, 0.2), Sampling(0.1, 0.2), Sampling(0.02, 0.5), Sampling(0.5), Sampling(0.5, 1.3)]
@@ -79,6 +80,19 @@ def test_noise_and_steps_of_reading_are_in_every_variance() -> None:
     assert output == pytest.approx(made.c @ X @ made.c, rel=1e-3)
     quiet = replace(loop, sampling=Sampling(0.1, 0.2))
     assert not Performance(quiet, still, rows).evaluate(loop.gain_values).variances.any()
+
+
+def test_the_actuator_in_calm_water_is_moved_by_the_samples_errors_alone() -> None:
+    """Without a lag the order is what acts: its variance over all frequencies by Lyapunov, sharpened by the hold."""
+    base = sampled_loop(RIB, Sampling(0.1, 0.2, noise=0.01), gear=0.0)
+    loop = base.with_gains(0.2 * base.gain_values * [1.0, 1.0, 0.0])
+    made = SampledMatrices(loop)
+    X = solve_discrete_lyapunov(made.M, 1e-4 * np.outer(made.N, made.N))
+    ordered = made.k @ X @ made.k + 1e-4 * made.d**2
+    moved = calm_actuator(loop)
+    # white orders of one sample: the hold passes the mean of sinc^2 up to the Nyquist frequency, 0.7737
+    assert 0.7 * ordered < moved.angle**2 < ordered
+    assert calm_actuator(replace(loop, sampling=Sampling(0.1, 0.2))).rate == 0.0
 
 
 def test_slopes_of_variances_with_noise_are_their_differences() -> None:

@@ -78,6 +78,6 @@ def _plant_blocks(ship: TrimmedShip) -> tuple[Block, ...]:
 
 
 @lru_cache(maxsize=_KEPT)
-def _characteristic_polynomials(loop: TransferLoop, drawn: ParameterDraws) -> tuple[tuple[Array, Array], ...]:
+def _characteristic_polynomials(loop: TransferLoop, samples: ParameterDraws) -> tuple[tuple[Array, Array], ...]:
     """Return d and n of the loop before each plant drawn, in a row: it is stable where d + gains n is, by Routh."""
-    return tuple(replace(loop, plant=plant).polynomials for plants in drawn.plants for plant in plants)
+    return tuple(replace(loop, plant=plant).polynomials for plants in samples.plants for plant in plants)

@@ -22,6 +22,7 @@ from seatrial.control.demand import (
 from seatrial.control.ship.parameter_draws import draw_parameters
 from seatrial.control.ship.plant_as_model import plant_as_model
 from seatrial.control.task import Demand, TrimmedShip, TuningTask
+from seatrial.control.verification.followed_gains import FollowedGains, followed_gains
 from seatrial.control.verification.logged_changes import LoggedChange, logged_changes
 from seatrial.core.results.verification import VerifiedChange, VerifiedQuantity
 from seatrial.core.values import Array, InputError, Record, frozen
@@ -52,6 +53,7 @@ class ChangeLog:
 
     changes: tuple[VerifiedChange, ...]
     quantities: tuple[VerifiedQuantity, ...]
+    followed: FollowedGains
 
 
 def verify_changes(task: TuningTask, gains: Array, records: Sequence[Record], seed: int = 0) -> ChangeLog:
@@ -64,8 +66,9 @@ def verify_changes(task: TuningTask, gains: Array, records: Sequence[Record], se
     """
     if task.demand is None:
         raise InputError(f"tuning '{task.name}' follows no demand; add [demand]")
-    demand, loop = task.demand, task.loop.with_gains(gains)
-    logged = logged_changes(records, loop, demand)
+    demand = task.demand
+    logged = logged_changes(records, task.loop, demand)
+    loop, followed = _loop_of_log(task, gains, logged)
     ship = task.trimmed_ship or plant_as_model(loop)
     drawn = draw_parameters(ship, SHIPS, seed).ships
     nominal = [_answer(task, ship, loop, gains, one) for one in logged]
@@ -95,7 +98,16 @@ def verify_changes(task: TuningTask, gains: Array, records: Sequence[Record], se
         _verified_change(c, a, _judged(c, a, demand), row, loop)
         for c, a, row in zip(logged, nominal, achieved, strict=True)
     )
-    return ChangeLog(changes, quantities)
+    return ChangeLog(changes, quantities, followed)
+
+
+def _loop_of_log(task: TuningTask, gains: Array, logged: Sequence[LoggedChange]) -> tuple[TransferLoop, FollowedGains]:
+    """Return the loop that was on, of those of the task with these gains: what the actuator follows best."""
+    alike = [one for one in (task.loop, *task.extended_structures) if one.gains.names == task.loop.gains.names]
+    loops = [one.with_gains(gains) for one in alike]
+    followed = [followed_gains(task, one, logged) for one in loops]
+    best = max(range(len(loops)), key=lambda place: followed[place].coherence)
+    return loops[best], followed[best]
 
 
 def _answer(task: TuningTask, ship: TrimmedShip, loop: TransferLoop, gains: Array, change: LoggedChange) -> _Answer:

@@ -69,9 +69,9 @@ class ReferenceFilter:
 
     time_constant: Annotated[float, Field(description="s")]
     rate: Annotated[Number, Field(description="fastest change of the output asked, SI per second; null: any")]
-    level: float = 0.0
-    velocity: float = 0.0
-    acceleration: float = 0.0
+    level: Annotated[float, Field(description="SI of the actuator for each of the output")] = 0.0
+    velocity: Annotated[float, Field(description="the same, times s")] = 0.0
+    acceleration: Annotated[float, Field(description="the same, times s^2")] = 0.0
 
 
 @dataclass(frozen=True)
@@ -282,6 +282,9 @@ class ManoeuvreResponse:
     sampled_outputs: Annotated[
         StoredArray, Field(description="outputs of some of the ships drawn, on the record's time, shape (k, n)")
     ]
+    is_to_settle: Annotated[
+        bool, Field(description="whether it is to settle: not asked of a zigzag, whose legs end before")
+    ] = True
 
 
 @dataclass(frozen=True)

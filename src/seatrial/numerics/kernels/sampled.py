@@ -50,6 +50,7 @@ from seatrial.numerics.kernels.feedback import (
 from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.types import COMMAND_SIGNATURE, LEAN, OPTIONS
 
+# places of a block in the memory: order, gain, sign of what it holds, last output, and where its numbers begin
 BLOCK_ORDER, BLOCK_GAIN, BLOCK_HOLDS, BLOCK_LAST, BLOCK_HEAD = range(5)
 
 
@@ -77,20 +78,20 @@ def _sensed(memory, error):
 
 
 @njit(**OPTIONS)
-def _through(memory, at, x, push):
+def _through(memory, block, x, push):
     """Return the answer of a block's difference equation; one that holds keeps its last where it would push further.
 
     push: excess of the last order over what the actuator could do, times the gain.
     """
-    n = int(memory[at + BLOCK_ORDER])
-    b = at + BLOCK_HEAD
+    n = int(memory[block + BLOCK_ORDER])
+    b = block + BLOCK_HEAD
     a, states = b + n + 1, b + 2 * n + 2
     y = memory[b] * x
     if n > 0:
         y += memory[states]
-    if memory[at + BLOCK_HOLDS] * push * (y - memory[at + BLOCK_LAST]) > 0.0:
-        y = memory[at + BLOCK_LAST]
-    memory[at + BLOCK_LAST] = y
+    if memory[block + BLOCK_HOLDS] * push * (y - memory[block + BLOCK_LAST]) > 0.0:
+        y = memory[block + BLOCK_LAST]
+    memory[block + BLOCK_LAST] = y
     for i in range(n):
         following = memory[states + i + 1] if i + 1 < n else 0.0
         memory[states + i] = following + memory[b + i + 1] * x - memory[a + i + 1] * y

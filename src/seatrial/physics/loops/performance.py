@@ -14,7 +14,7 @@ import numpy as np
 
 from seatrial.core.values import Array, InputError
 from seatrial.numerics.kernels.loop import evaluate_loops, variance_gradients
-from seatrial.physics.loops.encounter_spectrum import EncounterSpectrum
+from seatrial.physics.loops.encounter_spectrum import EncounterSpectrum, disturbance_spectrum
 from seatrial.physics.loops.loop import TransferLoop
 from seatrial.physics.loops.margins import frequency_band
 from seatrial.physics.loops.objective import LoopSignal, Objective, WeightedVariance
@@ -22,6 +22,7 @@ from seatrial.physics.loops.quadrature import nodes
 
 _ORDER = (LoopSignal.OUTPUT, LoopSignal.ACTUATOR, LoopSignal.POINT)
 _MS_SAMPLES = 192  # frequencies that the peak of |S| is bracketed on; chosen
+_STILL = 0.1, 1.0  # rad/s, band of a disturbance of no energy
 _NOISE_SAMPLES, _NOISE_DECADES = 240, 5  # frequencies of the sensor's noise, and decades up to the highest; chosen
 
 
@@ -206,6 +207,22 @@ def _closest_to_zero(near: np.ndarray) -> float:
             break
         u = float(np.clip(u - (np.conj(z) * slope).real / curved, -1.0, 1.0))
     return u
+
+
+@dataclass(frozen=True)
+class CalmActuator:
+    """Rms of the actuator and of its rate by the sensor's errors alone, SI."""
+
+    angle: float
+    rate: float
+
+
+def calm_actuator(loop: TransferLoop) -> CalmActuator:
+    """Return what the samples' errors make of the actuator of a stable loop, at its own gains."""
+    angle, rate = (WeightedVariance(LoopSignal.ACTUATOR, lambda w, n=power: w**n) for power in (0, 1))
+    still = disturbance_spectrum(lambda w: 0.0 * w, _STILL[0], _STILL[1], loop.disturbance, "calm water")
+    variances = Performance(loop, still, (angle, rate)).evaluate(loop.gain_values, with_Ms=False).variances[0]
+    return CalmActuator(*np.sqrt(variances).tolist())
 
 
 def distinct_variances(objectives: tuple[Objective, ...]) -> tuple[tuple[WeightedVariance, ...], list[list[int]]]:

@@ -57,6 +57,7 @@ class Sampling:
         """Return the variance of a sample's error; a step of reading adds its square over 12 (Widrow & Kollar 2008,
         Quantization Noise, section 1.1).
         """
+        # 12: variance of a uniform error over a step of one
         return self.noise**2 + self.resolution**2 / 12.0
 
     @property
