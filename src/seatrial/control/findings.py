@@ -174,6 +174,9 @@ def _track_findings(track: TrackKeeping | None) -> list[Finding]:
     if track is None:
         return []
     found, corner = [], track.corner
+    if not corner.is_kept:
+        text = "the craft does not settle on the track behind the corner: it swings beyond the acceptance to the end"
+        found.append(_warning("track-not-settled", text, "a longer demand.time_constant, or a larger acceptance"))
     if corner.stable_draws < corner.draws or math.isinf(corner.worst_overshoot):
         lost = f"{corner.draws - corner.stable_draws} of {corner.draws} ships that the fit allows"
         text = f"{lost} do not keep a track under this guidance, or run away at the corner"

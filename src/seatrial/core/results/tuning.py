@@ -318,8 +318,11 @@ class CornerResponse:
     record: Annotated[StoredRecord, Field(description="position from the corner, heading, actuator, distance")]
     overshoot: Annotated[Number, Field(description="m beyond the new leg")]
     worst_overshoot: Annotated[Number, Field(description="m, over the craft drawn that are stable; null: none")]
-    stable_draws: Annotated[int, Field(description="craft drawn from the fit's covariance that keep a track")]
+    stable_draws: Annotated[
+        int, Field(description="craft drawn from the fit's covariance that settle behind the corner")
+    ]
     draws: Annotated[int, Field(description="craft drawn from the fit's covariance")]
+    is_kept: Annotated[bool, Field(description="whether the identified craft settles there")] = True
 
 
 @dataclass(frozen=True, eq=False)
