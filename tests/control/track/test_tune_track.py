@@ -134,7 +134,7 @@ def test_a_plant_without_a_model_keeps_no_track(task: TuningTask, demand: TrackD
         tune_track(replace(task, trimmed_ship=None), demand, task.loop, task.loop.gain_values, 0, lambda _: None)
 
 
-def test_a_track_is_kept_where_the_craft_settles_on_it(task: TuningTask, demand: TrackDemand, made: TrackKeeping) -> None:
+def test_a_track_is_kept_where_the_craft_settles(task: TuningTask, demand: TrackDemand, made: TrackKeeping) -> None:
     assert made.corner.is_kept
     heading, limits = heading_loop_of(task, task.loop), ActuatorLimits(task.constraints.limit, task.constraints.rate)
     hasty = CornerTrial(heading, LineOfSight(1.0, 0.0, 0.1 * made.order_rate), limits, demand, task.U)
