@@ -73,7 +73,8 @@ class Sampling:
         """Return s = log(z) / T of points in w, (n,)."""
         half = 0.5 * self.sample_s * np.asarray(w, dtype=np.complex128)
         z = (1.0 + half) / np.where(half == 1.0, np.finfo(float).eps, 1.0 - half)
-        return np.log(np.where(z == 0.0, np.finfo(float).tiny, z)) / self.sample_s
+        made = np.log(np.where(z == 0.0, np.finfo(float).tiny, z)) / self.sample_s
+        return np.asarray(made, dtype=np.complex128)
 
     def hold(self, omega: Array) -> Complex:
         """Return what hold and dead time do at true frequencies, (1 - exp(-s T)) / (s T) exp(-s T_d), (n,)."""
@@ -115,14 +116,14 @@ def _held(sides: tuple[tuple[tuple[float, ...], tuple[float, ...]], ...], sampli
     inverse = np.linalg.inv(np.eye(size) + stepped)
     E, B = inverse @ (stepped - np.eye(size)), inverse @ now
     # X = x + B u as state: v X = E X + (I - E) B u, y = c X + (d - c B) u
-    zeros = _zeros(E, (np.eye(size) - E) @ B, c, d - c @ B) if size else np.empty(0)
+    zeros = _zeros(E, (np.eye(size) - E) @ B, c, float(d - c @ B)) if size else np.empty(0)
     numerator, denominator = np.poly(zeros).real, np.poly(poles).real
     at = 1j * _middle(poles)
     response = c @ np.linalg.solve(at * np.eye(size) - E, (1.0 - at) * B) + d if size else d
     numerator = numerator * (response / (np.polyval(numerator, at) / np.polyval(denominator, at))).real
     for _ in range(whole):
         numerator, denominator = np.polymul(numerator, [-1.0, 1.0]), np.polymul(denominator, [1.0, 1.0])
-    num, den = _in_seconds(numerator, T), _in_seconds(denominator, T)
+    num, den = (_in_seconds(np.asarray(side, dtype=np.float64), T) for side in (numerator, denominator))
     scale = den[0] if den[0] else 1.0
     return Block("held", tuple((num / scale).tolist()), tuple((den / scale).tolist()))
 
