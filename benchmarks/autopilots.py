@@ -19,10 +19,10 @@ from seatrial.control.gain_evaluation import gain_evaluator
 from seatrial.control.task import TuningTask
 from seatrial.core.results.tuning import Controller, Tuning
 from seatrial.core.values import Array
-from seatrial.physics.loops.autopilot import heading_gains_at, mean_pole
+from seatrial.physics.loops.autopilot import heading_gains_at, working_frequency
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
-BANDWIDTHS = (0.75, 1.5, 3.0)  # of the closed loops of rivals over the plant's mean pole; spread about the usual
+BANDWIDTHS = (0.75, 1.5, 3.0)  # of rivals' closed loops over the plant's working frequency; spread about the usual
 
 
 def run() -> list[Line]:
@@ -47,7 +47,7 @@ def rivals(task: TuningTask) -> dict[str, dict[str, float]]:
     Pole placement has its natural frequency there and a damping ratio of 0.8; Fossen's algorithm (2021, section 15.3)
     a damping ratio of one and the natural frequency that gives the closed loop that bandwidth.
     """
-    scale, named = mean_pole(task.loop.plant), {}
+    scale, named = working_frequency(task.loop.plant), {}
     for bandwidth in BANDWIDTHS:
         omega = bandwidth * scale
         named[f"pole placement, {bandwidth:g}"] = heading_gains_at(task.loop.plant, omega, 0.8)

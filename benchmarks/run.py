@@ -18,6 +18,7 @@ import against_shipmmg
 import autopilots
 import campaign
 import checking
+import controllers_at_sea
 import criteria
 import design
 import estimation_folds
@@ -69,6 +70,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "loops": loops.run,
     "tune": tune.run,
     "autopilots": autopilots.run,
+    "controllers_at_sea": controllers_at_sea.run,
     "wave_observer": wave_observer.run,
     "verification": verification.run,
     "proposals": proposals.run,

@@ -27,7 +27,7 @@ from seatrial.physics.simulate.closed_loop import ActuatorLimits
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "fin_stabiliser.toml"
 LOGS = 100  # simulated logs
-LEG_S, DT, EVERY = 1200.0, 0.05, 4  # s, s, steps between two samples of the log: a leg at sea, a logger of 5 Hz
+LEG_S, DT, EVERY = 1200.0, 0.02, 10  # s, s, steps between two samples of the log: a leg at sea, a logger of 5 Hz
 HEIGHT, PERIOD, GAMMA = 1.8, 8.0, 2.0  # m, s, 1: of the first leg's sea, moderate
 NOISE = 1e-3  # rad, of a roll sensor
 WRONG_GAIN = math.log(0.6)  # of the ships whose fins do six tenths of what the model says

@@ -21,14 +21,14 @@ from seatrial import api
 from seatrial.control.task import TuningTask
 from seatrial.core.values import Array
 from seatrial.physics.loops import Block, controllable_form, in_series
-from seatrial.physics.loops.autopilot import acceleration_feed_forward, heading_gains_at, mean_pole
+from seatrial.physics.loops.autopilot import acceleration_feed_forward, heading_gains_at, working_frequency
 from seatrial.physics.loops.structures import notch
 
 WAVE_DAMPING, NOTCH_DAMPING = 0.1, 1.0  # of the observer's waves and of the notch it makes, Fossen 2021, section 13.4
 SHARES = (0.1, 0.25, 0.5)  # rms of the rudder rate over the largest that the loop file allows; spread
 GENERATIONS, POPULATION, SEED = 80, 12, 1  # of the search
 PENALTY = 10.0  # of what is not kept, on the logarithm of the heading's rms
-SAMPLES, LOWEST, HIGHEST = 400, 1e-2, 1e3  # frequencies of Ms, from and to these multiples of the plant's mean pole
+SAMPLES, LOWEST, HIGHEST = 400, 1e-2, 1e3  # frequencies of Ms, as multiples of the plant's working frequency
 DECADES = 2.0  # about the gains of pole placement, that are searched
 
 
@@ -64,7 +64,7 @@ class Course:
 
     @cached_property
     def band(self) -> Array:
-        return np.geomspace(LOWEST, HIGHEST, SAMPLES) * mean_pole(self.task.loop.plant)
+        return np.geomspace(LOWEST, HIGHEST, SAMPLES) * working_frequency(self.task.loop.plant)
 
     @cached_property
     def free(self) -> list[tuple[Array, Array]]:
@@ -83,8 +83,9 @@ class Course:
 
     @cached_property
     def gains(self) -> Array:
-        """KP, KI, KD of pole placement at one and a half times the mean pole."""
-        return np.array([*heading_gains_at(self.task.loop.plant, 1.5 * mean_pole(self.task.loop.plant)).values()])
+        """KP, KI, KD of pole placement at one and a half times the working frequency."""
+        plant = self.task.loop.plant
+        return np.array([*heading_gains_at(plant, 1.5 * working_frequency(plant)).values()])
 
     def is_stable(self, one: Controller) -> bool:
         A, b, c, _ = self.plant
@@ -147,7 +148,7 @@ def with_observer(course: Course, point: Array) -> Controller:
     k1 = -2.0 * (NOTCH_DAMPING - WAVE_DAMPING) * cut_off / omega
     k2, k3 = 2.0 * omega * (NOTCH_DAMPING - WAVE_DAMPING), cut_off
     k4 = cut_off**2 * 10.0 ** (4.0 * point[5] - 4.0)
-    law = acceleration_feed_forward(course.task.loop.plant, 1.5 * mean_pole(course.task.loop.plant))
+    law = acceleration_feed_forward(course.task.loop.plant, 1.5 * working_frequency(course.task.loop.plant))
     sA, sb, sc, sd = course.servo
     n = 5 + len(sb)
     A, b, c = np.zeros((n, n)), np.zeros(n), np.zeros(n)

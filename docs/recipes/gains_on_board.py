@@ -37,7 +37,7 @@ gains = gain_schedule(schedule(task, grid, {}, 1, lambda _: None).points, task.l
 height, period, heading = 2.4, 8.5, math.radians(120.0)
 true = replace(task.loop, plant=task.loop.plant.scaled(0.8))
 on = np.array([11.053, 0.428, 32.736])
-step, every = 0.05, 12
+step, every = 0.02, 30
 sea = replace(task.disturbances[0], spectrum=jonswap(height, period, 2.0), beta=heading)
 (waves,) = disturbance_series(sea, SimulationSettings(1, 1200.0, step), 3)[0]
 ship = closed_loop(replace(task, loop=true), true, on, task.U, step)

@@ -29,7 +29,7 @@ gains = {"KP": 11.053, "KI": 0.428, "KD": 32.736}
 
 true = replace(task.loop, plant=task.loop.plant.scaled(0.6))
 limits = ActuatorLimits(task.constraints.limit, task.constraints.rate)
-step, every = 0.05, 4
+step, every = 0.02, 10
 
 
 def leg(name: str, height: float, is_on: bool, seed: int) -> st.Record:

@@ -1,7 +1,9 @@
 """Loop files for tests: a minimal fin stabiliser and a minimal autopilot, and what changes one line of them."""
 
+from dataclasses import replace
 from pathlib import Path
 
+from seatrial.control.task import TuningTask
 from seatrial.core.equations import Model
 from seatrial.core.values import Ship
 from seatrial.data.folder.model_file import ModelFile, write_model
@@ -73,6 +75,12 @@ def write_loop_file(folder: Path, text: str, *changes: tuple[str, str]) -> Path:
     path = folder / "loop.toml"
     path.write_text(text, encoding="utf-8")
     return path
+
+
+def in_continuous_time(task: TuningTask) -> TuningTask:
+    """The task with controllers that neither sample nor act late, as closed forms have them."""
+    loops = (replace(one, sampling=None) for one in task.extended_structures)
+    return replace(task, loop=replace(task.loop, sampling=None), extended_structures=tuple(loops))
 
 
 def nomoto() -> Model:

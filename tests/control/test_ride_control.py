@@ -11,6 +11,7 @@ from tests.control.loop_files import (
     RIDE_CONTROL,
     heave_and_pitch,
     heave_pitch_file,
+    in_continuous_time,
     model_file,
     nomoto,
     write_loop_file,
@@ -82,7 +83,7 @@ class Motions:
 @pytest.mark.parametrize("heading", [45.0, 90.0, 135.0, 180.0])
 def test_every_objective_is_that_of_the_equations_of_motion(tmp_path: Path, heading: float) -> None:
     task = ride(tmp_path, ("value = 135", f"value = {heading}"), (OBJECTIVES, ALL_OBJECTIVES))
-    got = gain_evaluator(task).objective_values(GAINS[None])[0]
+    got = gain_evaluator(in_continuous_time(task)).objective_values(GAINS[None])[0]
     sea = Motions(GAINS, heading)
     forward = MotionStatistics(*(sea.variance(sea.at(20.0), power) for power in (0, 1, 2)))
     weighted = sea.variance(sea.at(-10.0) * motion_sickness_weighting(np.abs(sea.omega_e)), 2)

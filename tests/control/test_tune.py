@@ -1,23 +1,31 @@
 """A task in, a tuning out: the recommendation beats the published gains where it counts, or says that it does not."""
 
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from tests.control.fin_tasks import KNOT, LIMITS, PUBLISHED, QUICK, fin_task
+from tests.control.loop_files import AUTOPILOT, model_file, write_loop_file
 
 from seatrial.control import tune as module
 from seatrial.control.controller import describe_controller
 from seatrial.control.findings import Checks, findings
 from seatrial.control.front import Effort, pareto_front
 from seatrial.control.gain_evaluation import gain_evaluator
+from seatrial.control.loopfile.load import tuning_task
 from seatrial.control.task import ScheduleGrid, SimulationSettings, TrimmedShip
 from seatrial.control.tune import tune
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import InputError
+from seatrial.data.folder.gains_file import gains_toml
+from seatrial.physics.loops.performance import calm_actuator
 from seatrial.physics.loops.structures import five_gain_loop
+from seatrial.physics.models.published import kvlcc2
 from seatrial.physics.models.roll import roll
+from seatrial.reporting.tuning import html
+from seatrial.reporting.tuning_text import demand_sentence
 
 TINY = Effort(population=40, generations=10, refined=4, fill_rounds=2, neighbours=2000)
 SHORT = SimulationSettings(seeds=2, duration=200.0)
@@ -123,3 +131,64 @@ def test_no_control_at_all_is_no_answer():
     task = replace(fin_task(), constraints=ControllerConstraints(limit=1e-5))
     with pytest.raises(InputError, match="no control at all, with every gain at zero"):
         tune(replace(task, simulation=None), effort=TINY)
+
+
+COURSE = """
+[plant]
+response = { num = [0.16], den = [4.0, 1.0, 0.0] }
+output = "psi"
+actuator = "delta"
+speed = 3.0
+[controller]
+kind = "pid"
+[actuator]
+limit = { value = 30, unit = "deg" }
+rate = { value = 25, unit = "deg/s" }
+[[slow_disturbances]]
+rms = { value = 2, unit = "deg" }
+bandwidth = 0.05
+[demand]
+change = { value = 30, unit = "deg" }
+time_constant = 5
+[baselines.pole_placement]
+KP = 1.0
+KD = 1.5
+KI = 0.05
+"""
+
+
+def test_no_sentence_has_a_number_that_is_none(tmp_path):
+    """A heading has no variance without control, so that it is left as an rms; a zigzag is not asked to settle."""
+    task = tuning_task(write_loop_file(tmp_path, COURSE))
+    made = tune(task, effort=QUICK)
+    texts = [*made.reasons, *(f.text for f in made.findings), html(made), gains_toml(made), repr(made)]
+    assert not [text for text in texts if re.search(r"\bnan\b", text)]
+    assert any(re.search(r"leaves [\d.]+ deg rms instead of [\d.]+ deg rms", reason) for reason in made.reasons)
+    zigzag = made.manoeuvres[1]
+    assert not zigzag.is_to_settle
+    assert "settle" not in demand_sentence(replace(zigzag, settling=math.nan))
+    endless = replace(made.manoeuvres[0], settling=math.nan)
+    assert "does not settle" in demand_sentence(endless)
+
+
+def test_noise_is_in_the_choice_and_in_what_it_warns_of(tmp_path):
+    noisy = tuning_task(write_loop_file(tmp_path, COURSE + '[sensors]\nnoise = { value = 0.5, unit = "deg" }\n'))
+    quiet = tuning_task(write_loop_file(tmp_path, COURSE))
+    rough, calm = (tune(task, effort=QUICK) for task in (noisy, quiet))
+    assert rough.chosen.gains["KD"] < 0.5 * calm.chosen.gains["KD"]
+    assert rough.discrete.noise == pytest.approx(math.radians(0.5))
+    wild = noisy.loop.with_gains(np.array([5.0, 0.1, 20.0]))
+    loud = calm_actuator(wild)
+    assert loud.rate > 10.0 * calm_actuator(wild.with_gains(np.array([1.0, 1e-3, 0.0]))).rate
+
+
+def test_an_input_without_effect_is_refused(tmp_path):
+    model_file(tmp_path, kvlcc2())
+    with pytest.raises(InputError, match=r"plant\.inputs\.wind_speed = 10 has no effect in model 'mmg'"):
+        tuning_task(
+            write_loop_file(
+                tmp_path,
+                AUTOPILOT,
+                ("[plant]\n", "[plant]\ninputs = { n = 10.23, wind_speed = 10 }\n"),
+            )
+        )

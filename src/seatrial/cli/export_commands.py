@@ -35,7 +35,7 @@ def export(
     """
     from seatrial import api
     from seatrial.core.values import InputError
-    from seatrial.data.folder.gains_file import read_gains
+    from seatrial.data.folder.gains_file import controller_gains
     from seatrial.exporting import TARGETS
 
     file = model_file if model is None else api.load_model(model_file, own_model(model))
@@ -48,7 +48,7 @@ def export(
         return
     if to is None or out is None:
         raise InputError("give --to TARGET and --out PATH, or --list to see what suits the model")
-    result = api.export(file, to, out, None if gains is None else read_gains(gains))
+    result = api.export(file, to, out, None if gains is None else controller_gains(gains))
     print_lines(result.notes)
     write_json(json, lambda: {"target": to, "path": str(out), "files": list(result.files), "notes": list(result.notes)})
     print_file("exported", out)

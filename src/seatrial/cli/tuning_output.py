@@ -193,7 +193,9 @@ def _print_manoeuvres(tuning: "Tuning") -> None:
     from seatrial.core.text.numbers import exact
 
     for m in tuning.manoeuvres:
-        settled = "does not settle" if math.isnan(m.settling) else f"settles in {exact(m.settling, 4)} s"
+        settled = f"settles in {exact(m.settling, 4)} s"
+        if math.isnan(m.settling):
+            settled = "does not settle" if m.is_to_settle else "not held for long enough to settle"
         draws = f", stable for {m.stable_draws} of {m.draws} ships that the fit allows" if m.draws else ""
         worst = (
             "" if math.isnan(m.worst_overshoot) else f" (at most {exact(100.0 * m.worst_overshoot, 2)} % of all drawn)"

@@ -15,7 +15,9 @@ def print_verification(verification: "Verification") -> None:
     """Print the verdict, predicted beside achieved values, the model before and with the log, legs or changes."""
     from seatrial.reporting.verification_text import key_facts, tables, verdict
 
-    print_summary(f"{verification.name}: verified", verdict(verification), key_facts(verification))
+    inside = sum(q.is_inside for q in verification.quantities)
+    title = f"{verification.name}: {inside} of {len(verification.quantities)} as predicted"
+    print_summary(title, verdict(verification), key_facts(verification))
     for table in tables(verification).values():
         _print_table(table)
     print_warnings(verification.findings)

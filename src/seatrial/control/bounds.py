@@ -28,7 +28,7 @@ def bounds(task: TuningTask, loop: TransferLoop, gains: Array) -> tuple[Performa
     sea = next((met for met in task.disturbances if isinstance(met, Seaway)), None)
     if sea is None or task.demand is not None or task.motion is not OUTPUT:
         return ()
-    loop = sea.disturbed(loop)
+    loop = replace(sea.disturbed(loop), sampling=None)  # a bound in continuous time without dead time is one of all
     waves, peak = sea.exposure(loop), task.constraints.Ms
 
     def with_tails() -> PerformanceBound:

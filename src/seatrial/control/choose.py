@@ -2,15 +2,15 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from seatrial.control.choose_by_simulation import choose_by_simulation
 from seatrial.control.demand import shortfall
-from seatrial.control.front import spread_points
 from seatrial.control.gain_choice import GainChoice, motion_and_rate_variances, non_dominated_gains
 from seatrial.control.gain_evaluation import GainEvaluator
+from seatrial.control.least_output import least_output_gains
 from seatrial.control.task import Demand, TuningTask
 from seatrial.core.results.tuning import ParetoFront
 from seatrial.core.values import Array
@@ -18,6 +18,7 @@ from seatrial.core.values import Array
 CANDIDATE_COUNT = 16  # gains of a front that follow the demand; chosen
 # rms whose logarithm is still taken, and range that counts as one: guards against zero
 _LEAST_RMS, _LEAST_RANGE = 1e-150, 1e-12
+_ROUNDING = 1e-9  # relative, of a rate that counts as kept
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +54,25 @@ def _candidates(judge: GainEvaluator, front: ParetoFront) -> list[_Candidate]:
     return [_Candidate(judge, front.name, gains, both) for gains, both in zip(some, variances, strict=True)]
 
 
+def _candidates_by_rate(judge: GainEvaluator, front: ParetoFront) -> list[_Candidate]:
+    """Return the gains that leave least of the motion at actuator rates spread evenly over the front, in decades.
+
+    Rates are those of the worst disturbance. Each set is pressed against its rate, so that the candidates are what the
+    loop is and not where a search has met its front.
+    """
+    some = non_dominated_gains(judge, front)
+    rates = judge.evaluate(some).variances[:, :, 2].max(axis=1)
+    levels = np.geomspace(max(float(rates.min()), _LEAST_RMS), max(float(rates.max()), _LEAST_RMS), CANDIDATE_COUNT)
+    made = []
+    for level in levels:
+        # the share exp(-1/2) of a Rayleigh distribution lies beyond its rms, so that the variance allowed is the level
+        within = replace(judge.task.constraints, rate=math.sqrt(level), rate_saturation=math.exp(-0.5))
+        evaluator = GainEvaluator(replace(judge.task, constraints=within), judge.loop, (judge.task.motion,))
+        made.append(least_output_gains(evaluator, some[rates <= level * (1.0 + _ROUNDING)]))
+    both = motion_and_rate_variances(judge, np.array(made))
+    return [_Candidate(judge, front.name, gains, row) for gains, row in zip(made, both, strict=True)]
+
+
 def _compromise_reason(task: TuningTask, candidates: str) -> str:
     decades = "the output's in decades" if task.demand is None else "in decades"
     return (
@@ -80,10 +100,7 @@ def _choose_by_demand(
     report_progress: Callable[[str], None],
 ) -> GainChoice:
     """Return the compromise among those of all fronts that follow the demand in time, without overshooting."""
-    tried: list[_Candidate] = []
-    for judge, front in fronts:
-        along = _candidates(judge, front)
-        tried += [along[i] for i in spread_points(np.array([one.variances for one in along]), CANDIDATE_COUNT)]
+    tried = [one for judge, front in fronts for one in _candidates_by_rate(judge, front)]
     short = []
     for one in tried:
         short.append(shortfall(task, one.evaluator.loop, one.gains))

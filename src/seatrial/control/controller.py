@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from seatrial.control.demand import feed_forward, reference_rate
 from seatrial.control.gain_evaluation import (
     ACTUATOR_ACCELERATION,
     ACTUATOR_RATE,
@@ -12,11 +13,11 @@ from seatrial.control.gain_evaluation import (
     GainEvaluator,
     exceedance_share,
 )
-from seatrial.control.task import OUTPUT
-from seatrial.core.results.tuning import Component, Controller, DiscreteBlock, DiscreteController
+from seatrial.control.task import OUTPUT, Demand, TuningTask
+from seatrial.core.results.tuning import Component, Controller, DiscreteBlock, DiscreteController, ReferenceFilter
 from seatrial.core.values import Array
-from seatrial.physics.loops import Block, TransferLoop, margins, reversals_per_hour
-from seatrial.physics.loops.discrete import default_sample_time, difference_equation
+from seatrial.physics.loops import Block, Sampling, TransferLoop, margins, reversals_per_hour
+from seatrial.physics.loops.discrete import default_sample_time, difference_equation, holding_terms
 from seatrial.physics.loops.margins import frequency_band
 
 # relative excess over a limit that rounding explains; far below any margin that matters, our choice
@@ -98,23 +99,32 @@ def violated_restrictions(evaluator: GainEvaluator, evaluation: GainEvaluation) 
     return tuple(broken)
 
 
-def discrete_controller(loop: TransferLoop, sample_s: float | None) -> DiscreteController | None:
-    """Return terms and filters of a loop with its gains as difference equations; None where the loop is unstable.
+def discrete_controller(task: TuningTask, loop: TransferLoop) -> DiscreteController | None:
+    """Return terms and filters of a loop with its gains as difference equations, and the reference that it follows.
 
-    sample_s: s; None: as the loop allows.
+    None where the loop is unstable. One in continuous time is sampled as it allows.
     """
     if not margins(loop).is_stable:
         return None
-    T = default_sample_time(loop) if sample_s is None else sample_s
+    sampling = loop.sampling or Sampling(default_sample_time(loop))
+    holds, sign = holding_terms(loop)
 
-    def block(role: str, one: Block, gain: str = "") -> DiscreteBlock:
-        made = difference_equation(one, T)
-        return DiscreteBlock(role, one.name, gain, made.b, made.a)
+    def block(role: str, one: Block, gain: str = "", *, is_held: bool = False) -> DiscreteBlock:
+        made = difference_equation(one, sampling.sample_s)
+        return DiscreteBlock(role, one.name, gain, made.b, made.a, int(sign) if is_held else 0)
 
-    return DiscreteController(T, (
-        *(block("term", term.block, term.gain) for term in loop.terms),
-        *(block("filter", one) for one in loop.filters),
-    ))  # fmt: skip
+    terms = (block("term", t.block, t.gain, is_held=held) for t, held in zip(loop.terms, holds, strict=True))
+    blocks = (*terms, *(block("filter", one) for one in loop.filters))
+    reference = None if task.demand is None else _reference_filter(task, loop, task.demand)
+    return DiscreteController(
+        sampling.sample_s, blocks, sampling.dead_time, sampling.noise, sampling.resolution, reference
+    )
+
+
+def _reference_filter(task: TuningTask, loop: TransferLoop, demand: Demand) -> ReferenceFilter:
+    law = feed_forward(loop, demand)
+    rate = reference_rate(task, loop, demand)
+    return ReferenceFilter(demand.time_constant, rate, law.level, law.velocity, law.acceleration)
 
 
 def components(loop: TransferLoop) -> tuple[Component, ...]:

@@ -22,8 +22,9 @@ from seatrial.core.values import (
     frozen,
 )
 from seatrial.physics.loops import TransferLoop
-from seatrial.physics.loops.autopilot import FeedForward, acceleration_feed_forward, mean_pole
+from seatrial.physics.loops.autopilot import START, FeedForward, acceleration_feed_forward, working_frequency
 from seatrial.physics.simulate.closed_loop import REFERENCE, ActuatorLimits, ClosedLoop
+from seatrial.physics.simulate.sampled_controller import simulation_step, steps_a_sample
 
 DEMAND = "demand"
 _SHOWN_DRAWS, _SAMPLES = 20, 1000  # sampled ships and samples in time that a figure shows; chosen
@@ -48,6 +49,7 @@ class _Programme:
     reference: Array
     fed_forward: Array
     step_samples: tuple[int, ...]
+    is_to_settle: bool
 
 
 def simulate_manoeuvres(
@@ -171,32 +173,54 @@ def settling_time(output: Array, demand: Array, step_samples: tuple[int, ...], d
 
 
 def _programmes(task: TuningTask, loop: TransferLoop, gains: Array, demand: Demand) -> tuple[_Programme, ...]:
-    fastest = float(np.abs(loop.with_gains(gains).closed_loop_poles).max(initial=_SLOWEST_POLE))
-    count = int(np.clip(math.ceil(demand.duration * fastest / _STEP_SHARE), _FEWEST_STEPS, _MOST_STEPS))
-    dt, rate = demand.duration / count, reference_rate(task, loop, demand)
+    dt, every = _clock(loop.with_gains(gains), demand)
+    legs = max(1, math.ceil(demand.duration / (every * dt * _LEGS)))
+    count, rate = legs * every * _LEGS, reference_rate(task, loop, demand)
     change, zigzag = np.full(count + 1, demand.change), np.empty(count + 1)
-    change[0] = 0.0
-    begun = tuple(max(1, count * leg // _LEGS) for leg in range(_LEGS))
-    zigzag[0] = 0.0
+    change[:every] = 0.0
+    begun = tuple(max(every, count * leg // _LEGS) for leg in range(_LEGS))
+    zigzag[:every] = 0.0
     for leg, first in enumerate(begun):
         zigzag[first:] = 0.5 * demand.change * (-1.0) ** leg
-    law = FeedForward(0.0, 0.0, 0.0)
-    if demand.feeds_forward:
-        law = acceleration_feed_forward(loop.plant, 1.0 / demand.time_constant)
+    law = feed_forward(loop, demand)
 
-    def programme(name: str, steps: Array, legs: tuple[int, ...]) -> _Programme:
-        motion = reference_model(steps, dt, demand.time_constant, rate)
-        return _Programme(name, dt, steps, motion.level, motion.fed_forward(law), legs)
+    def programme(name: str, steps: Array, legs: tuple[int, ...], *, is_to_settle: bool) -> _Programme:
+        motion = reference_model(steps[::every], every * dt, demand.time_constant, rate)
+        level, fed = (np.repeat(one, every)[: count + 1] for one in (motion.level, motion.fed_forward(law)))
+        return _Programme(name, dt, steps, level, fed, legs, is_to_settle)
 
     changed = _CHANGE_NAMES.get(loop.output, f"change of {loop.output}")
-    return programme(changed, change, (1,)), programme("zigzag", zigzag, begun)
+    return (
+        programme(changed, change, (every,), is_to_settle=True),
+        programme("zigzag", zigzag, begun, is_to_settle=False),
+    )
+
+
+def _clock(loop: TransferLoop, demand: Demand) -> tuple[float, int]:
+    """Return the step [s] of a simulation, and how many of them stand between two samples of the controller.
+
+    Short for everything that moves; one in continuous time is sampled at every step.
+    """
+    moving = np.abs(loop.closed_loop_poles) if loop.sampling is None else np.abs(loop.plant.poles)
+    fastest = float(moving.max(initial=_SLOWEST_POLE))
+    count = int(np.clip(math.ceil(demand.duration * fastest / _STEP_SHARE), _FEWEST_STEPS, _MOST_STEPS))
+    dt = simulation_step(loop.sampling, demand.duration / count)
+    return dt, 1 if loop.sampling is None else steps_a_sample(loop.sampling, dt)
+
+
+def feed_forward(loop: TransferLoop, demand: Demand) -> FeedForward:
+    """Return what of the reference a demand adds to the actuator's order; nothing where it feeds nothing forward."""
+    if not demand.feeds_forward:
+        return FeedForward(0.0, 0.0, 0.0)
+    return acceleration_feed_forward(loop.plant, 1.0 / demand.time_constant)
 
 
 def reference_rate(task: TuningTask, loop: TransferLoop, demand: Demand) -> float:
-    """Return the rate of the output that half the actuator's limit keeps up, at the plant's mean pole at most."""
-    omega = 1.0 / demand.time_constant
-    if np.any(loop.plant.poles != 0.0):
-        omega = min(omega, mean_pole(loop.plant))
+    """Return the rate of the output that half the actuator's limit keeps up, at the reference's frequency.
+
+    At most at the first bandwidth of the gains: faster references are not followed in any case.
+    """
+    omega = min(1.0 / demand.time_constant, START * working_frequency(loop.plant))
     return 0.5 * task.constraints.limit * omega * float(np.abs(loop.plant.frequency_response(np.array([omega])))[0])
 
 
@@ -234,6 +258,7 @@ def _simulate_manoeuvre(
         draws=stable_and_drawn[1],
         worst_overshoot=math.inf if is_lost else worst,
         sampled_outputs=frozen(drawn_answers),
+        is_to_settle=programme.is_to_settle,
     )
 
 

@@ -16,6 +16,7 @@ from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.hydro.excitation import Complex
 from seatrial.physics.loops import TransferLoop, plant_model
 from seatrial.physics.simulate.closed_loop import UNLIMITED, ActuatorLimits, ClosedLoop
+from seatrial.physics.simulate.sampled_controller import sample_noise, simulation_step, steps_a_sample
 
 SEEDS, _CYCLES = 8, 60  # realisations, and cycles of the output's mean frequency in each; chosen
 _STEP_SHARE = 0.1  # of the fastest pole's time constant, of a step; chosen
@@ -61,7 +62,8 @@ def _simulate(
 
     def of_one(number: int) -> Array:
         series = disturbance_realisation(met, loop, clock, number)
-        return np.stack([_mean_squares(run, series, clock, each) for each in (UNLIMITED, limits)])
+        noise = None if loop.sampling is None else sample_noise(loop.sampling, clock.count, number)
+        return np.stack([_mean_squares(run, series, clock, each, noise) for each in (UNLIMITED, limits)])
 
     free, held = np.stack(map_in_threads(of_one, [seed + k for k in range(SEEDS)]), axis=1)
     rms = np.sqrt(free.mean(axis=0))
@@ -75,15 +77,22 @@ def named_signals(values: Array) -> dict[str, float]:
     return dict(zip(SIGNALS, values.tolist(), strict=True))
 
 
-def disturbance_clock(met: Seaway | SlowDisturbance, loop: TransferLoop) -> DisturbanceClock:
-    """Return steps short for the fastest pole, a run-in for the slowest, and enough cycles of the output."""
+def disturbance_clock(
+    met: Seaway | SlowDisturbance, loop: TransferLoop, inner: TransferLoop | None = None
+) -> DisturbanceClock:
+    """Return steps short for the fastest pole, a run-in for the slowest, and enough cycles of the output.
+
+    inner: a loop within this one, whose samples the steps divide.
+    """
     spectrum = met.exposure(loop)
     omega = spectrum.omega_e
     energy = spectrum.energy * np.abs(_response(loop, omega)) ** 2
     mean = float(np.sum(omega * energy) / np.sum(energy))
     poles = loop.closed_loop_poles
     slowest = 1.0 / float(-poles.real.max())
-    dt = _STEP_SHARE / float(np.abs(poles).max())
+    moving = poles if loop.sampling is None else np.concatenate([loop.plant.poles, loop.disturbance.poles])
+    sampling = loop.sampling if inner is None else inner.sampling
+    dt = simulation_step(sampling, _STEP_SHARE / float(np.abs(moving).max()))
     counted = max(_CYCLES * 2.0 * math.pi / mean, _COUNTED * slowest)
     count = min(math.ceil((_RUN_IN * slowest + counted) / dt), _MOST_STEPS)
     return DisturbanceClock(dt, count, min(math.ceil(_RUN_IN * slowest / dt), count // 2))
@@ -120,13 +129,25 @@ def gauss_markov(bandwidth: float, dt: float, count: int, rng: np.random.Generat
     return np.fromiter(accumulate(kicks.tolist(), lambda now, kick: stay * now + kick), np.float64, count)
 
 
-def _mean_squares(run: ClosedLoop, disturbance: Array, clock: DisturbanceClock, limits: ActuatorLimits) -> Array:
+def actuator_rate(run: ClosedLoop, moved: Array) -> Array:
+    """Return the rate of the actuator (n,) from step to step, of a sampled controller from sample to sample.
+
+    An order that is held moves an actuator in steps, whose rate within them is that of the actuator and not the loop's.
+    """
+    sampling = run.loop.sampling
+    every = 1 if sampling is None else steps_a_sample(sampling, run.dt)
+    return (moved[every:] - moved[:-every]) / (every * run.dt)
+
+
+def _mean_squares(
+    run: ClosedLoop, disturbance: Array, clock: DisturbanceClock, limits: ActuatorLimits, noise: Array | None
+) -> Array:
     """Return mean squares of output, actuator and its rate, (3,); infinite where the limits let the loop run away."""
     first = clock.first
     try:
-        states, moved = run.run(disturbance, limits)
+        states, moved = run.run(disturbance, limits, noise=noise)
     except DivergedError:
         return np.full(len(SIGNALS), np.inf)
-    output, rate = states[first:, run.model.states.index(run.output)], np.diff(moved[first:]) / run.dt
+    output, rate = states[first:, run.model.states.index(run.output)], actuator_rate(run, moved[first:])
     squares = [float(np.mean(signal**2)) for signal in (output, moved[first:], rate)]
     return np.array(squares)

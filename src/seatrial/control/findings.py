@@ -24,11 +24,14 @@ from seatrial.core.results.tuning import (
     TuningMethod,
 )
 from seatrial.core.values import Finding, Severity
+from seatrial.physics.loops.discrete import ringing_blocks
+from seatrial.physics.loops.performance import calm_actuator
 
 _NO_RESTRICTIONS = (
     "the genetic search knows no restriction: run without --method, or take 'own front' (reference in tuning.json)"
 )
 MAX_LIMITED_RATIO = 1.1  # of the output's rms with limits over that without; chosen
+MAX_CALM_RATE = 0.1  # of the actuator's largest rate, that noise alone may take, rms; chosen
 MAX_STATION_CUT = 0.05  # share of the time in which limits cut the force ordered on station; chosen
 _LEAST_COVERAGE = 0.98  # share of the hypervolume of the checking grid, 1 % below that of 100 points a gain; chosen
 
@@ -76,6 +79,7 @@ def findings(
         for s in checks.disturbances
         if s.limited["output"] > MAX_LIMITED_RATIO * s.unlimited["output"]
     ]  # fmt: skip
+    found += _noise_findings(evaluator, chosen)
     found += _track_findings(checks.track)
     found += _station_findings(checks.station)
     if front.hypervolume < _LEAST_COVERAGE:
@@ -83,8 +87,15 @@ def findings(
                               "all gains does", "give it another seed"))  # fmt: skip
     points, between = checks.schedule.points, checks.schedule.check
     if wanting := [point for point in points if not point.is_feasible]:
-        found.append(_warning("schedule-infeasible", f"in {len(wanting)} of {len(points)} conditions no gains "
-                              "keep the restrictions; the nearest are given", "slow down or turn there"))  # fmt: skip
+        first = wanting[0]
+        lacks = f": at {first.U:.3g} m/s, {math.degrees(first.beta):.0f} deg, {'; '.join(first.lacks)}"
+        found.append(_warning("schedule-infeasible", f"in {len(wanting)} of {len(points)} conditions the gains do not "
+                              f"keep all that is asked{lacks if first.lacks else ''}",
+                              "slow down or turn there"))  # fmt: skip
+    if points and between is None:
+        found.append(_warning("schedule-not-smooth", "no one set of gains keeps the restrictions in all conditions, so "
+                              "that each has its own and neighbours may differ by any step",
+                              "schedule fewer speeds or heights, or allow more Ms"))  # fmt: skip
     if between is not None and between.feasible < between.conditions:
         found.append(_warning("schedule-between", f"with interpolated gains {between.conditions - between.feasible} of "
                               f"{between.conditions} conditions on and between the schedule's break the restrictions",
@@ -140,10 +151,32 @@ def _simulation_findings(
     return found
 
 
+def _noise_findings(evaluator: GainEvaluator, chosen: Controller) -> list[Finding]:
+    """Return what the sensor's errors alone make of the actuator, and blocks that ring at the samples."""
+    loop, found = evaluator.loop.with_gains(np.array([*chosen.gains.values()])), []
+    if loop.sampling is None:
+        return found
+    if ringing := ringing_blocks(loop, loop.sampling.sample_s):
+        found.append(_warning("rings", f"at samples of {loop.sampling.sample_s:g} s {', '.join(ringing)} rings: by "
+                              "Tustin's rule its output changes sign at every sample",
+                              "sample faster, or give a slower filter"))  # fmt: skip
+    if loop.sampling.noise_variance and math.isfinite(chosen.Ms):
+        moved = calm_actuator(loop)
+        share = moved.rate / evaluator.task.constraints.rate
+        if share > MAX_CALM_RATE:
+            found.append(_warning("works-in-calm", f"in calm water the sensor's errors alone move the actuator at "
+                                  f"{100.0 * share:.0f} % of its largest rate (rms)",
+                                  "give a slower derivative_filter, or a lower limits.rate_saturation"))  # fmt: skip
+    return found
+
+
 def _track_findings(track: TrackKeeping | None) -> list[Finding]:
     if track is None:
         return []
     found, corner = [], track.corner
+    if not corner.is_kept:
+        text = "the craft does not settle on the track behind the corner: it swings beyond the acceptance to the end"
+        found.append(_warning("track-not-settled", text, "a longer demand.time_constant, or a larger acceptance"))
     if corner.stable_draws < corner.draws or math.isinf(corner.worst_overshoot):
         lost = f"{corner.draws - corner.stable_draws} of {corner.draws} ships that the fit allows"
         text = f"{lost} do not keep a track under this guidance, or run away at the corner"
@@ -184,6 +217,10 @@ def _demand_findings(demand: Demand | None, manoeuvres: tuple[ManoeuvreResponse,
     if not first.overshoot <= demand.overshoot:
         found.append(_warning("overshoot", f"the demand is overshot by {100.0 * first.overshoot:.1f} % where "
                               f"{100.0 * demand.overshoot:.1f} % are allowed", "slow the reference down"))  # fmt: skip
+    if first.is_to_settle and math.isnan(first.settling):
+        found.append(_warning("not-settled", f"the {first.name} does not settle within 5 % in the "
+                              f"{demand.duration:.3g} s that are simulated",
+                              "give demand.duration more time, or less noise and slower references"))  # fmt: skip
     if first.settling > demand.settling:
         found.append(_warning("slow", f"the demand takes {first.settling:.3g} s to settle, {demand.settling:.3g} s are "
                               "allowed", "shorten demand.time_constant, or allow more actuator"))  # fmt: skip

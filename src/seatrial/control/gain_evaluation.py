@@ -80,7 +80,12 @@ class GainEvaluator:
 
     @cached_property
     def uncontrolled_variance(self) -> float:
-        """Mean variance of the motion that counts without control."""
+        """Mean variance of the motion that counts without control; 1 SI of a loop that follows a demand.
+
+        A heading has no variance without control, so that costs are its rms itself.
+        """
+        if self.task.demand is not None:
+            return 1.0
         place = self._variance_indices[-1][0]
         return float(np.mean([p.uncontrolled_variances[place] for p in self.performances]))
 

@@ -7,6 +7,7 @@ from seatrial.control.gradient_refinement import all_gains, free_gain_bounds, re
 from seatrial.core.values import Array
 
 _SAMPLES, _STARTS = 4096, 3  # Sobol points, and those that are refined; chosen
+_RESTARTS = 5  # searches from the best, until one finds nothing better; chosen
 
 
 def spread_gains(evaluator: GainEvaluator, seed: int) -> Array:
@@ -27,10 +28,21 @@ def least_output_gains(evaluator: GainEvaluator, samples: Array) -> Array:
     judged = evaluator.evaluate(samples)
     values = np.where(judged.is_feasible, judged.objectives[:, 0], np.inf)
     places = free_gain_bounds(evaluator)[0]
-    if not np.isfinite(values).any():
-        return samples[int(np.argmin(judged.excess.max(axis=1)))]
-
-    tried = [samples[i] for i in np.argsort(values)[:_STARTS]]
+    order = np.argsort(values if np.isfinite(values).any() else judged.excess.max(axis=1))
+    tried = [samples[i] for i in order[:_STARTS]]
     tried += [all_gains(evaluator, refine_gains(evaluator, start[places])[None])[0] for start in tried]
+    best = _best_of(evaluator, tried)
+    for _ in range(_RESTARTS):  # the search's picture of the curvature begins anew
+        again = _best_of(evaluator, [best, all_gains(evaluator, refine_gains(evaluator, best[places])[None])[0]])
+        if np.array_equal(again, best):
+            break
+        best = again
+    return best
+
+
+def _best_of(evaluator: GainEvaluator, tried: list[Array]) -> Array:
+    """Return the feasible gains of the least first objective; without any those that break the restrictions least."""
     judged = evaluator.evaluate(np.array(tried))
+    if not judged.is_feasible.any():
+        return tried[int(np.argmin(judged.excess.max(axis=1)))]
     return tried[int(np.argmin(np.where(judged.is_feasible, judged.objectives[:, 0], np.inf)))]

@@ -38,10 +38,9 @@ def robustness(task: TuningTask, loop: TransferLoop, name: str, gains: Array) ->
     """
     own = loop.with_gains(gains)
     omega = np.geomspace(*frequency_band(own), _POINTS)
-    controller = np.asarray(gains @ own.controller_terms(omega), dtype=np.complex128)
-    drawn_Ms, stable = _of_draws(task, loop, gains, omega, controller)
+    drawn_Ms, stable = _of_draws(task, own, omega)
     corners = _corners(task.uncertainty)
-    peaks = [_corner_Ms(own, corner, omega, controller) for corner in corners]
+    peaks = [_corner_Ms(own, corner, omega) for corner in corners]
     worst = int(np.argmax(peaks))
     return Robustness(
         name, len(stable), sum(stable), drawn_Ms, len(corners), sum(map(math.isfinite, peaks)), peaks[worst],
@@ -49,21 +48,19 @@ def robustness(task: TuningTask, loop: TransferLoop, name: str, gains: Array) ->
     )  # fmt: skip
 
 
-def _of_draws(
-    task: TuningTask, loop: TransferLoop, gains: Array, omega: Array, controller: Complex
-) -> tuple[float, tuple[bool, ...]]:
+def _of_draws(task: TuningTask, loop: TransferLoop, omega: Array) -> tuple[float, tuple[bool, ...]]:
     """Return the largest Ms of the ships drawn and whether each is stable; infinite where one is not."""
     if task.trimmed_ship is None:
         return math.nan, ()
     samples = draw_parameters(task.trimmed_ship, task.uncertainty.draws, SEED)
     without_trim = samples.draws - len(samples.ships)
-    stable = (*samples.stable_ships(loop, gains), *[False] * without_trim)
+    stable = (*samples.stable_ships(loop, loop.gain_values), *[False] * without_trim)
     if not stable:
         return math.nan, ()
     if not all(stable):
         return math.inf, stable
     plants = [plant for sides in samples.plants for plant in sides]
-    return max(_peak(plant.frequency_response(omega) * controller) for plant in plants), stable
+    return max(_peak(replace(loop, plant=plant).open_loop(omega)) for plant in plants), stable
 
 
 def _corners(box: PlantUncertainty) -> list[_Corner]:
@@ -71,13 +68,19 @@ def _corners(box: PlantUncertainty) -> list[_Corner]:
     return [_Corner(*one) for one in product(sorted(gains), sorted(times), sorted({0.0, box.dead_time}))]
 
 
-def _corner_Ms(loop: TransferLoop, corner: _Corner, omega: Array, controller: Complex) -> float:
-    """Return Ms of one corner; infinite where it is unstable: a dead time is held up to the delay margin."""
-    plant = slowed_plant(loop.plant, corner.time).scaled(corner.gain)
-    bare = margins(replace(loop, plant=plant))
-    if not bare.is_stable or bare.delay <= corner.dead_time:
+def _corner_Ms(loop: TransferLoop, corner: _Corner, omega: Array) -> float:
+    """Return Ms of one corner; infinite where it is unstable.
+
+    The dead time is that of a sampled loop; one in continuous time is stable up to its delay margin.
+    """
+    there = replace(loop, plant=slowed_plant(loop.plant, corner.time).scaled(corner.gain))
+    late = corner.dead_time
+    if there.sampling is not None:
+        there, late = replace(there, sampling=replace(there.sampling, dead_time=late)), 0.0
+    bare = margins(there)
+    if not bare.is_stable or bare.delay <= late:
         return math.inf
-    return _peak(plant.frequency_response(omega) * controller * np.exp(-1j * omega * corner.dead_time))
+    return _peak(there.open_loop(omega) * np.exp(-1j * omega * late))
 
 
 def slowed_plant(plant: Block, factor: float) -> Block:

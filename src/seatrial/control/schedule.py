@@ -7,16 +7,20 @@ from itertools import product
 
 import numpy as np
 
+from seatrial.control.controller import violated_restrictions
+from seatrial.control.demand import shortfall
 from seatrial.control.gain_evaluation import GainEvaluation, GainEvaluator, exceedance_share
 from seatrial.control.gradient_refinement import all_gains, free_gain_bounds
 from seatrial.control.least_output import least_output_gains, spread_gains
 from seatrial.control.smooth_schedule import GainGrid, interpolated_gains, midpoints, smooth_gains
-from seatrial.control.task import ScheduleGrid, Seaway, TuningTask
+from seatrial.control.task import ScheduleGrid, Seaway, SlowDisturbance, TuningTask
 from seatrial.core.results.tuning import OperatingPoint, ScheduleCheck, ScheduleTrade
-from seatrial.core.values import Array
+from seatrial.core.values import Array, InputError, Parameters
+from seatrial.physics.loops import TransferLoop
 
 # rounds of random neighbours and neighbours a round; chosen
 _ROUNDS, _NEIGHBOURS = 8, 1024
+_RATE_SHARES = (0.7, 0.5, 0.35, 0.25, 0.18)  # of the rate that the least output takes, tried for a demand; chosen
 _STEPS = (0.1, 0.2, 0.3, 0.5)  # largest steps whose cost is printed; chosen
 
 
@@ -39,14 +43,49 @@ class ScheduleCondition:
 
 
 def schedule_conditions(task: TuningTask, grid: ScheduleGrid) -> tuple[ScheduleCondition, ...]:
-    """Return every combination of the plan; the first seaway of the task gives spectrum, hull and spreading."""
-    sea = next(met for met in task.disturbances if isinstance(met, Seaway))
+    """Return every combination of the plan, each with the plant, demand and slow disturbances at its speed.
+
+    The first seaway of the task gives spectrum, hull and spreading; where it does not reach the loop (a heading from
+    abeam) the slow disturbances alone are met.
+    """
+    tasks = {U: task if task.at_speed is None else task.at_speed(U) for U in grid.speeds}
+    bounds = _joint_bounds([one.loop.gains for one in tasks.values()])
     made = []
     for height, U, beta in product(grid.heights, grid.speeds, grid.headings):
-        there = replace(sea, spectrum=sea.spectrum.with_height(height), U=U, beta=beta)
-        evaluator = GainEvaluator(replace(task, disturbances=(there,)), task.loop, (task.motion,))
+        there = tasks[U]
+        loop = replace(
+            task.loop, plant=there.loop.plant, disturbance=there.loop.disturbance, points=there.loop.points,
+            gains=bounds,
+        )  # fmt: skip
+        sea = next(met for met in there.disturbances if isinstance(met, Seaway))
+        sea = replace(sea, spectrum=sea.spectrum.with_height(height), U=U, beta=beta)
+        slow = tuple(met for met in there.disturbances if isinstance(met, SlowDisturbance) and task.demand is not None)
+        met = (sea, *slow) if _reaches(sea, loop) or not slow else slow
+        evaluator = GainEvaluator(replace(there, loop=loop, disturbances=met), loop, (task.motion,))
         made.append(ScheduleCondition(U, beta, height, evaluator))
     return tuple(made)
+
+
+def _reaches(sea: Seaway, loop: TransferLoop) -> bool:
+    """Return whether a sea moves the loop at all."""
+    try:
+        sea.exposure(sea.disturbed(loop))
+    except InputError:
+        return False
+    return True
+
+
+def _joint_bounds(gains: Sequence[Parameters]) -> Parameters:
+    """Return gains whose bounds hold those of all speeds: one schedule is searched within one box."""
+    rows = zip(*gains, strict=True)
+    return Parameters(
+        tuple(
+            replace(row[0], lower=min(one.lower for one in row), upper=max(one.upper for one in row))
+            if row[0].free
+            else row[0]
+            for row in rows
+        )
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,10 +112,12 @@ def schedule(
     restrictions there.
     """
     conditions = schedule_conditions(task, grid)
-    samples = spread_gains(conditions[0].evaluator, seed)
+    there = task.at_speed or (lambda _: task)
+    starts = [there(U).loop.gain_values for U in grid.speeds]
+    samples = np.concatenate([spread_gains(conditions[0].evaluator, seed), starts, *([g] for g in baselines.values())])
     alone = []
     for i, condition in enumerate(conditions):
-        alone.append(least_output_gains(condition.evaluator, samples))
+        alone.append(_own_gains(condition.evaluator, samples))
         report_progress(f"schedule: {i + 1} of {len(conditions)} conditions")
     best = np.array(alone)
     compared = {name: np.tile(gains, (len(conditions), 1)) for name, gains in baselines.items()}
@@ -99,6 +140,28 @@ def schedule(
     return Schedule(points, tuple(trades), _check_between(task, grid, shape, gains))
 
 
+def _own_gains(evaluator: GainEvaluator, samples: Array) -> Array:
+    """Return the gains of a condition alone (g,): of the least output, and where a demand is followed, that follow it.
+
+    The actuator's rate is lowered until the demand is kept; where it never is, the gains that come nearest.
+    """
+    best = least_output_gains(evaluator, samples)
+    if evaluator.task.demand is None:
+        return best
+    used = float(evaluator.evaluate(best[None]).variances[0, :, 2].max())
+    tried = [best]
+    for share in _RATE_SHARES:
+        if shortfall(evaluator.task, evaluator.loop, tried[-1], draws=0)[0] == 0.0 or not math.isfinite(used):
+            return tried[-1]
+        # the share exp(-1/2) of a Rayleigh distribution lies beyond its rms
+        within = replace(
+            evaluator.task.constraints, rate=share * math.sqrt(used), rate_saturation=math.exp(-0.5)
+        )  # fmt: skip
+        slower = replace(evaluator, task=replace(evaluator.task, constraints=within))
+        tried.append(least_output_gains(slower, np.concatenate([samples, tried])))
+    return min(tried, key=lambda gains: shortfall(evaluator.task, evaluator.loop, gains, draws=0)[0])
+
+
 def _ceilings(conditions: Sequence[ScheduleCondition], baselines: Mapping[str, Array]) -> Array:
     """Return the least cost of baselines (name -> gains (n, g)) that keep the restrictions, (n,); else infinity."""
     made = np.full(len(conditions), np.inf)
@@ -116,15 +179,25 @@ def _operating_points(
     made = []
     for i, (condition, own) in enumerate(zip(conditions, gains, strict=True)):
         judged = condition.evaluator.evaluate(own[None])
+        lacks = _lacks(condition.evaluator, judged, own)
         made.append(OperatingPoint(
             condition.U, condition.beta, condition.height,
             dict(zip(task.loop.gains.names, own.tolist(), strict=True)),
             float(condition.cost(own[None])[0]), float(judged.Ms[0]),
-            exceedance_share(task.constraints.limit, float(judged.variances[0, 0, 1])),
+            exceedance_share(task.constraints.limit, float(judged.variances[0, :, 1].max())),
             {name: float(condition.cost(other[i][None])[0]) for name, other in compared.items()},
-            bool(judged.is_feasible[0]),
+            not lacks, lacks,
         ))  # fmt: skip
     return tuple(made)
+
+
+def _lacks(evaluator: GainEvaluator, judged: GainEvaluation, gains: Array) -> tuple[str, ...]:
+    """Return what the gains (g,) do not keep in a condition: restrictions, and the demand as it is simulated there."""
+    broken = violated_restrictions(evaluator, judged)
+    if evaluator.task.demand is None or not math.isfinite(judged.Ms[0]):
+        return broken
+    short = shortfall(evaluator.task, evaluator.loop, gains, draws=0)[1]
+    return (*broken, short) if short else broken
 
 
 def _check_between(task: TuningTask, grid: ScheduleGrid, shape: tuple[int, ...], gains: Array) -> ScheduleCheck:

@@ -1,7 +1,7 @@
 """What is to be tuned: a loop, what disturbs it, what is to be small, what must be kept."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import lru_cache
@@ -269,6 +269,7 @@ class TuningTask:
         uncertainty: of the ships that the controllers are tried on.
         track: to be kept around the heading loop; None where none is.
         station: to be kept beside it; None where none is.
+        at_speed: the same task at another speed [m/s], where the plant there is known; None: `effectiveness` gives it.
 
     Raises:
         InputError: nothing disturbs the loop, a plant with poles right of the axis, gains of other names.
@@ -295,6 +296,7 @@ class TuningTask:
     uncertainty: PlantUncertainty = PlantUncertainty()
     track: TrackDemand | None = None
     station: StationDemand | None = None
+    at_speed: "Callable[[float], TuningTask] | None" = None
 
     def __post_init__(self) -> None:
         if not self.disturbances or not self.objectives:

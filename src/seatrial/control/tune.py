@@ -1,5 +1,6 @@
 """A task in, a tuning out: fronts, choice, simulation, schedule, bounds."""
 
+import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -31,6 +32,7 @@ from seatrial.core.results.tuning import (
     Tuning,
     TuningMethod,
 )
+from seatrial.core.values import NOTATION, display_unit
 from seatrial.core.values.versions import versions
 from seatrial.numerics.optimise import Solution, Status, hypervolume
 from seatrial.physics.loops import margins
@@ -90,7 +92,7 @@ def tune(
         chosen=chosen,
         reasons=(
             *choice.reasons,
-            *_comparison_reasons(chosen, baselines if reference is None else (reference, *baselines)),
+            *_comparison_reasons(chosen, baselines if reference is None else (reference, *baselines), task.loop.output),
         ),
         baselines=baselines,
         front=thin_front(fronts[0][1], FRONT_POINTS),
@@ -118,7 +120,7 @@ def tune(
         robustness=_robustness(task, choice, own.designs, rivals),
         track=checks.track,
         station=checks.station,
-        discrete=discrete_controller(choice.evaluator.loop.with_gains(choice.gains), task.sample_s),
+        discrete=discrete_controller(task, choice.evaluator.loop.with_gains(choice.gains)),
     )
 
 
@@ -218,14 +220,21 @@ def _meaning(controller: Controller) -> str:
     return " (the package's choice from its own front)" if controller.name == OWN_CHOICE else ""
 
 
-def _comparison_reasons(chosen: Controller, baselines: tuple[Controller, ...]) -> tuple[str, ...]:
+def _remaining_motion(controller: Controller, output: str) -> str:
+    """Return what a controller leaves: a share of the motion, or its rms where that has none without control."""
+    if math.isfinite(controller.reduction):
+        return f"{100.0 * (1.0 - controller.reduction):.1f} % of the motion"
+    factor, unit = display_unit(NOTATION[output].unit if output in NOTATION else "1")
+    return f"{controller.rms['output'] * factor:.3g} {unit} rms".replace(" 1 rms", " rms")
+
+
+def _comparison_reasons(chosen: Controller, baselines: tuple[Controller, ...], output: str) -> tuple[str, ...]:
     """Return the chosen one beside each rival, a sentence each."""
     return tuple(
         f"By linear theory, compared with '{other.name}'{_meaning(other)}, it leaves "
-        f"{100.0 * (1.0 - chosen.reduction):.1f} % of the motion instead of "
-        f"{100.0 * (1.0 - other.reduction):.1f} %, at "
+        f"{_remaining_motion(chosen, output)} instead of {_remaining_motion(other, output)}, at "
         f"{chosen.rms['actuator_rate'] / other.rms['actuator_rate']:.2f} times the actuator's rms rate and Ms "
         f"{chosen.Ms:.2f} instead of {other.Ms:.2f}."
         for other in baselines
-        if other.rms["actuator_rate"] > 0.0 and np.isfinite(other.Ms)
+        if other.rms["actuator_rate"] > 0.0 and np.isfinite(other.Ms) and np.isfinite(chosen.Ms)
     )

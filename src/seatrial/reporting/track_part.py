@@ -24,6 +24,7 @@ def corner_sentence(track: TrackKeeping) -> str:
         f"{exact(c.current, 2)} m/s of current towards the outside, the craft goes "
         f"{significant(c.overshoot, 3)} m beyond the new leg"
     )
+    text += " and settles on it" if c.is_kept else " and does not settle on it"
     if c.draws:
         most = f"{significant(c.worst_overshoot, 3)} m at most"
         worst = "the simulation of one diverges" if math.isinf(c.worst_overshoot) else most

@@ -103,6 +103,7 @@ def html(tuning: Tuning) -> str:
         "sensitivities": Markup(svg(sensitivity_chart(tuning))),
         "bode": Markup(svg(bode_chart(tuning))),
         "discrete": tuning_rows.discrete_rows(tuning),
+        "reference": tuning_text.reference_sentence(tuning),
         "nyquist": Markup(svg(nyquist_chart(tuning))),
         "robustness": tuning_rows.robustness_rows(tuning),
         "reductions": Markup(_reductions_figure(tuning)),

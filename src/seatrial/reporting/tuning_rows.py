@@ -114,7 +114,7 @@ def schedule_table(operating_points: tuple[OperatingPoint, ...]) -> TextTable:
         (
             exact(s.U, 4), exact(math.degrees(s.beta), 4), exact(s.height, 3), *texts, fixed(s.cost, 3),
             *(_cost_text(s.baseline_costs.get(name, math.nan)) for name in baselines), fixed(s.Ms, 2),
-            fixed(100.0 * s.saturation, 1), "" if s.is_feasible else "infeasible",
+            fixed(100.0 * s.saturation, 1), "" if s.is_feasible else "; ".join(s.lacks) or "infeasible",
         )
         for s, texts in zip(operating_points, gain_cells, strict=True)
     ]  # fmt: skip

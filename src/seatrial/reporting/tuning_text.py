@@ -204,13 +204,29 @@ def comparison_sentence(pair: PairedDifference) -> str:
 def demand_sentence(m: ManoeuvreResponse) -> str:
     """Return the response to a demand, of the ship as identified and of those drawn from its covariance."""
     text = f"In the {m.name} it {_overshoot_text(m.overshoot)}"
-    text += f" and settles in {significant(m.settling, 3)} s" if math.isfinite(m.settling) else " and does not settle"
+    if math.isfinite(m.settling):
+        text += f" and settles in {significant(m.settling, 3)} s"
+    elif m.is_to_settle:
+        text += " and does not settle"
     if m.draws:
         text += f"; {m.stable_draws} of {m.draws} ships that the fit allows are stable"
         if math.isfinite(m.worst_overshoot):
             worst = f"overshoots by {percent(m.worst_overshoot)} at most" if m.worst_overshoot > 0.0 else "overshoots"
             text += f", and {'each' if m.worst_overshoot > 0.0 else 'none'} {worst}"
         text += "; the simulation of at least one diverges" if math.isinf(m.worst_overshoot) else ""
+    return f"{text}."
+
+
+def reference_sentence(tuning: Tuning) -> str:
+    """Return what the loop follows in place of an order; nothing where it follows none."""
+    made = None if tuning.discrete is None else tuning.discrete.reference
+    if made is None:
+        return ""
+    text = f"What is ordered goes through a critically damped filter of {significant(made.time_constant, 3)} s"
+    if math.isfinite(made.rate):
+        factor, unit = channel_display_unit(tuning.output)
+        ending = "1/s" if unit == "1" else f"{unit}/s"
+        text += f", no faster than {significant(made.rate * factor, 3)} {ending}"
     return f"{text}."
 
 

@@ -3,6 +3,7 @@
 import json
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,8 @@ from seatrial.control.loopfile.load import tuning_task
 from seatrial.control.loopfile.schema import loop_schema
 from seatrial.control.task import Effectiveness, Seaway, SimulationSettings, SlowDisturbance
 from seatrial.core.values import InputError
-from seatrial.physics.loops import HullFactor, LoopSignal, YawAcceleration
+from seatrial.physics.loops import HullFactor, LoopSignal, Sampling, YawAcceleration
+from seatrial.physics.loops.discrete import default_sample_time
 from seatrial.physics.loops.fin import GYRO, SERVO, Preamplifier, fin_loop
 from seatrial.physics.sea.sea_state import sea_state
 
@@ -25,7 +27,8 @@ def test_a_fin_stabiliser_in_a_dozen_lines_is_the_published_loop(tmp_path: Path)
     assert FIN_LINES <= 15
     published = fin_loop(Preamplifier.WASHOUT)
     w = np.geomspace(0.1, 10.0, 50)
-    assert np.allclose(task.loop.open_loop(w), published.open_loop(w), rtol=1e-12)
+    assert np.allclose(replace(task.loop, sampling=None).open_loop(w), published.open_loop(w), rtol=1e-12)
+    assert task.loop.sampling == Sampling(default_sample_time(published))
     assert task.loop.gains.names == ("KP", "KI", "KD") and len(task.loop.gains.free) == 3
     assert (task.constraints.limit, task.constraints.rate) == pytest.approx((math.radians(22), math.radians(25)))
     assert math.isinf(task.constraints.stall) and task.constraints.Ms == 1.6
@@ -34,7 +37,11 @@ def test_a_fin_stabiliser_in_a_dozen_lines_is_the_published_loop(tmp_path: Path)
         (LoopSignal.OUTPUT, 1),
         (LoopSignal.ACTUATOR, 2),
     ]
-    assert task.simulation == SimulationSettings() and task.demand is None and task.schedule_grid is None
+    assert (
+        task.simulation == SimulationSettings(dt=task.loop.sampling.sample_s)
+        and task.demand is None
+        and task.schedule_grid is None
+    )
 
 
 def test_an_autopilot_in_a_dozen_lines_follows_a_demand(tmp_path: Path) -> None:

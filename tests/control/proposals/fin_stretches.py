@@ -6,6 +6,7 @@ from itertools import product
 
 import numpy as np
 from benchmarks.proposals import EXAMPLE, Weather, stretch
+from tests.control.loop_files import in_continuous_time
 
 from seatrial import api
 from seatrial.control.proposals.gain_schedule import GainSchedule, gain_schedule
@@ -16,7 +17,7 @@ from seatrial.core.results.tuning import OperatingPoint
 from seatrial.estimation.sea import altered_loop
 from seatrial.physics.loops.fin import PUBLISHED_GAINS
 
-TASK = api.load_loop(EXAMPLE)
+TASK = in_continuous_time(api.load_loop(EXAMPLE))
 SPEEDS, HEADINGS, HEIGHTS = (7.0, 9.26, 11.5), (0.4, math.pi / 2, 2.7), (1.0, 3.0, 6.0)
 SHIP = np.log([1.1, 1.03, 0.9])
 

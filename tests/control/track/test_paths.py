@@ -28,7 +28,7 @@ def answer(heading: HeadingLoop, disturbed: Array, order: float) -> tuple[Array,
     column = ship.model.input_names.index(ship.actuator)
     b = linear.B[:, column] * (-1.0 if ship.model.inputs[column].is_reversed else 1.0)
     east, north = names.index(EAST), names.index("psi")
-    K = heading.loop.gain_values @ heading.loop.controller_terms(OMEGA)
+    K = heading.loop.gain_values @ heading.loop.continuous.controller_terms(OMEGA)
     found = []
     for omega, gain in zip(OMEGA, K, strict=True):
         A = linear.A.astype(complex).copy()
@@ -56,7 +56,7 @@ def test_a_disturbance_reaches_the_track_with_the_heading_kept(heading: HeadingL
     disturbed = {"current": unit(heading, EAST), "waves": unit(heading, "r"), "rudder": b}[kind]
     y, psi = answer(heading, disturbed, 0.0)
     np.testing.assert_allclose(heading.disturbance_to_track(reach).frequency_response(OMEGA), y, rtol=1e-6)
-    K = heading.loop.gain_values @ heading.loop.controller_terms(OMEGA)
+    K = heading.loop.gain_values @ heading.loop.continuous.controller_terms(OMEGA)
     made = heading.rudder_response(reach, np.zeros(len(OMEGA), dtype=complex), OMEGA)
     np.testing.assert_allclose(made, -K * psi, rtol=1e-6, atol=1e-12)
 

@@ -19,6 +19,7 @@ from seatrial.core.results.tuning import TrackKeeping
 from seatrial.core.values import InputError
 from seatrial.physics.loops import python_control
 from seatrial.physics.simulate.closed_loop import ActuatorLimits
+from seatrial.physics.simulate.track_following import LineOfSight
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +41,7 @@ def made(task: TuningTask, demand: TrackDemand) -> TrackKeeping:
 def test_margins_are_those_of_python_control(made: TrackKeeping, task: TuningTask) -> None:
     """The heading loop closed by its feedback, the guidance as a transfer function."""
     heading = heading_loop_of(task, task.loop)
-    K = python_control.controller_transfer_function(task.loop)
+    K = python_control.controller_transfer_function(task.loop.continuous)
     rudder_to_y = control.tf(list(heading.rudder.track.num), list(heading.rudder.track.den))
     rudder_to_psi = control.tf(list(heading.rudder.heading.num), list(heading.rudder.heading.den))
     ordered = control.feedback(K, rudder_to_psi)
@@ -131,3 +132,10 @@ def test_what_cannot_be_kept_is_refused(tmp_path: Path, changes: list[tuple[str,
 def test_a_plant_without_a_model_keeps_no_track(task: TuningTask, demand: TrackDemand) -> None:
     with pytest.raises(InputError, match="identified model with heading and position"):
         tune_track(replace(task, trimmed_ship=None), demand, task.loop, task.loop.gain_values, 0, lambda _: None)
+
+
+def test_a_track_is_kept_where_the_craft_settles(task: TuningTask, demand: TrackDemand, made: TrackKeeping) -> None:
+    assert made.corner.is_kept
+    heading, limits = heading_loop_of(task, task.loop), ActuatorLimits(task.constraints.limit, task.constraints.rate)
+    hasty = CornerTrial(heading, LineOfSight(1.0, 0.0, 0.1 * made.order_rate), limits, demand, task.U)
+    assert not hasty.settles()

@@ -1,16 +1,19 @@
 """Course changes of simulated logs: found, predicted with weather, and the coefficient that was wrong named."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from tests.control.verification.autopilot_logs import DEMAND, GAINS, K, T, autopilot_task, course_log, ship
 
 from seatrial.control.verification.course_changes import verify_changes
+from seatrial.control.verification.followed_gains import followed_gains
 from seatrial.control.verification.logged_changes import logged_changes
 from seatrial.control.verification.refitted_model import refitted_coefficients
 from seatrial.control.verification.verify import verify
 from seatrial.core.values import InputError, Record
+from seatrial.physics.loops.structures import notch, with_filters
 
 LOOP, VALUES = autopilot_task().loop, np.array(list(GAINS.values()))
 
@@ -61,11 +64,33 @@ def test_a_rudder_that_does_less_is_named() -> None:
     assert not math.isnan(corrected.log)
 
 
-def test_the_model_is_estimated_by_the_log_with_itself_as_prior() -> None:
-    (gain, lag) = refitted_coefficients(ship(), [course_log(3)], 40.0)
+def test_the_model_is_estimated_by_the_log_almost_alone() -> None:
+    (gain, lag) = refitted_coefficients(ship(), [course_log(4)], 40.0)
     assert (gain.name, lag.name) == ("K", "T")
     assert gain.lower < K < gain.upper
     assert gain.upper - gain.lower < 4.0 * 0.01
+
+
+def test_what_changed_is_named_and_an_unchanged_ship_passes() -> None:
+    """The gain halved, the time constant doubled, other gains: each by its finding; four ships as modelled by none."""
+    task = autopilot_task()
+    for seed in range(4):
+        assert [f.code for f in verify(task, GAINS, [course_log(40 + seed)]).findings] == []
+    assert "K" in verify(task, GAINS, [course_log(50, gain=0.5 * K)]).moved
+    assert "T" in verify(task, GAINS, [course_log(51, lag=2.0 * T)]).moved
+    others = {"KP": 2.0 * GAINS["KP"], "KD": 0.5 * GAINS["KD"]}
+    assert "gains-differ" in [f.code for f in verify(task, others, [course_log(52)]).findings]
+
+
+def test_the_loop_of_the_log_is_recognised() -> None:
+    task = autopilot_task()
+    notched = with_filters(task.loop, notch(0.5, 0.5, 0.1))
+    log = course_log(60)
+    alone, other = (followed_gains(task, one.with_gains(VALUES), logged_changes([log], LOOP, DEMAND))
+                    for one in (task.loop, notched))  # fmt: skip
+    assert alone.coherence > 0.95 > other.coherence
+    with_both = replace(task, loop=notched, extended_structures=(task.loop,))
+    assert verify_changes(with_both, VALUES, [log]).followed == alone
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from tests.reporting.fabricated_tuning import fabricated_autopilot, fabricated_b
 
 from seatrial.core.results.tuning import Component, Tuning
 from seatrial.core.values import InputError
-from seatrial.data.folder.gains_file import gains_toml, read_gains, read_schedule, schedule_csv
+from seatrial.data.folder.gains_file import controller_gains, gains_toml, read_gains, read_schedule, schedule_csv
 from seatrial.data.folder.loop_mat import loop_mat
 from seatrial.physics.loops import TransferLoop, margins
 from seatrial.physics.loops.fin import fin_loop
@@ -178,3 +178,13 @@ def test_the_schedule_comes_back(fin: Tuning, tmp_path: Path) -> None:
 def test_a_file_without_a_schedule_is_refused(text: str, sentence: str, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=sentence):
         read_schedule(written(tmp_path, text))
+
+
+def test_gains_that_need_a_filter_have_no_place_without_it(tmp_path: Path) -> None:
+    path = tmp_path / "gains.toml"
+    lines = "[gains]\nKP = 1.0\n[discrete]\nsample_s = 0.1\n[[discrete.blocks]]\nrole = 'filter'\nname = '{}'\n"
+    path.write_text(lines.format("notch"), encoding="utf-8")
+    with pytest.raises(InputError, match="tuned with notch, which has no place there"):
+        controller_gains(path)
+    path.write_text(lines.format("reversed"), encoding="utf-8")
+    assert controller_gains(path) == {"KP": 1.0}

@@ -59,23 +59,23 @@ def test_the_axis_a_vanished_leading_coefficient_and_nan_are_not_stable(row: tup
 
 
 def drawn(rng: np.random.Generator) -> tuple[np.ndarray, ...]:
-    """L_i at 37 frequencies, weights, and what makes every loop stable but the last: gains k of s^2 + k_0 s + k_1."""
+    """L_i at 37 frequencies, weights, noise last; all loops are stable but the last: gains k of s^2 + k_0 s + k_1."""
     re, im = rng.normal(size=(2, 2, 37))
-    return re, im, rng.random((2, 37)), rng.random((1, 37)), rng.random((4, 37))
+    return re, im, rng.random((2, 37)), rng.random((1, 37)), rng.random((4, 37)), rng.random((2, 37))
 
 
 def test_variances_equal_the_sums_and_unstable_loops_are_infinite(rng: np.random.Generator) -> None:
-    re, im, on_s, on_t, on_both = drawn(rng)
+    re, im, on_s, on_t, on_both, heard = drawn(rng)
     k = np.vstack([rng.random((9, 2)) + 0.1, [-0.5, 1.0]])
     d, n = np.array([1.0, 0.0, 0.0]), np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     peak, out = np.zeros(10), np.empty((10, 4))
-    evaluate_loops(k, d, n, re, im, on_s, on_t, on_both, EMPTY, EMPTY, peak, out)
+    evaluate_loops(k, d, n, re, im, on_s, on_t, on_both, heard, EMPTY, EMPTY, peak, out)
     L = k @ (re + 1j * im)
     S = np.abs(1.0 / (1.0 + L)) ** 2
     T = np.abs(L) ** 2 * S
     cross = 2.0 * np.real((1.0 / (1.0 + L)) * np.conj(L / (1.0 + L)) * (on_both[2] + 1j * on_both[3]))
     mixed = (S * on_both[0] + T * on_both[1] + cross).sum(axis=1, keepdims=True)
-    expected = np.hstack([S @ on_s.T, T @ on_t.T, mixed])
+    expected = np.hstack([S @ on_s.T + T @ heard.T, T @ on_t.T, mixed])
     np.testing.assert_allclose(out[:9], expected[:9], rtol=1e-11)
     assert np.all(np.isinf(out[9]))
     assert list(peak) == [0.0] * 9 + [np.inf]
@@ -97,6 +97,7 @@ def test_the_peak_of_a_parabola_is_exact_and_of_no_loop_one() -> None:
         no_rows,
         no_rows,
         no_rows,
+        no_rows,
         wide.real.copy(),
         wide.imag.copy(),
         peak,
@@ -109,14 +110,14 @@ def test_the_peak_of_a_parabola_is_exact_and_of_no_loop_one() -> None:
 
 
 def test_slopes_equal_the_complex_step(rng: np.random.Generator) -> None:
-    re, im, on_s, on_t, on_both = drawn(rng)
+    re, im, on_s, on_t, on_both, heard = drawn(rng)
     k, out, h = np.array([0.3, -0.2]), np.empty((4, 2)), 1e-30
-    variance_gradients(k, re, im, on_s, on_t, on_both, out)
+    variance_gradients(k, re, im, on_s, on_t, on_both, heard, out)
     for i in range(2):
         moved = k + 1j * h * np.eye(2)[i]
         x, y = 1.0 + moved @ re, moved @ im
         s = 1.0 / (x * x + y * y)
         t = ((x - 1.0) ** 2 + y * y) * s
         mixed = on_both[0] * s + on_both[1] * t + 2.0 * s * ((x - 1.0) * on_both[2] + y * on_both[3])
-        sums = np.concatenate([on_s @ s, on_t @ t, [mixed.sum()]])
+        sums = np.concatenate([on_s @ s + heard @ t, on_t @ t, [mixed.sum()]])
         np.testing.assert_allclose(out[:, i], sums.imag / h, rtol=1e-10)

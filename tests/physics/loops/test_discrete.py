@@ -6,7 +6,13 @@ from scipy.signal import bilinear, freqz
 
 from seatrial.core.values import InputError
 from seatrial.physics.loops import Block
-from seatrial.physics.loops.discrete import default_sample_time, difference_equation
+from seatrial.physics.loops.autopilot import heading_loop
+from seatrial.physics.loops.discrete import (
+    default_sample_time,
+    difference_equation,
+    holding_terms,
+    ringing_blocks,
+)
 from seatrial.physics.loops.fin import fin_loop
 
 BLOCKS = [
@@ -33,7 +39,7 @@ def test_at_low_frequencies_it_answers_as_the_block(block: Block) -> None:
     np.testing.assert_allclose(response, block.frequency_response(omega), rtol=1e-3)
 
 
-def test_the_default_sample_time_costs_three_degrees_where_the_loop_is_frailest() -> None:
+def test_the_default_sample_time_costs_six_degrees_where_the_loop_is_frailest() -> None:
     T = default_sample_time(fin_loop())
     assert T in (0.01, 0.02, 0.05, 0.1)
 
@@ -42,3 +48,16 @@ def test_the_default_sample_time_costs_three_degrees_where_the_loop_is_frailest(
 def test_a_sample_time_that_is_none_is_refused(T: float) -> None:
     with pytest.raises(InputError, match="not positive"):
         difference_equation(BLOCKS[0], T)
+
+
+def test_slow_terms_hold_with_the_sign_of_their_share() -> None:
+    """The integral winds up, the filtered derivative does not; of a plant that turns the other way it pushes back."""
+    plant = Block("ship", (0.2,), (8.0, 1.0, 0.0))
+    loop, reversed_loop = (heading_loop(one, one, ()) for one in (plant, plant.scaled(-1.0)))
+    assert holding_terms(loop) == ((False, True, False), 1.0)
+    assert holding_terms(reversed_loop) == ((False, True, False), -1.0)
+
+
+def test_no_block_rings_at_the_default_sample_time() -> None:
+    loop = heading_loop(Block("ship", (0.2,), (8.0, 1.0, 0.0)), Block("ship", (0.2,), (8.0, 1.0, 0.0)), ())
+    assert ringing_blocks(loop, default_sample_time(loop)) == ()

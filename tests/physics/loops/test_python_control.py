@@ -4,9 +4,10 @@ import control
 import numpy as np
 import pytest
 from tests.physics.loops.example_loops import second_order
+from tests.physics.loops.sampled_loops import RIB, sampled_loop
 
 from seatrial.core.values import InputError
-from seatrial.physics.loops import Block, TransferLoop
+from seatrial.physics.loops import Block, Sampling, TransferLoop
 from seatrial.physics.loops.fin import DERIVATIVE, GYRO, ROLL, SERVO, Preamplifier, fin_loop
 from seatrial.physics.loops.python_control import (
     block_from_system,
@@ -77,3 +78,9 @@ def test_python_control_closes_the_loop_on_the_same_poles(loop: TransferLoop) ->
     nearest = np.abs(theirs[:, None] - ours).min(axis=1)
     assert len(theirs) == len(ours)
     assert np.all(nearest <= 1e-6 * np.maximum(np.abs(theirs), 1e-2))
+
+
+def test_a_sampled_loop_is_one_in_z() -> None:
+    loop = sampled_loop(RIB, Sampling(0.2, 0.3))
+    made, omega = open_loop_transfer_function(loop), np.geomspace(0.1, 10.0, 30)
+    np.testing.assert_allclose(made(np.exp(0.2j * omega)), loop.open_loop(omega), rtol=1e-7)

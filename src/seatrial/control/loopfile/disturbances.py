@@ -51,7 +51,8 @@ def refuse_calm(
         raise InputError(
             "schedule: there is no block [[seas]] to give its spectrum; add one, or leave the schedule out"
         )
-    for beta in () if grid is None else grid.headings:
+    is_met = len(seas) < len(disturbances)  # something acts on a heading that no sea reaches
+    for beta in () if grid is None or is_met else grid.headings:
         try:
             replace(seas[0], beta=beta).exposure(loop)
         except InputError as error:

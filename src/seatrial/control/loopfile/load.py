@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -11,7 +12,7 @@ from seatrial.control.loopfile.disturbances import loop_disturbances, refuse_cal
 from seatrial.control.loopfile.extended_structures import extended_structure
 from seatrial.control.loopfile.loop import loop_from_tables
 from seatrial.control.loopfile.objectives import objective, objective_places
-from seatrial.control.loopfile.plant import LoopPlant, hull_factor, plant_from_table
+from seatrial.control.loopfile.plant import LoopPlant, hull_factor, plant_at_speed, plant_from_table
 from seatrial.control.loopfile.plausibility import refuse_reversed_plant, refuse_reversed_servo, refuse_wild_motion
 from seatrial.control.loopfile.quantities import angle_value, positive_value, rate_value, si_value, symbol_unit
 from seatrial.control.loopfile.schema import (
@@ -43,11 +44,14 @@ from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import InputError, spelling_hint
 from seatrial.core.values.tables import parse_toml, read_table_text, refuse_absurd_numbers
 from seatrial.data.trial.schema_errors import schema_error
-from seatrial.physics.loops import ActuatorDrive, Block, Objective, TransferLoop
+from seatrial.physics.loops import ActuatorDrive, Block, Objective, Sampling, TransferLoop
+from seatrial.physics.loops.discrete import default_sample_time, ringing_blocks, round_sample_time
 from seatrial.physics.models.thruster_layout import ThrusterLayout
+from seatrial.physics.simulate.sampled_controller import simulation_step
 
 _TIME_CONSTANTS = 30.0  # duration of a demand where none is given, in its time constants; chosen
-_DELAY_OVER_DEAD_TIME = 2.0  # least delay margin over the declared dead time; chosen
+_DELAY_OVER_DEAD_TIME = 1.0  # least delay margin beyond the declared dead time, over it; chosen
+_DEAD_TIME_SAMPLES = 25  # samples of the dead time at most where no sample time is declared; chosen
 _ACCEPTANCE_LENGTHS = 2.0  # of the circle of acceptance, in lengths of the ship: Fossen 2011, section 10.3
 _SHARPEST_CORNER = math.radians(120.0)  # of a track; chosen
 _MOST_STEPS = 1e7  # steps over all seeds; guards against a wrong unit
@@ -79,17 +83,30 @@ def tuning_task(path: Path, own_model: Model | None = None, model_file: Path | N
     file = parse_loop(path)
     try:
         home = path.resolve().parent
-        return _task_from_tables(file, plant_from_table(file.plant, home, own_model, model_file), home)
+        plant = plant_from_table(file.plant, home, own_model, model_file)
+        task = _task_from_tables(file, plant, home)
+        if task.schedule_grid is None or task.demand is None:
+            return task
+
+        def at_speed(U: float) -> TuningTask:
+            alone = file.model_copy(update={"schedule": None, "track": None, "station": None})
+            there = plant_at_speed(file.plant, plant, U, home, own_model, model_file)
+            return _task_from_tables(alone, there, home)
+
+        for U in task.schedule_grid.speeds:
+            at_speed(U)
+        return replace(task, at_speed=lru_cache(at_speed))
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
 
 
 def _task_from_tables(file: LoopFile, plant: LoopPlant, home: Path) -> TuningTask:
     loop = loop_from_tables(
-        file.controller, file.actuator.servo, plant, file.name or f"{plant.actuator} on {plant.output}"
-    )
+        file.controller, file.actuator.servo, plant, file.name or f"{plant.actuator} on {plant.output}",
+        _dead_time(file.actuator),
+    )  # fmt: skip
     places = objective_places(file.minimise)
-    loop = replace(loop, points=point_motions(plant, places))
+    loop = replace(loop, points=point_motions(plant, places), sampling=_sampling(file, plant, loop))
     refuse_reversed_plant(plant, _plant_key(file.plant))
     refuse_reversed_servo(loop.servo)
     demand = None if file.demand is None else _demand(file.demand, plant)
@@ -121,7 +138,7 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant, home: Path) -> TuningTas
             for i, table in enumerate(file.extended_structures, start=1)
         ),
         schedule_grid=plan,
-        simulation=_simulation_settings(file.simulation, len(file.seas), demand),
+        simulation=_simulation_settings(file.simulation, len(file.seas), demand, loop.sampling),
         trimmed_ship=plant.trimmed_ship,
         demand=demand,
         genetic=file.genetic,
@@ -216,10 +233,39 @@ def _baselines(baselines: Mapping[str, Mapping[str, float]], loop: TransferLoop)
     return dict(baselines)
 
 
-def _simulation_settings(table: SimulationTable | None, seas: int, demand: Demand | None) -> SimulationSettings | None:
-    """Return the default for a stabiliser in a sea; None where a demand is followed or no seeds are given."""
+def _sampling(file: LoopFile, plant: LoopPlant, loop: TransferLoop) -> Sampling:
+    """Return how the controller samples (by default as the loop allows), the actuator's dead time, sensor errors."""
+    table, dead_time, unit = file.controller, _dead_time(file.actuator), symbol_unit(plant.output)
+    errors = {
+        key: 0.0 if value is None else positive_value(value, unit, f"sensors.{key}")
+        for key, value in (("noise", file.sensors.noise), ("resolution", file.sensors.resolution))
+    }
+    if loop.sensor and any(errors.values()):
+        raise InputError(
+            "sensors: noise and resolution are those of the output itself, which this controller sees through a sensor "
+            "of its own; leave the table out"
+        )
+    if table.sample_s is None:
+        shortest = round_sample_time(dead_time / _DEAD_TIME_SAMPLES)
+        return Sampling(max(default_sample_time(loop), shortest), dead_time, **errors)
+    made = Sampling(positive_value(table.sample_s, "s", "controller.sample_s"), dead_time, **errors)
+    if table.derivative_filter is not None and "derivative" in ringing_blocks(loop, made.sample_s):
+        raise InputError(
+            f"controller.derivative_filter: it rings at samples of {made.sample_s:g} s; give {0.5 * made.sample_s:g} s "
+            "or more, or leave it out"
+        )
+    return made
+
+
+def _simulation_settings(
+    table: SimulationTable | None, seas: int, demand: Demand | None, sampling: Sampling | None
+) -> SimulationSettings | None:
+    """Return the default for a stabiliser in a sea; None where a demand is followed or no seeds are given.
+
+    Steps are as long as asked at most, and divide the controller's sample time.
+    """
     if table is None:
-        return SimulationSettings() if demand is None and seas else None
+        table = SimulationTable() if demand is None and seas else SimulationTable(seeds=0)
     if not table.seeds:
         return None
     if not seas:
@@ -235,7 +281,7 @@ def _simulation_settings(table: SimulationTable | None, seas: int, demand: Deman
             f"simulation: {table.seeds} seas of {duration:g} s in steps of {step:g} s are more than {_MOST_STEPS:.0e} "
             "steps; take a shorter duration, longer steps or fewer seeds"
         )
-    return SimulationSettings(table.seeds, duration, step)
+    return SimulationSettings(table.seeds, duration, simulation_step(sampling, step))
 
 
 def _track(table: TrackTable, plant: LoopPlant, demand: Demand | None) -> TrackDemand:

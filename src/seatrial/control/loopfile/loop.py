@@ -16,8 +16,13 @@ PID = ("KP", "KI", "KD")
 MEANINGS = {"KP": "proportional gain", "KI": "gain of the integral", "KD": "gain of the filtered derivative"}
 
 
-def loop_from_tables(table: ControllerTable, servo: Sequence[BlockTable], plant: LoopPlant, name: str) -> TransferLoop:
-    """Return the loop that the tables describe; the published one brings its own servo where none is given."""
+def loop_from_tables(
+    table: ControllerTable, servo: Sequence[BlockTable], plant: LoopPlant, name: str, dead_time: float
+) -> TransferLoop:
+    """Return the loop that the tables describe; the published one brings its own servo where none is given.
+
+    dead_time: of the actuator [s].
+    """
     own = blocks(servo, "actuator.servo")
     match table.kind:
         case "yu2014":
@@ -26,7 +31,7 @@ def loop_from_tables(table: ControllerTable, servo: Sequence[BlockTable], plant:
             made = fin_loop(Preamplifier[table.preamplifier.upper()], K_q=table.K_q)
             made = replace(made, servo=own or (SERVO,))
         case "pid":
-            made = replace(_pid_loop(table, plant), servo=own)
+            made = replace(_pid_loop(table, plant, dead_time), servo=own)
         case "blocks":
             made = _loop_of_blocks(table, plant, own)
     if table.kind != "blocks":
@@ -56,7 +61,7 @@ def gains_from_tables(tables: Mapping[str, GainTable], known_gains: Parameters) 
     return made
 
 
-def _pid_loop(table: ControllerTable, plant: LoopPlant) -> TransferLoop:
+def _pid_loop(table: ControllerTable, plant: LoopPlant, dead_time: float) -> TransferLoop:
     """KP + KI / s + KD s / (tau s + 1) on the error; bounds from the plant where it is of a kind that gives them."""
     if len(set(table.parts)) != len(table.parts):
         raise InputError("controller.parts names a part twice; name each once")
@@ -66,14 +71,27 @@ def _pid_loop(table: ControllerTable, plant: LoopPlant) -> TransferLoop:
     )  # fmt: skip
     parts = parts or (("KP", "KI") if plant.output == "u" else PID)
     if plant.output == "u" and "KD" not in parts:
-        return _with_parts(speed_loop(plant.response, plant.disturbance, ()), parts)
-    make = heading_loop if plant.output == "psi" else pitch_loop
+        delay = dead_time + _shortest(table)
+        return _with_parts(speed_loop(plant.response, plant.disturbance, (), delay=delay), parts)
     try:
-        return make(plant.response, plant.disturbance, (), parts=parts, derivative_filter=given)
+        if plant.output == "psi":
+            return heading_loop(
+                plant.response, plant.disturbance, (), parts=parts, derivative_filter=given,
+                shortest_filter=_shortest(table), delay=dead_time + _shortest(table),
+            )  # fmt: skip
+        return pitch_loop(
+            plant.response, plant.disturbance, (), parts=parts, derivative_filter=given,
+            shortest_filter=_shortest(table),
+        )  # fmt: skip
     except InputError as error:
         if "KD" in parts and given is None:
             raise InputError(f"controller: {error}; give 'derivative_filter' and bounds of the gains") from None
     return _parallel_loop(plant, tuple(Term(part, _part(part, given)) for part in parts), table.gains, ())
+
+
+def _shortest(table: ControllerTable) -> float:
+    """Return the shortest derivative filter [s] that does not ring by Tustin's rule: half the sample time declared."""
+    return 0.0 if table.sample_s is None else 0.5 * positive_value(table.sample_s, "s", "controller.sample_s")
 
 
 def _part(name: str, tau: float | None) -> Block:

@@ -1,8 +1,11 @@
 """The table `[plant]` of a loop file: transfer functions as given, or those of an identified model."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+
+import numpy as np
 
 from seatrial.control.loopfile.blocks import block, block_text
 from seatrial.control.loopfile.quantities import angle_value, positive_value, si_value, symbol_unit
@@ -73,6 +76,45 @@ def plant_from_table(
         Effectiveness.CONSTANT,
         f"{table.actuator} to {table.output} as given: {block_text(response)}",
     )  # fmt: skip
+
+
+def plant_at_speed(
+    table: PlantTable, plant: LoopPlant, U: float, home: Path, own_model: Model | None, model_file: Path | None
+) -> LoopPlant:
+    """Return the plant of the table at another speed [m/s]: trimmed there with surge in the model, else by similarity.
+
+    Hydrodynamic forces grow with the square of the speed, so that a course answers a rudder alike in time over U / L:
+    P(s) becomes P(s U_0 / U). Of a Nomoto ship K grows with U and T with 1 / U (Fossen 2021, section 7.2).
+
+    Raises:
+        InputError: nothing is known of other speeds.
+    """
+    if U == plant.U:
+        return plant
+    ship = plant.trimmed_ship
+    if ship is not None and "u" in (*ship.model.states, *ship.model.input_names):
+        there = table.model_copy(update={"speed": Amount(value=U)})
+        return plant_from_table(there, home, own_model, model_file)
+    if plant.output != "psi" or plant.disturbed_by != plant.actuator:
+        raise InputError(
+            f"schedule.speeds: how {plant.output} answers {plant.actuator} is known at {plant.U:.4g} m/s alone; give "
+            "this speed, or a model with surge"
+        )
+    response = _in_time(plant.response, plant.U / U)
+    return replace(
+        plant, response=response, disturbance=response, U=U, trimmed_ship=None,
+        description=f"{plant.description}, carried to {U:.4g} m/s by similarity",
+    )  # fmt: skip
+
+
+def _in_time(block: Block, factor: float) -> Block:
+    """Return P(factor s)."""
+
+    def stretched(coefficients: tuple[float, ...]) -> tuple[float, ...]:
+        top = len(coefficients) - 1
+        return tuple(c * factor ** (top - i) for i, c in enumerate(coefficients))
+
+    return replace(block, num=stretched(block.num), den=stretched(block.den))
 
 
 def yaw_acceleration_path(plant: LoopPlant) -> Block:
@@ -158,6 +200,7 @@ def _plant_of_model(table: PlantTable, path: Path, own_model: Model | None) -> L
     for name in inputs:
         _demand_known(name, file.model.input_names, f"plant.inputs.{name}", file.model, "input")
     ship = trim_ship(file, output=output, actuator=actuator, disturbance=disturbance, speed=speed, inputs=inputs)
+    _refuse_without_effect(ship, inputs)
     response, disturbed = plant_and_disturbance(ship, amplitude)
     turned = ""
     if craft is not None and actuator == ORDER:
@@ -168,6 +211,23 @@ def _plant_of_model(table: PlantTable, path: Path, own_model: Model | None) -> L
         _trim_speed(ship, file) if speed is None else speed, law,
         ", ".join(part for part in (plant_text(ship), turned, about, words) if part), ship, file.ship, craft,
     )  # fmt: skip
+
+
+def _refuse_without_effect(ship: TrimmedShip, inputs: Mapping[str, float]) -> None:
+    """Refuse an input that changes no rate of the model about its trim: what it needs is missing."""
+    model = ship.model
+    rates, without = np.empty(len(model.states)), np.empty(len(model.states))
+    model.compiled.rates(0.0, ship.state, ship.inputs, model.parameters.values, rates)
+    for name, value in inputs.items():
+        changed = ship.inputs.copy()
+        # another value of the same size; of a direction another direction
+        changed[model.input_names.index(name)] += max(abs(value), 1.0)
+        model.compiled.rates(0.0, ship.state, changed, model.parameters.values, without)
+        if value and np.array_equal(rates, without):
+            raise InputError(
+                f"plant.inputs.{name} = {value:g} has no effect in model '{model.name}': it lacks what that acts on; "
+                "leave the input out, or give the model the coefficients it needs (of wind the areas)"
+            )
 
 
 def _by_orders(table: PlantTable, ordered: Model) -> PlantTable:

@@ -236,6 +236,13 @@ class SlowDisturbanceTable(StrictTable):
     speed: MetresPerSecond | None = None
 
 
+class SensorsTable(StrictTable):
+    """`[sensors]`: rms of the white noise in each sample of the output, and the step in which it is read."""
+
+    noise: SiAmount | None = None
+    resolution: SiAmount | None = None
+
+
 class HullTable(StrictTable):
     """`[hull]`: the box over which the slope of short waves is averaged."""
 
@@ -380,6 +387,7 @@ class LoopFile(StrictTable):
     plant: PlantTable
     controller: ControllerTable
     actuator: ActuatorTable = ActuatorTable()
+    sensors: SensorsTable = SensorsTable()
     hull: HullTable | None = None
     excitation: ExcitationTable | None = None
     seas: tuple[SeawayTable, ...] = ()

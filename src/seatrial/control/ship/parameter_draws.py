@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from itertools import islice
 
 import numpy as np
 
@@ -32,7 +33,9 @@ class ParameterDraws:
 
     def stable_ships(self, loop: TransferLoop, gains: Array) -> tuple[bool, ...]:
         """Return for each ship whether gains (g,) stabilise it, on the straight course and starting either turn."""
-        return tuple(all(_is_stable(loop, plant, gains) for plant in plants) for plants in self.plants)
+        rows = [d + gains @ n for d, n in _characteristic_polynomials(loop, self)]
+        stable = iter([is_hurwitz(np.ascontiguousarray(row), len(row) - 1) for row in rows])
+        return tuple(all(list(islice(stable, len(plants)))) for plants in self.plants)
 
 
 @lru_cache(maxsize=_KEPT)
@@ -74,17 +77,7 @@ def _plant_blocks(ship: TrimmedShip) -> tuple[Block, ...]:
     return (mean,) if alike else (mean, *sides)
 
 
-def _is_stable(loop: TransferLoop, plant: Block, gains: Array) -> bool:
-    """Return whether d + sum gain_i n_i with that plant in the loop is stable, by Routh's scheme."""
-    nums, dens = _open_loop_polynomials(loop)
-    fixed = np.polymul(dens, plant.den)
-    moved = np.polymul(gains @ nums, plant.num)
-    row = np.polyadd(fixed, moved)
-    return bool(is_hurwitz(np.ascontiguousarray(row, dtype=np.float64), len(row) - 1))
-
-
 @lru_cache(maxsize=_KEPT)
-def _open_loop_polynomials(loop: TransferLoop) -> tuple[Array, Array]:
-    """Return numerators of the controller's terms (g, n) and their common denominator (n,), plant left out."""
-    d, n = replace(loop, plant=Block("none")).polynomials
-    return n, d
+def _characteristic_polynomials(loop: TransferLoop, samples: ParameterDraws) -> tuple[tuple[Array, Array], ...]:
+    """Return d and n of the loop before each plant drawn, in a row: it is stable where d + gains n is, by Routh."""
+    return tuple(replace(loop, plant=plant).polynomials for plants in samples.plants for plant in plants)

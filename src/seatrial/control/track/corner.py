@@ -13,11 +13,13 @@ from seatrial.core.results.tuning import CornerResponse
 from seatrial.core.values import Array, Channel, DivergedError, InputError, Provenance, Record, RecordKind, frozen
 from seatrial.physics.loops import TransferLoop
 from seatrial.physics.simulate.closed_loop import ActuatorLimits, ClosedLoop
+from seatrial.physics.simulate.sampled_controller import simulation_step
 from seatrial.physics.simulate.track_following import LineOfSight, PlannedTrack, TrackRun, follow_track
 
 # time constants Delta / U of the track before and after the corner; chosen
 _BEFORE, _AFTER = 8.0, 20.0
 _STEP_SHARE, _MOST_STEPS = 0.1, 40_000  # of the fastest pole's time constant, of a step; steps at most; chosen
+_LAST_PART = 0.25  # of a run, in which a track that is kept stays within the acceptance; chosen
 _SAMPLES = 1000  # of the record that is kept; chosen
 ERROR, CURRENT_NORTH, CURRENT_EAST = "cross_track_error", "current_north", "current_east"
 
@@ -35,13 +37,15 @@ class CornerTrial:
     def respond(self, outer: TransferLoop, draws: int, seed: int) -> CornerResponse:
         """Return the corner by the identified craft and the worst of those drawn.
 
-        A craft drawn that has no trim, or whose track is not stable, counts as unstable.
+        A craft drawn keeps the track where its linear loop is stable and it settles on the new leg in simulation; one
+        without a trim does not.
         """
-        track = PlannedTrack(_BEFORE * self._time * self.U, self.demand.turn, self.demand.acceptance)
+        track = self._track
         own = self._run(self.heading.ship, track)
         drawn = draw_parameters(self.heading.ship, draws, seed)
-        stable = [ship for ship in drawn.ships if self._is_stable(ship, outer)]
-        worst = [self._overshoot_of(ship, track) for ship in stable]
+        runs = [self._run_of(ship, track) for ship in drawn.ships if self._is_stable(ship, outer)]
+        kept = [run is not None and self.is_kept(run) for run in runs]
+        worst = [math.inf if run is None else self._overshoot(run) for run in runs]
         return CornerResponse(
             turn=self.demand.turn,
             acceptance=self.demand.acceptance,
@@ -49,9 +53,23 @@ class CornerTrial:
             record=self._record(own, track),
             overshoot=self._overshoot(own),
             worst_overshoot=max(worst, default=math.nan),
-            stable_draws=len(stable),
+            stable_draws=sum(kept),
             draws=drawn.draws,
+            is_kept=self.is_kept(own),
         )
+
+    @property
+    def _track(self) -> PlannedTrack:
+        return PlannedTrack(_BEFORE * self._time * self.U, self.demand.turn, self.demand.acceptance)
+
+    def settles(self) -> bool:
+        """Return whether the identified craft settles on the new leg."""
+        return self.is_kept(self._run(self.heading.ship, self._track))
+
+    def is_kept(self, run: TrackRun) -> bool:
+        """Return whether a craft stays within the circle of acceptance in the last part of a run, on the new leg."""
+        last = run.error[round((1.0 - _LAST_PART) * len(run.error)) :]
+        return run.new_leg < len(run.error) - len(last) and bool(np.max(np.abs(last)) <= self.demand.acceptance)
 
     @property
     def _time(self) -> float:
@@ -59,8 +77,10 @@ class CornerTrial:
 
     @property
     def _step(self) -> float:
-        fastest = float(np.abs(self.heading.loop.closed_loop_poles).max())
-        return max(_STEP_SHARE / fastest, (_BEFORE + _AFTER) * self._time / _MOST_STEPS)
+        loop = self.heading.loop
+        moving = loop.closed_loop_poles if loop.sampling is None else loop.plant.poles
+        longest = max(_STEP_SHARE / float(np.abs(moving).max()), (_BEFORE + _AFTER) * self._time / _MOST_STEPS)
+        return simulation_step(loop.sampling, longest)
 
     def _run(self, ship: TrimmedShip, track: PlannedTrack) -> TrackRun:
         """Return the run of a craft that a steady current sets towards the outside of the turn."""
@@ -76,11 +96,12 @@ class CornerTrial:
         """Return how far [m] the craft goes beyond the new leg, to the outside."""
         return max(0.0, float(np.max(-math.copysign(1.0, self.demand.turn) * run.error[run.new_leg :])))
 
-    def _overshoot_of(self, ship: TrimmedShip, track: PlannedTrack) -> float:
+    def _run_of(self, ship: TrimmedShip, track: PlannedTrack) -> TrackRun | None:
+        """Return the run of a craft; None where it diverges."""
         try:
-            return self._overshoot(self._run(ship, track))
+            return self._run(ship, track)
         except (DivergedError, InputError):
-            return math.inf
+            return None
 
     def _is_stable(self, ship: TrimmedShip, outer: TransferLoop) -> bool:
         """Return whether heading and track are stable with that craft."""

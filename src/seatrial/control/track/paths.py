@@ -53,7 +53,7 @@ class HeadingLoop:
     @cached_property
     def _controller(self) -> tuple[Array, Array]:
         """Numerator and denominator of the controller from the heading error to the rudder."""
-        den, nums = replace(self.loop, plant=Block("none")).polynomials
+        den, nums = replace(self.loop.continuous, plant=Block("none")).polynomials
         return self.loop.gain_values @ nums, den
 
     @cached_property
@@ -92,7 +92,7 @@ class HeadingLoop:
 
     def rudder_response(self, reach: Reach, guidance: Complex, omega: Array) -> Complex:
         """Return rudder for a unit of a disturbance with psi_d = -guidance y, (n,), at omega (n,) [rad/s]."""
-        K = self.loop.gain_values @ self.loop.controller_terms(omega)
+        K = self.loop.gain_values @ self.loop.continuous.controller_terms(omega)
         P, G = ((one.heading.frequency_response(omega), one.track.frequency_response(omega))
                 for one in (self.rudder, reach))  # fmt: skip
         return -K * (G[0] + guidance * G[1]) / (1.0 + K * (P[0] + guidance * P[1]))

@@ -9,6 +9,7 @@ from seatrial.control.disturbance_simulation import (
     LEAST_FREQUENCY,
     SEEDS,
     DisturbanceClock,
+    actuator_rate,
     disturbance_clock,
     disturbance_realisation,
     named_signals,
@@ -39,7 +40,7 @@ class TrackTrial:
     def simulate(self, met: Seaway | SlowDisturbance, seed: int) -> DisturbanceSimulation:
         """Return rms of distance, rudder and its rate in one disturbance of the outer loop."""
         loop = met.disturbed(self.outer)
-        clock, disturbed = disturbance_clock(met, loop), self._disturbed_state(met)
+        clock, disturbed = disturbance_clock(met, loop, self.heading.loop), self._disturbed_state(met)
         ship = self.heading.ship
         run = ClosedLoop(
             linear_ship(ship, disturbed), self.heading.loop, self.heading.loop.gain_values, clock.dt, ship.actuator,
@@ -93,5 +94,5 @@ class TrackTrial:
             made = follow_track(run, self.guidance, series, limits=limits)
         except DivergedError:
             return np.full(3, np.inf)
-        rate = np.diff(made.actuator[clock.first :]) / run.dt
+        rate = actuator_rate(run, made.actuator[clock.first :])
         return np.array([float(np.mean(x**2)) for x in (made.error[clock.first :], made.actuator[clock.first :], rate)])

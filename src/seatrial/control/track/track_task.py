@@ -7,10 +7,10 @@ from seatrial.control.track.paths import CURRENT, EAST, HeadingLoop
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import InputError, Parameter, Parameters
 from seatrial.physics.loops import Block, Term, TransferLoop
-from seatrial.physics.loops.autopilot import mean_pole
+from seatrial.physics.loops.autopilot import lag_frequency
 from seatrial.physics.simulate.track_following import LineOfSight
 
-# crossover U KP of the outer loop over the mean pole of the heading loop: least, first, largest; chosen
+# crossover U KP of the outer loop over the lag frequency of the heading loop: least, first, largest; chosen
 _SLOWEST, _START, _FASTEST = 0.003, 0.1, 1.0
 _INTEGRAL_SHARE = 0.2  # of the crossover, the largest KI / KP; chosen
 _STRONGEST = 2.0  # the strongest current in its rms: 95 % of a Gaussian's are weaker
@@ -68,7 +68,7 @@ def track_task(task: TuningTask, heading: HeadingLoop, track: TrackDemand) -> Tu
     IEEE CDC, 4984-4991, linearised).
     """
     plant = heading.order_to_track()
-    scale = mean_pole(plant) / task.U
+    scale = lag_frequency(plant) / task.U
     most = _FASTEST * scale
     gains = (
         Parameter("KP", _START * scale, "rad/m", _SLOWEST * scale, most, free=True, source=_SOURCE,

@@ -1,5 +1,6 @@
 """Line of sight tuned around a heading loop, tried in what disturbs it and at a corner, by ships of the fit, too."""
 
+import contextlib
 import math
 from collections.abc import Callable
 
@@ -20,10 +21,11 @@ from seatrial.control.track.track_task import (
     track_task,
 )
 from seatrial.core.results.tuning import TrackKeeping
-from seatrial.core.values import Array
+from seatrial.core.values import Array, DivergedError
 from seatrial.physics.loops import TransferLoop, margins
 from seatrial.physics.simulate.closed_loop import ActuatorLimits
 
+_SLOWER = (1.0, 0.7, 0.5, 0.35, 0.25)  # of KP, tried until a corner is settled; chosen
 _POINTS, _ROUNDS = 31, 4  # of a grid, and grids one after the other; chosen
 
 
@@ -51,9 +53,10 @@ def tune_track(
     best = _least_distance(evaluator, largest_integral_gain(task, demand))
     if not evaluator.evaluate(best[None]).is_feasible[0]:
         refuse_infeasible(evaluator, seed)
+    rate, limits = reference_rate(task, loop, task.required_demand), _limits(task)
+    best = _settling(best, lambda gains: CornerTrial(heading, line_of_sight(gains, rate), limits, demand, task.U))
     KP, KI = best.tolist()
-    guidance = line_of_sight((KP, KI), reference_rate(task, loop, task.required_demand))
-    limits = ActuatorLimits(task.constraints.limit, task.constraints.rate)
+    guidance = line_of_sight((KP, KI), rate)
     closed = outer.loop.with_gains(best)
     found = margins(closed)
     report_progress("track: simulated with the actuator's limits")
@@ -71,6 +74,23 @@ def tune_track(
         disturbances=tuple(trial.simulate(met, seed) for met in outer.disturbances),
         corner=corner.respond(closed, draws, seed),
     )
+
+
+def _limits(task: TuningTask) -> ActuatorLimits:
+    return ActuatorLimits(task.constraints.limit, task.constraints.rate)
+
+
+def _settling(gains: Array, trial: Callable[[tuple[float, float]], CornerTrial]) -> Array:
+    """Return KP, KI (2,), slowed until the craft settles behind the corner within its order's rate and its limits.
+
+    The lookahead grows, and the integral with its square; where that does not help, the gains as they were.
+    """
+    for share in _SLOWER:
+        slower = gains * [share, share**2]
+        with contextlib.suppress(DivergedError):
+            if trial((float(slower[0]), float(slower[1]))).settles():
+                return slower
+    return gains
 
 
 def _least_distance(evaluator: GainEvaluator, largest_sigma: float) -> Array:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.control.demand import (
+    feed_forward,
     reference_model,
     reference_rate,
     relative_overshoot,
@@ -21,12 +22,13 @@ from seatrial.control.demand import (
 from seatrial.control.ship.parameter_draws import draw_parameters
 from seatrial.control.ship.plant_as_model import plant_as_model
 from seatrial.control.task import Demand, TrimmedShip, TuningTask
+from seatrial.control.verification.followed_gains import FollowedGains, followed_gains
 from seatrial.control.verification.logged_changes import LoggedChange, logged_changes
 from seatrial.core.results.verification import VerifiedChange, VerifiedQuantity
 from seatrial.core.values import Array, InputError, Record, frozen
 from seatrial.core.values.channel_text import channel_unit
 from seatrial.physics.loops import TransferLoop
-from seatrial.physics.loops.autopilot import FeedForward, acceleration_feed_forward
+from seatrial.physics.loops.autopilot import FeedForward
 from seatrial.physics.simulate.closed_loop import ActuatorLimits
 
 SHIPS, WEATHERS = 40, 10  # ships drawn from the fit, and moments of the log's weather for each; chosen
@@ -51,6 +53,7 @@ class ChangeLog:
 
     changes: tuple[VerifiedChange, ...]
     quantities: tuple[VerifiedQuantity, ...]
+    followed: FollowedGains
 
 
 def verify_changes(task: TuningTask, gains: Array, records: Sequence[Record], seed: int = 0) -> ChangeLog:
@@ -63,8 +66,9 @@ def verify_changes(task: TuningTask, gains: Array, records: Sequence[Record], se
     """
     if task.demand is None:
         raise InputError(f"tuning '{task.name}' follows no demand; add [demand]")
-    demand, loop = task.demand, task.loop.with_gains(gains)
-    logged = logged_changes(records, loop, demand)
+    demand = task.demand
+    logged = logged_changes(records, task.loop, demand)
+    loop, followed = _loop_of_log(task, gains, logged)
     ship = task.trimmed_ship or plant_as_model(loop)
     drawn = draw_parameters(ship, SHIPS, seed).ships
     nominal = [_answer(task, ship, loop, gains, one) for one in logged]
@@ -94,12 +98,22 @@ def verify_changes(task: TuningTask, gains: Array, records: Sequence[Record], se
         _verified_change(c, a, _judged(c, a, demand), row, loop)
         for c, a, row in zip(logged, nominal, achieved, strict=True)
     )
-    return ChangeLog(changes, quantities)
+    return ChangeLog(changes, quantities, followed)
+
+
+def _loop_of_log(task: TuningTask, gains: Array, logged: Sequence[LoggedChange]) -> tuple[TransferLoop, FollowedGains]:
+    """Return the loop that was on, of those of the task with these gains: what the actuator follows best."""
+    alike = [one for one in (task.loop, *task.extended_structures) if one.gains.names == task.loop.gains.names]
+    loops = [one.with_gains(gains) for one in alike]
+    followed = [followed_gains(task, one, logged) for one in loops]
+    best = max(range(len(loops)), key=lambda place: followed[place].coherence)
+    return loops[best], followed[best]
 
 
 def _answer(task: TuningTask, ship: TrimmedShip, loop: TransferLoop, gains: Array, change: LoggedChange) -> _Answer:
     """Return what a ship does with the change as it was ordered, without weather."""
     demand: Demand = task.demand  # type: ignore[assignment]
+    loop = loop.continuous
     fastest = float(np.abs(loop.closed_loop_poles).max())
     parts = max(1, math.ceil(change.dt * fastest / _STEP_SHARE))
     count, dt = (len(change.order) - 1) * parts + 1, change.dt / parts
@@ -107,10 +121,10 @@ def _answer(task: TuningTask, ship: TrimmedShip, loop: TransferLoop, gains: Arra
     rate = reference_rate(task, loop, demand) if change.is_step else math.inf
     motion = reference_model(order, dt, demand.time_constant, rate)
     level, law = motion.level, FeedForward(0.0, 0.0, 0.0)
-    if not change.is_step:
+    if change.is_step:
+        law = feed_forward(loop, demand)
+    else:
         level = np.interp(np.arange(count), parts * np.arange(len(change.order)), change.order)
-    elif demand.feeds_forward:
-        law = acceleration_feed_forward(loop.plant, 1.0 / demand.time_constant)
     limits = ActuatorLimits(task.constraints.limit, task.constraints.rate)
     output, moved = simulate_tracking(ship, loop, gains, limits, dt, level, motion.fed_forward(law))
     return _Answer((output - output[0])[::parts], (moved - moved[0])[::parts])

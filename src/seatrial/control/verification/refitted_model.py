@@ -1,8 +1,10 @@
 """The model behind a plant estimated anew from the log of its trial, with its covariance as what was known before."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.special import ndtri
 
 from seatrial.control.task import TrimmedShip
 from seatrial.core.equations import Model
@@ -14,6 +16,9 @@ from seatrial.data.trial.earlier_result import JointPrior
 from seatrial.estimation.identify import identify
 
 _SOURCE = "the model that was tuned on"
+# standard deviations of a coefficient as shares of it: of a ship that may have changed, as a prior; of the same ship on
+# another day (loading, fouling, weather), which is no finding; chosen
+_OTHER_DAY, _SAME_SHIP = 0.5, 0.08
 
 
 def refitted_coefficients(ship: TrimmedShip, records: Sequence[Record], length: float) -> tuple[ModelCorrection, ...]:
@@ -28,22 +33,22 @@ def refitted_coefficients(ship: TrimmedShip, records: Sequence[Record], length: 
     names = model.parameters.free_names
     if ship.covariance.shape != (len(names), len(names)) or not names:
         raise InputError(f"model '{model.name}' states no covariance, which is the prior of an estimate from the log")
-    deviations = np.sqrt(np.diag(ship.covariance))
+    values = np.array([p.value for p in model.parameters.free])
+    covariance = ship.covariance + np.diag((_OTHER_DAY * values) ** 2)
+    deviations = np.sqrt(np.diag(covariance))
     priors = {
         p.name: Prior(p.value, float(sd), _SOURCE) for p, sd in zip(model.parameters.free, deviations, strict=True)
     }
-    fit = identify(_trial(ship, model.with_parameters(model.parameters.with_priors(priors)), records, length))
+    prior = JointPrior(names, values, covariance)
+    fit = identify(_trial(ship, model.with_parameters(model.parameters.with_priors(priors)), records, length, prior))
     after = {c.name: c for c in fit.coefficients if not c.fixed}
-    return tuple(
-        _correction(p.name, p.unit, p.value, priors[p.name].standard_deviation, after[p.name])
-        for p in model.parameters.free if p.name in after
-    )  # fmt: skip
+    known = dict(zip(names, np.sqrt(np.diag(ship.covariance)).tolist(), strict=True))
+    judged = [p for p in model.parameters.free if p.name in after]
+    return tuple(_correction(p.name, p.unit, p.value, known[p.name], after[p.name], len(judged)) for p in judged)
 
 
-def _trial(ship: TrimmedShip, model: Model, records: Sequence[Record], length: float) -> Trial:
-    """Return the trial of the log: the controller was on, the joint covariance is known."""
-    free = model.parameters.free
-    prior = JointPrior(tuple(p.name for p in free), np.array([p.value for p in free]), ship.covariance)
+def _trial(ship: TrimmedShip, model: Model, records: Sequence[Record], length: float, prior: JointPrior) -> Trial:
+    """Return the trial of the log: the controller was on, the ship is known as of another day."""
     particulars = {"L": length} | {p.name: p.value for p in model.parameters if not p.free and np.isfinite(p.value)}
     names = {name for record in records for name in record.channels if name.endswith("_ref")}
     runs = tuple(TrialRun(record.without(*(names & set(record.channels)))) for record in records)
@@ -51,7 +56,16 @@ def _trial(ship: TrimmedShip, model: Model, records: Sequence[Record], length: f
     return Trial(Ship(model.name, particulars), runs, model, feedback=feedback, joint_priors=(prior,))
 
 
-def _correction(name: str, unit: str, value: float, deviation: float, after: Coefficient) -> ModelCorrection:
-    low = np.nan if after.lower is None else after.lower
-    high = np.nan if after.upper is None else after.upper
-    return ModelCorrection(name, unit, value, deviation, after.estimate, low, high, bool(value < low or value > high))
+def _correction(
+    name: str, unit: str, value: float, deviation: float, after: Coefficient, count: int
+) -> ModelCorrection:
+    """Return a coefficient before the log and with it; moved where both errors together do not explain the difference.
+
+    At 95 % over all `count` coefficients (Bonferroni).
+    """
+    if after.lower is None or after.upper is None:
+        return ModelCorrection(name, unit, value, deviation, after.estimate, np.nan, np.nan, is_moved=False)
+    one = (after.upper - after.lower) / (2.0 * float(ndtri(0.975)))  # the interval holds 95 % of a normal error
+    most = float(ndtri(1.0 - 0.025 / count)) * math.hypot(one, deviation, _SAME_SHIP * value)
+    is_moved = abs(after.estimate - value) > most
+    return ModelCorrection(name, unit, value, deviation, after.estimate, after.lower, after.upper, is_moved)

@@ -6,6 +6,7 @@ import numpy as np
 
 from seatrial.control.task import TuningTask
 from seatrial.control.verification.course_changes import verify_changes
+from seatrial.control.verification.followed_gains import FollowedGains
 from seatrial.control.verification.model_corrections import model_corrections
 from seatrial.control.verification.refitted_model import refitted_coefficients
 from seatrial.control.verification.stabiliser import StabiliserLog, prior_deviations, verify_stabiliser
@@ -21,6 +22,7 @@ from seatrial.core.values import Array, Finding, InputError, Record, Severity, s
 from seatrial.core.values.versions import versions
 from seatrial.physics.loops import margins
 
+_LEAST_COHERENCE = 0.95  # of the actuator with what the gains order, below which they were not on; chosen
 _GAIN_TOLERANCE = 0.15  # of what the gains order, beyond which the actuator did something else; chosen
 
 
@@ -60,9 +62,23 @@ def _of_changes(task: TuningTask, gains: Array, records: Sequence[Record]) -> Ve
     except InputError as error:
         text = f"the model was not estimated anew from the log: {error}"
         findings = (Finding(Severity.INFO, "model-as-it-was", text, "", "identify it from a trial of its own"),)
+    followed = _followed_findings(task, log.followed)
     return _verification(
-        task, gains, log.quantities, corrections, (*findings, *_moved_findings(corrections)), changes=log.changes
+        task, gains, log.quantities, corrections, (*findings, *followed, *_moved_findings(corrections)),
+        changes=log.changes,
+    )  # fmt: skip
+
+
+def _followed_findings(task: TuningTask, followed: FollowedGains) -> list[Finding]:
+    """Return whether other gains were on than those that are verified."""
+    if abs(followed.ratio - 1.0) <= _GAIN_TOLERANCE and followed.coherence >= _LEAST_COHERENCE:
+        return []
+    text = (
+        f"'{task.loop.actuator}' moves {followed.ratio:.2f} times as much as these gains order of what was measured, "
+        f"with a coherence of {followed.coherence:.2f}"
     )
+    advice = "check that these gains were on, and the actuator's limits, servo and dead time in the loop file"
+    return [Finding(Severity.WARNING, "gains-differ", text, "", advice)]
 
 
 def _verification(

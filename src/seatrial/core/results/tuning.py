@@ -51,14 +51,39 @@ class DiscreteBlock:
     gain: Annotated[str, Field(description="name of the gain that multiplies a term; empty for a filter")]
     b: Annotated[tuple[float, ...], Field(description="of the input, newest first")]
     a: Annotated[tuple[float, ...], Field(description="the first is 1")]
+    hold: Annotated[
+        int,
+        Field(
+            description="of a term that keeps its last output where the actuator is at a limit, the sign of its share "
+            "of the order; 0: it keeps none"
+        ),
+    ] = 0
+
+
+@dataclass(frozen=True)
+class ReferenceFilter:
+    """What the loop follows in place of an order r: x'' + 2 w x' + w^2 x = w^2 r, |x'| <= rate, w = 1 / time_constant.
+
+    To the actuator's order level x + velocity x' + acceleration x'' is added, each times SI; zero without feed-forward.
+    """
+
+    time_constant: Annotated[float, Field(description="s")]
+    rate: Annotated[Number, Field(description="fastest change of the output asked, SI per second; null: any")]
+    level: Annotated[float, Field(description="SI of the actuator for each of the output")] = 0.0
+    velocity: Annotated[float, Field(description="the same, times s")] = 0.0
+    acceleration: Annotated[float, Field(description="the same, times s^2")] = 0.0
 
 
 @dataclass(frozen=True)
 class DiscreteController:
-    """The chosen controller by Tustin's rule, from what the sensor gives to the servo's order."""
+    """The chosen controller by Tustin's rule, from what the sensor gives to the servo's order, as it was simulated."""
 
-    sample_s: Annotated[float, Field(description="s")]
+    sample_s: Annotated[float, Field(description="s; the order stands for as long")]
     blocks: tuple[DiscreteBlock, ...]
+    dead_time: Annotated[float, Field(description="s from the order to the servo, as it was simulated")] = 0.0
+    noise: Annotated[float, Field(description="rms of each sample of the output, SI, as it was simulated")] = 0.0
+    resolution: Annotated[float, Field(description="step in which the output is read, SI, as it was simulated")] = 0.0
+    reference: Annotated[ReferenceFilter | None, Field(description="null: no demand is followed")] = None
 
 
 @dataclass(frozen=True)
@@ -146,7 +171,10 @@ class ParetoFront:
 
 @dataclass(frozen=True, eq=False)
 class OperatingPoint:
-    """One condition of the schedule; a cost is the output's rms over that without control."""
+    """One condition of the schedule; a cost is the output's rms over that without control.
+
+    Of a loop that follows a demand it is the rms itself, SI: a heading has none without control.
+    """
 
     U: Annotated[float, Field(description="m/s")]
     beta: Annotated[float, Field(description="rad, 0: following sea, pi: head sea")]
@@ -157,6 +185,9 @@ class OperatingPoint:
     saturation: Number
     baseline_costs: Annotated[dict[str, Number], Field(description="name of other gains -> their cost there")]
     is_feasible: bool
+    lacks: Annotated[
+        tuple[str, ...], Field(description="what is not kept there, in simulation too, a phrase each; empty: nothing")
+    ] = ()
 
 
 @dataclass(frozen=True)
@@ -251,6 +282,9 @@ class ManoeuvreResponse:
     sampled_outputs: Annotated[
         StoredArray, Field(description="outputs of some of the ships drawn, on the record's time, shape (k, n)")
     ]
+    is_to_settle: Annotated[
+        bool, Field(description="whether it is to settle: not asked of a zigzag, whose legs end before")
+    ] = True
 
 
 @dataclass(frozen=True)
@@ -284,8 +318,11 @@ class CornerResponse:
     record: Annotated[StoredRecord, Field(description="position from the corner, heading, actuator, distance")]
     overshoot: Annotated[Number, Field(description="m beyond the new leg")]
     worst_overshoot: Annotated[Number, Field(description="m, over the craft drawn that are stable; null: none")]
-    stable_draws: Annotated[int, Field(description="craft drawn from the fit's covariance that keep a track")]
+    stable_draws: Annotated[
+        int, Field(description="craft drawn from the fit's covariance that settle behind the corner")
+    ]
     draws: Annotated[int, Field(description="craft drawn from the fit's covariance")]
+    is_kept: Annotated[bool, Field(description="whether the identified craft settles there")] = True
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,12 +10,21 @@ from typing import Any
 import tomli_w
 
 from seatrial.core.results.station import StationKeeping
-from seatrial.core.results.tuning import Controller, OperatingPoint, TrackKeeping, Tuning
+from seatrial.core.results.tuning import (
+    Controller,
+    DiscreteController,
+    OperatingPoint,
+    ReferenceFilter,
+    TrackKeeping,
+    Tuning,
+)
 from seatrial.core.values import InputError
 from seatrial.core.values.tables import parse_toml, read_table_text
 from seatrial.data.folder.orders import channel_display_unit
 
 FORMAT = 1
+REVERSED = "reversed"
+"""Name of the filter of a plant that turns the other way: a sign."""
 _EVERY = 5  # of the points of a table of thrust one is written: 41 of 201; chosen
 
 
@@ -35,8 +44,9 @@ def gains_toml(tuning: Tuning) -> str:
         "provenance": {"seed": tuning.seed, "versions": tuning.versions, "violated": list(tuning.chosen.violated)},
     }  # fmt: skip
     if tuning.discrete is not None:
-        table["discrete"] = {"sample_s": tuning.discrete.sample_s, "rule": "Tustin",
-                             "blocks": [asdict(block) for block in tuning.discrete.blocks]}  # fmt: skip
+        table["discrete"] = _discrete_table(tuning.discrete)
+        if tuning.discrete.reference is not None:
+            table["reference"] = _reference_table(tuning.discrete.reference, tuning.output)
     if tuning.track is not None:
         table["track"] = _track_table(tuning.track)
     if tuning.station is not None:
@@ -44,6 +54,64 @@ def gains_toml(tuning: Tuning) -> str:
     if tuning.schedule:
         table["schedule"] = [_schedule_entry(point) for point in tuning.schedule]
     return tomli_w.dumps(table)
+
+
+_ORDER = (
+    "order = filters in turn of the sum of gain * term(reference - output), plus what is fed forward; it stands for a "
+    "sample"
+)
+_HOLD = (
+    "achieved moves to the order no faster than rate, within limit of [constraints]; a term with hold = 1 or -1 keeps "
+    "its last output y at a sample where (order - achieved) of the sample before * hold * gain * (new y - last y) > 0"
+)
+_REFERENCE = (
+    "x'' + 2 w x' + w^2 x = w^2 r, w = 1 / time_constant_s, x' no faster than rate, follows what is ordered, r; "
+    "level x + velocity x' + acceleration x'', in SI units, is added to the actuator's order"
+)
+
+
+def _discrete_table(controller: DiscreteController) -> dict[str, Any]:
+    """Return the controller as it was simulated."""
+    return {
+        "sample_s": controller.sample_s,
+        "dead_time_s": controller.dead_time,
+        "noise": controller.noise,
+        "resolution": controller.resolution,
+        "rule": "Tustin",
+        "order": _ORDER,
+        "hold": _HOLD,
+        "blocks": [asdict(block) for block in controller.blocks],
+    }
+
+
+def _reference_table(reference: ReferenceFilter, output: str) -> dict[str, Any]:
+    """Return what the loop follows in place of an order, the rate in the unit of the output."""
+    factor, unit = channel_display_unit(output)
+    ending = "" if unit == "1" else f"_{unit}".replace("/", "_per_")
+    numbers = {
+        "time_constant_s": reference.time_constant,
+        f"rate{ending}_per_s": reference.rate * factor,
+        "level": reference.level,
+        "velocity": reference.velocity,
+        "acceleration": reference.acceleration,
+    }
+    return {"rule": _REFERENCE, **_finite_numbers(numbers)}
+
+
+def controller_gains(path: str | Path) -> dict[str, float]:
+    """Return the gains of a ``gains.toml`` for a controller that is its terms alone.
+
+    Raises:
+        InputError: what `read_gains` refuses, or the controller has filters that would be left out.
+    """
+    gains, discrete = read_gains(path), _gains_table(Path(path)).get("discrete", {})
+    blocks = discrete.get("blocks", []) if isinstance(discrete, dict) else []
+    left_out = [str(b.get("name")) for b in blocks if b.get("role") == "filter" and b.get("name") != REVERSED]
+    if left_out:
+        raise InputError(
+            f"'{path}': the gains were tuned with {', '.join(left_out)}, which has no place there; tune without it"
+        )
+    return gains
 
 
 def read_gains(path: str | Path) -> dict[str, float]:
@@ -96,13 +164,14 @@ def schedule_csv(tuning: Tuning) -> str:
         return ""
     first = tuning.schedule[0]
     costs = [f"cost {name}" for name in first.baseline_costs]
-    heads = ["U [m/s]", "heading [deg]", "height [m]", *first.gains, "cost", *costs, "Ms", "saturation", "feasible"]
+    judged = ("cost", *costs, "Ms", "saturation", "feasible", "lacks")
+    heads = ["U [m/s]", "heading [deg]", "height [m]", *first.gains, *judged]
     rows = [[_csv_cell(head) for head in heads]]
     for s in tuning.schedule:
         numbers = (s.U, math.degrees(s.beta), s.height, *s.gains.values(), s.cost, *s.baseline_costs.values(), s.Ms,
                    s.saturation)  # fmt: skip
         texts = [f"{x:.8g}" if math.isfinite(x) else "" for x in numbers]  # digits of a single-precision number
-        rows.append([*texts, "yes" if s.is_feasible else "no"])
+        rows.append([*texts, "yes" if s.is_feasible else "no", _csv_cell("; ".join(s.lacks))])
     return "\n".join(",".join(cells) for cells in rows) + "\n"
 
 
@@ -185,6 +254,7 @@ def _schedule_entry(point: OperatingPoint) -> dict[str, Any]:
         "gains": _finite_numbers(point.gains),
         **_finite_numbers({"cost": point.cost, "Ms": point.Ms, "saturation": point.saturation}),
         "feasible": bool(point.is_feasible),
+        "lacks": list(point.lacks),
     }
 
 

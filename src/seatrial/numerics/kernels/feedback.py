@@ -6,7 +6,8 @@ controller, is extrapolated by a parabola and put right at the next call. The in
 (2 a_{k+1} + 5 a_k - a_{k-1}) / 6 of the actuator's effect a: its mean over the step, sharpened by -dt^2 / 6 a'' for
 what the straight line and the hold take off.
 
-Memory: the head below, then `laws` twice (free, and with the slow states held), the slow order's rate, the controller's
+Memory: the head below (from EVERY on it is that of `sampled_controller`, but for SERIES, where the reference begins),
+then `laws` twice (free, and with the slow states held), the slow order's rate, the controller's
 states and as many places of scratch, the reference (count + 1), the disturbance held over each step (count), what is
 fed forward to the order (count + 1), and room for the actuator's angles (count + 1).
 """
@@ -20,8 +21,10 @@ from seatrial.numerics.kernels.types import COMMAND, COMMAND_SIGNATURE, F8, FUNC
 
 (
     CONTROLLER_ORDER, COUNT, OUTPUT, ACTUATOR, DISTURBED_INPUT, TRIM, EFFECT, LIMIT, SLEW, STALL, LOSS, STEP, ANGLE,
-    EFFECTIVE_ANGLE, SATURATION_EXCESS, ANTI_WINDUP, OUTPUT_LAST, OUTPUT_BEFORE_LAST, ERROR_LAST, HEAD_SIZE,
-) = range(20)  # fmt: skip
+    EFFECTIVE_ANGLE, SATURATION_EXCESS, ANTI_WINDUP, OUTPUT_LAST, OUTPUT_BEFORE_LAST, ERROR_LAST, SERIES, EVERY,
+    SENSOR, SENSOR_ORDER, SERVO, SERVO_ORDER, BLOCKS, TERM_COUNT, FILTER_COUNT, QUEUE, QUEUE_SIZE, NOISE, RESOLUTION,
+    SAMPLE_SLEW, HELD_ORDER, ORDER_EXCESS, LAST_ORDER, HEAD_SIZE,
+) = range(37)  # fmt: skip
 
 _WORK_ROWS = 6  # scratch of a step: x, y and the four stages of `rk4_step`
 
@@ -58,12 +61,6 @@ def steer(f, command, x0, u_start, p, memory, dt, x_out, u_out):
 def controller_size(n):
     """Return the places of one law: E by columns (n, n), g0 (n), g1 (n), the order a step ahead: row (n), r0, r1."""
     return n * n + 3 * n + 2
-
-
-@njit(inline="always", **OPTIONS)
-def series_start(n):
-    """Return the place of the reference, the first of the series, behind a controller of n states."""
-    return HEAD_SIZE + 2 * controller_size(n) + 3 * n + 1
 
 
 @njit(inline="always", **OPTIONS)
@@ -113,7 +110,7 @@ def linear_controller(_, x, memory, u):
     size = controller_size(n)
     slow = HEAD_SIZE + 2 * size
     states = slow + n + 1
-    reference = series_start(n)
+    reference = int(memory[SERIES])
     disturbance = reference + count + 1
     fed_forward = disturbance + count
     angles = fed_forward + count + 1

@@ -1,34 +1,28 @@
 """A craft that follows a track: line of sight orders the heading that a linear controller keeps.
 
-The memory is that of `linear_controller` with a block behind it: the head below, then the cross-track error at every
-sample (count). The order is held to a rate, so that a corner is turned as fast as the craft can.
+The memory is that of `linear_controller` or `sampled_controller` with a block behind it: the head below, then the
+cross-track error at every step (count). A sampled controller is given a new order at each sample. The order is held to
+a rate, so that a corner is turned as fast as the craft can.
 """
 
 import math
 
-from numba import njit
-
 from seatrial.numerics.kernels.feedback import (
-    CONTROLLER_ORDER,
     COUNT,
+    EVERY,
+    SERIES,
     STEP,
     clamp,
     linear_controller,
-    series_start,
 )
 from seatrial.numerics.kernels.kernel import kernel
+from seatrial.numerics.kernels.sampled import sampled_controller
 from seatrial.numerics.kernels.types import COMMAND_SIGNATURE, LEAN
 
 (
     NORTH, EAST, LOOKAHEAD, INTEGRAL_GAIN, INTEGRAL, ORDER, ORDER_STEP, LEG, CORNER, TURN, ACCEPTANCE,
     INTERVAL, NEW_LEG, TRACK_HEAD,
 ) = range(14)  # fmt: skip
-
-
-@njit(inline="always", **LEAN)
-def track_start(n, count):
-    """Return the place of the block behind a controller of n states and `count` samples."""
-    return series_start(n) + 4 * count + 3
 
 
 @kernel(COMMAND_SIGNATURE, **LEAN)
@@ -40,8 +34,8 @@ def track_follower(t, x, memory, u):
     Craft Hydrodynamics and Motion Control, eq. (10.73)). The first leg runs north; the next begins at CORNER, turned by
     TURN, and is taken within ACCEPTANCE of it along the track.
     """
-    n, count, k = int(memory[CONTROLLER_ORDER]), int(memory[COUNT]), int(memory[STEP])
-    reference, block = series_start(n), track_start(n, count)
+    count, k, every, reference = int(memory[COUNT]), int(memory[STEP]), int(memory[EVERY]), int(memory[SERIES])
+    block = reference + 4 * count + 3
     north, east = x[int(memory[block + NORTH])], x[int(memory[block + EAST])]
     if memory[block + LEG] == 0.0 and memory[block + CORNER] - north < memory[block + ACCEPTANCE]:
         memory[block + LEG], memory[block + NEW_LEG] = 1.0, k
@@ -50,12 +44,18 @@ def track_follower(t, x, memory, u):
         course = memory[block + TURN]
         # distance to starboard of the leg (Fossen 2011, eq. (10.58))
         error = -(north - memory[block + CORNER]) * math.sin(course) + east * math.cos(course)
+    memory[block + TRACK_HEAD + k] = error
+    if every > 1 and k % every != 0:
+        sampled_controller(t, x, memory, u)
+        return
     delta, total = memory[block + LOOKAHEAD], error + memory[block + INTEGRAL_GAIN] * memory[block + INTEGRAL]
     memory[block + INTEGRAL] += memory[block + INTERVAL] * delta * error / (total * total + delta * delta)
     before = memory[block + ORDER]
     order = before + clamp(course - math.atan(total / delta) - before, memory[block + ORDER_STEP])
     memory[block + ORDER] = order
     memory[reference + k] = order
+    if every > 0:
+        sampled_controller(t, x, memory, u)
+        return
     memory[reference + k + 1] = order if k == 0 else 2.0 * order - before
-    memory[block + TRACK_HEAD + k] = error
     linear_controller(t, x, memory, u)

@@ -83,15 +83,16 @@ def _mixed_variance(weights, first, s, t, x, y):
 
 
 @kernel(
-    void(MATRIX, VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, VECTOR, MATRIX),
+    void(MATRIX, VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, VECTOR, MATRIX),
     **_ANY_ORDER_SUMS,
 )
-def evaluate_loops(k, d, n, re, im, s_weights, t_weights, mixed_weights, band_re, band_im, Ms, out):
+def evaluate_loops(k, d, n, re, im, s_weights, t_weights, mixed_weights, noise_weights, band_re, band_im, Ms, out):
     """Compute sensitivity peak and variances of loops; infinite where a loop is unstable.
 
     k: gains (m, g). d (n + 1,), n (g, n + 1): characteristic polynomial d + k n. re, im: L_i (g, f) at the frequencies
     of the sea; s_weights (rs, f), t_weights (rt, f): what |S|^2 and |L S|^2 weigh there; mixed_weights (4 rm, f): four
-    rows for each variance of both, as of `_mixed_variance`. band_re, band_im: L_i over the whole band, for the peak;
+    rows for each variance of both, as of `_mixed_variance`; noise_weights (rs, f): what |L S|^2 weighs in the first rs.
+    band_re, band_im: L_i over the whole band, for the peak;
     without frequencies no peak. Ms (m,); out (m, rs + rt + rm).
     """
     order = d.size - 1
@@ -119,7 +120,7 @@ def evaluate_loops(k, d, n, re, im, s_weights, t_weights, mixed_weights, band_re
         for j in range(s_weights.shape[0]):
             total = 0.0
             for f in range(x.size):
-                total += s_weights[j, f] * s[f]
+                total += s_weights[j, f] * s[f] + noise_weights[j, f] * t[f]
             out[m, j] = total
         for j in range(t_weights.shape[0]):
             total = 0.0
@@ -131,8 +132,8 @@ def evaluate_loops(k, d, n, re, im, s_weights, t_weights, mixed_weights, band_re
             out[m, both + j] = _mixed_variance(mixed_weights, 4 * j, s, t, x, y)
 
 
-@kernel(void(VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX), **_ANY_ORDER_SUMS)
-def variance_gradients(k, re, im, s_weights, t_weights, mixed_weights, out):
+@kernel(void(VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX), **_ANY_ORDER_SUMS)
+def variance_gradients(k, re, im, s_weights, t_weights, mixed_weights, noise_weights, out):
     """Set out = d variance / d gain of one loop, (rs + rt + rm, g), of weights as of `evaluate_loops`.
 
     With z = 1 + L: d|S|^2 = -2 Re(conj(z) L_i) |S|^4, d|L S|^2 = 2 Re(conj(L) L_i) |S|^2 + |L|^2 d|S|^2,
@@ -151,7 +152,7 @@ def variance_gradients(k, re, im, s_weights, t_weights, mixed_weights, out):
         for j in range(s_weights.shape[0]):
             total = 0.0
             for f in range(count):
-                total += s_weights[j, f] * ds[f]
+                total += s_weights[j, f] * ds[f] + noise_weights[j, f] * dt[f]
             out[j, i] = total
         for j in range(t_weights.shape[0]):
             total = 0.0

@@ -10,6 +10,8 @@ import numpy as np
 from seatrial.core.values import Array, InputError
 from seatrial.physics.hydro.excitation import Complex
 
+_LEAST_SIZE = 1e-3  # rad/s, least scale of the states; chosen
+
 
 @dataclass(frozen=True)
 class Block:
@@ -72,3 +74,18 @@ def in_series(name: str, blocks: Iterable[Block]) -> Block:
     for block in blocks:
         num, den = np.polymul(num, block.num), np.polymul(den, block.den)
     return Block(name, tuple(num), tuple(den))
+
+
+def controllable_form(block: Block) -> tuple[Array, Array, Array, float]:
+    """Return A, b, c, d of a block: controllable form with each state scaled by the size of the poles."""
+    den = np.array(block.den) / block.den[0]
+    num = np.concatenate([np.zeros(len(den) - len(block.num)), np.array(block.num) / block.den[0]])
+    n, d = block.order, float(num[0])
+    size = max(float(np.abs(den[-1])) ** (1.0 / n), _LEAST_SIZE) if n and den[-1] else 1.0
+    powers = size ** np.arange(n)
+    A = np.diag(np.full(max(n - 1, 0), size), -1) if n else np.zeros((0, 0))
+    b = np.zeros(n)
+    if n:
+        A[0] = -den[1:] / powers
+        b[0] = 1.0
+    return A, b, (num[1:] - d * den[1:]) / powers, d

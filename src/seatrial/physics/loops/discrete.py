@@ -1,18 +1,21 @@
 """A controller as difference equations: every block by Tustin's rule at a sample time."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from seatrial.core.values import InputError
+from seatrial.physics.loops.autopilot import working_frequency
 from seatrial.physics.loops.block import Block
 from seatrial.physics.loops.loop import TransferLoop
 from seatrial.physics.loops.margins import sensitivity_peak
 
 _SAMPLES_A_PERIOD = (
-    60.0  # of the frequency at which the loop is frailest: the hold then costs 3 degrees of phase; chosen
+    30.0  # of the frequency at which the loop is frailest: the hold costs 6 degrees of phase there; chosen
 )
+_RINGING = 2.0 * (1.0 + 1e-9)  # pole times sample time beyond which Tustin's pole is negative, with rounding
+_AT_ORIGIN = 1e-9  # rad/s, below which a pole integrates: rounding
 _STEPS = (1.0, 2.0, 5.0)  # sample times are these times a power of ten
 
 
@@ -41,14 +44,48 @@ def difference_equation(block: Block, sample_s: float) -> DifferenceEquation:
     return DifferenceEquation(tuple((num / den[0]).tolist()), tuple((den / den[0]).tolist()))
 
 
+def holding_terms(loop: TransferLoop) -> tuple[tuple[bool, ...], float]:
+    """Return which terms keep their output while the actuator is at a limit, and the sign of their share of the order.
+
+    Terms with a pole below the plant's working frequency wind up (Astrom & Hagglund 1995, PID Controllers, section
+    3.5). Such a term keeps its last output at a sample where the order of the last one was beyond what the actuator
+    could do and the new output would push it further.
+    """
+    try:
+        slow = working_frequency(loop.plant)
+    except InputError:
+        slow = 0.0
+    below = max(slow, _AT_ORIGIN)
+    holds = tuple(bool(t.block.order) and float(np.abs(t.block.poles).min()) < below for t in loop.terms)
+    return holds, float(np.prod([np.sign(block.gain) for block in (*loop.filters, *loop.servo)]))
+
+
 def default_sample_time(loop: TransferLoop) -> float:
-    """Return the largest of 1, 2, 5 times a power of ten [s] that samples the frailest frequency 60 times a period."""
-    _, omega = sensitivity_peak(loop)
-    return round_sample_time(2.0 * math.pi / omega / _SAMPLES_A_PERIOD)
+    """Return a sample time that samples the frailest frequency 30 times a period, and no block of the controller rings.
+
+    The largest of 1, 2, 5 times a power of ten [s] at which both hold; see `rings`.
+    """
+    _, omega = sensitivity_peak(replace(loop, sampling=None))
+    fastest = max((float(np.abs(block.poles).max(initial=0.0)) for block in _controller_blocks(loop)), default=0.0)
+    longest = 2.0 * math.pi / omega / _SAMPLES_A_PERIOD
+    return round_sample_time(min(longest, 2.0 / fastest) if fastest else longest)
+
+
+def ringing_blocks(loop: TransferLoop, sample_s: float) -> tuple[str, ...]:
+    """Return the blocks of the controller that ring: poles beyond 2 / T become negative ones of z by Tustin's rule."""
+    return tuple(
+        block.name for block in _controller_blocks(loop) if np.abs(block.poles).max(initial=0.0) * sample_s > _RINGING
+    )
+
+
+def _controller_blocks(loop: TransferLoop) -> tuple[Block, ...]:
+    return (*(term.block for term in loop.terms), *loop.filters)
 
 
 def round_sample_time(longest: float) -> float:
-    """Return the largest of 1, 2, 5 times a power of ten up to `longest` [s]."""
+    """Return the largest of 1, 2, 5 times a power of ten up to `longest` [s]; zero up to none."""
+    if not longest > 0.0:
+        return 0.0
     power = 10.0 ** math.floor(math.log10(longest))
     return max(step * power for step in _STEPS if step * power <= longest)
 

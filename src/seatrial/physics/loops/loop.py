@@ -9,6 +9,7 @@ import numpy as np
 from seatrial.core.values import Array, InputError, Parameters, frozen
 from seatrial.physics.hydro.excitation import Complex
 from seatrial.physics.loops.block import Block, in_series
+from seatrial.physics.loops.sampling import Sampling, held
 
 
 @dataclass(frozen=True)
@@ -45,6 +46,9 @@ class TransferLoop:
         gains: one parameter for each term, in order: value, bounds, free or fixed.
         output, actuator, disturbance_input: symbols of y, a and w.
         points: what the actuator also moves, to be made small but not fed back.
+        sampling: how the controller samples and holds, and the actuator's dead time; None: a controller in continuous
+            time, without either. Of a sampled loop polynomials are those in w (see `physics.loops.sampling`), with S
+            and L at the samples; frequencies and closed-loop poles are true ones.
 
     Raises:
         InputError: gains and terms do not go together, or a gain lacks a bound.
@@ -62,6 +66,7 @@ class TransferLoop:
     actuator: str = "alpha_f"
     disturbance_input: str = "alpha_w"
     points: tuple[HullPoint, ...] = ()
+    sampling: Sampling | None = None
 
     def __post_init__(self) -> None:
         if tuple(term.gain for term in self.terms) != self.gains.names or not self.terms:
@@ -79,15 +84,35 @@ class TransferLoop:
         """Return the same loop with all gains given, shape (g,)."""
         return replace(self, gains=self.gains.with_values(dict(zip(self.gains.names, values, strict=True))))
 
+    @property
+    def continuous(self) -> Self:
+        """Return the loop in continuous time: hold and dead time of a sampled one are a lag of its servo."""
+        if self.sampling is None:
+            return self
+        return replace(self, servo=(*self.servo, self.sampling.lag), sampling=None)
+
     @cached_property
     def chain(self) -> Block:
-        """Everything of L but the terms: sensor, filters, servo, plant."""
+        """Everything of L but the terms: sensor, filters, servo, plant; in w where the loop is sampled."""
+        if self.sampling is not None:
+            return in_series("chain", (*self.filters, self._held))
         return in_series("chain", (*self.sensor, *self.filters, *self.servo, self.plant))
 
     @cached_property
-    def _common(self) -> Block:
-        """Everything of the controller but the terms."""
-        return in_series("common", (*self.sensor, *self.filters, *self.servo))
+    def _held(self) -> Block:
+        """From order to sample in w, of a sampled loop."""
+        assert self.sampling is not None
+        return held((*self.servo, self.plant, *self.sensor), self.sampling)
+
+    @cached_property
+    def _filtered(self) -> Block:
+        """What acts on all terms in the controller."""
+        return in_series("filters", self.filters)
+
+    @cached_property
+    def _around(self) -> Block:
+        """What of sensor and servo is not part of the sampled controller."""
+        return in_series("common", (*self.sensor, *self.servo))
 
     @cached_property
     def polynomials(self) -> tuple[Array, Array]:
@@ -106,12 +131,31 @@ class TransferLoop:
 
     def controller_terms(self, omega: Array) -> Complex:
         """Return what each gain multiplies between y and a, shape (g, n), at omega (n,) [rad/s]."""
-        common = self._common.frequency_response(omega)
-        return np.stack([term.block.frequency_response(omega) * common for term in self.terms])
+        return self._term_responses(omega) * self._around_response(omega)
 
     def open_loop_terms(self, omega: Array) -> Complex:
         """Return L_i, shape (g, n): L = sum gain_i L_i."""
-        return self.controller_terms(omega) * self.plant.frequency_response(omega)
+        if self.sampling is None:
+            return self.controller_terms(omega) * self.plant.frequency_response(omega)
+        return self._term_responses(omega) * self._held.frequency_response(self.sampling.in_w(omega))
+
+    def plant_response(self, omega: Array) -> Complex:
+        """Return P at omega (n,) [rad/s] so that L = P K: of a sampled loop what of the plant its samples show."""
+        if self.sampling is None:
+            return self.plant.frequency_response(omega)
+        seen = self._held.frequency_response(self.sampling.in_w(omega))
+        return np.asarray(seen / self._around_response(omega), dtype=np.complex128)
+
+    def _term_responses(self, omega: Array) -> Complex:
+        """Return terms and filters, (g, n)."""
+        at = omega if self.sampling is None else self.sampling.in_w(omega)
+        common = self._filtered.frequency_response(at)
+        return np.stack([term.block.frequency_response(at) * common for term in self.terms])
+
+    def _around_response(self, omega: Array) -> Complex:
+        """Return sensor, servo, hold and dead time, (n,)."""
+        made = self._around.frequency_response(omega)
+        return made if self.sampling is None else np.asarray(made * self.sampling.hold(omega), dtype=np.complex128)
 
     def open_loop(self, omega: Array) -> Complex:
         """Return L at its gains, shape (n,)."""
@@ -121,4 +165,5 @@ class TransferLoop:
     def closed_loop_poles(self) -> Complex:
         """Roots of the characteristic polynomial at the loop's gains, rad/s."""
         d, n = self.polynomials
-        return np.asarray(np.roots(d + self.gain_values @ n), dtype=np.complex128)
+        found = np.asarray(np.roots(d + self.gain_values @ n), dtype=np.complex128)
+        return found if self.sampling is None else self.sampling.from_w(found)

@@ -6,9 +6,8 @@ from itertools import pairwise
 import numpy as np
 
 from seatrial.core.values import Array, InputError
-from seatrial.physics.loops.block import Block
+from seatrial.physics.loops.block import Block, controllable_form
 from seatrial.physics.loops.loop import TransferLoop
-from seatrial.physics.loops.state_space import controllable_form
 
 
 @dataclass(frozen=True, eq=False)

@@ -43,8 +43,9 @@ class StabilityMargins:
 def frequency_band(loop: TransferLoop) -> tuple[float, float]:
     """Return frequencies [rad/s] between which everything of the loop happens.
 
-    A little more than from the slowest to the fastest of its poles and zeros; beside the open ones those that swing
-    when it is closed at its own gains or with all at their upper bounds, as integrators let it.
+    A little more than from the slowest to the fastest of its poles and zeros, of a sampled loop to its Nyquist
+    frequency; beside the open ones those that swing when it is closed at its own gains or with all at their upper
+    bounds, as integrators let it.
     """
     d, n = loop.polynomials
     bounds = np.array([gain.upper for gain in loop.gains])
@@ -52,7 +53,9 @@ def frequency_band(loop: TransferLoop) -> tuple[float, float]:
     swinging = [roots[np.abs(roots.imag) > 0.5 * np.abs(roots.real)] for roots in (np.roots(row) for row in closed)]
     roots = np.abs(np.concatenate([np.roots(d), *(np.roots(row) for row in n), *swinging]))
     some = roots[roots > _AT_ORIGIN]
-    return (_BELOW * float(some.min()), _ABOVE * float(some.max())) if some.size else _EMPTY_BAND
+    low, high = (_BELOW * float(some.min()), _ABOVE * float(some.max())) if some.size else _EMPTY_BAND
+    highest = math.inf if loop.sampling is None else loop.sampling.highest
+    return min(low, _BELOW * highest), min(high, highest)
 
 
 def sensitivity_magnitude(loop: TransferLoop, omega: Array) -> Array:
@@ -83,7 +86,7 @@ def margins(loop: TransferLoop) -> StabilityMargins:
     peak, at = sensitivity_peak(loop)
     turned, lag = _unit_crossings(loop)
     axis = _crossing_frequencies(loop, lambda z: z.imag)
-    factors = -1.0 / loop.open_loop(axis).real
+    factors = -1.0 / loop.open_loop(axis if loop.sampling is None else np.append(axis, loop.sampling.highest)).real
     return StabilityMargins(
         True, peak, at, _minimum(factors[factors > 1.0]), _minimum(np.minimum(lag, 2.0 * math.pi - lag)),
         _minimum(lag / turned), damping, float(np.max(factors[(factors > 0.0) & (factors < 1.0)], initial=0.0)),
@@ -108,7 +111,9 @@ def _log_frequencies(loop: TransferLoop) -> Array:
     """Logarithms of frequencies over the band and all closed poles: a weak loop that integrates crosses one early."""
     low, high = frequency_band(loop)
     poles = np.abs(loop.closed_loop_poles)
-    return np.linspace(math.log(min(low, _BELOW * poles.min())), math.log(max(high, _ABOVE * poles.max())), _SAMPLES)
+    highest = math.inf if loop.sampling is None else loop.sampling.highest
+    ends = min(low, _BELOW * poles.min()), min(max(high, _ABOVE * poles.max()), highest)
+    return np.linspace(*np.log(ends), _SAMPLES)
 
 
 def _crossing_frequencies(loop: TransferLoop, function: Callable[[Complex], Array]) -> Array:

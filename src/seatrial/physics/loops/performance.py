@@ -6,6 +6,7 @@ would be left there if the output were held still: its variance is that of both 
 unstable loop, whose variances would be finite all the same, gets infinity everywhere.
 """
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -13,13 +14,16 @@ import numpy as np
 
 from seatrial.core.values import Array, InputError
 from seatrial.numerics.kernels.loop import evaluate_loops, variance_gradients
-from seatrial.physics.loops.encounter_spectrum import EncounterSpectrum
+from seatrial.physics.loops.encounter_spectrum import EncounterSpectrum, disturbance_spectrum
 from seatrial.physics.loops.loop import TransferLoop
 from seatrial.physics.loops.margins import frequency_band
 from seatrial.physics.loops.objective import LoopSignal, Objective, WeightedVariance
+from seatrial.physics.loops.quadrature import nodes
 
 _ORDER = (LoopSignal.OUTPUT, LoopSignal.ACTUATOR, LoopSignal.POINT)
 _MS_SAMPLES = 192  # frequencies that the peak of |S| is bracketed on; chosen
+_STILL = 0.1, 1.0  # rad/s, band of a disturbance of no energy
+_NOISE_SAMPLES, _NOISE_DECADES = 240, 5  # frequencies of the sensor's noise, and decades up to the highest; chosen
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +69,7 @@ class Performance:
                 f"loop '{self.loop.name}' in {self.spectrum.description} knows no motion at "
                 f"{', '.join(f'{x:g} m' for x in sorted(points))} forward of the origin"
             )
-        dead = self.spectrum.omega_e[self.loop.plant.frequency_response(self.spectrum.omega_e) == 0.0]
+        dead = self.spectrum.omega_e[self.loop.plant_response(self.spectrum.omega_e) == 0.0]
         if dead.size:
             raise InputError(
                 f"the actuator {self.loop.actuator} of loop '{self.loop.name}' does not move {self.loop.output} at "
@@ -73,11 +77,50 @@ class Performance:
             )
 
     @cached_property
-    def _node_weights(self) -> tuple[Array, Array, Array]:
-        """What |S|^2, |L S|^2 and both weigh at each node: |W D|^2 and |W D / P|^2 times the energy; see the module."""
+    def _noise(self) -> tuple[Array, Array]:
+        """Frequencies [rad/s] and energies of the samples' errors; none of a loop in continuous time."""
+        sampling = self.loop.sampling
+        if sampling is None or not sampling.noise_variance:
+            return np.empty(0), np.empty(0)
+        # white from sample to sample: one-sided density variance T / pi up to the Nyquist frequency
+        omega, width = nodes((10.0**-_NOISE_DECADES * sampling.highest, sampling.highest), _NOISE_SAMPLES)
+        return omega, sampling.noise_variance * sampling.sample_s / math.pi * width
+
+    @cached_property
+    def _omega(self) -> Array:
+        """Nodes of the exposure and of the noise, rad/s."""
+        return np.concatenate([self.spectrum.omega_e, self._noise[0]])
+
+    @cached_property
+    def _node_weights(self) -> tuple[Array, Array, Array, Array]:
+        """What |S|^2, |L S|^2, both, and |L S|^2 in the output weigh at each node, of exposure and noise.
+
+        Of the exposure |W D|^2 and |W D / P|^2 times the energy, see the module. Noise n of the samples moves the
+        output by -T n, the actuator by -T / P n and a point by -T P_q / P n.
+        """
+        met, seen, heard = self._exposure_weights, len(self.spectrum.omega_e), len(self._noise[0])
+        made = [np.concatenate([part, np.zeros((len(part), heard))], axis=1) for part in met]
+        omega, energy = self._noise
+        in_output = np.zeros((len(met[0]), seen + heard))
+        if heard:
+            moved = energy / np.abs(self.loop.plant_response(omega)) ** 2
+            rows = {signal: [row for row in self.variances if row.signal is signal] for signal in _ORDER}
+            for i, row in enumerate(rows[LoopSignal.OUTPUT]):
+                in_output[i, seen:] = row.magnitude(omega) ** 2 * energy
+            for i, row in enumerate(rows[LoopSignal.ACTUATOR]):
+                made[1][i, seen:] = row.magnitude(omega) ** 2 * moved
+            for i, row in enumerate(rows[LoopSignal.POINT]):
+                place = [point.x for point in self.loop.points].index(row.x)
+                reach = np.abs(self.loop.points[place].plant.frequency_response(omega)) ** 2
+                made[2][4 * i + 1, seen:] = row.magnitude(omega) ** 2 * reach * moved
+        return tuple(np.ascontiguousarray(part) for part in (*made, in_output))  # type: ignore[return-value]
+
+    @cached_property
+    def _exposure_weights(self) -> tuple[Array, Array, Array]:
+        """What |S|^2, |L S|^2 and both weigh at each node of the exposure."""
         w = self.spectrum.omega_e
         free = np.abs(self.loop.disturbance.frequency_response(w)) ** 2 * self.spectrum.energy
-        moved = free / np.abs(self.loop.plant.frequency_response(w)) ** 2
+        moved = free / np.abs(self.loop.plant_response(w)) ** 2
         outputs = [row.magnitude(w) ** 2 * free for row in self.variances if row.signal is LoopSignal.OUTPUT]
         actuators = [row.magnitude(w) ** 2 * moved for row in self.variances if row.signal is LoopSignal.ACTUATOR]
         points = [row.magnitude(w) ** 2 * self._point_energies(row.x)
@@ -88,7 +131,7 @@ class Performance:
         """Return energies of q and r and their cross spectrum's two parts at the point x, (4, n)."""
         place = [point.x for point in self.loop.points].index(x)
         q, w = self.spectrum.points[place], self.spectrum.omega_e
-        ratio = self.loop.points[place].plant.frequency_response(w) / self.loop.plant.frequency_response(w)
+        ratio = self.loop.points[place].plant.frequency_response(w) / self.loop.plant_response(w)
         moved = ratio * self.loop.disturbance.frequency_response(w)
         common = np.conj(moved) * q.cross
         of_r = q.energy - 2.0 * common.real + np.abs(moved) ** 2 * self.spectrum.energy
@@ -96,7 +139,7 @@ class Performance:
 
     @cached_property
     def _open_loop_tables(self) -> tuple[Array, Array, Array, Array]:
-        seen = self.loop.open_loop_terms(self.spectrum.omega_e)
+        seen = self.loop.open_loop_terms(self._omega)
         wide = self.loop.open_loop_terms(np.geomspace(*frequency_band(self.loop), _MS_SAMPLES))
         return tuple(np.ascontiguousarray(part) for part in (seen.real, seen.imag, wide.real, wide.imag))  # type: ignore[return-value]
 
@@ -149,7 +192,7 @@ class Performance:
     @property
     def uncontrolled_variances(self) -> Array:
         """The variances with all gains at zero, (r,): those on the actuator vanish."""
-        on_s, on_t, on_both = self._node_weights
+        on_s, on_t, on_both, _ = self._node_weights
         return np.concatenate([on_s.sum(axis=1), np.zeros(len(on_t)), on_both[::4].sum(axis=1)])
 
 
@@ -164,6 +207,22 @@ def _closest_to_zero(near: np.ndarray) -> float:
             break
         u = float(np.clip(u - (np.conj(z) * slope).real / curved, -1.0, 1.0))
     return u
+
+
+@dataclass(frozen=True)
+class CalmActuator:
+    """Rms of the actuator and of its rate by the sensor's errors alone, SI."""
+
+    angle: float
+    rate: float
+
+
+def calm_actuator(loop: TransferLoop) -> CalmActuator:
+    """Return what the samples' errors make of the actuator of a stable loop, at its own gains."""
+    angle, rate = (WeightedVariance(LoopSignal.ACTUATOR, lambda w, n=power: w**n) for power in (0, 1))
+    still = disturbance_spectrum(lambda w: 0.0 * w, _STILL[0], _STILL[1], loop.disturbance, "calm water")
+    variances = Performance(loop, still, (angle, rate)).evaluate(loop.gain_values, with_Ms=False).variances[0]
+    return CalmActuator(*np.sqrt(variances).tolist())
 
 
 def distinct_variances(objectives: tuple[Objective, ...]) -> tuple[tuple[WeightedVariance, ...], list[list[int]]]:

@@ -6,6 +6,7 @@ import numpy as np
 
 from seatrial.core.values import InputError
 from seatrial.physics.loops.block import Block, in_series
+from seatrial.physics.loops.discrete import difference_equation
 from seatrial.physics.loops.loop import TransferLoop
 
 if TYPE_CHECKING:
@@ -46,8 +47,11 @@ def controller_transfer_function(loop: TransferLoop) -> "TransferFunction":
 
 
 def open_loop_transfer_function(loop: TransferLoop) -> "TransferFunction":
-    """Return L(s) at the loop's gains, from the common denominator."""
+    """Return L(s) at the loop's gains, from the common denominator; of a sampled loop L(z)."""
     import control
 
     d, n = loop.polynomials
-    return control.TransferFunction(loop.gain_values @ n, np.array(d))
+    if loop.sampling is None:
+        return control.TransferFunction(loop.gain_values @ n, np.array(d))
+    made = difference_equation(Block("open loop", tuple(loop.gain_values @ n), tuple(d)), loop.sampling.sample_s)
+    return control.TransferFunction(made.b, made.a, loop.sampling.sample_s)

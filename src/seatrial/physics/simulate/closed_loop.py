@@ -1,6 +1,7 @@
-"""A loop in time: an exactly discretised controller on any model, with the limits of its actuator."""
+"""A loop in time: a controller, exactly discretised or sampled, on any model, with the limits of its actuator."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -10,10 +11,12 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Array, DivergedError, InputError, Provenance, Record, frozen, spelling_hint
 from seatrial.numerics.kernels import feedback as kernel
 from seatrial.numerics.kernels.feedback import steer
+from seatrial.numerics.kernels.sampled import sampled_controller
 from seatrial.physics.loops import TransferLoop
 from seatrial.physics.simulate.channels import record_of
 from seatrial.physics.simulate.controller import controller_state_space
 from seatrial.physics.simulate.divergence import require_bounded
+from seatrial.physics.simulate.sampled_controller import sample_noise, sampled_body, steps_a_sample
 
 REFERENCE = "reference"
 
@@ -49,6 +52,7 @@ class ActuatorLimits:
 
 
 UNLIMITED = ActuatorLimits()
+_NOISE_SEED = 0  # of the samples' noise where none is given; chosen
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,6 +103,8 @@ class ClosedLoop:
             object.__setattr__(self, name, frozen(given if given.size else np.zeros(size)))
             if getattr(self, name).shape != (size,) or not np.all(np.isfinite(given)):
                 raise InputError(f"{where} needs {size} finite values for '{name}'")
+        if self.loop.sampling is not None:
+            steps_a_sample(self.loop.sampling, self.dt)
         if np.shape(self.gains) != (len(self.loop.terms),) or not np.all(np.isfinite(self.gains)):
             raise InputError(f"{where} needs {len(self.loop.terms)} finite gains: {', '.join(self.loop.gains.names)}")
 
@@ -108,12 +114,14 @@ class ClosedLoop:
         limits: ActuatorLimits = UNLIMITED,
         reference: Array | None = None,
         fed_forward: Array | None = None,
+        noise: Array | None = None,
     ) -> tuple[Array, Array]:
         """Return states (n, nx) and the actuator's angle from its trim (n,) at the samples of the disturbance (n,).
 
         Args:
             reference: (n,), absolute, as the output; by default the output's trim.
             fed_forward: (n,), added to the order of the actuator before its limits; by default nothing.
+            noise: of each sample that a sampled controller takes of the output; by default of its rms, from seed 0.
 
         Raises:
             InputError: series of other lengths or with gaps.
@@ -129,10 +137,10 @@ class ClosedLoop:
                 "disturbance, reference and feed-forward of a closed loop need the same number of samples, two or "
                 "more, without gaps"
             )
-        memory = self.controller_memory(disturbance, limits, wanted, added)
+        memory = self.controller_memory(disturbance, limits, wanted, added, noise)
         states, inputs = np.empty((count, len(self.start))), np.empty((count, len(self.inputs)))
         diverged = steer(
-            self.model.compiled.rates, kernel.linear_controller, self.start.copy(), self.inputs.copy(),
+            self.model.compiled.rates, self.command, self.start.copy(), self.inputs.copy(),
             self.model.parameters.values, memory, self.dt, states, inputs,
         )  # fmt: skip
         last = count if diverged < 0 else diverged + 1
@@ -140,16 +148,40 @@ class ClosedLoop:
         require_bounded(self.model, time, states[:last], f"loop '{self.loop.name}'")
         if diverged >= 0:
             raise DivergedError(f"loop '{self.loop.name}' before model '{self.model.name}' runs away at {time[-1]:g} s")
-        return states, memory[len(memory) - count - 1 : -1]
+        return states, memory[self._angles(memory, count)]
+
+    @property
+    def command(self) -> Callable[..., None]:
+        """Return what steers: the controller in continuous time, or the sampled one."""
+        return kernel.linear_controller if self.loop.sampling is None else sampled_controller
+
+    def _angles(self, memory: Array, count: int) -> slice:
+        """Return where the actuator's angles at the samples stand."""
+        first = int(memory[kernel.SERIES]) + 3 * count + 2
+        return slice(first, first + count)
 
     def controller_memory(
-        self, disturbance: Array, limits: ActuatorLimits, reference: Array, fed_forward: Array
+        self,
+        disturbance: Array,
+        limits: ActuatorLimits,
+        reference: Array,
+        fed_forward: Array,
+        noise: Array | None = None,
     ) -> Array:
-        """Return the memory of `linear_controller` for series (n,), checked by the caller."""
-        (n, laws), count = self._controller_laws, len(disturbance)
+        """Return the memory of `command` for series (n,), checked by the caller.
+
+        noise: of each sample that a sampled controller takes.
+        """
+        count = len(disturbance)
+        if self.loop.sampling is None:
+            n, laws = self._controller_laws
+            body, own = np.concatenate([laws, np.zeros(2 * n)]), {kernel.CONTROLLER_ORDER: float(n)}
+        else:
+            samples = -(-count // steps_a_sample(self.loop.sampling, self.dt))
+            heard = sample_noise(self.loop.sampling, samples, _NOISE_SEED) if noise is None else noise[:samples]
+            body, own = sampled_body(self.loop, self.gains, self.dt, limits.rate, heard)
         place, disturbed = self._input_index(self.actuator), self._input_index(self.disturbance_input)
         values = {
-            kernel.CONTROLLER_ORDER: n,
             kernel.COUNT: count,
             kernel.OUTPUT: self.model.states.index(self.output),
             kernel.ACTUATOR: place,
@@ -160,13 +192,15 @@ class ClosedLoop:
             kernel.SLEW: limits.rate * self.dt,
             kernel.STALL: limits.stall,
             kernel.LOSS: limits.loss,
+            kernel.SERIES: kernel.HEAD_SIZE + len(body),
+            **own,
         }
         head = np.zeros(kernel.HEAD_SIZE)
         head[list(values)] = list(values.values())
         trim = self.inputs[disturbed] if disturbed not in (-1, place) else 0.0
         met = trim + self._sign(disturbed) * hold_equivalent(np.asarray(disturbance, dtype=np.float64))
         series = (reference, reference[-1:], met, fed_forward, fed_forward[-1:], np.zeros(count + 1))
-        return np.concatenate([head, laws, np.zeros(2 * n), *series])
+        return np.concatenate([head, body, *series])
 
     @cached_property
     def _controller_laws(self) -> tuple[int, Array]:

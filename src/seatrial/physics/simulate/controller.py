@@ -12,7 +12,8 @@ from scipy.linalg import expm
 
 from seatrial.core.values import Array
 from seatrial.physics.loops import Block, TransferLoop
-from seatrial.physics.loops.state_space import controllable_form
+from seatrial.physics.loops.block import controllable_form
+from seatrial.physics.loops.discrete import holding_terms
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,8 +22,7 @@ class ControllerStateSpace:
 
     Attributes:
         A: (n, n); b, c: (n,).
-        is_slow: which states belong to terms with a pole nearer the origin than every pole of the plant but its
-            integrators, (n,): those that wind up.
+        is_slow: which states belong to terms that wind up, (n,): see `holding_terms`.
         slow_rate: row (n + 1,) over [x, e] that gives the rate of change of the slow terms' share of the order.
     """
 
@@ -56,24 +56,14 @@ def controller_state_space(loop: TransferLoop, gains: Array) -> ControllerStateS
     """Return sensor, terms with those gains (g,), filters and servo in a row."""
     seen = reduce(_append_block, loop.sensor, _UNIT_GAIN)
     made = replace(seen, c=np.zeros(len(seen.c)), d=0.0)
-    slowest = _slowest_pole(loop.plant)
-    for gain, term in zip(gains, loop.terms, strict=True):
-        made = _add_term(made, seen, float(gain), term.block, slowest)
-    share = float(np.prod([np.sign(block.gain) for block in (*loop.filters, *loop.servo)]))
+    holds, share = holding_terms(loop)
+    for gain, term, is_held in zip(gains, loop.terms, holds, strict=True):
+        made = _add_term(made, seen, float(gain), term.block, is_slow=is_held)
     before = len(made.b)
     made = reduce(_append_block, (*loop.filters, *loop.servo), made)
     drift = np.zeros(len(made.b) + 1)
     drift[:before], drift[-1] = share * made.slow_rate[:before], share * made.slow_rate[-1]
     return replace(made, slow_rate=drift)
-
-
-_AT_ORIGIN = 1e-9  # rad/s, below which a pole integrates: rounding
-
-
-def _slowest_pole(plant: Block) -> float:
-    """Return the plant's pole nearest the origin but not at it, rad/s; zero where it has none."""
-    sizes = np.abs(plant.poles)
-    return float(sizes[sizes > _AT_ORIGIN].min(initial=np.inf)) if np.any(sizes > _AT_ORIGIN) else 0.0
 
 
 def _append_block(first: ControllerStateSpace, block: Block) -> ControllerStateSpace:
@@ -90,14 +80,13 @@ def _append_block(first: ControllerStateSpace, block: Block) -> ControllerStateS
 
 
 def _add_term(
-    controller: ControllerStateSpace, sensor: ControllerStateSpace, gain: float, block: Block, slowest: float
+    controller: ControllerStateSpace, sensor: ControllerStateSpace, gain: float, block: Block, *, is_slow: bool
 ) -> ControllerStateSpace:
     """Return one more term on what the sensor shows; `controller` has the sensor's states first."""
     A, b, c, d = controllable_form(block)
     n, m, s = len(controller.b), len(b), len(sensor.b)
     whole = np.zeros((n + m, n + m))
     whole[:n, :n], whole[n:, :s], whole[n:, n:] = controller.A, np.outer(b, sensor.c), A
-    is_slow = bool(m) and float(np.abs(block.poles).min()) < max(slowest, _AT_ORIGIN)
     drift = np.concatenate([controller.slow_rate[:-1], np.zeros(m), controller.slow_rate[-1:]])
     if is_slow:
         drift[n : n + m] += gain * (c @ A)

@@ -65,17 +65,18 @@ def follow_track(
     heading = float(closed.start[model.states.index(closed.output)])
     memory = closed.controller_memory(disturbance, limits, np.full(count, heading), np.zeros(count))
     head = np.zeros(kernel.TRACK_HEAD)
+    interval = closed.dt if closed.loop.sampling is None else closed.loop.sampling.sample_s
     values = {
         kernel.NORTH: model.states.index("x0" if math.isfinite(track.corner) else "y0"),
         kernel.EAST: model.states.index("y0"),
         kernel.LOOKAHEAD: guidance.lookahead,
         kernel.INTEGRAL_GAIN: guidance.integral_gain,
         kernel.ORDER: heading,
-        kernel.ORDER_STEP: guidance.rate * closed.dt,
+        kernel.ORDER_STEP: guidance.rate * interval,
         kernel.CORNER: track.corner,
         kernel.TURN: track.turn,
         kernel.ACCEPTANCE: track.acceptance,
-        kernel.INTERVAL: closed.dt,
+        kernel.INTERVAL: interval,
     }
     head[list(values)] = list(values.values())
     memory = np.concatenate([memory, head, np.zeros(count)])
