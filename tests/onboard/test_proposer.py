@@ -12,6 +12,7 @@ from benchmarks.proposals import EXAMPLE
 from tests.control.proposals.fin_stretches import QUARTERING, fin_stretch, points
 from tests.onboard.streams import ListSource
 
+from seatrial.api import load_loop
 from seatrial.core.results.online import NO_SAMPLE, Sample, SampleCounts
 from seatrial.core.values import Array, InputError
 from seatrial.data.trial import Trial, load_trial
@@ -55,7 +56,7 @@ def fin_trial(folder: Path, text: str = TRIAL) -> Trial:
     entries = [
         {"U": p.U, "heading_deg": math.degrees(p.beta), "height": p.height, "gains": p.gains, "cost": p.cost,
          "Ms": p.Ms, "saturation": p.saturation, "feasible": True}
-        for p in points()
+        for p in points(load_loop(EXAMPLE))
     ]  # fmt: skip
     (folder / "gains.toml").write_text(tomli_w.dumps({"gains": {"KP": 1.0}, "schedule": entries}), encoding="utf-8")
     (folder / "fins.toml").write_text(text, encoding="utf-8")

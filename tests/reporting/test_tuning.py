@@ -120,7 +120,7 @@ def test_a_track_is_shown_with_its_guidance_and_corner() -> None:
     )
     assert corner_sentence(track) == (
         "At a corner of 60°, taken 200 m before it, in 0.3 m/s of current towards the outside, the craft goes 41.0 m "
-        "beyond the new leg; 99 of 100 ships that the fit allows keep a track (55.0 m at most)."
+        "beyond the new leg and settles on it; 99 of 100 ships that the fit allows keep a track (55.0 m at most)."
     )
     assert track_rows(autopilot, track) == [
         ("current of 0.3 m/s", "12.3", "12.1 ± 0.4", "12.2", "1.15", "1.15", "0.115", "0.115")

@@ -4,13 +4,17 @@ import numpy as np
 import pytest
 
 from seatrial.core.equations.augment import (
+    band_names,
     bias_name,
     biased_name,
+    force_peaks,
     gust_name,
     lagged_name,
+    wave_names,
     with_biases,
     with_gusts,
     with_lags,
+    with_wave_forces,
 )
 from seatrial.core.values import InputError
 from seatrial.physics.models.nomoto import nomoto
@@ -67,3 +71,10 @@ def test_equations_written_twice_share_their_machine_code() -> None:
     once, again = (with_gusts(nomoto(), {"r": memory}) for memory in (3.0, 5.0))
     assert once.equations is not again.equations
     assert once.compiled is again.compiled
+
+
+def test_wave_forces_at_two_peaks_have_their_own_states() -> None:
+    model = with_wave_forces(with_wave_forces(nomoto(), ("r",), 1, 0.8, 0.1), ("r",), 2, 0.4, 0.05)
+    assert force_peaks(nomoto()) == 0 and force_peaks(model) == 2
+    assert {name for peak in (1, 2) for name in wave_names("r", peak)} < set(model.states)
+    assert [model.parameters[name].value for name in band_names(2)] == [0.4, 0.05]

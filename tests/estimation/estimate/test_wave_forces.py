@@ -5,7 +5,6 @@ import pytest
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
-from seatrial.core.equations.augment import force_peaks, wave_names, with_wave_forces
 from seatrial.core.values import Record
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
 from seatrial.estimation.estimate.runs import Runs
@@ -67,10 +66,3 @@ def test_the_waves_are_found_and_said(estimation: Estimation) -> None:
     assert waves.rms["r"] == pytest.approx(OMEGA * RMS, rel=0.3)
     assert noise.wave_cost is not None and noise.wave_cost > 1.0
     assert noise.measurement["psi"] == pytest.approx(np.hypot(waves.rms["psi"], NOISE[0]), rel=0.1)
-
-
-def test_two_peaks_have_their_own_states() -> None:
-    model = with_wave_forces(with_wave_forces(nomoto(), ("r",), 1, 0.8, 0.1), ("r",), 2, 0.4, 0.05)
-    assert force_peaks(nomoto()) == 0 and force_peaks(model) == 2
-    assert {name for peak in (1, 2) for name in wave_names("r", peak)} < set(model.states)
-    assert model.parameters["wave_2_force_frequency"].value == 0.4

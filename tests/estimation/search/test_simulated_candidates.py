@@ -62,7 +62,7 @@ def test_a_sample_is_judged_by_one_step_of_the_simulator(step: int) -> None:
 
     def reached(point: Array) -> Array:
         model = MODEL.with_values(dict(zip(("K", "T"), map(float, point), strict=True)))
-        return trajectory(model, inputs, DT, state)[0][1]
+        return trajectory(model, inputs, DT, state, substeps=1)[0][1]
 
     columns = [MODEL.states.index(name) for name in OUTPUTS]
     measured = one.runs[0].measured[step + 1]

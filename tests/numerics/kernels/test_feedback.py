@@ -2,7 +2,7 @@
 
 import pytest
 
-from seatrial.numerics.kernels.feedback import HEAD_SIZE, clamp, controller_size, effective_angle, series_start
+from seatrial.numerics.kernels.feedback import clamp, controller_size, effective_angle
 
 
 def test_a_controller_of_order_n_takes_its_matrices() -> None:
@@ -19,8 +19,3 @@ def test_a_value_is_cut_on_both_sides(value: float, cut: float) -> None:
 @pytest.mark.parametrize(("angle", "effect"), [(0.2, 0.2), (0.4, 0.25), (-0.4, -0.25), (1.0, 0.0)])
 def test_beyond_stall_the_lift_falls_to_nothing(angle: float, effect: float) -> None:
     assert effective_angle(angle, stall=0.3, loss=0.5) == pytest.approx(effect)
-
-
-def test_the_series_stand_behind_both_laws_the_slow_rate_and_two_sets_of_states() -> None:
-    n = 3
-    assert series_start(n) == HEAD_SIZE + 2 * controller_size(n) + (n + 1) + 2 * n

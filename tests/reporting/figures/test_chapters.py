@@ -49,7 +49,8 @@ def test_every_recorded_swing_is_a_point_in_both_panels() -> None:
         assert sum(isinstance(mark, Area) for mark in panel.marks) == 1
     bare = roll_damping_chart(replace(KNOWN, swings=()))
     assert bare is not None and len(bare.legend) == 1
-    assert roll_damping_chart(replace(KNOWN, amplitude=())) is None
+    curves = ("amplitude", "damping", "damping_lower", "damping_upper", "period", "period_lower", "period_upper")
+    assert roll_damping_chart(replace(KNOWN, **dict.fromkeys(curves, ()))) is None
 
 
 def test_profiles_show_the_bounds_they_have(fit: Fit) -> None:

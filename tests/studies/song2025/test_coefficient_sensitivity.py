@@ -168,5 +168,5 @@ def test_what_cannot_be_asked_is_refused(zigzag: Record) -> None:
 
 
 def test_a_divergence_names_the_coefficient(zigzag: Record) -> None:
-    with pytest.raises(InputError, match=r"with 'N_v' changed by -5e\+06 %: the simulation of record .* diverges"):
-        indirect_sensitivity(waterjet(), zigzag, ["N_v"], change=-5e4)
+    with pytest.raises(InputError, match=r"with 'Y_vv' changed by -300 %: the simulation of record .* diverges"):
+        indirect_sensitivity(waterjet(), zigzag, ["Y_vv"], change=-3.0)

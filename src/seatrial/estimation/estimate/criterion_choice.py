@@ -183,7 +183,7 @@ def choose_criterion(
         return _with_disturbance(shot, disturbances, _FEEDBACK)
     if parts is not None:
         if is_closed and best.test.is_nearly_white:
-            plain = []  # by output error no answer of the loop is told from the craft's own
+            plain = []  # output error takes answers of the loop for the craft's own
         return _best_predicting(shot, plain, disturbances, runs, parts, windows, (_FEEDBACK,) if is_closed else ())
     if best.test.is_nearly_white:
         return _with_disturbance(shot, disturbances)

@@ -186,7 +186,7 @@ def _motions(channels: Sequence[str], peak: SpectralPeak) -> list[str]:
 
 
 def _described(base: ProcessNoise, problem: PredictionError, point: Array, other: str = "") -> DisturbanceModel:
-    """A candidate with its name and the count of its unknowns; other: what its states do not tell."""
+    """A candidate with its name and the count of its unknowns; other: what its states do not show."""
     states, process, model = base.output_error.model.states, problem.process, problem.runs.model
     parts = ["white"] if any(s in states for s in process) else []
     gusty = [s for s in states if gust_name(s) in process]

@@ -1,7 +1,7 @@
 """Delays of inputs that are longer than what their sample interval leaves open: the recorder's, or the model's.
 
 A lag of first order between the record and what acts is tried in the place of such a delay: machinery, an order that
-was recorded for the angle, or the filter of a compass, which one input and one output cannot tell apart.
+was recorded for the angle, or the filter of a compass, which one input and one output do not distinguish.
 """
 
 from dataclasses import dataclass, replace
@@ -52,7 +52,7 @@ class _Lag:
     """What a lag of an input leaves: its time [s], residuals over those without it, the coefficients with it."""
 
     time: float
-    left: float
+    remainder: float
     values: tuple[tuple[str, float], ...]
 
     @property
@@ -61,7 +61,7 @@ class _Lag:
         values = enumeration([f"{name} {significant(value, 3)}" for name, value in self.values], NAMES_SHOWN)
         return (
             f"tried here: a lag of {significant(self.time, 2)} s between its record and the craft leaves "
-            f"{significant(self.left, 2)} of the residuals, with {values}"
+            f"{significant(self.remainder, 2)} of the residuals, with {values}"
         )
 
 

@@ -166,7 +166,7 @@ def _filter_innovations(
     f, g, inputs, weights, rise, dt, substeps, x0, variance0, p,
     chain, link_p, link_u, g_link_p, g_link_u, select, noisy_states, process, measurement, measured,
     pairs, size, wave_states, e_out, v_out, de_out, dv_out, variance_out, state_out,
-    work_x, work_s, work_u, work_w, jac, g_jac, g_value, covariance, work, covariance_times_h, shown,
+    work_x, work_s, work_u, work_w, jac, g_jac, g_value, covariance, work, covariance_times_h, places,
 ):  # fmt: skip
     nx, ny, rows, peaks = x0.size, select.size, measured.shape[0], wave_states.shape[1]
     width, covs, n = de_out.shape[2], covariance.shape[0], x0.size + 2 * size.size
@@ -202,30 +202,30 @@ def _filter_innovations(
             count = 0
             if here < 0:
                 e -= x[here + nx]
-                shown[0], h[0], count = here + nx, 1.0, 1
+                places[0], h[0], count = here + nx, 1.0, 1
             else:
                 e -= g_value[here]
                 for i in range(nx):
                     if g_jac[here, i] != 0.0:
                         e -= g_jac[here, i] * (x[i] - ahead[i])
-                        shown[count], h[count] = i, g_jac[here, i]
+                        places[count], h[count] = i, g_jac[here, i]
                         count += 1
             for peak in range(peaks):
                 if wave_states[channel, peak] >= 0:
                     e -= x[wave_states[channel, peak]]
-                    shown[count], h[count] = wave_states[channel, peak], 1.0
+                    places[count], h[count] = wave_states[channel, peak], 1.0
                     count += 1
             for m in range(covs):
                 for i in range(n):
                     covariance_times_h[m, i] = 0.0
                 for a in range(count):
-                    j = shown[a]
+                    j = places[a]
                     for i in range(j):
                         covariance_times_h[m, i] += covariance[m, j, i] * h[a]
                     for i in range(j, n):
                         covariance_times_h[m, i] += covariance[m, i, j] * h[a]
             for a in range(count):
-                v += h[a] * covariance_times_h[0, shown[a]]
+                v += h[a] * covariance_times_h[0, places[a]]
             for i in range(n):
                 gain[i] = covariance_times_h[0, i] / v
             e_out[row, channel], v_out[row, channel] = e, v
@@ -233,7 +233,7 @@ def _filter_innovations(
             for c in range(width):
                 total = 0.0
                 for a in range(count):
-                    total -= h[a] * s[shown[a], nx + c]
+                    total -= h[a] * s[places[a], nx + c]
                 de_out[row, channel, c] = total
             if here >= 0:
                 for m in range(g_link_p.shape[0]):
@@ -251,7 +251,7 @@ def _filter_innovations(
             for m in range(1, covs):
                 dv = 1.0 if m - measurements == channel else 0.0
                 for a in range(count):
-                    dv += h[a] * covariance_times_h[m, shown[a]]
+                    dv += h[a] * covariance_times_h[m, places[a]]
                 dv_out[row, channel, m - 1] = dv
                 for i in range(n):
                     s[i, nx + quiet + m - 1] += (covariance_times_h[m, i] - gain[i] * dv) * (e / v)

@@ -112,8 +112,8 @@ def _log_frequencies(loop: TransferLoop) -> Array:
     low, high = frequency_band(loop)
     poles = np.abs(loop.closed_loop_poles)
     highest = math.inf if loop.sampling is None else loop.sampling.highest
-    ends = min(low, _BELOW * poles.min()), min(max(high, _ABOVE * poles.max()), highest)
-    return np.linspace(*np.log(ends), _SAMPLES)
+    first, last = min(low, _BELOW * poles.min()), min(max(high, _ABOVE * poles.max()), highest)
+    return np.linspace(math.log(first), math.log(last), _SAMPLES)
 
 
 def _crossing_frequencies(loop: TransferLoop, function: Callable[[Complex], Array]) -> Array:
