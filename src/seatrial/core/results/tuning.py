@@ -283,7 +283,7 @@ class ManoeuvreResponse:
         StoredArray, Field(description="outputs of some of the ships drawn, on the record's time, shape (k, n)")
     ]
     is_to_settle: Annotated[
-        bool, Field(description="whether it is to settle: not asked of a zigzag, whose legs end before")
+        bool, Field(description="whether it is to settle: false for a zigzag, whose legs end before")
     ] = True
 
 
