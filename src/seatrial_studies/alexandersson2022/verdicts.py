@@ -157,12 +157,19 @@ def column_labels_claim(reproduction: BenchmarkReproduction) -> Claim:
     )
 
 
+_ONE_RUN = (
+    "Effective numbers of samples are held after two rounds: twelve runs left out are predicted better for it (heading "
+    "7.8 to 6.9 deg, position 6.6 to 5.9 m), this one run worse (6.2 to 6.9 deg, 5.5 to 6.2 m)."
+)
+"""Why one run misses its limit of position: python benchmarks/run.py kvlcc2_zigzags."""
+
+
 def checks(reproduction: BenchmarkReproduction) -> tuple[Check, ...]:
     """Return the checks of our own numbers against limits set beforehand."""
     rms = validation_prediction(reproduction).rms
     plain = [
-        ("Z_35_05 open loop, heading rms [deg]", rms["psi_deg"], HEADING_LIMIT),
-        ("Z_35_05 open loop, position rms [m]", rms["position_m"], POSITION_LIMIT),
+        ("Z_35_05 open loop, heading rms [deg]", rms["psi_deg"], HEADING_LIMIT, ""),
+        ("Z_35_05 open loop, position rms [m]", rms["position_m"], POSITION_LIMIT, _ONE_RUN),
     ]
     times = (
         Check.at_most("fit, warm [s]", reproduction.warm_fit_s, FIT_LIMIT),
@@ -181,7 +188,7 @@ def checks(reproduction: BenchmarkReproduction) -> tuple[Check, ...]:
         else []
     )
     return (
-        *(Check.at_most(name, value, limit) for name, value, limit in plain),
+        *(Check.at_most(name, value, limit, reason) for name, value, limit, reason in plain),
         *(check.withdrawn(TIME_IS_NO_VERDICT) for check in times),
         *(Check.at_most(name, value, limit) for name, value, limit in windows),
         *turned,
