@@ -38,7 +38,7 @@ def test_quick_run_has_the_promised_keys(quick: Study) -> None:
     assert table["name"] == "alexandersson2022" and "112940" in table["source"]
     assert all(set(c) == {"claim", "verdict", "evidence"} for c in table["claims"])
     assert {c["verdict"] for c in table["claims"]} <= set(Verdict)
-    assert [set(c) - {"withdrawal"} for c in table["checks"]] == [{"name", "value", "limit", "holds"}] * 12
+    assert [set(c) - {"withdrawal", "reason"} for c in table["checks"]] == [{"name", "value", "limit", "holds"}] * 12
     assert len(table["tables"]) == 6 and quick.elapsed_s > 0.0
 
 
