@@ -32,7 +32,8 @@ def slower_channels(values: Mapping[str, Array], time: Array) -> dict[str, Mask]
     A channel of every row that stays and then jumps by far more than it ever moves was frozen for so long.
 
     Args:
-        values: readings (n,) of one table, in the units of its cells; NaN where there is none. Inputs are left alone.
+        values: readings (n,) of one table, in the units of its cells, angles without jumps of a turn; NaN where there
+            is none. Inputs are left alone.
         time: stamps (n,) [s].
     """
     masks: dict[str, Mask] = {}

@@ -203,6 +203,16 @@ def test_wrapped_heading_is_mentioned() -> None:
     np.testing.assert_allclose(np.ptp(canonical_record(wrapped)["psi"]), np.ptp(psi))
 
 
+def test_a_coarse_compass_that_rests_at_north_was_read_in_every_row(rng: np.random.Generator) -> None:
+    """It rests at 0 deg for a minute, then falls to 359.5 deg: half a degree, not a jump to what was missed."""
+    t = np.arange(600.0)
+    delta = np.where(t < 60.0, 0.0, np.radians(15.0) * np.sign(np.sin(t / 20.0)))
+    psi = -np.radians(40.0) * np.sin(np.maximum(t - 60.0, 0.0) / 40.0)
+    step = np.radians(0.5)
+    made = Record.from_arrays("north", t, {"delta": delta, "psi": np.round(psi / step) * step % (2.0 * np.pi)})
+    assert not {"empty-cells", "empty-rows", "rows-dropped"} & set(codes(made))
+
+
 @pytest.mark.parametrize("spoil", [lambda r: r, *WRONG.values()])
 def test_the_mirror_image_is_judged_alike(spoil) -> None:
     record = spoil(zigzag(noise=1.0))

@@ -19,3 +19,12 @@ def correlation_matrix(covariance: Array) -> Array:
     """Return a covariance (n, n) scaled to a unit diagonal; rows without a variance are NaN."""
     spread = np.sqrt(np.where(np.diag(covariance) > 0, np.diag(covariance), np.nan))
     return covariance / np.outer(spread, spread)
+
+
+def unwrapped(angle: Array) -> Array:
+    """Angle in rad without jumps of a full turn; NaN samples stay NaN and do not break the count."""
+    result = np.array(angle, dtype=float)
+    known = np.isfinite(result)
+    if np.any(np.abs(np.diff(result[known])) > np.pi):
+        result[known] = np.unwrap(result[known])
+    return result

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from seatrial.core.values.arrays import Array
+from seatrial.core.values.arrays import Array, unwrapped
 from seatrial.core.values.notation import NOTATION
 from seatrial.core.values.units import display_unit
 
@@ -50,19 +50,13 @@ def channel_label(channel: str, si: str) -> str:
 
 def display_values(channel: str, values: Array, si: str) -> Array:
     """Return values in the unit people read; headings without wrap, from within a half turn of north."""
-    return (_unwrapped(values) if channel == "psi" else values) * display_unit(si)[0]
+    if channel == "psi" and np.isfinite(values).any():
+        values = unwrapped(values)
+        values = values - 2.0 * np.pi * np.round(values[np.isfinite(values)][0] / (2.0 * np.pi))
+    return values * display_unit(si)[0]
 
 
 def reading_order(channels: Sequence[str]) -> list[str]:
     """Return channels in the order of reading, positions left out."""
     names = [s for s in dict.fromkeys(channels) if s not in POSITIONS]
     return sorted(names, key=lambda s: (READING_ORDER.index(s) if s in READING_ORDER else len(READING_ORDER), s))
-
-
-def _unwrapped(angle: Array) -> Array:
-    finite = np.isfinite(angle)
-    if not finite.any():
-        return angle
-    unwrapped = np.full_like(angle, np.nan)
-    unwrapped[finite] = np.unwrap(angle[finite])
-    return unwrapped - 2.0 * np.pi * np.round(unwrapped[finite][0] / (2.0 * np.pi))

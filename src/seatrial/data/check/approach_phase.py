@@ -3,8 +3,9 @@
 import numpy as np
 
 from seatrial.core.values import Array, Finding, InputError, Record, Severity
+from seatrial.core.values.arrays import unwrapped
 from seatrial.data.check.motion import MIN_SAMPLES
-from seatrial.data.check.signal import smoothed, unwrapped, window_length
+from seatrial.data.check.signal import smoothed, window_length
 from seatrial.physics.manoeuvres import ManoeuvreKind, recognise_manoeuvre
 from seatrial.physics.manoeuvres.track import speed
 

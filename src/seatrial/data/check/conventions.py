@@ -6,8 +6,8 @@ import numpy as np
 
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, Channel, InputError, Record, quantity
+from seatrial.core.values.arrays import unwrapped
 from seatrial.core.values.notation import COMMANDS, NOTATION, OPPOSITE, positive_direction
-from seatrial.data.check.signal import unwrapped
 
 _VELOCITY_PAIRS = (("u", "v"), ("u_dot", "v_dot"))
 _UNWRAPPED_CHANNELS = (

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from seatrial.core.values import Finding, Record
+from seatrial.core.values.arrays import unwrapped
 from seatrial.data.check.approach_phase import approach_findings
 from seatrial.data.check.channels import channel_findings, lag_findings
 from seatrial.data.check.comparison_stretch import comparison_stretch
@@ -72,7 +73,11 @@ def examined_record(record: Record) -> ExaminedRecord:
 
 def without_repeats(record: Record) -> Record:
     """Return a record as it was read in which the repeated readings of slower channels are empty."""
-    cells = {symbol: channel.values for symbol, channel in record.channels.items() if not channel.is_command}
+    cells = {
+        symbol: unwrapped(channel.values) if channel.unit == "rad" else channel.values
+        for symbol, channel in record.channels.items()
+        if not channel.is_command
+    }
     channels = {
         symbol: record.channel(symbol).with_values(np.where(mask, record[symbol], np.nan))
         for symbol, mask in slower_channels(cells, record.time).items()

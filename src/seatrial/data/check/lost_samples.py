@@ -6,10 +6,10 @@ import numpy as np
 
 from seatrial.core.text.words import counted
 from seatrial.core.values import Array, Channel, Finding, Record, Severity
-from seatrial.core.values.arrays import Mask
+from seatrial.core.values.arrays import Mask, unwrapped
 from seatrial.core.values.notation import COMMANDS, REFERENCES
 from seatrial.data.check.run_clock import moment
-from seatrial.data.check.signal import RowIndices, mask_intervals, unwrapped
+from seatrial.data.check.signal import RowIndices, mask_intervals
 
 INPUT_CHANNELS = ("delta", "n", "v_j", *COMMANDS, *REFERENCES)
 # holes up to so many s or samples are bridged in any case; chosen: what a sensor loses now and then

@@ -7,6 +7,7 @@ import numpy as np
 
 from seatrial.core.text.words import counted
 from seatrial.core.values import Channel, Finding, InputError, Record, Severity
+from seatrial.core.values.arrays import unwrapped
 from seatrial.data.check.jumps import spike_rows, track_jumps
 from seatrial.data.check.lost_samples import (
     INPUT_CHANNELS,
@@ -17,7 +18,7 @@ from seatrial.data.check.lost_samples import (
     usual_rows,
 )
 from seatrial.data.check.run_clock import moment
-from seatrial.data.check.signal import RowIndices, unwrapped
+from seatrial.data.check.signal import RowIndices
 from seatrial.data.check.timestamps import without_empty_ends
 
 

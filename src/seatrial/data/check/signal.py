@@ -80,12 +80,3 @@ def mask_intervals(mask: Mask) -> list[tuple[int, int]]:
     """First row and row after the last of every unbroken stretch of a mask, in order."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(int)))
     return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
-
-
-def unwrapped(angle: Array) -> Array:
-    """Angle in rad without jumps of a full turn; NaN samples stay NaN and do not break the count."""
-    result = np.array(angle, dtype=float)
-    known = np.isfinite(result)
-    if np.any(np.abs(np.diff(result[known])) > np.pi):
-        result[known] = np.unwrap(result[known])
-    return result

@@ -6,10 +6,11 @@ import numpy as np
 
 from seatrial.core.text.words import counted
 from seatrial.core.values import Finding, InputError, Record, Severity
+from seatrial.core.values.arrays import unwrapped
 from seatrial.data.check.even_base import GAP_STEPS, EvenBase, even_base
 from seatrial.data.check.lost_samples import SLOWER, usual_rows
 from seatrial.data.check.run_clock import moment
-from seatrial.data.check.signal import RowIndices, unwrapped
+from seatrial.data.check.signal import RowIndices
 
 # differences of steps over the mean step that are rounding, and that are worth a warning; chosen
 SMALL_UNEVENNESS, LARGE_UNEVENNESS = 1e-3, 0.5

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from seatrial.core.values import Array, Channel, InputError, Provenance, Record, frozen
+from seatrial.core.values.arrays import unwrapped
 from seatrial.core.values.files import plain_name
 from seatrial.core.values.froude import froude_scaled
 from seatrial.data.held_readings import between_readings, held_text, slower_channels
@@ -138,7 +139,8 @@ def _measured(column: ColumnSpec, table: RawTable) -> Measured:
 def _once_each(measured: dict[str, Measured], time: Array) -> tuple[dict[str, Measured], str]:
     """The columns of a table with what slower ones repeat marked, and straight between their readings; a sentence."""
     cells = {
-        symbol: one.values / one.column.si_factor(one.column.quantity.unit)
+        symbol: (unwrapped(one.values) if one.column.quantity.unit == "rad" else one.values)
+        / one.column.si_factor(one.column.quantity.unit)
         for symbol, one in measured.items()
         if not one.column.is_held and one.column.span == 1.0
     }
