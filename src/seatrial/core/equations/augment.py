@@ -68,10 +68,10 @@ def biased_name(channel: str) -> str:
     return f"{channel}_biased"
 
 
-def with_gusts(model: Model, memories: Mapping[str, float]) -> Model:
+def with_gusts(model: Model, memories: Mapping[str, float], shortest: float = 0.0) -> Model:
     """Return the model with accelerations gust_s on states, d(gust_s)/dt = -gust_s / gust_memory_s, the memories free.
 
-    memories: state -> time constant [s], start value.
+    memories: state -> time constant [s], start value; shortest: least of them [s] that a search may reach.
 
     Raises:
         InputError: the model has one of the new names already.
@@ -86,7 +86,9 @@ def with_gusts(model: Model, memories: Mapping[str, float]) -> Model:
         ]
         return _extended(model, "gusts", rates, new=tuple(map(memory_name, memories)))
 
-    constants = [_time_constant(memory_name(s), value, f"memory of gusts on {s}") for s, value in memories.items()]
+    constants = [
+        _time_constant(memory_name(s), value, f"memory of gusts on {s}", shortest) for s, value in memories.items()
+    ]
     return _augmented(model, ("gusts", *memories), write, *constants)
 
 
@@ -164,10 +166,11 @@ def _symbol(name: str) -> "sp.Symbol":
     return sp.Symbol(name, real=True)
 
 
-def _time_constant(name: str, value: float, meaning: str) -> Parameter:
-    """Free between 0.05 and 200 times its start value: from the sampling time to longer than any run, chosen."""
+def _time_constant(name: str, value: float, meaning: str, least: float = 0.0) -> Parameter:
+    """Free between 0.05 and 200 times its start value: to longer than any run, chosen; not below `least`."""
     # bounds as the docstring says; chosen
-    return Parameter(name, value, "s", 0.05 * value, 200.0 * value, value, None, True, _SOURCE, meaning, "")
+    low = max(0.05 * value, least)
+    return Parameter(name, value, "s", low, 200.0 * value, value, None, True, _SOURCE, meaning, "")
 
 
 def _extended(

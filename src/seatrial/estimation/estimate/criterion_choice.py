@@ -37,6 +37,7 @@ from seatrial.estimation.estimate.process_noise import (
 from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import WHITE_INFLATION
 from seatrial.estimation.estimate.whole_run_intensity import with_whole_run_intensity
+from seatrial.estimation.information.paired_errors import is_no_worse
 from seatrial.estimation.information.whiteness import WhitenessTest, whiteness_test
 from seatrial.estimation.problem.output_error import OutputError
 
@@ -228,7 +229,8 @@ def _best_predicting(
     searched = [f for f in disturbances.fitted if f.unknown_count and f.is_searched]
     candidates = [(c.estimate.problem, output_error_points(c.estimate, parts)) for c in plain]
     candidates += [(f.noise.as_point_estimate().problem, innovation_points(f.noise, parts)) for f in searched]
-    errors = [float(np.nanmean(left_out_errors(p, points, runs, parts, windows))) for p, points in candidates]
+    of_parts = [np.nanmean(left_out_errors(p, points, runs, parts, windows), axis=(1, 2)) for p, points in candidates]
+    errors = [float(np.nanmean(one)) for one in of_parts]
     names = [*(c.criterion for c in plain), *(f"{PREDICTION_ERROR}, {f.noise.disturbance_model}" for f in searched)]
     if not np.any(np.isfinite(errors)):
         return _without_filter(shot, disturbances, _SEGMENTED)
@@ -236,11 +238,15 @@ def _best_predicting(
     text = f"errors on {parts} over the least: " + "; ".join(
         f"{name} {np.exp(error - least):.2f}" for name, error in zip(names, errors, strict=True)
     )
-    judged = {id(f): float(np.exp(e - least)) for f, e in zip(searched, errors[len(plain) :], strict=True)}
-    fitted = tuple(replace(f, left_out_error=judged.get(id(f))) for f in disturbances.fitted)
-    alike = [f for f in fitted if f.left_out_error is not None and f.left_out_error <= 1.0 + ALIKE]
-    if alike:
-        return _with_disturbance(shot, DisturbanceChoice(likeliest(alike), fitted), *reasons, text)
+    best, judged = of_parts[int(np.argmin(errors))], {}
+    for one, of_part in zip(searched, of_parts[len(plain) :], strict=True):
+        excess = (of_part - best)[~np.isnan(best)]
+        alike = is_no_worse(excess, np.log1p(ALIKE))
+        judged[id(one)] = replace(one, left_out_error=float(np.exp(excess.mean())), predicts_alike=alike)
+    fitted = tuple(judged.get(id(f), f) for f in disturbances.fitted)
+    close = [f for f in fitted if f.left_out_error is not None and f.predicts_alike]
+    if close:
+        return _with_disturbance(shot, DisturbanceChoice(likeliest(close), fitted), *reasons, text)
     used = plain[int(np.argmin(errors[: len(plain)]))]
     disturbances = replace(disturbances, fitted=fitted)
     return replace(

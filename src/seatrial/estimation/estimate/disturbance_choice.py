@@ -38,6 +38,9 @@ from seatrial.numerics.optimise import Optimum, Solution, Status, levenberg_marq
 _NO_INITIAL_STATES = np.zeros((0, 0))
 # most evaluations of each search; chosen
 _EVALUATIONS = 60
+# of the search from each of several starts, before one goes on, and how many at most; relative difference of the
+# unknowns of starts that count as one; chosen
+_SHORT_SEARCH, _MOST_STARTS, _SAME_POINT = 8, 4, 0.05
 # promised decrease of the cost at which the search without a disturbance ends; its gradient is exact
 _NEGLIGIBLE = 1e-3
 # promises of one Newton step within which the end of a search lies; chosen: 1.45 at most in nine searches of two craft
@@ -55,7 +58,7 @@ _ADDITIONS = 2  # parts that are added in turn to the likeliest where that leave
 # frequencies of another peak that is not seen, and its variance, over those of the first, where it is sought; chosen
 _SIDES, _SIDE_SHARE = (1.0 / 1.5, 1.5), 0.3
 # intensities of gusts beside waves, over those of white noise, which had to explain the waves too; chosen
-_BESIDE_WAVES = (0.03, 0.3)
+_BESIDE_WAVES = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,12 +69,14 @@ class FittedDisturbance:
         unknown_count: unknowns that describe the disturbance.
         is_searched: whether it was searched to the end.
         left_out_error: error on left-out parts of the runs over that of the best criterion; None: not judged.
+        predicts_alike: whether that exceeds the best by no more than matters, or than the scatter of parts explains.
     """
 
     noise: ProcessNoise
     unknown_count: int
     is_searched: bool = True
     left_out_error: float | None = None
+    predicts_alike: bool = True
 
     @property
     def log_likelihood(self) -> float:
@@ -142,8 +147,7 @@ class DisturbanceChoice:
         likely = max(f.log_likelihood for f in self.fitted) - _FAR_LESS_LIKELY
         return tuple(
             f for f in self.fitted
-            if f.unknown_count and f.is_searched and f.log_likelihood >= likely
-            and (f.left_out_error is None or f.left_out_error <= 1.0 + ALIKE)
+            if f.unknown_count and f.is_searched and f.log_likelihood >= likely and f.predicts_alike
         )  # fmt: skip
 
     def spread(self, coefficients: Array) -> Array:
@@ -176,7 +180,7 @@ def choose_disturbance(
     if np.isfinite(white.newton_decrement):
         fitted.append(FittedDisturbance(white, len(white.problem.process)))
     if not white.output_error.extra_terms:  # force points know the caller's parameters only
-        fitted += _with_states_of_their_own(search, fitted)
+        fitted += _with_states_of_their_own(search, fitted, _bases(none, white, plain))
     if not search.likeliest(fitted).noise.test.is_nearly_white:
         fitted += search.begun(sensor_models(white))
     fitted = search.ended(fitted)
@@ -189,27 +193,51 @@ def choose_disturbance(
     return DisturbanceChoice(search.likeliest(fitted), tuple(fitted))
 
 
-def _with_states_of_their_own(search: "_Search", simplest: Sequence[FittedDisturbance]) -> list[FittedDisturbance]:
+def _bases(none: ProcessNoise, white: ProcessNoise, plain: Sequence[PointEstimate]) -> list[ProcessNoise]:
+    """No disturbance, by the coefficients of every estimate in hand: where gusts led one astray, it finds no waves."""
+    common, bases = [white.common_parameters, *(one.common_parameters for one in plain)], [none]
+    for values in common:
+        point = none.optimum.solution.point.copy()
+        point[none.common_indices] = values
+        cost = none.problem.cost(point, _NO_INITIAL_STATES)
+        is_new = not any(np.allclose(point, one.optimum.solution.point, rtol=_SAME_POINT) for one in bases)
+        if np.isfinite(cost) and is_new:
+            solution = replace(none.optimum.solution, point=point)
+            bases.append(replace(none, optimum=replace(none.optimum, solution=solution)))
+    return bases
+
+
+def _with_states_of_their_own(
+    search: "_Search", simplest: Sequence[FittedDisturbance], bases: Sequence[ProcessNoise]
+) -> list[FittedDisturbance]:
     """Gusts, waves on the sensors, both, and forces by waves, as far as the ones before leave something to explain."""
-    white, none = search.white, simplest[0].noise
+    white, none = search.white, bases[0]
     driven, peaks = white.problem.process, _peaks(none)
-    waves = search.begun(_waves(none, peaks, white)) if any(p.is_high for p in peaks) else []
+    starts = [start for base in bases for peak in _highest(_peaks(base)) for start in wave_motion(base, [peak])]
+    waves = search.begun(_waves(search, starts, peaks)) if any(p.is_high for p in peaks) else []
     is_sea = bool(waves) and waves[0].noise.test.is_nearly_white and likeliest([*simplest, waves[0]]) is waves[0]
     # waves at one peak leave next to nothing for gusts alone; a second one may stand for gusts
     gusty = [] if is_sea else search.begun([gusts(white, driven, white_intensities(white))])
     if not waves and search.likeliest([*simplest, *gusty]).noise.test.is_white:
         return gusty
-    waves = waves or search.begun(_waves(none, peaks, white))
-    fitted = [*gusty, *waves, *search.begun(_beside_waves(none, waves, gusty, peaks, white))]
+    waves = waves or search.begun(_waves(search, starts, peaks))
+    fitted = [*gusty, *waves, *search.begun(_beside_waves(search, starts, waves, gusty, peaks))]
     if not search.likeliest([*simplest, *fitted]).noise.test.is_white:
         fitted += search.begun(wave_forces(none, driven, peaks))
     return fitted
 
 
-def _waves(none: ProcessNoise, peaks: Sequence[SpectralPeak], white: ProcessNoise) -> list[DisturbanceModel]:
+def _highest(peaks: Sequence[SpectralPeak]) -> Sequence[SpectralPeak]:
+    """The peaks that stand out; the first where none does."""
+    return [p for p in peaks if p.is_high] or peaks[:1]
+
+
+def _waves(
+    search: "_Search", starts: Sequence[DisturbanceModel], peaks: Sequence[SpectralPeak]
+) -> list[DisturbanceModel]:
     """Waves on the sensors alone: at one peak, and where the spectra show more at two."""
-    one = wave_motion(none, peaks)
-    return [*one, *(m for start in one for m in wave_motion(_unsearched(white, start), _apart(peaks, start)))]
+    one = search.most_promising(starts)
+    return [*one, *(m for start in one for m in wave_motion(_unsearched(search.white, start), _apart(peaks, start)))]
 
 
 def _apart(peaks: Sequence[SpectralPeak], start: DisturbanceModel) -> list[SpectralPeak]:
@@ -219,23 +247,24 @@ def _apart(peaks: Sequence[SpectralPeak], start: DisturbanceModel) -> list[Spect
 
 
 def _beside_waves(
-    none: ProcessNoise, waves: Sequence[FittedDisturbance], gusty: Sequence[FittedDisturbance],
-    peaks: Sequence[SpectralPeak], white: ProcessNoise,
+    search: "_Search", starts: Sequence[DisturbanceModel], waves: Sequence[FittedDisturbance],
+    gusty: Sequence[FittedDisturbance], peaks: Sequence[SpectralPeak],
 ) -> list[DisturbanceModel]:  # fmt: skip
     """Gusts beside waves at one peak on the sensors.
 
     Gusts begin beside the waves that the spectra show or that explain most alone, or the waves beside the gusts that
     do; not at all where waves alone leave nearly white innovations that no gust of the grid makes likelier.
     """
-    if not waves:
+    white = search.white
+    driven, whites = white.problem.process, _BESIDE_WAVES * white_intensities(white)
+    bases = [*(one.noise for one in waves[:1]), *(_unsearched(white, start) for start in starts)]
+    beside = [gusts(base, driven, whites) for base in bases]
+    beside += [start for one in gusty for peak in peaks for start in wave_motion(one.noise, [peak])]
+    scanned = search.most_promising(beside)
+    if any(one.noise.test.is_nearly_white and one.noise.optimum.normal.cost <= start.cost
+           for one in waves[:1] for start in scanned):  # fmt: skip
         return []
-    driven, whites, motion = white.problem.process, white_intensities(white), waves[0].noise
-    bases = [motion, *(_unsearched(white, start) for start in wave_motion(none, peaks))]
-    scanned = likeliest_start([gusts(base, driven, share * whites) for base in bases for share in _BESIDE_WAVES])
-    is_likelier = scanned.problem.cost(scanned.point, _NO_INITIAL_STATES) < motion.optimum.normal.cost
-    if motion.test.is_nearly_white and not is_likelier:
-        return []
-    return [likeliest_start([scanned, *(start for base in gusty for start in wave_motion(base.noise, peaks))])]
+    return scanned
 
 
 def _additions(best: ProcessNoise, white: ProcessNoise) -> list[DisturbanceModel]:
@@ -323,12 +352,22 @@ class _Search:
         """The candidate to be used by likelihood; the first is none."""
         return likeliest(fitted[int(self.needs_disturbance and len(fitted) > 1) :])
 
+    def most_promising(self, starts: Sequence[DisturbanceModel]) -> list[DisturbanceModel]:
+        """The start that is the likeliest after a short search from the best, there; none where all leave physics."""
+        ends = []
+        for one in sorted((s for s in starts if np.isfinite(s.cost)), key=lambda s: s.cost)[:_MOST_STARTS]:
+            with suppress(np.linalg.LinAlgError):  # as in `begun`
+                optimum = search_with_frozen_gain(one.problem, one.point, _SHORT_SEARCH, self.report)
+                ends.append(replace(one, point=optimum.solution.point))
+        ends = [one for one in ends if not is_lost(self.white.output_error, one.point)]
+        return [likeliest_start(ends)] if ends else []
+
     def begun(self, models: Iterable[DisturbanceModel]) -> list[FittedDisturbance]:
         """Candidates where the search with the gain as given ends, near their optima; none that leaves physics."""
         near = []
         for one in models:
             self.report(f"disturbances compared: {one.name}")
-            if not np.isfinite(one.problem.cost(one.point, _NO_INITIAL_STATES)):
+            if not np.isfinite(one.cost):
                 continue
             with suppress(np.linalg.LinAlgError):  # sensitivities overflow: the search has left physics
                 optimum = search_with_frozen_gain(one.problem, one.point, self.evaluations, self.report)
@@ -357,9 +396,16 @@ class _Search:
         self.report(f"disturbances compared: {name}")
         with suppress(np.linalg.LinAlgError):  # as in `begun`
             exact, optimum, decrement = refine_by_newton(one.noise.problem, one.noise.optimum)
-            if not is_lost(self.white.output_error, optimum.solution.point):
+            point = optimum.solution.point
+            if not is_lost(self.white.output_error, point) and not _is_slower_than_waves(exact, point):
                 return FittedDisturbance(_tested(self.white, name, exact, optimum, decrement), one.unknown_count)
         return None
+
+
+def _is_slower_than_waves(problem: PredictionError, point: Array) -> bool:
+    """Whether motion at a peak on the sensors would be slower still than waves may be: gusts are, or the craft."""
+    frequencies = slice(0, 2 * problem.waves.peaks, 2)
+    return bool(np.any(problem.wave_unknowns(point)[frequencies] <= problem.wave_bounds[0][frequencies]))
 
 
 def _may_reach(one: FittedDisturbance, log_likelihood: float) -> bool:

@@ -37,6 +37,8 @@ SEAS = {1: "waves", 2: "sea and swell"}
 MOST_PEAKS = len(SEAS)
 # memories of gusts from which the search starts: from so many samples to a tenth of the longest run, so many values
 _FEWEST_MEMORY_SAMPLES, _LONGEST_MEMORY_SHARE, _MEMORIES = 5.0, 0.1, 4
+# memory that a search may reach, samples: what forgets faster is white noise, and steps of a sample do not follow it
+_SHORTEST_MEMORY_SAMPLES = 0.5
 FEWEST_SAMPLES = round(_FEWEST_MEMORY_SAMPLES / _LONGEST_MEMORY_SHARE)
 """Samples of the longest run from which on a disturbance can be estimated: in fewer no memory is tried."""
 
@@ -71,6 +73,11 @@ class DisturbanceModel:
     point: Array
     name: str
     unknown_count: int
+
+    @property
+    def cost(self) -> float:
+        """Where the search begins: minus the log-likelihood, up to a constant that all candidates share."""
+        return self.problem.cost(self.point, _NO_INITIAL_STATES)
 
 
 @dataclass(frozen=True, eq=False)
@@ -244,12 +251,13 @@ def white_intensities(base: ProcessNoise) -> Array:
 
 def likeliest_start(points: list[DisturbanceModel]) -> DisturbanceModel:
     """Return the candidate whose search begins at the likeliest point."""
-    return min(points, key=lambda one: one.problem.cost(one.point, _NO_INITIAL_STATES))
+    return min(points, key=lambda one: one.cost)
 
 
 def _gusts(base: ProcessNoise, driven: Sequence[str], memory: float, intensities: Array) -> DisturbanceModel:
     """White noise on the states becomes white noise on accelerations of the same effect over longer times."""
-    model = with_gusts(base.problem.runs.model, dict.fromkeys(driven, memory))
+    shortest = _SHORTEST_MEMORY_SAMPLES * base.output_error.data.dt
+    model = with_gusts(base.problem.runs.model, dict.fromkeys(driven, memory), shortest)
     # stationary variance of a Gauss-Markov process whose integral spreads like white noise: q^2 / (2 memory)
     variance = {
         gust_name(s): _SPREAD_FACTOR**2 * float(q) ** 2 / (2.0 * memory)

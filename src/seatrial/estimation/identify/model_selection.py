@@ -12,7 +12,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import stdtrit
 
 from seatrial.core.equations import Model
 from seatrial.core.results import CandidateModel
@@ -26,6 +25,7 @@ from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions
 from seatrial.estimation.identify.left_out_scores import holdout_scores
 from seatrial.estimation.identify.physical_limits import objections
+from seatrial.estimation.information.paired_errors import is_no_worse, standard_error
 from seatrial.estimation.predict.predict_runs import TiedModel
 from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.models.candidate_structures import FREED_PARAMETERS, PRIOR_FACTORS, SEGMENT_FACTORS
@@ -300,7 +300,7 @@ def rank_candidates(fitted: Sequence[FittedVariant], *, choose: bool) -> tuple[C
     """Return mean errors, gains and ties; used is the trial's own, which is first, or the one that is to be chosen."""
     single = _errors(fitted)
     best = min(single, key=lambda i: float(single[i].mean()))
-    tied = {i for i, score in single.items() if _is_tied(score - single[best])}
+    tied = {i for i, score in single.items() if is_no_worse(score - single[best], _ALIKE)}
     used = _chosen(fitted, single) if choose else 0
     mean = {fitted[i].variant.name: float(score.mean()) for i, score in single.items()}
     return tuple(_candidate(f, mean, tied=i in tied, used=i == used) for i, f in enumerate(fitted))
@@ -322,18 +322,8 @@ def _chosen(fitted: Sequence[FittedVariant], errors: Mapping[int, Array]) -> int
     if not allowed:
         allowed = {0: errors[0]} if 0 in errors else dict(errors)
     best = min(allowed.values(), key=lambda error: float(error.mean()))
-    close = [i for i, error in allowed.items() if (error - best).mean() <= _standard_error(error - best)]
+    close = [i for i, error in allowed.items() if (error - best).mean() <= standard_error(error - best)]
     return min(close, key=lambda i: (len(fitted[i].model.parameters.free), float(allowed[i].mean())))
-
-
-def _standard_error(excess: Array) -> float:
-    return float(np.std(excess, ddof=1) / np.sqrt(len(excess))) if len(excess) > 1 else np.inf
-
-
-def _is_tied(excess: Array) -> bool:
-    """Whether scores of runs are worse by no more than their scatter explains, or than matters."""
-    level = stdtrit(max(len(excess) - 1, 1), 0.95)  # one-sided level; chosen
-    return bool(excess.mean() <= max(level * _standard_error(excess), _ALIKE))
 
 
 def _candidate(f: FittedVariant, mean: Mapping[str, float], *, tied: bool, used: bool) -> CandidateModel:
