@@ -203,7 +203,7 @@ def test_wrapped_heading_is_mentioned() -> None:
     np.testing.assert_allclose(np.ptp(canonical_record(wrapped)["psi"]), np.ptp(psi))
 
 
-def test_a_coarse_compass_that_rests_at_north_was_read_in_every_row(rng: np.random.Generator) -> None:
+def test_a_coarse_compass_that_rests_at_north_was_read_in_every_row() -> None:
     """It rests at 0 deg for a minute, then falls to 359.5 deg: half a degree, not a jump to what was missed."""
     t = np.arange(600.0)
     delta = np.where(t < 60.0, 0.0, np.radians(15.0) * np.sign(np.sin(t / 20.0)))

@@ -1,4 +1,4 @@
-"""Two candidates on the same parts: a mean excess counts only beyond what matters and what the parts' scatter explains."""
+"""Two candidates on the same parts: a mean excess counts only beyond what matters and what their scatter explains."""
 
 import numpy as np
 import pytest

@@ -168,9 +168,8 @@ def _symbol(name: str) -> "sp.Symbol":
 
 def _time_constant(name: str, value: float, meaning: str, least: float = 0.0) -> Parameter:
     """Free between 0.05 and 200 times its start value: to longer than any run, chosen; not below `least`."""
-    # bounds as the docstring says; chosen
-    low = max(0.05 * value, least)
-    return Parameter(name, value, "s", low, 200.0 * value, value, None, True, _SOURCE, meaning, "")
+    low, high = max(0.05 * value, least), 200.0 * value  # as the docstring says; chosen
+    return Parameter(name, value, "s", low, high, value, None, True, _SOURCE, meaning, "")
 
 
 def _extended(
