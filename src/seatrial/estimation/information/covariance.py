@@ -139,11 +139,11 @@ def sandwich(hessian: Array, block_gradients: Array) -> Interval:
     return Interval(covariance, max(count - 1, 1), f"sandwich over {count} blocks")
 
 
-def with_prior(interval: Interval, hessian: Array, precision: Array) -> Interval:
+def with_prior(interval: Interval, hessian: Array, score_variance: Array) -> Interval:
     """Add what priors and other data may be wrong by: H^-1 P H^-1, P (k, k) the variance of their score.
 
     Leaving runs out never moves a prior, so without this a coefficient held by its prior would seem certain.
     """
     bread = inverse(hessian)
-    covariance = interval.covariance + bread @ precision @ bread
+    covariance = interval.covariance + bread @ score_variance @ bread
     return Interval(covariance, interval.degrees_of_freedom, f"{interval.meaning}, with the priors' own uncertainty")
