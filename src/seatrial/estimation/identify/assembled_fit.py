@@ -20,6 +20,7 @@ from seatrial.estimation.identify.box_scale import stands_on_box
 from seatrial.estimation.identify.closed_loop_findings import closed_loop_findings
 from seatrial.estimation.identify.course_stability import course_finding
 from seatrial.estimation.identify.delay_findings import delay_findings
+from seatrial.estimation.identify.differing_decays import differing_decays
 from seatrial.estimation.identify.estimated_values_effect import (
     errors_of,
     estimated_value_shifts,
@@ -72,7 +73,9 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
     by_box = parts.computed("the effect of the box's wave forces", lambda: box_force_shifts(estimation, task.train), ())
     given = {name for symmetry in assessment.structural for name in symmetry.parameters}  # said of all coefficients
     stated = [shift for shift in shifts if shift.name not in given]
-    widened = with_estimated_values(estimation, [*stated, *by_box])
+    decays = parts.computed("the differences between decays", lambda: differing_decays(estimation), None)
+    by_decay = [decays.shift(estimation.estimate.problem.free)] if decays else []
+    widened = with_estimated_values(estimation, [*stated, *by_box, *by_decay])
     coefficients = fit_result.coefficients(widened, trial.truth, interval_ends(assessment.profiles, posterior))
     free = estimation.estimate.problem.free
     responses = parts.computed(
@@ -122,6 +125,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
             *abandoned_criterion_finding(estimation, runs.records),
             *parts.computed("the couplings held at zero", lambda: held_couplings(selected.estimation), ()),
             *course_finding(estimation.model, assessment.stability, approach),
+            *([decays.finding(estimation.model.parameters[decays.name].unit)] if decays else []),
             *varying_gain_finding(estimation, runs.records),
             *misfit_disturbance(
                 estimation.noise_model.process,
