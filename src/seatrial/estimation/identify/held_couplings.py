@@ -9,15 +9,17 @@ information: else a term is named that, once free, has an interval around 0.
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.special import ndtri
 
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, Finding, Severity
 from seatrial.estimation.estimate import Estimation
 from seatrial.estimation.information.covariance import inverse
 from seatrial.estimation.problem.output_error import OutputError
-from seatrial.physics.models.candidate_structures import SURGE_TERMS
+from seatrial.physics.models.candidate_structures import structural_terms
+from seatrial.physics.models.candidate_terms import with_candidate_terms, with_terms
 
-_STANDARD_ERRORS = 3.0  # of a coupling, from which on it is named; chosen: one in 60 of six that are 0 in truth
+_CHANCE = 1.0 / 60.0  # that a term is named where all are 0 in truth; chosen
 _MOVES = 2.0  # standard errors of a free coefficient by which it would move, from which on it is named; chosen
 _MOST_NAMED = 3  # coefficients that a message names; chosen
 
@@ -45,12 +47,14 @@ class _Score:
 def held_couplings(estimation: Estimation) -> tuple[Finding, ...]:
     """Return a warning for each term that is held at 0 and should not be, the strongest first.
 
-    Of a craft with thrusters its couplings are examined. Of a ship it is what drift, turning and rudder cost in speed,
-    and the strongest alone is named, as one of these terms stands in for another.
+    Of a craft with thrusters its couplings are examined. Of a ship these are the terms of its family, and candidates
+    that its model does not have; the strongest alone is named, as one of these terms stands in for another.
     """
-    parameters, has_thrusters = estimation.model.parameters, bool(estimation.model.equations.layout)
-    terms = _couplings() if has_thrusters else SURGE_TERMS
-    candidates = tuple(p.name for p in parameters if p.name in terms and not p.free and p.value == 0.0)
+    model, has_thrusters = estimation.model, bool(estimation.model.equations.layout)
+    wide = model if has_thrusters else with_candidate_terms(model)
+    terms = _couplings() if has_thrusters else structural_terms(model.name)
+    held = (p for p in wide.parameters if p.name in terms and p.name not in model.parameters.free_names)
+    candidates = tuple(p.name for p in held if p.value == 0.0)
     if not candidates:
         return ()
     score = _score(estimation, candidates)
@@ -58,9 +62,12 @@ def held_couplings(estimation: Estimation) -> tuple[Finding, ...]:
     steps_of = {name: score.step(name, candidates) for name in candidates}
     widening = _widening(estimation)
     sizes = {name: abs(size) / widening for name, (size, _) in steps_of.items()}
-    contradicted = (name for name in candidates if sizes[name] > _STANDARD_ERRORS)
+    enough = float(-ndtri(0.5 * _CHANCE / len(candidates)))  # of a normal error, by Bonferroni's inequality
+    contradicted = (name for name in candidates if sizes[name] > enough)
     named = sorted(contradicted, key=lambda name: -sizes[name])[: None if has_thrusters else 1]
+    wider = "" if set(named) <= set(model.parameters.names) else f'name = "{wide.name}", '
     free = ", ".join(f'"{n}"' for n in (*estimation.estimate.problem.free, *named[:1]))
+    held_as = {n: "held at 0" if n in model.parameters else "no term of the model" for n in named}
     findings = list[Finding]()
     for name in named:
         _, steps = steps_of[name]
@@ -68,10 +75,10 @@ def held_couplings(estimation: Estimation) -> tuple[Finding, ...]:
         largest = sorted((n for n in moved if moved[n] > _MOVES), key=lambda n: -moved[n])[:_MOST_NAMED]
         text = enumeration([f"{n} by {moved[n]:.0f} standard errors" for n in largest])
         findings.append(Finding(
-            Severity.WARNING, "held-coupling", f"{name} is held at 0 and the training runs speak against it, by "
+            Severity.WARNING, "held-coupling", f"{name} is {held_as[name]} and the training runs speak against it, by "
             f"{sizes[name]:.0f} standard errors", f"in one step it would move {text}" if text else "",
             f"free {named[0]}{', the strongest, first' if len(named) > 1 else ''} and compare the held-out runs: under "
-            f"[model] write free = [{free}]",
+            f"[model] write {wider}free = [{free}]",
             "intervals of the coefficients that stand in for it do not hold their true values",
         ))  # fmt: skip
     return tuple(findings)
@@ -107,7 +114,7 @@ def _score(estimation: Estimation, couplings: tuple[str, ...]) -> _Score:
 
 
 def _freed(runs: OutputError, couplings: tuple[str, ...]) -> OutputError:
-    model = runs.model
+    model = with_terms(runs.model, couplings)
     return replace(runs, model=model.with_parameters(model.parameters.freed(*couplings)))
 
 
