@@ -50,7 +50,9 @@ def waterjet_run(name: str, degrees: float, period: float, cross: Mapping[str, f
     start = [SPEED, 0.0, 0.0, 0.0, 0.0, 0.0]
     motion = solve_ivp(rates, (0.0, time[-1]), start, t_eval=time, rtol=1e-8, atol=1e-9, max_step=0.5).y
     noisy = {n: row + s * rng.standard_normal(len(time)) for (n, s), row in zip(NOISE.items(), motion, strict=True)}
-    return Record.from_arrays(name, time, {**noisy, "delta": -nozzle, "v_j": np.full(len(time), JET)})
+    return Record.from_arrays(
+        name, np.asarray(time, np.float64), {**noisy, "delta": -nozzle, "v_j": np.full(len(time), JET)}
+    )
 
 
 def fitted_waterjet(cross: Mapping[str, float], model: Model | None = None) -> Estimation:
@@ -106,4 +108,6 @@ def roll_decay(name: str, heel: float, c_5: float, seed: int) -> Record:
         return [x[1], -6.0 * x[0] - 2.0 * x[0] ** 3 - c_5 * x[0] ** 5 - 0.1 * x[1] - 0.4 * x[1] * abs(x[1])]
 
     phi = solve_ivp(rates, (0.0, time[-1]), [heel, 0.0], t_eval=time, rtol=1e-8, atol=1e-10).y[0]
-    return Record.from_arrays(name, time, {"phi": phi + np.radians(0.05) * noise.standard_normal(len(time))})
+    return Record.from_arrays(
+        name, np.asarray(time, np.float64), {"phi": phi + np.radians(0.05) * noise.standard_normal(len(time))}
+    )

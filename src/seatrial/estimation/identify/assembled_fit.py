@@ -21,6 +21,7 @@ from seatrial.estimation.identify.closed_loop_findings import closed_loop_findin
 from seatrial.estimation.identify.course_stability import course_finding
 from seatrial.estimation.identify.delay_findings import delay_findings
 from seatrial.estimation.identify.differing_decays import differing_decays
+from seatrial.estimation.identify.drifting_thrust import drifting_thrust_finding
 from seatrial.estimation.identify.estimated_values_effect import (
     errors_of,
     estimated_value_shifts,
@@ -124,6 +125,9 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
             *refuted_prior_findings(estimation),
             *abandoned_criterion_finding(estimation, runs.records),
             *parts.computed("the couplings held at zero", lambda: held_couplings(selected.estimation), ()),
+            *parts.computed(
+                "the thrust over the runs", lambda: drifting_thrust_finding(estimation, runs.records), ()
+            ),
             *course_finding(estimation.model, assessment.stability, approach),
             *([decays.finding(estimation.model.parameters[decays.name].unit)] if decays else []),
             *varying_gain_finding(estimation, runs.records),

@@ -11,10 +11,9 @@ from seatrial.core.values import NOT_MEASURED, Array, Finding, Severity
 from seatrial.data.trial import TrialRecord
 from seatrial.data.trial.estimated_values import ESTIMATED_VALUES
 from seatrial.estimation.estimate.fit import Estimation
-from seatrial.estimation.estimate.process_noise_interval import inverse_variances, without_initial_state
+from seatrial.estimation.identify.added_inputs import added_input_effect
 from seatrial.estimation.identify.assumed_information import output_error_estimate
 from seatrial.estimation.identify.estimated_values_effect import EstimatedValueShift
-from seatrial.estimation.information.covariance import inverse
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.physics.hydro.excitation import BoxForceError, BoxHull
 from seatrial.physics.sea.wave_forces import with_wave_forces
@@ -33,23 +32,11 @@ def box_force_shifts(estimation: Estimation, records: Sequence[TrialRecord]) -> 
     if not boxes or not estimation.model.is_affine:
         return ()
     estimate = output_error_estimate(estimation)
-    problem, point, local = estimate.problem, estimate.common_parameters, estimate.optimum.local
-    count, hessian = len(problem.free), estimate.optimum.normal.without_local()[1]
-    slopes, weights = problem.slopes(point, local), inverse_variances(problem)
-    covariance, simulated = inverse(hessian), problem.simulated_outputs(point, local)
-    shifts = []
+    samples, shifts = int(np.isfinite(estimate.problem.data.measured).sum()), []
     for way in BoxForceError.all_of(boxes[0]):
-        moved = _with_forces_added(problem, records, way).simulated_outputs(point, local) - simulated
-        pull, power = np.zeros(len(point)), float(np.nansum(weights * moved**2))
-        for segment in range(problem.data.count):
-            rows = slice(int(problem.data.offsets[segment]), int(problem.data.offsets[segment + 1]))
-            columns = problem.columns_of(int(problem.data.session[segment]))
-            own = without_initial_state(slopes[rows], len(columns), weights[rows])
-            pull[columns] += np.einsum("tyk,ty->k", own, moved[rows])
-        moves = covariance @ pull
-        left = max(power - float(pull @ moves), 0.0)
-        samples = int(np.isfinite(problem.data.measured).sum())
-        shifts.append(EstimatedValueShift(way.name, way.size, moves[:count], float(np.sqrt(left / samples))))
+        effect = added_input_effect(estimate, [_added_inputs(estimate.problem, item, way) for item in records])
+        visible = float(np.sqrt(effect.information / samples))
+        shifts.append(EstimatedValueShift(way.name, way.size, effect.moves, visible))
     return tuple(shifts)
 
 
@@ -71,19 +58,6 @@ def box_force_findings(
         'give the hull\'s own forces: [excitation] source = "table" or "capytaine"',
         "intervals of coefficients hold what the forces may be wrong by; predictions in such waves hardly change",
     ),)  # fmt: skip
-
-
-def _with_forces_added(problem: OutputError, records: Sequence[TrialRecord], way: BoxForceError) -> OutputError:
-    """Return the problem whose inputs hold this error of the forces, too."""
-    added = [_added_inputs(problem, item, way) for item in records]
-    place, data = problem.data.run_inputs, problem.data
-    assert place is not None
-    parts = []
-    for segment, (first, start, _) in enumerate(place.place):
-        length = int(data.offsets[segment + 1] - data.offsets[segment])
-        parts.append(added[int(data.run[segment])][first - start : first - start + length])
-    runs = replace(place, values=place.values + np.concatenate(added))
-    return replace(problem, data=replace(data, inputs=data.inputs + np.concatenate(parts), run_inputs=runs))
 
 
 def _added_inputs(problem: OutputError, item: TrialRecord, way: BoxForceError) -> Array:

@@ -60,7 +60,7 @@ def held_couplings(estimation: Estimation) -> tuple[Finding, ...]:
     score = _score(estimation, candidates)
     errors = dict(zip(estimation.estimate.problem.free, estimation.interval.standard_error, strict=False))
     steps_of = {name: score.step(name, candidates) for name in candidates}
-    widening = _widening(estimation)
+    widening = standard_error_ratio(estimation)
     sizes = {name: abs(size) / widening for name, (size, _) in steps_of.items()}
     enough = float(-ndtri(0.5 * _CHANCE / len(candidates)))  # of a normal error, by Bonferroni's inequality
     contradicted = (name for name in candidates if sizes[name] > enough)
@@ -84,8 +84,8 @@ def held_couplings(estimation: Estimation) -> tuple[Finding, ...]:
     return tuple(findings)
 
 
-def _widening(estimation: Estimation) -> float:
-    """The standard errors of the fit over those that its information alone gives: the median of its coefficients."""
+def standard_error_ratio(estimation: Estimation) -> float:
+    """Return the standard errors of the fit over those that its information alone gives: the median coefficient's."""
     count = len(estimation.estimate.problem.free)
     by_information = np.sqrt(np.diag(inverse(estimation.information))[:count])
     return float(np.median(estimation.interval.standard_error[:count] / by_information))
