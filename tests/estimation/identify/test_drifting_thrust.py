@@ -1,4 +1,4 @@
-"""Thrust that falls over a run is named by a score test: a catamaran by equations and integrator of the test."""
+"""Thrust that falls over a run, and a dead band, are named by score tests: a catamaran by equations of the test."""
 
 from dataclasses import replace
 
@@ -9,6 +9,7 @@ from seatrial.core.values import Array, Record
 from seatrial.data.trial import EstimateMethod, EstimateSettings
 from seatrial.estimation.estimate import Estimation, Runs, estimate_model
 from seatrial.estimation.identify.drifting_thrust import drifting_thrust_finding
+from seatrial.estimation.identify.held_couplings import held_couplings
 from seatrial.physics.models.thruster_layout import CATAMARAN, Damping, ThrustCurve, ThrusterLayout
 from seatrial.physics.models.thrusters import thrusters
 
@@ -26,14 +27,17 @@ def rates(x: Array, port: float, starboard: float) -> Array:
     return np.array([X + 1.5 * v * r, (Y - u * r) / 1.5, (N - 0.5 * u * v) / 0.1, r, north, east])
 
 
-def run(sag: float, seed: int) -> Record:
-    """A run of 90 s, orders held for 2 s, whose thrust falls straight by a share `sag`; steps of 0.02 s."""
+def run(sag: float, seed: int, dead: float = 0.0) -> Record:
+    """A run of 90 s, orders held for 2 s, whose thrust falls straight by a share `sag`; steps of 0.02 s.
+
+    dead: share of the order that gives no thrust to either side.
+    """
     rng = np.random.default_rng(seed)
     orders = np.repeat(rng.uniform(-0.3, 1.0, (ROWS // 20, 2)), 20, axis=0)
     states, h = np.zeros((ROWS, 6)), STEP / WITHIN
     for k in range(ROWS - 1):
         x = states[k]
-        thrust = orders[k] * (1.0 - sag * k / ROWS)
+        thrust = np.sign(orders[k]) * np.maximum(np.abs(orders[k]) - dead, 0.0) / (1.0 - dead) * (1.0 - sag * k / ROWS)
         for _ in range(WITHIN):
             a = rates(x, *thrust)
             b = rates(x + 0.5 * h * a, *thrust)
@@ -42,7 +46,7 @@ def run(sag: float, seed: int) -> Record:
         states[k + 1] = x
     noisy = {n: states[:, i] + s * rng.standard_normal(ROWS) for i, (n, s) in enumerate(NOISE.items())}
     commands = {f"command_{i + 1}": orders[:, i] for i in range(2)}
-    return Record.from_arrays(f"run {seed}", STEP * np.arange(ROWS), {**noisy, **commands})
+    return Record.from_arrays(f"run {seed}", np.asarray(STEP * np.arange(ROWS), np.float64), {**noisy, **commands})
 
 
 def fitted(records: tuple[Record, ...], method: EstimateMethod) -> Estimation:
@@ -52,6 +56,12 @@ def fitted(records: tuple[Record, ...], method: EstimateMethod) -> Estimation:
     model = thrusters(layout)
     model = model.with_parameters(model.parameters.fixed("k_J", "k_4"))
     return estimate_model(model, Runs.one_session_each(records, 1.0), EstimateSettings(method=method))
+
+
+@pytest.mark.parametrize("dead", [0.08, 0.0])
+def test_a_dead_band_that_is_held_at_zero_is_named(dead: float) -> None:
+    findings = held_couplings(fitted((run(0.0, 3, dead), run(0.0, 4, dead)), EstimateMethod.OUTPUT_ERROR))
+    assert ("dead" in [f.text.split()[0] for f in findings]) == (dead > 0.0)
 
 
 @pytest.mark.parametrize("sag", [0.15, 0.0, -0.15])

@@ -28,8 +28,8 @@ def drifting_thrust_finding(estimation: Estimation, records: Sequence[Record]) -
     model = estimation.model
     if not model.equations.layout:
         return ()
-    commands = [t.command for t in ThrusterLayout.from_text(model.equations.layout).thrusters]
-    zeros = {model.input_names.index(c.channel): c.zero for c in commands}
+    layout = ThrusterLayout.from_text(model.equations.layout)
+    zeros = {model.input_names.index(t.command.channel): t.command.zero for t in layout.thrusters}
     estimate = output_error_estimate(estimation)
     effect = added_input_effect(estimate, [_slope_of_orders(inputs_of(model, r), zeros) for r in records], _STEP)
     size = effect.standard_errors / standard_error_ratio(estimation)
@@ -38,11 +38,12 @@ def drifting_thrust_finding(estimation: Estimation, records: Sequence[Record]) -
     errors = np.maximum(estimation.interval.standard_error[: len(effect.moves)], 1e-300)  # above zero, for a division
     moved = np.abs(effect.moves * effect.size) / errors
     most = [estimate.problem.free[int(i)] for i in np.argsort(-moved)[:3]]
-    way = "falls" if effect.size < 0.0 else "rises"
+    powers = [f"p_f{layout.suffix(leader)}" for leader in layout.leaders]
+    power = float(np.mean([model.parameters[p].value if p in model.parameters else 1.0 for p in powers]))
+    change, way = (1.0 + effect.size) ** power - 1.0, "falls" if effect.size < 0.0 else "rises"
     return (Finding(
-        Severity.WARNING, "thrust-drifts", f"the thrust at one order {way} over the runs, as if orders changed by "
-        f"{percent(abs(effect.size))} % from start to end", f"{abs(size):.0f} standard errors; it moves most "
-        f"{enumeration(most)}", "record the battery's voltage or the propellers' rate, or train on shorter runs",
+        Severity.WARNING, "thrust-drifts", f"the thrust at one order {way} from the start of the runs to their end, by "
+        f"{percent(abs(change))} %", f"{abs(size):.0f} standard errors; it moves most {enumeration(most)}", "record the battery's voltage or the propellers' rate, or train on shorter runs",
         "the intervals of the coefficients that stand in for it do not hold their true values",
     ),)  # fmt: skip
 
