@@ -12,7 +12,6 @@ from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions
 from seatrial.estimation.identify.differing_decays import differing_decays
 from seatrial.estimation.identify.estimated_values_effect import with_estimated_values
-from seatrial.estimation.information.covariance import excess_spread
 from seatrial.physics.models.roll import roll
 
 FREE = ("b_1", "b_2", "c_1", "phi_0")
@@ -53,10 +52,3 @@ def test_decays_of_several_speeds_are_named_and_in_the_interval(damping: tuple[f
 
 def test_decays_of_one_ship_are_one() -> None:
     assert differing_decays(fitted((0.2, 0.2, 0.2))) is None
-
-
-def test_the_spread_beyond_errors_is_that_of_known_numbers() -> None:
-    """Values 1, 3 and 5 with errors of 1: variance 4, of which 1 is their error's."""
-    chance, spread = excess_spread(np.array([1.0, 3.0, 5.0, np.nan]), np.array([1.0, 1.0, 1.0, 1.0]))
-    assert spread == pytest.approx(np.sqrt(3.0))
-    assert chance == pytest.approx(np.exp(-4.0))

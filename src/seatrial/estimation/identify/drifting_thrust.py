@@ -43,7 +43,8 @@ def drifting_thrust_finding(estimation: Estimation, records: Sequence[Record]) -
     change, way = (1.0 + effect.size) ** power - 1.0, "falls" if effect.size < 0.0 else "rises"
     return (Finding(
         Severity.WARNING, "thrust-drifts", f"the thrust at one order {way} from the start of the runs to their end, by "
-        f"{percent(abs(change))} %", f"{abs(size):.0f} standard errors; it moves most {enumeration(most)}", "record the battery's voltage or the propellers' rate, or train on shorter runs",
+        f"{percent(abs(change))} %", f"{abs(size):.0f} standard errors; it moves most {enumeration(most)}",
+        "record the battery's voltage or the propellers' rate, or train on shorter runs",
         "the intervals of the coefficients that stand in for it do not hold their true values",
     ),)  # fmt: skip
 
