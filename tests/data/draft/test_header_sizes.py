@@ -38,6 +38,8 @@ def test_the_speed_of_a_carriage_is_that_of_the_run(tmp_path: Path) -> None:
     assert speed_in_header(log(tmp_path / "a.txt", "# seakeeping\n# Carriage speed\t1.20 m/s")) == 1.2
     assert speed_in_header(log(tmp_path / "b.txt", "# seakeeping\n# speed: 10 kn")) == pytest.approx(5.1444, rel=1e-4)
     assert speed_in_header(log(tmp_path / "c.txt", "# speed 1 m/s\n# later speed 2 m/s")) is None
+    assert speed_in_header(log(tmp_path / "d.txt", "# model 12\n# V = 0.810 m/s")) == 0.81
+    assert speed_in_header(log(tmp_path / "e.txt", "# model 12\n# run V 2 m/s")) is None
     assert wave_lines(1.2)[-1].startswith("speed = 1.2 ") and "ASSUMED" in wave_lines(None)[-1]
 
 

@@ -58,6 +58,33 @@ def test_coloured_residuals_get_what_the_runs_allow(model: Model, runs: int, sec
     assert np.all((ratio > 0.3) & (ratio < 3.0)), "residuals of this record are white: all intervals agree roughly"
 
 
+def with_prior_on(one: PointEstimate, mean: float, deviation: float) -> PointEstimate:
+    """The same data with a prior on K, searched again."""
+    model = one.problem.model
+    priors = model.parameters.with_priors({"K": Prior(mean, deviation)})
+    problem = replace(one.problem, model=model.with_parameters(priors))
+    return PointEstimate(problem, levenberg_marquardt(problem, one.common_parameters, one.optimum.local))
+
+
+@pytest.mark.parametrize("inflation", [WHITE, COLOURED])
+@pytest.mark.parametrize(("runs", "seconds", "deviation"), [(6, 30.0, 0.0015), (2, 10.0, 0.005), (1, None, 0.0015)])
+def test_intervals_hold_the_truth_beside_a_prior_that_is_wrong(
+    model: Model, runs: int, seconds: float | None, deviation: float, inflation: np.ndarray
+) -> None:
+    """With K 0.15 in the records and a prior of 0.18, 6 or 20 standard deviations off, the optimum is between."""
+    one = made(model, runs, seconds)
+    wrong = with_prior_on(one, 0.18, deviation)
+    interval, error = estimate_uncertainty(wrong, inflation).interval, np.abs(wrong.common_parameters - [0.15, 8.0])
+    assert error[0] > 2.0 * np.linalg.inv(wrong.optimum.normal.without_local()[1])[0, 0] ** 0.5, "the prior moves K"
+    assert np.all(error < interval.half_width)
+
+
+def test_a_prior_that_the_records_bear_out_widens_nothing(model: Model) -> None:
+    one = with_prior_on(made(model, 1, None), 0.15, 0.0015)
+    interval = estimate_uncertainty(one, WHITE).interval
+    np.testing.assert_allclose(interval.covariance, np.linalg.inv(one.optimum.normal.without_local()[1]), rtol=1e-8)
+
+
 def counted(one: PointEstimate, inflation: np.ndarray) -> PointEstimate:
     """The same data with samples counted as their effective number, searched again."""
     problem = replace(one.problem, inflation=inflation)

@@ -10,6 +10,7 @@ from seatrial.estimation.information.covariance import (
     Interval,
     RunScores,
     bootstrap,
+    excess_spread,
     from_information,
     inverse,
     jackknife,
@@ -157,3 +158,10 @@ def test_the_bootstrap_of_a_mean_is_its_variance(rng: np.random.Generator) -> No
     interval = bootstrap(drawn, 8, "")
     np.testing.assert_allclose(interval.covariance, np.atleast_2d(np.cov(values.T)) / 8, rtol=0.04)
     assert interval.degrees_of_freedom == 7
+
+
+def test_the_spread_beyond_errors_is_that_of_known_numbers() -> None:
+    """Values 1, 3 and 5 with errors of 1: variance 4, of which 1 is their error's."""
+    chance, spread = excess_spread(np.array([1.0, 3.0, 5.0, np.nan]), np.array([1.0, 1.0, 1.0, 1.0]))
+    assert spread == pytest.approx(np.sqrt(3.0))
+    assert chance == pytest.approx(np.exp(-4.0))

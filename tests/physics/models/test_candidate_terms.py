@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from seatrial.physics.models import waterjet, with_candidate_terms
+from seatrial.physics.models import waterjet, with_candidate_terms, with_terms
+from seatrial.physics.models.candidate_structures import structural_terms
 from seatrial.physics.models.heave_pitch import heave_pitch
 from seatrial.physics.models.waterjet import CANDIDATE_TERMS, waterjet_candidates
 
@@ -22,3 +23,16 @@ def test_zero_candidates_change_nothing_and_values_are_kept() -> None:
 
 def test_a_model_without_candidates_is_itself() -> None:
     assert with_candidate_terms(heave_pitch()) is heave_pitch() or with_candidate_terms(heave_pitch()) == heave_pitch()
+
+
+def test_terms_that_the_model_lacks_come_held_at_zero() -> None:
+    craft = waterjet()
+    assert with_terms(craft, ("N_v", "m_y")) is craft
+    wide = with_terms(craft, ("N_vrr",))
+    assert wide.parameters.free_names == craft.parameters.free_names
+    assert [wide.parameters[n].value for n in CANDIDATE_TERMS] == [0.0, 0.0]
+
+
+def test_terms_of_a_family_are_those_of_its_structures_and_of_surge() -> None:
+    assert {*CANDIDATE_TERMS, "m_x", "X_vr"} <= structural_terms("waterjet")
+    assert {"b_3", "c_5"} <= structural_terms("roll")

@@ -18,7 +18,7 @@ _NAMES = {
 }
 _UNITS = {"m": "mm|cm|m", "kg": "kg|t"}
 # the speed of a carriage or craft, as headers have it
-_SPEED = re.compile(r"(?i:speed)[ \t]*[=:]?[ \t]*(\d+(?:\.\d+)?)[ \t]*(m/s|kn)\b")
+_SPEED = re.compile(r"(?:(?i:speed)|(?<![\w.])V(?=[ \t]*[=:]))[ \t]*[=:]?[ \t]*(\d+(?:\.\d+)?)[ \t]*(m/s|kn)\b")
 _SCALE = re.compile(r"(?<![\d:])1\s?:\s?(\d+(?:\.\d+)?)(?![\d:])")
 
 

@@ -20,6 +20,7 @@ from seatrial.estimation.information.covariance import (
     sandwich,
     with_prior,
 )
+from seatrial.estimation.problem.output_error import OutputError
 
 # fewest runs for a jackknife, ours
 RUNS_FOR_JACKKNIFE = 4
@@ -68,7 +69,7 @@ def estimate_uncertainty(
     steps = None if scores is None else estimate.common_parameters + scores.left_out_steps
 
     def over_runs(interval: Interval) -> Interval:
-        known = with_prior(interval, hessian, problem.prior_precision(estimate.common_parameters))
+        known = with_prior(interval, hessian, problem.prior_score_variance(estimate.common_parameters))
         return _offsets_by_information(known, hessian, len(problem.free))
 
     if kind is IntervalMethod.JACKKNIFE:
@@ -86,7 +87,9 @@ def estimate_uncertainty(
             over_runs(bootstrap(points, runs, f"bootstrap over {runs} runs, {BOOTSTRAP_FITS} draws")), steps
         )
     if np.max(inflation) <= WHITE_INFLATION:
-        return Uncertainty(from_information(hessian), steps)
+        return Uncertainty(
+            _with_refuted_priors(from_information(hessian), hessian, problem, estimate.common_parameters), steps
+        )
     if scores is not None:
         return Uncertainty(over_runs(scores.interval(f"one-step jackknife over {runs} runs")), steps)
     if problem.data.count >= _BLOCKS_FOR_SANDWICH:
@@ -94,11 +97,12 @@ def estimate_uncertainty(
             with_prior(
                 sandwich(hessian, _segment_gradients(estimate)),
                 hessian,
-                problem.prior_precision(estimate.common_parameters),
+                problem.prior_score_variance(estimate.common_parameters),
             )
         )
     meaning = "information matrix, correlated samples counted as their effective number"
-    return Uncertainty(replace(from_information(hessian), meaning=meaning))
+    interval = replace(from_information(hessian), meaning=meaning)
+    return Uncertainty(_with_refuted_priors(interval, hessian, problem, estimate.common_parameters))
 
 
 def innovations_uncertainty(noise: ProcessNoise, disturbances: DisturbanceChoice, kind: IntervalMethod) -> Uncertainty:
@@ -112,17 +116,27 @@ def innovations_uncertainty(noise: ProcessNoise, disturbances: DisturbanceChoice
     wanted = kind in (IntervalMethod.JACKKNIFE, IntervalMethod.BOOTSTRAP)
     if steps is not None and (wanted or not noise.test.is_white):
         made = noise.interval_over_runs(f"one-step jackknife over {runs} runs, prediction error")
-        precision = noise.output_error.prior_precision(noise.common_parameters)
-        widened = with_prior(made, noise.information, precision)
+        score = noise.output_error.prior_score_variance(noise.common_parameters)
+        widened = with_prior(made, noise.information, score)
         count = len(noise.output_error.free)
         return Uncertainty(_offsets_by_information(widened, noise.information, count), steps)
-    interval = noise.interval
+    interval = _with_refuted_priors(noise.interval, noise.information, noise.output_error, noise.common_parameters)
     return Uncertainty(
         interval
         if noise.test.is_white
         else with_spread(interval, disturbances, noise.output_error.free, noise.common_parameters),
         steps,
     )
+
+
+def _with_refuted_priors(interval: Interval, hessian: Array, problem: OutputError, point: Array) -> Interval:
+    """The interval of an information matrix, which takes priors for right, with what those the records refute add."""
+    excess = problem.prior_score_variance(point) - problem.prior_precision(point)
+    if not np.any(excess):
+        return interval
+    bread = inverse(hessian)
+    meaning = f"{interval.meaning}, priors that the records contradict counted as wrong by as much"
+    return replace(interval, covariance=interval.covariance + bread @ excess @ bread, meaning=meaning)
 
 
 def with_spread(

@@ -28,7 +28,7 @@ MEANING = {
 def process_noise_interval(estimate: PointEstimate, process_noise: ProcessNoise) -> Interval:
     """Interval of the shared unknowns of an estimate over whole runs under noise in the states that suits it."""
     problem, hessian = estimate.problem, estimate.optimum.normal.without_local()[1]
-    score = problem.prior_precision(estimate.common_parameters)
+    score = problem.prior_score_variance(estimate.common_parameters)
     slopes = problem.slopes(estimate.common_parameters, estimate.optimum.local)
     trust = inverse_variances(problem)
     deviation = np.array(list(process_noise.measurement_noise.values()))

@@ -37,10 +37,14 @@ def run_scores(estimate: PointEstimate, groups: Sequence[Sequence[int]] | None =
 
 @dataclass(frozen=True, eq=False)
 class RunEstimates:
-    """What each run by itself says of the shared unknowns: values and standard deviations, (runs, k); NaN: nothing."""
+    """What each run by itself says of the shared unknowns: values and standard deviations, (runs, k); NaN: nothing.
+
+    decreases: of each run's sum of squares over the noise, by values of its own, (runs,).
+    """
 
     values: Array
     deviations: Array
+    decreases: Array
 
 
 def one_step_by_run(estimate: PointEstimate) -> RunEstimates:
@@ -49,13 +53,14 @@ def one_step_by_run(estimate: PointEstimate) -> RunEstimates:
     theta_i - theta = -H_i^-1 g_i, with the covariance H_i^-1; priors are left out.
     """
     runs, size = len(estimate.problem.data.runs), len(estimate.common_parameters)
-    values, deviations = np.full((runs, size), np.nan), np.full((runs, size), np.nan)
+    values, deviations, decreases = np.full((runs, size), np.nan), np.full((runs, size), np.nan), np.zeros(runs)
     for k, (gradient, hessian) in enumerate(_normals_of(estimate, [[r] for r in range(runs)])):
         seen = np.flatnonzero(np.diag(hessian) > 0.0)
         covariance = inverse(hessian[np.ix_(seen, seen)])
         values[k, seen] = estimate.common_parameters[seen] - covariance @ gradient[seen]
         deviations[k, seen] = np.sqrt(np.diag(covariance))
-    return RunEstimates(values, deviations)
+        decreases[k] = gradient[seen] @ covariance @ gradient[seen]
+    return RunEstimates(values, deviations, decreases)
 
 
 def _normals_of(estimate: PointEstimate, groups: Sequence[Sequence[int]]) -> list[tuple[Array, Array]]:

@@ -15,10 +15,13 @@ from seatrial.estimation.estimate import Estimation, IntervalMethod
 from seatrial.estimation.identify import fit_result
 from seatrial.estimation.identify.abandoned_criterion import abandoned_criterion_finding
 from seatrial.estimation.identify.antenna_place import antenna_findings
+from seatrial.estimation.identify.box_forces_effect import box_force_findings, box_force_shifts
 from seatrial.estimation.identify.box_scale import stands_on_box
 from seatrial.estimation.identify.closed_loop_findings import closed_loop_findings
 from seatrial.estimation.identify.course_stability import course_finding
 from seatrial.estimation.identify.delay_findings import delay_findings
+from seatrial.estimation.identify.differing_decays import differing_decays
+from seatrial.estimation.identify.drifting_thrust import drifting_thrust_finding
 from seatrial.estimation.identify.estimated_values_effect import (
     errors_of,
     estimated_value_shifts,
@@ -68,8 +71,12 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
     assessment = _identifiability(task, estimation, approach, predicted.interval_basis.training_envelope)
     parts = MissingParts()
     shifts = parts.computed("the effect of estimated values", lambda: estimated_value_shifts(estimation), ())
+    by_box = parts.computed("the effect of the box's wave forces", lambda: box_force_shifts(estimation, task.train), ())
     given = {name for symmetry in assessment.structural for name in symmetry.parameters}  # said of all coefficients
-    widened = with_estimated_values(estimation, [shift for shift in shifts if shift.name not in given])
+    stated = [shift for shift in shifts if shift.name not in given]
+    decays = parts.computed("the differences between decays", lambda: differing_decays(estimation), None)
+    by_decay = [decays.shift(estimation.estimate.problem.free)] if decays else []
+    widened = with_estimated_values(estimation, [*stated, *by_box, *by_decay])
     coefficients = fit_result.coefficients(widened, trial.truth, interval_ends(assessment.profiles, posterior))
     free = estimation.estimate.problem.free
     responses = parts.computed(
@@ -111,14 +118,18 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         residuals=fit_result.residuals(estimation),
         predictions=predicted.predictions,
         findings=(
-            *with_effects(task.findings, estimation, shifts),
+            *with_effects(task.findings, estimation, shifts), *box_force_findings(by_box, coefficients),
             *selected.findings, *findings, *fit_result.open_signs(estimation.model, coefficients),
             *unphysical_finding(estimation.model, runs.records, errors_of(shifts, free), roll),
             *fit_result.bounds_hit(estimation), *fit_result.unconverged(estimation), *other_optima(estimation),
             *refuted_prior_findings(estimation),
             *abandoned_criterion_finding(estimation, runs.records),
             *parts.computed("the couplings held at zero", lambda: held_couplings(selected.estimation), ()),
+            *parts.computed(
+                "the thrust over the runs", lambda: drifting_thrust_finding(estimation, runs.records), ()
+            ),
             *course_finding(estimation.model, assessment.stability, approach),
+            *([decays.finding(estimation.model.parameters[decays.name].unit)] if decays else []),
             *varying_gain_finding(estimation, runs.records),
             *misfit_disturbance(
                 estimation.noise_model.process,

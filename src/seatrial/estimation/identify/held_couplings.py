@@ -1,4 +1,4 @@
-"""Terms of a hull that are held at zero although the training runs speak against it: a score test of each.
+"""Terms of a craft that are held at zero although the training runs speak against it: a score test of each.
 
 One Newton step from the optimum with one more coefficient free says how far it would move, over its standard error, and
 what it would move with it (Rao 1948, Proc. Cambridge Phil. Soc. 44, 50-57: the score statistic is the square of the
@@ -9,15 +9,19 @@ information: else a term is named that, once free, has an interval around 0.
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.special import ndtri
 
+from seatrial.core.equations import Model
 from seatrial.core.text.words import enumeration
-from seatrial.core.values import Array, Finding, Severity
+from seatrial.core.values import Array, Finding, Parameter, Severity
 from seatrial.estimation.estimate import Estimation
 from seatrial.estimation.information.covariance import inverse
 from seatrial.estimation.problem.output_error import OutputError
-from seatrial.physics.models.candidate_structures import SURGE_TERMS
+from seatrial.physics.models.candidate_structures import structural_terms
+from seatrial.physics.models.candidate_terms import with_candidate_terms, with_terms
+from seatrial.physics.models.thruster_layout import ThrusterLayout
 
-_STANDARD_ERRORS = 3.0  # of a coupling, from which on it is named; chosen: one in 60 of six that are 0 in truth
+_CHANCE = 1.0 / 60.0  # that a term is named where all are 0 in truth; chosen
 _MOVES = 2.0  # standard errors of a free coefficient by which it would move, from which on it is named; chosen
 _MOST_NAMED = 3  # coefficients that a message names; chosen
 
@@ -45,22 +49,27 @@ class _Score:
 def held_couplings(estimation: Estimation) -> tuple[Finding, ...]:
     """Return a warning for each term that is held at 0 and should not be, the strongest first.
 
-    Of a craft with thrusters its couplings are examined. Of a ship it is what drift, turning and rudder cost in speed,
-    and the strongest alone is named, as one of these terms stands in for another.
+    Of a craft with thrusters its couplings and dead bands are examined. Of a ship these are the terms of its family and
+    candidates that its model does not have; the strongest alone is named, as one of these terms stands in for another.
     """
-    parameters, has_thrusters = estimation.model.parameters, bool(estimation.model.equations.layout)
-    terms = _couplings() if has_thrusters else SURGE_TERMS
-    candidates = tuple(p.name for p in parameters if p.name in terms and not p.free and p.value == 0.0)
+    model, has_thrusters = estimation.model, bool(estimation.model.equations.layout)
+    wide = model if has_thrusters else with_candidate_terms(model)
+    terms = _terms_of_thrusters(model) if has_thrusters else structural_terms(model.name)
+    held = (p for p in wide.parameters if p.name in terms and p.name not in model.parameters.free_names)
+    candidates = tuple(p.name for p in held if p.value == 0.0)
     if not candidates:
         return ()
     score = _score(estimation, candidates)
     errors = dict(zip(estimation.estimate.problem.free, estimation.interval.standard_error, strict=False))
     steps_of = {name: score.step(name, candidates) for name in candidates}
-    widening = _widening(estimation)
-    sizes = {name: abs(size) / widening for name, (size, _) in steps_of.items()}
-    contradicted = (name for name in candidates if sizes[name] > _STANDARD_ERRORS)
+    widening = standard_error_ratio(estimation)
+    sizes = {n: abs(s) / widening for n, (s, _) in steps_of.items() if _is_within_bounds(wide.parameters[n], s)}
+    enough = float(-ndtri(0.5 * _CHANCE / len(candidates)))  # of a normal error, by Bonferroni's inequality
+    contradicted = (name for name in candidates if sizes.get(name, 0.0) > enough)
     named = sorted(contradicted, key=lambda name: -sizes[name])[: None if has_thrusters else 1]
+    wider = "" if set(named) <= set(model.parameters.names) else f'name = "{wide.name}", '
     free = ", ".join(f'"{n}"' for n in (*estimation.estimate.problem.free, *named[:1]))
+    held_as = {n: "held at 0" if n in model.parameters else "no term of the model" for n in named}
     findings = list[Finding]()
     for name in named:
         _, steps = steps_of[name]
@@ -68,26 +77,33 @@ def held_couplings(estimation: Estimation) -> tuple[Finding, ...]:
         largest = sorted((n for n in moved if moved[n] > _MOVES), key=lambda n: -moved[n])[:_MOST_NAMED]
         text = enumeration([f"{n} by {moved[n]:.0f} standard errors" for n in largest])
         findings.append(Finding(
-            Severity.WARNING, "held-coupling", f"{name} is held at 0 and the training runs speak against it, by "
+            Severity.WARNING, "held-coupling", f"{name} is {held_as[name]} and the training runs speak against it, by "
             f"{sizes[name]:.0f} standard errors", f"in one step it would move {text}" if text else "",
             f"free {named[0]}{', the strongest, first' if len(named) > 1 else ''} and compare the held-out runs: under "
-            f"[model] write free = [{free}]",
+            f"[model] write {wider}free = [{free}]",
             "intervals of the coefficients that stand in for it do not hold their true values",
         ))  # fmt: skip
     return tuple(findings)
 
 
-def _widening(estimation: Estimation) -> float:
-    """The standard errors of the fit over those that its information alone gives: the median of its coefficients."""
+def standard_error_ratio(estimation: Estimation) -> float:
+    """Return the standard errors of the fit over those that its information alone gives: the median coefficient's."""
     count = len(estimation.estimate.problem.free)
     by_information = np.sqrt(np.diag(inverse(estimation.information))[:count])
     return float(np.median(estimation.interval.standard_error[:count] / by_information))
 
 
-def _couplings() -> tuple[str, ...]:
+def _is_within_bounds(parameter: Parameter, step: float) -> bool:
+    """Return whether a step of this sign from a value at rest stays a possible one."""
+    return parameter.lower < parameter.value if step < 0.0 else parameter.value < parameter.upper
+
+
+def _terms_of_thrusters(model: Model) -> frozenset[str]:
+    """The couplings of the hull, and the dead bands of the thrusters."""
     from seatrial.physics.models.thrusters import COUPLINGS  # here, as it imports SymPy
 
-    return COUPLINGS
+    layout = ThrusterLayout.from_text(model.equations.layout)
+    return frozenset((*COUPLINGS, *(f"dead{layout.suffix(leader)}" for leader in layout.leaders)))
 
 
 def _score(estimation: Estimation, couplings: tuple[str, ...]) -> _Score:
@@ -107,7 +123,7 @@ def _score(estimation: Estimation, couplings: tuple[str, ...]) -> _Score:
 
 
 def _freed(runs: OutputError, couplings: tuple[str, ...]) -> OutputError:
-    model = runs.model
+    model = with_terms(runs.model, couplings)
     return replace(runs, model=model.with_parameters(model.parameters.freed(*couplings)))
 
 

@@ -29,6 +29,7 @@ from seatrial.estimation.information.paired_errors import is_no_worse, standard_
 from seatrial.estimation.predict.predict_runs import TiedModel
 from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.models.candidate_structures import FREED_PARAMETERS, PRIOR_FACTORS, SEGMENT_FACTORS
+from seatrial.physics.models.candidate_terms import with_terms
 
 HOLDOUT_WINDOW_SHIP_LENGTHS = 4.0
 """Length of the windows in which runs left out are predicted, in ship lengths travelled."""
@@ -165,12 +166,13 @@ def variants(model: Model, family: ModelFamily | None, is_segmented: bool) -> tu
 
 
 def _has(model: Model, names: Sequence[str]) -> bool:
-    """Return whether the model has all of these; that of a craft with thrusters depends on their layout."""
-    return set(names) <= set(model.parameters.names)
+    """Return whether the model or its candidate terms have all of these; a craft with thrusters by its layout."""
+    return set(names) <= set(with_terms(model, names).parameters.names)
 
 
 def apply_variant(model: Model, variant: ModelVariant) -> Model:
     """The variant's model: priors widened, further parameters free about their values."""
+    model = with_terms(model, variant.freed)
     p = model.parameters
     wider = {
         q.name: replace(q.prior, standard_deviation=q.prior.standard_deviation * variant.prior_factor)

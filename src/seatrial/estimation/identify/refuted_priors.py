@@ -29,4 +29,5 @@ def refuted_prior_findings(estimation: Estimation) -> tuple[Finding, ...]:
         f"prior standard deviations from their means: {', '.join(sizes)}{more}",
         "check that the priors' source is of this ship, loading and scale, widen them under [model.priors], or free "
         "the term whose effect these coefficients may have taken; until then do not read them one by one",
+        "intervals count each such prior as wrong by as much",
     ),)  # fmt: skip

@@ -139,11 +139,29 @@ def sandwich(hessian: Array, block_gradients: Array) -> Interval:
     return Interval(covariance, max(count - 1, 1), f"sandwich over {count} blocks")
 
 
-def with_prior(interval: Interval, hessian: Array, precision: Array) -> Interval:
+def with_prior(interval: Interval, hessian: Array, score_variance: Array) -> Interval:
     """Add what priors and other data may be wrong by: H^-1 P H^-1, P (k, k) the variance of their score.
 
     Leaving runs out never moves a prior, so without this a coefficient held by its prior would seem certain.
     """
     bread = inverse(hessian)
-    covariance = interval.covariance + bread @ precision @ bread
+    covariance = interval.covariance + bread @ score_variance @ bread
     return Interval(covariance, interval.degrees_of_freedom, f"{interval.meaning}, with the priors' own uncertainty")
+
+
+def excess_spread(values: Array, errors: Array) -> tuple[float, float]:
+    """Return the probability of such a scatter by the errors alone, and the standard deviation beyond them.
+
+    Q of Cochran 1954 (Biometrics 10, 101-129), and the moment estimate of DerSimonian & Laird 1986 (Controlled Clinical
+    Trials 7, 177-188, eq. 8). values, errors: (n,), those that are not finite left out.
+    """
+    from scipy.special import chdtrc
+
+    usable = np.isfinite(values) & np.isfinite(errors) & (errors > 0.0)
+    value, weight = values[usable], errors[usable] ** -2.0
+    if len(value) < 2:
+        return 1.0, 0.0
+    q = float(weight @ (value - weight @ value / weight.sum()) ** 2)
+    freedom = len(value) - 1
+    excess = (q - freedom) / float(weight.sum() - weight @ weight / weight.sum())
+    return float(chdtrc(freedom, q)), float(np.sqrt(max(excess, 0.0)))

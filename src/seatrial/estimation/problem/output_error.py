@@ -325,6 +325,20 @@ class OutputError:
             precision[:k, :k] += other.normal(self._parameter_values(shared), self._free_indices).hessian
         return precision
 
+    def prior_score_variance(self, shared: Array) -> Array:
+        """Return the variance (size, size) of the gradient that priors and other data add to the cost.
+
+        It is their information, as far as they are right. A coefficient's prior whose mean the records put d standard
+        deviations away, d > 1, is wrong by that much: its gradient counts with its own square, d^2 times its variance,
+        as those of the runs do in a sandwich (White 1982, Econometrica 50, 1-25). That is its whole error where the
+        records weigh as much as the prior or more.
+        """
+        (mean, weight), k = self.priors, len(self.free)
+        squared_distance = weight[:k] * (shared[:k] - mean[:k]) ** 2
+        variance = self.prior_precision(shared)
+        variance[range(k), range(k)] += weight[:k] * np.maximum(squared_distance - 1.0, 0.0)
+        return variance
+
     def _extra_cost(self, shared: Array) -> float:
         values = self._parameter_values(shared)
         return sum(other.cost(values) for other in self._active_terms)

@@ -1,8 +1,9 @@
 """Wave excitation of heave and pitch: what every source of it answers, and the closed form for a box-shaped hull."""
 
+import itertools
 import math
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -95,6 +96,61 @@ class BoxHull:
         about_flotation = self.c55 - self.c53**2 / self.c33
         M5 = (self.c53 * F + 1j * about_flotation * S) * np.exp(1j * q * self.c53 / self.c33)
         return np.asarray(F3, dtype=np.complex128), np.asarray(M5, dtype=np.complex128)
+
+
+BOX_IN_PHASE, BOX_IN_QUADRATURE = 0.07, 0.12
+"""Standard deviations of the forces of a hull about those of its box, over the static forces of the wave: strip theory
+of eight hulls at three speeds in head seas of 0.8 to 3 lengths, rms (benchmarks/box_forces.py)."""
+_LONG, _SHORT = 3.0, 0.8
+"""Lengths of these waves over the hull's, between which its error goes straight over frequency from one to another."""
+
+
+@dataclass(frozen=True)
+class BoxForceError:
+    """One way in which a hull's forces differ from its box's, by one standard deviation: an excitation of its own.
+
+    Attributes:
+        force: "F3" or "M5"; is_in_phase: with the static force, else a quarter period ahead of it; is_short: at the end
+            of short waves, else of long ones.
+    """
+
+    box: BoxHull
+    force: Literal["F3", "M5"]
+    is_in_phase: bool
+    is_short: bool
+
+    @classmethod
+    def all_of(cls, box: BoxHull) -> "tuple[BoxForceError, ...]":
+        """Return all ways, independent of one another."""
+        ways = itertools.product(("F3", "M5"), (True, False), (True, False))
+        return tuple(cls(box, force, is_in_phase, is_short) for force, is_in_phase, is_short in ways)
+
+    @property
+    def name(self) -> str:
+        """Return what is wrong, in words: ``F3 in phase, short waves``."""
+        phase = "in phase" if self.is_in_phase else "in quadrature"
+        return f"{self.force} {phase}, {'short' if self.is_short else 'long'} waves"
+
+    @property
+    def size(self) -> float:
+        """Standard deviation, over the static force."""
+        return BOX_IN_PHASE if self.is_in_phase else BOX_IN_QUADRATURE
+
+    @property
+    def frequency_range(self) -> tuple[float, float]:
+        """Return that of the box."""
+        return self.box.frequency_range
+
+    def forces(self, omega: Array, U: float, beta: Array | float) -> tuple[Complex, Complex]:
+        """Return the errors of the forces of `Excitation.forces`: c33 and i k cos(beta) c55 times size and share."""
+        w, heading = checked_waves(omega, U, beta)
+        ends = [math.sqrt(2.0 * np.pi * G / (ratio * self.box.L)) for ratio in (_LONG, _SHORT)]
+        share = np.interp(w, ends, (0.0, 1.0) if self.is_short else (1.0, 0.0))
+        relative = (self.size if self.is_in_phase else 1j * self.size) * share
+        none = np.zeros(len(w), dtype=np.complex128)
+        if self.force == "F3":
+            return np.asarray(self.box.c33 * relative, dtype=np.complex128), none
+        return none, np.asarray(1j * w**2 / G * np.cos(heading) * self.box.c55 * relative, dtype=np.complex128)
 
 
 def encounter_frequency(omega: ArrayLike, U: float, beta: ArrayLike) -> Array:

@@ -15,4 +15,6 @@ from seatrial.physics.models.registry import MODELS as MODELS, model_from_file a
 from seatrial.physics.models.registry import model_named as model_named
 from seatrial.physics.models.roll import roll as roll
 from seatrial.physics.models.waterjet import WATERJET_COEFFICIENTS as WATERJET_COEFFICIENTS, waterjet as waterjet
+from seatrial.physics.models.waterjet import waterjet_candidates as waterjet_candidates
 from seatrial.physics.models.candidate_terms import with_candidate_terms as with_candidate_terms
+from seatrial.physics.models.candidate_terms import with_terms as with_terms

@@ -24,7 +24,8 @@ FREED_PARAMETERS: Mapping[str, Mapping[str, tuple[str, ...]]] = MappingProxyType
             "speed lost by drift and rudder": ("X_vr", "X_dd"),
             "change with speed": ("Y_vu", "Y_ru", "N_vu", "N_ru"),
         },
-        "waterjet": {"inertia": ("m_x", "m_y", "J_z")},
+        "waterjet": {"inertia": ("m_x", "m_y", "J_z"), "yaw moments of drift and turn": ("N_vrr", "N_vvr")},
+        "waterjet_candidates": {"inertia": ("m_x", "m_y", "J_z")},
         "thrusters": {
             "side force of thrust": ("Y_T",),
             "moment of speed": ("N_u", "N_uu"),
@@ -43,11 +44,19 @@ OMITTED_PARAMETERS: Mapping[str, Mapping[str, tuple[str, ...]]] = MappingProxyTy
 )
 """Families that count the other way: which parameters a structure leaves out, at zero."""
 
+
+def structural_terms(model_name: str) -> frozenset[str]:
+    """Return the parameters that a structure of this model's family may have or lack, and what surge may need."""
+    families = (FREED_PARAMETERS.get(model_name, {}), OMITTED_PARAMETERS.get(model_name, {}))
+    return frozenset(SURGE_TERMS).union(*(names for family in families for names in family.values()))
+
+
 PHYSICAL_SIGNS: Mapping[str, Mapping[str, int]] = MappingProxyType(
     {
         "mmg": {"m_x_prime": 1, "m_y_prime": 1, "J_z_prime": 1, "R_0": 1, "Y_v": -1, "N_r": -1},
         "abkowitz": {"X_udot": -1, "Y_vdot": -1, "N_rdot": -1, "Y_v": -1, "N_r": -1},
         "waterjet": {"m_x": 1, "m_y": 1, "J_z": 1},
+        "waterjet_candidates": {"m_x": 1, "m_y": 1, "J_z": 1},
     }
 )
 """Sign of masses and of damping at small motions, which no choice of a model may turn: drift and yaw rate are opposed

@@ -29,6 +29,7 @@ def _thrusters(layout: str = "") -> "Model":
 # each is imported when it is made first
 MODELS: dict[str, Callable[[], "Model"]] = {
     "waterjet": lambda: models.waterjet(),
+    "waterjet_candidates": lambda: models.waterjet_candidates(),
     "nomoto": lambda: models.nomoto(),
     "nomoto2": lambda: models.nomoto2(),
     "abkowitz": lambda: models.abkowitz(),

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, Channel, InputError, Record, frozen
 from seatrial.physics.hydro.dispersion import G
-from seatrial.physics.hydro.excitation import BoxHull, Complex, Excitation, encounter_frequency
+from seatrial.physics.hydro.excitation import BoxForceError, BoxHull, Complex, Excitation, encounter_frequency
 from seatrial.physics.sea.encounter import speed_factor, wave_frequency
 from seatrial.physics.sea.spectrum import Spectrum
 
@@ -69,7 +69,7 @@ def with_wave_forces(record: Record, excitation: Excitation, U: float, beta: flo
 
 def _known_range(excitation: Excitation) -> tuple[float, float]:
     """Return the wave frequencies [rad/s] that have forces; those of a box beyond its own range are small."""
-    return (0.0, np.inf) if isinstance(excitation, BoxHull) else excitation.frequency_range
+    return (0.0, np.inf) if isinstance(excitation, (BoxHull, BoxForceError)) else excitation.frequency_range
 
 
 def _beyond_forces(record: Record, band: tuple[float, float], excitation: Excitation, U: float, beta: float) -> str:

@@ -1,0 +1,54 @@
+"""Decays of several speeds fitted as one ship are named, and the interval holds what they differ by."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from seatrial.core.values import Record
+from seatrial.estimation.estimate.fit import Estimation, estimate_model
+from seatrial.estimation.estimate.runs import Runs
+from seatrial.estimation.estimate.settings import EstimatorOptions
+from seatrial.estimation.identify.differing_decays import differing_decays
+from seatrial.estimation.identify.estimated_values_effect import with_estimated_values
+from seatrial.physics.models.roll import roll
+
+FREE = ("b_1", "b_2", "c_1", "phi_0")
+
+
+def decay(name: str, b_1: float, heel: float, seed: int) -> Record:
+    """A roll of 1.6 s from a release at rest, b_2 0.5 1/rad, 50 Hz, noise 0.05 degrees."""
+    time, noise = np.arange(0.0, 20.0, 0.02), np.random.default_rng(seed)
+
+    def rates(_: float, x: np.ndarray) -> list[float]:
+        return [x[1], -15.0 * x[0] - b_1 * x[1] - 0.5 * x[1] * abs(x[1])]
+
+    phi = solve_ivp(rates, (0.0, time[-1]), [heel, 0.0], t_eval=time, rtol=1e-8, atol=1e-10).y[0]
+    return Record.from_arrays(name, time, {"phi": phi + np.radians(0.05) * noise.standard_normal(len(time))})
+
+
+def fitted(damping: Sequence[float]) -> Estimation:
+    decays = [decay(f"decay {i}", b, 0.22 - 0.02 * i, i) for i, b in enumerate(damping)]
+    model = roll().with_values({"b_1": 0.2, "b_2": 0.5, "c_1": 15.0})
+    fixed = model.parameters.fixed(*(n for n in model.parameters.free_names if n not in FREE)).freed(*FREE)
+    return estimate_model(
+        model.with_parameters(fixed), Runs.one_session_each(decays, 2.6), None, EstimatorOptions(workers=1)
+    )
+
+
+@pytest.mark.parametrize("damping", [(0.1, 0.24, 0.38), (0.1, 0.1, 0.24, 0.24, 0.38)])
+def test_decays_of_several_speeds_are_named_and_in_the_interval(damping: tuple[float, ...]) -> None:
+    estimation = fitted(damping)
+    found = differing_decays(estimation)
+    assert found is not None
+    assert found.name == "b_1"
+    assert "decays do not share one b_1" in found.finding("1/s").text
+    free = estimation.estimate.problem.free
+    value, column = estimation.model.parameters["b_1"].value, free.index("b_1")
+    widened = with_estimated_values(estimation, [found.shift(free)]).interval.half_width[column]
+    assert all(abs(value - b) < widened for b in damping)
+
+
+def test_decays_of_one_ship_are_one() -> None:
+    assert differing_decays(fitted((0.2, 0.2, 0.2))) is None
