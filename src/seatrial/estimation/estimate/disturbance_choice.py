@@ -39,7 +39,7 @@ _NO_INITIAL_STATES = np.zeros((0, 0))
 # most evaluations of each search; chosen
 _EVALUATIONS = 60
 # of the search from each of several starts, before one goes on, and how many at most; relative difference of the
-# unknowns of starts that count as one; chosen
+# coefficients of starts that count as one; chosen
 _SHORT_SEARCH, _MOST_STARTS, _SAME_POINT = 8, 4, 0.05
 # promised decrease of the cost at which the search without a disturbance ends; its gradient is exact
 _NEGLIGIBLE = 1e-3
@@ -180,7 +180,7 @@ def choose_disturbance(
     if np.isfinite(white.newton_decrement):
         fitted.append(FittedDisturbance(white, len(white.problem.process)))
     if not white.output_error.extra_terms:  # force points know the caller's parameters only
-        fitted += _with_states_of_their_own(search, fitted, _bases(none, white, plain))
+        fitted += _with_states_of_their_own(search, fitted, _bases(none, plain))
     if not search.likeliest(fitted).noise.test.is_nearly_white:
         fitted += search.begun(sensor_models(white))
     fitted = search.ended(fitted)
@@ -193,17 +193,17 @@ def choose_disturbance(
     return DisturbanceChoice(search.likeliest(fitted), tuple(fitted))
 
 
-def _bases(none: ProcessNoise, white: ProcessNoise, plain: Sequence[PointEstimate]) -> list[ProcessNoise]:
+def _bases(none: ProcessNoise, plain: Sequence[PointEstimate]) -> list[ProcessNoise]:
     """No disturbance, by the coefficients of every estimate in hand: where gusts led one astray, it finds no waves."""
-    common, bases = [white.common_parameters, *(one.common_parameters for one in plain)], [none]
-    for values in common:
+    bases, free = [none], len(none.output_error.free)
+    for estimate in plain:
         point = none.optimum.solution.point.copy()
-        point[none.common_indices] = values
-        cost = none.problem.cost(point, _NO_INITIAL_STATES)
-        is_new = not any(np.allclose(point, one.optimum.solution.point, rtol=_SAME_POINT) for one in bases)
-        if np.isfinite(cost) and is_new:
-            solution = replace(none.optimum.solution, point=point)
-            bases.append(replace(none, optimum=replace(none.optimum, solution=solution)))
+        point[none.common_indices] = estimate.common_parameters
+        begun = (one.optimum.solution.point[:free] for one in bases)
+        if not any(np.allclose(point[:free], coefficients, rtol=_SAME_POINT) for coefficients in begun):
+            bases.append(
+                replace(none, optimum=replace(none.optimum, solution=replace(none.optimum.solution, point=point)))
+            )
     return bases
 
 
