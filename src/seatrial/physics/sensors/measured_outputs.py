@@ -4,18 +4,21 @@ States keep their names and meaning; who compares with records asks `Model.obser
 receiver measures over ground: with e = A + B sin(shown) + C cos(shown) it shows psi - e (deviation of the first
 harmonic; Bowditch 2019, American Practical Navigator, ch. 8), and velocities over ground resolved along the shown
 heading are turned by e. A lag of velocities is two equal time constants in a row, which together delay by their sum.
+Other late channels are taken back from the sample by their own rates, which leaves the third power of a heading's lag,
+the second of a yaw rate's, and of a position's what its speed changes in that time.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from seatrial.core.equations import Model
 from seatrial.core.equations.bindings import Binding, ModelEquations
 from seatrial.core.equations.manifest import stored_equations
-from seatrial.core.equations.model import measured_name
+from seatrial.core.equations.model import MEASURED, measured_name
 from seatrial.core.values import InputError, Parameter, Parameters, Prior
-from seatrial.physics.sensors.settings import Compass, Sensors, VelocityReference
+from seatrial.physics.sensors.settings import Compass, Late, Sensors, VelocityReference
 
 if TYPE_CHECKING:
     import sympy as sp
@@ -23,8 +26,8 @@ if TYPE_CHECKING:
 SENSOR_SOURCE = "sensor model"
 """Source of the coefficients of instruments, by which they differ from the craft's own."""
 _CURRENT = ("current_north", "current_east")
-_DEVIATION, _RATE_BIAS, _LEVER = 0.2, 0.02, 0.5
-"""Prior standard deviations: of compass coefficients [rad], a yaw rate's bias [rad/s], a lever arm [m]; chosen."""
+_DEVIATION, _RATE_BIAS, _RATE_SCALE, _LAG = 0.2, 0.02, 0.05, 1.0
+"""Prior standard deviations: of compass coefficients [rad], a yaw rate's bias [rad/s] and scale, a lag [s]; chosen."""
 _MIN_LAG = 0.1
 """Least lag of velocities [s] that two time constants in a row can hold at 10 Hz; chosen."""
 
@@ -49,13 +52,30 @@ def with_sensors(model: Model, sensors: Sensors) -> Model:
     return replace(model, equations=equations, parameters=Parameters((*model.parameters, *parameters)))
 
 
+def without_sensors(model: Model) -> Model:
+    """Return the model whose channels show its states, as it was before `with_sensors`."""
+    own, old = {p.name for p in model.parameters if p.source == SENSOR_SOURCE}, model.equations
+    equations = replace(
+        old, rates=tuple(b for b in old.rates if b.source != SENSOR_SOURCE),
+        bindings=tuple(b for b in old.bindings if b.source != SENSOR_SOURCE),
+        outputs=tuple(o for o in old.outputs if not o.endswith(MEASURED)),
+        parameters=tuple(n for n in old.parameters if n not in own), sensors="",
+    )  # fmt: skip
+    kept = Parameters(tuple(p for p in model.parameters if p.name not in own))
+    return replace(model, equations=equations, parameters=kept)
+
+
+_LATE_STATES = {Late.POSITION: {"x0", "y0", "psi", "r"}, Late.HEADING: {"psi", "r"}, Late.YAW_RATE: {"r"}}
+"""States from whose rates the delay of an instrument is reckoned."""
+
+
 def _required_states(sensors: Sensors) -> set[str]:
-    required: set[str] = set()
+    required: set[str] = set().union(*(_LATE_STATES[late] for late in sensors.late))
     if sensors.compass is not Compass.TRUE:
         required |= {"psi"}
     if sensors.velocity is VelocityReference.GROUND or sensors.velocity_lag:
         required |= {"u", "v", "r", "psi"}
-    if sensors.yaw_rate_bias:
+    if sensors.yaw_rate_bias or sensors.yaw_rate_scale:
         required |= {"r"}
     return required | ({"x0", "y0", "psi", "r"} if sensors.antenna else set())
 
@@ -75,13 +95,22 @@ def _parameters(sensors: Sensors) -> tuple[Parameter, ...]:
         items.append(one("compass_C", 0.0, "rad", "deviation with its cosine", _DEVIATION))
     if sensors.yaw_rate_bias:
         items.append(one("r_bias", 0.0, "rad/s", "yaw rate shown over the true one", _RATE_BIAS))
+    if sensors.yaw_rate_scale:
+        items.append(one("r_scale", 0.0, "1", "share by which the yaw rate shown is too large", _RATE_SCALE))
     if sensors.antenna is not None:
-        items.append(one("x_antenna", sensors.antenna.x, "m", "antenna forward of the origin", _LEVER))
-        items.append(one("y_antenna", sensors.antenna.y, "m", "antenna to starboard", _LEVER))
+        place = sensors.antenna
+        items.append(one("x_antenna", place.x, "m", "antenna forward of the origin", place.sd))
+        items.append(one("y_antenna", place.y, "m", "antenna to starboard", place.sd))
+    items += [one(lag_name(late), 0.0, "s", f"time by which the {late} shown is late", _LAG) for late in sensors.late]
     if sensors.velocity_lag:
         lag = max(sensors.velocity_lag, _MIN_LAG)
         items.append(one("lag_velocity", lag, "s", "time by which u and v are late", lag, _MIN_LAG))
     return tuple(items)
+
+
+def lag_name(late: Late) -> str:
+    """Name of the parameter that holds the delay of an instrument."""
+    return f"lag_{late}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,21 +131,16 @@ class _Writer:
 
     def equations(self) -> ModelEquations:
         """Return the model's equations with the outputs."""
-        import sympy as sp
-
         sensors, old = self.sensors, self.model.equations
         deviation = self._deviation()
-        if sensors.compass is not Compass.TRUE:
-            self._output("psi", _symbol("psi") - deviation, "rad")
+        if sensors.compass is not Compass.TRUE or Late.HEADING in sensors.late:
+            self._output("psi", self._late_heading() - deviation, "rad")
         if sensors.velocity is VelocityReference.GROUND or sensors.velocity_lag:
             self._velocities(deviation)
-        if sensors.yaw_rate_bias:
-            self._output("r", _symbol("r") + _symbol("r_bias"), "rad/s")
-        if sensors.antenna is not None:
-            sine, cosine = sp.sin(_symbol("psi")), sp.cos(_symbol("psi"))
-            x, y = _symbol("x_antenna"), _symbol("y_antenna")
-            self._output("x0", _symbol("x0") + x * cosine - y * sine, "m")
-            self._output("y0", _symbol("y0") + x * sine + y * cosine, "m")
+        if sensors.yaw_rate_bias or sensors.yaw_rate_scale or Late.YAW_RATE in sensors.late:
+            self._yaw_rate()
+        if sensors.antenna is not None or Late.POSITION in sensors.late:
+            self._positions()
         return replace(
             old, rates=(*old.rates, *self.rates), bindings=(*old.bindings, *self.bindings),
             outputs=(*old.outputs, *self.outputs), parameters=(*old.parameters, *self.names), sensors=sensors.text(),
@@ -145,6 +169,45 @@ class _Writer:
         second = self._bind("deviation_2", A + B * sp.sin(shown) + C * sp.cos(shown), "rad")
         shown = self._bind("shown_2", psi - second, "rad")
         return self._bind("deviation", A + B * sp.sin(shown) + C * sp.cos(shown), "rad")
+
+    def _lag(self, late: Late) -> "sp.Expr":
+        import sympy as sp
+
+        return _symbol(lag_name(late)) if late in self.sensors.late else sp.Integer(0)
+
+    def _rate(self, state: str) -> "sp.Expr":
+        return next(b.expression for b in self.model.equations.rates if b.name == state)
+
+    @cached_property
+    def _yaw_acceleration(self) -> "sp.Symbol":
+        return self._bind("yaw_acceleration", self._rate("r"), "rad/s^2")
+
+    def _late_heading(self) -> "sp.Expr":
+        """psi(t - lag) by Taylor's series to the second power."""
+        if Late.HEADING not in self.sensors.late:
+            return _symbol("psi")
+        lag = self._lag(Late.HEADING)
+        return _symbol("psi") - lag * _symbol("r") + lag**2 * self._yaw_acceleration / 2
+
+    def _yaw_rate(self) -> None:
+        sensors, shown = self.sensors, _symbol("r")
+        if Late.YAW_RATE in sensors.late:
+            shown = shown - self._lag(Late.YAW_RATE) * self._yaw_acceleration
+        if sensors.yaw_rate_scale:
+            shown = shown * (1 + _symbol("r_scale"))
+        self._output("r", shown + _symbol("r_bias") if sensors.yaw_rate_bias else shown, "rad/s")
+
+    def _positions(self) -> None:
+        """Where the antenna was a lag ago: back along the arc on which the heading halfway lies."""
+        import sympy as sp
+
+        lag, psi, r = self._lag(Late.POSITION), _symbol("psi"), _symbol("r")
+        heading, has_antenna = psi - lag * r, self.sensors.antenna is not None
+        x, y = (_symbol("x_antenna"), _symbol("y_antenna")) if has_antenna else (sp.Integer(0), sp.Integer(0))
+        lever = {"x0": x * sp.cos(heading) - y * sp.sin(heading), "y0": x * sp.sin(heading) + y * sp.cos(heading)}
+        for channel, arm in lever.items():
+            way = lag * self._rate(channel).subs(psi, psi - lag * r / 2)
+            self._output(channel, _symbol(channel) - way + arm, "m")
 
     def _velocities(self, deviation: "sp.Expr") -> None:
         import sympy as sp
