@@ -85,8 +85,10 @@ def test_a_bias_is_added_to_the_yaw_rate(shown: Record) -> None:
     np.testing.assert_allclose(shown["r"] - shown["r_true"], 0.01, atol=1e-15)
 
 
-LATE = Sensors(late=tuple(Late), yaw_rate_bias=True, yaw_rate_scale=True, antenna=Antenna(0.8, -0.3))
-LAGS = {"lag_position": 0.4, "lag_heading": 0.3, "lag_yaw_rate": 0.05}
+LATE = Sensors(
+    velocity=VelocityReference.GROUND, late=tuple(Late), yaw_rate_bias=True, yaw_rate_scale=True, antenna=Antenna(0.8, -0.3),
+)  # fmt: skip
+LAGS = {"lag_receiver": 0.4, "lag_heading": 0.3, "lag_yaw_rate": 0.05}
 """s."""
 
 
@@ -107,10 +109,15 @@ def test_late_channels_show_what_was_a_lag_before() -> None:
     assert np.max(np.abs(shown["psi"] - heading)[settled]) < 0.002 * np.ptp(heading)
     rate = 1.02 * before("r", LAGS["lag_yaw_rate"]) + 0.01
     assert np.max(np.abs(shown["r"] - rate)[settled]) < 0.01 * np.ptp(rate)
-    psi = before("psi", LAGS["lag_position"])
-    x = before("x0", LAGS["lag_position"]) + 0.8 * np.cos(psi) + 0.3 * np.sin(psi)
-    y = before("y0", LAGS["lag_position"]) + 0.8 * np.sin(psi) - 0.3 * np.cos(psi)
-    way = 4.0 * LAGS["lag_position"]  # m, which the lag amounts to
+    psi = before("psi", LAGS["lag_receiver"])
+    x = before("x0", LAGS["lag_receiver"]) + 0.8 * np.cos(psi) + 0.3 * np.sin(psi)
+    y = before("y0", LAGS["lag_receiver"]) + 0.8 * np.sin(psi) - 0.3 * np.cos(psi)
+    speed = np.hypot(np.gradient(x, 0.1), np.gradient(y, 0.1))
+    course = np.unwrap(np.arctan2(np.gradient(y, 0.1), np.gradient(x, 0.1)))
+    assert np.max(np.abs(np.hypot(shown["u"], shown["v"]) - speed)[settled]) < 0.02 * np.max(speed)
+    drift = np.arctan2(shown["v"], shown["u"])  # of the receiver's course from the heading of now
+    assert np.max(np.abs(drift - (course - shown["psi_true"]))[settled]) < 0.02 * np.ptp(drift)
+    way = 4.0 * LAGS["lag_receiver"]  # m, which the lag amounts to
     assert np.max(np.hypot(shown["x0"] - x, shown["y0"] - y)[settled]) < 0.02 * way
 
 

@@ -5,7 +5,7 @@ receiver measures over ground: with e = A + B sin(shown) + C cos(shown) it shows
 harmonic; Bowditch 2019, American Practical Navigator, ch. 8), and velocities over ground resolved along the shown
 heading are turned by e. A lag of velocities is two equal time constants in a row, which together delay by their sum.
 Other late channels are taken back from the sample by their own rates, which leaves the third power of a heading's lag,
-the second of a yaw rate's, and of a position's what its speed changes in that time.
+the second of a yaw rate's and of velocities', and of a position's what its speed changes in that time.
 """
 
 from collections.abc import Sequence
@@ -65,7 +65,7 @@ def without_sensors(model: Model) -> Model:
     return replace(model, equations=equations, parameters=kept)
 
 
-_LATE_STATES = {Late.POSITION: {"x0", "y0", "psi", "r"}, Late.HEADING: {"psi", "r"}, Late.YAW_RATE: {"r"}}
+_LATE_STATES = {Late.RECEIVER: {"x0", "y0", "psi", "r"}, Late.HEADING: {"psi", "r"}, Late.YAW_RATE: {"r"}}
 """States from whose rates the delay of an instrument is reckoned."""
 
 
@@ -101,7 +101,7 @@ def _parameters(sensors: Sensors) -> tuple[Parameter, ...]:
         place = sensors.antenna
         items.append(one("x_antenna", place.x, "m", "antenna forward of the origin", place.sd))
         items.append(one("y_antenna", place.y, "m", "antenna to starboard", place.sd))
-    items += [one(lag_name(late), 0.0, "s", f"time by which the {late} shown is late", _LAG) for late in sensors.late]
+    items += [one(lag_name(late), 0.0, "s", f"time by which the {late.replace('_', ' ')} is late", _LAG) for late in sensors.late]
     if sensors.velocity_lag:
         lag = max(sensors.velocity_lag, _MIN_LAG)
         items.append(one("lag_velocity", lag, "s", "time by which u and v are late", lag, _MIN_LAG))
@@ -139,7 +139,7 @@ class _Writer:
             self._velocities(deviation)
         if sensors.yaw_rate_bias or sensors.yaw_rate_scale or Late.YAW_RATE in sensors.late:
             self._yaw_rate()
-        if sensors.antenna is not None or Late.POSITION in sensors.late:
+        if sensors.antenna is not None or Late.RECEIVER in sensors.late:
             self._positions()
         return replace(
             old, rates=(*old.rates, *self.rates), bindings=(*old.bindings, *self.bindings),
@@ -201,7 +201,7 @@ class _Writer:
         """Where the antenna was a lag ago: back along the arc on which the heading halfway lies."""
         import sympy as sp
 
-        lag, psi, r = self._lag(Late.POSITION), _symbol("psi"), _symbol("r")
+        lag, psi, r = self._lag(Late.RECEIVER), _symbol("psi"), _symbol("r")
         heading, has_antenna = psi - lag * r, self.sensors.antenna is not None
         x, y = (_symbol("x_antenna"), _symbol("y_antenna")) if has_antenna else (sp.Integer(0), sp.Integer(0))
         lever = {"x0": x * sp.cos(heading) - y * sp.sin(heading), "y0": x * sp.sin(heading) + y * sp.cos(heading)}
@@ -214,7 +214,9 @@ class _Writer:
 
         motion = _Motion(_symbol("u"), _symbol("v"))
         if self.sensors.velocity is VelocityReference.GROUND:
-            motion = self._turned(self._at_antenna(self._over_ground(motion)), deviation)
+            lag = self._lag(Late.RECEIVER)  # in which the heading that resolves them has moved on by lag r
+            turned = deviation - lag * _symbol("r")
+            motion = self._turned(self._at_antenna(self._over_ground(self._late_motion())), turned)
         for channel, value in (("u", motion.u), ("v", motion.v)):
             late = self._late(channel, value) if self.sensors.velocity_lag else value
             self._output(channel, sp.sympify(late), "m/s")
@@ -233,6 +235,14 @@ class _Writer:
             return motion
         r = _symbol("r")
         return _Motion(motion.u - _symbol("y_antenna") * r, motion.v + _symbol("x_antenna") * r)
+
+    def _late_motion(self) -> _Motion:
+        u, v = _symbol("u"), _symbol("v")
+        if Late.RECEIVER not in self.sensors.late:
+            return _Motion(u, v)
+        lag = self._lag(Late.RECEIVER)
+        ahead, across = (self._bind(f"{s}_acceleration", self._rate(s), "m/s^2") for s in ("u", "v"))
+        return _Motion(u - lag * ahead, v - lag * across)
 
     def _turned(self, motion: _Motion, deviation: "sp.Expr") -> _Motion:
         import sympy as sp

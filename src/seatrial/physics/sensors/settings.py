@@ -23,9 +23,9 @@ class VelocityReference(StrEnum):
 
 
 class Late(StrEnum):
-    """What an instrument may show late."""
+    """An instrument that may be late: the receiver with positions, and velocities where these are its own."""
 
-    POSITION = "position"
+    RECEIVER = "receiver"
     HEADING = "heading"
     YAW_RATE = "yaw_rate"
 
@@ -55,7 +55,7 @@ class Sensors:
             psi - e with e = A + B sin(shown) + C cos(shown).
         velocity: what u and v are: ``water``, or ``ground``: over ground, turned by the compass's heading.
         velocity_lag: start value of the time by which u and v are late [s]; 0: they are not.
-        late: instruments whose delay is estimated: lag_position, lag_heading, lag_yaw_rate.
+        late: instruments whose delay is estimated: lag_receiver, lag_heading, lag_yaw_rate.
         yaw_rate_bias: whether r_bias is added to the yaw rate.
         yaw_rate_scale: whether the yaw rate is shown 1 + r_scale times.
         antenna: place of the receiver's antenna, to which position (and u, v over ground) refer; None: the origin.
