@@ -41,6 +41,7 @@ from seatrial.estimation.identify.response_findings import response_findings
 from seatrial.estimation.identify.roll_characteristics import one_speed_finding, roll_characteristics
 from seatrial.estimation.identify.roll_inertia import gyradius_findings
 from seatrial.estimation.identify.seakeeping import seakeeping
+from seatrial.estimation.identify.sensor_errors import with_unshown_sensor_errors
 from seatrial.estimation.identify.short_records import default_profiles, short_record_findings
 from seatrial.estimation.identify.short_time_constants import short_time_constant_findings
 from seatrial.estimation.identify.thruster_craft import thruster_craft
@@ -70,6 +71,10 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
     shifts = parts.computed("the effect of estimated values", lambda: estimated_value_shifts(estimation), ())
     given = {name for symmetry in assessment.structural for name in symmetry.parameters}  # said of all coefficients
     widened = with_estimated_values(estimation, [shift for shift in shifts if shift.name not in given])
+    widened = parts.computed(
+        "errors of instruments in the intervals",
+        lambda: with_unshown_sensor_errors(widened, runs.records, runs.length), widened,
+    )  # fmt: skip
     coefficients = fit_result.coefficients(widened, trial.truth, interval_ends(assessment.profiles, posterior))
     free = estimation.estimate.problem.free
     responses = parts.computed(

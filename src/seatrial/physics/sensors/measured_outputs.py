@@ -4,13 +4,12 @@ States keep their names and meaning; who compares with records asks `Model.obser
 receiver measures over ground: with e = A + B sin(shown) + C cos(shown) it shows psi - e (deviation of the first
 harmonic; Bowditch 2019, American Practical Navigator, ch. 8), and velocities over ground resolved along the shown
 heading are turned by e. A lag of velocities is two equal time constants in a row, which together delay by their sum.
-Other late channels are taken back from the sample by their own rates, which leaves the third power of a heading's lag,
-the second of a yaw rate's and of velocities', and of a position's what its speed changes in that time.
+A compass and a rate gyro follow theirs behind a filter of first order. What a late receiver shows is taken back by its
+own rates, which leaves the second power of the lag for velocities, and for a position what its speed changes meanwhile.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 from seatrial.core.equations import Model
@@ -28,8 +27,10 @@ SENSOR_SOURCE = "sensor model"
 _CURRENT = ("current_north", "current_east")
 _DEVIATION, _RATE_BIAS, _RATE_SCALE, _LAG = 0.2, 0.02, 0.05, 1.0
 """Prior standard deviations: of compass coefficients [rad], a yaw rate's bias [rad/s] and scale, a lag [s]; chosen."""
+_FILTER = 0.5
+"""Time constant [s] of a compass or rate gyro at which a search begins; chosen."""
 _MIN_LAG = 0.1
-"""Least lag of velocities [s] that two time constants in a row can hold at 10 Hz; chosen."""
+"""Least lag [s] that time constants can hold at 10 Hz; chosen."""
 
 
 def with_sensors(model: Model, sensors: Sensors) -> Model:
@@ -65,8 +66,8 @@ def without_sensors(model: Model) -> Model:
     return replace(model, equations=equations, parameters=kept)
 
 
-_LATE_STATES = {Late.RECEIVER: {"x0", "y0", "psi", "r"}, Late.HEADING: {"psi", "r"}, Late.YAW_RATE: {"r"}}
-"""States from whose rates the delay of an instrument is reckoned."""
+_LATE_STATES = {Late.RECEIVER: {"x0", "y0", "psi", "r"}, Late.HEADING: {"psi"}, Late.YAW_RATE: {"r"}}
+"""States that the delay of an instrument is reckoned by."""
 
 
 def _required_states(sensors: Sensors) -> set[str]:
@@ -101,7 +102,10 @@ def _parameters(sensors: Sensors) -> tuple[Parameter, ...]:
         place = sensors.antenna
         items.append(one("x_antenna", place.x, "m", "antenna forward of the origin", place.sd))
         items.append(one("y_antenna", place.y, "m", "antenna to starboard", place.sd))
-    items += [one(lag_name(late), 0.0, "s", f"time by which the {late.replace('_', ' ')} is late", _LAG) for late in sensors.late]
+    for late in sensors.late:
+        start, least = (0.0, float("-inf")) if late is Late.RECEIVER else (_FILTER, _MIN_LAG)
+        meaning = f"time by which the {late.replace('_', ' ')} is late"
+        items.append(one(lag_name(late), start, "s", meaning, _LAG, least))
     if sensors.velocity_lag:
         lag = max(sensors.velocity_lag, _MIN_LAG)
         items.append(one("lag_velocity", lag, "s", "time by which u and v are late", lag, _MIN_LAG))
@@ -134,7 +138,7 @@ class _Writer:
         sensors, old = self.sensors, self.model.equations
         deviation = self._deviation()
         if sensors.compass is not Compass.TRUE or Late.HEADING in sensors.late:
-            self._output("psi", self._late_heading() - deviation, "rad")
+            self._output("psi", self._filtered(Late.HEADING, "psi") - deviation, "rad")
         if sensors.velocity is VelocityReference.GROUND or sensors.velocity_lag:
             self._velocities(deviation)
         if sensors.yaw_rate_bias or sensors.yaw_rate_scale or Late.YAW_RATE in sensors.late:
@@ -178,21 +182,19 @@ class _Writer:
     def _rate(self, state: str) -> "sp.Expr":
         return next(b.expression for b in self.model.equations.rates if b.name == state)
 
-    @cached_property
-    def _yaw_acceleration(self) -> "sp.Symbol":
-        return self._bind("yaw_acceleration", self._rate("r"), "rad/s^2")
+    def _filtered(self, late: Late, channel: str) -> "sp.Expr":
+        """The channel, behind a filter of first order where its instrument is late."""
+        if late not in self.sensors.late:
+            return _symbol(channel)
+        return self._follower(late_name(channel), _symbol(channel), self._lag(late))
 
-    def _late_heading(self) -> "sp.Expr":
-        """psi(t - lag) by Taylor's series to the second power."""
-        if Late.HEADING not in self.sensors.late:
-            return _symbol("psi")
-        lag = self._lag(Late.HEADING)
-        return _symbol("psi") - lag * _symbol("r") + lag**2 * self._yaw_acceleration / 2
+    def _follower(self, name: str, source: "sp.Expr", constant: "sp.Expr") -> "sp.Symbol":
+        """A state of that name that follows `source` with a time constant."""
+        self.rates.append(Binding.from_expression(name, (source - _symbol(name)) / constant, SENSOR_SOURCE))
+        return _symbol(name)
 
     def _yaw_rate(self) -> None:
-        sensors, shown = self.sensors, _symbol("r")
-        if Late.YAW_RATE in sensors.late:
-            shown = shown - self._lag(Late.YAW_RATE) * self._yaw_acceleration
+        sensors, shown = self.sensors, self._filtered(Late.YAW_RATE, "r")
         if sensors.yaw_rate_scale:
             shown = shown * (1 + _symbol("r_scale"))
         self._output("r", shown + _symbol("r_bias") if sensors.yaw_rate_bias else shown, "rad/s")
@@ -254,11 +256,8 @@ class _Writer:
     def _late(self, channel: str, value: "sp.Expr") -> "sp.Symbol":
         """Two time constants in a row, each half the lag: states `u_late_1`, `u_late`."""
         half = _symbol("lag_velocity") / 2
-        source = self._bind(f"{channel}_prompt", value, "m/s")
-        for name in (f"{channel}_late_1", late_name(channel)):
-            self.rates.append(Binding.from_expression(name, (source - _symbol(name)) / half, SENSOR_SOURCE))
-            source = _symbol(name)
-        return source
+        first = self._follower(f"{channel}_late_1", self._bind(f"{channel}_prompt", value, "m/s"), half)
+        return self._follower(late_name(channel), first, half)
 
 
 def late_name(channel: str) -> str:

@@ -23,7 +23,7 @@ class VelocityReference(StrEnum):
 
 
 class Late(StrEnum):
-    """An instrument that may be late: the receiver with positions, and velocities where these are its own."""
+    """An instrument that may be late: the receiver by a delay of all that is its own, others by a filter."""
 
     RECEIVER = "receiver"
     HEADING = "heading"

@@ -1,0 +1,313 @@
+"""Errors of instruments that nobody stated: estimated where a pair of channels shows them, else inside the intervals.
+
+An error of the size e adds e C(t) to what is shown, C by the simulated motion: it is the same as records from which
+e C(t) is taken. So gradient and curvature by e follow from the problem of output error at such records.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from seatrial.core.equations import Model
+from seatrial.core.text.numbers import significant
+from seatrial.core.text.words import enumeration
+from seatrial.core.values import Array, Finding, InputError, Parameters, Record, Severity
+from seatrial.estimation.estimate.fit import Estimation
+from seatrial.estimation.estimate.timing import UNIFORM
+from seatrial.estimation.identify.assumed_information import output_error_estimate
+from seatrial.estimation.identify.identification import Identification
+from seatrial.estimation.information.covariance import inverse
+from seatrial.estimation.problem.output_error import OutputError
+from seatrial.numerics.optimise import NormalEquations
+from seatrial.physics.sensors import Sensors, VelocityReference, with_sensors
+from seatrial.physics.sensors.measured_outputs import lag_name, without_sensors
+from seatrial.physics.sensors.settings import Antenna, Late
+
+_STEP = 0.1  # of an error's standard deviation, of differences by it; chosen: these are exact where it is linear
+_BIAS, _SCALE = 0.02, 0.05  # rad/s and 1: standard deviations of a yaw rate's zero and scale, before records; chosen
+_LAG = 1.0  # s, that of a lag where it is sought; chosen: filters of receivers and compasses
+_LIKELIER = 25.0  # twice the gain of likelihood from which an error is sought, five standard errors; chosen
+_CERTAIN = 2.0  # standard errors by which an error that is estimated differs from none, 95 %
+
+
+@dataclass(frozen=True, eq=False)
+class SensorError:
+    """An error of an instrument.
+
+    Attributes:
+        name: of the coefficient that a model with sensors has of it; unit: of that.
+        deviation: standard deviation where it is sought; unshown: where nothing shows it, 0: it then is none.
+        slopes: channel -> what one unit of it adds to what is shown, (rows,), SI; least: smallest that there is.
+    """
+
+    name: str
+    unit: str
+    deviation: float
+    unshown: float
+    slopes: Mapping[str, Array]
+    least: float = -np.inf
+
+
+@dataclass(frozen=True, eq=False)
+class Suspect:
+    """An instrument with errors that go together, in words and as the setting that has them estimated."""
+
+    what: str
+    errors: tuple[SensorError, ...]
+    stated: Callable[[Sensors], Sensors]
+    line: str
+
+
+def suspects(estimation: Estimation, records: Sequence[Record], length: float) -> list[Suspect]:
+    """Return the instruments whose errors the estimate's model does not have and that two compared channels can show.
+
+    length: of the ship [m], aboard of which an antenna stands.
+    """
+    motion = _Motion.of_estimate(estimation)
+    if "psi" not in motion.shown or estimation.estimate.problem.model.is_affine:
+        return []
+    stated = Sensors.of(estimation.estimate.problem.model.equations.sensors)
+    found = [*_of_yaw(motion, records)] if "r" in motion.shown else []
+    if {"x0", "y0"} <= motion.shown.keys():
+        found += _of_receiver(motion, records, stated, length)
+    present = estimation.estimate.problem.model.parameters
+    return [one for one in found if all(e.name not in present for e in one.errors)]
+
+
+@dataclass(frozen=True, eq=False)
+class _Motion:
+    """The simulated motion by compared channel, (rows,), and its rates."""
+
+    shown: Mapping[str, Array]
+    rates: Mapping[str, Array]
+
+    @classmethod
+    def of_estimate(cls, estimation: Estimation) -> "_Motion":
+        """Return the motion by output error."""
+        estimate = output_error_estimate(estimation)
+        data = estimate.problem.data
+        simulated = estimate.problem.simulated_outputs(estimate.common_parameters, estimate.optimum.local)
+        rates = np.concatenate([np.gradient(simulated[a:b], data.dt, axis=0) for a, b in pairwise(data.offsets)])
+        return cls(dict(zip(data.outputs, simulated.T, strict=True)), dict(zip(data.outputs, rates.T, strict=True)))
+
+
+def _of_yaw(motion: _Motion, records: Sequence[Record]) -> Iterator[Suspect]:
+    """Errors of a compass and a yaw rate that are read together."""
+    r, ones = motion.shown["r"], np.ones(len(motion.shown["r"]))
+    yield Suspect(
+        "the yaw rate has a bias", (SensorError("r_bias", "rad/s", _BIAS, _BIAS, {"r": ones}),),
+        lambda s: replace(s, yaw_rate_bias=True), "yaw_rate_bias = true",
+    )  # fmt: skip
+    yield Suspect(
+        "the yaw rate is scaled", (SensorError("r_scale", "1", _SCALE, _SCALE, {"r": r}),),
+        lambda s: replace(s, yaw_rate_scale=True), "yaw_rate_scale = true",
+    )  # fmt: skip
+    for late, channel in ((Late.HEADING, "psi"), (Late.YAW_RATE, "r")):
+        slopes = {channel: -motion.rates[channel]}
+        yield _late(late, SensorError(lag_name(late), "s", _LAG, _sampling_lag(records, [channel]), slopes, 0.0))
+
+
+def _late(late: Late, error: SensorError) -> Suspect:
+    return Suspect(
+        f"the {late.replace('_', ' ')} is late", (error,), lambda s: replace(s, late=(*s.late, late)),
+        f'late = ["{late}"]',
+    )  # fmt: skip
+
+
+def _sampling_lag(records: Sequence[Record], channels: Sequence[str]) -> float:
+    """What the sample interval of a source leaves open of when it measured [s], as `timing_nuisances` for inputs."""
+    return max(r.channel(c).sample_s or r.dt for r in records for c in channels if c in r) / UNIFORM
+
+
+def _of_receiver(motion: _Motion, records: Sequence[Record], stated: Sensors, length: float) -> Iterator[Suspect]:
+    """Errors of a receiver whose track is read beside a compass."""
+    psi, zero = motion.shown["psi"], np.zeros(len(motion.shown["psi"]))
+    lag = {c: -motion.rates[c] for c in ("x0", "y0")}
+    x = {"x0": np.cos(psi), "y0": np.sin(psi)}
+    y = {"x0": -np.sin(psi), "y0": np.cos(psi)}
+    if stated.velocity is VelocityReference.GROUND and {"u", "v"} <= motion.shown.keys():
+        u, v, r = motion.shown["u"], motion.shown["v"], motion.rates["psi"]
+        # over ground: resolved along a heading that has moved on by r lag; at (x, y) it is u - y r, v + x r
+        lag |= {"u": r * v - motion.rates["u"], "v": -r * u - motion.rates["v"]}
+        x, y = x | {"u": zero, "v": r}, y | {"u": -r, "v": zero}
+    yield _late(
+        Late.RECEIVER, SensorError(lag_name(Late.RECEIVER), "s", _LAG, _sampling_lag(records, ["x0", "y0"]), lag)
+    )
+    aboard = length / UNIFORM  # m: an antenna stands anywhere along the ship
+    yield Suspect(
+        "the antenna stands elsewhere",
+        tuple(SensorError(name, "m", aboard, aboard, arm) for name, arm in (("x_antenna", x), ("y_antenna", y))),
+        lambda s: replace(s, antenna=Antenna(sd=aboard)), f"antenna = {{ sd = {aboard:.2g} }}",
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class ErrorInformation:
+    """Gradient (m,) and curvature (m, m) by errors of instruments with all else at its optimum, priors left out.
+
+        Attributes:
+            errors: in order; by_errors: how the shared unknowns follow them, (shared, m).
+    by_errors: how the shared unknowns follow them, (shared, m).
+            room: effective number of samples of each channel.
+    """
+
+    errors: tuple[SensorError, ...]
+    gradient: Array
+    curvature: Array
+    by_errors: Array
+
+    def estimate(self, among: Sequence[int], deviations: Array) -> tuple[Array, Array, float]:
+        """Return values (m,) and covariance (m, m) of these errors, all others none, and twice the gain of likelihood.
+
+        deviations: before any record, (m,).
+        """
+        values, covariance = np.zeros(len(self.errors)), np.zeros_like(self.curvature)
+        if not len(among):
+            return values, covariance, 0.0
+        rows = np.ix_(among, among)
+        own = inverse(self.curvature[rows] + np.diag(deviations[among] ** -2.0))
+        values[among], covariance[rows] = -own @ self.gradient[among], own
+        return values, covariance, float(-self.gradient[among] @ values[among])
+
+
+def error_information(estimation: Estimation, errors: Sequence[SensorError]) -> ErrorInformation:
+    """Return what output error says of these errors, under prediction error that over segments."""
+    estimate = output_error_estimate(estimation)
+    problem, point, local, data = estimate.problem, estimate.common_parameters, estimate.optimum.local, (
+        estimate.problem.data
+    )  # fmt: skip
+    steps = [_STEP * e.deviation for e in errors]
+
+    def at(sizes: Mapping[int, float]) -> OutputError:
+        measured = data.measured.copy()
+        for i, size in sizes.items():
+            for channel, slope in errors[i].slopes.items():
+                measured[:, data.outputs.index(channel)] -= size * slope
+        return replace(problem, data=replace(data, measured=measured))
+
+    normal = problem.normal(point, local)
+    sides = [tuple(at({i: way * h}).normal(point, local) for way in (1.0, -1.0)) for i, h in enumerate(steps)]
+    curvature = np.diag([(a.cost + b.cost - 2.0 * normal.cost) / h**2 for (a, b), h in zip(sides, steps, strict=True)])
+    for i, h in enumerate(steps):
+        for j, k in enumerate(steps[:i]):
+            both = at({i: h, j: k}).cost(point, local)
+            mixed = both - sides[i][0].cost - sides[j][0].cost + normal.cost
+            curvature[i, j] = curvature[j, i] = mixed / (h * k)
+    gradient, hessian = _with_errors(normal, sides, steps, curvature).without_local()
+    size = len(point)
+    moving = np.flatnonzero((point > problem.lower) & (point < problem.upper))
+    by_errors = np.zeros((size, len(errors)))
+    by_errors[moving] = -inverse(hessian[np.ix_(moving, moving)]) @ hessian[moving, size:]
+    own = hessian[size:, size:] + hessian[size:, :size] @ by_errors
+    return ErrorInformation(
+        tuple(errors), gradient[size:] + by_errors.T @ gradient[:size], 0.5 * (own + own.T), by_errors,
+    )  # fmt: skip
+
+
+def _with_errors(
+    normal: NormalEquations, sides: Sequence[tuple[NormalEquations, ...]], steps: Sequence[float], curvature: Array
+) -> NormalEquations:
+    """The normal equations with the errors behind the shared unknowns."""
+    ways = [2.0 * h for h in steps]
+    by_shared = np.array([(a.gradient - b.gradient) / w for (a, b), w in zip(sides, ways, strict=True)])
+    by_local = np.array([(a.local_gradient - b.local_gradient) / w for (a, b), w in zip(sides, ways, strict=True)])
+    gradient = np.array([(a.cost - b.cost) / w for (a, b), w in zip(sides, ways, strict=True)])
+    return NormalEquations(
+        normal.cost, np.concatenate([normal.gradient, gradient]),
+        np.block([[normal.hessian, by_shared.T], [by_shared, curvature]]), normal.local_gradient, normal.local_hessian,
+        np.concatenate([normal.cross, np.swapaxes(by_local, 0, 1)], axis=1) if normal.local_gradient.size else
+        np.zeros((0, len(normal.gradient) + len(steps), 0)),
+    )  # fmt: skip
+
+
+def shown_suspects(information: ErrorInformation, among: Sequence[Suspect]) -> list[Suspect]:
+    """Return the instruments whose errors the records show: taken up in turn, that which explains most first."""
+    deviations = np.array([e.deviation for e in information.errors])
+    names = [e.name for e in information.errors]
+    taken: list[Suspect] = []
+    before = 0.0
+    while len(taken) < len(among):
+        gains = {}
+        for k, one in enumerate(among):
+            if one not in taken:
+                indices = [names.index(e.name) for s in (*taken, one) for e in s.errors]
+                values, _, gain = information.estimate(indices, deviations)
+                is_possible = all(values[names.index(e.name)] >= e.least for e in one.errors)
+                gains[k] = gain - before if is_possible else 0.0
+        best = max(gains, key=lambda k: gains[k])
+        if gains[best] < _LIKELIER:
+            break
+        taken.append(among[best])
+        before += gains[best]
+    return taken
+
+
+def with_shown_sensor_errors(task: Identification) -> Identification:
+    """Return the task with the errors of instruments that its records show as coefficients of its model.
+
+    The task itself where they show none, or none that the estimate with it confirms.
+    """
+    estimation = task.estimation
+    among = suspects(estimation, task.runs.records, task.runs.length)
+    if not among:
+        return task
+    shown = shown_suspects(error_information(estimation, [e for one in among for e in one.errors]), among)
+    if not shown:
+        return task
+    stated = Sensors.of(task.trial.model.equations.sensors)
+    for one in shown:
+        stated = one.stated(stated)
+    tried = replace(task, trial=replace(task.trial, model=_with_stated(task.trial.model, stated)))
+    try:
+        finding = _confirmed(tried.estimation, shown)
+    except InputError:  # the records do not determine the coefficients beside these errors
+        return task
+    return task if finding is None else replace(tried, findings=(*tried.findings, finding))
+
+
+def _with_stated(model: Model, stated: Sensors) -> Model:
+    """The model with these sensors; coefficients that it has already keep their values, bounds and priors."""
+    wider = with_sensors(without_sensors(model), stated)
+    present = {p.name: p for p in model.parameters}
+    return wider.with_parameters(Parameters(tuple(present.get(p.name, p) for p in wider.parameters)))
+
+
+def _confirmed(estimation: Estimation, shown: Sequence[Suspect]) -> Finding | None:
+    """The finding on these errors; None where an instrument's is none within its interval."""
+    problem = estimation.estimate.problem
+    values = dict(zip(problem.free, estimation.estimate.common_parameters.tolist(), strict=False))
+    spread = dict(zip(problem.free, estimation.interval.standard_error.tolist(), strict=False))
+    if not all(any(abs(values[e.name]) > _CERTAIN * spread[e.name] for e in one.errors) for one in shown):
+        return None
+    sizes = [
+        f"{e.name} {significant(values[e.name], 3)} {e.unit} (standard error {significant(spread[e.name], 2)})"
+        for one in shown for e in one.errors
+    ]  # fmt: skip
+    lines = "; ".join(one.line for one in shown)
+    return Finding(
+        Severity.WARNING, "sensor-error",
+        f"the records show errors of instruments, which are estimated: {enumeration([one.what for one in shown])}",
+        "; ".join(sizes).replace(" 1 (", " ("),
+        f"state what is so under [sensors] ({lines}), and correct in the log what is not",
+        "held at none they go into the coefficients",
+    )  # fmt: skip
+
+
+def with_unshown_sensor_errors(estimation: Estimation, records: Sequence[Record], length: float) -> Estimation:
+    """Return the estimation whose intervals hold errors of instruments that its model does not have.
+
+    Each may be as large as is plausible before any record and as the records leave it. length: of the ship [m].
+    """
+    errors = [e for one in suspects(estimation, records, length) for e in one.errors]
+    if not errors:
+        return estimation
+    known, count = error_information(estimation, errors), len(estimation.estimate.problem.free)
+    values, covariance, _ = known.estimate(range(len(errors)), np.array([e.unshown for e in errors]))
+    moves = known.by_errors[:count]
+    interval, widened = estimation.interval, estimation.interval.covariance.copy()
+    widened[:count, :count] += moves @ (covariance + np.outer(values, values)) @ moves.T
+    meaning = f"{interval.meaning}, with lags, levers and zeros of instruments that the records leave open"
+    interval = replace(interval, covariance=widened, meaning=meaning)
+    return replace(estimation, uncertainty=replace(estimation.uncertainty, interval=interval))
