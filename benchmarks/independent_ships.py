@@ -22,7 +22,6 @@ from measure import Line, at_least
 from sample_rates import NOMOTO, ROLL, USV, nomoto_rates, roll_rates, simulated, usv_rates
 from scipy.interpolate import CubicSpline
 
-from seatrial.core.results import Fit
 from seatrial.core.values import Array, Record, Ship
 from seatrial.data.trial import EstimateSettings, Trial, TrialRun
 from seatrial.estimation.identify import identify
@@ -291,8 +290,8 @@ def wandering(size: float, clock: Array, rng: np.random.Generator) -> Array:
     return error
 
 
-def fitted(craft: Craft, fault: Fault, seed: int) -> Fit:
-    """Return the fit of a craft's logs, of inputs whose timing is known, by a user who states nothing of the fault."""
+def posed(craft: Craft, fault: Fault, seed: int) -> Trial:
+    """Return the trial of a craft's logs by a user who states nothing of the fault, but that the inputs are on time."""
     model = model_named(craft.model)
     sizes = {n: v for n, v in craft.held.items() if n in model.parameters}
     model = model.with_values(sizes, source="measured")
@@ -302,7 +301,7 @@ def fitted(craft: Craft, fault: Fault, seed: int) -> Fit:
     rng = np.random.default_rng([seed, round(10 * craft.rate)])
     runs = tuple(TrialRun(record(craft, k, fault, rng)) for k in range(len(craft.starts)))
     settings = EstimateSettings().with_known_timing(model.input_names)
-    return identify(Trial(Ship(craft.model, {"L": craft.length}), runs, model, settings))
+    return Trial(Ship(craft.model, {"L": craft.length}), runs, model, settings)
 
 
 NAMING = ("sensor-error", "input-delay", "antenna-place", "yaw-rate", "not-white", "not-converged")
@@ -331,7 +330,7 @@ def cell(craft: Craft, fault: Fault, seeds: range) -> Cell:
     """Return what the fits of some seeds come to; an interval that is not given holds the truth."""
     away, said, began = [], Counter[str](), time.process_time()
     for seed in seeds:
-        fit = fitted(craft, fault, seed)
+        fit = identify(posed(craft, fault, seed))
         said.update({f.code for f in fit.findings if f.code in NAMING or "converge" in f.message})
         for c in fit.coefficients:
             if c.name in craft.truth and c.lower is not None and c.upper is not None:

@@ -15,12 +15,18 @@ from seatrial.core.text.numbers import significant
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, Finding, InputError, Parameters, Record, Severity
 from seatrial.estimation.estimate.fit import Estimation
+from seatrial.estimation.estimate.point_estimate import (
+    PointEstimate,
+    effective_inflation,
+    residual_correlation,
+    residual_spread,
+)
 from seatrial.estimation.estimate.timing import UNIFORM
 from seatrial.estimation.identify.assumed_information import output_error_estimate
 from seatrial.estimation.identify.identification import Identification
 from seatrial.estimation.information.covariance import inverse
 from seatrial.estimation.problem.output_error import OutputError
-from seatrial.numerics.optimise import NormalEquations
+from seatrial.numerics.optimise import NormalEquations, levenberg_marquardt
 from seatrial.physics.sensors import Sensors, VelocityReference, with_sensors
 from seatrial.physics.sensors.measured_outputs import lag_name, without_sensors
 from seatrial.physics.sensors.settings import Antenna, Late
@@ -29,6 +35,7 @@ _STEP = 0.1  # of an error's standard deviation, of differences by it; chosen: t
 _BIAS, _SCALE = 0.02, 0.05  # rad/s and 1: standard deviations of a yaw rate's zero and scale, before records; chosen
 _LAG = 1.0  # s, that of a lag where it is sought; chosen: filters of receivers and compasses
 _LIKELIER = 25.0  # twice the gain of likelihood from which an error is sought, five standard errors; chosen
+_EVALUATIONS = 12  # of a short search beside such errors; chosen
 _CERTAIN = 2.0  # standard errors by which an error that is estimated differs from none, 95 %
 
 
@@ -173,52 +180,71 @@ class ErrorInformation:
 
 
 def error_information(estimation: Estimation, errors: Sequence[SensorError]) -> ErrorInformation:
-    """Return what output error says of these errors, under prediction error that over segments."""
+    """Return what output error says of these errors, under prediction error that over segments.
+
+    Samples count by the noise and colour that are left once all errors are taken out: a bias that is left in would
+    pass for a slow disturbance, against which it is nothing.
+    """
     estimate = output_error_estimate(estimation)
-    problem, point, local, data = estimate.problem, estimate.common_parameters, estimate.optimum.local, (
-        estimate.problem.data
-    )  # fmt: skip
-    steps = [_STEP * e.deviation for e in errors]
+    white = _information(replace(estimate, problem=replace(estimate.problem, inflation=None)), errors)
+    values = white.estimate(range(len(errors)), np.array([e.deviation for e in errors]))[0]
+    problem, local = _without_errors(estimate.problem, errors, values), estimate.optimum.local
+    optimum = levenberg_marquardt(problem, estimate.common_parameters, local, evaluations=_EVALUATIONS)
+    residuals = PointEstimate(problem, optimum).residuals()
+    if not np.all(np.isfinite(np.nan_to_num(residuals))):
+        return _information(estimate, errors)
+    noise = residual_spread(problem, residuals)
+    inflation = effective_inflation(residual_correlation(problem, residuals)[1])
+    return _information(replace(estimate, problem=replace(estimate.problem, noise=noise, inflation=inflation)), errors)
 
-    def at(sizes: Mapping[int, float]) -> OutputError:
-        measured = data.measured.copy()
-        for i, size in sizes.items():
-            for channel, slope in errors[i].slopes.items():
-                measured[:, data.outputs.index(channel)] -= size * slope
-        return replace(problem, data=replace(data, measured=measured))
 
+def _without_errors(problem: OutputError, errors: Sequence[SensorError], sizes: Sequence[float] | Array) -> OutputError:
+    """The problem of records from which errors of these sizes are taken."""
+    measured, outputs = problem.data.measured.copy(), problem.data.outputs
+    for error, size in zip(errors, sizes, strict=True):
+        for channel, slope in error.slopes.items():
+            measured[:, outputs.index(channel)] -= size * slope
+    return replace(problem, data=replace(problem.data, measured=measured))
+
+
+def _information(estimate: PointEstimate, errors: Sequence[SensorError]) -> ErrorInformation:
+    problem, point, local = estimate.problem, estimate.common_parameters, estimate.optimum.local
+    steps = np.diag([_STEP * e.deviation for e in errors])
     normal = problem.normal(point, local)
-    sides = [tuple(at({i: way * h}).normal(point, local) for way in (1.0, -1.0)) for i, h in enumerate(steps)]
-    curvature = np.diag([(a.cost + b.cost - 2.0 * normal.cost) / h**2 for (a, b), h in zip(sides, steps, strict=True)])
-    for i, h in enumerate(steps):
-        for j, k in enumerate(steps[:i]):
-            both = at({i: h, j: k}).cost(point, local)
-            mixed = both - sides[i][0].cost - sides[j][0].cost + normal.cost
-            curvature[i, j] = curvature[j, i] = mixed / (h * k)
-    gradient, hessian = _with_errors(normal, sides, steps, curvature).without_local()
+    ahead, behind = (
+        [_without_errors(problem, errors, way * step).normal(point, local) for step in steps] for way in (1.0, -1.0)
+    )
+    curvature = np.diag([(a.cost + b.cost - 2.0 * normal.cost) for a, b in zip(ahead, behind, strict=True)])
+    for i in range(len(errors)):
+        for j in range(i):
+            both = _without_errors(problem, errors, steps[i] + steps[j]).cost(point, local)
+            curvature[i, j] = curvature[j, i] = both - ahead[i].cost - ahead[j].cost + normal.cost
+    sizes = np.diag(steps)
+    gradient, hessian = _with_errors(normal, ahead, behind, sizes, curvature / np.outer(sizes, sizes)).without_local()
     size = len(point)
     moving = np.flatnonzero((point > problem.lower) & (point < problem.upper))
     by_errors = np.zeros((size, len(errors)))
     by_errors[moving] = -inverse(hessian[np.ix_(moving, moving)]) @ hessian[moving, size:]
     own = hessian[size:, size:] + hessian[size:, :size] @ by_errors
     return ErrorInformation(
-        tuple(errors), gradient[size:] + by_errors.T @ gradient[:size], 0.5 * (own + own.T), by_errors,
-    )  # fmt: skip
+        tuple(errors), gradient[size:] + by_errors.T @ gradient[:size], 0.5 * (own + own.T), by_errors
+    )
 
 
 def _with_errors(
-    normal: NormalEquations, sides: Sequence[tuple[NormalEquations, ...]], steps: Sequence[float], curvature: Array
-) -> NormalEquations:
-    """The normal equations with the errors behind the shared unknowns."""
-    ways = [2.0 * h for h in steps]
-    by_shared = np.array([(a.gradient - b.gradient) / w for (a, b), w in zip(sides, ways, strict=True)])
-    by_local = np.array([(a.local_gradient - b.local_gradient) / w for (a, b), w in zip(sides, ways, strict=True)])
-    gradient = np.array([(a.cost - b.cost) / w for (a, b), w in zip(sides, ways, strict=True)])
+    normal: NormalEquations, ahead: Sequence[NormalEquations], behind: Sequence[NormalEquations], sizes: Array,
+    curvature: Array,
+) -> NormalEquations:  # fmt: skip
+    """The normal equations with errors behind the shared unknowns; ahead, behind: at records without their sizes."""
+    pairs = list(zip(ahead, behind, 2.0 * sizes, strict=True))
+    by_shared = np.array([(a.gradient - b.gradient) / way for a, b, way in pairs])
+    by_local = np.array([(a.local_gradient - b.local_gradient) / way for a, b, way in pairs])
+    gradient = np.array([(a.cost - b.cost) / way for a, b, way in pairs])
     return NormalEquations(
         normal.cost, np.concatenate([normal.gradient, gradient]),
         np.block([[normal.hessian, by_shared.T], [by_shared, curvature]]), normal.local_gradient, normal.local_hessian,
         np.concatenate([normal.cross, np.swapaxes(by_local, 0, 1)], axis=1) if normal.local_gradient.size else
-        np.zeros((0, len(normal.gradient) + len(steps), 0)),
+        np.zeros((0, len(normal.gradient) + len(sizes), 0)),
     )  # fmt: skip
 
 

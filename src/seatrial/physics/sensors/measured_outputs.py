@@ -10,6 +10,7 @@ own rates, which leaves the second power of the lag for velocities, and for a po
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from seatrial.core.equations import Model
@@ -49,7 +50,7 @@ def with_sensors(model: Model, sensors: Sensors) -> Model:
             raise InputError(f"model '{model.name}' has no state '{state}'; leave its sensor out of [sensors]")
     layout = model.equations.layout  # no part of the hash
     key = (model.equation_hash, layout, "sensors", sensors.text())
-    equations = stored_equations(key, lambda: _Writer(model, sensors, parameters).equations())
+    equations = stored_equations(key, lambda: _Writer(model, sensors, parameters).equations(), [Path(__file__).parent])
     return replace(model, equations=equations, parameters=Parameters((*model.parameters, *parameters)))
 
 
