@@ -9,6 +9,7 @@ from seatrial.core.equations.augment import (
     biased_name,
     force_peaks,
     gust_name,
+    is_biased,
     lagged_name,
     wave_names,
     with_biases,
@@ -41,6 +42,7 @@ def test_a_gust_pushes_and_fades() -> None:
 def test_biases_are_added_to_what_is_read() -> None:
     model = with_biases(nomoto().with_values({"U": 1.0}), ("x0", "y0"), 5.0)
     assert model.outputs[-2:] == (biased_name("x0"), biased_name("y0"))
+    assert [is_biased(o) for o in (*model.outputs, "x0")] == [True, True, False]
     start = np.zeros(6)
     start[4:] = 3.0, -4.0
     states, outputs = trajectory(model, INPUTS, DT, start)

@@ -33,6 +33,9 @@ from seatrial.physics.sensors.settings import Antenna, Late
 
 _STEP = 0.1  # of an error's standard deviation, of differences by it; chosen: these are exact where it is linear
 _BIAS, _SCALE = 0.02, 0.05  # rad/s and 1: standard deviations of a yaw rate's zero and scale, before records; chosen
+_LEAST_BIAS, _LEAST_SCALE = 0.002, 0.01  # rad/s and 1: below, a good rate gyro may be off; chosen
+_LEAST_LEVER = 0.05  # of the ship's length, as in `antenna_place`: less is what a model of sway misses; chosen
+_LEAST_LAG = 0.2  # s: below, a model that is not the craft's may well ask for it; chosen
 _LAG = 1.0  # s, that of a lag where it is sought; chosen: filters of receivers and compasses
 _LIKELIER = 25.0  # twice the gain of likelihood from which an error is sought, five standard errors; chosen
 _EVALUATIONS = 12  # of a short search beside such errors; chosen
@@ -46,6 +49,7 @@ class SensorError:
     Attributes:
         name: of the coefficient that a model with sensors has of it; unit: of that.
         deviation: standard deviation where it is sought; unshown: where nothing shows it, 0: it then is none.
+        negligible: size up to which it is what a model misses or a sample leaves open, and stays inside the intervals.
         slopes: channel -> what one unit of it adds to what is shown, (rows,), SI; least: smallest that there is.
     """
 
@@ -53,6 +57,7 @@ class SensorError:
     unit: str
     deviation: float
     unshown: float
+    negligible: float
     slopes: Mapping[str, Array]
     least: float = -np.inf
 
@@ -61,10 +66,16 @@ class SensorError:
 class Suspect:
     """An instrument with errors that go together, in words and as the setting that has them estimated."""
 
-    what: str
+    description: str
     errors: tuple[SensorError, ...]
     stated: Callable[[Sensors], Sensors]
     line: str
+
+    def matters(self, sizes: Mapping[str, float], spread: Mapping[str, float]) -> bool:
+        """Whether errors of these sizes and standard errors are possible, and one certainly is not negligible."""
+        return all(sizes[e.name] >= e.least for e in self.errors) and any(
+            abs(sizes[e.name]) - _CERTAIN * spread[e.name] > e.negligible for e in self.errors
+        )
 
 
 def suspects(estimation: Estimation, records: Sequence[Record], length: float) -> list[Suspect]:
@@ -73,11 +84,11 @@ def suspects(estimation: Estimation, records: Sequence[Record], length: float) -
     length: of the ship [m], aboard of which an antenna stands.
     """
     motion = _Motion.of_estimate(estimation)
-    if "psi" not in motion.shown or estimation.estimate.problem.model.is_affine:
+    if "psi" not in motion.channels or estimation.estimate.problem.model.is_affine:
         return []
-    stated = Sensors.of(estimation.estimate.problem.model.equations.sensors)
-    found = [*_of_yaw(motion, records)] if "r" in motion.shown else []
-    if {"x0", "y0"} <= motion.shown.keys():
+    stated = Sensors.from_text(estimation.estimate.problem.model.equations.sensors)
+    found = [*_of_yaw(motion, records)] if "r" in motion.channels else []
+    if {"x0", "y0"} <= motion.channels.keys():
         found += _of_receiver(motion, records, stated, length)
     present = estimation.estimate.problem.model.parameters
     return [one for one in found if all(e.name not in present for e in one.errors)]
@@ -87,7 +98,7 @@ def suspects(estimation: Estimation, records: Sequence[Record], length: float) -
 class _Motion:
     """The simulated motion by compared channel, (rows,), and its rates."""
 
-    shown: Mapping[str, Array]
+    channels: Mapping[str, Array]
     rates: Mapping[str, Array]
 
     @classmethod
@@ -102,18 +113,18 @@ class _Motion:
 
 def _of_yaw(motion: _Motion, records: Sequence[Record]) -> Iterator[Suspect]:
     """Errors of a compass and a yaw rate that are read together."""
-    r, ones = motion.shown["r"], np.ones(len(motion.shown["r"]))
+    r, ones = motion.channels["r"], np.ones(len(motion.channels["r"]))
     yield Suspect(
-        "the yaw rate has a bias", (SensorError("r_bias", "rad/s", _BIAS, _BIAS, {"r": ones}),),
+        "the yaw rate has a bias", (SensorError("r_bias", "rad/s", _BIAS, _BIAS, _LEAST_BIAS, {"r": ones}),),
         lambda s: replace(s, yaw_rate_bias=True), "yaw_rate_bias = true",
     )  # fmt: skip
     yield Suspect(
-        "the yaw rate is scaled", (SensorError("r_scale", "1", _SCALE, _SCALE, {"r": r}),),
+        "the yaw rate is scaled", (SensorError("r_scale", "1", _SCALE, _SCALE, _LEAST_SCALE, {"r": r}),),
         lambda s: replace(s, yaw_rate_scale=True), "yaw_rate_scale = true",
     )  # fmt: skip
     for late, channel in ((Late.HEADING, "psi"), (Late.YAW_RATE, "r")):
         slopes = {channel: -motion.rates[channel]}
-        yield _late(late, SensorError(lag_name(late), "s", _LAG, _sampling_lag(records, [channel]), slopes, 0.0))
+        yield _late(late, _lag_error(late, records, [channel], slopes, 0.0))
 
 
 def _late(late: Late, error: SensorError) -> Suspect:
@@ -123,29 +134,33 @@ def _late(late: Late, error: SensorError) -> Suspect:
     )  # fmt: skip
 
 
-def _sampling_lag(records: Sequence[Record], channels: Sequence[str]) -> float:
-    """What the sample interval of a source leaves open of when it measured [s], as `timing_nuisances` for inputs."""
-    return max(r.channel(c).sample_s or r.dt for r in records for c in channels if c in r) / UNIFORM
+def _lag_error(
+    late: Late, records: Sequence[Record], channels: Sequence[str], slopes: Mapping[str, Array], least: float
+) -> SensorError:
+    """A lag; the sample interval of its source leaves open half of it to either side, as with inputs (`timing`)."""
+    interval = max(r.channel(c).sample_s or r.dt for r in records for c in channels if c in r)
+    return SensorError(lag_name(late), "s", _LAG, interval / UNIFORM, max(0.5 * interval, _LEAST_LAG), slopes, least)
 
 
 def _of_receiver(motion: _Motion, records: Sequence[Record], stated: Sensors, length: float) -> Iterator[Suspect]:
     """Errors of a receiver whose track is read beside a compass."""
-    psi, zero = motion.shown["psi"], np.zeros(len(motion.shown["psi"]))
+    psi, zero = motion.channels["psi"], np.zeros(len(motion.channels["psi"]))
     lag = {c: -motion.rates[c] for c in ("x0", "y0")}
     x = {"x0": np.cos(psi), "y0": np.sin(psi)}
     y = {"x0": -np.sin(psi), "y0": np.cos(psi)}
-    if stated.velocity is VelocityReference.GROUND and {"u", "v"} <= motion.shown.keys():
-        u, v, r = motion.shown["u"], motion.shown["v"], motion.rates["psi"]
+    if stated.velocity is VelocityReference.GROUND and {"u", "v"} <= motion.channels.keys():
+        u, v, r = motion.channels["u"], motion.channels["v"], motion.rates["psi"]
         # over ground: resolved along a heading that has moved on by r lag; at (x, y) it is u - y r, v + x r
         lag |= {"u": r * v - motion.rates["u"], "v": -r * u - motion.rates["v"]}
         x, y = x | {"u": zero, "v": r}, y | {"u": -r, "v": zero}
-    yield _late(
-        Late.RECEIVER, SensorError(lag_name(Late.RECEIVER), "s", _LAG, _sampling_lag(records, ["x0", "y0"]), lag)
-    )
+    yield _late(Late.RECEIVER, _lag_error(Late.RECEIVER, records, ["x0", "y0"], lag, -np.inf))
     aboard = length / UNIFORM  # m: an antenna stands anywhere along the ship
     yield Suspect(
         "the antenna stands elsewhere",
-        tuple(SensorError(name, "m", aboard, aboard, arm) for name, arm in (("x_antenna", x), ("y_antenna", y))),
+        tuple(
+            SensorError(name, "m", aboard, aboard, _LEAST_LEVER * length, arm)
+            for name, arm in (("x_antenna", x), ("y_antenna", y))
+        ),
         lambda s: replace(s, antenna=Antenna(sd=aboard)), f"antenna = {{ sd = {aboard:.2g} }}",
     )  # fmt: skip
 
@@ -226,6 +241,8 @@ def _information(estimate: PointEstimate, errors: Sequence[SensorError]) -> Erro
     by_errors = np.zeros((size, len(errors)))
     by_errors[moving] = -inverse(hessian[np.ix_(moving, moving)]) @ hessian[moving, size:]
     own = hessian[size:, size:] + hessian[size:, :size] @ by_errors
+    if not (np.all(np.isfinite(own)) and np.all(np.isfinite(gradient))):
+        raise ArithmeticError("the simulation leaves what a computer can hold where an instrument's error is tried")
     return ErrorInformation(
         tuple(errors), gradient[size:] + by_errors.T @ gradient[:size], 0.5 * (own + own.T), by_errors
     )
@@ -248,7 +265,7 @@ def _with_errors(
     )  # fmt: skip
 
 
-def shown_suspects(information: ErrorInformation, among: Sequence[Suspect]) -> list[Suspect]:
+def detected_errors(information: ErrorInformation, among: Sequence[Suspect]) -> list[Suspect]:
     """Return the instruments whose errors the records show: taken up in turn, that which explains most first."""
     deviations = np.array([e.deviation for e in information.errors])
     names = [e.name for e in information.errors]
@@ -259,9 +276,10 @@ def shown_suspects(information: ErrorInformation, among: Sequence[Suspect]) -> l
         for k, one in enumerate(among):
             if one not in taken:
                 indices = [names.index(e.name) for s in (*taken, one) for e in s.errors]
-                values, _, gain = information.estimate(indices, deviations)
-                is_possible = all(values[names.index(e.name)] >= e.least for e in one.errors)
-                gains[k] = gain - before if is_possible else 0.0
+                values, covariance, gain = information.estimate(indices, deviations)
+                sizes = dict(zip(names, values.tolist(), strict=True))
+                spread = dict(zip(names, np.sqrt(np.diag(covariance)).tolist(), strict=True))
+                gains[k] = gain - before if one.matters(sizes, spread) else 0.0
         best = max(gains, key=lambda k: gains[k])
         if gains[best] < _LIKELIER:
             break
@@ -279,15 +297,18 @@ def with_shown_sensor_errors(task: Identification) -> Identification:
     among = suspects(estimation, task.runs.records, task.runs.length)
     if not among:
         return task
-    shown = shown_suspects(error_information(estimation, [e for one in among for e in one.errors]), among)
-    if not shown:
+    try:
+        detected = detected_errors(error_information(estimation, [e for one in among for e in one.errors]), among)
+    except (ArithmeticError, np.linalg.LinAlgError):  # of the intervals that is a finding of its own
         return task
-    stated = Sensors.of(task.trial.model.equations.sensors)
-    for one in shown:
+    if not detected:
+        return task
+    stated = Sensors.from_text(task.trial.model.equations.sensors)
+    for one in detected:
         stated = one.stated(stated)
     tried = replace(task, trial=replace(task.trial, model=_with_stated(task.trial.model, stated)))
     try:
-        finding = _confirmed(tried.estimation, shown)
+        finding = _confirmed(tried.estimation, detected)
     except InputError:  # the records do not determine the coefficients beside these errors
         return task
     return task if finding is None else replace(tried, findings=(*tried.findings, finding))
@@ -300,21 +321,21 @@ def _with_stated(model: Model, stated: Sensors) -> Model:
     return wider.with_parameters(Parameters(tuple(present.get(p.name, p) for p in wider.parameters)))
 
 
-def _confirmed(estimation: Estimation, shown: Sequence[Suspect]) -> Finding | None:
-    """The finding on these errors; None where an instrument's is none within its interval."""
+def _confirmed(estimation: Estimation, detected: Sequence[Suspect]) -> Finding | None:
+    """The finding on these errors; None where that of one instrument may be negligible."""
     problem = estimation.estimate.problem
     values = dict(zip(problem.free, estimation.estimate.common_parameters.tolist(), strict=False))
     spread = dict(zip(problem.free, estimation.interval.standard_error.tolist(), strict=False))
-    if not all(any(abs(values[e.name]) > _CERTAIN * spread[e.name] for e in one.errors) for one in shown):
+    if not all(one.matters(values, spread) for one in detected):
         return None
     sizes = [
         f"{e.name} {significant(values[e.name], 3)} {e.unit} (standard error {significant(spread[e.name], 2)})"
-        for one in shown for e in one.errors
+        for one in detected for e in one.errors
     ]  # fmt: skip
-    lines = "; ".join(one.line for one in shown)
+    lines, names = "; ".join(one.line for one in detected), enumeration([one.description for one in detected])
     return Finding(
         Severity.WARNING, "sensor-error",
-        f"the records show errors of instruments, which are estimated: {enumeration([one.what for one in shown])}",
+        f"the records show errors of instruments, which are estimated: {names}",
         "; ".join(sizes).replace(" 1 (", " ("),
         f"state what is so under [sensors] ({lines}), and correct in the log what is not",
         "held at none they go into the coefficients",

@@ -76,16 +76,11 @@ class Sensors:
         """Whether any channel shows something else than the state of its name."""
         return self != Sensors()
 
-    @classmethod
-    def of(cls, sensor_text: str) -> "Sensors":
-        """Return the settings of a model's equations, perfect instruments where `sensor_text` is empty."""
-        return cls.from_text(sensor_text) if sensor_text else cls()
-
     def text(self) -> str:
         """Return the settings as JSON, from which `from_text` makes them again."""
         return TypeAdapter(Sensors).dump_json(self).decode()
 
     @classmethod
     def from_text(cls, text: str) -> "Sensors":
-        """Return the settings that `text` wrote; raises ValueError where it is none."""
-        return TypeAdapter(cls).validate_json(text)
+        """Return the settings that `text` wrote, perfect instruments of an empty one; ValueError where it is none."""
+        return TypeAdapter(cls).validate_json(text) if text else cls()
