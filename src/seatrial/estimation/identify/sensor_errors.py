@@ -169,10 +169,8 @@ def _of_receiver(motion: _Motion, records: Sequence[Record], stated: Sensors, le
 class ErrorInformation:
     """Gradient (m,) and curvature (m, m) by errors of instruments with all else at its optimum, priors left out.
 
-        Attributes:
-            errors: in order; by_errors: how the shared unknowns follow them, (shared, m).
-    by_errors: how the shared unknowns follow them, (shared, m).
-            room: effective number of samples of each channel.
+    Attributes:
+        errors: in order; by_errors: how the shared unknowns follow them, (shared, m).
     """
 
     errors: tuple[SensorError, ...]
