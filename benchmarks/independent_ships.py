@@ -15,7 +15,7 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from measure import Line, at_least
@@ -70,7 +70,9 @@ class Craft:
         inputs: names, and their values at the samples (rows, nu) of a run.
         truth: the coefficients that are found; held: others of the model that differ from its own values.
         freed: further coefficients that the estimate frees.
-        starts: initial states of the runs.
+        starts: initial states of the runs; step: of the simulator [s].
+        positive: directions of inputs that are not the notation's.
+        fine: parts of a sample over which inputs are held, 1: as recorded.
     """
 
     model: str
@@ -87,6 +89,8 @@ class Craft:
     held: Mapping[str, float]
     freed: tuple[str, ...] = ()
     step: float = 0.005
+    fine: int = 1
+    positive: Mapping[str, str] = field(default_factory=dict)
 
 
 def steps(largest: tuple[float, ...], seconds: tuple[int, int], least: float = -1.0) -> Inputs:
@@ -194,6 +198,33 @@ def ship_rates(x: Array, inputs: Array) -> Array:
     return np.array([X_m / m_u, v_dot, r_dot, r, north, east])
 
 
+HULL = {
+    "a33": 2500.0, "a35": 600.0, "a55": 8000.0, "a53": 300.0, "b33": 6000.0, "b35": 2000.0, "b55": 15000.0,
+    "b53": -1500.0,
+}  # fmt: skip
+"""Of a craft of 8 m, kg, kg m, kg m^2 and these over s; chosen: both motions swing in 1.6 s and die out within two."""
+HULL_PARTS = {"m": 3000.0, "I5": 9000.0, "c33": 9e4, "c35": -1e4, "c53": -1e4, "c55": 2.5e5}
+
+
+def heave_pitch_rates(x: Array, force: Array) -> Array:
+    """Linear heave and pitch by forces of waves (Salvesen, Tuck & Faltinsen 1970, eq. (1))."""
+    z, z_dot, theta, theta_dot = x
+    c, p = HULL, HULL_PARTS
+    mass = [[p["m"] + c["a33"], c["a35"]], [c["a53"], p["I5"] + c["a55"]]]
+    Z = force[0] - c["b33"] * z_dot - c["b35"] * theta_dot - p["c33"] * z - p["c35"] * theta
+    M = force[1] - c["b53"] * z_dot - c["b55"] * theta_dot - p["c53"] * z - p["c55"] * theta
+    heave, pitch = np.linalg.solve(mass, [Z, M])
+    return np.array([z_dot, heave, theta_dot, pitch])
+
+
+def wave_inputs(clock: Array, rng: np.random.Generator) -> Array:
+    """Force and moment of eight waves of 1.5 to 6 rad/s [N, N m]."""
+    omega, phase = np.linspace(1.5, 6.0, 8), rng.uniform(0.0, 2.0 * math.pi, (2, 8))
+    return np.stack([
+        size * np.sin(np.outer(clock, omega) + at).sum(axis=1) for size, at in zip((2e3, 4e3), phase, strict=True)
+    ], axis=1)  # fmt: skip
+
+
 def usv_inputs(clock: Array, rng: np.random.Generator) -> Array:
     """Steps of both thrusters, independent of one another, from rest."""
     ordered = steps((1.0, 1.0), (3, 8))(clock, rng)
@@ -226,6 +257,12 @@ CRAFTS = {
         "waterjet", waterjet_rates, SHOWN,
         {"u": 0.02, "v": 0.02, "r": 0.1 * _DEG, "psi": 0.2 * _DEG, "x0": 0.5, "y0": 0.5}, ("delta", "v_j"),
         jet_inputs, WATERJET, ((5.0, 0.0, 0.0, 0.0, 0.0, 0.0), (5.0, 0.0, 0.0, 1.0, 0.0, 0.0)), 9.8, 250.0, 5.0, {},
+        positive={"delta": "port"},
+    ),
+    "heave and pitch": Craft(
+        "heave_pitch", heave_pitch_rates, ("z", "", "theta", ""), {"z": 0.005, "theta": 0.1 * _DEG}, ("F3", "M5"),
+        wave_inputs, HULL, ((0.0,) * 4, (0.0,) * 4), 8.0, 120.0, 20.0, HULL_PARTS, fine=10,
+        positive={"F3": "down", "M5": "bow up"},
     ),
     "MMG ship": Craft(
         "mmg", ship_rates, SHOWN,
@@ -239,8 +276,12 @@ CRAFTS = {
 def record(craft: Craft, k: int, fault: Fault, rng: np.random.Generator) -> Record:
     """Return a run as its instruments show it: motion by splines through the samples of a fine simulation."""
     clock = np.arange(round(craft.duration * craft.rate) + 1) / craft.rate
-    inputs = craft.inputs(clock, rng)
-    states = simulated(craft.rates, list(craft.starts[k]), inputs, 1.0 / craft.rate, craft.step)
+    seed, part = rng.integers(2**32), 1.0 / (craft.rate * craft.fine)
+    inputs = craft.inputs(clock, np.random.default_rng(seed))
+    acting = inputs
+    if craft.fine > 1:  # continuous ones by their middle over each part
+        acting = craft.inputs((np.arange((len(clock) - 1) * craft.fine + 1) + 0.5) * part, np.random.default_rng(seed))
+    states = simulated(craft.rates, list(craft.starts[k]), acting, part, craft.step)[:: craft.fine]
     true = {name: CubicSpline(clock, x) for name, x in zip(craft.states, states.T, strict=True) if name}
     shown = {name: shown_channel(name, true, clock, fault, craft.length) for name in craft.spread}
     if fault.wander and "x0" in shown:
@@ -249,9 +290,9 @@ def record(craft: Craft, k: int, fault: Fault, rng: np.random.Generator) -> Reco
     for name, spread in craft.spread.items():
         shown[name] = shown[name] + spread * rng.standard_normal(len(clock))
     made = Record.from_arrays(f"run_{k}", clock, shown | dict(zip(craft.input_names, inputs.T, strict=True)))
-    held = {} if craft.model == "mmg" else {n: replace(made.channel(n), between="held") for n in craft.input_names}
-    if craft.model == "waterjet":  # whose nozzle turns it to port
-        held["delta"] = replace(held["delta"], positive="port")
+    is_smooth = craft.model in ("mmg", "heave_pitch")
+    known = {n: replace(made.channel(n), between="" if is_smooth else "held") for n in craft.input_names}
+    held = {n: replace(c, positive=craft.positive.get(n, c.positive)) for n, c in known.items()}
     return replace(made, channels={**made.channels, **held})
 
 
@@ -295,7 +336,7 @@ def posed(craft: Craft, fault: Fault, seed: int) -> Trial:
     model = model_named(craft.model)
     sizes = {n: v for n, v in craft.held.items() if n in model.parameters}
     model = model.with_values(sizes, source="measured")
-    if craft.model == "mmg":
+    if craft.model in ("mmg", "heave_pitch"):  # which have no values of their own
         model = model.with_values({n: 0.8 * v for n, v in craft.truth.items()})
     model = model.with_parameters(model.parameters.only_free([*craft.truth, *craft.freed]))
     rng = np.random.default_rng([seed, round(10 * craft.rate)])
