@@ -86,7 +86,8 @@ def test_a_bias_is_added_to_the_yaw_rate(shown: Record) -> None:
 
 
 LATE = Sensors(
-    velocity=VelocityReference.GROUND, late=tuple(Late), yaw_rate_bias=True, yaw_rate_scale=True, antenna=Antenna(0.8, -0.3),
+    velocity=VelocityReference.GROUND, late=tuple(Late), yaw_rate_bias=True, yaw_rate_scale=True,
+    antenna=Antenna(0.8, -0.3),
 )  # fmt: skip
 LAGS = {"lag_receiver": 0.4, "lag_heading": 0.3, "lag_yaw_rate": 0.2}
 """s."""
@@ -96,7 +97,7 @@ def test_late_channels_show_what_was_a_lag_before() -> None:
     """A receiver's against the true channels, interpolated; those behind a filter by its equation."""
     craft = with_sensors(model_named("waterjet"), LATE)
     truth = craft.with_values({**LAGS, "r_scale": 0.02, "r_bias": 0.01, "x_antenna": 0.8, "y_antenna": -0.3})
-    time = 0.1 * np.arange(400)
+    time = np.arange(0.0, 40.0, 0.1)
     order = 0.3 * np.sin(0.3 * time)
     planned = Record.from_arrays("weave", time, {"delta": order, "v_j": np.full(400, 10.0)})
     shown = replay(truth, planned, dict.fromkeys(craft.states, 0.0) | {"u": 4.0})
