@@ -394,7 +394,7 @@ def cells(words: str = "") -> list[tuple[str, Craft, Fault]]:
 
 
 LEAST_POOLED = 0.85
-"""Of the 8 intervals of the short sample and its faults, 95 % each, less chance; chosen."""
+"""Of the 16 intervals of the short sample and its faults, 95 % each: two standard errors below; chosen."""
 
 
 def run() -> list[Line]:
