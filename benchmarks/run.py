@@ -27,6 +27,7 @@ import fusion
 import generation
 import gusts
 import heave_pitch
+import independent_ships
 import kvlcc2_zigzags
 import long_record
 import loops
@@ -76,6 +77,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "proposals": proposals.run,
     "roll_decay": roll_decay.run,
     "sample_rates": sample_rates.run,
+    "independent_ships": independent_ships.run,
     "follow": follow.run,
     "campaign": campaign.run,
     "memory": memory.run,

@@ -28,9 +28,12 @@ STEP = 0.005  # s, of the simulators; chosen: a hundredth of the fastest time co
 Rates = Callable[[Array, Array], Array]
 
 
-def simulated(rates: Rates, start: list[float], inputs: Array, dt: float) -> Array:
-    """Return states at the samples (rows, nx); inputs (rows, nu) are held over each sample of `dt` [s]."""
-    x, states, count = np.array(start), [np.array(start)], round(dt / STEP)
+def simulated(rates: Rates, start: list[float], inputs: Array, dt: float, step: float = STEP) -> Array:
+    """Return states at the samples (rows, nx); inputs (rows, nu) are held over each sample of `dt` [s].
+
+    step: of the simulator [s].
+    """
+    x, states, count = np.array(start), [np.array(start)], round(dt / step)
     h = dt / count
     for u in inputs[:-1]:
         for _ in range(count):

@@ -9,6 +9,7 @@ from seatrial.core.equations.augment import (
     biased_name,
     force_peaks,
     gust_name,
+    is_biased,
     lagged_name,
     wave_names,
     with_biases,
@@ -18,6 +19,8 @@ from seatrial.core.equations.augment import (
 )
 from seatrial.core.values import InputError
 from seatrial.physics.models.nomoto import nomoto
+from seatrial.physics.sensors import Sensors, with_sensors
+from seatrial.physics.sensors.settings import Antenna
 from seatrial.physics.simulate.replay import trajectory
 
 DT, ROWS = 0.1, 200
@@ -37,14 +40,26 @@ def test_a_gust_pushes_and_fades() -> None:
 
 
 def test_biases_are_added_to_what_is_read() -> None:
-    model = with_biases(nomoto().with_values({"U": 1.0}), ("x0", "y0"))
+    model = with_biases(nomoto().with_values({"U": 1.0}), ("x0", "y0"), 5.0)
     assert model.outputs[-2:] == (biased_name("x0"), biased_name("y0"))
+    assert [is_biased(o) for o in (*model.outputs, "x0")] == [True, True, False]
     start = np.zeros(6)
     start[4:] = 3.0, -4.0
     states, outputs = trajectory(model, INPUTS, DT, start)
     assert model.states[4:] == (bias_name("x0"), bias_name("y0"))
-    np.testing.assert_array_equal(states[:, 4:], np.tile([3.0, -4.0], (ROWS, 1)))
-    np.testing.assert_allclose(outputs[:, -2:], states[:, 2:4] + [3.0, -4.0], rtol=1e-14)
+    left = np.exp(-DT * np.arange(ROWS) / 5.0)
+    np.testing.assert_allclose(states[:, 4:], left[:, None] * [3.0, -4.0], rtol=1e-5)
+    np.testing.assert_allclose(outputs[:, -2:], states[:, 2:4] + states[:, 4:], rtol=1e-14)
+
+
+def test_a_bias_is_added_to_what_the_instrument_shows() -> None:
+    craft = with_sensors(nomoto().with_values({"U": 1.0}), Sensors(antenna=Antenna(2.0, 0.0)))
+    model = with_biases(craft, ("x0", "y0"), 5.0)
+    start = np.zeros(6)
+    start[4:] = 3.0, -4.0
+    states, outputs = trajectory(model, INPUTS, DT, start)
+    arm = 2.0 * np.stack([np.cos(states[:, 1]), np.sin(states[:, 1])], axis=1)
+    np.testing.assert_allclose(outputs[:, -2:], states[:, 2:4] + states[:, 4:] + arm, rtol=1e-12)
 
 
 def test_a_lagging_channel_follows() -> None:

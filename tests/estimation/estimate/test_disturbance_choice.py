@@ -86,6 +86,10 @@ def test_wandering_positions(model: Model) -> None:
     assert best.disturbance_model == "white and wandering biases of x0, y0"
     assert best.test.is_white
     assert set(best.process_intensities) == {"r"}
+    white = best.problem.split(best.optimum.solution.point)[2]
+    assert np.all(white[-2:] >= 0.01 * best.problem.runs.noise[-2:])
+    wander = 0.1 * np.sqrt(0.5 * best.added_constants["bias_memory"])  # m, stationary
+    assert best.measurement_noise["x0"] == pytest.approx(wander, rel=0.5)
 
 
 def test_white_noise_needs_no_more(model: Model) -> None:

@@ -13,8 +13,8 @@ from seatrial.physics.manoeuvres import measures
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models import model_named
 from seatrial.physics.sensors import Compass, Sensors, VelocityReference, with_sensors
-from seatrial.physics.sensors.measured_outputs import is_late, late_name
-from seatrial.physics.sensors.settings import Antenna
+from seatrial.physics.sensors.measured_outputs import is_late, late_name, without_sensors
+from seatrial.physics.sensors.settings import Antenna, Late
 from seatrial.physics.simulate import manoeuvre
 from seatrial.physics.simulate.replay import replay
 from seatrial.testing import check_model
@@ -83,6 +83,57 @@ def test_late_states_start_where_their_channel_does(model: Model) -> None:
 
 def test_a_bias_is_added_to_the_yaw_rate(shown: Record) -> None:
     np.testing.assert_allclose(shown["r"] - shown["r_true"], 0.01, atol=1e-15)
+
+
+LATE = Sensors(
+    velocity=VelocityReference.GROUND, late=tuple(Late), yaw_rate_bias=True, yaw_rate_scale=True,
+    antenna=Antenna(0.8, -0.3),
+)  # fmt: skip
+LAGS = {"lag_receiver": 0.4, "lag_heading": 0.3, "lag_yaw_rate": 0.2}
+"""s."""
+
+
+def test_late_channels_show_what_was_a_lag_before() -> None:
+    """A receiver's against the true channels, interpolated; those behind a filter by its equation."""
+    craft = with_sensors(model_named("waterjet"), LATE)
+    truth = craft.with_values({**LAGS, "r_scale": 0.02, "r_bias": 0.01, "x_antenna": 0.8, "y_antenna": -0.3})
+    time = np.arange(0.0, 40.0, 0.1)
+    order = 0.3 * np.sin(0.3 * time)
+    planned = Record.from_arrays("weave", time, {"delta": order, "v_j": np.full(400, 10.0)})
+    shown = replay(truth, planned, dict.fromkeys(craft.states, 0.0) | {"u": 4.0})
+    settled = slice(50, -5)
+
+    def before(channel: str, lag: float) -> np.ndarray:
+        return np.interp(time - lag, time, shown[f"{channel}_true"])
+
+    for channel, values, lag in (
+        ("psi", shown["psi"], LAGS["lag_heading"]), ("r", (shown["r"] - 0.01) / 1.02, LAGS["lag_yaw_rate"]),
+    ):  # fmt: skip
+        prompt = values + lag * np.gradient(values, 0.1)
+        assert np.max(np.abs(prompt - shown[f"{channel}_true"])[settled]) < 0.01 * np.ptp(prompt)
+    psi = before("psi", LAGS["lag_receiver"])
+    x = before("x0", LAGS["lag_receiver"]) + 0.8 * np.cos(psi) + 0.3 * np.sin(psi)
+    y = before("y0", LAGS["lag_receiver"]) + 0.8 * np.sin(psi) - 0.3 * np.cos(psi)
+    speed = np.hypot(np.gradient(x, 0.1), np.gradient(y, 0.1))
+    course = np.unwrap(np.arctan2(np.gradient(y, 0.1), np.gradient(x, 0.1)))
+    assert np.max(np.abs(np.hypot(shown["u"], shown["v"]) - speed)[settled]) < 0.02 * np.max(speed)
+    drift = np.arctan2(shown["v"], shown["u"])  # of the receiver's course from the heading of now
+    assert np.max(np.abs(drift - (course - shown["psi_true"]))[settled]) < 0.02 * np.ptp(drift)
+    way = 4.0 * LAGS["lag_receiver"]  # m, which the lag amounts to
+    assert np.max(np.hypot(shown["x0"] - x, shown["y0"] - y)[settled]) < 0.02 * way
+
+
+def test_late_channels_have_exact_derivatives() -> None:
+    craft = with_sensors(model_named("waterjet"), LATE)
+    check_model(craft.with_values({**LAGS, "r_scale": 0.02, "r_bias": 0.01}), points=5)
+
+
+def test_a_model_without_its_sensors_is_the_one_before(model: Model) -> None:
+    craft = model_named("waterjet")
+    for sensed in (model, with_sensors(craft, LATE)):
+        bare = without_sensors(sensed)
+        assert bare.equation_hash == craft.equation_hash
+        assert bare.parameters.names == craft.parameters.names
 
 
 def test_a_record_is_compared_with_what_the_instruments_show(model: Model, shown: Record) -> None:

@@ -1,8 +1,8 @@
 """A model with more states: disturbances with a memory, biased or lagging sensors. ModelEquations like any others.
 
 A gust is a force of first order (Gauss-Markov; Gelb 1974, section 3.5), given as the acceleration it causes; a bias is
-a random walk on a channel; a lagging channel follows its state with one time constant. What drives them is white noise
-on the new states.
+the same on a channel; a lagging channel follows its state with one time constant. What drives them is white noise on
+the new states.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -18,12 +18,14 @@ if TYPE_CHECKING:
     import sympy as sp
 
 SENSOR_LAG = "sensor_lag"
+BIAS_MEMORY = "bias_memory"
 DAMPINGS = (0.005, 0.7)
 """Relative damping of waves: from a swell that hardly varies to a band without a peak (zeta = 1 / sqrt 2); chosen."""
 MEMORY_PREFIX = "gust_memory_"
 WAVE = "wave_"
 """What names of states and parameters of wave forces begin with."""
 _FREQUENCY = "_force_frequency"
+_BIASED = "_biased"
 _SOURCE = "augmented model"
 _WAVE_SOURCE = "Saelid, Jenssen & Balchen 1983; Fossen 2011, section 8.2.6"
 
@@ -65,7 +67,12 @@ def lagged_name(channel: str) -> str:
 
 def biased_name(channel: str) -> str:
     """Name of the output that is a channel with its bias."""
-    return f"{channel}_biased"
+    return f"{channel}{_BIASED}"
+
+
+def is_biased(observable: str) -> bool:
+    """Return whether an output is a channel with its bias."""
+    return observable.endswith(_BIASED)
 
 
 def with_gusts(model: Model, memories: Mapping[str, float], shortest: float = 0.0) -> Model:
@@ -121,26 +128,32 @@ def with_wave_forces(model: Model, driven: Sequence[str], peak: int, frequency: 
     return _augmented(model, (f"wave forces {peak}", *driven), write, *band)
 
 
-def with_biases(model: Model, channels: Sequence[str]) -> Model:
-    """Return the model with outputs `biased_name(c)` = c + bias_c for states c, the biases being random walks.
+def with_biases(model: Model, channels: Sequence[str], memory: float) -> Model:
+    """Return the model with outputs `biased_name(c)`: c as shown + bias_c, d(bias_c)/dt = -bias_c / bias_memory.
+
+    memory: time constant of all biases [s], free, start value.
 
     Raises:
         InputError: the model has one of the new names already.
     """
 
     def write() -> ModelEquations:
-        import sympy as sp
-
+        biases = {c: _symbol(bias_name(c)) for c in channels}
         rates = [
             *model.equations.rates,
-            *(Binding.from_expression(bias_name(c), sp.Float(0.0), _SOURCE) for c in channels),
+            *(
+                Binding.from_expression(str(b), -b / _symbol(BIAS_MEMORY), "Gelb 1974, section 3.5")
+                for b in biases.values()
+            ),
         ]
         outputs = [
-            Binding.from_expression(biased_name(c), _symbol(c) + _symbol(bias_name(c)), _SOURCE) for c in channels
+            Binding.from_expression(biased_name(c), _symbol(model.observable_of(c)) + b, _SOURCE)
+            for c, b in biases.items()
         ]
-        return _extended(model, "biases", rates, outputs)
+        return _extended(model, "biases", rates, outputs, (BIAS_MEMORY,))
 
-    return _augmented(model, ("biases", *channels), write)
+    constant = _time_constant(BIAS_MEMORY, memory, f"memory of biases of {', '.join(channels)}")
+    return _augmented(model, ("biases", "memory", *channels), write, constant)
 
 
 def with_lags(model: Model, channels: Sequence[str], lag: float) -> Model:
@@ -153,7 +166,8 @@ def with_lags(model: Model, channels: Sequence[str], lag: float) -> Model:
     """
 
     def write() -> ModelEquations:
-        late = [(lagged_name(c), (_symbol(c) - _symbol(lagged_name(c))) / _symbol(SENSOR_LAG)) for c in channels]
+        shown = {c: _symbol(model.observable_of(c)) for c in channels}
+        late = [(lagged_name(c), (s - _symbol(lagged_name(c))) / _symbol(SENSOR_LAG)) for c, s in shown.items()]
         followers = [Binding.from_expression(name, rate, _SOURCE) for name, rate in late]
         return _extended(model, "lags", [*model.equations.rates, *followers], new=(SENSOR_LAG,))
 

@@ -36,7 +36,7 @@ from seatrial.data.draft.stated_columns import CHANNELS, NOTHING_STATED, StatedC
 from seatrial.data.draft.stretch import LogStretch, used_parts
 from seatrial.data.draft.survey import LogSurvey, apart_by_sheet, with_common_ranges
 from seatrial.data.draft.tables_text import OPEN_SPEED, tables_text
-from seatrial.data.draft.unlike_decays import unlike_decays_text
+from seatrial.data.draft.unlike_decays import heels_apart, unlike_decays_text
 from seatrial.data.draft.velocity_place import with_velocities_of_antenna
 from seatrial.data.draft.waves_text import ASSUMED
 from seatrial.data.draft.wind_columns import tells_wind, with_wind_role
@@ -190,13 +190,15 @@ def draft_trial(
         for one in blocks
     ]
     rate = thinned_rate(records, size.length, model.speed) if model.has_forces_of_a_ship else None
-    tables = tables_text(model, [g for _, columns in blocks[0].sources for g in columns], size, rate)
+    decays = _decays(runs, records, stretches) if model.swings else {}
+    columns_of_longest = [g for _, columns in blocks[0].sources for g in columns]
+    tables = tables_text(model, columns_of_longest, size, rate, heels_apart(decays))
     text = trial_text(blocks, tables, {**surveyed.left_out, **left_out}, Path(folder).resolve())
     return DraftTrial(
         text, surveys, tuple(runs), guesses[longest[0]], tuple(records), stretches, parts, held_out,
         tuple(name for one in blocks[0].sources for name in unrecognised_columns(*one)),
         {name: why for one in blocks[0].sources for name, why in known_unneeded(*one).items()}, others,
-        unlike_decays_text(_decays(runs, records, stretches)) if model.swings else "", session,
+        unlike_decays_text(decays), session,
         sizes_in_header(runs[longest[0]].sources[0], size), may_be_in_fresh_water(size) and "\nrho = " in text,
         bool(model.name) and not size.length, not model.name,
     )  # fmt: skip

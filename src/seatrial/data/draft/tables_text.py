@@ -30,11 +30,13 @@ _NO_CURRENT = (
 
 
 def tables_text(
-    model: StartingModel, guesses: Sequence[ColumnGuess], size: StatedSize, rate: float | None = None
-) -> list[str]:
+    model: StartingModel, guesses: Sequence[ColumnGuess], size: StatedSize, rate: float | None = None,
+    heels: tuple[float, float] | None = None,
+) -> list[str]:  # fmt: skip
     """Return the lines of ship and model, and of what else the model needs; of a model without a name what is missing.
 
     guesses: of all sources of the longest run; rate: at which residuals are taken [Hz]; None: that of the records.
+    heels: least and largest about which roll decays swing [rad]; None: one serves all.
     """
     if not model.name:
         return [
@@ -59,7 +61,14 @@ def tables_text(
         *(excitation_lines() if model.has_waves else []),
         *_sensor_lines(model, guesses),
         *_offset_lines(model, guesses, size, rate),
+        *(_heel_lines(*heels) if heels else []),
     ]
+
+
+def _heel_lines(least: float, largest: float) -> list[str]:
+    """That each decay has a heel of its own: held in common, the difference would widen every interval."""
+    seen = f"they roll about {math.degrees(least):.1f} to {math.degrees(largest):.1f} deg"
+    return ["[estimate]", f'offsets = ["phi"]    # the heel of each decay: {seen}', ""]
 
 
 def _prior_lines(model: StartingModel) -> list[str]:

@@ -1,5 +1,6 @@
-"""Roll decays that die out at different rates: another speed or loading, which a trial of its own describes."""
+"""Roll decays that differ: in how they die out, of another speed or loading, or in the heel about which they roll."""
 
+import math
 from collections.abc import Mapping
 from itertools import pairwise
 
@@ -7,6 +8,7 @@ import numpy as np
 
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, Record
+from seatrial.data.check.roll_release import half_swings
 from seatrial.data.draft.motion_stretches import half_swing_angles
 
 _UNLIKE = (
@@ -15,6 +17,8 @@ _UNLIKE = (
 _SMALLEST_SHARE = 0.25  # of the first swing, down to which swings count: below, wind and noise swing along; chosen
 _FEWEST = 4  # swings that give a decrement; chosen
 _NAMES_SHOWN = 4  # ours
+_CERTAIN = 4.0  # standard errors by which heels differ; chosen: they are correlated from swing to swing
+_LEAST_HEEL = math.radians(0.2)  # rad, difference of heels from which on it matters; chosen: 2 % of a release of 10 deg
 
 
 def unlike_decays_text(decays: Mapping[str, Record]) -> str:
@@ -36,6 +40,37 @@ def unlike_decays_text(decays: Mapping[str, Record]) -> str:
         f"{names} {verb} out {high / low:.2g} times as fast as the others: if they were run at another speed or "
         "loading, draft each condition by itself, from its logs alone"
     )
+
+
+def heels_apart(decays: Mapping[str, Record]) -> tuple[float, float] | None:
+    """Return least and largest heel about which decays roll [rad], where they differ; None: one angle serves all.
+
+    decays: as above.
+    """
+    rests = [found for record in decays.values() if (found := _rest(record["phi"])) is not None]
+    if len(rests) < 2:
+        return None
+    (low, low_error), (high, high_error) = min(rests), max(rests)
+    limit = max(_CERTAIN * math.hypot(low_error, high_error), _LEAST_HEEL)
+    return (low, high) if high - low > limit else None
+
+
+def _rest(phi: Array) -> tuple[float, float] | None:
+    """The heel between the swings' extremes [rad], and its standard error; None of too few swings.
+
+    A quarter of two extremes to one side and half of the one between lie at the rest but for (1 - rho)^2 / 4 of the
+    swing, rho the share that is left from one to the next.
+    """
+    rest = float(np.median(phi))
+    tops = np.array([_extreme(phi[one.first : one.stop], rest) for one in half_swings(phi - rest)])
+    if len(tops) < _FEWEST + 2:
+        return None
+    middles = 0.25 * (tops[:-2] + 2.0 * tops[1:-1] + tops[2:])
+    return float(np.median(middles)), float(np.std(middles)) / math.sqrt(len(middles))
+
+
+def _extreme(swing: Array, rest: float) -> float:
+    return float(swing[np.argmax(np.abs(swing - rest))])
 
 
 def _decrement(phi: Array) -> float | None:

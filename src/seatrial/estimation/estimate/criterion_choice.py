@@ -11,6 +11,7 @@ from seatrial.data.trial import EstimateSettings, FitCriterion
 from seatrial.estimation.estimate.disturbance_choice import ALIKE, DisturbanceChoice, choose_disturbance, likeliest
 from seatrial.estimation.estimate.disturbance_screen import HINT, spectral_hint
 from seatrial.estimation.estimate.input_offsets import with_input_offsets
+from seatrial.estimation.estimate.integration_steps import filter_with_steps, sufficient_steps_of_filter
 from seatrial.estimation.estimate.intervals import RUNS_FOR_JACKKNIFE
 from seatrial.estimation.estimate.left_out_parts import (
     Parts,
@@ -19,6 +20,7 @@ from seatrial.estimation.estimate.left_out_parts import (
     left_out_errors,
     output_error_points,
 )
+from seatrial.estimation.estimate.newton_refinement import refine_by_newton
 from seatrial.estimation.estimate.plausibility import is_lost, with_plausible_start
 from seatrial.estimation.estimate.point_estimate import (
     PointEstimate,
@@ -349,3 +351,24 @@ def prediction_error_choice(noise: ProcessNoise, disturbances: DisturbanceChoice
         estimate, -innovations.e, inflation, rho, noise.test.whiteness, PREDICTION_ERROR, reasons,
         noise.process_intensities, noise, disturbances=disturbances,
     )  # fmt: skip
+
+
+def with_sufficient_steps(choice: CriterionChoice) -> CriterionChoice:
+    """Return the choice with so many Runge-Kutta steps in a sample as its own criterion needs.
+
+    They were judged by output error, whose noise is larger where a disturbance moves the craft.
+    """
+    noise, disturbances = choice.process_noise, choice.disturbances
+    if noise is None or disturbances is None:
+        return choice
+    count = sufficient_steps_of_filter(noise.problem, noise.optimum)
+    if count == noise.problem.runs.substeps:
+        return choice
+    exact, optimum, decrement = refine_by_newton(filter_with_steps(noise.problem, count), noise.optimum)
+    normalised = exact.innovations(optimum.solution.point).normalised
+    whiteness = whiteness_test([normalised[a:b] for a, b in pairwise(exact.runs.data.offsets)])
+    finer = replace(
+        noise, problem=exact, optimum=optimum, newton_decrement=decrement,
+        test=replace(noise.test, whiteness=whiteness), output_error=replace(noise.output_error, substeps=count),
+    )  # fmt: skip
+    return prediction_error_choice(finer, disturbances, *choice.reasons)

@@ -54,8 +54,8 @@ _FORCE_SHARES, _LEAST_FORCE = (0.3, 1.0), 1e-4  # the latter of a state that sho
 _SHOWN_BY = {"r": ("psi",), "u": ("x0", "y0"), "v": ("x0", "y0"), "p": ("phi",), "q": ("theta",), "w": ("z",)}
 # lag of a log from which the search starts, samples, ours
 _LAG_SAMPLES = 2.0
-# s in which a bias changes by the noise of its channel, where the search starts, ours
-_DRIFT_SECONDS = 60.0
+# memory of a sensor's bias from which the search starts [s]; chosen: errors of receivers wander over minutes
+_BIAS_MEMORY = 60.0
 # initial standard deviation of a gust over its stationary one, ours
 _SPREAD_FACTOR = 3.0
 _NO_INITIAL_STATES = np.zeros((0, 0))
@@ -213,11 +213,13 @@ def sensor_models(base: ProcessNoise) -> Iterator[DisturbanceModel]:
     Force points know the caller's parameters only, so beside them no time constant is added.
     """
     states, outputs = base.output_error.model.states, base.output_error.data.outputs
+    if base.output_error.extra_terms:
+        return
     positions = tuple(c for c in POSITIONS if c in outputs and c in states)
     if positions:
         yield _biases(base, positions)
     velocities = tuple(c for c in VELOCITIES if c in outputs and c in states)
-    if velocities and not base.output_error.extra_terms:
+    if velocities:
         yield _lags(base, velocities, _LAG_SAMPLES * base.output_error.data.dt)
 
 
@@ -268,11 +270,12 @@ def _gusts(base: ProcessNoise, driven: Sequence[str], memory: float, intensities
 
 
 def _biases(base: ProcessNoise, channels: tuple[str, ...]) -> DisturbanceModel:
-    """A bias wanders by the channel's own noise in a minute."""
-    model = with_biases(base.output_error.model, channels)
+    """Biases that are at first as large as all noise of their channels."""
+    model = with_biases(base.output_error.model, channels, _BIAS_MEMORY)
     variance = {bias_name(c): base.measurement_noise[c] ** 2 for c in channels}
-    squared = {**_squared_intensities(base), **{s: v / _DRIFT_SECONDS for s, v in variance.items()}}
-    new = _NewStates(model, squared, (), variance, {}, {c: biased_name(c) for c in channels})
+    # stationary variance of a Gauss-Markov process: q^2 memory / 2
+    squared = {**_squared_intensities(base), **{s: 2.0 * v / _BIAS_MEMORY for s, v in variance.items()}}
+    new = _NewStates(model, squared, (_BIAS_MEMORY,), variance, {}, {c: biased_name(c) for c in channels})
     return _augmented(base, new, f"wandering biases of {', '.join(channels)}")
 
 

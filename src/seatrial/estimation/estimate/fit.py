@@ -13,7 +13,12 @@ from seatrial.data.trial import EstimateMethod, EstimateSettings, FitCriterion
 from seatrial.estimation.estimate.angle_of_rest import with_slow_forces
 from seatrial.estimation.estimate.assemble import output_error_problem
 from seatrial.estimation.estimate.closed_loop import LoopEvidence, closed_loop, loop_evidence
-from seatrial.estimation.estimate.criterion_choice import PREDICTION_ERROR, CriterionChoice, choose_criterion
+from seatrial.estimation.estimate.criterion_choice import (
+    PREDICTION_ERROR,
+    CriterionChoice,
+    choose_criterion,
+    with_sufficient_steps,
+)
 from seatrial.estimation.estimate.disturbance_models import refuse_short_runs
 from seatrial.estimation.estimate.integration_steps import integration_text, with_steps_of_start
 from seatrial.estimation.estimate.intervals import (
@@ -253,7 +258,7 @@ def _chosen(
         begun=_begun(shooting, begun.start),
         has_feedback=evidence.is_closed,
     )  # fmt: skip
-    return begun, shooting, choice
+    return begun, shooting, with_sufficient_steps(choice)
 
 
 def _is_unforced(model: Model, records: Sequence[Record]) -> bool:

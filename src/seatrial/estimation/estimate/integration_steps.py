@@ -8,6 +8,7 @@ import numpy as np
 from seatrial.core.values import Array
 from seatrial.estimation.information.covariance import inverse
 from seatrial.estimation.problem.output_error import OutputError
+from seatrial.estimation.problem.prediction_error import PredictionError
 from seatrial.numerics.optimise import NormalEquations, Optimum, bounded_step
 from seatrial.physics.simulate.steps import MOST_SUBSTEPS, SIMULATION_ERROR, is_within_range, sufficient_substeps
 
@@ -60,17 +61,43 @@ def sufficient_steps_of_optimum(problem: OutputError, optimum: Optimum, least: i
     while 2 * count <= MOST_SUBSTEPS:
         after = normal(2 * count)
         is_finite = np.isfinite(before.cost) and np.isfinite(after.cost)
-        if is_finite and _is_same_optimum(problem, shared, before, after):
+        if is_finite and _is_same_optimum(problem, shared, before, after, len(problem.free)):
             return count
         count, before = 2 * count, after
     return count if np.isfinite(before.cost) else problem.substeps
 
 
-def _is_same_optimum(problem: OutputError, shared: Array, before: NormalEquations, after: NormalEquations) -> bool:
-    """Whether a Gauss-Newton step for the change of the gradient moves no coefficient by more than is allowed."""
+def sufficient_steps_of_filter(problem: PredictionError, optimum: Optimum) -> int:
+    """Return so many steps in a sample, the problem's own or more, that halving them leaves its optimum where it is."""
+    shared, count = optimum.solution.point, problem.runs.substeps
+    if problem.runs.model.is_affine or not np.isfinite(optimum.normal.cost):
+        return count
+
+    def normal(substeps: int) -> NormalEquations:
+        with np.errstate(all="ignore"):
+            return filter_with_steps(problem, substeps).normal(shared, optimum.local)
+
+    before = normal(count)
+    while 2 * count <= MOST_SUBSTEPS:
+        after = normal(2 * count)
+        if not np.isfinite(after.cost) or _is_same_optimum(problem, shared, before, after, len(problem.runs.free)):
+            break
+        count, before = 2 * count, after
+    return count
+
+
+def filter_with_steps(problem: PredictionError, substeps: int) -> PredictionError:
+    """Return the problem with so many steps in a sample."""
+    return replace(problem, runs=replace(problem.runs, substeps=substeps), steps=None)
+
+
+def _is_same_optimum(
+    problem: OutputError | PredictionError, shared: Array, before: NormalEquations, after: NormalEquations, count: int
+) -> bool:  # fmt: skip
+    """Whether a Gauss-Newton step for the change of the gradient moves none of `count` coefficients by too much."""
     gradient, hessian = after.without_local()
     reduced = replace(after, gradient=gradient - before.without_local()[0], hessian=hessian)
-    step = bounded_step(reduced, problem.lower - shared, problem.upper - shared)[: len(problem.free)]
+    step = bounded_step(reduced, problem.lower - shared, problem.upper - shared)[:count]
     error = np.sqrt(np.maximum(np.diagonal(inverse(hessian)), 0.0))[: len(step)]
     return bool(np.all(np.abs(step) <= _OPTIMUM_ERROR * error))
 

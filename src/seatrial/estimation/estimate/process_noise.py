@@ -12,7 +12,16 @@ from itertools import pairwise
 
 import numpy as np
 
-from seatrial.core.equations.augment import WAVE, band_names, force_peaks, gust_name, memory_name, wave_names
+from seatrial.core.equations.augment import (
+    BIAS_MEMORY,
+    WAVE,
+    band_names,
+    bias_name,
+    force_peaks,
+    gust_name,
+    memory_name,
+    wave_names,
+)
 from seatrial.core.results import Waves
 from seatrial.core.values import Array, Index, InputError, ProgressReporter, spelling_hint
 from seatrial.data.check.signal import sample_noise
@@ -127,11 +136,16 @@ class ProcessNoise:
 
     @property
     def measurement_noise(self) -> dict[str, float]:
-        """Standard deviation of each channel about the craft's own motion, SI: noise, and waves where there are any."""
-        noise = self.problem.split(self.optimum.solution.point)[2] ** 2
+        """Standard deviation of each channel about the craft's own motion, SI: noise, and waves and biases if any."""
+        names, (_, q, deviation) = self.problem.process, self.problem.split(self.optimum.solution.point)
+        noise, outputs = deviation**2, self.output_error.data.outputs
         for one in self.waves:
-            noise += [one.rms.get(c, 0.0) ** 2 for c in self.output_error.data.outputs]
-        return dict(zip(self.output_error.data.outputs, map(float, np.sqrt(noise)), strict=True))
+            noise += [one.rms.get(c, 0.0) ** 2 for c in outputs]
+        if BIAS_MEMORY in self.added_constants:
+            driven, memory = dict(zip(names, q.tolist(), strict=True)), self.added_constants[BIAS_MEMORY]
+            # stationary variance of a Gauss-Markov process (Gelb 1974, section 3.5)
+            noise += [0.5 * memory * driven.get(bias_name(c), 0.0) ** 2 for c in outputs]
+        return dict(zip(outputs, map(float, np.sqrt(noise)), strict=True))
 
     @property
     def waves(self) -> tuple[Waves, ...]:

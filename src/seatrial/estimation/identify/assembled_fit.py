@@ -44,6 +44,7 @@ from seatrial.estimation.identify.response_findings import response_findings
 from seatrial.estimation.identify.roll_characteristics import one_speed_finding, roll_characteristics
 from seatrial.estimation.identify.roll_inertia import gyradius_findings
 from seatrial.estimation.identify.seakeeping import seakeeping
+from seatrial.estimation.identify.sensor_errors import with_unshown_sensor_errors
 from seatrial.estimation.identify.short_records import default_profiles, short_record_findings
 from seatrial.estimation.identify.short_time_constants import short_time_constant_findings
 from seatrial.estimation.identify.thruster_craft import thruster_craft
@@ -77,6 +78,10 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
     decays = parts.computed("the differences between decays", lambda: differing_decays(estimation), None)
     by_decay = [decays.shift(estimation.estimate.problem.free)] if decays else []
     widened = with_estimated_values(estimation, [*stated, *by_box, *by_decay])
+    widened = parts.computed(
+        "errors of instruments in the intervals",
+        lambda: with_unshown_sensor_errors(widened, runs.records, runs.length), widened,
+    )  # fmt: skip
     coefficients = fit_result.coefficients(widened, trial.truth, interval_ends(assessment.profiles, posterior))
     free = estimation.estimate.problem.free
     responses = parts.computed(

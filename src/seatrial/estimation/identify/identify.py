@@ -16,6 +16,7 @@ from seatrial.estimation.estimate.settings import WEAK_FORM_SHIP_LENGTHS
 from seatrial.estimation.identify.baselines import with_baselines, with_search_baselines
 from seatrial.estimation.identify.identification import Identification
 from seatrial.estimation.identify.search_problem import check_search_settings
+from seatrial.estimation.identify.sensor_errors import with_shown_sensor_errors
 from seatrial.estimation.identify.situation import Situation, situation_of
 from seatrial.estimation.identify.strategies.published import own_estimate_progress, published_fit, refuse_options
 from seatrial.estimation.identify.strategies.recorded_waves import identify_in_recorded_waves
@@ -88,6 +89,8 @@ def identify(
     _refuse_sampling(intervals, situation, method)
     if method.is_published:
         return _published(task, situation, report_progress)
+    if situation is Situation.STEERED:
+        task = with_shown_sensor_errors(task)
     fit = STRATEGIES[situation](task)
     fit = replace(fit, method=replace(fit.method, name=method.value))
     if not compare or situation is Situation.UNKNOWN_WAVES:  # no input, so that there is nothing to regress on

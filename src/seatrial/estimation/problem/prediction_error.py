@@ -13,7 +13,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from seatrial.core.equations.augment import DAMPINGS
+from seatrial.core.equations.augment import DAMPINGS, is_biased
 from seatrial.core.values import Array, Index
 from seatrial.estimation.problem.output_error import OutputError, SegmentNormals
 from seatrial.numerics.optimise import NormalEquations
@@ -88,9 +88,12 @@ class PredictionError:
 
     @property
     def lower(self) -> Array:
-        """Lower bounds: no process noise, no waves, channels as fine as their values are written."""
-        # of the residuals of the runs; chosen
-        least = np.maximum(1e-4 * self.runs.noise, self.runs.data.rounding_noise)
+        """Lower bounds: no process noise, no waves, channels as fine as their values are written.
+
+        Values that were converted show no step; a channel whose bias is a state of its own keeps some noise besides.
+        """
+        shares = np.where([is_biased(o) for o in self.runs.data.outputs], 1e-2, 1e-4)  # of the runs' residuals; chosen
+        least = np.maximum(shares * self.runs.noise, self.runs.data.rounding_noise)
         return self._bounds(self.runs.lower, 0.0, self.wave_bounds[0], least**2)
 
     @property

@@ -4,18 +4,21 @@ States keep their names and meaning; who compares with records asks `Model.obser
 receiver measures over ground: with e = A + B sin(shown) + C cos(shown) it shows psi - e (deviation of the first
 harmonic; Bowditch 2019, American Practical Navigator, ch. 8), and velocities over ground resolved along the shown
 heading are turned by e. A lag of velocities is two equal time constants in a row, which together delay by their sum.
+A compass and a rate gyro follow theirs behind a filter of first order. What a late receiver shows is taken back by its
+own rates, which leaves the second power of the lag for velocities, and for a position what its speed changes meanwhile.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from seatrial.core.equations import Model
 from seatrial.core.equations.bindings import Binding, ModelEquations
 from seatrial.core.equations.manifest import stored_equations
-from seatrial.core.equations.model import measured_name
+from seatrial.core.equations.model import MEASURED, measured_name
 from seatrial.core.values import InputError, Parameter, Parameters, Prior
-from seatrial.physics.sensors.settings import Compass, Sensors, VelocityReference
+from seatrial.physics.sensors.settings import Compass, Late, Sensors, VelocityReference
 
 if TYPE_CHECKING:
     import sympy as sp
@@ -23,10 +26,12 @@ if TYPE_CHECKING:
 SENSOR_SOURCE = "sensor model"
 """Source of the coefficients of instruments, by which they differ from the craft's own."""
 _CURRENT = ("current_north", "current_east")
-_DEVIATION, _RATE_BIAS, _LEVER = 0.2, 0.02, 0.5
-"""Prior standard deviations: of compass coefficients [rad], a yaw rate's bias [rad/s], a lever arm [m]; chosen."""
+_DEVIATION, _RATE_BIAS, _RATE_SCALE, _LAG = 0.2, 0.02, 0.05, 1.0
+"""Prior standard deviations: of compass coefficients [rad], a yaw rate's bias [rad/s] and scale, a lag [s]; chosen."""
+_FILTER = 0.5
+"""Time constant [s] of a compass or rate gyro at which a search begins; chosen."""
 _MIN_LAG = 0.1
-"""Least lag of velocities [s] that two time constants in a row can hold at 10 Hz; chosen."""
+"""Least lag [s] that time constants can hold at 10 Hz; chosen."""
 
 
 def with_sensors(model: Model, sensors: Sensors) -> Model:
@@ -45,17 +50,34 @@ def with_sensors(model: Model, sensors: Sensors) -> Model:
             raise InputError(f"model '{model.name}' has no state '{state}'; leave its sensor out of [sensors]")
     layout = model.equations.layout  # no part of the hash
     key = (model.equation_hash, layout, "sensors", sensors.text())
-    equations = stored_equations(key, lambda: _Writer(model, sensors, parameters).equations())
+    equations = stored_equations(key, lambda: _Writer(model, sensors, parameters).equations(), [Path(__file__).parent])
     return replace(model, equations=equations, parameters=Parameters((*model.parameters, *parameters)))
 
 
+def without_sensors(model: Model) -> Model:
+    """Return the model whose channels show its states, as it was before `with_sensors`."""
+    own, old = {p.name for p in model.parameters if p.source == SENSOR_SOURCE}, model.equations
+    equations = replace(
+        old, rates=tuple(b for b in old.rates if b.source != SENSOR_SOURCE),
+        bindings=tuple(b for b in old.bindings if b.source != SENSOR_SOURCE),
+        outputs=tuple(o for o in old.outputs if not o.endswith(MEASURED)),
+        parameters=tuple(n for n in old.parameters if n not in own), sensors="",
+    )  # fmt: skip
+    kept = Parameters(tuple(p for p in model.parameters if p.name not in own))
+    return replace(model, equations=equations, parameters=kept)
+
+
+_LATE_STATES = {Late.RECEIVER: {"x0", "y0", "psi", "r"}, Late.HEADING: {"psi"}, Late.YAW_RATE: {"r"}}
+"""States that the delay of an instrument is reckoned by."""
+
+
 def _required_states(sensors: Sensors) -> set[str]:
-    required: set[str] = set()
+    required: set[str] = set().union(*(_LATE_STATES[late] for late in sensors.late))
     if sensors.compass is not Compass.TRUE:
         required |= {"psi"}
     if sensors.velocity is VelocityReference.GROUND or sensors.velocity_lag:
         required |= {"u", "v", "r", "psi"}
-    if sensors.yaw_rate_bias:
+    if sensors.yaw_rate_bias or sensors.yaw_rate_scale:
         required |= {"r"}
     return required | ({"x0", "y0", "psi", "r"} if sensors.antenna else set())
 
@@ -75,13 +97,25 @@ def _parameters(sensors: Sensors) -> tuple[Parameter, ...]:
         items.append(one("compass_C", 0.0, "rad", "deviation with its cosine", _DEVIATION))
     if sensors.yaw_rate_bias:
         items.append(one("r_bias", 0.0, "rad/s", "yaw rate shown over the true one", _RATE_BIAS))
+    if sensors.yaw_rate_scale:
+        items.append(one("r_scale", 0.0, "1", "share by which the yaw rate shown is too large", _RATE_SCALE))
     if sensors.antenna is not None:
-        items.append(one("x_antenna", sensors.antenna.x, "m", "antenna forward of the origin", _LEVER))
-        items.append(one("y_antenna", sensors.antenna.y, "m", "antenna to starboard", _LEVER))
+        place = sensors.antenna
+        items.append(one("x_antenna", place.x, "m", "antenna forward of the origin", place.sd))
+        items.append(one("y_antenna", place.y, "m", "antenna to starboard", place.sd))
+    for late in sensors.late:
+        start, least = (0.0, float("-inf")) if late is Late.RECEIVER else (_FILTER, _MIN_LAG)
+        meaning = f"time by which the {late.replace('_', ' ')} is late"
+        items.append(one(lag_name(late), start, "s", meaning, _LAG, least))
     if sensors.velocity_lag:
         lag = max(sensors.velocity_lag, _MIN_LAG)
         items.append(one("lag_velocity", lag, "s", "time by which u and v are late", lag, _MIN_LAG))
     return tuple(items)
+
+
+def lag_name(late: Late) -> str:
+    """Name of the parameter that holds the delay of an instrument."""
+    return f"lag_{late}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,21 +136,16 @@ class _Writer:
 
     def equations(self) -> ModelEquations:
         """Return the model's equations with the outputs."""
-        import sympy as sp
-
         sensors, old = self.sensors, self.model.equations
         deviation = self._deviation()
-        if sensors.compass is not Compass.TRUE:
-            self._output("psi", _symbol("psi") - deviation, "rad")
+        if sensors.compass is not Compass.TRUE or Late.HEADING in sensors.late:
+            self._output("psi", self._filtered(Late.HEADING, "psi") - deviation, "rad")
         if sensors.velocity is VelocityReference.GROUND or sensors.velocity_lag:
             self._velocities(deviation)
-        if sensors.yaw_rate_bias:
-            self._output("r", _symbol("r") + _symbol("r_bias"), "rad/s")
-        if sensors.antenna is not None:
-            sine, cosine = sp.sin(_symbol("psi")), sp.cos(_symbol("psi"))
-            x, y = _symbol("x_antenna"), _symbol("y_antenna")
-            self._output("x0", _symbol("x0") + x * cosine - y * sine, "m")
-            self._output("y0", _symbol("y0") + x * sine + y * cosine, "m")
+        if sensors.yaw_rate_bias or sensors.yaw_rate_scale or Late.YAW_RATE in sensors.late:
+            self._yaw_rate()
+        if sensors.antenna is not None or Late.RECEIVER in sensors.late:
+            self._positions()
         return replace(
             old, rates=(*old.rates, *self.rates), bindings=(*old.bindings, *self.bindings),
             outputs=(*old.outputs, *self.outputs), parameters=(*old.parameters, *self.names), sensors=sensors.text(),
@@ -146,12 +175,51 @@ class _Writer:
         shown = self._bind("shown_2", psi - second, "rad")
         return self._bind("deviation", A + B * sp.sin(shown) + C * sp.cos(shown), "rad")
 
+    def _lag(self, late: Late) -> "sp.Expr":
+        import sympy as sp
+
+        return _symbol(lag_name(late)) if late in self.sensors.late else sp.Integer(0)
+
+    def _rate(self, state: str) -> "sp.Expr":
+        return next(b.expression for b in self.model.equations.rates if b.name == state)
+
+    def _filtered(self, late: Late, channel: str) -> "sp.Expr":
+        """The channel, behind a filter of first order where its instrument is late."""
+        if late not in self.sensors.late:
+            return _symbol(channel)
+        return self._follower(late_name(channel), _symbol(channel), self._lag(late))
+
+    def _follower(self, name: str, source: "sp.Expr", constant: "sp.Expr") -> "sp.Symbol":
+        """A state of that name that follows `source` with a time constant."""
+        self.rates.append(Binding.from_expression(name, (source - _symbol(name)) / constant, SENSOR_SOURCE))
+        return _symbol(name)
+
+    def _yaw_rate(self) -> None:
+        sensors, shown = self.sensors, self._filtered(Late.YAW_RATE, "r")
+        if sensors.yaw_rate_scale:
+            shown = shown * (1 + _symbol("r_scale"))
+        self._output("r", shown + _symbol("r_bias") if sensors.yaw_rate_bias else shown, "rad/s")
+
+    def _positions(self) -> None:
+        """Where the antenna was a lag ago: back along the arc on which the heading halfway lies."""
+        import sympy as sp
+
+        lag, psi, r = self._lag(Late.RECEIVER), _symbol("psi"), _symbol("r")
+        heading, has_antenna = psi - lag * r, self.sensors.antenna is not None
+        x, y = (_symbol("x_antenna"), _symbol("y_antenna")) if has_antenna else (sp.Integer(0), sp.Integer(0))
+        lever = {"x0": x * sp.cos(heading) - y * sp.sin(heading), "y0": x * sp.sin(heading) + y * sp.cos(heading)}
+        for channel, arm in lever.items():
+            way = lag * self._rate(channel).subs(psi, psi - lag * r / 2)
+            self._output(channel, _symbol(channel) - way + arm, "m")
+
     def _velocities(self, deviation: "sp.Expr") -> None:
         import sympy as sp
 
         motion = _Motion(_symbol("u"), _symbol("v"))
         if self.sensors.velocity is VelocityReference.GROUND:
-            motion = self._turned(self._at_antenna(self._over_ground(motion)), deviation)
+            lag = self._lag(Late.RECEIVER)  # in which the heading that resolves them has moved on by lag r
+            turned = deviation - lag * _symbol("r")
+            motion = self._turned(self._at_antenna(self._over_ground(self._late_motion())), turned)
         for channel, value in (("u", motion.u), ("v", motion.v)):
             late = self._late(channel, value) if self.sensors.velocity_lag else value
             self._output(channel, sp.sympify(late), "m/s")
@@ -171,6 +239,14 @@ class _Writer:
         r = _symbol("r")
         return _Motion(motion.u - _symbol("y_antenna") * r, motion.v + _symbol("x_antenna") * r)
 
+    def _late_motion(self) -> _Motion:
+        u, v = _symbol("u"), _symbol("v")
+        if Late.RECEIVER not in self.sensors.late:
+            return _Motion(u, v)
+        lag = self._lag(Late.RECEIVER)
+        ahead, across = (self._bind(f"{s}_acceleration", self._rate(s), "m/s^2") for s in ("u", "v"))
+        return _Motion(u - lag * ahead, v - lag * across)
+
     def _turned(self, motion: _Motion, deviation: "sp.Expr") -> _Motion:
         import sympy as sp
 
@@ -181,11 +257,8 @@ class _Writer:
     def _late(self, channel: str, value: "sp.Expr") -> "sp.Symbol":
         """Two time constants in a row, each half the lag: states `u_late_1`, `u_late`."""
         half = _symbol("lag_velocity") / 2
-        source = self._bind(f"{channel}_prompt", value, "m/s")
-        for name in (f"{channel}_late_1", late_name(channel)):
-            self.rates.append(Binding.from_expression(name, (source - _symbol(name)) / half, SENSOR_SOURCE))
-            source = _symbol(name)
-        return source
+        first = self._follower(f"{channel}_late_1", self._bind(f"{channel}_prompt", value, "m/s"), half)
+        return self._follower(late_name(channel), first, half)
 
 
 def late_name(channel: str) -> str:

@@ -22,15 +22,28 @@ class VelocityReference(StrEnum):
     GROUND = "ground"
 
 
+class Late(StrEnum):
+    """An instrument that may be late: the receiver by a delay of all that is its own, others by a filter."""
+
+    RECEIVER = "receiver"
+    HEADING = "heading"
+    YAW_RATE = "yaw_rate"
+
+
 _STRICT = ConfigDict(extra="forbid", allow_inf_nan=False)
 
 
 @validated(frozen=True, config=_STRICT)
 class Antenna:
-    """Place of the receiver's antenna forward and to starboard of the origin [m], where the estimate starts."""
+    """Place of the receiver's antenna forward and to starboard of the origin [m], where the estimate starts.
+
+    Attributes:
+        sd: standard deviation of either, before any record [m].
+    """
 
     x: float = 0.0
     y: float = 0.0
+    sd: Annotated[float, Field(gt=0.0)] = 0.5  # m: a place that was measured aboard; chosen
 
 
 @validated(frozen=True, kw_only=True, config=_STRICT)
@@ -42,7 +55,9 @@ class Sensors:
             psi - e with e = A + B sin(shown) + C cos(shown).
         velocity: what u and v are: ``water``, or ``ground``: over ground, turned by the compass's heading.
         velocity_lag: start value of the time by which u and v are late [s]; 0: they are not.
+        late: instruments whose delay is estimated: lag_receiver, lag_heading, lag_yaw_rate.
         yaw_rate_bias: whether r_bias is added to the yaw rate.
+        yaw_rate_scale: whether the yaw rate is shown 1 + r_scale times.
         antenna: place of the receiver's antenna, to which position (and u, v over ground) refer; None: the origin.
         position_hold: whether positions stay between the receiver's fixes: a repeated pair counts as not measured.
     """
@@ -50,7 +65,9 @@ class Sensors:
     compass: Compass = Compass.TRUE
     velocity: VelocityReference = VelocityReference.WATER
     velocity_lag: Annotated[float, Field(ge=0.0)] = 0.0
+    late: tuple[Late, ...] = ()
     yaw_rate_bias: bool = False
+    yaw_rate_scale: bool = False
     antenna: Antenna | None = None
     position_hold: bool = False
 
@@ -65,5 +82,5 @@ class Sensors:
 
     @classmethod
     def from_text(cls, text: str) -> "Sensors":
-        """Return the settings that `text` wrote; raises ValueError where it is none."""
-        return TypeAdapter(cls).validate_json(text)
+        """Return the settings that `text` wrote, perfect instruments of an empty one; ValueError where it is none."""
+        return TypeAdapter(cls).validate_json(text) if text else cls()
