@@ -58,7 +58,7 @@ def gains_toml(tuning: Tuning) -> str:
 
 _ORDER = (
     "order = filters in turn of the sum of gain * term(reference - output), plus what is fed forward; it stands for a "
-    "sample"
+    "sample; a sensor, num / den in s, lies before the sample, noise and resolution before the sensor"
 )
 _HOLD = (
     "achieved moves to the order no faster than rate, within limit of [constraints]; a term with hold = 1 or -1 keeps "
@@ -72,12 +72,14 @@ _REFERENCE = (
 
 def _discrete_table(controller: DiscreteController) -> dict[str, Any]:
     """Return the controller as it was simulated."""
+    sensor = [{"name": one.name, "num": list(one.num), "den": list(one.den)} for one in controller.sensor]
     return {
         "sample_s": controller.sample_s,
         "dead_time_s": controller.dead_time,
         "noise": controller.noise,
         "resolution": controller.resolution,
         "rule": "Tustin",
+        **({"sensor": sensor} if sensor else {}),
         "order": _ORDER,
         "hold": _HOLD,
         "blocks": [asdict(block) for block in controller.blocks],
