@@ -70,6 +70,13 @@ _REFERENCE = (
 )
 
 
+_TRACK = (
+    "once a sample psi_d = chi - atan((e + sigma q) / Delta), e to starboard of the leg of course chi, q' = Delta e / "
+    "((e + sigma q)^2 + Delta^2); Delta the lookahead, sigma the integral gain; psi_d, no faster than the order's rate, "
+    "is the reference of [discrete] in place of [reference], and nothing is fed forward"
+)
+
+
 def _discrete_table(controller: DiscreteController) -> dict[str, Any]:
     """Return the controller as it was simulated."""
     sensor = [{"name": one.name, "num": list(one.num), "den": list(one.den)} for one in controller.sensor]
@@ -199,15 +206,16 @@ def _margin_table(c: Controller) -> dict[str, float]:
     })  # fmt: skip
 
 
-def _track_table(track: TrackKeeping) -> dict[str, float]:
-    """Return the guidance of a track: psi_d = chi - atan((e + sigma q) / Delta), see `TrackKeeping`."""
-    return _finite_numbers({
+def _track_table(track: TrackKeeping) -> dict[str, Any]:
+    """Return the guidance of a track with its law, see `TrackKeeping`."""
+    numbers = _finite_numbers({
         "lookahead_m": track.lookahead,
         "integral_gain_m_per_s": track.integral_gain,
         "order_rate_deg_per_s": math.degrees(track.order_rate),
         "speed_m_per_s": track.speed,
         "Ms": track.Ms,
     })  # fmt: skip
+    return {"rule": _TRACK, **numbers}
 
 
 def _station_table(station: StationKeeping) -> dict[str, Any]:
