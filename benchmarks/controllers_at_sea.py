@@ -1,8 +1,8 @@
 """Controllers written from gains.toml alone, on the plant that was declared: do they do what their page says?
 
-Heading and speed; fins and tracks have files of their own (`fins_at_sea`, `tracks_at_sea`). The simulator is this file's
-own: difference equations as gains.toml prints them, a reference filter, an order that is held for a sample and acts
-after the dead time, a lag as steering gear, limits of angle and rate, the noise and steps of what is read, the plant as
+Heading and speed; fins and tracks have files of their own (`fins_at_sea`, `tracks_at_sea`). The simulator is its own:
+difference equations as gains.toml prints them, a reference filter, an order that is held for a sample and acts after
+the dead time, a lag as steering gear, limits of angle and rate, the noise and steps of what is read, the plant as
 differential equations in short steps. Margins are its own, too: the plant's answer to the order of one sample, in the
 same steps, transformed at each frequency.
 """

@@ -1,4 +1,4 @@
-"""Logs of course changes by a simulator of this file's own, verified: is what changed named, and nothing where nothing did?
+"""Logs of course changes by a simulator of this file's own, verified: what changed is named, and nothing else is.
 
 A patrol boat T r' + r = K delta under the controller written from its own gains.toml, in gusts, with a noisy compass
 and gyro; a logger that reads every half second. The ship that is verified differs from its model as the model's
@@ -9,7 +9,7 @@ import argparse
 import math
 import tempfile
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
