@@ -173,6 +173,11 @@ def lines_of(crafts: Sequence[TrackCraft], effort: Effort | None = None) -> list
     return lines
 
 
+def run() -> list[Line]:
+    """Return the lines of the patrol boat, a sample of all."""
+    return lines_of(TRACKS[1:2], QUICK)
+
+
 if __name__ == "__main__":
     for one in TRACKS:
         for line in lines_of([one], QUICK):
