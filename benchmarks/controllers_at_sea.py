@@ -1,9 +1,10 @@
 """Controllers written from gains.toml alone, on the plant that was declared: do they do what their page says?
 
-The simulator is this file's own: difference equations as gains.toml prints them, a reference filter, an order that is
-held for a sample and acts after the dead time, a lag as steering gear, limits of angle and rate, the compass's noise
-and steps, the plant as differential equations in short steps. Margins are its own, too: the plant's answer to the order
-of one sample, in the same steps, transformed at each frequency.
+Heading and speed; fins and tracks have files of their own (`fins_at_sea`, `tracks_at_sea`). The simulator is its own:
+difference equations as gains.toml prints them, a reference filter, an order that is held for a sample and acts after
+the dead time, a lag as steering gear, limits of angle and rate, the noise and steps of what is read, the plant as
+differential equations in short steps. Margins are its own, too: the plant's answer to the order of one sample, in the
+same steps, transformed at each frequency.
 """
 
 import argparse
@@ -35,12 +36,13 @@ QUICK = Effort(population=80, generations=20, refined=12, fill_rounds=2, neighbo
 
 @dataclass(frozen=True)
 class Craft:
-    """A craft on its heading: states x' = A x + b delta, psi = c x, and what its loop file declares.
+    """A craft on its heading or speed y: states x' = A x + b a, y = c x, and what its loop file declares.
 
     Attributes:
         A, b, c: of the plant; response: num and den as the loop file gives them.
-        sample_s: None: as the package chooses; gear: lag [s], 0: none; limit, rate, noise, resolution: deg, deg/s.
-        trim: deg of rudder, rms, of the slow disturbance below `bandwidth` [rad/s].
+        sample_s: None: as the package chooses; gear: lag [s], 0: none.
+        limit, rate, change, noise, resolution: in degrees, deg/s of a heading, else in the symbols' units.
+        trim: of the actuator, rms, of the slow disturbance below `bandwidth` [rad/s].
     """
 
     name: str
@@ -60,7 +62,19 @@ class Craft:
     gear: float = 0.0
     noise: float = 0.0
     resolution: float = 0.0
+    output: str = "psi"
+    actuator: str = "delta"
+    parts_of_pid: str = '"KP", "KI", "KD"'
     settings: Sequence[str] = field(default_factory=tuple)
+
+    @property
+    def unit(self) -> float:
+        """Return SI units in one of the declared amounts."""
+        return DEGREE if self.output == "psi" else 1.0
+
+    def amount(self, value: float, per: str = "") -> str:
+        """Return an amount as a loop file has it."""
+        return f'{{ value = {value}, unit = "deg{per}" }}' if self.output == "psi" else repr(value)
 
     def parts(self, T: float) -> int:
         """Return how many steps of the simulator make a sample of T [s]."""
@@ -76,7 +90,7 @@ class Craft:
         sensors = ""
         if self.noise or self.resolution:
             sensors = "[sensors]\n" + "".join(
-                f'{key} = {{ value = {value}, unit = "deg" }}\n'
+                f"{key} = {self.amount(value)}\n"
                 for key, value in (("noise", self.noise), ("resolution", self.resolution))
                 if value
             )
@@ -84,23 +98,23 @@ class Craft:
 name = "{self.name}"
 [plant]
 response = {{ num = [{num}], den = [{den}] }}
-output = "psi"
-actuator = "delta"
+output = "{self.output}"
+actuator = "{self.actuator}"
 speed = {self.speed}
 [controller]
 kind = "pid"
-parts = ["KP", "KI", "KD"]
+parts = [{self.parts_of_pid}]
 {sample}
 [actuator]
-limit = {{ value = {self.limit}, unit = "deg" }}
-rate = {{ value = {self.rate}, unit = "deg/s" }}
+limit = {self.amount(self.limit)}
+rate = {self.amount(self.rate, "/s")}
 dead_time = {self.dead_time}
 {gear}
 [[slow_disturbances]]
-rms = {{ value = {self.trim}, unit = "deg" }}
+rms = {self.amount(self.trim)}
 bandwidth = {self.bandwidth}
 [demand]
-change = {{ value = {self.change}, unit = "deg" }}
+change = {self.amount(self.change)}
 time_constant = {self.time_constant}
 {sensors}
 {chr(10).join(self.settings)}
@@ -139,7 +153,23 @@ CRAFTS = (
         speed=8.0, limit=35.0, rate=2.3, dead_time=1.0, change=20.0, time_constant=40.0, trim=1.0, bandwidth=0.01,
         gear=2.0,
     ),
+    # 0.005 m/s of a log's noise, and a water jet's or propeller's own lag of 2 s
+    Craft(
+        "catamaran, speed",
+        A=((-0.05,),),
+        b=(0.2,),
+        c=(1.0,),
+        response=((4.0,), (20.0, 1.0)),
+        speed=8.0, limit=1.0, rate=0.1, dead_time=0.5, change=1.0, time_constant=10.0, trim=0.05, bandwidth=0.05,
+        sample_s=0.5, gear=2.0, noise=0.005, output="u", actuator="T", parts_of_pid='"KP", "KI"',
+    ),
 )  # fmt: skip
+
+
+def amount_of(table: dict[str, Any], name: str) -> float:
+    """Return an amount of gains.toml in SI, by the unit at the end of its key; infinite where there is none."""
+    key = next((key for key in table if key.startswith(name) and "saturation" not in key), None)
+    return math.inf if key is None else table[key] * (DEGREE if "deg" in key else 1.0)
 
 
 class OwnController:
@@ -150,15 +180,15 @@ class OwnController:
         discrete, kept = table["discrete"], table.get("constraints", {})
         self.T, self.blocks, self.gains = discrete["sample_s"], discrete["blocks"], table["gains"]
         self.dead_time = discrete["dead_time_s"]
-        self.limit = kept.get("limit_deg", math.inf) * DEGREE
-        self.rate = kept.get("rate_deg_per_s", math.inf) * DEGREE
-        self.reference = table["reference"]
+        self.limit, self.rate = amount_of(kept, "limit"), amount_of(kept, "rate")
+        self.reference, self.sensor = table.get("reference", {}), discrete.get("sensor", [])
+        self.noise, self.resolution = discrete["noise"], discrete["resolution"]
         self.past = [([0.0] * len(one["b"]), [0.0] * len(one["b"])) for one in self.blocks]
         self.excess = self.achieved = self.x = self.v = 0.0
 
     def follow(self, ordered: float) -> tuple[float, float]:
         """Return the reference now and what it feeds forward, and go on for a sample, in a hundred short steps."""
-        w, fastest = 1.0 / self.reference["time_constant_s"], self.reference.get("rate_deg_per_s", math.inf) * DEGREE
+        w, fastest = 1.0 / self.reference["time_constant_s"], amount_of(self.reference, "rate")
         x, v = self.x, self.v
         acceleration = w * w * (ordered - x) - 2.0 * w * v
         if abs(v) >= fastest and acceleration * v > 0.0:
@@ -220,10 +250,10 @@ def simulate(
     waiting = [0.0] * round(craft.dead_time / dt)
     samples = math.ceil(duration / own.T)
     heading, moved = np.empty(samples * parts), np.empty(samples * parts)
-    step, unit = np.eye(len(b)) + dt * A + 0.5 * dt * dt * (A @ A), craft.resolution * DEGREE
+    step, unit = np.eye(len(b)) + dt * A + 0.5 * dt * dt * (A @ A), craft.resolution * craft.unit
     push = dt * (b + 0.5 * dt * (A @ b))
     for k in range(samples):
-        seen = float(c @ x) + craft.noise * DEGREE * float(rng.standard_normal())
+        seen = float(c @ x) + craft.noise * craft.unit * float(rng.standard_normal())
         seen = unit * math.floor(seen / unit + 0.5) if unit else seen
         wanted, fed = own.follow(ordered(k * own.T))
         order = own.order(wanted - seen, fed)
@@ -233,9 +263,9 @@ def simulate(
             waiting.append(order)
             late = waiting.pop(0)
             served = late if not craft.gear else served + dt / craft.gear * (late - served)
-            way = min(max(served, -craft.limit * DEGREE), craft.limit * DEGREE) - rudder
+            way = min(max(served, -craft.limit * craft.unit), craft.limit * craft.unit) - rudder
             before = rudder
-            rudder += min(max(way, -craft.rate * DEGREE * dt), craft.rate * DEGREE * dt)
+            rudder += min(max(way, -craft.rate * craft.unit * dt), craft.rate * craft.unit * dt)
             acting = 0.5 * (before + rudder) + (0.0 if disturbance is None else float(disturbance[i]))
             x = step @ x + push * acting
     return Run(heading, moved, dt)
@@ -326,8 +356,8 @@ def difference(craft: Craft, tuning: Tuning) -> Difference:
     text, change = gains_toml(tuning), tuning.manoeuvres[0]
     T = tomllib.loads(text)["discrete"]["sample_s"]
     duration = float(change.record.time[-1])
-    run = simulate(craft, text, lambda t: craft.change * DEGREE if t >= T * 0.5 else 0.0, duration)
-    share = run.heading / (craft.change * DEGREE)
+    run = simulate(craft, text, lambda t: craft.change * craft.unit if t >= T * 0.5 else 0.0, duration)
+    share = run.heading / (craft.change * craft.unit)
     over = max(0.0, float(share.max()) - 1.0)
     outside = np.flatnonzero(np.abs(share - 1.0) > 0.05)
     settles = run.dt * (outside[-1] + 1) - T if outside[-1] + 1 < len(share) else math.inf
@@ -351,7 +381,7 @@ def _weather(craft: Craft, text: str) -> tuple[float, float]:
     parts = craft.parts(T)
     duration = CYCLES / craft.bandwidth
     count, first = math.ceil(duration / T) * parts, math.ceil(10.0 / craft.bandwidth / T) * parts
-    met = gauss_markov(craft.trim * DEGREE, craft.bandwidth, T / parts, count, np.random.default_rng(47))
+    met = gauss_markov(craft.trim * craft.unit, craft.bandwidth, T / parts, count, np.random.default_rng(47))
     run = simulate(craft, text, lambda _: 0.0, duration, met)
     heading, rudder = (math.sqrt(float(np.mean(one[first:] ** 2))) for one in (run.heading, run.rudder))
     return heading, rudder
@@ -365,8 +395,8 @@ def lines_of(crafts: Sequence[Craft], effort: Effort | None = None) -> list[Line
         lines += [
             at_most(f"{craft.name}: overshoot, page less simulator", abs(made.overshoot), "points", OVERSHOOT),
             at_most(f"{craft.name}: settling, page over simulator", abs(made.settling), "%", SETTLING),
-            at_most(f"{craft.name}: heading rms in weather, page over simulator", abs(made.heading), "%", RMS),
-            at_most(f"{craft.name}: rudder rms in weather, page over simulator", abs(made.rudder), "%", RMS),
+            at_most(f"{craft.name}: output rms in weather, page over simulator", abs(made.heading), "%", RMS),
+            at_most(f"{craft.name}: actuator rms in weather, page over simulator", abs(made.rudder), "%", RMS),
             at_most(f"{craft.name}: Ms, page less simulator", abs(made.Ms), "", PEAK),
         ]
     return lines

@@ -22,6 +22,7 @@ import controllers_at_sea
 import criteria
 import design
 import estimation_folds
+import fins_at_sea
 import follow
 import fusion
 import generation
@@ -40,8 +41,10 @@ import proposals
 import roll_decay
 import sample_rates
 import simulation
+import tracks_at_sea
 import tune
 import verification
+import verify_at_sea
 import warm_start
 import waterjet_regressions
 import wave_observer
@@ -72,8 +75,11 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "tune": tune.run,
     "autopilots": autopilots.run,
     "controllers_at_sea": controllers_at_sea.run,
+    "fins_at_sea": fins_at_sea.run,
+    "tracks_at_sea": tracks_at_sea.run,
     "wave_observer": wave_observer.run,
     "verification": verification.run,
+    "verify_at_sea": verify_at_sea.run,
     "proposals": proposals.run,
     "roll_decay": roll_decay.run,
     "sample_rates": sample_rates.run,

@@ -1,4 +1,4 @@
-"""Loop files for tests: a minimal fin stabiliser and a minimal autopilot, and what changes one line of them."""
+"""Loop files for tests: minimal ones of fins, autopilots and ride control, and what changes one line of them."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -41,6 +41,27 @@ rms = { value = 1, unit = "deg" }
 bandwidth = 0.05
 [demand]
 change = { value = 20, unit = "deg" }
+"""
+
+PATROL_BOAT = """
+name = "patrol boat"
+[plant]
+response = { num = [0.16], den = [4.0, 1.0, 0.0] }
+output = "psi"
+actuator = "delta"
+speed = 9.0
+[controller]
+kind = "pid"
+[actuator]
+limit = { value = 35, unit = "deg" }
+rate = { value = 8, unit = "deg/s" }
+dead_time = 0.5
+[[slow_disturbances]]
+rms = { value = 2, unit = "deg" }
+bandwidth = 0.05
+[demand]
+change = { value = 30, unit = "deg" }
+time_constant = 10.0
 """
 
 RIDE_CONTROL = """

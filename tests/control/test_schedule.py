@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.control.fin_tasks import KNOT, PUBLISHED, VARIANCES, fin_task
-from tests.control.loop_files import write_loop_file
+from tests.control.loop_files import PATROL_BOAT, write_loop_file
 
 from seatrial.control.loopfile.load import tuning_task
 from seatrial.control.schedule import schedule, schedule_conditions
@@ -93,34 +93,16 @@ def test_higher_seas_of_the_same_steepness():
     assert spectra[1].modal_frequency == pytest.approx(spectra[0].modal_frequency / math.sqrt(2.0))
 
 
-BOAT = """
-name = "patrol boat"
-[plant]
-response = { num = [0.16], den = [4.0, 1.0, 0.0] }
-output = "psi"
-actuator = "delta"
-speed = 9.0
+SCHEDULED = """
 [hull]
 L = 40.0
 B = 7.5
 T = 2.0
-[controller]
-kind = "pid"
-[actuator]
-limit = { value = 35, unit = "deg" }
-rate = { value = 8, unit = "deg/s" }
-dead_time = 0.5
 [[seas]]
 spectrum = "jonswap"
 height = 0.7
 period = 6.0
 heading = { value = 135, unit = "deg" }
-[[slow_disturbances]]
-rms = { value = 2, unit = "deg" }
-bandwidth = 0.05
-[demand]
-change = { value = 30, unit = "deg" }
-time_constant = 10.0
 [schedule]
 speeds = { values = [3, 9], unit = "m/s" }
 headings = { values = [90, 135], unit = "deg" }
@@ -130,7 +112,7 @@ heights = [0.7]
 
 def test_an_autopilot_is_scheduled_for_the_ship_at_each_speed(tmp_path):
     """By similarity K goes with U and T with 1 / U; from abeam no sea yaws the ship, but its trim is still there."""
-    task = tuning_task(write_loop_file(tmp_path, BOAT))
+    task = tuning_task(write_loop_file(tmp_path, PATROL_BOAT + SCHEDULED))
     slow = task.at_speed(3.0).loop.plant
     assert np.array(slow.num) / slow.den[0] == pytest.approx([0.04 / 9.0])
     assert np.array(slow.den) / slow.den[0] == pytest.approx([1.0, 1.0 / 12.0, 0.0])

@@ -13,6 +13,7 @@ from seatrial.control.seaway_simulation import (
     disturbance_series,
     effect_amplitudes,
     frequency_band,
+    seaway_reductions,
     simulate_in_seaway,
     sum_harmonics,
     wave_components,
@@ -20,12 +21,15 @@ from seatrial.control.seaway_simulation import (
 from seatrial.control.task import Effectiveness, Seaway, SimulationSettings, TrimmedShip, TuningTask
 from seatrial.core.results.tuning import SeawaySimulation
 from seatrial.core.values import InputError
-from seatrial.physics.loops import LoopSignal, Performance
+from seatrial.physics.loops import LoopSignal, Performance, Sampling
 from seatrial.physics.loops.fin import Preamplifier, fin_loop
 from seatrial.physics.loops.objective import variance
-from seatrial.physics.loops.performance import distinct_variances
+from seatrial.physics.loops.performance import calm_actuator, distinct_variances
+from seatrial.physics.loops.state_space import plant_model
 from seatrial.physics.models.roll import roll
 from seatrial.physics.sea.spectrum import ittc, jonswap
+from seatrial.physics.simulate.closed_loop import ClosedLoop
+from seatrial.physics.simulate.sampled_controller import sample_noise, simulation_step
 
 BEAM = Seaway(ittc(3.3), 18.0 * KNOT, math.pi / 2, HULL)
 QUARTERING = replace(BEAM, beta=math.radians(45.0), spreading=1.0)
@@ -179,3 +183,29 @@ def test_without_a_sea_there_is_nothing_to_sail_in() -> None:
     ship = TrimmedShip(roll().with_values({"K_alpha": 0.256}), np.zeros(2), np.zeros(2), "alpha_f", "phi")
     with pytest.raises(InputError, match="no input for the sea"):
         simulate_in_seaway(replace(at_sea(2, 20.0), trimmed_ship=ship), task.loop, "paper", PUBLISHED, 0)
+
+
+@pytest.mark.parametrize("sample_s", [0.05, 0.1])
+def test_noise_in_front_of_the_sensor_moves_the_fins_as_linear_theory_says(sample_s: float) -> None:
+    """Of the roll angle, held over each sample, through gyro and preamplifier."""
+    sampling = Sampling(sample_s, dead_time=0.1, noise=math.radians(0.05))
+    loop = replace(fin_loop(), sampling=sampling)
+    dt, model, count = simulation_step(sampling, 0.01), plant_model(loop), 200_000
+    fins, waves = model.input_names
+    run = ClosedLoop(model, loop, loop.gain_values, dt, fins, waves, loop.output)
+    _, moved = run.run(np.zeros(count), noise=sample_noise(sampling, count, 3))
+    assert calm_actuator(loop).angle == pytest.approx(float(np.std(moved[count // 10 :])), rel=0.02)
+
+
+def test_noise_costs_roll_and_every_sea_has_noise_of_its_own() -> None:
+    task = at_sea(4, 300.0)
+    quiet, noisy = (
+        replace(task, loop=replace(task.loop, sampling=Sampling(0.1, 0.1, math.radians(degrees))))
+        for degrees in (0.0, 0.5)
+    )
+    loud = replace(noisy, constraints=replace(noisy.constraints, limit=math.radians(5.0)))
+    without, limited = (seaway_reductions(one, one.loop, PUBLISHED, 0) for one in (quiet, loud))
+    assert np.all(limited[:, 1] < without[:, 1] - 0.1)
+    same = replace(task, loop=noisy.loop)
+    first, second = (seaway_reductions(same, same.loop, PUBLISHED, seed)[:, 0] for seed in (0, 1))
+    np.testing.assert_array_equal(first[1:], second[:-1])

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.control.fin_tasks import KNOT, LIMITS, PUBLISHED, QUICK, fin_task
-from tests.control.loop_files import AUTOPILOT, model_file, write_loop_file
+from tests.control.loop_files import AUTOPILOT, PATROL_BOAT, model_file, write_loop_file
 
 from seatrial.control import tune as module
 from seatrial.control.controller import describe_controller
@@ -133,33 +133,21 @@ def test_no_control_at_all_is_no_answer():
         tune(replace(task, simulation=None), effort=TINY)
 
 
-COURSE = """
-[plant]
-response = { num = [0.16], den = [4.0, 1.0, 0.0] }
-output = "psi"
-actuator = "delta"
-speed = 3.0
-[controller]
-kind = "pid"
-[actuator]
-limit = { value = 30, unit = "deg" }
-rate = { value = 25, unit = "deg/s" }
-[[slow_disturbances]]
-rms = { value = 2, unit = "deg" }
-bandwidth = 0.05
-[demand]
-change = { value = 30, unit = "deg" }
-time_constant = 5
+POLE_PLACEMENT = """
 [baselines.pole_placement]
 KP = 1.0
 KD = 1.5
 KI = 0.05
 """
+NOISY = """
+[sensors]
+noise = { value = 0.5, unit = "deg" }
+"""
 
 
 def test_no_sentence_has_a_number_that_is_none(tmp_path):
     """A heading has no variance without control, so that it is left as an rms; a zigzag is not asked to settle."""
-    task = tuning_task(write_loop_file(tmp_path, COURSE))
+    task = tuning_task(write_loop_file(tmp_path, PATROL_BOAT + POLE_PLACEMENT))
     made = tune(task, effort=QUICK)
     texts = [*made.reasons, *(f.text for f in made.findings), html(made), gains_toml(made), repr(made)]
     assert not [text for text in texts if re.search(r"\bnan\b", text)]
@@ -172,8 +160,8 @@ def test_no_sentence_has_a_number_that_is_none(tmp_path):
 
 
 def test_noise_is_in_the_choice_and_in_what_it_warns_of(tmp_path):
-    noisy = tuning_task(write_loop_file(tmp_path, COURSE + '[sensors]\nnoise = { value = 0.5, unit = "deg" }\n'))
-    quiet = tuning_task(write_loop_file(tmp_path, COURSE))
+    noisy = tuning_task(write_loop_file(tmp_path, PATROL_BOAT + NOISY))
+    quiet = tuning_task(write_loop_file(tmp_path, PATROL_BOAT))
     rough, calm = (tune(task, effort=QUICK) for task in (noisy, quiet))
     assert rough.chosen.gains["KD"] < 0.5 * calm.chosen.gains["KD"]
     assert rough.discrete.noise == pytest.approx(math.radians(0.5))

@@ -117,8 +117,9 @@ def discrete_controller(task: TuningTask, loop: TransferLoop) -> DiscreteControl
     blocks = (*terms, *(block("filter", one) for one in loop.filters))
     reference = None if task.demand is None else _reference_filter(task, loop, task.demand)
     return DiscreteController(
-        sampling.sample_s, blocks, sampling.dead_time, sampling.noise, sampling.resolution, reference
-    )
+        sampling.sample_s, blocks, sampling.dead_time, sampling.noise, sampling.resolution, reference,
+        tuple(_component("sensor", block) for block in loop.sensor),
+    )  # fmt: skip
 
 
 def _reference_filter(task: TuningTask, loop: TransferLoop, demand: Demand) -> ReferenceFilter:
@@ -129,15 +130,15 @@ def _reference_filter(task: TuningTask, loop: TransferLoop, demand: Demand) -> R
 
 def components(loop: TransferLoop) -> tuple[Component, ...]:
     """Return the blocks of a loop, in the order of the signal from its output back to it."""
-
-    def component(role: str, block: Block, gain: str = "") -> Component:
-        return Component(role, block.name, block.num, block.den, gain, block.source)
-
     return (
-        *(component("sensor", block) for block in loop.sensor),
-        *(component("term", term.block, term.gain) for term in loop.terms),
-        *(component("filter", block) for block in loop.filters),
-        *(component("servo", block) for block in loop.servo),
-        component("plant", loop.plant),
-        component("disturbance", loop.disturbance),
+        *(_component("sensor", block) for block in loop.sensor),
+        *(_component("term", term.block, term.gain) for term in loop.terms),
+        *(_component("filter", block) for block in loop.filters),
+        *(_component("servo", block) for block in loop.servo),
+        _component("plant", loop.plant),
+        _component("disturbance", loop.disturbance),
     )
+
+
+def _component(role: str, block: Block, gain: str = "") -> Component:
+    return Component(role, block.name, block.num, block.den, gain, block.source)

@@ -18,11 +18,15 @@ from seatrial.physics.loops import TransferLoop, plant_model
 from seatrial.physics.simulate.closed_loop import UNLIMITED, ActuatorLimits, ClosedLoop
 from seatrial.physics.simulate.sampled_controller import sample_noise, simulation_step, steps_a_sample
 
-SEEDS, _CYCLES = 8, 60  # realisations, and cycles of the output's mean frequency in each; chosen
+SEEDS = 8  # realisations; chosen
+_ACCURACY = (
+    0.01  # standard error of the output's rms over all realisations, as a share: a fifth of what matters; chosen
+)
+_BINS = 200  # of the output's density over the logarithm of the frequency; chosen
 _STEP_SHARE = 0.1  # of the fastest pole's time constant, of a step; chosen
-_MOST_STEPS = 300_000  # of a realisation; chosen
+_MOST_STEPS = 1_000_000  # of a realisation; chosen
 _RUN_IN = 5.0  # time constants of the slowest pole, before what is counted; chosen
-_COUNTED = 20.0  # the same, that are counted at least; chosen
+_EDGE = 1e-9  # share by which the bins reach beyond the outermost frequencies: rounding
 LEAST_FREQUENCY = 1e-9  # rad/s: a wave that keeps up with the ship
 SIGNALS = ("output", "actuator", "actuator_rate")
 
@@ -80,22 +84,33 @@ def named_signals(values: Array) -> dict[str, float]:
 def disturbance_clock(
     met: Seaway | SlowDisturbance, loop: TransferLoop, inner: TransferLoop | None = None
 ) -> DisturbanceClock:
-    """Return steps short for the fastest pole, a run-in for the slowest, and enough cycles of the output.
+    """Return steps short for the fastest pole, a run-in for the slowest, and enough of the output to know its rms.
 
     inner: a loop within this one, whose samples the steps divide.
     """
     spectrum = met.exposure(loop)
     omega = spectrum.omega_e
     energy = spectrum.energy * np.abs(_response(loop, omega)) ** 2
-    mean = float(np.sum(omega * energy) / np.sum(energy))
     poles = loop.closed_loop_poles
     slowest = 1.0 / float(-poles.real.max())
     moving = poles if loop.sampling is None else np.concatenate([loop.plant.poles, loop.disturbance.poles])
     sampling = loop.sampling if inner is None else inner.sampling
     dt = simulation_step(sampling, _STEP_SHARE / float(np.abs(moving).max()))
-    counted = max(_CYCLES * 2.0 * math.pi / mean, _COUNTED * slowest)
+    counted = max(_time_to_know(omega, energy), _RUN_IN * slowest)
     count = min(math.ceil((_RUN_IN * slowest + counted) / dt), _MOST_STEPS)
     return DisturbanceClock(dt, count, min(math.ceil(_RUN_IN * slowest / dt), count // 2))
+
+
+def _time_to_know(omega: Array, energy: Array) -> float:
+    """Return how long [s] each realisation lasts for the rms to be known to `_ACCURACY`.
+
+    The variance of a Gaussian signal of one-sided density S is known over a time T with the variance 2 pi / T int S^2
+    (Bendat & Piersol 2010, Random Data, section 8.2), its rms to half of that share. omega, energy: (n,), S d omega.
+    """
+    w = np.maximum(omega, LEAST_FREQUENCY)
+    edges = np.geomspace(w.min() * (1.0 - _EDGE), w.max() * (1.0 + _EDGE), _BINS + 1)
+    share = np.histogram(w, edges, weights=energy)[0] / np.sum(energy)
+    return 2.0 * math.pi * float(np.sum(share**2 / np.diff(edges))) / (4.0 * _ACCURACY**2 * SEEDS)
 
 
 def _response(loop: TransferLoop, omega: Array) -> Complex:

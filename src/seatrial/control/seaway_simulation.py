@@ -22,6 +22,7 @@ from seatrial.physics.loops import LoopSignal, TransferLoop, WaveEffect
 from seatrial.physics.loops.state_space import plant_model
 from seatrial.physics.sea.realise import Spacing, WaveComponents, realise, short_crested
 from seatrial.physics.simulate.closed_loop import UNLIMITED, ActuatorLimits, ClosedLoop
+from seatrial.physics.simulate.sampled_controller import sample_noise
 
 LONG_CRESTED_LINES, SHORT_CRESTED_LINES = 800, 1600  # wave components of a simulated sea; chosen
 RUN_IN_SECONDS = 100.0  # before what is counted: several swings of any ship; chosen
@@ -69,12 +70,14 @@ def seaway_reductions(task: TuningTask, loop: TransferLoop, gains: Array, seed: 
     seaway, trials = _sea_and_trials(task)
     steered, everything = closed_loop(task, loop, gains, seaway.U, trials.dt), _actuator_limits(task)
 
-    def of_one(sea: Array) -> list[float]:
+    seas = disturbance_series(seaway, trials, seed)
+
+    def of_one(number: int) -> list[float]:
         stages = (UNLIMITED, everything.without_stall, everything)
-        return [_rms(task, steered, sea, seaway, limits) for limits in stages]
+        return [_rms(task, steered, seas[number], seaway, limits, seed + number) for limits in stages]
 
     free = np.array(_uncontrolled_rms(task, seaway, seed))
-    return 1.0 - np.array(map_in_threads(of_one, disturbance_series(seaway, trials, seed))) / free[:, None]
+    return 1.0 - np.array(map_in_threads(of_one, range(len(seas)))) / free[:, None]
 
 
 def _sea_and_trials(task: TuningTask) -> tuple[Seaway, SimulationSettings]:
@@ -94,15 +97,17 @@ def _uncontrolled_rms(task: TuningTask, seaway: Seaway, seed: int) -> tuple[floa
     assert task.simulation is not None
     still = closed_loop(task, task.loop, np.zeros(len(task.loop.terms)), seaway.U, task.simulation.dt)
     seas = list(disturbance_series(seaway, task.simulation, seed))
-    made = tuple(map_in_threads(lambda sea: _rms(task, still, sea, seaway, UNLIMITED), seas))
+    made = tuple(map_in_threads(lambda sea: _rms(task, still, sea, seaway, UNLIMITED, seed), seas))
     if not min(made) > 0.0:
         raise InputError(f"the sea '{seaway.description}' does not move the ship; take another heading or a higher sea")
     return made
 
 
-def _rms(task: TuningTask, run: ClosedLoop, sea: Array, seaway: Seaway, limits: ActuatorLimits) -> float:
-    """Return the rms of the motion that counts of a run in a sea (1 + p, n), after the run-in."""
-    states, _ = run.run(*_disturbed_by(run, sea, seaway, limits))
+def _rms(task: TuningTask, run: ClosedLoop, sea: Array, seaway: Seaway, limits: ActuatorLimits, seed: int) -> float:
+    """Return the rms of the motion that counts of a run in a sea (1 + p, n), after the run-in; seed: of the noise."""
+    sampling = run.loop.sampling
+    noise = None if sampling is None else sample_noise(sampling, sea.shape[1], seed)
+    states, _ = run.run(*_disturbed_by(run, sea, seaway, limits), noise=noise)
     return float(np.std(_motion(task, run, states, sea, seaway)[round(RUN_IN_SECONDS / run.dt) :]))
 
 

@@ -159,9 +159,10 @@ def _checked_front(
         return made
     live = np.ptp(known, axis=0) > 0.0
     nadir = known[:, live].max(axis=0)
-    if not live.any():
+    whole = hypervolume(known[:, live], nadir) if live.any() else 0.0
+    if not whole > 0.0:
         return made
-    return replace(made, hypervolume=hypervolume(made.objectives[:, live], nadir) / hypervolume(known[:, live], nadir))
+    return replace(made, hypervolume=hypervolume(made.objectives[:, live], nadir) / whole)
 
 
 def _run_checks(

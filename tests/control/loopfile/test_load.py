@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 from tests.control.loop_files import AUTOPILOT, FIN, model_file, nomoto, roll, write_loop_file
 
+from seatrial.control.controller import describe_controller, discrete_controller
+from seatrial.control.gain_evaluation import gain_evaluator
 from seatrial.control.loopfile.load import tuning_task
 from seatrial.control.loopfile.schema import loop_schema
 from seatrial.control.task import Effectiveness, Seaway, SimulationSettings, SlowDisturbance
@@ -17,6 +19,7 @@ from seatrial.core.values import InputError
 from seatrial.physics.loops import HullFactor, LoopSignal, Sampling, YawAcceleration
 from seatrial.physics.loops.discrete import default_sample_time
 from seatrial.physics.loops.fin import GYRO, SERVO, Preamplifier, fin_loop
+from seatrial.physics.loops.performance import calm_actuator
 from seatrial.physics.sea.sea_state import sea_state
 
 FIN_LINES = sum(bool(line.strip()) for line in FIN.splitlines())
@@ -238,6 +241,20 @@ fixed = true"""
     ] == pytest.approx(1)
     assert loop.servo[0].den == (0.5, 1.0)
     assert (loop.gains["K1"].value, loop.gains["K2"].value, loop.gains.free_names) == (5.0, 3.0, ("K1",))
+
+
+def test_fins_read_a_noisy_roll_angle_through_their_sensor(tmp_path: Path) -> None:
+    """And gains.toml holds what lies between the angle and its sample."""
+    noisy = FIN + '[sensors]\nnoise = { value = 0.05, unit = "deg" }\n'
+    task = tuning_task(write_loop_file(tmp_path, noisy))
+    assert task.loop.sampling.noise == pytest.approx(math.radians(0.05))
+    written = discrete_controller(task, task.loop)
+    assert [(one.num, one.den) for one in written.sensor] == [(one.num, one.den) for one in task.loop.sensor]
+    quiet = tuning_task(write_loop_file(tmp_path, FIN))
+    rates = [
+        describe_controller(gain_evaluator(one), "", one.loop.gain_values).rms["actuator_rate"] for one in (task, quiet)
+    ]
+    assert math.sqrt(rates[0] ** 2 - rates[1] ** 2) == pytest.approx(calm_actuator(task.loop).rate, rel=1e-6)
 
 
 def test_gains_and_rivals_as_the_file_says(tmp_path: Path) -> None:

@@ -13,6 +13,7 @@ from seatrial.control.verification.logged_changes import logged_changes
 from seatrial.control.verification.refitted_model import refitted_coefficients
 from seatrial.control.verification.verify import verify
 from seatrial.core.values import InputError, Record
+from seatrial.physics.loops import Sampling
 from seatrial.physics.loops.structures import notch, with_filters
 
 LOOP, VALUES = autopilot_task().loop, np.array(list(GAINS.values()))
@@ -84,6 +85,14 @@ def test_what_changed_is_named_and_an_unchanged_ship_passes() -> None:
     assert "gains-differ" in [f.code for f in verify(task, others, [course_log(52)]).findings]
 
 
+def test_a_controller_that_samples_is_predicted_as_it_samples() -> None:
+    """A dead time of a second and a half behind samples of half a second."""
+    sampling = Sampling(0.5, dead_time=1.5)
+    log = course_log(2, weather=0.0, sampling=sampling)
+    for one in verify_changes(autopilot_task(sampling), VALUES, [log]).changes:
+        assert np.max(np.abs(one.moved - one.predicted_moved)) < 0.002
+
+
 def test_the_loop_of_the_log_is_recognised() -> None:
     task = autopilot_task()
     notched = with_filters(task.loop, notch(0.5, 0.5, 0.1))
@@ -92,7 +101,7 @@ def test_the_loop_of_the_log_is_recognised() -> None:
                     for one in (task.loop, notched))  # fmt: skip
     assert alone.coherence > 0.95 > other.coherence
     with_both = replace(task, loop=notched, extended_structures=(task.loop,))
-    assert verify_changes(with_both, VALUES, [log]).followed == alone
+    assert verify_changes(with_both, VALUES, [log]).gains.followed == alone
 
 
 @pytest.mark.parametrize(

@@ -240,11 +240,6 @@ def _sampling(file: LoopFile, plant: LoopPlant, loop: TransferLoop) -> Sampling:
         key: 0.0 if value is None else positive_value(value, unit, f"sensors.{key}")
         for key, value in (("noise", file.sensors.noise), ("resolution", file.sensors.resolution))
     }
-    if loop.sensor and any(errors.values()):
-        raise InputError(
-            "sensors: noise and resolution are those of the output itself, which this controller sees through a sensor "
-            "of its own; leave the table out"
-        )
     if table.sample_s is None:
         shortest = round_sample_time(dead_time / _DEAD_TIME_SAMPLES)
         return Sampling(max(default_sample_time(loop), shortest), dead_time, **errors)

@@ -7,7 +7,7 @@ interval holds 95 % of them; what was achieved lies inside or outside.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -22,17 +22,21 @@ from seatrial.control.demand import (
 from seatrial.control.ship.parameter_draws import draw_parameters
 from seatrial.control.ship.plant_as_model import plant_as_model
 from seatrial.control.task import Demand, TrimmedShip, TuningTask
-from seatrial.control.verification.followed_gains import FollowedGains, followed_gains
+from seatrial.control.verification.followed_gains import FollowedGains, GainTest, followed_gains
 from seatrial.control.verification.logged_changes import LoggedChange, logged_changes
 from seatrial.core.results.verification import VerifiedChange, VerifiedQuantity
 from seatrial.core.values import Array, InputError, Record, frozen
 from seatrial.core.values.channel_text import channel_unit
 from seatrial.physics.loops import TransferLoop
-from seatrial.physics.loops.autopilot import FeedForward
 from seatrial.physics.simulate.closed_loop import ActuatorLimits
+from seatrial.physics.simulate.sampled_controller import simulation_step, steps_a_sample
 
 SHIPS, WEATHERS = 40, 10  # ships drawn from the fit, and moments of the log's weather for each; chosen
 _STEP_SHARE = 0.2  # step of a simulation as a share of the fastest pole's time constant; chosen
+_ROUNDING = 1e-9  # of a sample
+# logarithm of the factor by which less of the motion is left where stops explain it; a half; chosen
+_EXPLAINED = math.log(2.0)
+_SHORT_OF_LIMIT = 0.9  # of the declared limit, beyond which an actuator that stops has met it; chosen
 _SMOOTHING = 0.5  # time constants of the reference over which waves are averaged before a motion is judged; chosen
 _TAILS = (0.025, 0.5, 0.975)  # quantiles of the prediction: 95 % interval and median
 _SETTLED = 1.5  # settling times by the model after which the log shows weather alone; chosen
@@ -53,7 +57,7 @@ class ChangeLog:
 
     changes: tuple[VerifiedChange, ...]
     quantities: tuple[VerifiedQuantity, ...]
-    followed: FollowedGains
+    gains: GainTest
 
 
 def verify_changes(task: TuningTask, gains: Array, records: Sequence[Record], seed: int = 0) -> ChangeLog:
@@ -94,11 +98,37 @@ def verify_changes(task: TuningTask, gains: Array, records: Sequence[Record], se
     quantities = tuple(
         _quantity(name, unit, sampled[:, k], float(np.mean(achieved[:, k]))) for k, (name, unit) in enumerate(names)
     )
+    worn = (_worn(logged, some, weather, rng) for some in answers)
+    simulated = np.array([followed_gains(task, loop, one).statistics for one in worn])
     changes = tuple(
         _verified_change(c, a, _judged(c, a, demand), row, loop)
         for c, a, row in zip(logged, nominal, achieved, strict=True)
     )
-    return ChangeLog(changes, quantities, followed)
+    return ChangeLog(changes, quantities, _gain_test(task, loop, logged, GainTest(followed, simulated)))
+
+
+def _worn(
+    logged: Sequence[LoggedChange], answers: Sequence[_Answer], weather: Sequence[Array], rng: np.random.Generator
+) -> list[LoggedChange]:
+    """Return the changes of a log as a simulated ship would have made them in the log's weather."""
+    met = (_in_weather(one, weather, rng) for one in answers)
+    return [replace(c, output=a.output, actuator=a.actuator) for c, a in zip(logged, met, strict=True)]
+
+
+def _gain_test(task: TuningTask, loop: TransferLoop, logged: Sequence[LoggedChange], declared: GainTest) -> GainTest:
+    """Return the test with an actuator that stops short of its limit, where that explains half of what is left."""
+    moved = np.concatenate([change.actuator + change.trim for change in logged])
+    stops = float(moved.min()), float(moved.max())
+    if max(map(abs, stops)) > _SHORT_OF_LIMIT * task.constraints.limit:
+        return declared
+    # what gains order is known but for what their integral held before: stops count from zero, or from the mean
+    for held in (0.0, logged[0].trim):
+        followed = followed_gains(task, loop, logged, (stops[0] - held, stops[1] - held))
+        stopped = replace(declared, followed=followed, stops=stops)
+        explained = float(declared.followed.statistics[1] - followed.statistics[1])
+        if stopped.is_alike and explained > _EXPLAINED:
+            return stopped
+    return declared
 
 
 def _loop_of_log(task: TuningTask, gains: Array, logged: Sequence[LoggedChange]) -> tuple[TransferLoop, FollowedGains]:
@@ -111,23 +141,32 @@ def _loop_of_log(task: TuningTask, gains: Array, logged: Sequence[LoggedChange])
 
 
 def _answer(task: TuningTask, ship: TrimmedShip, loop: TransferLoop, gains: Array, change: LoggedChange) -> _Answer:
-    """Return what a ship does with the change as it was ordered, without weather."""
+    """Return what a ship does with the change as it was ordered, without weather, by the loop as it samples."""
     demand: Demand = task.demand  # type: ignore[assignment]
-    loop = loop.continuous
-    fastest = float(np.abs(loop.closed_loop_poles).max())
-    parts = max(1, math.ceil(change.dt * fastest / _STEP_SHARE))
-    count, dt = (len(change.order) - 1) * parts + 1, change.dt / parts
-    order = np.repeat(change.order, parts)[parts - 1 :]
-    rate = reference_rate(task, loop, demand) if change.is_step else math.inf
-    motion = reference_model(order, dt, demand.time_constant, rate)
-    level, law = motion.level, FeedForward(0.0, 0.0, 0.0)
+    loop = _without_noise(loop)
+    moving = loop.closed_loop_poles if loop.sampling is None else loop.plant.poles
+    dt = simulation_step(loop.sampling, min(change.dt, _STEP_SHARE / float(np.abs(moving).max())))
+    every = 1 if loop.sampling is None else steps_a_sample(loop.sampling, dt)
+    at = change.dt * np.arange(len(change.order))
+    time = dt * np.arange(math.ceil(at[-1] / dt) + 1)
+    seen = time[::every]
     if change.is_step:
-        law = feed_forward(loop, demand)
+        order = change.order[np.minimum(np.ceil(seen / change.dt - _ROUNDING).astype(int), len(at) - 1)]
+        motion = reference_model(order, every * dt, demand.time_constant, reference_rate(task, loop, demand))
+        sampled, fed = motion.level, motion.fed_forward(feed_forward(loop, demand))
     else:
-        level = np.interp(np.arange(count), parts * np.arange(len(change.order)), change.order)
+        sampled, fed = np.interp(seen, at, change.order), np.zeros(len(seen))
+    level, fed = (np.repeat(one, every)[: len(time)] for one in (sampled, fed))
     limits = ActuatorLimits(task.constraints.limit, task.constraints.rate)
-    output, moved = simulate_tracking(ship, loop, gains, limits, dt, level, motion.fed_forward(law))
-    return _Answer((output - output[0])[::parts], (moved - moved[0])[::parts])
+    output, moved = simulate_tracking(ship, loop, gains, limits, dt, level, fed)
+    return _Answer(np.interp(at, time, output - output[0]), np.interp(at, time, moved - moved[0]))
+
+
+def _without_noise(loop: TransferLoop) -> TransferLoop:
+    """Return the loop with a sensor without errors: what those of the log do is part of its weather."""
+    if loop.sampling is None:
+        return loop
+    return replace(loop, sampling=replace(loop.sampling, noise=0.0, resolution=0.0))
 
 
 def _in_weather(answer: _Answer, weather: Sequence[Array], rng: np.random.Generator) -> _Answer:

@@ -23,6 +23,7 @@ class LoggedChange:
 
     Attributes:
         start: s on the record's clock; order, output, actuator: (n,), SI.
+        trim: of the actuator, taken off.
         is_step: whether the order jumped; else the log holds what a filter made of it.
     """
 
@@ -32,6 +33,7 @@ class LoggedChange:
     order: Array
     output: Array
     actuator: Array
+    trim: float
     is_step: bool
 
     @property
@@ -93,11 +95,11 @@ def _changes_of_record(record: Record, channels: tuple[str, str, str], demand: D
     ]
     if not spans:
         return []
-    trim = np.mean(np.concatenate([actuator[(first + stop) // 2 : stop + 1] for first, stop, _ in spans]))
+    trim = float(np.mean(np.concatenate([actuator[(first + stop) // 2 : stop + 1] for first, stop, _ in spans])))
     return [
         LoggedChange(
             record.name, float(record.time[first]), record.dt, order[first : stop + 1] - order[first],
-            output[first : stop + 1] - order[first], actuator[first : stop + 1] - trim, is_step,
+            output[first : stop + 1] - order[first], actuator[first : stop + 1] - trim, trim, is_step,
         )
         for first, stop, is_step in spans
     ]  # fmt: skip

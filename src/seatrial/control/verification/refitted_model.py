@@ -16,9 +16,10 @@ from seatrial.data.trial.earlier_result import JointPrior
 from seatrial.estimation.identify import identify
 
 _SOURCE = "the model that was tuned on"
-# standard deviations of a coefficient as shares of it: of a ship that may have changed, as a prior; of the same ship on
-# another day (loading, fouling, weather), which is no finding; chosen
-_OTHER_DAY, _SAME_SHIP = 0.5, 0.08
+# standard deviation of a coefficient of a ship that may have changed, as a share of it: a prior so wide that where the
+# log knows a coefficient to 5 % it draws the estimate by no more than 1 % of the difference; chosen
+_OTHER_DAY = 0.5
+_CHANCE = 0.01  # share of unchanged ships of which some coefficient is blamed; chosen
 
 
 def refitted_coefficients(ship: TrimmedShip, records: Sequence[Record], length: float) -> tuple[ModelCorrection, ...]:
@@ -61,11 +62,11 @@ def _correction(
 ) -> ModelCorrection:
     """Return a coefficient before the log and with it; moved where both errors together do not explain the difference.
 
-    At 95 % over all `count` coefficients (Bonferroni).
+    The test of a difference of two estimates (Wald), over all `count` coefficients together (Bonferroni).
     """
     if after.lower is None or after.upper is None:
         return ModelCorrection(name, unit, value, deviation, after.estimate, np.nan, np.nan, is_moved=False)
     one = (after.upper - after.lower) / (2.0 * float(ndtri(0.975)))  # the interval holds 95 % of a normal error
-    most = float(ndtri(1.0 - 0.025 / count)) * math.hypot(one, deviation, _SAME_SHIP * value)
+    most = float(ndtri(1.0 - 0.5 * _CHANCE / count)) * math.hypot(one, deviation)
     is_moved = abs(after.estimate - value) > most
     return ModelCorrection(name, unit, value, deviation, after.estimate, after.lower, after.upper, is_moved)

@@ -1,12 +1,13 @@
 """A tuned controller and the log of its trial in, a verification out."""
 
+import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from seatrial.control.task import TuningTask
 from seatrial.control.verification.course_changes import verify_changes
-from seatrial.control.verification.followed_gains import FollowedGains
+from seatrial.control.verification.followed_gains import GainTest
 from seatrial.control.verification.model_corrections import model_corrections
 from seatrial.control.verification.refitted_model import refitted_coefficients
 from seatrial.control.verification.stabiliser import StabiliserLog, prior_deviations, verify_stabiliser
@@ -20,10 +21,10 @@ from seatrial.core.results.verification import (
 )
 from seatrial.core.values import Array, Finding, InputError, Record, Severity, spelling_hint
 from seatrial.core.values.versions import versions
+from seatrial.data.folder.orders import channel_display_unit
 from seatrial.physics.loops import margins
 
-_LEAST_COHERENCE = 0.95  # of the actuator with what the gains order, below which they were not on; chosen
-_GAIN_TOLERANCE = 0.15  # of what the gains order, beyond which the actuator did something else; chosen
+_GAIN_TOLERANCE = 0.15  # of what a stabiliser's gains order, beyond which the fins did something else; chosen
 
 
 def verify(task: TuningTask, gains: Mapping[str, float], records: Sequence[Record]) -> Verification:
@@ -62,20 +63,32 @@ def _of_changes(task: TuningTask, gains: Array, records: Sequence[Record]) -> Ve
     except InputError as error:
         text = f"the model was not estimated anew from the log: {error}"
         findings = (Finding(Severity.INFO, "model-as-it-was", text, "", "identify it from a trial of its own"),)
-    followed = _followed_findings(task, log.followed)
+    followed = _followed_findings(task, log.gains)
     return _verification(
         task, gains, log.quantities, corrections, (*findings, *followed, *_moved_findings(corrections)),
         changes=log.changes,
     )  # fmt: skip
 
 
-def _followed_findings(task: TuningTask, followed: FollowedGains) -> list[Finding]:
-    """Return whether other gains were on than those that are verified."""
-    if abs(followed.ratio - 1.0) <= _GAIN_TOLERANCE and followed.coherence >= _LEAST_COHERENCE:
+def _followed_findings(task: TuningTask, test: GainTest) -> list[Finding]:
+    """Return whether other gains were on than those that are verified, or the actuator stopped short of its limit."""
+    actuator, followed = task.loop.actuator, test.followed
+    if test.stops is not None:
+        factor, unit = channel_display_unit(actuator)
+        least, most, limit = (factor * angle for angle in (*test.stops, task.constraints.limit))
+        text = (
+            f"'{actuator}' stops at {least:.3g} and {most:.3g} {unit} where these gains order more, short of the "
+            f"declared {limit:.3g} {unit}"
+        ).replace(" 1 ", " ")
+        advice = "look for what stops it, or declare that limit and tune again"
+        return [Finding(Severity.WARNING, "actuator-stopped", text, "", advice)]
+    if test.is_followed:
         return []
+    ratio, rest = test.simulated.mean(axis=0)
     text = (
-        f"'{task.loop.actuator}' moves {followed.ratio:.2f} times as much as these gains order of what was measured, "
-        f"with a coherence of {followed.coherence:.2f}"
+        f"'{actuator}' moves {followed.ratio:.2f} times as much as these gains order of what was measured, with a "
+        f"coherence of {followed.coherence:.3f}, where ships with these gains have {ratio:.2f} and "
+        f"{math.sqrt(1.0 - math.exp(rest)):.3f} in this weather"
     )
     advice = "check that these gains were on, and the actuator's limits, servo and dead time in the loop file"
     return [Finding(Severity.WARNING, "gains-differ", text, "", advice)]

@@ -84,6 +84,9 @@ class DiscreteController:
     noise: Annotated[float, Field(description="rms of each sample of the output, SI, as it was simulated")] = 0.0
     resolution: Annotated[float, Field(description="step in which the output is read, SI, as it was simulated")] = 0.0
     reference: Annotated[ReferenceFilter | None, Field(description="null: no demand is followed")] = None
+    sensor: Annotated[
+        tuple[Component, ...], Field(description="in s, in a row between the error of the output and its sample")
+    ] = ()
 
 
 @dataclass(frozen=True)

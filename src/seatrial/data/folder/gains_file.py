@@ -58,7 +58,7 @@ def gains_toml(tuning: Tuning) -> str:
 
 _ORDER = (
     "order = filters in turn of the sum of gain * term(reference - output), plus what is fed forward; it stands for a "
-    "sample"
+    "sample; a sensor, num / den in s, lies before the sample, noise and resolution before the sensor"
 )
 _HOLD = (
     "achieved moves to the order no faster than rate, within limit of [constraints]; a term with hold = 1 or -1 keeps "
@@ -70,14 +70,23 @@ _REFERENCE = (
 )
 
 
+_TRACK = (
+    "once a sample psi_d = chi - atan((e + sigma q) / Delta), e to starboard of the leg of course chi, q' = Delta e / "
+    "((e + sigma q)^2 + Delta^2); Delta the lookahead, sigma the integral gain; psi_d, no faster than the order's rate, "
+    "is the reference of [discrete] in place of [reference], and nothing is fed forward"
+)
+
+
 def _discrete_table(controller: DiscreteController) -> dict[str, Any]:
     """Return the controller as it was simulated."""
+    sensor = [{"name": one.name, "num": list(one.num), "den": list(one.den)} for one in controller.sensor]
     return {
         "sample_s": controller.sample_s,
         "dead_time_s": controller.dead_time,
         "noise": controller.noise,
         "resolution": controller.resolution,
         "rule": "Tustin",
+        **({"sensor": sensor} if sensor else {}),
         "order": _ORDER,
         "hold": _HOLD,
         "blocks": [asdict(block) for block in controller.blocks],
@@ -197,15 +206,16 @@ def _margin_table(c: Controller) -> dict[str, float]:
     })  # fmt: skip
 
 
-def _track_table(track: TrackKeeping) -> dict[str, float]:
-    """Return the guidance of a track: psi_d = chi - atan((e + sigma q) / Delta), see `TrackKeeping`."""
-    return _finite_numbers({
+def _track_table(track: TrackKeeping) -> dict[str, Any]:
+    """Return the guidance of a track with its law, see `TrackKeeping`."""
+    numbers = _finite_numbers({
         "lookahead_m": track.lookahead,
         "integral_gain_m_per_s": track.integral_gain,
         "order_rate_deg_per_s": math.degrees(track.order_rate),
         "speed_m_per_s": track.speed,
         "Ms": track.Ms,
     })  # fmt: skip
+    return {"rule": _TRACK, **numbers}
 
 
 def _station_table(station: StationKeeping) -> dict[str, Any]:

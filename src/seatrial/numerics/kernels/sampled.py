@@ -1,7 +1,8 @@
 """The command of a controller that samples: difference equations, an order that is held and acts late, and limits.
 
 `sampled_controller` is a command(t, x, memory, u), called once at the start of each step of `steer`; every so many
-steps the controller samples. Between them the order stands, waits in a queue for the dead time, and moves the servo,
+steps the controller samples the output, misread by noise and by its resolution until the next sample, through the
+sensor. Between samples the order stands, waits in a queue for the dead time, and moves the servo,
 exactly for an input that is held; the actuator follows within its limits, and its mean over the step acts.
 
 Memory: the head of `feedback`, then, at the places it names, sensor (E by columns, g0, g1, c, d, states, scratch, last
@@ -32,6 +33,7 @@ from seatrial.numerics.kernels.feedback import (
     OUTPUT,
     QUEUE,
     QUEUE_SIZE,
+    READING_ERROR,
     RESOLUTION,
     SAMPLE_SLEW,
     SENSOR,
@@ -55,26 +57,42 @@ BLOCK_ORDER, BLOCK_GAIN, BLOCK_HOLDS, BLOCK_LAST, BLOCK_HEAD = range(5)
 
 
 @njit(**OPTIONS)
-def _sensed(memory, error):
-    """Return what the sensor makes of an error that ran straight since the last step, and keep it."""
+def _sense(memory, error):
+    """Move the sensor on by an error that ran straight since the last step, and what was misread then and stood."""
     n, at = int(memory[SENSOR_ORDER]), int(memory[SENSOR])
     g0 = at + n * n
     g1, c = g0 + n, g0 + 2 * n
     states, scratch = c + n + 1, c + 2 * n + 1
-    last = scratch + n
+    last, misread = scratch + n, memory[READING_ERROR]
     if memory[STEP] > 0.0:
         for i in range(n):
-            total = memory[g0 + i] * memory[last] + memory[g1 + i] * error
+            total = memory[g0 + i] * (memory[last] + misread) + memory[g1 + i] * (error + misread)
             for j in range(n):
                 total += memory[at + j * n + i] * memory[states + j]
             memory[scratch + i] = total
         for i in range(n):
             memory[states + i] = memory[scratch + i]
     memory[last] = error
+
+
+@njit(**OPTIONS)
+def _sensed(memory, error):
+    """Return what the sensor shows of an error."""
+    n = int(memory[SENSOR_ORDER])
+    c = int(memory[SENSOR]) + n * n + 2 * n
     seen = memory[c + n] * error
     for i in range(n):
-        seen += memory[c + i] * memory[states + i]
+        seen += memory[c + i] * memory[c + n + 1 + i]
     return seen
+
+
+@njit(**OPTIONS)
+def _misread(memory, output, noise):
+    """Return by how much a sample of the output is read too small."""
+    read, unit = output + noise, memory[RESOLUTION]
+    if unit > 0.0:
+        read = unit * math.floor(read / unit + 0.5)
+    return output - read
 
 
 @njit(**OPTIONS)
@@ -144,15 +162,13 @@ def sampled_controller(_, x, memory, u):
     disturbance = reference + count + 1
     fed_forward = disturbance + count
     angles = fed_forward + count + 1
-    error = _sensed(memory, memory[reference + k] - x[int(memory[OUTPUT])])
+    output = x[int(memory[OUTPUT])]
+    error = memory[reference + k] - output
+    _sense(memory, error)
     if k % every == 0:
-        unit, level = memory[RESOLUTION], 0.0
-        if memory[SENSOR_ORDER] == 0.0:
-            level = memory[reference + k]
-        seen = level - error + memory[int(memory[NOISE]) + k // every]
-        if unit > 0.0:
-            seen = unit * math.floor(seen / unit + 0.5)
-        memory[LAST_ORDER], excess = _ordered(memory, level - seen, memory[fed_forward + k])
+        misread = _misread(memory, output, memory[int(memory[NOISE]) + k // every])
+        memory[READING_ERROR] = misread
+        memory[LAST_ORDER], excess = _ordered(memory, _sensed(memory, error + misread), memory[fed_forward + k])
         memory[ORDER_EXCESS] = excess
     queue, size = int(memory[QUEUE]), int(memory[QUEUE_SIZE])
     late = memory[LAST_ORDER]

@@ -146,6 +146,20 @@ class TransferLoop:
         seen = self._held.frequency_response(self.sampling.in_w(omega))
         return np.asarray(seen / self._around_response(omega), dtype=np.complex128)
 
+    def misreading_paths(self, omega: Array) -> tuple[Complex, Complex]:
+        """Return output and actuator for an error in each sample of a sampled loop, over -L S, each (n,).
+
+        It stands before the sensor until the next sample. Without a sensor they are 1 and 1 / P.
+        """
+        if self.sampling is None:
+            raise InputError(f"loop '{self.name}' takes no samples, of which errors were known; give it a sample time")
+        w = self.sampling.in_w(omega)
+        seen = self._held.frequency_response(w)
+        misread = held(self.sensor, replace(self.sampling, dead_time=0.0)).frequency_response(w) / seen
+        moved = in_series("servo", self.servo).frequency_response(omega) * self.sampling.hold(omega)
+        moving = held((*self.servo, self.plant), self.sampling).frequency_response(w)
+        return moving * misread, moved * misread
+
     def _term_responses(self, omega: Array) -> Complex:
         """Return terms and filters, (g, n)."""
         at = omega if self.sampling is None else self.sampling.in_w(omega)

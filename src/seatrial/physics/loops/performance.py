@@ -95,18 +95,18 @@ class Performance:
     def _node_weights(self) -> tuple[Array, Array, Array, Array]:
         """What |S|^2, |L S|^2, both, and |L S|^2 in the output weigh at each node, of exposure and noise.
 
-        Of the exposure |W D|^2 and |W D / P|^2 times the energy, see the module. Noise n of the samples moves the
-        output by -T n, the actuator by -T / P n and a point by -T P_q / P n.
+        Of the exposure |W D|^2 and |W D / P|^2 times the energy, see the module. Noise of the samples moves output and
+        actuator as `misreading_paths` say, and a point by its plant as the actuator.
         """
         met, seen, heard = self._exposure_weights, len(self.spectrum.omega_e), len(self._noise[0])
         made = [np.concatenate([part, np.zeros((len(part), heard))], axis=1) for part in met]
         omega, energy = self._noise
         in_output = np.zeros((len(met[0]), seen + heard))
         if heard:
-            moved = energy / np.abs(self.loop.plant_response(omega)) ** 2
+            heard_in_output, moved = (np.abs(one) ** 2 * energy for one in self.loop.misreading_paths(omega))
             rows = {signal: [row for row in self.variances if row.signal is signal] for signal in _ORDER}
             for i, row in enumerate(rows[LoopSignal.OUTPUT]):
-                in_output[i, seen:] = row.magnitude(omega) ** 2 * energy
+                in_output[i, seen:] = row.magnitude(omega) ** 2 * heard_in_output
             for i, row in enumerate(rows[LoopSignal.ACTUATOR]):
                 made[1][i, seen:] = row.magnitude(omega) ** 2 * moved
             for i, row in enumerate(rows[LoopSignal.POINT]):

@@ -105,7 +105,7 @@ def _held(sides: tuple[tuple[tuple[float, ...], tuple[float, ...]], ...], sampli
     T, whole, rest = sampling.sample_s, *_split(sampling)
     stepped, late, now = _stepped(A, b, T, rest)
     n, is_late = len(b), rest > 0.0
-    poles = np.concatenate([np.tanh(0.5 * T * block.poles) for block in made])
+    poles = np.concatenate([np.empty(0), *(np.tanh(0.5 * T * block.poles) for block in made)])
     if is_late:
         stepped = np.block([[stepped, late[:, None]], [np.zeros((1, n + 1))]])
         now = np.concatenate([now, [1.0]])
@@ -117,7 +117,7 @@ def _held(sides: tuple[tuple[tuple[float, ...], tuple[float, ...]], ...], sampli
     E, B = inverse @ (stepped - np.eye(size)), inverse @ now
     # X = x + B u as state: v X = E X + (I - E) B u, y = c X + (d - c B) u
     zeros = _zeros(E, (np.eye(size) - E) @ B, c, float(d - c @ B)) if size else np.empty(0)
-    numerator, denominator = np.poly(zeros).real, np.poly(poles).real
+    numerator, denominator = np.atleast_1d(np.poly(zeros)).real, np.atleast_1d(np.poly(poles)).real
     at = 1j * _middle(poles)
     response = c @ np.linalg.solve(at * np.eye(size) - E, (1.0 - at) * B) + d if size else d
     numerator = numerator * (response / (np.polyval(numerator, at) / np.polyval(denominator, at))).real
