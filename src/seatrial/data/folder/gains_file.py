@@ -72,8 +72,8 @@ _REFERENCE = (
 
 _TRACK = (
     "once a sample psi_d = chi - atan((e + sigma q) / Delta), e to starboard of the leg of course chi, q' = Delta e / "
-    "((e + sigma q)^2 + Delta^2); Delta the lookahead, sigma the integral gain; psi_d, no faster than the order's rate, "
-    "is the reference of [discrete] in place of [reference], and nothing is fed forward"
+    "((e + sigma q)^2 + Delta^2); Delta the lookahead, sigma the integral gain; psi_d, no faster than the order's "
+    "rate, is the reference of [discrete] in place of [reference], and nothing is fed forward"
 )
 
 
