@@ -12,6 +12,7 @@ from seatrial.estimation.estimate.runs import training_runs
 from seatrial.estimation.estimate.settings import INITIAL_STATE_SHIP_LENGTHS
 from seatrial.estimation.estimate.time_scale import characteristic_time
 from seatrial.estimation.identify.box_scale import box_scale, stands_on_box
+from seatrial.estimation.identify.sensor_errors import ErrorInformation, instrument_errors
 from seatrial.estimation.information.symmetries import refuse_unidentifiable, structural_symmetries
 from seatrial.estimation.problem.segments import compared_outputs
 from seatrial.estimation.problem.static_forces import StaticForces
@@ -75,6 +76,11 @@ class Identification:
         scale = box_scale(self.trial.model) if stands_on_box(self.trial) else None
         together = scale.symmetry(self.trial.model, self.outputs) if scale else None
         return (*found, *([together] if together else ()))
+
+    @cached_property
+    def instrument_errors(self) -> ErrorInformation | None:
+        """What the records say of errors of instruments that the model does not have; None: of none."""
+        return instrument_errors(self.estimation, self.runs.records, self.runs.length)
 
     @cached_property
     def estimation(self) -> Estimation:

@@ -16,7 +16,7 @@ from seatrial.estimation.estimate.settings import WEAK_FORM_SHIP_LENGTHS
 from seatrial.estimation.identify.baselines import with_baselines, with_search_baselines
 from seatrial.estimation.identify.identification import Identification
 from seatrial.estimation.identify.search_problem import check_search_settings
-from seatrial.estimation.identify.sensor_errors import with_shown_sensor_errors
+from seatrial.estimation.identify.shown_sensor_errors import with_shown_sensor_errors
 from seatrial.estimation.identify.situation import Situation, situation_of
 from seatrial.estimation.identify.strategies.published import own_estimate_progress, published_fit, refuse_options
 from seatrial.estimation.identify.strategies.recorded_waves import identify_in_recorded_waves

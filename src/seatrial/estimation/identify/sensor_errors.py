@@ -10,10 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from seatrial.core.equations import Model
-from seatrial.core.text.numbers import significant
-from seatrial.core.text.words import enumeration
-from seatrial.core.values import Array, Finding, InputError, Parameters, Record, Severity
+from seatrial.core.values import Array, Record
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import (
     PointEstimate,
@@ -23,12 +20,11 @@ from seatrial.estimation.estimate.point_estimate import (
 )
 from seatrial.estimation.estimate.timing import UNIFORM
 from seatrial.estimation.identify.assumed_information import output_error_estimate
-from seatrial.estimation.identify.identification import Identification
 from seatrial.estimation.information.covariance import inverse
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.numerics.optimise import NormalEquations, levenberg_marquardt
-from seatrial.physics.sensors import Sensors, VelocityReference, with_sensors
-from seatrial.physics.sensors.measured_outputs import lag_name, without_sensors
+from seatrial.physics.sensors import Sensors, VelocityReference
+from seatrial.physics.sensors.measured_outputs import lag_name
 from seatrial.physics.sensors.settings import Antenna, Late
 
 _STEP = 0.1  # of an error's standard deviation, of differences by it; chosen: these are exact where it is linear
@@ -170,13 +166,18 @@ class ErrorInformation:
     """Gradient (m,) and curvature (m, m) by errors of instruments with all else at its optimum, priors left out.
 
     Attributes:
-        errors: in order; by_errors: how the shared unknowns follow them, (shared, m).
+        suspects: whose errors they are, in order; by_errors: how the shared unknowns follow them, (shared, m).
     """
 
-    errors: tuple[SensorError, ...]
+    suspects: tuple[Suspect, ...]
     gradient: Array
     curvature: Array
     by_errors: Array
+
+    @property
+    def errors(self) -> tuple[SensorError, ...]:
+        """Of all suspects, in order."""
+        return tuple(e for one in self.suspects for e in one.errors)
 
     def estimate(self, among: Sequence[int], deviations: Array) -> tuple[Array, Array, float]:
         """Return values (m,) and covariance (m, m) of these errors, all others none, and twice the gain of likelihood.
@@ -192,23 +193,23 @@ class ErrorInformation:
         return values, covariance, float(-self.gradient[among] @ values[among])
 
 
-def error_information(estimation: Estimation, errors: Sequence[SensorError]) -> ErrorInformation:
-    """Return what output error says of these errors, under prediction error that over segments.
+def error_information(estimation: Estimation, among: Sequence[Suspect]) -> ErrorInformation:
+    """Return what output error says of these instruments, under prediction error that over segments.
 
     Samples count by the noise and colour that are left once all errors are taken out: a bias that is left in would
     pass for a slow disturbance, against which it is nothing.
     """
-    estimate = output_error_estimate(estimation)
-    white = _information(replace(estimate, problem=replace(estimate.problem, inflation=None)), errors)
+    estimate, errors = output_error_estimate(estimation), [e for one in among for e in one.errors]
+    white = _information(replace(estimate, problem=replace(estimate.problem, inflation=None)), among)
     values = white.estimate(range(len(errors)), np.array([e.deviation for e in errors]))[0]
     problem, local = _without_errors(estimate.problem, errors, values), estimate.optimum.local
     optimum = levenberg_marquardt(problem, estimate.common_parameters, local, evaluations=_EVALUATIONS)
     residuals = PointEstimate(problem, optimum).residuals()
     if not np.all(np.isfinite(np.nan_to_num(residuals))):
-        return _information(estimate, errors)
+        return _information(estimate, among)
     noise = residual_spread(problem, residuals)
     inflation = effective_inflation(residual_correlation(problem, residuals)[1])
-    return _information(replace(estimate, problem=replace(estimate.problem, noise=noise, inflation=inflation)), errors)
+    return _information(replace(estimate, problem=replace(estimate.problem, noise=noise, inflation=inflation)), among)
 
 
 def _without_errors(problem: OutputError, errors: Sequence[SensorError], sizes: Sequence[float] | Array) -> OutputError:
@@ -220,20 +221,22 @@ def _without_errors(problem: OutputError, errors: Sequence[SensorError], sizes: 
     return replace(problem, data=replace(problem.data, measured=measured))
 
 
-def _information(estimate: PointEstimate, errors: Sequence[SensorError]) -> ErrorInformation:
+def _information(estimate: PointEstimate, among: Sequence[Suspect]) -> ErrorInformation:
+    """The same with samples counted as the estimate's problem does: its cost is quadratic in the errors."""
     problem, point, local = estimate.problem, estimate.common_parameters, estimate.optimum.local
+    errors = [e for one in among for e in one.errors]
     steps = np.diag([_STEP * e.deviation for e in errors])
     normal = problem.normal(point, local)
-    ahead, behind = (
-        [_without_errors(problem, errors, way * step).normal(point, local) for step in steps] for way in (1.0, -1.0)
-    )
-    curvature = np.diag([(a.cost + b.cost - 2.0 * normal.cost) for a, b in zip(ahead, behind, strict=True)])
+    ahead = [_without_errors(problem, errors, step).normal(point, local) for step in steps]
+    behind = [_without_errors(problem, errors, -step).cost(point, local) for step in steps]
+    curvature = np.diag([a.cost + b - 2.0 * normal.cost for a, b in zip(ahead, behind, strict=True)])
     for i in range(len(errors)):
         for j in range(i):
             both = _without_errors(problem, errors, steps[i] + steps[j]).cost(point, local)
             curvature[i, j] = curvature[j, i] = both - ahead[i].cost - ahead[j].cost + normal.cost
     sizes = np.diag(steps)
-    gradient, hessian = _with_errors(normal, ahead, behind, sizes, curvature / np.outer(sizes, sizes)).without_local()
+    slope = np.array([a.cost - b for a, b in zip(ahead, behind, strict=True)]) / (2.0 * sizes)
+    gradient, hessian = _with_errors(normal, ahead, sizes, slope, curvature / np.outer(sizes, sizes)).without_local()
     size = len(point)
     moving = np.flatnonzero((point > problem.lower) & (point < problem.upper))
     by_errors = np.zeros((size, len(errors)))
@@ -242,30 +245,31 @@ def _information(estimate: PointEstimate, errors: Sequence[SensorError]) -> Erro
     if not (np.all(np.isfinite(own)) and np.all(np.isfinite(gradient))):
         raise ArithmeticError("the simulation leaves what a computer can hold where an instrument's error is tried")
     return ErrorInformation(
-        tuple(errors), gradient[size:] + by_errors.T @ gradient[:size], 0.5 * (own + own.T), by_errors
+        tuple(among), gradient[size:] + by_errors.T @ gradient[:size], 0.5 * (own + own.T), by_errors
     )
 
 
 def _with_errors(
-    normal: NormalEquations, ahead: Sequence[NormalEquations], behind: Sequence[NormalEquations], sizes: Array,
-    curvature: Array,
-) -> NormalEquations:  # fmt: skip
-    """The normal equations with errors behind the shared unknowns; ahead, behind: at records without their sizes."""
-    pairs = list(zip(ahead, behind, 2.0 * sizes, strict=True))
-    by_shared = np.array([(a.gradient - b.gradient) / way for a, b, way in pairs])
-    by_local = np.array([(a.local_gradient - b.local_gradient) / way for a, b, way in pairs])
-    gradient = np.array([(a.cost - b.cost) / way for a, b, way in pairs])
+    normal: NormalEquations, ahead: Sequence[NormalEquations], sizes: Array, slope: Array, curvature: Array
+) -> NormalEquations:
+    """The normal equations with errors behind the shared unknowns; ahead: at records without their sizes.
+
+    slope, curvature: of the cost by the errors.
+    """
+    pairs = list(zip(ahead, sizes, strict=True))
+    by_shared = np.array([(a.gradient - normal.gradient) / step for a, step in pairs])
+    by_local = np.array([(a.local_gradient - normal.local_gradient) / step for a, step in pairs])
     return NormalEquations(
-        normal.cost, np.concatenate([normal.gradient, gradient]),
+        normal.cost, np.concatenate([normal.gradient, slope]),
         np.block([[normal.hessian, by_shared.T], [by_shared, curvature]]), normal.local_gradient, normal.local_hessian,
         np.concatenate([normal.cross, np.swapaxes(by_local, 0, 1)], axis=1) if normal.local_gradient.size else
         np.zeros((0, len(normal.gradient) + len(sizes), 0)),
     )  # fmt: skip
 
 
-def detected_errors(information: ErrorInformation, among: Sequence[Suspect]) -> list[Suspect]:
+def detected_errors(information: ErrorInformation) -> list[Suspect]:
     """Return the instruments whose errors the records show: taken up in turn, that which explains most first."""
-    deviations = np.array([e.deviation for e in information.errors])
+    among, deviations = information.suspects, np.array([e.deviation for e in information.errors])
     names = [e.name for e in information.errors]
     taken: list[Suspect] = []
     before = 0.0
@@ -286,71 +290,27 @@ def detected_errors(information: ErrorInformation, among: Sequence[Suspect]) -> 
     return taken
 
 
-def with_shown_sensor_errors(task: Identification) -> Identification:
-    """Return the task with the errors of instruments that its records show as coefficients of its model.
+def instrument_errors(estimation: Estimation, records: Sequence[Record], length: float) -> ErrorInformation | None:
+    """Return what the records say of errors that the estimate's model does not have; None: of none.
 
-    The task itself where they show none, or none that the estimate with it confirms.
+    length: of the ship [m].
     """
-    estimation = task.estimation
-    among = suspects(estimation, task.runs.records, task.runs.length)
-    if not among:
-        return task
-    try:
-        detected = detected_errors(error_information(estimation, [e for one in among for e in one.errors]), among)
-    except (ArithmeticError, np.linalg.LinAlgError):  # of the intervals that is a finding of its own
-        return task
-    if not detected:
-        return task
-    stated = Sensors.from_text(task.trial.model.equations.sensors)
-    for one in detected:
-        stated = one.stated(stated)
-    tried = replace(task, trial=replace(task.trial, model=_with_stated(task.trial.model, stated)))
-    try:
-        finding = _confirmed(tried.estimation, detected)
-    except InputError:  # the records do not determine the coefficients beside these errors
-        return task
-    return task if finding is None else replace(tried, findings=(*tried.findings, finding))
+    among = suspects(estimation, records, length)
+    return error_information(estimation, among) if among else None
 
 
-def _with_stated(model: Model, stated: Sensors) -> Model:
-    """The model with these sensors; coefficients that it has already keep their values, bounds and priors."""
-    wider = with_sensors(without_sensors(model), stated)
-    present = {p.name: p for p in model.parameters}
-    return wider.with_parameters(Parameters(tuple(present.get(p.name, p) for p in wider.parameters)))
-
-
-def _confirmed(estimation: Estimation, detected: Sequence[Suspect]) -> Finding | None:
-    """The finding on these errors; None where that of one instrument may be negligible."""
-    problem = estimation.estimate.problem
-    values = dict(zip(problem.free, estimation.estimate.common_parameters.tolist(), strict=False))
-    spread = dict(zip(problem.free, estimation.interval.standard_error.tolist(), strict=False))
-    if not all(one.matters(values, spread) for one in detected):
-        return None
-    sizes = [
-        f"{e.name} {significant(values[e.name], 3)} {e.unit} (standard error {significant(spread[e.name], 2)})"
-        for one in detected for e in one.errors
-    ]  # fmt: skip
-    lines, names = "; ".join(one.line for one in detected), enumeration([one.description for one in detected])
-    return Finding(
-        Severity.WARNING, "sensor-error",
-        f"the records show errors of instruments, which are estimated: {names}",
-        "; ".join(sizes).replace(" 1 (", " ("),
-        f"state what is so under [sensors] ({lines}), and correct in the log what is not",
-        "held at none they go into the coefficients",
-    )  # fmt: skip
-
-
-def with_unshown_sensor_errors(estimation: Estimation, records: Sequence[Record], length: float) -> Estimation:
+def with_unshown_sensor_errors(estimation: Estimation, information: ErrorInformation | None) -> Estimation:
     """Return the estimation whose intervals hold errors of instruments that its model does not have.
 
-    Each may be as large as is plausible before any record and as the records leave it. length: of the ship [m].
+    Each may be as large as is plausible before any record and as the records leave it.
     """
-    errors = [e for one in suspects(estimation, records, length) for e in one.errors]
-    if not errors:
+    if information is None:
         return estimation
-    known, count = error_information(estimation, errors), len(estimation.estimate.problem.free)
-    values, covariance, _ = known.estimate(range(len(errors)), np.array([e.unshown for e in errors]))
-    moves = known.by_errors[:count]
+    count = len(estimation.estimate.problem.free)
+    values, covariance, _ = information.estimate(
+        range(len(information.errors)), np.array([e.unshown for e in information.errors])
+    )
+    moves = information.by_errors[:count]
     interval, widened = estimation.interval, estimation.interval.covariance.copy()
     widened[:count, :count] += moves @ (covariance + np.outer(values, values)) @ moves.T
     meaning = f"{interval.meaning}, with lags, levers and zeros of instruments that the records leave open"

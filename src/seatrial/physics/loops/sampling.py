@@ -105,7 +105,9 @@ def _held(sides: tuple[tuple[tuple[float, ...], tuple[float, ...]], ...], sampli
     T, whole, rest = sampling.sample_s, *_split(sampling)
     stepped, late, now = _stepped(A, b, T, rest)
     n, is_late = len(b), rest > 0.0
-    poles = np.concatenate([np.empty(0), *(np.tanh(0.5 * T * block.poles) for block in made)])
+    poles: Complex = np.concatenate(
+        [np.empty(0, dtype=np.complex128), *(np.tanh(0.5 * T * block.poles) for block in made)]
+    )
     if is_late:
         stepped = np.block([[stepped, late[:, None]], [np.zeros((1, n + 1))]])
         now = np.concatenate([now, [1.0]])
