@@ -124,8 +124,9 @@ def _of_yaw(motion: _Motion, records: Sequence[Record]) -> Iterator[Suspect]:
 
 
 def _late(late: Late, error: SensorError) -> Suspect:
+    side = "" if error.least >= 0.0 else ", or early where that is negative"
     return Suspect(
-        f"the {late.replace('_', ' ')} is late", (error,), lambda s: replace(s, late=(*s.late, late)),
+        f"the {late.replace('_', ' ')} is late{side}", (error,), lambda s: replace(s, late=(*s.late, late)),
         f'late = ["{late}"]',
     )  # fmt: skip
 
@@ -267,8 +268,11 @@ def _with_errors(
     )  # fmt: skip
 
 
-def detected_errors(information: ErrorInformation) -> list[Suspect]:
-    """Return the instruments whose errors the records show: taken up in turn, that which explains most first."""
+def detected_errors(information: ErrorInformation, widening: float) -> list[Suspect]:
+    """Return the instruments whose errors the records show: taken up in turn, that which explains most first.
+
+    widening: standard errors of the fit over those that information alone gives: what model error adds.
+    """
     among, deviations = information.suspects, np.array([e.deviation for e in information.errors])
     names = [e.name for e in information.errors]
     taken: list[Suspect] = []
@@ -280,10 +284,10 @@ def detected_errors(information: ErrorInformation) -> list[Suspect]:
                 indices = [names.index(e.name) for s in (*taken, one) for e in s.errors]
                 values, covariance, gain = information.estimate(indices, deviations)
                 sizes = dict(zip(names, values.tolist(), strict=True))
-                spread = dict(zip(names, np.sqrt(np.diag(covariance)).tolist(), strict=True))
+                spread = dict(zip(names, (widening * np.sqrt(np.diag(covariance))).tolist(), strict=True))
                 gains[k] = gain - before if one.matters(sizes, spread) else 0.0
         best = max(gains, key=lambda k: gains[k])
-        if gains[best] < _LIKELIER:
+        if gains[best] < _LIKELIER * widening**2:
             break
         taken.append(among[best])
         before += gains[best]

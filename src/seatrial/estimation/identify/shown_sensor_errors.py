@@ -10,6 +10,7 @@ from seatrial.core.text.numbers import significant
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Finding, InputError, Parameters, Severity
 from seatrial.estimation.estimate.fit import Estimation
+from seatrial.estimation.identify.held_couplings import standard_error_ratio
 from seatrial.estimation.identify.identification import Identification
 from seatrial.estimation.identify.sensor_errors import Suspect, detected_errors
 from seatrial.physics.sensors import Sensors, with_sensors
@@ -22,7 +23,8 @@ def with_shown_sensor_errors(task: Identification) -> Identification:
     The task itself where they show none, or none that the estimate with it confirms.
     """
     try:
-        detected = detected_errors(task.instrument_errors) if task.instrument_errors else []
+        information = task.instrument_errors
+        detected = detected_errors(information, standard_error_ratio(task.estimation)) if information else []
     except (ArithmeticError, np.linalg.LinAlgError):  # of the intervals that is a finding of its own
         return task
     if not detected:
