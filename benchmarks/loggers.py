@@ -248,6 +248,11 @@ def ratio(outcomes: Sequence[tuple[Outcome, Outcome]]) -> float:
     return float(np.exp(np.mean(np.log(ratios)))) if ratios else np.nan
 
 
+def run() -> list[Line]:
+    """A short sample: the boat's log written in every way, two records each."""
+    return judged(["nomoto"], list(KINDS), 2)
+
+
 def main() -> int:
     """Print a line for each craft and kind, and the limits."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
@@ -256,14 +261,22 @@ def main() -> int:
     parser.add_argument("--seeds", type=int, default=4)
     chosen = parser.parse_args()
     print(machine())
+    lines = judged(chosen.craft, chosen.kinds, chosen.seeds)
+    for line in lines:
+        print(f"{line.quantity}: {line.value:.3g} {line.unit} {line.verdict}")
+    return 0 if all(line.holds for line in lines) else 1
+
+
+def judged(craft: Sequence[str], kinds: Sequence[str], seeds: int) -> list[Line]:
+    """Print a line for each craft and kind; return the pooled figures with their limits."""
     print(
         f"{'craft':10} {'kind':20} {'coverage':>9} {'heading':>8} {'position':>9} {'ratio':>6} {'refused':>8} {'s':>6}"
     )
     covered, ratios, refused = list[bool](), list[float](), 0
-    for name in chosen.craft:
-        for kind in chosen.kinds:
+    for name in craft:
+        for kind in kinds:
             began = time.perf_counter()
-            outcomes = [compared(crafts()[name], kind, seed) for seed in range(chosen.seeds)]
+            outcomes = [compared(crafts()[name], kind, seed) for seed in range(seeds)]
             held = [one for outcome, _ in outcomes for one in outcome.covered]
             heading, position = (
                 float(np.sqrt(np.mean([getattr(one, c) ** 2 for one, _ in outcomes]))) for c in ("heading", "position")
@@ -277,15 +290,12 @@ def main() -> int:
             )
             for text in dict.fromkeys(one.refusal for one, _ in outcomes if one.refusal):
                 print(f"           refused: {text}")
-    lines: list[Line] = [
+    return [
         at_least("coverage of all intervals", float(np.mean(covered)), "", POOLED[0]),
         at_most("coverage of all intervals", float(np.mean(covered)), "", POOLED[1]),
         at_most("largest ratio to the clean log", float(np.nanmax(ratios)), "", MOST_RATIO),
         at_most("logs refused", float(refused), "", 0.0),
     ]
-    for line in lines:
-        print(f"{line.quantity}: {line.value:.3g} {line.unit} {line.verdict}")
-    return 0 if all(line.holds for line in lines) else 1
 
 
 if __name__ == "__main__":

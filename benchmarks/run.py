@@ -30,6 +30,7 @@ import gusts
 import heave_pitch
 import independent_ships
 import kvlcc2_zigzags
+import loggers
 import long_record
 import loops
 import memory
@@ -41,6 +42,7 @@ import proposals
 import roll_decay
 import sample_rates
 import simulation
+import timing
 import tracks_at_sea
 import tune
 import verification
@@ -61,6 +63,8 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "gusts": gusts.run,
     "waves": waves.run,
     "criteria": criteria.run,
+    "timing": timing.run,
+    "loggers": loggers.run,
     "kvlcc2_zigzags": kvlcc2_zigzags.run,
     "estimation_folds": estimation_folds.run,
     "prediction_bands": prediction_bands.run,

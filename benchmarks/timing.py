@@ -19,6 +19,7 @@ from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
+from measure import Line, at_least, at_most
 
 import seatrial as st
 from seatrial.data.example_series.series import demo_series
@@ -222,6 +223,23 @@ def waterjet(given: argparse.Namespace) -> list[str]:
     return [
         f"waterjet, nozzle late by {given.late:g} s, {given.rate:g} Hz: {np.mean(inside):.3f} of {len(inside)} inside; "
         f"delays {', '.join(f'{d:.3f}' for d in delays)} s"
+    ]
+
+
+def run() -> list[Line]:
+    """A short sample: samples of 1 s, every timing with a limit at both levels of noise, four records each."""
+    fits = [
+        one
+        for timing in LIMITED
+        for level in LEVELS
+        for seed in range(4)
+        for one in fitted(Cell(1.0, timing, level), seed).values()
+    ]
+    squares = [(one.error / one.bound) ** 2 for one in fits]
+    return [
+        at_least("coverage of K and T", float(np.mean([one.is_inside for one in fits])), "", 0.92),  # as the report
+        Line("their errors over the Cramer-Rao bound, rms", math.sqrt(np.mean(squares)), ""),
+        at_most("fits that did not converge", float(sum(not one.is_settled for one in fits)), "", 0.0),
     ]
 
 

@@ -28,7 +28,7 @@ from pathlib import Path
 
 import numpy as np
 from craft_in_seas import CRAFT
-from measure import Line, machine
+from measure import Line, at_least, machine
 from numpy.typing import NDArray
 from seas_bound import standard_errors
 from seas_fits import Outcome, ResultFile, commit, digest, outcome, trial_of
@@ -315,7 +315,7 @@ def run() -> list[Line]:
     for cell in sample():
         s = score([fit_record(cell, draw)[0] for draw in range(3)], CRAFT[cell.craft]().truth)
         if s.of:  # of a calm record every interval may be too narrow to be counted
-            lines.append(Line(f"{cell.name[4:]}: coverage", s.coverage, ""))
+            lines.append(at_least(f"{cell.name[4:]}: coverage", s.coverage, "", LEAST))
         lines.append(Line(f"{cell.name[4:]}: RMSE/bound", s.ratio, ""))
         lines.append(Line(f"{cell.name[4:]}: refused", s.refused, "", "0", s.refused == 0))
     return lines
