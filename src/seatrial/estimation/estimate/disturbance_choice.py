@@ -53,6 +53,7 @@ ALIKE = 0.3
 """Relative difference of errors on left-out parts up to which criteria predict alike; chosen on simulated records:
 above what chance leaves between true disturbances, below what lags and orders do (benchmarks/criteria.py judges it)."""
 _FAR_LESS_LIKELY = 12.0  # nats below the likeliest from which on a candidate says nothing of its spread; chosen
+_LARGEST = float(np.finfo(float).max) ** 0.25  # of innovations whose spectra do not overflow
 _PEAKS = 3  # of the residuals' spectra at which waves are sought, the likeliest is searched from; chosen
 _ADDITIONS = 2  # parts that are added in turn to the likeliest where that leaves coloured innovations; chosen
 # frequencies of another peak that is not seen, and its variance, over those of the first, where it is sought; chosen
@@ -297,7 +298,7 @@ def _unsearched(white: ProcessNoise, model: DisturbanceModel) -> ProcessNoise:
 def _peaks(noise: ProcessNoise) -> list[SpectralPeak]:
     """The peaks of the innovations' spectra."""
     e, data = noise.problem.innovations(noise.optimum.solution.point).e, noise.problem.runs.data
-    if not np.all(np.isfinite(np.nan_to_num(e, nan=0.0))):
+    if not np.all(np.abs(np.nan_to_num(e, nan=0.0)) < _LARGEST):
         return []
     return spectral_peaks([e[a:b] for a, b in pairwise(data.offsets)], data.dt, _PEAKS)
 
