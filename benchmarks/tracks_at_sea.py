@@ -25,7 +25,7 @@ from seatrial.physics.models import model_named
 
 CYCLES = 1000.0  # time constants of the current, of the simulator's own realisation: 2 % of its rms
 SHORT = 0.05  # step of the simulator over the time constant and five times the dead time, at most
-BEFORE, AFTER = 8.0, 20.0  # lookahead distances sailed before and behind a corner
+BEFORE, AFTER = 8.0, 20.0  # lookahead distances before and behind a corner
 
 
 @dataclass(frozen=True)

@@ -70,6 +70,7 @@ def test_the_model_is_estimated_by_the_log_almost_alone() -> None:
     for seed in range(3, 7):
         (gain, lag) = refitted_coefficients(ship(), [course_log(seed)], 40.0)
         assert (gain.name, lag.name) == ("K", "T")
+        assert gain.lower < K < gain.upper
         assert gain.log == pytest.approx(K, rel=0.15) and lag.log == pytest.approx(T, rel=0.2)
         assert gain.upper - gain.lower < 0.25 * K
 

@@ -11,7 +11,7 @@ from seatrial.core.results import Fit
 from seatrial.data.trial import EstimateMethod, EstimateSettings
 from seatrial.estimation.estimate import Runs, estimate_model
 from seatrial.estimation.identify import identify
-from seatrial.estimation.identify.sensor_errors import instrument_errors, with_unshown_sensor_errors
+from seatrial.estimation.identify.sensor_errors import instrument_errors, with_undetected_sensor_errors
 
 BOAT = CRAFTS["Nomoto boat"]
 
@@ -54,10 +54,10 @@ def test_what_nothing_shows_is_in_the_intervals() -> None:
     estimation = estimate_model(posed(BOAT, FAULTS["clean"], 0).model, Runs.one_session_each(records, 2.0), settings)
     known = instrument_errors(estimation, records, 2.0)
     assert known is not None
-    unshown = np.array([e.unshown for e in known.errors])
-    values, covariance, _ = known.estimate(range(len(unshown)), unshown)
+    undetected = np.array([e.undetected for e in known.errors])
+    values, covariance, _ = known.estimate(range(len(undetected)), undetected)
     assert np.all(np.abs(values) < 4.0 * np.sqrt(np.diag(covariance)))
-    widened = with_unshown_sensor_errors(estimation, known)
+    widened = with_undetected_sensor_errors(estimation, known)
     grown = widened.interval.standard_error / estimation.interval.standard_error
     assert np.all(grown >= 1.0) and np.max(grown) > 1.05
     moved = known.by_errors[:3] @ values  # within what they are widened by

@@ -33,7 +33,7 @@ from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.estimate.process_noise import ProcessNoise, search_with_frozen_gain
 from seatrial.estimation.information.spectral_peaks import SpectralPeak, spectral_peaks
 from seatrial.estimation.problem.prediction_error import PredictionError
-from seatrial.numerics.optimise import Optimum, Solution, Status, levenberg_marquardt
+from seatrial.numerics.optimise import Optimum, levenberg_marquardt
 
 _NO_INITIAL_STATES = np.zeros((0, 0))
 # most evaluations of each search; chosen
@@ -202,10 +202,14 @@ def _bases(none: ProcessNoise, plain: Sequence[PointEstimate]) -> list[ProcessNo
         point[none.common_indices] = estimate.common_parameters
         begun = (one.optimum.solution.point[:free] for one in bases)
         if not any(np.allclose(point[:free], coefficients, rtol=_SAME_POINT) for coefficients in begun):
-            bases.append(
-                replace(none, optimum=replace(none.optimum, solution=replace(none.optimum.solution, point=point)))
-            )
+            bases.append(_placed(none, none.problem, point))
     return bases
+
+
+def _placed(noise: ProcessNoise, problem: PredictionError, point: Array) -> ProcessNoise:
+    """What other disturbances begin from: this problem at this point, whose normal equations nobody asks for."""
+    solution = replace(noise.optimum.solution, point=point)
+    return replace(noise, problem=problem, optimum=replace(noise.optimum, solution=solution))
 
 
 def _with_states_of_their_own(
@@ -214,23 +218,31 @@ def _with_states_of_their_own(
     """Gusts, waves on the sensors, both, and forces by waves, as far as the ones before leave something to explain."""
     white, none = search.white, bases[0]
     driven, peaks = white.problem.process, _peaks(none)
-    starts = [start for base in bases for peak in _highest(_peaks(base)) for start in wave_motion(base, [peak])]
-    waves = search.begun(_waves(search, starts, peaks)) if any(p.is_high for p in peaks) else []
+    is_high = any(p.is_high for p in peaks)
+    starts = _wave_starts(bases) if is_high else []
+    waves = search.begun(_waves(search, starts, peaks))
     is_sea = bool(waves) and waves[0].noise.test.is_nearly_white and likeliest([*simplest, waves[0]]) is waves[0]
     # waves at one peak leave next to nothing for gusts alone; a second one may stand for gusts
     gusty = [] if is_sea else search.begun([gusts(white, driven, white_intensities(white))])
     if not waves and search.likeliest([*simplest, *gusty]).noise.test.is_white:
         return gusty
-    waves = waves or search.begun(_waves(search, starts, peaks))
+    if not is_high:
+        starts = _wave_starts(bases)
+        waves = search.begun(_waves(search, starts, peaks))
     fitted = [*gusty, *waves, *search.begun(_beside_waves(search, starts, waves, gusty, peaks))]
     if not search.likeliest([*simplest, *fitted]).noise.test.is_white:
         fitted += search.begun(wave_forces(none, driven, peaks))
     return fitted
 
 
-def _highest(peaks: Sequence[SpectralPeak]) -> Sequence[SpectralPeak]:
-    """The peaks that stand out; the first where none does."""
-    return [p for p in peaks if p.is_high] or peaks[:1]
+def _wave_starts(bases: Sequence[ProcessNoise]) -> list[DisturbanceModel]:
+    """Waves on the sensors beside each base, at each peak of it that stands out, or at the first."""
+    starts: list[DisturbanceModel] = []
+    for base in bases:
+        peaks = _peaks(base)
+        for peak in [p for p in peaks if p.is_high] or peaks[:1]:
+            starts += wave_motion(base, [peak])
+    return starts
 
 
 def _waves(
@@ -238,7 +250,8 @@ def _waves(
 ) -> list[DisturbanceModel]:
     """Waves on the sensors alone: at one peak, and where the spectra show more at two."""
     one = search.most_promising(starts)
-    return [*one, *(m for start in one for m in wave_motion(_unsearched(search.white, start), _apart(peaks, start)))]
+    begun = [(_placed(search.white, start.problem, start.point), _apart(peaks, start)) for start in one]
+    return [*one, *(model for base, others in begun for model in wave_motion(base, others))]
 
 
 def _apart(peaks: Sequence[SpectralPeak], start: DisturbanceModel) -> list[SpectralPeak]:
@@ -258,7 +271,7 @@ def _beside_waves(
     """
     white = search.white
     driven, whites = white.problem.process, _BESIDE_WAVES * white_intensities(white)
-    bases = [*(one.noise for one in waves[:1]), *(_unsearched(white, start) for start in starts)]
+    bases = [*(one.noise for one in waves[:1]), *(_placed(white, start.problem, start.point) for start in starts)]
     beside = [gusts(base, driven, whites) for base in bases]
     beside += [start for one in gusty for peak in peaks for start in wave_motion(one.noise, [peak])]
     scanned = search.most_promising(beside)
@@ -286,13 +299,6 @@ def _further_peaks(best: ProcessNoise) -> list[SpectralPeak]:
     sizes = _SIDE_SHARE * np.array([waves.rms.get(c, 0.0) ** 2 for c in outputs])
     sides = [SpectralPeak(f * waves.frequency, sizes, np.full(len(outputs), np.inf)) for f in _SIDES]
     return [*(p for p in _peaks(best) if p.is_high or not best.test.is_nearly_white), *sides]
-
-
-def _unsearched(white: ProcessNoise, model: DisturbanceModel) -> ProcessNoise:
-    """The candidate where its search begins."""
-    normal = model.problem.normal(model.point, _NO_INITIAL_STATES)
-    optimum = Optimum(Solution(model.point, normal.cost, Status.STALLED, 1), _NO_INITIAL_STATES, normal)
-    return _tested(white, model.name, model.problem, optimum, np.inf)
 
 
 def _peaks(noise: ProcessNoise) -> list[SpectralPeak]:

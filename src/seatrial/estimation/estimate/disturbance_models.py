@@ -5,6 +5,7 @@ Gusts, biases and lags are a model with more states; waves are motion that the f
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -74,7 +75,7 @@ class DisturbanceModel:
     name: str
     unknown_count: int
 
-    @property
+    @cached_property
     def cost(self) -> float:
         """Where the search begins: minus the log-likelihood, up to a constant that all candidates share."""
         return self.problem.cost(self.point, _NO_INITIAL_STATES)

@@ -44,7 +44,11 @@ from seatrial.estimation.identify.response_findings import response_findings
 from seatrial.estimation.identify.roll_characteristics import one_speed_finding, roll_characteristics
 from seatrial.estimation.identify.roll_inertia import gyradius_findings
 from seatrial.estimation.identify.seakeeping import seakeeping
-from seatrial.estimation.identify.sensor_errors import ErrorInformation, instrument_errors, with_unshown_sensor_errors
+from seatrial.estimation.identify.sensor_errors import (
+    ErrorInformation,
+    instrument_errors,
+    with_undetected_sensor_errors,
+)
 from seatrial.estimation.identify.short_records import default_profiles, short_record_findings
 from seatrial.estimation.identify.short_time_constants import short_time_constant_findings
 from seatrial.estimation.identify.thruster_craft import thruster_craft
@@ -80,7 +84,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
     widened = with_estimated_values(estimation, [*stated, *by_box, *by_decay])
     widened = parts.computed(
         "errors of instruments in the intervals",
-        lambda: with_unshown_sensor_errors(widened, _instrument_errors(task, selected.estimation)), widened,
+        lambda: with_undetected_sensor_errors(widened, _instrument_errors(task, selected.estimation)), widened,
     )  # fmt: skip
     coefficients = fit_result.coefficients(widened, trial.truth, interval_ends(assessment.profiles, posterior))
     free = estimation.estimate.problem.free

@@ -14,9 +14,9 @@ from seatrial.estimation.estimate.criterion_choice import is_explained
 from seatrial.estimation.estimate.plausibility import OutsidePhysicsError
 from seatrial.estimation.estimate.settings import WEAK_FORM_SHIP_LENGTHS
 from seatrial.estimation.identify.baselines import with_baselines, with_search_baselines
+from seatrial.estimation.identify.detected_sensor_errors import with_detected_sensor_errors
 from seatrial.estimation.identify.identification import Identification
 from seatrial.estimation.identify.search_problem import check_search_settings
-from seatrial.estimation.identify.shown_sensor_errors import with_shown_sensor_errors
 from seatrial.estimation.identify.situation import Situation, situation_of
 from seatrial.estimation.identify.strategies.published import own_estimate_progress, published_fit, refuse_options
 from seatrial.estimation.identify.strategies.recorded_waves import identify_in_recorded_waves
@@ -90,7 +90,7 @@ def identify(
     if method.is_published:
         return _published(task, situation, report_progress)
     if situation is Situation.STEERED:
-        task = with_shown_sensor_errors(task)
+        task = with_detected_sensor_errors(task)
     fit = STRATEGIES[situation](task)
     fit = replace(fit, method=replace(fit.method, name=method.value))
     if not compare or situation is Situation.UNKNOWN_WAVES:  # no input, so that there is nothing to regress on

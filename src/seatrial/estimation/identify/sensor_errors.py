@@ -44,7 +44,7 @@ class SensorError:
 
     Attributes:
         name: of the coefficient that a model with sensors has of it; unit: of that.
-        deviation: standard deviation where it is sought; unshown: where nothing shows it, 0: it then is none.
+        deviation: standard deviation where it is sought; undetected: where nothing shows it, 0: it then is none.
         negligible: size up to which it is what a model misses or a sample leaves open, and stays inside the intervals.
         slopes: channel -> what one unit of it adds to what is shown, (rows,), SI; least: smallest that there is.
     """
@@ -52,7 +52,7 @@ class SensorError:
     name: str
     unit: str
     deviation: float
-    unshown: float
+    undetected: float
     negligible: float
     slopes: Mapping[str, Array]
     least: float = -np.inf
@@ -60,12 +60,21 @@ class SensorError:
 
 @dataclass(frozen=True, eq=False)
 class Suspect:
-    """An instrument with errors that go together, in words and as the setting that has them estimated."""
+    """An instrument with errors that go together, in words and as the setting that has them estimated.
+
+    reverse: in words where its error is negative.
+    """
 
     description: str
     errors: tuple[SensorError, ...]
     stated: Callable[[Sensors], Sensors]
     line: str
+    reverse: str = ""
+
+    def text(self, sizes: Mapping[str, float]) -> str:
+        """Return what is wrong with it, by errors of these sizes."""
+        is_reverse = bool(self.reverse) and sizes[self.errors[0].name] < 0.0
+        return self.reverse if is_reverse else self.description
 
     def matters(self, sizes: Mapping[str, float], spread: Mapping[str, float]) -> bool:
         """Whether errors of these sizes and standard errors are possible, and one certainly is not negligible."""
@@ -124,10 +133,10 @@ def _of_yaw(motion: _Motion, records: Sequence[Record]) -> Iterator[Suspect]:
 
 
 def _late(late: Late, error: SensorError) -> Suspect:
-    side = "" if error.least >= 0.0 else ", or early where that is negative"
+    instrument = f"the {late.replace('_', ' ')}"
     return Suspect(
-        f"the {late.replace('_', ' ')} is late{side}", (error,), lambda s: replace(s, late=(*s.late, late)),
-        f'late = ["{late}"]',
+        f"{instrument} is late", (error,), lambda s: replace(s, late=(*s.late, late)), f'late = ["{late}"]',
+        f"{instrument} is early, or all else is late",
     )  # fmt: skip
 
 
@@ -303,7 +312,7 @@ def instrument_errors(estimation: Estimation, records: Sequence[Record], length:
     return error_information(estimation, among) if among else None
 
 
-def with_unshown_sensor_errors(estimation: Estimation, information: ErrorInformation | None) -> Estimation:
+def with_undetected_sensor_errors(estimation: Estimation, information: ErrorInformation | None) -> Estimation:
     """Return the estimation whose intervals hold errors of instruments that its model does not have.
 
     Each may be as large as is plausible before any record and as the records leave it.
@@ -312,7 +321,7 @@ def with_unshown_sensor_errors(estimation: Estimation, information: ErrorInforma
         return estimation
     count = len(estimation.estimate.problem.free)
     values, covariance, _ = information.estimate(
-        range(len(information.errors)), np.array([e.unshown for e in information.errors])
+        range(len(information.errors)), np.array([e.undetected for e in information.errors])
     )
     moves = information.by_errors[:count]
     interval, widened = estimation.interval, estimation.interval.covariance.copy()

@@ -17,7 +17,7 @@ from seatrial.physics.sensors import Sensors, with_sensors
 from seatrial.physics.sensors.measured_outputs import without_sensors
 
 
-def with_shown_sensor_errors(task: Identification) -> Identification:
+def with_detected_sensor_errors(task: Identification) -> Identification:
     """Return the task with the errors of instruments that its records show as coefficients of its model.
 
     The task itself where they show none, or none that the estimate with it confirms.
@@ -58,7 +58,7 @@ def _confirmed(estimation: Estimation, detected: Sequence[Suspect]) -> Finding |
         f"{e.name} {significant(values[e.name], 3)} {e.unit} (standard error {significant(spread[e.name], 2)})"
         for one in detected for e in one.errors
     ]  # fmt: skip
-    lines, names = "; ".join(one.line for one in detected), enumeration([one.description for one in detected])
+    lines, names = "; ".join(one.line for one in detected), enumeration([one.text(values) for one in detected])
     return Finding(
         Severity.WARNING, "sensor-error",
         f"the records show errors of instruments, which are estimated: {names}",
