@@ -20,33 +20,32 @@ from seatrial.estimation.estimate.disturbance_models import (
     MOST_PEAKS,
     DisturbanceModel,
     gusts,
-    likeliest_start,
     sensor_models,
     wave_forces,
     wave_motion,
     white_intensities,
 )
 from seatrial.estimation.estimate.likelihood_ratio import CONFIDENCE_LEVEL, likelihood_ratio_test
-from seatrial.estimation.estimate.newton_refinement import newton_optimum, refine_by_newton
+from seatrial.estimation.estimate.newton_refinement import refine_by_newton
 from seatrial.estimation.estimate.plausibility import is_lost
 from seatrial.estimation.estimate.point_estimate import PointEstimate
-from seatrial.estimation.estimate.process_noise import ProcessNoise, search_with_frozen_gain
+from seatrial.estimation.estimate.process_noise import ProcessNoise, approach_optimum
 from seatrial.estimation.information.spectral_peaks import SpectralPeak, spectral_peaks
 from seatrial.estimation.problem.prediction_error import PredictionError
 from seatrial.numerics.optimise import Optimum, levenberg_marquardt
 
 _NO_INITIAL_STATES = np.zeros((0, 0))
-# most evaluations of each search; chosen
+# most evaluations of the search without a disturbance; chosen
 _EVALUATIONS = 60
-# of the search from each of several starts, before one goes on, and how many at most; relative difference of the
-# coefficients of starts that count as one; chosen
-_SHORT_SEARCH, _MOST_STARTS, _SAME_POINT = 8, 4, 0.05
+# starts of a candidate from which it is searched, at most, and relative difference of the coefficients of starts that
+# count as one; chosen
+_MOST_STARTS, _SAME_POINT = 4, 0.05
 # promised decrease of the cost at which the search without a disturbance ends; its gradient is exact
 _NEGLIGIBLE = 1e-3
 # promises of one Newton step within which the end of a search lies; chosen: 1.45 at most in nine searches of two craft
 _REACH = 3.0
-# nats a sample that the end of a search lies from where the gain as given leads, at most; chosen: 0.022 in ten searches
-_MOST_GAIN = 0.05
+# promise of a Newton step up to which the end is near enough for the last steps, nats; chosen
+_NEAR = 1.0
 # variance inflation of innovations near an optimum, beyond which its last steps do not make them white; chosen
 _HOPELESS_INFLATION = 3.0
 ALIKE = 0.3
@@ -185,12 +184,12 @@ def choose_disturbance(
     if not search.likeliest(fitted).noise.test.is_nearly_white:
         fitted += search.begun(sensor_models(white))
     fitted = search.ended(fitted)
-    for _ in range(_ADDITIONS):
-        best = search.likeliest(fitted).noise
-        more = [] if best.test.is_white else search.begun(_additions(best, white))
-        if not more:
+    added_to: list[ProcessNoise] = []
+    while len(added_to) < _ADDITIONS and not (best := search.likeliest(fitted).noise).test.is_white:
+        if any(best is earlier for earlier in added_to):
             break
-        fitted = search.ended([*fitted, *more])
+        added_to.append(best)
+        fitted = search.ended([*fitted, *search.begun(_additions(best, white))])
     return DisturbanceChoice(search.likeliest(fitted), tuple(fitted))
 
 
@@ -220,16 +219,15 @@ def _with_states_of_their_own(
     driven, peaks = white.problem.process, _peaks(none)
     is_high = any(p.is_high for p in peaks)
     starts = _wave_starts(bases) if is_high else []
-    waves = search.begun(_waves(search, starts, peaks))
+    waves = _waves(search, starts, peaks)
     is_sea = bool(waves) and waves[0].noise.test.is_nearly_white and likeliest([*simplest, waves[0]]) is waves[0]
     # waves at one peak leave next to nothing for gusts alone; a second one may stand for gusts
     gusty = [] if is_sea else search.begun([gusts(white, driven, white_intensities(white))])
-    if not waves and search.likeliest([*simplest, *gusty]).noise.test.is_white:
-        return gusty
     if not is_high:
         starts = _wave_starts(bases)
-        waves = search.begun(_waves(search, starts, peaks))
-    fitted = [*gusty, *waves, *search.begun(_beside_waves(search, starts, waves, gusty, peaks))]
+        is_explained = search.likeliest([*simplest, *gusty]).noise.test.is_white
+        waves = [] if is_explained else _waves(search, starts, peaks)
+    fitted = [*gusty, *waves, *_beside_waves(search, starts, waves, gusty, peaks)]
     if not search.likeliest([*simplest, *fitted]).noise.test.is_white:
         fitted += search.begun(wave_forces(none, driven, peaks))
     return fitted
@@ -247,23 +245,16 @@ def _wave_starts(bases: Sequence[ProcessNoise]) -> list[DisturbanceModel]:
 
 def _waves(
     search: "_Search", starts: Sequence[DisturbanceModel], peaks: Sequence[SpectralPeak]
-) -> list[DisturbanceModel]:
+) -> list[FittedDisturbance]:
     """Waves on the sensors alone: at one peak, and where the spectra show more at two."""
     one = search.most_promising(starts)
-    begun = [(_placed(search.white, start.problem, start.point), _apart(peaks, start)) for start in one]
-    return [*one, *(model for base, others in begun for model in wave_motion(base, others))]
-
-
-def _apart(peaks: Sequence[SpectralPeak], start: DisturbanceModel) -> list[SpectralPeak]:
-    """The peaks other than the one at which waves begin."""
-    begun = start.problem.wave_unknowns(start.point)[0]
-    return [p for p in peaks if p.frequency != begun]
+    return [*one, *(both for first in one for both in search.begun(wave_motion(first.noise, peaks)))]
 
 
 def _beside_waves(
     search: "_Search", starts: Sequence[DisturbanceModel], waves: Sequence[FittedDisturbance],
     gusty: Sequence[FittedDisturbance], peaks: Sequence[SpectralPeak],
-) -> list[DisturbanceModel]:  # fmt: skip
+) -> list[FittedDisturbance]:  # fmt: skip
     """Gusts beside waves at one peak on the sensors.
 
     Gusts begin beside the waves that the spectra show or that explain most alone, or the waves beside the gusts that
@@ -274,11 +265,11 @@ def _beside_waves(
     bases = [*(one.noise for one in waves[:1]), *(_placed(white, start.problem, start.point) for start in starts)]
     beside = [gusts(base, driven, whites) for base in bases]
     beside += [start for one in gusty for peak in peaks for start in wave_motion(one.noise, [peak])]
-    scanned = search.most_promising(beside)
-    if any(one.noise.test.is_nearly_white and one.noise.optimum.normal.cost <= start.cost
-           for one in waves[:1] for start in scanned):  # fmt: skip
+    both = search.most_promising(beside)
+    if any(one.noise.test.is_nearly_white and one.log_likelihood >= more.log_likelihood
+           for one in [*waves[:1], *gusty] for more in both):  # fmt: skip
         return []
-    return scanned
+    return both
 
 
 def _additions(best: ProcessNoise, white: ProcessNoise) -> list[DisturbanceModel]:
@@ -359,29 +350,29 @@ class _Search:
         """The candidate to be used by likelihood; the first is none."""
         return likeliest(fitted[int(self.needs_disturbance and len(fitted) > 1) :])
 
-    def most_promising(self, starts: Sequence[DisturbanceModel]) -> list[DisturbanceModel]:
-        """The start that is the likeliest after a short search from the best, there; none where all leave physics."""
-        ends = []
-        for one in sorted((s for s in starts if np.isfinite(s.cost)), key=lambda s: s.cost)[:_MOST_STARTS]:
-            with suppress(np.linalg.LinAlgError):  # as in `begun`
-                optimum = search_with_frozen_gain(one.problem, one.point, _SHORT_SEARCH, self.report)
-                ends.append(replace(one, point=optimum.solution.point))
-        ends = [one for one in ends if not is_lost(self.white.output_error, one.point)]
-        return [likeliest_start(ends)] if ends else []
+    def most_promising(self, starts: Sequence[DisturbanceModel]) -> list[FittedDisturbance]:
+        """The candidate that is the likeliest after the first steps from the best starts; none if all leave physics."""
+        best = sorted((s for s in starts if np.isfinite(s.cost)), key=lambda s: s.cost)[:_MOST_STARTS]
+        return sorted(self.begun(best), key=lambda f: -f.log_likelihood)[:1]
 
     def begun(self, models: Iterable[DisturbanceModel]) -> list[FittedDisturbance]:
-        """Candidates where the search with the gain as given ends, near their optima; none that leaves physics."""
-        near = []
-        for one in models:
-            self.report(f"disturbances compared: {one.name}")
-            if not np.isfinite(one.cost):
-                continue
-            with suppress(np.linalg.LinAlgError):  # sensitivities overflow: the search has left physics
-                optimum = search_with_frozen_gain(one.problem, one.point, self.evaluations, self.report)
-                if not is_lost(self.white.output_error, optimum.solution.point):
-                    noise = _tested(self.white, one.name, one.problem, optimum, np.inf)
-                    near.append(FittedDisturbance(noise, one.unknown_count, is_searched=False))
-        return near
+        """Candidates after the first steps of their search; none that leaves physics."""
+        begun = [
+            self._approached(one.name, one.problem, one.point, one.unknown_count)
+            for one in models if np.isfinite(one.cost)
+        ]  # fmt: skip
+        return [one for one in begun if one is not None]
+
+    def _approached(
+        self, name: str, problem: PredictionError, point: Array, unknown_count: int
+    ) -> FittedDisturbance | None:
+        self.report(f"disturbances compared: {name}")
+        with suppress(np.linalg.LinAlgError):  # sensitivities overflow: the search has left physics
+            optimum, decrement = approach_optimum(problem, point, self.report)
+            if not is_lost(self.white.output_error, optimum.solution.point):
+                noise = _tested(self.white, name, problem, optimum, decrement)
+                return FittedDisturbance(noise, unknown_count, is_searched=False)
+        return None
 
     def ended(self, begun: Sequence[FittedDisturbance]) -> list[FittedDisturbance]:
         """Candidates, searched to the end where they may be the likeliest there, the most promising first.
@@ -391,17 +382,34 @@ class _Search:
         """
         ends: list[FittedDisturbance | None] = list(begun)
         for k in sorted(range(len(begun)), key=lambda k: -begun[k].log_likelihood):
-            one = begun[k]
-            best = max((f.log_likelihood for f in ends if f is not None and f.is_searched), default=-np.inf)
-            is_hopeless = not self.needs_disturbance and np.max(one.noise.test.inflation) > _HOPELESS_INFLATION
-            if not one.is_searched and not is_hopeless and _may_reach(one, best - critical_gain(one.unknown_count)):
-                ends[k] = self._ended(one)
+            if not begun[k].is_searched:
+                searched = [f for f in ends if f is not None and f.is_searched]
+                ends[k] = self._ended(begun[k], max((_needed(begun[k], f) for f in searched), default=-np.inf))
         return [f for f in ends if f is not None]
 
-    def _ended(self, one: FittedDisturbance) -> FittedDisturbance | None:
+    def _ended(self, one: FittedDisturbance, log_likelihood: float) -> FittedDisturbance | None:
+        """A candidate at its optimum, or as far as it may still become so likely."""
+        while self._may_reach(one, log_likelihood):
+            if one.noise.newton_decrement <= _NEAR:
+                return self._refined(one)
+            noise = one.noise
+            further = self._approached(
+                noise.disturbance_model, noise.problem, noise.optimum.solution.point, one.unknown_count
+            )
+            if further is None or further.log_likelihood <= one.log_likelihood:
+                return further and self._refined(further)
+            one = further
+        return one
+
+    def _may_reach(self, one: FittedDisturbance, log_likelihood: float) -> bool:
+        """Whether a search to the end may lead so far, by what a Newton step promises."""
+        if not self.needs_disturbance and np.max(one.noise.test.inflation) > _HOPELESS_INFLATION:
+            return False
+        return log_likelihood - one.log_likelihood < _REACH * one.noise.newton_decrement
+
+    def _refined(self, one: FittedDisturbance) -> FittedDisturbance | None:
         name = one.noise.disturbance_model
-        self.report(f"disturbances compared: {name}")
-        with suppress(np.linalg.LinAlgError):  # as in `begun`
+        with suppress(np.linalg.LinAlgError):  # as in `_approached`
             exact, optimum, decrement = refine_by_newton(one.noise.problem, one.noise.optimum)
             point = optimum.solution.point
             if not is_lost(self.white.output_error, point) and not _is_slower_than_waves(exact, point):
@@ -409,20 +417,19 @@ class _Search:
         return None
 
 
+def _needed(one: FittedDisturbance, other: FittedDisturbance) -> float:
+    """The log-likelihood at which a candidate may be preferred to another: with more unknowns beyond chance.
+
+    With fewer as much below, at which its coefficients still count as spread.
+    """
+    extra = one.unknown_count - other.unknown_count
+    return other.log_likelihood + (0.5 * critical_gain(extra) if extra > 0 else -critical_gain(one.unknown_count))
+
+
 def _is_slower_than_waves(problem: PredictionError, point: Array) -> bool:
     """Whether motion at a peak on the sensors would be slower still than waves may be: gusts are, or the craft."""
     frequencies = slice(0, 2 * problem.waves.peaks, 2)
     return bool(np.any(problem.wave_unknowns(point)[frequencies] <= problem.wave_bounds[0][frequencies]))
-
-
-def _may_reach(one: FittedDisturbance, log_likelihood: float) -> bool:
-    """Whether a search to the end may lead so far: by its distance, and where that is short by a Newton step."""
-    missing = log_likelihood - one.log_likelihood
-    if missing <= 0.0:
-        return True
-    if missing > _MOST_GAIN * np.isfinite(one.noise.problem.runs.data.measured).sum():
-        return False
-    return missing < _REACH * newton_optimum(one.noise.problem, one.noise.optimum, 1.0).decrement
 
 
 def _tested(

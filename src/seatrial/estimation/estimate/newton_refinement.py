@@ -54,6 +54,17 @@ def refine_by_newton(problem: PredictionError, optimum: Optimum) -> tuple[Predic
     return exact, Optimum(solution, _NO_INITIAL_STATES, end.normal), slope
 
 
+def approach_by_gradient(problem: PredictionError, point: Array, most_steps: int) -> tuple[Optimum, float]:
+    """Take so many quasi-Newton steps towards an optimum at most; return where they end and the decrement left there.
+
+    By differences to one side, whose steps come from the information that takes the filter's gain as given.
+    """
+    steps = problem.difference_steps(point, replace(problem, steps=None).normal(point, _NO_INITIAL_STATES).hessian)
+    end = _descend(replace(problem, steps=steps, is_one_sided=True), point, 0, most_steps)
+    solution = Solution(end.point, end.normal.cost, Status.STALLED, end.count)
+    return Optimum(solution, _NO_INITIAL_STATES, end.normal), end.decrement
+
+
 @dataclass(frozen=True, eq=False)
 class _Descent:
     """Where quasi-Newton steps have come to; count: steps so far, decrement: what another one promises."""
@@ -100,7 +111,7 @@ class _Coordinates:
         return np.where(self.is_log, np.log(ratio), end - point)
 
 
-def _descend(problem: PredictionError, point: Array, count: int) -> _Descent:
+def _descend(problem: PredictionError, point: Array, count: int, most_steps: int = _NEWTON_STEPS) -> _Descent:
     """Step until no more than `_MAX_DECREMENT` is promised, or until no step decreases the cost."""
     normal = problem.normal(point, _NO_INITIAL_STATES)
     coordinates = _Coordinates.near(problem, point, normal.hessian)
@@ -109,7 +120,7 @@ def _descend(problem: PredictionError, point: Array, count: int) -> _Descent:
     while True:
         room = coordinates.room(problem, point)
         step, decrement = step_within(room, replace(here, hessian=hessian))
-        if decrement <= _MAX_DECREMENT or count >= _NEWTON_STEPS:
+        if decrement <= _MAX_DECREMENT or count >= most_steps:
             return _Descent(point, normal, count, decrement)
         trials = [
             np.clip(coordinates.moved(point, share * step), problem.lower, problem.upper) for share in _STEP_SHARES

@@ -12,8 +12,9 @@ import numpy as np
 
 from seatrial.core.results import Profile
 from seatrial.core.values import Array, ProgressReporter
+from seatrial.estimation.estimate.newton_refinement import approach_by_gradient
 from seatrial.estimation.estimate.point_estimate import PointEstimate
-from seatrial.estimation.estimate.process_noise import ProcessNoise, search_prediction_error
+from seatrial.estimation.estimate.process_noise import ProcessNoise
 from seatrial.estimation.information.covariance import inverse
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.prediction_error import PredictionError
@@ -27,8 +28,8 @@ CHI_SQUARED_LIMIT = 3.841
 _MAX_POINTS_PER_SIDE, _MAX_DEVIATIONS = 8, 5.0
 # promised decrease of the cost at which a refit ends, ours
 _NEGLIGIBLE = 1e-4
-# most evaluations of a refit by prediction error, ours: it starts at its neighbour
-_EVALUATIONS = 30
+# most steps of a refit by prediction error, ours: it starts at its neighbour
+_MOST_STEPS = 10
 # relative difference of costs that count as one, ours
 _COST_TOLERANCE = 1e-6
 
@@ -166,7 +167,7 @@ def _hold_in_prediction_error(problem: PredictionError, column: int) -> Callable
     def refit(value: float, start: _Refit) -> _Refit:
         runs, prior = _held(problem.runs, column, value)
         held = replace(problem, runs=runs, steps=None)
-        again = search_prediction_error(held, start.common_parameters, _EVALUATIONS, lambda _: None)[1]
+        again = approach_by_gradient(held, start.common_parameters, _MOST_STEPS)[0]
         return _Refit(2.0 * again.solution.value + prior, again.solution.point, start.local)
 
     return refit
