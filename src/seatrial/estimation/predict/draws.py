@@ -3,8 +3,8 @@
 How far the draws scatter about a prediction is the part of its error that can be foreseen.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -26,12 +26,14 @@ class PredictionUncertainty:
         offsets: covariance, between sessions, of what each has of its own, shape (k, k).
         process: intensity of each state's process noise, SI over the root of a second, shape (nx,).
         degrees_of_freedom: of Student's t.
+        waves: channel -> rms of what waves add to it beside the craft's own motion, SI.
     """
 
     coefficients: Array
     offsets: Array
     process: Array
     degrees_of_freedom: float
+    waves: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)

@@ -89,7 +89,15 @@ def prediction_uncertainty(estimation: Estimation) -> PredictionUncertainty:
         estimation.estimate.population.new_session_covariance,
         np.array([intensity.get(s, 0.0) for s in problem.model.states]),
         estimation.interval.degrees_of_freedom,
+        _wave_motion(estimation),
     )
+
+
+def _wave_motion(estimation: Estimation) -> dict[str, float]:
+    """Return what waves add to each channel, SI: all peaks together."""
+    waves = estimation.noise_model.waves
+    channels = {c for peak in waves for c in peak.rms}
+    return {c: float(np.linalg.norm([peak.rms.get(c, 0.0) for peak in waves])) for c in sorted(channels)}
 
 
 def calibrate_intervals(

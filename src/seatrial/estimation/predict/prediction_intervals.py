@@ -1,6 +1,6 @@
 """Intervals of predictions: what is foreseen by draws, and what runs left out missed beyond it."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -57,13 +57,15 @@ def prediction_spread(
     rng: np.random.Generator,
     count: int,
 ) -> PredictionSpread:
-    """Scatter of `count` drawn runs about the simulated one; measures include the noise with which they are read.
+    """Scatter of `count` drawn runs about the simulated one, as sensors show them in the waves that were estimated.
 
-    Nothing is foreseen where half of the draws or more diverge: what is left of them would look too certain.
+    Measures include the noise with which they are read. Nothing is foreseen where half of the draws or more diverge:
+    what is left of them would look too certain.
     """
     runs = _drawn_about(template, model, record, simulation, nuisances, uncertainty, rng, count)
-    spreads = _measure_spread(model, record, simulation, runs, length, rng) if is_steered(record, model) else {}
-    return PredictionSpread(_channel_spread(model, simulation.record, runs), spreads)
+    waves = uncertainty.waves
+    spreads = _measure_spread(model, record, simulation, runs, length, waves, rng) if is_steered(record, model) else {}
+    return PredictionSpread(_channel_spread(model, simulation.record, runs, waves), spreads)
 
 
 def window_spreads(
@@ -78,6 +80,8 @@ def window_spreads(
 ) -> list[dict[str, Array]]:
     """Return of each window the scatter of heading and position of drawn runs: channel -> (steps + 1,), SI.
 
+    As sensors show them in the waves that were estimated.
+
     simulated: the windows open loop from `starts`; nuisances: of each run, (runs, k).
     """
     size = max(1, _ROWS_AT_ONCE // (HOLDOUT_DRAWS * (windows.steps + 1)))
@@ -88,7 +92,10 @@ def window_spreads(
             template, model, part.dt, part.inputs(model), starts[chosen], nuisances[part.run], uncertainty, rng,
             HOLDOUT_DRAWS,
         )  # fmt: skip
-        spreads += [_channel_spread(model, s, _finite_draws(y)) for s, y in zip(simulated[chosen], drawn, strict=True)]
+        spreads += [
+            _channel_spread(model, s, _finite_draws(y), uncertainty.waves)
+            for s, y in zip(simulated[chosen], drawn, strict=True)
+        ]
     return spreads
 
 
@@ -114,20 +121,24 @@ def _finite_draws(runs: Array) -> Array:
     return kept if 2 * len(kept) > len(runs) else kept[:0]
 
 
-def _channel_spread(model: Model, simulated: Record, runs: Array) -> dict[str, Array]:
+def _channel_spread(model: Model, simulated: Record, runs: Array, waves: Mapping[str, float]) -> dict[str, Array]:
     place = {c: model.observables.index(model.observable_of(c)) for c in model.channels}
     return {
-        c: np.sqrt(np.mean((runs[:, :, place[c]] - simulated[c]) ** 2, axis=0))
+        c: np.sqrt(np.mean((runs[:, :, place[c]] - simulated[c]) ** 2, axis=0) + waves.get(c, 0.0) ** 2)
         for c in BAND_CHANNELS
         if c in place and len(runs)
     }
 
 
 def _measure_spread(
-    model: Model, record: Record, simulation: OpenLoopRun, runs: Array, length: float, rng: np.random.Generator
-) -> dict[str, float]:
+    model: Model, record: Record, simulation: OpenLoopRun, runs: Array, length: float, waves: Mapping[str, float],
+    rng: np.random.Generator,
+) -> dict[str, float]:  # fmt: skip
     place = {c: model.observables.index(model.observable_of(c)) for c in model.channels}
-    noise = {c: sample_noise(record.channel(c).readings) for c in MEASURE_CHANNELS if c in record and c in place}
+    noise = {
+        c: np.hypot(sample_noise(record.channel(c).readings), waves.get(c, 0.0))
+        for c in MEASURE_CHANNELS if c in record and c in place
+    }  # fmt: skip
     reference = ObservedManoeuvre.from_record(record)
     centre = measures(simulation.record, length, reference=reference)
     values_by_measure: dict[str, list[float]] = {name: [] for name in centre}
