@@ -119,3 +119,13 @@ def test_parts_of_uneven_length_and_without_a_channel(estimate: PointEstimate) -
         assert errors.shape == (PARTS.count, 2, 1)
         assert np.isnan(errors[:, 0, 0]).sum() == missing
         assert np.isfinite(errors[missing:]).all()
+
+
+def test_an_error_beyond_the_motion_counts_as_the_motion(estimate: PointEstimate) -> None:
+    """One step from an estimate may lead where a part diverges: that it fails there says no more than any failure."""
+    runs, seconds = Runs.one_session_each([record_of(np.random.default_rng(4))], 40.0), WindowSeconds(10.0, 4.0)
+    unstable, reversed_gain = (np.tile(point, (PARTS.count, 1)) for point in ([K, -0.01], [-K, 8.0]))
+    failing, wrong = (left_out_errors(estimate.problem, p, runs, PARTS, seconds) for p in (unstable, reversed_gain))
+    whole_parts = np.log([np.std(q) for q in np.array_split(runs.records[0]["psi"], PARTS.count)])
+    np.testing.assert_allclose(failing[:, 0, 0], whole_parts, atol=0.05)
+    assert np.all(wrong <= failing + 0.05)

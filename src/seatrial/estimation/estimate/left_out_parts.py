@@ -112,7 +112,8 @@ def left_out_errors(
 
     Lengths: parts as a whole, and windows, where these are too long the whole again. Kinds: heading and position, or
     without both every channel; NaN where a part has no sample of one. Errors below half the resolution of a channel's
-    values count as that; infinite where a simulation diverges.
+    values count as that, errors beyond the motion itself as it: how far a prediction fails, one step from the estimate,
+    says nothing more.
     """
     return np.array([_errors_of_part(problem, points[k], runs, seconds, parts, k) for k in range(parts.count)])
 
@@ -163,6 +164,8 @@ def _rms_logarithms(
         if not np.all(counts):
             logarithms.append(np.nan)
             continue
-        square = np.inf if np.any(is_lost) else float(np.sum(np.nansum(error[:, columns] ** 2, axis=0) / counts))
-        logarithms.append(0.5 * np.log(max(square, float(np.sum(floor[columns] ** 2)), np.finfo(float).tiny)))
+        motion = float(np.sum(np.nanvar(data.measured[:, columns], axis=0)))
+        square = motion if np.any(is_lost) else float(np.sum(np.nansum(error[:, columns] ** 2, axis=0) / counts))
+        least = max(float(np.sum(floor[columns] ** 2)), np.finfo(float).tiny)
+        logarithms.append(0.5 * np.log(max(min(square, motion), least)))
     return np.array(logarithms)
