@@ -1,6 +1,7 @@
 """Errors of instruments that nobody stated, in the logs of boats simulated by their own equations."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -8,9 +9,12 @@ import pytest
 from benchmarks.independent_ships import CRAFTS, FAULTS, posed
 
 from seatrial.core.results import Fit
+from seatrial.core.values import Record
 from seatrial.data.trial import EstimateMethod, EstimateSettings
-from seatrial.estimation.estimate import Runs, estimate_model
+from seatrial.estimation.estimate import Estimation, Runs, estimate_model
 from seatrial.estimation.identify import identify
+from seatrial.estimation.identify.assumed_information import output_error_estimate
+from seatrial.estimation.identify.score_test import own_criterion
 from seatrial.estimation.identify.sensor_errors import instrument_errors, with_undetected_sensor_errors
 
 BOAT = CRAFTS["Nomoto boat"]
@@ -46,21 +50,80 @@ def test_instruments_without_an_error_have_none() -> None:
     assert [c.name for c in fit.coefficients if not c.fixed] == list(BOAT.truth)
 
 
-def test_what_nothing_shows_is_in_the_intervals() -> None:
-    """The heading alone cannot show that the compass is late: it shows with the rate of turn, and less where that is
-    coarser."""
-    records = tuple(run.raw_record() for run in posed(BOAT, FAULTS["clean"], 0).runs)
-    settings = EstimateSettings(method=EstimateMethod.OUTPUT_ERROR).with_known_timing(["delta"])
-    estimation = estimate_model(posed(BOAT, FAULTS["clean"], 0).model, Runs.one_session_each(records, 2.0), settings)
-    known = instrument_errors(estimation, records, 2.0)
-    assert known is not None
-    undetected = np.array([e.undetected for e in known.errors])
-    values, covariance, _ = known.estimate(range(len(undetected)), undetected)
+def boat_records(lag: float, waves: float = 0.0) -> tuple[Record, ...]:
+    """The boat's logs, the yaw rate late by `lag` [s], waves of that rms of heading [rad] on compass and gyro."""
+    rng, records = np.random.default_rng(7), []
+    omega = np.linspace(1.3, 1.9, 12)  # rad/s
+    size = waves * math.sqrt(2.0 / len(omega))
+    for one in (run.raw_record() for run in posed(BOAT, FAULTS["clean"], 0).runs):
+        phase = np.multiply.outer(one.time, omega) + rng.uniform(0.0, 2.0 * math.pi, len(omega))
+        r = np.interp(one.time - lag, one.time, one["r"]) + (size * omega * np.cos(phase - omega * lag)).sum(axis=1)
+        psi = one["psi"] + (size * np.sin(phase)).sum(axis=1)
+        shown = {"psi": one.channel("psi").with_values(psi), "r": one.channel("r").with_values(r)}
+        records.append(replace(one, channels={**one.channels, **shown}))
+    return tuple(records)
+
+
+def estimation_of(records: tuple[Record, ...], method: EstimateMethod, delays: Mapping[str, float]) -> Estimation:
+    """The boat's estimate."""
+    settings = EstimateSettings(method=method, delays=dict(delays))
+    return estimate_model(posed(BOAT, FAULTS["clean"], 0).model, Runs.one_session_each(records, 2.0), settings)
+
+
+def test_what_a_pair_leaves_open_is_in_the_intervals() -> None:
+    """Heading and yaw rate show their lag from one another; a lag of both is the delay of the rudder."""
+    records = boat_records(0.0)
+    estimation = estimation_of(records, EstimateMethod.OUTPUT_ERROR, {})
+    information = instrument_errors(estimation.estimate, records, 2.0, {})
+    assert information is not None
+    values, covariance, _ = information.test.joint(information.open_prior)
     assert np.all(np.abs(values) < 4.0 * np.sqrt(np.diag(covariance)))
-    widened = with_undetected_sensor_errors(estimation, known)
+    lags = [e.unit == "s" for e in information.errors]
+    assert np.sum(values[lags]) == pytest.approx(0.0, abs=1e-9)
+    widened = with_undetected_sensor_errors(estimation, information)
     grown = widened.interval.standard_error / estimation.interval.standard_error
-    assert np.all(grown >= 1.0) and np.max(grown) > 1.05
-    moved = known.by_errors[:3] @ values  # within what they are widened by
+    assert np.all(grown >= 1.0) and np.max(grown) < 1.5
+    moved = information.test.by_candidates[:2] @ values  # within what they are widened by
     assert np.all(
-        np.abs(moved) <= np.sqrt(widened.interval.standard_error**2 - estimation.interval.standard_error**2)[:3]
+        np.abs(moved) <= np.sqrt(widened.interval.standard_error**2 - estimation.interval.standard_error**2)[:2]
     )
+
+
+def test_waves_on_compass_and_gyro_show_their_lag() -> None:
+    """Prediction error with the waves in its model knows the lag far better than residuals of the craft alone."""
+    records = boat_records(0.02, math.radians(3.0))
+    estimation = estimation_of(records, EstimateMethod.PREDICTION_ERROR, {})
+    assert estimation.noise_model.waves
+    spread = []
+    for estimate in (own_criterion(estimation), output_error_estimate(estimation)):
+        information = instrument_errors(estimate, records, 2.0, {})
+        assert information is not None
+        values, covariance, _ = information.test.joint(np.diag([e.deviation**2 for e in information.errors]))
+        heading, rate = (information.test.names.index(n) for n in ("lag_heading", "lag_yaw_rate"))
+        between = np.zeros(len(values))
+        between[[rate, heading]] = 1.0, -1.0
+        spread.append(math.sqrt(between @ covariance @ between))
+        assert abs(between @ values - 0.02) < 4.0 * spread[-1]
+    assert spread[0] < 0.01 and spread[0] < 0.2 * spread[1]
+
+
+@pytest.mark.parametrize("delays", [{"delta": 0.0}, {"psi": 0.0, "r": 0.0}])
+def test_known_timing_leaves_no_lag_open(delays: dict[str, float]) -> None:
+    """Its intervals are those of bias and scale alone, which the pair shows."""
+    records = boat_records(0.0)
+    estimation = estimation_of(records, EstimateMethod.OUTPUT_ERROR, delays)
+    information = instrument_errors(estimation.estimate, records, 2.0, delays)
+    assert information is not None
+    covariance = information.test.joint(information.open_prior)[1]
+    assert all(np.all(row == 0.0) == (e.unit == "s") for row, e in zip(covariance, information.errors, strict=True))
+    widened = with_undetected_sensor_errors(estimation, information)
+    assert np.all(widened.interval.standard_error[:2] <= 1.2 * estimation.interval.standard_error[:2])
+
+
+def test_the_timing_of_a_measured_channel_can_be_known() -> None:
+    records = boat_records(0.0)
+    estimation = estimation_of(records, EstimateMethod.OUTPUT_ERROR, {})
+    information = instrument_errors(estimation.estimate, records, 2.0, {"r": 0.0})
+    assert information is not None
+    prior = dict(zip(information.test.names, np.diag(information.open_prior), strict=True))
+    assert prior["lag_yaw_rate"] == 0.0 and prior["lag_heading"] == pytest.approx(0.1**2 / 12.0)

@@ -29,6 +29,7 @@ from seatrial.data.trial.schema_errors import schema_error
 from seatrial.data.trial.thruster_table import layout_text
 from seatrial.data.trial.trial import Trial, TrialRun
 from seatrial.data.trial.used_records import refuse_used_records
+from seatrial.physics.sensors.settings import TIMED_CHANNELS
 from seatrial.physics.simulate.states import rest_parameter
 
 _OPEN = re.compile(r"^# OPEN (\w+):", re.MULTILINE)  # as `seatrial init` marks what a person must choose
@@ -142,7 +143,8 @@ def trial_of_tables(
         resting = {state for state in model.states if rest_parameter(model, state)}
         for key, names, known in (("offsets", file.estimate.offsets, resting), ("gains", file.estimate.gains, set())):
             _refuse_unknown_names(f"estimate.{key}", list(names), {*model.input_names, *known}, _correction_hint)
-        _refuse_unknown_names("estimate.delays", list(file.estimate.delays), set(model.input_names))
+        timed = {c for channels in TIMED_CHANNELS.values() for c in channels} & set(model.channels)
+        _refuse_unknown_names("estimate.delays", list(file.estimate.delays), {*model.input_names, *timed})
         if file.feedback is not None:
             _refuse_unknown_names("feedback.input", [file.feedback.input], set(model.input_names))
             _refuse_unknown_names("feedback.output", [file.feedback.output], set(model.observables))

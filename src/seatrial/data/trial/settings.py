@@ -53,6 +53,7 @@ class EstimateSettings:
         gains: channel -> prior standard deviation (None: the estimator's own) of its gain, one for each session.
         delays: input -> prior standard deviation [s] (None: the estimator's own) of its delay, one for each session; 0:
             its timing is known. Inputs that are not named are taken to be uncertain by their source's sample interval.
+            A measured channel (psi, r, x0, y0) -> standard deviation [s] of its lag, likewise.
         current: prior standard deviation of a uniform current in each run [m/s]; 0: none is estimated.
         starts: points from which to search; None: 6 for craft with thrusters, else one.
         initial_s: s of a validation run from which its initial state is estimated; None: L/U.

@@ -55,7 +55,7 @@ def _nuisances(model: Model, settings: EstimateSettings) -> Iterator[Nuisance]:
     for name, deviation in settings.gains.items():
         yield Nuisance(InputCorrection(name, "gain"), Prior(1.0, deviation or _GAIN_DEVIATION, _SOURCE), "1")
     for name, deviation in settings.delays.items():
-        if deviation != 0.0:  # no deviation at all: its timing is known
+        if name in model.input_names and deviation != 0.0:  # no deviation at all: its timing is known
             spread = _DELAY_DEVIATION if deviation is None else deviation
             yield Nuisance(InputCorrection(name, "delay"), Prior(0.0, spread, _SOURCE), "s")
 

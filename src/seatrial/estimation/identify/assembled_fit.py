@@ -15,6 +15,7 @@ from seatrial.estimation.estimate import Estimation, IntervalMethod
 from seatrial.estimation.identify import fit_result
 from seatrial.estimation.identify.abandoned_criterion import abandoned_criterion_finding
 from seatrial.estimation.identify.antenna_place import antenna_findings
+from seatrial.estimation.identify.assumed_information import output_error_estimate
 from seatrial.estimation.identify.box_forces_effect import box_force_findings, box_force_shifts
 from seatrial.estimation.identify.box_scale import stands_on_box
 from seatrial.estimation.identify.closed_loop_findings import closed_loop_findings
@@ -43,6 +44,7 @@ from seatrial.estimation.identify.refuted_priors import refuted_prior_findings
 from seatrial.estimation.identify.response_findings import response_findings
 from seatrial.estimation.identify.roll_characteristics import one_speed_finding, roll_characteristics
 from seatrial.estimation.identify.roll_inertia import gyradius_findings
+from seatrial.estimation.identify.score_test import own_criterion
 from seatrial.estimation.identify.seakeeping import seakeeping
 from seatrial.estimation.identify.sensor_errors import (
     ErrorInformation,
@@ -180,10 +182,11 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
 
 
 def _instrument_errors(task: Identification, estimation: Estimation) -> ErrorInformation | None:
-    """What the records say of errors of instruments beside the model that is used: the task's own or another."""
-    if estimation.estimate is task.estimation.estimate:
+    """What the records say of errors of instruments by the criterion that is used: the task's own, or another."""
+    estimate = own_criterion(estimation)
+    if estimate is output_error_estimate(task.estimation):
         return task.instrument_errors
-    return instrument_errors(estimation, task.runs.records, task.runs.length)
+    return instrument_errors(estimate, task.runs.records, task.runs.length, task.settings.delays)
 
 
 def _with_sampling(task: Identification, selected: SelectedModel) -> tuple[SelectedModel, Posterior | None]:

@@ -11,9 +11,9 @@ from seatrial.core.values import NOT_MEASURED, Array, Finding, Severity
 from seatrial.data.trial import TrialRecord
 from seatrial.data.trial.estimated_values import ESTIMATED_VALUES
 from seatrial.estimation.estimate.fit import Estimation
-from seatrial.estimation.identify.added_inputs import added_input_effect
 from seatrial.estimation.identify.assumed_information import output_error_estimate
 from seatrial.estimation.identify.estimated_values_effect import EstimatedValueShift
+from seatrial.estimation.identify.score_test import added_input, score_test
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.physics.hydro.excitation import BoxForceError, BoxHull
 from seatrial.physics.sea.wave_forces import with_wave_forces
@@ -32,12 +32,11 @@ def box_force_shifts(estimation: Estimation, records: Sequence[TrialRecord]) -> 
     if not boxes or not estimation.model.is_affine:
         return ()
     estimate = output_error_estimate(estimation)
-    samples, shifts = int(np.isfinite(estimate.problem.data.measured).sum()), []
-    for way in BoxForceError.all_of(boxes[0]):
-        effect = added_input_effect(estimate, [_added_inputs(estimate.problem, item, way) for item in records])
-        visible = float(np.sqrt(effect.information / samples))
-        shifts.append(EstimatedValueShift(way.name, way.size, effect.moves, visible))
-    return tuple(shifts)
+    ways = BoxForceError.all_of(boxes[0])
+    added = [added_input(w.name, [_added_inputs(estimate.problem, item, w) for item in records]) for w in ways]
+    test, samples = score_test(estimate, added), int(np.isfinite(estimate.problem.data.measured).sum())
+    moves, visible = -test.by_candidates[: len(estimate.problem.free)].T, np.sqrt(test.information / samples)
+    return tuple(EstimatedValueShift(w.name, w.size, m, float(v)) for w, m, v in zip(ways, moves, visible, strict=True))
 
 
 def box_force_findings(

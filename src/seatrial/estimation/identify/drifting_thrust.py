@@ -8,9 +8,9 @@ from seatrial.core.text.numbers import percent
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, Finding, Record, Severity
 from seatrial.estimation.estimate.fit import Estimation
-from seatrial.estimation.identify.added_inputs import added_input_effect
 from seatrial.estimation.identify.assumed_information import output_error_estimate
 from seatrial.estimation.identify.held_couplings import standard_error_ratio
+from seatrial.estimation.identify.score_test import added_input, score_test
 from seatrial.physics.models.thruster_layout import ThrusterLayout
 from seatrial.physics.simulate.channels import inputs_of
 
@@ -31,19 +31,20 @@ def drifting_thrust_finding(estimation: Estimation, records: Sequence[Record]) -
     layout = ThrusterLayout.from_text(model.equations.layout)
     zeros = {model.input_names.index(t.command.channel): t.command.zero for t in layout.thrusters}
     estimate = output_error_estimate(estimation)
-    effect = added_input_effect(estimate, [_slope_of_orders(inputs_of(model, r), zeros) for r in records], _STEP)
-    size = effect.standard_errors / standard_error_ratio(estimation)
-    if abs(size) < _STANDARD_ERRORS or abs(effect.size) < _LEAST:
+    slopes, free = [_slope_of_orders(inputs_of(model, r), zeros) for r in records], estimate.problem.free
+    test = score_test(estimate, [added_input("order", slopes, _STEP)])
+    (slope,), (score,) = test.sizes, test.scores / standard_error_ratio(estimation)
+    if abs(score) < _STANDARD_ERRORS or abs(slope) < _LEAST:
         return ()
-    errors = np.maximum(estimation.interval.standard_error[: len(effect.moves)], 1e-300)  # above zero, for a division
-    moved = np.abs(effect.moves * effect.size) / errors
-    most = [estimate.problem.free[int(i)] for i in np.argsort(-moved)[:3]]
+    errors = np.maximum(estimation.interval.standard_error[: len(free)], 1e-300)  # above zero, for a division
+    moved = np.abs(test.by_candidates[: len(free), 0] * slope) / errors
+    most = [free[int(i)] for i in np.argsort(-moved)[:3]]
     powers = [f"p_f{layout.suffix(leader)}" for leader in layout.leaders]
     power = float(np.mean([model.parameters[p].value if p in model.parameters else 1.0 for p in powers]))
-    change, way = (1.0 + effect.size) ** power - 1.0, "falls" if effect.size < 0.0 else "rises"
+    change, way = (1.0 + slope) ** power - 1.0, "falls" if slope < 0.0 else "rises"
     return (Finding(
         Severity.WARNING, "thrust-drifts", f"the thrust at one order {way} from the start of the runs to their end, by "
-        f"{percent(abs(change))} %", f"{abs(size):.0f} standard errors; it moves most {enumeration(most)}",
+        f"{percent(abs(change))} %", f"{abs(score):.0f} standard errors; it moves most {enumeration(most)}",
         "record the battery's voltage or the propellers' rate, or train on shorter runs",
         "the intervals of the coefficients that stand in for it do not hold their true values",
     ),)  # fmt: skip

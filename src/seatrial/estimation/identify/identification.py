@@ -11,6 +11,7 @@ from seatrial.estimation.estimate.fit import with_segment_seconds
 from seatrial.estimation.estimate.runs import training_runs
 from seatrial.estimation.estimate.settings import INITIAL_STATE_SHIP_LENGTHS
 from seatrial.estimation.estimate.time_scale import characteristic_time
+from seatrial.estimation.identify.assumed_information import output_error_estimate
 from seatrial.estimation.identify.box_scale import box_scale, stands_on_box
 from seatrial.estimation.identify.sensor_errors import ErrorInformation, instrument_errors
 from seatrial.estimation.information.symmetries import refuse_unidentifiable, structural_symmetries
@@ -79,8 +80,9 @@ class Identification:
 
     @cached_property
     def instrument_errors(self) -> ErrorInformation | None:
-        """What the records say of errors of instruments that the model does not have; None: of none."""
-        return instrument_errors(self.estimation, self.runs.records, self.runs.length)
+        """What output error says of errors of instruments that the model does not have; None: of none."""
+        estimate = output_error_estimate(self.estimation)
+        return instrument_errors(estimate, self.runs.records, self.runs.length, self.settings.delays)
 
     @cached_property
     def estimation(self) -> Estimation:

@@ -1,15 +1,21 @@
 """Errors of instruments that nobody stated: estimated where a pair of channels shows them, else inside the intervals.
 
-An error of the size e adds e C(t) to what is shown, C by the simulated motion: it is the same as records from which
-e C(t) is taken. So gradient and curvature by e follow from the problem of output error at such records.
+An error of the size e adds e C(t) to what is shown, C by the motion: it is the same as records from which e C(t) is
+taken. Under output error C is of the simulated motion. Under prediction error it is of what is predicted from the
+samples before, so that it does not depend on the innovation that it is compared with, and holds waves and gusts.
+
+No pair of measured channels shows a lag of all: that is the delay of the inputs, which the fit has already. What
+instruments leave open are lags from one another.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import reduce
 from itertools import pairwise
 
 import numpy as np
 
+from seatrial.core.equations.augment import biased_name
 from seatrial.core.values import Array, Record
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import (
@@ -18,16 +24,15 @@ from seatrial.estimation.estimate.point_estimate import (
     residual_correlation,
     residual_spread,
 )
+from seatrial.estimation.estimate.process_noise import ProcessNoise
 from seatrial.estimation.estimate.timing import UNIFORM
-from seatrial.estimation.identify.assumed_information import output_error_estimate
-from seatrial.estimation.information.covariance import inverse
+from seatrial.estimation.identify.score_test import Candidate, ScoreTest, score_test
 from seatrial.estimation.problem.output_error import OutputError
-from seatrial.numerics.optimise import NormalEquations, levenberg_marquardt
+from seatrial.numerics.optimise import levenberg_marquardt
 from seatrial.physics.sensors import Sensors, VelocityReference
 from seatrial.physics.sensors.measured_outputs import lag_name
-from seatrial.physics.sensors.settings import Antenna, Late
+from seatrial.physics.sensors.settings import TIMED_CHANNELS, Antenna, Late
 
-_STEP = 0.1  # of an error's standard deviation, of differences by it; chosen: these are exact where it is linear
 _BIAS, _SCALE = 0.02, 0.05  # rad/s and 1: standard deviations of a yaw rate's zero and scale, before records; chosen
 _LEAST_BIAS, _LEAST_SCALE = 0.002, 0.01  # rad/s and 1: below, a good rate gyro may be off; chosen
 _LEAST_LEVER = 0.05  # of the ship's length, as in `antenna_place`: less is what a model of sway misses; chosen
@@ -57,6 +62,14 @@ class SensorError:
     slopes: Mapping[str, Array]
     least: float = -np.inf
 
+    def problem_with(self, problem: OutputError, size: float) -> OutputError:
+        """Return the problem of records from which an error of this size is taken."""
+        measured = problem.data.measured.copy()
+        channels = [output.removesuffix(biased_name("")) for output in problem.data.outputs]
+        for channel, slope in self.slopes.items():
+            measured[:, channels.index(channel)] -= size * slope
+        return replace(problem, data=replace(problem.data, measured=measured))
+
 
 @dataclass(frozen=True, eq=False)
 class Suspect:
@@ -83,40 +96,39 @@ class Suspect:
         )
 
 
-def suspects(estimation: Estimation, records: Sequence[Record], length: float) -> list[Suspect]:
-    """Return the instruments whose errors the estimate's model does not have and that two compared channels can show.
-
-    length: of the ship [m], aboard of which an antenna stands.
-    """
-    motion = _Motion.of_estimate(estimation)
-    if "psi" not in motion.channels or estimation.estimate.problem.model.is_affine:
-        return []
-    stated = Sensors.from_text(estimation.estimate.problem.model.equations.sensors)
-    found = [*_of_yaw(motion, records)] if "r" in motion.channels else []
-    if {"x0", "y0"} <= motion.channels.keys():
-        found += _of_receiver(motion, records, stated, length)
-    present = estimation.estimate.problem.model.parameters
-    return [one for one in found if all(e.name not in present for e in one.errors)]
-
-
 @dataclass(frozen=True, eq=False)
 class _Motion:
-    """The simulated motion by compared channel, (rows,), and its rates."""
+    """The motion by compared channel, (rows,), and its rates."""
 
     channels: Mapping[str, Array]
     rates: Mapping[str, Array]
 
     @classmethod
-    def of_estimate(cls, estimation: Estimation) -> "_Motion":
-        """Return the motion by output error."""
-        estimate = output_error_estimate(estimation)
-        data = estimate.problem.data
-        simulated = estimate.problem.simulated_outputs(estimate.common_parameters, estimate.optimum.local)
-        rates = np.concatenate([np.gradient(simulated[a:b], data.dt, axis=0) for a, b in pairwise(data.offsets)])
-        return cls(dict(zip(data.outputs, simulated.T, strict=True)), dict(zip(data.outputs, rates.T, strict=True)))
+    def of_estimate(cls, estimate: PointEstimate | ProcessNoise) -> "_Motion":
+        """Return the simulated motion, or that which is predicted from samples up to the one before."""
+        if isinstance(estimate, ProcessNoise):
+            outputs = estimate.output_error.data.outputs
+            parts = [_predicted(estimate, run) for run in range(estimate.problem.runs.data.count)]
+        else:
+            data, outputs = estimate.problem.data, estimate.problem.data.outputs
+            simulated = estimate.problem.simulated_outputs(estimate.common_parameters, estimate.optimum.local)
+            parts = [(simulated[a:b], np.gradient(simulated[a:b], data.dt, axis=0)) for a, b in pairwise(data.offsets)]
+        motion, rates = (np.concatenate(columns).T for columns in zip(*parts, strict=True))
+        return cls(dict(zip(outputs, motion, strict=True)), dict(zip(outputs, rates, strict=True)))
 
 
-def _of_yaw(motion: _Motion, records: Sequence[Record]) -> Iterator[Suspect]:
+def _predicted(noise: ProcessNoise, run: int) -> tuple[Array, Array]:
+    """Outputs of a run and their rates, both (rows, ny): two steps ahead of the sample before, and their difference."""
+    problem = noise.problem
+    first, end = (int(edge) for edge in problem.runs.data.offsets[run : run + 2])
+    origins = np.arange(end - first - 2)
+    ahead = problem.predicted_ahead(noise.optimum.solution.point, run, origins, 2)
+    rates = (ahead[:, 2] - ahead[:, 0]) / (2.0 * problem.runs.data.dt)
+    motion = np.concatenate([ahead[:1, 0], ahead[:, 1], ahead[-1:, 2]])
+    return motion, np.concatenate([rates[:1], rates, rates[-1:]])
+
+
+def _of_yaw(motion: _Motion, timing: "_Timing") -> Iterator[Suspect]:
     """Errors of a compass and a yaw rate that are read together."""
     r, ones = motion.channels["r"], np.ones(len(motion.channels["r"]))
     yield Suspect(
@@ -128,27 +140,38 @@ def _of_yaw(motion: _Motion, records: Sequence[Record]) -> Iterator[Suspect]:
         lambda s: replace(s, yaw_rate_scale=True), "yaw_rate_scale = true",
     )  # fmt: skip
     for late, channel in ((Late.HEADING, "psi"), (Late.YAW_RATE, "r")):
-        slopes = {channel: -motion.rates[channel]}
-        yield _late(late, _lag_error(late, records, [channel], slopes, 0.0))
+        yield timing.late(late, {channel: -motion.rates[channel]}, 0.0)
 
 
-def _late(late: Late, error: SensorError) -> Suspect:
-    instrument = f"the {late.replace('_', ' ')}"
-    return Suspect(
-        f"{instrument} is late", (error,), lambda s: replace(s, late=(*s.late, late)), f'late = ["{late}"]',
-        f"{instrument} is early, or all else is late",
-    )  # fmt: skip
+@dataclass(frozen=True, eq=False)
+class _Timing:
+    """What is known of the timing of measured channels.
+
+    Attributes:
+        delays: as `instrument_errors` has them; is_known: whether the trial states that its inputs are on time: the
+            clock of the log is right, so that no channel has a lag but one that the records show.
+    """
+
+    records: Sequence[Record]
+    delays: Mapping[str, float | None]
+    is_known: bool
+
+    def late(self, late: Late, slopes: Mapping[str, Array], least: float) -> Suspect:
+        """Return a lag; the sample interval of its source leaves open half of it to either side, as with inputs."""
+        channels = TIMED_CHANNELS[late]
+        interval = max(r.channel(c).sample_s or r.dt for r in self.records for c in channels if c in r)
+        stated = [deviation for c in channels if (deviation := self.delays.get(c)) is not None]
+        deviation, negligible = 0.0 if 0.0 in stated else _LAG, max(0.5 * interval, _LEAST_LAG)
+        undetected = min(stated, default=0.0 if self.is_known else interval / UNIFORM)
+        error = SensorError(lag_name(late), "s", deviation, undetected, negligible, slopes, least)
+        instrument = f"the {late.replace('_', ' ')}"
+        return Suspect(
+            f"{instrument} is late", (error,), lambda s: replace(s, late=(*s.late, late)), f'late = ["{late}"]',
+            f"{instrument} is early, or all else is late",
+        )  # fmt: skip
 
 
-def _lag_error(
-    late: Late, records: Sequence[Record], channels: Sequence[str], slopes: Mapping[str, Array], least: float
-) -> SensorError:
-    """A lag; the sample interval of its source leaves open half of it to either side, as with inputs (`timing`)."""
-    interval = max(r.channel(c).sample_s or r.dt for r in records for c in channels if c in r)
-    return SensorError(lag_name(late), "s", _LAG, interval / UNIFORM, max(0.5 * interval, _LEAST_LAG), slopes, least)
-
-
-def _of_receiver(motion: _Motion, records: Sequence[Record], stated: Sensors, length: float) -> Iterator[Suspect]:
+def _of_receiver(motion: _Motion, timing: _Timing, stated: Sensors, length: float) -> Iterator[Suspect]:
     """Errors of a receiver whose track is read beside a compass."""
     psi, zero = motion.channels["psi"], np.zeros(len(motion.channels["psi"]))
     lag = {c: -motion.rates[c] for c in ("x0", "y0")}
@@ -159,7 +182,7 @@ def _of_receiver(motion: _Motion, records: Sequence[Record], stated: Sensors, le
         # over ground: resolved along a heading that has moved on by r lag; at (x, y) it is u - y r, v + x r
         lag |= {"u": r * v - motion.rates["u"], "v": -r * u - motion.rates["v"]}
         x, y = x | {"u": zero, "v": r}, y | {"u": -r, "v": zero}
-    yield _late(Late.RECEIVER, _lag_error(Late.RECEIVER, records, ["x0", "y0"], lag, -np.inf))
+    yield timing.late(Late.RECEIVER, lag, -np.inf)
     aboard = length / UNIFORM  # m: an antenna stands anywhere along the ship
     yield Suspect(
         "the antenna stands elsewhere",
@@ -173,108 +196,77 @@ def _of_receiver(motion: _Motion, records: Sequence[Record], stated: Sensors, le
 
 @dataclass(frozen=True, eq=False)
 class ErrorInformation:
-    """Gradient (m,) and curvature (m, m) by errors of instruments with all else at its optimum, priors left out.
-
-    Attributes:
-        suspects: whose errors they are, in order; by_errors: how the shared unknowns follow them, (shared, m).
-    """
+    """What records say of errors of instruments: `test` has those of all suspects, in order."""
 
     suspects: tuple[Suspect, ...]
-    gradient: Array
-    curvature: Array
-    by_errors: Array
+    test: ScoreTest
 
     @property
     def errors(self) -> tuple[SensorError, ...]:
         """Of all suspects, in order."""
         return tuple(e for one in self.suspects for e in one.errors)
 
-    def estimate(self, among: Sequence[int], deviations: Array) -> tuple[Array, Array, float]:
-        """Return values (m,) and covariance (m, m) of these errors, all others none, and twice the gain of likelihood.
+    @property
+    def open_prior(self) -> Array:
+        """Covariance (m, m) of errors that nothing shows, before any record: lags are reckoned from their common one.
 
-        deviations: before any record, (m,).
+        That has the estimate sum(lag / s^2) / sum(1 / s^2) by lags of standard deviations s; given it, the covariance
+        is diag(s^2) less 1 / sum(1 / s^2) (Rasmussen & Williams 2006, eq. (A.6)). A lag that is known, s = 0, is it.
         """
-        values, covariance = np.zeros(len(self.errors)), np.zeros_like(self.curvature)
-        if not len(among):
-            return values, covariance, 0.0
-        rows = np.ix_(among, among)
-        own = inverse(self.curvature[rows] + np.diag(deviations[among] ** -2.0))
-        values[among], covariance[rows] = -own @ self.gradient[among], own
-        return values, covariance, float(-self.gradient[among] @ values[among])
+        deviations = np.array([e.undetected for e in self.errors])
+        prior, lags = np.diag(deviations**2), np.array([e.unit == "s" for e in self.errors])
+        if np.any(lags) and np.all(deviations[lags] > 0.0):
+            prior[np.ix_(lags, lags)] -= 1.0 / np.sum(deviations[lags] ** -2.0)
+        return prior
 
 
-def error_information(estimation: Estimation, among: Sequence[Suspect]) -> ErrorInformation:
-    """Return what output error says of these instruments, under prediction error that over segments.
+def instrument_errors(
+    estimate: PointEstimate | ProcessNoise, records: Sequence[Record], length: float,
+    delays: Mapping[str, float | None],
+) -> ErrorInformation | None:  # fmt: skip
+    """Return what the records say of errors that the estimate's model does not have; None: of none.
 
-    Samples count by the noise and colour that are left once all errors are taken out: a bias that is left in would
-    pass for a slow disturbance, against which it is nothing.
+    Under output error samples count by the noise and colour that are left once all errors are taken out: a bias that is
+    left in would pass for a slow disturbance, against which it is nothing.
+
+    Args:
+        length: of the ship [m], aboard of which an antenna stands.
+        delays: channel -> standard deviation of its lag [s], 0: its timing is known; of others by their source.
     """
-    estimate, errors = output_error_estimate(estimation), [e for one in among for e in one.errors]
-    white = _information(replace(estimate, problem=replace(estimate.problem, inflation=None)), among)
-    values = white.estimate(range(len(errors)), np.array([e.deviation for e in errors]))[0]
-    problem, local = _without_errors(estimate.problem, errors, values), estimate.optimum.local
-    optimum = levenberg_marquardt(problem, estimate.common_parameters, local, evaluations=_EVALUATIONS)
-    residuals = PointEstimate(problem, optimum).residuals()
-    if not np.all(np.isfinite(np.nan_to_num(residuals))):
-        return _information(estimate, among)
-    noise = residual_spread(problem, residuals)
-    inflation = effective_inflation(residual_correlation(problem, residuals)[1])
-    return _information(replace(estimate, problem=replace(estimate.problem, noise=noise, inflation=inflation)), among)
-
-
-def _without_errors(problem: OutputError, errors: Sequence[SensorError], sizes: Sequence[float] | Array) -> OutputError:
-    """The problem of records from which errors of these sizes are taken."""
-    measured, outputs = problem.data.measured.copy(), problem.data.outputs
-    for error, size in zip(errors, sizes, strict=True):
-        for channel, slope in error.slopes.items():
-            measured[:, outputs.index(channel)] -= size * slope
-    return replace(problem, data=replace(problem.data, measured=measured))
-
-
-def _information(estimate: PointEstimate, among: Sequence[Suspect]) -> ErrorInformation:
-    """The same with samples counted as the estimate's problem does: its cost is quadratic in the errors."""
-    problem, point, local = estimate.problem, estimate.common_parameters, estimate.optimum.local
-    errors = [e for one in among for e in one.errors]
-    steps = np.diag([_STEP * e.deviation for e in errors])
-    normal = problem.normal(point, local)
-    ahead = [_without_errors(problem, errors, step).normal(point, local) for step in steps]
-    behind = [_without_errors(problem, errors, -step).cost(point, local) for step in steps]
-    curvature = np.diag([a.cost + b - 2.0 * normal.cost for a, b in zip(ahead, behind, strict=True)])
-    for i in range(len(errors)):
-        for j in range(i):
-            both = _without_errors(problem, errors, steps[i] + steps[j]).cost(point, local)
-            curvature[i, j] = curvature[j, i] = both - ahead[i].cost - ahead[j].cost + normal.cost
-    sizes = np.diag(steps)
-    slope = np.array([a.cost - b for a, b in zip(ahead, behind, strict=True)]) / (2.0 * sizes)
-    gradient, hessian = _with_errors(normal, ahead, sizes, slope, curvature / np.outer(sizes, sizes)).without_local()
-    size = len(point)
-    moving = np.flatnonzero((point > problem.lower) & (point < problem.upper))
-    by_errors = np.zeros((size, len(errors)))
-    by_errors[moving] = -inverse(hessian[np.ix_(moving, moving)]) @ hessian[moving, size:]
-    own = hessian[size:, size:] + hessian[size:, :size] @ by_errors
-    if not (np.all(np.isfinite(own)) and np.all(np.isfinite(gradient))):
-        raise ArithmeticError("the simulation leaves what a computer can hold where an instrument's error is tried")
-    return ErrorInformation(
-        tuple(among), gradient[size:] + by_errors.T @ gradient[:size], 0.5 * (own + own.T), by_errors
+    runs = estimate.output_error if isinstance(estimate, ProcessNoise) else estimate.problem
+    motion = _Motion.of_estimate(estimate)
+    if "psi" not in motion.channels or runs.model.is_affine:
+        return None
+    is_known = any(delays.get(n) == 0.0 for n in runs.model.input_names) and not any(
+        nuisance.correction.kind == "delay" for nuisance in runs.nuisances
     )
+    timing = _Timing(records, delays, is_known)
+    among = [*_of_yaw(motion, timing)] if "r" in motion.channels else []
+    if {"x0", "y0"} <= motion.channels.keys():
+        among += _of_receiver(motion, timing, Sensors.from_text(runs.model.equations.sensors), length)
+    among = [one for one in among if all(e.name not in runs.model.parameters for e in one.errors)]
+    errors = [e for one in among for e in one.errors]
+    if not errors:
+        return None
+    candidates = [Candidate(e.name, e.problem_with) for e in errors]
+    if isinstance(estimate, PointEstimate):
+        estimate = _with_noise_beside_errors(estimate, errors, candidates)
+    return ErrorInformation(tuple(among), score_test(estimate, candidates))
 
 
-def _with_errors(
-    normal: NormalEquations, ahead: Sequence[NormalEquations], sizes: Array, slope: Array, curvature: Array
-) -> NormalEquations:
-    """The normal equations with errors behind the shared unknowns; ahead: at records without their sizes.
-
-    slope, curvature: of the cost by the errors.
-    """
-    pairs = list(zip(ahead, sizes, strict=True))
-    by_shared = np.array([(a.gradient - normal.gradient) / step for a, step in pairs])
-    by_local = np.array([(a.local_gradient - normal.local_gradient) / step for a, step in pairs])
-    return NormalEquations(
-        normal.cost, np.concatenate([normal.gradient, slope]),
-        np.block([[normal.hessian, by_shared.T], [by_shared, curvature]]), normal.local_gradient, normal.local_hessian,
-        np.concatenate([normal.cross, np.swapaxes(by_local, 0, 1)], axis=1) if normal.local_gradient.size else
-        np.zeros((0, len(normal.gradient) + len(sizes), 0)),
-    )  # fmt: skip
+def _with_noise_beside_errors(
+    estimate: PointEstimate, errors: Sequence[SensorError], candidates: Sequence[Candidate]
+) -> PointEstimate:
+    """The estimate with the noise that a short search leaves from whose records all errors are taken."""
+    white = replace(estimate, problem=replace(estimate.problem, inflation=None))
+    sizes = score_test(white, candidates).joint(np.diag([e.deviation**2 for e in errors]))[0]
+    clean = reduce(lambda p, item: item[0].problem_with(p, item[1]), zip(errors, sizes, strict=True), estimate.problem)
+    optimum = levenberg_marquardt(clean, estimate.common_parameters, estimate.optimum.local, evaluations=_EVALUATIONS)
+    residuals = PointEstimate(clean, optimum).residuals()
+    if not np.all(np.isfinite(np.nan_to_num(residuals))):
+        return estimate
+    noise, colour = residual_spread(clean, residuals), residual_correlation(clean, residuals)[1]
+    return replace(estimate, problem=replace(estimate.problem, noise=noise, inflation=effective_inflation(colour)))
 
 
 def detected_errors(information: ErrorInformation, widening: float) -> list[Suspect]:
@@ -282,34 +274,25 @@ def detected_errors(information: ErrorInformation, widening: float) -> list[Susp
 
     widening: standard errors of the fit over those that information alone gives: what model error adds.
     """
-    among, deviations = information.suspects, np.array([e.deviation for e in information.errors])
-    names = [e.name for e in information.errors]
+    names, variances = information.test.names, np.array([e.deviation**2 for e in information.errors])
     taken: list[Suspect] = []
     before = 0.0
-    while len(taken) < len(among):
+    while len(taken) < len(information.suspects):
         gains = {}
-        for k, one in enumerate(among):
+        for k, one in enumerate(information.suspects):
             if one not in taken:
-                indices = [names.index(e.name) for s in (*taken, one) for e in s.errors]
-                values, covariance, gain = information.estimate(indices, deviations)
+                tried = {e.name for s in (*taken, one) for e in s.errors}
+                prior = np.diag(np.where([name in tried for name in names], variances, 0.0))
+                values, covariance, gain = information.test.joint(prior)
                 sizes = dict(zip(names, values.tolist(), strict=True))
                 spread = dict(zip(names, (widening * np.sqrt(np.diag(covariance))).tolist(), strict=True))
                 gains[k] = gain - before if one.matters(sizes, spread) else 0.0
         best = max(gains, key=lambda k: gains[k])
         if gains[best] < _LIKELIER * widening**2:
             break
-        taken.append(among[best])
+        taken.append(information.suspects[best])
         before += gains[best]
     return taken
-
-
-def instrument_errors(estimation: Estimation, records: Sequence[Record], length: float) -> ErrorInformation | None:
-    """Return what the records say of errors that the estimate's model does not have; None: of none.
-
-    length: of the ship [m].
-    """
-    among = suspects(estimation, records, length)
-    return error_information(estimation, among) if among else None
 
 
 def with_undetected_sensor_errors(estimation: Estimation, information: ErrorInformation | None) -> Estimation:
@@ -320,10 +303,8 @@ def with_undetected_sensor_errors(estimation: Estimation, information: ErrorInfo
     if information is None:
         return estimation
     count = len(estimation.estimate.problem.free)
-    values, covariance, _ = information.estimate(
-        range(len(information.errors)), np.array([e.undetected for e in information.errors])
-    )
-    moves = information.by_errors[:count]
+    values, covariance, _ = information.test.joint(information.open_prior)
+    moves = information.test.by_candidates[:count]
     interval, widened = estimation.interval, estimation.interval.covariance.copy()
     widened[:count, :count] += moves @ (covariance + np.outer(values, values)) @ moves.T
     meaning = f"{interval.meaning}, with lags, levers and zeros of instruments that the records leave open"

@@ -247,7 +247,11 @@ class PredictionError:
                 hessians[k][np.ix_(columns, columns)] += hessian
         return list(zip(gradients, hessians, strict=True))
 
-    def _slopes_of_run(self, shared: Array, segment: int, ahead: Array, behind: Array) -> "_InnovationSlopes":
+    def slopes_of_run(self, shared: Array, segment: int) -> "InnovationSlopes":
+        """Return innovations of a run and their derivatives by differences: `steps` must be given."""
+        return self._slopes_of_run(shared, segment, *self._difference_points(shared))
+
+    def _slopes_of_run(self, shared: Array, segment: int, ahead: Array, behind: Array) -> "InnovationSlopes":
         columns = self.columns_of(int(self.runs.data.session[segment]))
         cost, e, v = self._loss(shared, segment)
 
@@ -265,7 +269,7 @@ class PredictionError:
             (e_1, v_1), (e_0, v_0), way = (next(sides), next(sides), ahead[column] - behind[column])
             if way > 0 and np.isfinite(cost):
                 de[:, :, c], dv[:, :, c] = (e_1 - e_0) / way, (v_1 - v_0) / way
-        return _InnovationSlopes(cost, e, v, de, dv)
+        return InnovationSlopes(cost, e, v, de, dv)
 
     def _difference_points(self, shared: Array) -> tuple[Array, Array]:
         """Return every unknown a step ahead and a step behind, within its bounds."""
@@ -307,7 +311,7 @@ class PredictionError:
 
 
 @dataclass(frozen=True, eq=False)
-class _InnovationSlopes:
+class InnovationSlopes:
     """Innovations and variances of a run, (rows, ny), and their derivatives by a session's columns, (rows, ny, k)."""
 
     cost: float
@@ -315,6 +319,10 @@ class _InnovationSlopes:
     v: Array
     de: Array
     dv: Array
+
+    def with_columns(self, de: Array, dv: Array) -> "InnovationSlopes":
+        """Return these with derivatives by further unknowns behind their own, (rows, ny, k) each."""
+        return replace(self, de=np.concatenate([self.de, de], axis=2), dv=np.concatenate([self.dv, dv], axis=2))
 
     def information(self, rows: slice | NDArray[np.bool_]) -> tuple[Array, Array]:
         """Return gradient and expected information of some rows; of a run that diverges none, and the identity."""

@@ -30,6 +30,10 @@ class Late(StrEnum):
     YAW_RATE = "yaw_rate"
 
 
+TIMED_CHANNELS = {Late.RECEIVER: ("x0", "y0"), Late.HEADING: ("psi",), Late.YAW_RATE: ("r",)}
+"""Channels of an instrument whose timing its lag is."""
+
+
 _STRICT = ConfigDict(extra="forbid", allow_inf_nan=False)
 
 
