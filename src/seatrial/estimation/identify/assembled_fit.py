@@ -33,7 +33,7 @@ from seatrial.estimation.identify.held_couplings import held_couplings
 from seatrial.estimation.identify.identifiability import identifiability
 from seatrial.estimation.identify.identification import Identification
 from seatrial.estimation.identify.misfit_disturbance import misfit_disturbance
-from seatrial.estimation.identify.model_selection import SelectedModel, with_model_spread
+from seatrial.estimation.identify.model_selection import HOLDOUT_WINDOW_SHIP_LENGTHS, SelectedModel, with_model_spread
 from seatrial.estimation.identify.narrow_bands import narrow_band_findings
 from seatrial.estimation.identify.needless_terms import needless_term_findings
 from seatrial.estimation.identify.other_optima import other_optima
@@ -135,7 +135,13 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
             *fit_result.bounds_hit(estimation), *fit_result.unconverged(estimation), *other_optima(estimation),
             *refuted_prior_findings(estimation),
             *abandoned_criterion_finding(estimation, runs.records),
-            *parts.computed("the couplings held at zero", lambda: held_couplings(selected.estimation), ()),
+            *parts.computed(
+                "the couplings held at zero",
+                lambda: held_couplings(
+                    selected.estimation, predicted.predictions, runs.records,
+                    HOLDOUT_WINDOW_SHIP_LENGTHS * task.characteristic_time,
+                ), (),
+            ),
             *parts.computed(
                 "the thrust over the runs", lambda: drifting_thrust_finding(estimation, runs.records), ()
             ),

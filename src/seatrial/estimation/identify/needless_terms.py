@@ -1,6 +1,7 @@
 """Terms of a fitted model without which the runs that were held out would be predicted better."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from seatrial.core.text.words import enumeration
 from seatrial.core.values import Finding, InputError, Severity
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.information.covariance import inverse
+from seatrial.estimation.predict.holdout_windows import HoldoutProtocol, split_windows
 from seatrial.estimation.predict.open_loop import rms_errors, simulate_open_loop
 
 _ERRORS = {"psi_deg": ("heading", " deg"), "position_m": ("position", " m")}
@@ -36,13 +38,13 @@ def needless_term_findings(
     """
     if course is not None and course.is_unstable:
         return ()
-    held = [p for p in predictions if p.role == "validation" and p.divergence is None and set(_ERRORS) & set(p.rms)]
+    held = judged_runs(predictions)
     if not held:
         return ()
     names, parameters = estimation.estimate.problem.free, estimation.model.parameters
     removable = [n for n in names if n not in _DAMPING
                  and parameters[n].prior is None and parameters[n].lower <= 0.0 <= parameters[n].upper]  # fmt: skip
-    ratios = {name: _error_ratio(estimation, _without(estimation, name), held) for name in removable}
+    ratios = {name: error_ratio(estimation, _without(estimation, name), held) for name in removable}
     best = min(ratios, key=lambda name: ratios[name], default="")
     if not best or ratios[best] > LEAST_GAIN:
         return ()
@@ -60,6 +62,22 @@ def needless_term_findings(
         _advice(is_needed=_is_needed(estimation, best)),
         "it follows the training runs and leads away from others",
     ),)  # fmt: skip
+
+
+def judged_runs(predictions: Sequence[Prediction]) -> list[Prediction]:
+    """Return the held-out runs by which models are compared: those that the fit follows, heading or position known."""
+    return [p for p in predictions if p.role == "validation" and p.divergence is None and set(_ERRORS) & set(p.rms)]
+
+
+def in_windows(estimation: Estimation, held: Sequence[Prediction]) -> list[Prediction]:
+    """Return each held-out run cut into its longest windows, with the fit's errors there; runs that have none whole."""
+    pieces = list[Prediction]()
+    for p in held:
+        length = max((w.seconds for w in p.windows), default=0.0)
+        cut = split_windows(p.measured, HoldoutProtocol(window_s=length)) if length else []
+        pieces += [replace(p, measured=piece) for piece in cut or [p.measured]]
+    errors = _errors(estimation, estimation.model, pieces)
+    return [replace(p, rms=e) for p, e in zip(pieces, errors, strict=True) if np.all(np.isfinite(list(e.values())))]
 
 
 def _is_needed(estimation: Estimation, name: str) -> bool:
@@ -108,8 +126,8 @@ def _errors(estimation: Estimation, model: Model, held: Sequence[Prediction]) ->
     return errors
 
 
-def _error_ratio(estimation: Estimation, model: Model, held: Sequence[Prediction]) -> float:
-    """Geometric mean over runs and quantities of the error by another model over that by the fit."""
+def error_ratio(estimation: Estimation, model: Model, held: Sequence[Prediction]) -> float:
+    """Return the geometric mean over runs and quantities of the error by another model over that by the fit."""
     ratios = [
         errors.get(key, np.inf) / p.rms[key]
         for p, errors in zip(held, _errors(estimation, model, held), strict=True)
