@@ -52,6 +52,16 @@ def test_stated_priors_win() -> None:
     assert (prior.mean, prior.standard_deviation, prior.source) == (-0.4, 0.01, "own")
 
 
+def test_a_fixed_value_of_a_source_keeps_its_spread() -> None:
+    """It is what intervals hold of it; a value of the user's own has none."""
+    keys = {"priors_from": ["kvlcc2", "propulsion"], "prior_sd_percent": 25, "free": ["Y_v"]}
+    by_formula = build_trial_model(table(**keys), TANKER).parameters["t_P"]
+    assert by_formula.prior is not None and not by_formula.free
+    assert (by_formula.prior.mean, by_formula.prior.standard_deviation) == (by_formula.value, 0.05)
+    for own in ({"parameter_set": "kvlcc2"}, {"fixed": {"t_P": 0.2}}):
+        assert build_trial_model(table(**keys, **own), TANKER).parameters["t_P"].prior is None
+
+
 def test_later_sources_win() -> None:
     form = HullForm.from_ship(TANKER)
     both = literature_priors(("clarke", "yoshimura"), TANKER, "mmg")

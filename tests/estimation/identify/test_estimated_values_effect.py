@@ -5,15 +5,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from benchmarks.independent_ships import CRAFTS, FAULTS, posed
 
 from seatrial.core.equations import Model
-from seatrial.core.values import NOT_MEASURED, Array, Finding, Record, Severity
+from seatrial.core.values import NOT_MEASURED, Array, Finding, Prior, Record, Severity
 from seatrial.data.example_series.series import simulate_run, true_model, with_sensor_noise
 from seatrial.data.trial import EstimateMethod, EstimateSettings
 from seatrial.data.trial.estimated_values import ESTIMATED_VALUES
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import fit_output_error
-from seatrial.estimation.identify import EstimatorOptions, Runs, estimate_model
+from seatrial.estimation.identify import EstimatorOptions, Runs, estimate_model, identify
 from seatrial.estimation.identify.estimated_values_effect import (
     EstimatedValueEffect,
     _wrong_together,
@@ -85,6 +86,23 @@ def test_intervals_of_coefficients_hold_the_error_of_an_estimated_value(record: 
     assert np.max(away / found.interval.half_width[: len(truth)]) > 2.0
     assert np.all(away < widened.interval.half_width[: len(truth)])
     assert widened.interval.meaning.endswith("with m_y wrong by 10 % (standard deviation)")
+
+
+@pytest.mark.parametrize("name", ["c55", "I5"])
+def test_intervals_hold_what_the_source_of_a_fixed_value_leaves_open(name: str) -> None:
+    """A craft by its own equations, a stiffness or an inertia fixed one standard deviation of its source too high."""
+    craft = CRAFTS["heave and pitch"]
+    trial = posed(craft, FAULTS["clean"], 0)
+    right = trial.model.parameters[name].value
+    wrong = trial.model.with_values({name: 1.1 * right})
+
+    def misses(one: Model) -> set[str]:
+        fit = identify(replace(trial, model=one))
+        ends = {c.name: (c.lower, c.upper) for c in fit.coefficients if c.name in craft.truth}
+        return {n for n, (low, high) in ends.items() if not (low or 0.0) <= craft.truth[n] <= (high or 0.0)}
+
+    assert "a55" in misses(wrong)
+    assert not misses(wrong.with_parameters(wrong.parameters.with_priors({name: Prior(1.1 * right, 0.1 * right)})))
 
 
 def effects(*shares: float) -> tuple[EstimatedValueEffect, ...]:

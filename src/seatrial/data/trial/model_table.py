@@ -78,7 +78,8 @@ def build_trial_model(
     ).with_ship(own_ship)
     bounds = table.bounds if own_model is None else _bounds_in_common(table, model, layout)
     bounded = _with_bounds(model.parameters, bounds)
-    return model.with_parameters(_with_priors(bounded, table, literature))
+    formulas = literature_priors([name for name in table.priors_from if name not in results], ship, model.name)
+    return model.with_parameters(_with_priors(bounded, table, literature, formulas))
 
 
 def _sourced_priors(
@@ -164,13 +165,24 @@ def _with_bounds(parameters: Parameters, bounds: Bounds) -> Parameters:
     return parameters
 
 
-def _with_priors(parameters: Parameters, table: ModelTable, literature: Mapping[str, LiteraturePrior]) -> Parameters:
-    """Stated priors; for the other free parameters `prior_sd_percent` of the literature's value, or of their start."""
+def _with_priors(
+    parameters: Parameters, table: ModelTable, literature: Mapping[str, LiteraturePrior],
+    formulas: Mapping[str, LiteraturePrior],
+) -> Parameters:  # fmt: skip
+    """Stated priors; for the other free parameters `prior_sd_percent` of the literature's value, or of their start.
+
+    A fixed parameter that has the value of a formula has its prior too, where that knows how far it may be wrong.
+    Values of an earlier result are wrong together, not each by its own.
+    """
     _refuse_unknown("model.priors", tuple(table.priors), parameters)
     priors = {name: _prior(parameters, name, prior) for name, prior in table.priors.items()}
-    for p in parameters.free:
+    for p in parameters:
         known = literature.get(p.name)
-        if known is not None and known.deviation:
+        if (
+            known is not None
+            and known.deviation
+            and (p.free or (known == formulas.get(p.name) and p.value == known.mean))
+        ):
             priors.setdefault(p.name, Prior(known.mean, known.deviation, known.source))
     if table.prior_sd_percent is None and any(not known.deviation for known in literature.values()):
         raise InputError(

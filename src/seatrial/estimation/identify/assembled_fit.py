@@ -80,7 +80,8 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
     shifts = parts.computed("the effect of estimated values", lambda: estimated_value_shifts(estimation), ())
     by_box = parts.computed("the effect of the box's wave forces", lambda: box_force_shifts(estimation, task.train), ())
     given = {name for symmetry in assessment.structural for name in symmetry.parameters}  # said of all coefficients
-    stated = [shift for shift in shifts if shift.name not in given]
+    spreads = {p.name for p in estimation.model.parameters if p.prior is not None}
+    stated = [shift for shift in shifts if shift.name not in given or shift.name in spreads]
     decays = parts.computed("the differences between decays", lambda: differing_decays(estimation), None)
     by_decay = [decays.shift(estimation.estimate.problem.free)] if decays else []
     widened = with_estimated_values(estimation, [*stated, *by_box, *by_decay])

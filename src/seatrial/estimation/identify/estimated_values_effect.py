@@ -8,17 +8,19 @@ import numpy as np
 
 from seatrial.core.text.numbers import percent, signed_percent, significant
 from seatrial.core.text.words import enumeration
-from seatrial.core.values import NOT_MEASURED, Array, Finding, Severity
+from seatrial.core.values import NOT_MEASURED, Array, Finding, Parameter, Severity
 from seatrial.data.trial.estimated_values import ESTIMATED_VALUES
 from seatrial.estimation.estimate.fit import Estimation
-from seatrial.estimation.identify.assumed_information import assumed_information
 from seatrial.estimation.identify.identifiability import RELATIVE_CHANGE
+from seatrial.estimation.identify.score_test import Candidate, own_criterion, score_test
+from seatrial.estimation.problem.output_error import OutputError
 
 MATTERS = 1.0
 """Change of a coefficient over half its interval, and of predictions over the noise, from which a value matters: an
 interval that is right but for this value would no longer hold the truth; chosen."""
 PLAUSIBLE_ERROR = {"rho": 0.025}
 """Standard deviation of values that are known better than to `RELATIVE_CHANGE`: water between fresh and salt."""
+_STEP = 0.01  # of such an error, of differences by it: small against the curve of outputs; chosen
 _LEVER = "y_"  # begins the names of the places of thrusters across the craft
 MAX_NAMED = 3
 """Values of which a warning says what they do; chosen."""
@@ -77,18 +79,39 @@ class EstimatedValueEffect:
 
 
 def estimated_value_shifts(estimation: Estimation) -> tuple[EstimatedValueShift, ...]:
-    """Return what each estimated value does that the model holds and that is not zero."""
+    """Return what each estimated or assumed value does that the model holds and that is not zero.
+
+    It is wrong by the prior that it would have if it were free, else by what such a value commonly is.
+    """
     model = estimation.model
-    names = [p.name for p in model.parameters if not p.free and p.value and p.source.startswith(NOT_MEASURED)]
+    held = {p.name: p for p in model.parameters if not p.free and p.value}
+    names = [n for n, p in held.items() if p.source.startswith(NOT_MEASURED) or _spread(p) > 0.0]
     if not names:
         return ()
-    known, shifts = assumed_information(estimation, names), []
-    for group in _wrong_together(names):
-        error = PLAUSIBLE_ERROR.get(group[0], RELATIVE_CHANGE)
-        change = sum((known.unit(name) * error * model.parameters[name].value for name in group), known.none)
-        moves, growth = known.shifts(change)
-        shifts.append(EstimatedValueShift(enumeration(group), error, moves, float(np.sqrt(growth / known.samples))))
-    return tuple(shifts)
+    groups = [[held[name] for name in group] for group in _wrong_together(names)]
+    errors = [_spread(g[0]) or PLAUSIBLE_ERROR.get(g[0].name, RELATIVE_CHANGE) for g in groups]
+    candidates = [_larger(group, error) for group, error in zip(groups, errors, strict=True)]
+    test, problem = score_test(own_criterion(estimation), candidates), estimation.estimate.problem
+    visible = np.sqrt(test.information / np.isfinite(problem.data.measured).sum())
+    moves = test.by_candidates[: len(problem.free)].T
+    return tuple(map(EstimatedValueShift, test.names, errors, moves, visible.tolist()))
+
+
+def _larger(group: Sequence[Parameter], error: float) -> Candidate:
+    """Values that are larger by a share together, as a candidate of which 1 is that share."""
+
+    def problem_with(problem: OutputError, size: float) -> OutputError:
+        values = {p.name: (1.0 + size * error) * p.value for p in group}
+        return replace(problem, model=problem.model.with_values(values))
+
+    return Candidate(enumeration([p.name for p in group]), problem_with, _STEP)
+
+
+def _spread(parameter: Parameter) -> float:
+    """Standard deviation of a parameter's prior over its value, which is not zero; 0: it has none."""
+    if parameter.prior is None or not math.isfinite(parameter.prior.standard_deviation):
+        return 0.0
+    return parameter.prior.standard_deviation / abs(parameter.value)
 
 
 def _wrong_together(names: Sequence[str]) -> list[list[str]]:
