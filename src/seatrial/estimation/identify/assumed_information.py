@@ -22,7 +22,6 @@ class AssumedInformation:
         information: of all of them, (n, n), initial states eliminated.
         moving: positions of what the fit estimates; the first `count` are its free coefficients.
         chi_squared: sum of squares over the noise at the estimate.
-        samples: measured numbers in it.
     """
 
     place: Mapping[str, int]
@@ -31,17 +30,11 @@ class AssumedInformation:
     moving: Index
     count: int
     chi_squared: float
-    samples: int
 
     def shifts(self, change: Array) -> tuple[Array, float]:
         """Return changes of the free coefficients, (count,), SI, and the growth of chi squared; change: (n,), SI."""
         moves, growth = estimate_shifts(self.information, self.moving, change)
         return moves[: self.count], growth
-
-    @property
-    def none(self) -> Array:
-        """Return no change, (n,)."""
-        return np.zeros(len(self.point))
 
     def unit(self, name: str) -> Array:
         """Return a change by one of an assumed value alone, (n,)."""
@@ -65,7 +58,7 @@ def assumed_information(estimation: Estimation, names: Sequence[str], held: Sequ
     return AssumedInformation(
         place, point, problem.normal(point, estimate.optimum.local).without_local()[1],
         np.array([*fitted, *range(size, len(point))]), len(free),
-        2.0 * problem.cost(point, estimate.optimum.local), int(np.isfinite(problem.data.measured).sum()),
+        2.0 * problem.cost(point, estimate.optimum.local),
     )  # fmt: skip
 
 
