@@ -25,7 +25,7 @@ _ACCURACY = (
 _BINS = 200  # of the output's density over the logarithm of the frequency; chosen
 _STEP_SHARE = 0.1  # of the fastest pole's time constant, of a step; chosen
 _MOST_STEPS = 1_000_000  # of a realisation; chosen
-_RUN_IN = 5.0  # time constants of the slowest pole, before what is counted; chosen
+_RUN_IN = 5.0  # correlation times of the output, before what is counted; chosen
 _EDGE = 1e-9  # share by which the bins reach beyond the outermost frequencies: rounding
 LEAST_FREQUENCY = 1e-9  # rad/s: a wave that keeps up with the ship
 SIGNALS = ("output", "actuator", "actuator_rate")
@@ -84,33 +84,42 @@ def named_signals(values: Array) -> dict[str, float]:
 def disturbance_clock(
     met: Seaway | SlowDisturbance, loop: TransferLoop, inner: TransferLoop | None = None
 ) -> DisturbanceClock:
-    """Return steps short for the fastest pole, a run-in for the slowest, and enough of the output to know its rms.
+    """Return steps short for the fastest pole, a run-in, and enough of the output to know its rms.
 
-    inner: a loop within this one, whose samples the steps divide.
+    inner: a loop within this one, which is what is integrated.
     """
     spectrum = met.exposure(loop)
     omega = spectrum.omega_e
     energy = spectrum.energy * np.abs(_response(loop, omega)) ** 2
     poles = loop.closed_loop_poles
-    slowest = 1.0 / float(-poles.real.max())
-    moving = poles if loop.sampling is None else np.concatenate([loop.plant.poles, loop.disturbance.poles])
-    sampling = loop.sampling if inner is None else inner.sampling
-    dt = simulation_step(sampling, _STEP_SHARE / float(np.abs(moving).max()))
-    counted = max(_time_to_know(omega, energy), _RUN_IN * slowest)
-    count = min(math.ceil((_RUN_IN * slowest + counted) / dt), _MOST_STEPS)
-    return DisturbanceClock(dt, count, min(math.ceil(_RUN_IN * slowest / dt), count // 2))
+    stepped = loop if inner is None else inner
+    moving = poles if stepped.sampling is None else np.concatenate([stepped.plant.poles, stepped.disturbance.poles])
+    dt = simulation_step(stepped.sampling, _STEP_SHARE / float(np.abs(moving).max()))
+    time = correlation_time(omega, energy)
+    counted = time_to_know(time, SEEDS)
+    first = math.ceil(_RUN_IN * time / dt)
+    count = min(first + math.ceil(counted / dt), _MOST_STEPS)
+    return DisturbanceClock(dt, count, min(first, count // 2))
 
 
-def _time_to_know(omega: Array, energy: Array) -> float:
-    """Return how long [s] each realisation lasts for the rms to be known to `_ACCURACY`.
+def time_to_know(correlation: float, runs: int) -> float:
+    """Return how long [s] each of some runs lasts for an rms over all of them to be known to `_ACCURACY`.
 
-    The variance of a Gaussian signal of one-sided density S is known over a time T with the variance 2 pi / T int S^2
-    (Bendat & Piersol 2010, Random Data, section 8.2), its rms to half of that share. omega, energy: (n,), S d omega.
+    The rms of a Gaussian signal has the variance time / (2 T) of its square (Bendat & Piersol 2010, section 8.2).
+    """
+    return correlation / (2.0 * _ACCURACY**2 * runs)
+
+
+def correlation_time(omega: Array, energy: Array) -> float:
+    """Return pi int S^2 / (int S)^2 [s] of a one-sided density S: over a time T the variance is known to 2 time / T.
+
+    (Bendat & Piersol 2010, Random Data, section 8.2.) Poles that hardly move the output do not lengthen it. omega,
+    energy: (n,), S d omega.
     """
     w = np.maximum(omega, LEAST_FREQUENCY)
     edges = np.geomspace(w.min() * (1.0 - _EDGE), w.max() * (1.0 + _EDGE), _BINS + 1)
     share = np.histogram(w, edges, weights=energy)[0] / np.sum(energy)
-    return 2.0 * math.pi * float(np.sum(share**2 / np.diff(edges))) / (4.0 * _ACCURACY**2 * SEEDS)
+    return math.pi * float(np.sum(share**2 / np.diff(edges)))
 
 
 def _response(loop: TransferLoop, omega: Array) -> Complex:
