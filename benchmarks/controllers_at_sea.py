@@ -9,29 +9,36 @@ same steps, transformed at each frequency.
 
 import argparse
 import math
-import tempfile
 import tomllib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from measure import Line, at_most
+from second_simulator import (
+    DEGREE,
+    OVERSHOOT,
+    PEAK,
+    QUICK,
+    RMS,
+    SETTLING,
+    OwnActuator,
+    OwnController,
+    gauss_markov,
+    lag_of,
+    print_lines,
+    tuning_of,
+)
 
-from seatrial import api
 from seatrial.control.front import Effort
-from seatrial.control.tune import tune
 from seatrial.core.results.tuning import Tuning
 from seatrial.core.values import Array
 from seatrial.data.folder.gains_file import gains_toml
 
-DEGREE = math.pi / 180.0
 SHORT = 0.02  # step of the simulator over the craft's fastest time constant, its gear's lag and its dead time, at most
-OVERSHOOT, SETTLING, RMS, PEAK = 2.0, 10.0, 5.0, 0.05  # points, %, %, Ms: what page and simulator may differ by
 FREQUENCIES = 2000  # at which the simulator's Ms is read off
 CYCLES = 3000.0  # time constants of what disturbs, of the simulator's own realisation: 2 % of its rms
-QUICK = Effort(population=80, generations=20, refined=12, fill_rounds=2, neighbours=4000)
 
 
 @dataclass(frozen=True)
@@ -166,68 +173,6 @@ CRAFTS = (
 )  # fmt: skip
 
 
-def amount_of(table: dict[str, Any], name: str) -> float:
-    """Return an amount of gains.toml in SI, by the unit at the end of its key; infinite where there is none."""
-    key = next((key for key in table if key.startswith(name) and "saturation" not in key), None)
-    return math.inf if key is None else table[key] * (DEGREE if "deg" in key else 1.0)
-
-
-class OwnController:
-    """A controller as one codes it from gains.toml."""
-
-    def __init__(self, text: str) -> None:
-        table = tomllib.loads(text)
-        discrete, kept = table["discrete"], table.get("constraints", {})
-        self.T, self.blocks, self.gains = discrete["sample_s"], discrete["blocks"], table["gains"]
-        self.dead_time = discrete["dead_time_s"]
-        self.limit, self.rate = amount_of(kept, "limit"), amount_of(kept, "rate")
-        self.reference, self.sensor = table.get("reference", {}), discrete.get("sensor", [])
-        self.noise, self.resolution = discrete["noise"], discrete["resolution"]
-        self.past = [([0.0] * len(one["b"]), [0.0] * len(one["b"])) for one in self.blocks]
-        self.excess = self.achieved = self.x = self.v = 0.0
-
-    def follow(self, ordered: float) -> tuple[float, float]:
-        """Return the reference now and what it feeds forward, and go on for a sample, in a hundred short steps."""
-        w, fastest = 1.0 / self.reference["time_constant_s"], amount_of(self.reference, "rate")
-        x, v = self.x, self.v
-        acceleration = w * w * (ordered - x) - 2.0 * w * v
-        if abs(v) >= fastest and acceleration * v > 0.0:
-            acceleration = 0.0
-        h = self.T / 100
-        for _ in range(100):
-            faster = min(max(self.v + h * (w * w * (ordered - self.x) - 2.0 * w * self.v), -fastest), fastest)
-            self.x += 0.5 * h * (self.v + faster)
-            self.v = faster
-        fed = self.reference["level"] * x + self.reference["velocity"] * v
-        return x, fed + self.reference["acceleration"] * acceleration
-
-    def order(self, error: float, fed: float) -> float:
-        """Return the order of a sample."""
-        total = 0.0
-        for block, (inputs, outputs) in zip(self.blocks, self.past, strict=True):
-            if block["role"] == "term":
-                total += self.gains[block["gain"]] * self._answer(block, inputs, outputs, error)
-        for block, (inputs, outputs) in zip(self.blocks, self.past, strict=True):
-            if block["role"] == "filter":
-                total = self._answer(block, inputs, outputs, total)
-        total += fed
-        way = min(max(total, -self.limit), self.limit) - self.achieved
-        self.achieved += min(max(way, -self.rate * self.T), self.rate * self.T)
-        self.excess = total - self.achieved
-        return total
-
-    def _answer(self, block: dict[str, Any], inputs: list[float], outputs: list[float], x: float) -> float:
-        inputs.insert(0, x)
-        inputs.pop()
-        y = sum(b * u for b, u in zip(block["b"], inputs, strict=True))
-        y -= sum(a * o for a, o in zip(block["a"][1:], outputs, strict=False))
-        if block["hold"] and self.excess * block["hold"] * self.gains[block["gain"]] * (y - outputs[0]) > 0.0:
-            y = outputs[0]
-        outputs.insert(0, y)
-        outputs.pop()
-        return y
-
-
 @dataclass(frozen=True)
 class Run:
     """Heading and rudder [rad] at every step."""
@@ -246,8 +191,8 @@ def simulate(
     parts = craft.parts(own.T)
     dt = own.T / parts
     A, b, c = (np.array(side, dtype=float) for side in (craft.A, craft.b, craft.c))
-    x, rudder, served, order = np.zeros(len(b)), 0.0, 0.0, 0.0
-    waiting = [0.0] * round(craft.dead_time / dt)
+    x, gear = np.zeros(len(b)), lag_of(craft.gear, dt)
+    actuator = OwnActuator(dt, craft.dead_time, gear, craft.limit * craft.unit, craft.rate * craft.unit)
     samples = math.ceil(duration / own.T)
     heading, moved = np.empty(samples * parts), np.empty(samples * parts)
     step, unit = np.eye(len(b)) + dt * A + 0.5 * dt * dt * (A @ A), craft.resolution * craft.unit
@@ -259,27 +204,10 @@ def simulate(
         order = own.order(wanted - seen, fed)
         for j in range(parts):
             i = k * parts + j
-            heading[i], moved[i] = c @ x, rudder
-            waiting.append(order)
-            late = waiting.pop(0)
-            served = late if not craft.gear else served + dt / craft.gear * (late - served)
-            way = min(max(served, -craft.limit * craft.unit), craft.limit * craft.unit) - rudder
-            before = rudder
-            rudder += min(max(way, -craft.rate * craft.unit * dt), craft.rate * craft.unit * dt)
-            acting = 0.5 * (before + rudder) + (0.0 if disturbance is None else float(disturbance[i]))
+            heading[i], moved[i] = c @ x, actuator.angle
+            acting = actuator.move(order) + (0.0 if disturbance is None else float(disturbance[i]))
             x = step @ x + push * acting
     return Run(heading, moved, dt)
-
-
-def gauss_markov(rms: float, bandwidth: float, dt: float, count: int, rng: np.random.Generator) -> Array:
-    """Return coloured noise of that rms, exactly from step to step."""
-    stay = math.exp(-bandwidth * dt)
-    kicks = rms * math.sqrt(1.0 - stay * stay) * rng.standard_normal(count)
-    made, now = np.empty(count), rms * float(rng.standard_normal())
-    for k, kick in enumerate(kicks.tolist()):
-        made[k] = now
-        now = stay * now + kick
-    return made
 
 
 def largest_sensitivity(craft: Craft, text: str) -> float:
@@ -299,7 +227,7 @@ def largest_sensitivity(craft: Craft, text: str) -> float:
     n, late = len(b), round(craft.dead_time / dt)
     size = n + 1 + late
     M, push_order, row = np.zeros((size, size)), np.zeros(size), np.zeros(size)
-    share = dt / craft.gear if craft.gear else 1.0
+    share = 1.0 - math.exp(-dt / craft.gear) if craft.gear else 1.0
     M[:n, :n], row[:n] = step, c
     M[n, n] = 1.0 - share
     if late:
@@ -317,26 +245,7 @@ def largest_sensitivity(craft: Craft, text: str) -> float:
         kicks, whole = kicks + power @ push_order, M @ whole
         power = M @ power
     plant = np.array([row @ np.linalg.solve(one * np.eye(size) - whole, kicks) for one in z])
-    controller = np.zeros(len(z), dtype=complex)
-    for block in own.blocks:
-        if block["role"] == "term":
-            controller += own.gains[block["gain"]] * _response(block, z)
-    for block in own.blocks:
-        if block["role"] == "filter":
-            controller *= _response(block, z)
-    return float(np.max(1.0 / np.abs(1.0 + controller * plant)))
-
-
-def _response(block: dict[str, Any], z: Array) -> Array:
-    return np.polyval(block["b"], z) / np.polyval(block["a"], z)
-
-
-def tuned(craft: Craft, effort: Effort | None = None) -> Tuning:
-    """Return the package's tuning of the craft's loop file."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "loop.toml"
-        path.write_text(craft.loop_file(), encoding="utf-8")
-        return tune(api.load_loop(path), effort=effort)
+    return float(np.max(1.0 / np.abs(1.0 + own.response(z) * plant)))
 
 
 @dataclass(frozen=True)
@@ -391,7 +300,7 @@ def lines_of(crafts: Sequence[Craft], effort: Effort | None = None) -> list[Line
     """Return the lines of some crafts."""
     lines = []
     for craft in crafts:
-        made = difference(craft, tuned(craft, effort))
+        made = difference(craft, tuning_of(craft.loop_file(), effort=effort)[1])
         lines += [
             at_most(f"{craft.name}: overshoot, page less simulator", abs(made.overshoot), "points", OVERSHOOT),
             at_most(f"{craft.name}: settling, page over simulator", abs(made.settling), "%", SETTLING),
@@ -411,5 +320,6 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description="every craft, or those named")
     parser.add_argument("names", nargs="*")
     given = parser.parse_args().names
-    for line in lines_of([craft for craft in CRAFTS if not given or craft.name in given]):
-        print(f"{line.quantity:<75} {line.value:>10.4g} {line.unit:<8} {line.verdict}", flush=True)
+    for each in CRAFTS:
+        if not given or each.name in given:
+            print_lines(lines_of([each]))

@@ -1,4 +1,4 @@
-"""Roll fins and ride control under a controller written from gains.toml alone: is their motion that of the page?
+"""Roll fins under a controller written from gains.toml alone: is their motion that of the page?
 
 The simulator is this file's own. A sea is a sum of regular waves at equal steps of energy, each at its frequency of
 encounter; the hull is a differential equation in short steps, the gyro's blocks are state-space forms in the same
@@ -7,23 +7,31 @@ its servo, within its limits of angle, rate and lift.
 """
 
 import math
-import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
-from controllers_at_sea import DEGREE, QUICK, RMS, OwnController
 from measure import Line, at_most
+from second_simulator import (
+    DEGREE,
+    QUICK,
+    RMS,
+    G,
+    OwnActuator,
+    OwnBlocks,
+    OwnController,
+    ittc_waves,
+    print_lines,
+    stalled,
+    tuning_of,
+)
 
-from seatrial import api
 from seatrial.control.front import Effort
-from seatrial.control.tune import tune
 from seatrial.core.values import Array
 from seatrial.data.folder.gains_file import gains_toml
 
-G = 9.80665  # m/s^2, standard gravity
 WAVES, SEAS, DURATION, RUN_IN = 600, 4, 600.0, 100.0  # of the simulator's own realisations; s
+CUT = 1e-4  # of the energy at either end of the spectrum
 STEP = 0.01  # s, of the simulator: a sixth of the gyro's 1/63 s
 
 
@@ -82,42 +90,10 @@ FINS = (
 )  # fmt: skip
 
 
-class OwnBlocks:
-    """Blocks num / den in a row, as a companion form in steps of dt, for an input that runs straight over a step."""
-
-    def __init__(self, blocks: Sequence[tuple[Sequence[float], Sequence[float]]], dt: float) -> None:
-        num, den = np.ones(1), np.ones(1)
-        for above, below in blocks:
-            num, den = np.polymul(num, above), np.polymul(den, below)
-        num, den = num / den[0], den / den[0]
-        n = len(den) - 1
-        num = np.concatenate([np.zeros(n + 1 - len(num)), num])
-        self.direct, self.c = float(num[0]), num[1:] - num[0] * den[1:]
-        A = np.eye(n, k=-1)
-        A[0] = -den[1:]
-        b = np.eye(n)[0]
-        inverse = np.linalg.inv(np.eye(n) - 0.5 * dt * A)
-        self.E, self.g = inverse @ (np.eye(n) + 0.5 * dt * A), inverse @ b * dt
-        self.x, self.before = np.zeros(n), 0.0
-
-    def move(self, begun: float, ended: float) -> float:
-        """Return the output after a step in which the input went from one value to the other."""
-        self.x = self.E @ self.x + 0.5 * (begun + ended) * self.g
-        return self.shown(ended)
-
-    def shown(self, value: float) -> float:
-        """Return the output at an input."""
-        return float(self.c @ self.x) + self.direct * value
-
-
 def wave_slopes(craft: FinCraft, seed: int) -> Array:
     """Return the slope of one sea across the craft [rad] at every step: ITTC's spectrum of one parameter."""
     rng = np.random.default_rng([seed, 2147])
-    A, B = 8.1e-3 * G**2, 3.11 / craft.height**2
-    # energy below omega is A / (4 B) exp(-B / omega^4): equal shares, a random place in each
-    share = (np.arange(WAVES) + rng.random(WAVES)) / WAVES * (1.0 - 2e-4) + 1e-4
-    omega = (B / -np.log(share)) ** 0.25
-    amplitude = np.full(WAVES, math.sqrt(2.0 * A / (4.0 * B) / WAVES))
+    omega, amplitude = ittc_waves(craft.height, WAVES, rng, CUT, 1.0 - CUT)
     beta = craft.heading * DEGREE
     met = omega - omega**2 / G * craft.speed * math.cos(beta)
     slope = omega**2 / G * math.sin(beta) * amplitude
@@ -132,9 +108,9 @@ def roll_rms(craft: FinCraft, text: str | None, slopes: Array, seed: int) -> flo
     servo = OwnBlocks([((550.0,), (1.0, 15.0, 225.0))], STEP)  # as published
     sensor = None if own is None else OwnBlocks([(b["num"], b["den"]) for b in own.sensor], STEP)
     rng, every = np.random.default_rng([seed, 47]), 1 if own is None else round(own.T / STEP)
-    waiting = [0.0] * (0 if own is None else round(own.dead_time / STEP))
-    limit, slew, stall = craft.limit * DEGREE, craft.rate * DEGREE * STEP, craft.stall * DEGREE
-    phi = p = order = fin = served = misread = 0.0
+    fin = OwnActuator(STEP, own.dead_time if own else 0.0, lambda order: servo.move(order, order),
+                      craft.limit * DEGREE, craft.rate * DEGREE)  # fmt: skip
+    phi = p = order = misread = lift = seen = 0.0
     w, made = craft.omega, np.empty(len(slopes))
     for k, slope in enumerate(slopes.tolist()):
         made[k] = phi
@@ -142,14 +118,8 @@ def roll_rms(craft: FinCraft, text: str | None, slopes: Array, seed: int) -> flo
             if k % every == 0:
                 misread = craft.noise * DEGREE * float(rng.standard_normal())
                 order = own.order(sensor.shown(-phi - misread), 0.0)
-            waiting.append(order)
-            late = waiting.pop(0)
-            served = servo.move(late, late)
-            before, seen = fin, phi
-            fin += min(max(min(max(served, -limit), limit) - fin, -slew), slew)
-        lift = 0.5 * (before + fin) if own is not None else 0.0
-        lift = math.copysign(min(abs(lift), max(2.0 * stall - abs(lift), 0.0)), lift)
-        push = w * w * (slope + craft.K_alpha * lift)
+            seen, lift = phi, fin.move(order)
+        push = w * w * (slope + craft.K_alpha * stalled(lift, craft.stall * DEGREE))
         middle = p + 0.5 * STEP * (push - 2.0 * craft.damping * w * p - w * w * phi)
         half = phi + 0.5 * STEP * p
         p += STEP * (push - 2.0 * craft.damping * w * middle - w * w * half)
@@ -163,10 +133,7 @@ def lines_of(crafts: Sequence[FinCraft], effort: Effort | None = None) -> list[L
     """Return the lines of some crafts: what is left of the roll, page over simulator."""
     lines = []
     for craft in crafts:
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / "loop.toml"
-            path.write_text(craft.loop_file(), encoding="utf-8")
-            tuning = tune(api.load_loop(path), effort=effort)
+        _, tuning = tuning_of(craft.loop_file(), effort=effort)
         page = 1.0 - float(np.mean(tuning.seaway_simulations[0].stalled))
         text = gains_toml(tuning)
         seas = [(wave_slopes(craft, seed), seed) for seed in range(SEAS)]
@@ -182,5 +149,5 @@ def run() -> list[Line]:
 
 
 if __name__ == "__main__":
-    for line in lines_of(FINS, QUICK):
-        print(f"{line.quantity:<75} {line.value:>10.4g} {line.unit:<8} {line.verdict}", flush=True)
+    for each in FINS:
+        print_lines(lines_of([each], QUICK))

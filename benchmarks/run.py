@@ -39,9 +39,11 @@ import numpy as np
 import population
 import prediction_bands
 import proposals
+import ride_at_sea
 import roll_decay
 import sample_rates
 import simulation
+import station_at_sea
 import timing
 import tracks_at_sea
 import tune
@@ -81,6 +83,8 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "controllers_at_sea": controllers_at_sea.run,
     "fins_at_sea": fins_at_sea.run,
     "tracks_at_sea": tracks_at_sea.run,
+    "station_at_sea": station_at_sea.run,
+    "ride_at_sea": ride_at_sea.run,
     "wave_observer": wave_observer.run,
     "verification": verification.run,
     "verify_at_sea": verify_at_sea.run,

@@ -65,7 +65,12 @@ def tried_on(own: StationCraft, made: StationKeeping, task: TuningTask, demand: 
     gains = StationGains(made.KP, made.KI, made.KD, made.filter_lag)
     controller = StationController(made.KP, made.KI, made.KD, made.filter_lag, made.sample_s, demand.dead_time, orders)
     loop = StationLoop(
-        station_point(own, demand.current, 0.0), gains, inverse, made.dead_time, np.ones(len(inverse)), np.ones(1)
+        station_point(own, demand.current, 0.0, inverse),
+        gains,
+        inverse,
+        made.dead_time,
+        np.ones(len(inverse)),
+        np.ones(1),
     )
     setting = StationSetting(demand.current, made.trial.directions, station_disturbances(task, demand, own))
     return StationSimulator(loop, controller, setting, 0).respond(0)

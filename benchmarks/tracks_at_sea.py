@@ -5,22 +5,30 @@ sample as gains.toml states it, the controller of `controllers_at_sea` behind it
 """
 
 import math
-import tempfile
 import tomllib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
-from controllers_at_sea import DEGREE, OVERSHOOT, QUICK, RMS, OwnController, gauss_markov
 from measure import Line, at_most
+from second_simulator import (
+    DEGREE,
+    OVERSHOOT,
+    QUICK,
+    RMS,
+    OwnActuator,
+    OwnController,
+    gauss_markov,
+    lag_of,
+    nomoto_step,
+    print_lines,
+    tuning_of,
+)
 
-from seatrial import api
 from seatrial.control.front import Effort
-from seatrial.control.tune import tune
 from seatrial.core.values import Array, Ship
 from seatrial.data.folder.gains_file import gains_toml
-from seatrial.data.folder.model_file import ModelFile, write_model
+from seatrial.data.folder.model_file import ModelFile
 from seatrial.physics.models import model_named
 
 CYCLES = 1000.0  # time constants of the current, of the simulator's own realisation: 2 % of its rms
@@ -50,13 +58,15 @@ class TrackCraft:
         """Return how many steps of the simulator make a sample."""
         return math.ceil(sample_s / (SHORT * min(self.T, 5.0 * self.dead_time)))
 
-    def task(self, folder: Path) -> Path:
-        """Return the loop file, its model beside it."""
+    @property
+    def model(self) -> ModelFile:
+        """The craft as an identified model."""
         model = model_named("nomoto").with_values({"K": self.K, "T": self.T, "U": self.U})
-        write_model(ModelFile(model, ship=Ship(self.name, {"L": self.length})), folder / "model.toml")
-        path = folder / "loop.toml"
-        path.write_text(
-            f"""
+        return ModelFile(model, ship=Ship(self.name, {"L": self.length}))
+
+    def loop_file(self) -> str:
+        """Return the loop file."""
+        return f"""
 name = "{self.name}"
 [plant]
 model = "model.toml"
@@ -77,10 +87,7 @@ time_constant = {self.time_constant}
 [track]
 current = {self.current}
 bandwidth = {self.bandwidth}
-""",
-            encoding="utf-8",
-        )
-        return path
+"""
 
 
 TRACKS = (
@@ -108,29 +115,24 @@ def sail(
     parts = craft.parts(own.T)
     dt, fastest = own.T / parts, law["order_rate_deg_per_s"] * DEGREE * own.T
     Delta, sigma = law["lookahead_m"], law.get("integral_gain_m_per_s", 0.0)
-    north = east = psi = r = rudder = served = order = ordered = q = 0.0
-    share = 1.0 - math.exp(-dt / craft.gear)
-    waiting, leg, first = [0.0] * round(craft.dead_time / dt), 0, math.ceil(duration / own.T) * parts
+    north = east = psi = r = order = ordered = q = 0.0
+    rudder = OwnActuator(dt, craft.dead_time, lag_of(craft.gear, dt), craft.limit * DEGREE, craft.rate * DEGREE)
+    turned, leg, first = nomoto_step(craft.K, craft.T, dt), 0, math.ceil(duration / own.T) * parts
     errors, moved = np.empty(first), np.empty(first)
     for i in range(len(errors)):
         if not leg and corner - north < acceptance:
             leg, first = 1, i
         chi = turn if leg else 0.0
         e = -(north - corner) * math.sin(chi) + east * math.cos(chi) if leg else east
-        errors[i], moved[i] = e, rudder
+        errors[i], moved[i] = e, rudder.angle
         if i % parts == 0:
             total = e + sigma * q
             q += own.T * Delta * e / (total * total + Delta * Delta)
             ordered += min(max(chi - math.atan(total / Delta) - ordered, -fastest), fastest)
             order = own.order(ordered - psi, 0.0)
-        waiting.append(order)
-        served += share * (waiting.pop(0) - served)
-        way = min(max(served, -craft.limit * DEGREE), craft.limit * DEGREE) - rudder
-        before = rudder
-        rudder += min(max(way, -craft.rate * DEGREE * dt), craft.rate * DEGREE * dt)
-        faster = r + dt / craft.T * (craft.K * 0.5 * (before + rudder) - r)
-        middle = psi + 0.25 * dt * (r + faster)
-        psi, r = psi + 0.5 * dt * (r + faster), faster
+        before = psi
+        psi, r = turned(psi, r, rudder.move(order))
+        middle = 0.5 * (before + psi)
         set_north, set_east = current(i)
         north += dt * (craft.U * math.cos(middle) + set_north)
         east += dt * (craft.U * math.sin(middle) + set_east)
@@ -141,8 +143,7 @@ def lines_of(crafts: Sequence[TrackCraft], effort: Effort | None = None) -> list
     """Return the lines of some crafts: rms in the current, and the corner."""
     lines = []
     for craft in crafts:
-        with tempfile.TemporaryDirectory() as folder:
-            tuning = tune(api.load_loop(craft.task(Path(folder))), effort=effort)
+        _, tuning = tuning_of(craft.loop_file(), craft.model, effort)
         text, track = gains_toml(tuning), tuning.track
         assert track is not None
         page = track.disturbances[0].limited
@@ -179,6 +180,5 @@ def run() -> list[Line]:
 
 
 if __name__ == "__main__":
-    for one in TRACKS:
-        for line in lines_of([one], QUICK):
-            print(f"{line.quantity:<90} {line.value:>10.4g} {line.unit:<8} {line.verdict}", flush=True)
+    for each in TRACKS:
+        print_lines(lines_of([each], QUICK))

@@ -6,28 +6,33 @@ covariance says. Seeds are drawn apart from those of any test or threshold: `FIR
 """
 
 import argparse
-import math
-import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
-from controllers_at_sea import DEGREE, QUICK, OwnController, gauss_markov
 from measure import Line, at_least
+from second_simulator import (
+    DEGREE,
+    QUICK,
+    OwnActuator,
+    OwnController,
+    gauss_markov,
+    lag_of,
+    nomoto_step,
+    print_lines,
+    tuning_of,
+)
 
-from seatrial import api
 from seatrial.control.task import TuningTask
-from seatrial.control.tune import tune
 from seatrial.control.verification.verify import verify
 from seatrial.core.results.verification import Verification
 from seatrial.core.values import Record, Ship
 from seatrial.data.folder.gains_file import gains_toml
-from seatrial.data.folder.model_file import ModelFile, write_model
+from seatrial.data.folder.model_file import ModelFile
 from seatrial.physics.models import model_named
 
 FIRST_SEED = 470_000
-LOGS = 100  # of each kind; fewer where CPU is short: an argument
+LOGS, FEWER = 100, 20  # of each kind; fewer where CPU is short: an argument, and in a run of all benchmarks
 K, T, U, LENGTH = 0.16, 4.0, 9.0, 30.0  # 1/s, s, m/s, m
 DEVIATIONS = (0.02, 0.05)  # of K and T, shares: of a fit
 GEAR, DEAD, LIMIT, RATE = 0.5, 0.5, 35.0, 4.0  # s, s, deg, deg/s
@@ -94,12 +99,8 @@ def tuned_trial() -> Trial:
     """Return the boat's tuning."""
     model = model_named("nomoto").with_values({"K": K, "T": T, "U": U})
     covariance = np.diag(np.square([DEVIATIONS[0] * K, DEVIATIONS[1] * T]))
-    with tempfile.TemporaryDirectory() as folder:
-        write_model(ModelFile(model, covariance, ship=Ship("boat", {"L": LENGTH})), Path(folder) / "model.toml")
-        path = Path(folder) / "loop.toml"
-        path.write_text(LOOP, encoding="utf-8")
-        task = api.load_loop(path)
-    tuning = tune(task, effort=QUICK)
+    file = ModelFile(model, covariance, ship=Ship("boat", {"L": LENGTH}))
+    task, tuning = tuning_of(LOOP, file, QUICK)
     return Trial(task, dict(tuning.chosen.gains), gains_toml(tuning))
 
 
@@ -114,8 +115,8 @@ def log_of(trial: Trial, change: Change, seed: int) -> Record:
     dt = own.T / parts
     count, every = round(LEG_S * LEGS / own.T), round(LOGGER / own.T)
     gusts = gauss_markov(GUSTS * DEGREE, BANDWIDTH, dt, count * parts, rng)
-    waiting, share = [0.0] * round(DEAD / dt), 1.0 - math.exp(-dt / GEAR)
-    psi = r = rudder = served = 0.0
+    rudder = OwnActuator(dt, DEAD, lag_of(GEAR, dt), change.stop * DEGREE, RATE * DEGREE)
+    turned, psi, r = nomoto_step(gain, lag, dt), 0.0, 0.0
     rows = []
     for k in range(count):
         # to starboard twice, back twice
@@ -123,17 +124,11 @@ def log_of(trial: Trial, change: Change, seed: int) -> Record:
         ordered = (0.0, 1.0, 2.0, 1.0)[leg] * CHANGE * DEGREE
         seen = psi + COMPASS * DEGREE * float(rng.standard_normal())
         if k % every == 0:
-            rows.append((k * own.T, seen, r + GYRO * DEGREE * float(rng.standard_normal()), rudder, ordered))
+            rows.append((k * own.T, seen, r + GYRO * DEGREE * float(rng.standard_normal()), rudder.angle, ordered))
         wanted, fed = own.follow(ordered)
         order = own.order(wanted - seen, fed)
         for j in range(parts):
-            waiting.append(order)
-            served += share * (waiting.pop(0) - served)
-            way = min(max(served, -change.stop * DEGREE), change.stop * DEGREE) - rudder
-            before = rudder
-            rudder += min(max(way, -RATE * DEGREE * dt), RATE * DEGREE * dt)
-            faster = r + dt / lag * (gain * (0.5 * (before + rudder) + gusts[k * parts + j]) - r)
-            psi, r = psi + 0.5 * dt * (r + faster), faster
+            psi, r = turned(psi, r, rudder.move(order) + gusts[k * parts + j])
     time, *series = np.array(rows).T
     names = ("psi", "r", "delta", "psi_ref")
     return Record.from_arrays(f"log_{seed}", time, dict(zip(names, series, strict=True)))
@@ -157,8 +152,8 @@ def lines_of(changes: Sequence[Change], logs: int, first: int = FIRST_SEED) -> l
 
 
 def run() -> list[Line]:
-    """Return the lines of a few logs of each kind."""
-    return lines_of(CHANGES, 4)
+    """Return the lines of fewer logs of each kind."""
+    return lines_of(CHANGES, FEWER)
 
 
 if __name__ == "__main__":
@@ -166,5 +161,4 @@ if __name__ == "__main__":
     parser.add_argument("--logs", type=int, default=LOGS)
     parser.add_argument("names", nargs="*")
     given = parser.parse_args()
-    for line in lines_of([one for one in CHANGES if not given.names or one.name in given.names], given.logs):
-        print(f"{line.quantity:<75} {line.value:>10.4g} {line.unit:<8} {line.verdict}", flush=True)
+    print_lines(lines_of([one for one in CHANGES if not given.names or one.name in given.names], given.logs))

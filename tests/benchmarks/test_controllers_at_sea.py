@@ -6,23 +6,18 @@ import numpy as np
 import pytest
 from benchmarks.controllers_at_sea import (
     CRAFTS,
-    DEGREE,
-    OVERSHOOT,
-    PEAK,
-    QUICK,
-    SETTLING,
     Craft,
     largest_sensitivity,
     simulate,
-    tuned,
 )
+from benchmarks.second_simulator import DEGREE, OVERSHOOT, PEAK, QUICK, SETTLING, tuning_of
 
 from seatrial.data.folder.gains_file import gains_toml
 
 
 @pytest.mark.parametrize("craft", CRAFTS[:1], ids=lambda c: c.name)
 def test_page_and_simulator_agree(craft: Craft) -> None:
-    tuning = tuned(craft, QUICK)
+    _, tuning = tuning_of(craft.loop_file(), effort=QUICK)
     text, change = gains_toml(tuning), tuning.manoeuvres[0]
     T = tomllib.loads(text)["discrete"]["sample_s"]
     made = simulate(

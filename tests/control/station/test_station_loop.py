@@ -20,8 +20,9 @@ def loop_of(model: Model, speed: float = 0.0, direction: float = 0.0, dead_time:
     on_station = craft(model)
     gains = place_poles(on_station.inertia, on_station.damping, BANDWIDTH)
     frequencies = np.geomspace(1e-3, 1e2, 400)
+    inverse = generalised_inverse(on_station)
     return StationLoop(
-        station_point(on_station, speed, direction), gains, generalised_inverse(on_station), dead_time,
+        station_point(on_station, speed, direction, inverse), gains, inverse, dead_time,
         np.ones(len(on_station.owner)), frequencies,
     )  # fmt: skip
 

@@ -13,17 +13,16 @@ from seatrial.physics.simulate.station_keeping import (
     StationRun,
     filter_coefficients,
     keep_station,
-    simulation_step,
 )
 
 
 def run_of(own: StationCraft, speed: float, forces: tuple[float, float, float], count: int, omega: float) -> StationRun:
     """Return the run of a craft in a current from ahead that begins at once, and steady forces."""
     gains = place_poles(own.inertia, own.damping, np.array([omega, omega, 1.5 * omega]))
-    loop = StationLoop(station_point(own, 0.0, 0.0), gains, generalised_inverse(own), 0.1,
+    loop = StationLoop(station_point(own, 0.0, 0.0, generalised_inverse(own)), gains, generalised_inverse(own), 0.1,
                        np.ones(len(own.owner)), np.ones(1))  # fmt: skip
     controller = sampled_controller(loop, 0.1, 0.1)
-    drift = np.stack([-speed * simulation_step(0.1) * np.arange(count), np.zeros(count)])
+    drift = np.stack([-speed * controller.dt * np.arange(count), np.zeros(count)])
     pushed = np.tile(np.array(forces)[:, None], count)
     return keep_station(own.pushed_model, controller, own.resting_inputs, drift, pushed)
 

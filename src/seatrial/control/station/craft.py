@@ -1,6 +1,7 @@
 """A craft with thrusters at rest, as station keeping needs it: matrices, thrusters with their limits, lags."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -144,6 +145,29 @@ class StationCraft:
         state[self.model.states.index("v")] = speed * math.sin(direction)
         return state
 
+    def ordered(self, state: Array, thrust: Array) -> tuple[Array, Array]:
+        """Return state (nx,) and inputs (nu,) with the thrust of each component (m,) ordered and settled."""
+        settled, inputs = state.copy(), self.resting_inputs.copy()
+        states, channels = self.model.states, self.model.input_names
+
+        def put(values: Array, names: Sequence[str], name: str, value: float) -> None:
+            if name in names:
+                values[names.index(name)] = value
+
+        for i, thruster in enumerate(self.thrusters):
+            parts, command = thrust[[k for k, owner in enumerate(self.owner) if owner == i]], thruster.command
+            if isinstance(thruster.angle, AngleInput):
+                angle, size = math.atan2(parts[1], parts[0]), math.hypot(*parts)
+                put(settled, states, f"a_{thruster.name}", angle)
+                put(inputs, channels, thruster.angle.channel, angle)
+            else:
+                size = float(parts[0])
+            share = float(np.interp(size, self.tables[i].thrust, self.tables[i].share))
+            for name in ("c", "late_1", "late_2"):
+                put(settled, states, f"{name}_{thruster.name}", share)
+            put(inputs, channels, command.channel, command.zero + command.span * share)
+        return settled, inputs
+
     def with_values(self, values: dict[str, float]) -> "StationCraft":
         """Return the craft with other parameters."""
         return replace(self, model=without_current(self.model.with_values(values)))
@@ -158,7 +182,8 @@ class StationCraft:
 
     def _table(self, thruster: Thruster, turns: bool) -> ThrustTable:
         model = self.model
-        share = np.linspace(0.0 if turns else -self.limit, self.limit, _SHARES)
+        even = np.linspace(0.0 if turns else -1.0, 1.0, _SHARES)
+        share = self.limit * even * np.abs(even)  # close about zero, where the inverse of most curves is steep
         states, inputs = np.zeros((_SHARES, len(model.states))), np.tile(self.resting_inputs, (_SHARES, 1))
         if f"c_{thruster.name}" in model.states:
             states[:, model.states.index(f"c_{thruster.name}")] = share

@@ -27,6 +27,7 @@ INTEGRAL_SHARE = (
 FILTER_SHARE = 0.1  # time constant of the velocity's filter times the natural frequency: 6 deg of phase there; chosen
 # secants to where an eigenvalue has size one, and share of a gap that each stays inside; chosen
 _REFINEMENTS, _INSIDE = 6, 1e-3
+_HOLDING_ROUNDS = 6  # after which thrusters, whose thrust falls with the water's speed, hold the current; chosen
 _TURN = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])  # dR'/dpsi at psi = 0
 
 
@@ -89,14 +90,20 @@ class StationPoint:
         return _complex(inverse @ self.force_input), _complex(inverse[:, :, :3])
 
 
-def station_point(craft: StationCraft, speed: float, direction: float) -> StationPoint:
-    """Return a craft in a current of a speed [m/s] from a direction off the bow [rad]; at rest in still water at 0."""
-    flow = craft.in_current(speed, direction)
-    slopes, names = jacobian_at(craft.model, flow[None], craft.resting_inputs, of_outputs=False), craft.model.states
-    rows = [names.index(name) for name in ("x0", "y0", "psi", "u", "v", "r")]
-    rates = np.empty(len(names))
-    craft.model.compiled.rates(0.0, flow, craft.resting_inputs, craft.model.parameters.values, rates)
-    return StationPoint(craft, slopes[0][np.ix_(rows, rows)].copy(), -craft.inertia @ rates[rows[3:]])
+def station_point(craft: StationCraft, speed: float, direction: float, inverse: Array) -> StationPoint:
+    """Return a craft held in a current [m/s] from a direction off the bow [rad]; at rest in still water at 0.
+
+    inverse: (m, 3), by which the force that holds it is shared out.
+    """
+    flow, names = craft.in_current(speed, direction), craft.model.states
+    rows, rates = [names.index(name) for name in ("x0", "y0", "psi", "u", "v", "r")], np.empty(len(names))
+    holding, (state, inputs) = np.zeros(3), craft.ordered(flow, np.zeros(len(craft.owner)))
+    for _ in range(_HOLDING_ROUNDS):
+        craft.model.compiled.rates(0.0, state, inputs, craft.model.parameters.values, rates)
+        holding = holding - craft.inertia @ rates[rows[3:]]
+        state, inputs = craft.ordered(flow, inverse @ holding)
+    slopes = jacobian_at(craft.model, state[None], inputs, of_outputs=False)
+    return StationPoint(craft, slopes[0][np.ix_(rows, rows)].copy(), holding)
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,24 +5,27 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from seatrial.control.disturbance_simulation import correlation_time, time_to_know
 from seatrial.control.station.allocation import inverse_rows
 from seatrial.control.station.craft import StationCraft
-from seatrial.control.station.disturbances import DisturbanceSeries, StationDisturbance, summed
+from seatrial.control.station.disturbances import DisturbanceSeries, StationDisturbance, joined, summed
 from seatrial.control.station.station_loop import FILTER_SHARE, INTEGRAL_SHARE, StationLoop, station_point
 from seatrial.core.results.station import StationTrial
 from seatrial.core.values import Array, Channel, DivergedError, InputError, Provenance, Record, RecordKind, frozen
 from seatrial.estimation.predict.draws import square_root
 from seatrial.numerics.workers import map_in_threads
+from seatrial.physics.models.thruster_layout import MIN_LAG
 from seatrial.physics.simulate.station_keeping import (
     StationController,
     StationRun,
     ThrusterOrders,
     keep_station,
-    simulation_step,
 )
 
-_RUN_IN, _COUNTED = 8.0, 40.0  # time constants of the integral before what is counted, and counted; chosen
-_LEAST_S, _MOST_STEPS = 600.0, 60_000  # counted at least [s]; steps of a run at most; chosen
+# time constants of the integral before what is counted, and counted of craft that are drawn; chosen
+_RUN_IN, _COUNTED = 8.0, 40.0
+_LEAST_S, _MOST_STEPS = 600.0, 400_000  # counted at least [s]; steps of a run at most; chosen
+_STEP_SHARE = 0.25  # of the least lag of a thruster, of a step; chosen
 _SHARE = 95.0  # per cent of the time within the radius
 _KEPT_SAMPLES, _KEPT_S = 1000, 300.0  # of the record that is kept, and of how long a stretch [s]; chosen
 _LOST_LENGTHS = 100.0  # lengths from the station at which a craft counts as having run away; chosen
@@ -75,7 +78,8 @@ class StationSimulator:
             InputError: the identified craft leaves its station.
         """
         directions = self.setting.directions
-        runs = map_in_threads(lambda k: self._run(self.loop.craft, k), list(range(len(directions))))
+        counted = max(self._least_time, time_to_know(self._correlation_time, len(directions)))
+        runs = map_in_threads(lambda k: self._run(self.loop.craft, k, counted), list(range(len(directions))))
         feet = [self._footprint(run) for run in runs]
         worst = int(np.argmax([foot.radius for foot in feet]))
         if not feet[worst].radius < _LOST_LENGTHS * self.loop.craft.layout.length:
@@ -108,11 +112,25 @@ class StationSimulator:
         """The slowest of the loop [s], that of the integral."""
         return float(self.loop.gains.lag.max()) / FILTER_SHARE / INTEGRAL_SHARE
 
-    def _run(self, craft: StationCraft, number: int) -> StationRun:
-        """Return the run of a craft in the current from the direction of that number."""
-        directions, dt = self.setting.directions, simulation_step(self.controller.sample)
-        seconds = _RUN_IN * self._time_constant + max(_LEAST_S, _COUNTED * self._time_constant)
-        count = min(math.ceil(seconds / dt), _MOST_STEPS)
+    @property
+    def _least_time(self) -> float:
+        return max(_LEAST_S, _COUNTED * self._time_constant)
+
+    @property
+    def _correlation_time(self) -> float:
+        """The longer of those of distance and heading by linear theory [s]; zero where nothing disturbs."""
+        if not self.setting.disturbances:
+            return 0.0
+        spectrum = joined([one.spectrum() for one in self.setting.disturbances])
+        by_force, by_water = self.loop.point.responses(spectrum.omega)
+        pose = self.loop.sensitivity(spectrum.omega) @ np.concatenate([by_water, by_force], axis=2)
+        energy = np.einsum("nij,njk,nik->in", pose, spectrum.shares, pose.conj()).real
+        return max(correlation_time(spectrum.omega, each) for each in (energy[0] + energy[1], energy[2]) if each.any())
+
+    def _run(self, craft: StationCraft, number: int, counted: float) -> StationRun:
+        """Return the run of a craft in the current from the direction of that number, so many seconds counted."""
+        directions, dt = self.setting.directions, self.controller.dt
+        count = min(math.ceil((_RUN_IN * self._time_constant + counted) / dt), _MOST_STEPS)
         direction = float(directions[number % len(directions)])
         series = self.setting.series(direction, dt, count, self.seed + number)
         return keep_station(craft.pushed_model, self.controller, craft.resting_inputs, series.drift, series.forces)
@@ -131,13 +149,13 @@ class StationSimulator:
         number, craft = numbered
         direction = float(self.setting.directions[number % len(self.setting.directions)])
         there = replace(
-            self.loop, point=station_point(craft, self.setting.current, direction),
+            self.loop, point=station_point(craft, self.setting.current, direction, self.loop.inverse),
             slope=thrust_slopes(craft, self.loop.craft),
         )  # fmt: skip
         if not there.is_stable:
             return math.inf
         try:
-            radius = self._footprint(self._run(craft, number)).radius
+            radius = self._footprint(self._run(craft, number, self._least_time)).radius
         except DivergedError:
             return math.inf
         return radius if radius < _LOST_LENGTHS * craft.layout.length else math.inf
@@ -165,7 +183,8 @@ def sampled_controller(loop: StationLoop, sample: float, dead_time: float) -> St
         ThrusterOrders(thruster, row, table.share, table.thrust)
         for thruster, row, table in zip(craft.thrusters, rows, craft.tables, strict=True)
     ]
-    return StationController(g.KP, g.KI, g.KD, g.lag, sample, dead_time, orders)
+    longest = max(_STEP_SHARE * float(craft.lags.min()), MIN_LAG)
+    return StationController(g.KP, g.KI, g.KD, g.lag, sample, dead_time, orders, longest)
 
 
 def draw_craft(craft: StationCraft, draws: int, seed: int) -> list[StationCraft]:

@@ -103,7 +103,7 @@ def tune_station(
     spectrum = joined([one.spectrum() for one in varying])
     frequencies = margin_frequencies(craft, dead_time)
     points = tuple(
-        replace(station_point(craft, demand.current, direction), grids=(frequencies, spectrum.omega))
+        replace(station_point(craft, demand.current, direction, inverse), grids=(frequencies, spectrum.omega))
         for direction in directions.tolist()
     )
     limits = StationLimits(task.constraints.Ms, demand.joint_Ms)

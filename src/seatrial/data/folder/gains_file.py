@@ -76,6 +76,13 @@ _TRACK = (
     "rate, is the reference of [discrete] in place of [reference], and nothing is fed forward"
 )
 
+_STATION = (
+    "once a sample, e north, east, heading: order = -(KP R'e + KI R'q + KD v), R the rotation by the heading; v[k] = "
+    "((2 lag - sample) v[k-1] + 2 R'(e[k] - e[k-1])) / (2 lag + sample); q[k] = q[k-1] + sample (e[k] + e[k-1]) / 2, "
+    "which waits while thrusters are at their limits; thrust = inverse order, all reduced alike to be within the "
+    "tables; share of full command over thrust; it acts after the dead time, for a sample"
+)
+
 
 def _discrete_table(controller: DiscreteController) -> dict[str, Any]:
     """Return the controller as it was simulated."""
@@ -221,7 +228,9 @@ def _track_table(track: TrackKeeping) -> dict[str, Any]:
 def _station_table(station: StationKeeping) -> dict[str, Any]:
     """Return the station keeper: gains, filter and sample time, and of each thruster its share of the force."""
     return {
+        "rule": _STATION,
         "sample_s": station.sample_s,
+        "dead_time_s": station.dead_time - 0.5 * station.sample_s,
         "filter_lag_s": station.filter_lag.tolist(),
         **{name: getattr(station, name).tolist() for name in ("KP", "KI", "KD")},
         "gain_units": {name: [list(row) for row in units] for name, units in station.gain_units.items()},

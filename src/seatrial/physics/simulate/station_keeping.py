@@ -1,6 +1,5 @@
 """A craft with thrusters that keeps its place, simulated by its nonlinear model within its thrusters' limits."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -10,11 +9,10 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Array, DivergedError
 from seatrial.numerics.kernels import station as kernel
 from seatrial.numerics.kernels.feedback import steer
+from seatrial.physics.loops.sampling import Sampling
 from seatrial.physics.models.outside_forces import OUTSIDE_FORCES
-from seatrial.physics.models.thruster_layout import AngleInput, Thruster
-
-LONGEST_STEP_S = 0.05
-"""Step of the simulation at most [s]: the least lag of a thruster there is; chosen."""
+from seatrial.physics.models.thruster_layout import MIN_LAG, AngleInput, Thruster
+from seatrial.physics.simulate.sampled_controller import simulation_step
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +30,7 @@ class StationController:
     """A sampled PID in body axes: gains (3, 3), filter lags [s] (3,), sample and dead time [s], the thrusters.
 
     Every sample: v by Tustin's rule from the moves of the pose, the integral by trapezoids, kept while forces are cut.
+    step: of the simulation at most [s].
     """
 
     KP: Array
@@ -41,6 +40,12 @@ class StationController:
     sample: float
     dead_time: float
     thrusters: Sequence[ThrusterOrders]
+    step: float = MIN_LAG
+
+    @property
+    def dt(self) -> float:
+        """The step of the simulation [s]: it divides sample and dead time."""
+        return simulation_step(Sampling(self.sample, self.dead_time), self.step)
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,11 +69,6 @@ def filter_coefficients(lag: Array, sample: float) -> tuple[Array, Array]:
     return (2.0 * lag - sample) / (2.0 * lag + sample), 2.0 / (2.0 * lag + sample)
 
 
-def simulation_step(sample: float) -> float:
-    """Return the step [s], a whole part of the controller's sample time."""
-    return sample / math.ceil(sample / LONGEST_STEP_S - 1e-9)  # of rounding errors
-
-
 def keep_station(
     model: Model, controller: StationController, resting: Array, drift: Array, forces: Array
 ) -> StationRun:
@@ -83,7 +83,7 @@ def keep_station(
     Raises:
         DivergedError: the craft runs away.
     """
-    dt, count = simulation_step(controller.sample), drift.shape[1]
+    dt, count = controller.dt, drift.shape[1]
     memory, series = _memory(model, controller, dt, drift, forces)
     inputs = np.concatenate([resting, np.zeros(len(OUTSIDE_FORCES))])
     states, applied = np.empty((count, len(model.states))), np.empty((count, len(inputs)))
