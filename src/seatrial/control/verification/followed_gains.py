@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.signal import lfilter
-from scipy.special import ndtri
+from scipy.special import stdtrit
 
 from seatrial.control.demand import feed_forward, reference_model, reference_rate
 from seatrial.control.task import TuningTask
@@ -20,7 +20,7 @@ from seatrial.physics.loops.discrete import difference_equation
 _FAST, _SLOW = 0.5, 3.0
 
 
-_SURE = float(ndtri(1.0 - 0.5 * 0.005))  # of two statistics together one log in a hundred is blamed by chance; chosen
+_CHANCE = 0.005  # of each of two statistics: together one log in a hundred is blamed by chance; chosen
 
 
 @dataclass(frozen=True)
@@ -49,9 +49,14 @@ class GainTest:
 
     @property
     def _off(self) -> Array:
-        """Return by how much of what chance explains the statistics differ from the simulated ones, (2,)."""
-        spread = _SURE * self.simulated.std(axis=0, ddof=1)
-        return (self.followed.statistics - self.simulated.mean(axis=0)) / spread
+        """Return by how much of what chance explains the statistics differ from the simulated ones, (2,).
+
+        A further one of a sample lies as far from its mean as Student's distribution says (Hahn & Meeker 1991,
+        Statistical Intervals, section 4.7).
+        """
+        m = len(self.simulated)
+        sure = float(stdtrit(m - 1, 1.0 - 0.5 * _CHANCE)) * math.sqrt(1.0 + 1.0 / m)
+        return (self.followed.statistics - self.simulated.mean(axis=0)) / (sure * self.simulated.std(axis=0, ddof=1))
 
     @property
     def is_alike(self) -> bool:

@@ -54,7 +54,9 @@ class ModelCorrection:
     log: Annotated[Number, Field(description="with the log, what was known before as prior")]
     lower: Annotated[Number, Field(description="95 % interval with the log")]
     upper: Number
-    is_moved: Annotated[bool, Field(description="whether the model's value lies outside the interval with the log")]
+    is_moved: Annotated[
+        bool, Field(description="whether errors of both do not explain the change, all coefficients together")
+    ]
 
 
 @dataclass(frozen=True, eq=False)
