@@ -24,6 +24,7 @@ from seatrial.control.station.trial import StationSetting, StationSimulator
 from seatrial.control.station.tune_station import station_craft, station_disturbances, tune_station
 from seatrial.control.task import StationDemand, TuningTask
 from seatrial.core.results.station import StationKeeping, StationTrial
+from seatrial.physics.loops.sampling import Sampling
 from seatrial.physics.models.thruster_layout import CommandInput, Damping, Thruster, ThrusterLayout
 from seatrial.physics.simulate.station_keeping import StationController, ThrusterOrders
 from seatrial.problems.thruster_craft import KnownThrusterCraft, noisy, simulated_runs
@@ -63,7 +64,8 @@ def tried_on(own: StationCraft, made: StationKeeping, task: TuningTask, demand: 
         for thruster, row, one in zip(own.thrusters, inverse_rows(own, inverse), made.thrusters, strict=True)
     ]
     gains = StationGains(made.KP, made.KI, made.KD, made.filter_lag)
-    controller = StationController(made.KP, made.KI, made.KD, made.filter_lag, made.sample_s, demand.dead_time, orders)
+    sampling = Sampling(made.sample_s, demand.dead_time)
+    controller = StationController(made.KP, made.KI, made.KD, made.filter_lag, sampling, orders)
     loop = StationLoop(
         station_point(own, demand.current, 0.0, inverse),
         gains,

@@ -8,7 +8,7 @@ differences at the thrust that holds the current, its pose sampled, the controll
 import math
 import tomllib
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -41,7 +41,7 @@ DIFFERENCE, SECANT = 1e-5, 0.01  # for slopes: of pose and velocities, of the la
 class StationRig:
     """A craft with equal thrusters, SI: places and directions (fixed, or None: it turns), curves, lags, hull, weather.
 
-    The lag is the same up and down, so that there is a linear plant; n ahead and astern: exponents of the curve.
+    The lag is the same up and down, so that there is a linear plant; noise: of the compass, deg rms of each sample.
     """
 
     name: str
@@ -60,7 +60,7 @@ class StationRig:
     gust: float
     gust_bandwidth: float
     turning_lag: float = 0.0
-    settings: Sequence[str] = field(default_factory=tuple)
+    noise: float = 0.0
 
     @property
     def model(self) -> ModelFile:
@@ -107,7 +107,7 @@ current_rms = {self.current_rms}
 bandwidth = {self.bandwidth}
 gust = {self.gust}
 gust_bandwidth = {self.gust_bandwidth}
-{chr(10).join(self.settings)}
+{f'[sensors]{chr(10)}noise = {{ value = {self.noise}, unit = "deg" }}' if self.noise else ""}
 """
 
 
@@ -119,7 +119,7 @@ RIGS = (
         "four thrusters at 45 deg", 1.2, (60.0, 90.0, 9.0), _CORNERS, (60.0, 45.0), (1.8, 1.6), 0.3, (0.8, 0.05),
         {"X_u": -8.0, "X_uu": -30.0, "Y_v": -20.0, "Y_vv": -90.0, "N_r": -5.0, "N_rr": -6.0, "N_ur": -6.0,
          "Y_uv": -30.0, "N_uv": 12.0},
-        dead_time=0.1, current=0.25, current_rms=0.04, bandwidth=0.05, gust=5.0, gust_bandwidth=0.2,
+        dead_time=0.1, current=0.25, current_rms=0.04, bandwidth=0.05, gust=5.0, gust_bandwidth=0.2, noise=0.5,
     ),
     StationRig(
         "supply vessel, two screws and two tunnels", 80.0, (4.6e6, 8.0e6, 2.6e9),
@@ -262,7 +262,8 @@ def keep(rig: StationRig, text: str, directions: Array) -> Kept:
     pose, used, given = np.empty((count, 3, n)), np.empty((count, m, n)), np.empty((count, n))
     for k in range(count):
         pose[k] = x[4], x[5], x[3]
-        order, used[k], given[k] = keeper.order(pose[k])
+        seen = pose[k] + np.outer([0.0, 0.0, rig.noise * DEGREE], rng.standard_normal(n))
+        order, used[k], given[k] = keeper.order(seen)
         flow, push = np.array([water[0][k], water[1][k]]), np.array([gusts[0][k], gusts[1][k], np.zeros(n)])
         for _ in range(parts):
             waiting.append(order)

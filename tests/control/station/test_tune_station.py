@@ -31,6 +31,7 @@ from seatrial.control.task import Seaway, StationDemand, TuningTask
 from seatrial.core.results.station import StationKeeping
 from seatrial.core.values import InputError
 from seatrial.physics.loops import HullFactor
+from seatrial.physics.loops.sampling import Sampling
 from seatrial.physics.sea.spectrum import jonswap
 
 HULL = HullFactor(1.2, 0.8, 0.15)
@@ -137,7 +138,7 @@ def test_craft_drawn_differ_and_one_that_runs_away_is_not_counted(made: StationK
     design = StationDesign((point,), generalised_inverse(own), 0.15, StationLimits(1.6, 3.0), spectrum, frequencies)
     slow = design.loops(made.position_bandwidth, 0.2 * made.heading_bandwidth)[0]
     setting = StationSetting(demand.current, np.zeros(1), ())
-    simulator = StationSimulator(slow, sampled_controller(slow, 0.1, 0.1), setting, 0)
+    simulator = StationSimulator(slow, sampled_controller(slow, Sampling(0.1, 0.1)), setting, 0)
     assert simulator.respond(2).stable_draws == 0
 
 

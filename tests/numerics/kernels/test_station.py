@@ -14,7 +14,7 @@ def memory_of(rows: Array, most: float) -> Array:
     """Two fixed thrusters, ten samples, K_p of 2, 3, 5, K_i of 0.1, thrust equal to the share."""
     n, count, size = 2, 10, 3
     series = series_start(n, size)
-    memory = np.zeros(series + (5 + 3 * n + 1) * count)
+    memory = np.zeros(series + (station.DISTURBANCES + 3 * n + 1) * count)
     head = {station.THRUSTERS: n, station.COUNT: count, station.HOLD: 1, station.SAMPLE: 0.5, station.TABLE: size,
             station.PSI: 2, station.NORTH: 0, station.EAST: 1, station.FORCE_INPUT: 2}  # fmt: skip
     memory[list(head)] = list(head.values())
@@ -48,7 +48,7 @@ def test_what_is_beyond_a_limit_cuts_all_and_holds_the_integral() -> None:
     for k in range(1, 3):
         station_keeper(0.5 * k, np.array([-1.0, 1.0, 0.0]), memory, u)
     assert memory[station.INTEGRAL : station.INTEGRAL + 3] == pytest.approx(np.zeros(3))
-    share = series_start(2, 3) + (5 + 3 * 2) * 10
+    share = series_start(2, 3) + (station.DISTURBANCES + 3 * 2) * 10
     assert memory[share] == pytest.approx(0.5)
 
 
@@ -71,3 +71,11 @@ def test_forces_from_outside_and_the_moving_water_reach_the_craft() -> None:
     memory[series + 20], memory[series + 30], memory[series + 40] = 7.0, 8.0, 9.0
     station_keeper(0.0, np.zeros(3), memory, u)
     assert u[2:].tolist() == [7.0, 8.0, 9.0]
+
+
+def test_the_compass_is_read_with_its_error_in_steps() -> None:
+    rows = np.array([[0, 0, 1.0, 0, 0, 0], [0, 0, 0, 0, 0, 0]])
+    memory, u = memory_of(rows, 100.0), np.zeros(5)
+    memory[series_start(2, 3) + 5 * 10], memory[station.RESOLUTION] = 0.07, 0.02
+    station_keeper(0.0, np.array([0.0, 0.0, 0.04]), memory, u)
+    assert u[0] == pytest.approx(-5.0 * 0.12)

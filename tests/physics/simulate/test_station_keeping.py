@@ -9,6 +9,7 @@ from seatrial.control.station.capability import current_force
 from seatrial.control.station.craft import StationCraft
 from seatrial.control.station.station_loop import StationLoop, place_poles, station_point
 from seatrial.control.station.trial import sampled_controller
+from seatrial.physics.loops.sampling import Sampling
 from seatrial.physics.simulate.station_keeping import (
     StationRun,
     filter_coefficients,
@@ -21,7 +22,7 @@ def run_of(own: StationCraft, speed: float, forces: tuple[float, float, float], 
     gains = place_poles(own.inertia, own.damping, np.array([omega, omega, 1.5 * omega]))
     loop = StationLoop(station_point(own, 0.0, 0.0, generalised_inverse(own)), gains, generalised_inverse(own), 0.1,
                        np.ones(len(own.owner)), np.ones(1))  # fmt: skip
-    controller = sampled_controller(loop, 0.1, 0.1)
+    controller = sampled_controller(loop, Sampling(0.1, 0.1))
     drift = np.stack([-speed * controller.dt * np.arange(count), np.zeros(count)])
     pushed = np.tile(np.array(forces)[:, None], count)
     return keep_station(own.pushed_model, controller, own.resting_inputs, drift, pushed)

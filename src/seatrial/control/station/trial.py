@@ -14,6 +14,7 @@ from seatrial.core.results.station import StationTrial
 from seatrial.core.values import Array, Channel, DivergedError, InputError, Provenance, Record, RecordKind, frozen
 from seatrial.estimation.predict.draws import square_root
 from seatrial.numerics.workers import map_in_threads
+from seatrial.physics.loops.sampling import Sampling
 from seatrial.physics.models.thruster_layout import MIN_LAG
 from seatrial.physics.simulate.station_keeping import (
     StationController,
@@ -133,7 +134,9 @@ class StationSimulator:
         count = min(math.ceil((_RUN_IN * self._time_constant + counted) / dt), _MOST_STEPS)
         direction = float(directions[number % len(directions)])
         series = self.setting.series(direction, dt, count, self.seed + number)
-        return keep_station(craft.pushed_model, self.controller, craft.resting_inputs, series.drift, series.forces)
+        return keep_station(
+            craft.pushed_model, self.controller, craft.resting_inputs, series.drift, series.forces, self.seed + number
+        )
 
     def _first(self, run: StationRun) -> int:
         """Return the first sample that is counted."""
@@ -175,8 +178,8 @@ class StationSimulator:
         return Record("station", time, channels, RecordKind.SIMULATED, provenance=Provenance(source))
 
 
-def sampled_controller(loop: StationLoop, sample: float, dead_time: float) -> StationController:
-    """Return the controller of a loop as it runs on board, sample and dead time in s."""
+def sampled_controller(loop: StationLoop, sampling: Sampling) -> StationController:
+    """Return the controller of a loop as it runs on board."""
     craft, g = loop.craft, loop.gains
     rows = inverse_rows(craft, loop.inverse)
     orders = [
@@ -184,7 +187,7 @@ def sampled_controller(loop: StationLoop, sample: float, dead_time: float) -> St
         for thruster, row, table in zip(craft.thrusters, rows, craft.tables, strict=True)
     ]
     longest = max(_STEP_SHARE * float(craft.lags.min()), MIN_LAG)
-    return StationController(g.KP, g.KI, g.KD, g.lag, sample, dead_time, orders, longest)
+    return StationController(g.KP, g.KI, g.KD, g.lag, sampling, orders, longest)
 
 
 def draw_craft(craft: StationCraft, draws: int, seed: int) -> list[StationCraft]:

@@ -19,6 +19,7 @@ from seatrial.control.task import Seaway, SlowDisturbance, StationDemand, Tuning
 from seatrial.core.results.station import StationCapability, StationKeeping, StationMargins, StationThruster
 from seatrial.core.values import Array, InputError
 from seatrial.physics.loops.discrete import round_sample_time
+from seatrial.physics.loops.sampling import Sampling
 
 STATION_DIRECTIONS = 8
 """Directions of the steady current that a station is tried in, every 45 degrees; chosen."""
@@ -109,7 +110,9 @@ def tune_station(
     limits = StationLimits(task.constraints.Ms, demand.joint_Ms)
     chosen = choose_bandwidth(StationDesign(points, inverse, dead_time, limits, spectrum, frequencies))
     report_progress("station: kept by the nonlinear craft")
-    controller = sampled_controller(chosen.loops[0], sample, demand.dead_time)
+    compass = task.loop.sampling or Sampling(sample)
+    sampling = Sampling(sample, demand.dead_time, compass.noise, compass.resolution)
+    controller = sampled_controller(chosen.loops[0], sampling)
     setting = StationSetting(demand.current, directions, varying)
     trial = StationSimulator(chosen.loops[0], controller, setting, seed).respond(draws)
     gains = chosen.loops[0].gains

@@ -77,7 +77,8 @@ _TRACK = (
 )
 
 _STATION = (
-    "once a sample, e north, east, heading: order = -(KP R'e + KI R'q + KD v), R the rotation by the heading; v[k] = "
+    "once a sample, e north, east, heading, which has noise and resolution of [discrete]: order = -(KP R'e + KI R'q + "
+    "KD v), R the rotation by the heading; v[k] = "
     "((2 lag - sample) v[k-1] + 2 R'(e[k] - e[k-1])) / (2 lag + sample); q[k] = q[k-1] + sample (e[k] + e[k-1]) / 2, "
     "which waits while thrusters are at their limits; thrust = inverse order, all reduced alike to be within the "
     "tables; share of full command over thrust; it acts after the dead time, for a sample"

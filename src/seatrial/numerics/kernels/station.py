@@ -17,14 +17,14 @@ from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.types import COMMAND_SIGNATURE, LEAN
 
 (
-    THRUSTERS, COUNT, STEP, HOLD, DELAY, SAMPLE, TABLE, PSI, NORTH, EAST, FORCE_INPUT, HEAD,
-) = range(12)  # fmt: skip
+    THRUSTERS, COUNT, STEP, HOLD, DELAY, SAMPLE, TABLE, PSI, NORTH, EAST, FORCE_INPUT, RESOLUTION, HEAD,
+) = range(13)  # fmt: skip
 # three matrices of nine numbers behind the head
 KP, KI, KD = HEAD, HEAD + 9, HEAD + 18
 # then vectors of three
 PAST, FORWARD, INTEGRAL, VELOCITY, LAST, ROWS = range(HEAD + 27, HEAD + 43, 3)
-DISTURBANCES = 5
-"""Series of what disturbs: water north and east, forces X, Y, N."""
+DISTURBANCES = 6
+"""Series of what disturbs: water north and east, forces X, Y, N, and the error of a compass that is read in steps."""
 _SWAY, _YAW = 3, 6  # places of the rows of a matrix of nine numbers
 # a thruster: two rows of the inverse, then what it is
 (
@@ -42,7 +42,7 @@ def tables_start(n):
 
 @njit(inline="always", **LEAN)
 def series_start(n, size):
-    """Return the place of the series: water north, east, forces X, Y, N, then of each thruster command, angle, thrust.
+    """Return the place of the series: `DISTURBANCES`, then of each thruster command, angle, thrust.
 
     The last is the share of what the controller orders that the thrusters give.
     """
@@ -160,7 +160,10 @@ def station_keeper(_, x, memory, u):
     if k % int(memory[HOLD]) == 0:
         north = x[int(memory[NORTH])] + memory[series + k]
         east = x[int(memory[EAST])] + memory[series + count + k]
-        _control(memory, north, east, _wrapped(x[int(memory[PSI])]), k)
+        psi = x[int(memory[PSI])] + memory[series + 5 * count + k]
+        if memory[RESOLUTION] > 0.0:
+            psi = memory[RESOLUTION] * math.floor(psi / memory[RESOLUTION] + 0.5)
+        _control(memory, north, east, _wrapped(psi), k)
     else:
         for i in range(3 * n + 1):
             memory[orders + i * count + k] = memory[orders + i * count + k - 1]

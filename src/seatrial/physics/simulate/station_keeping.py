@@ -12,7 +12,7 @@ from seatrial.numerics.kernels.feedback import steer
 from seatrial.physics.loops.sampling import Sampling
 from seatrial.physics.models.outside_forces import OUTSIDE_FORCES
 from seatrial.physics.models.thruster_layout import MIN_LAG, AngleInput, Thruster
-from seatrial.physics.simulate.sampled_controller import simulation_step
+from seatrial.physics.simulate.sampled_controller import sample_noise, simulation_step
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,25 +27,24 @@ class ThrusterOrders:
 
 @dataclass(frozen=True, eq=False)
 class StationController:
-    """A sampled PID in body axes: gains (3, 3), filter lags [s] (3,), sample and dead time [s], the thrusters.
+    """A sampled PID in body axes: gains (3, 3), filter lags [s] (3,), how it samples, the thrusters.
 
     Every sample: v by Tustin's rule from the moves of the pose, the integral by trapezoids, kept while forces are cut.
-    step: of the simulation at most [s].
+    sampling: noise and resolution are those of the heading [rad]. step: of the simulation at most [s].
     """
 
     KP: Array
     KI: Array
     KD: Array
     lag: Array
-    sample: float
-    dead_time: float
+    sampling: Sampling
     thrusters: Sequence[ThrusterOrders]
     step: float = MIN_LAG
 
     @property
     def dt(self) -> float:
         """The step of the simulation [s]: it divides sample and dead time."""
-        return simulation_step(Sampling(self.sample, self.dead_time), self.step)
+        return simulation_step(self.sampling, self.step)
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +69,7 @@ def filter_coefficients(lag: Array, sample: float) -> tuple[Array, Array]:
 
 
 def keep_station(
-    model: Model, controller: StationController, resting: Array, drift: Array, forces: Array
+    model: Model, controller: StationController, resting: Array, drift: Array, forces: Array, seed: int = 0
 ) -> StationRun:
     """Return the run of a craft, from rest at its station, in water that moves and under forces from outside.
 
@@ -79,12 +78,14 @@ def keep_station(
         resting: inputs with all commands at rest, without the outside forces, (nu - 3,).
         drift: how far the water has gone north and east at each step [m], (2, n).
         forces: X, Y, N from outside held over each step, (3, n), in the model's unit.
+        seed: of the compass's noise.
 
     Raises:
         DivergedError: the craft runs away.
     """
     dt, count = controller.dt, drift.shape[1]
-    memory, series = _memory(model, controller, dt, drift, forces)
+    pushes = np.concatenate([drift, forces, sample_noise(controller.sampling, count, seed)[None]])
+    memory, series = _memory(model, controller, dt, pushes)
     inputs = np.concatenate([resting, np.zeros(len(OUTSIDE_FORCES))])
     states, applied = np.empty((count, len(model.states))), np.empty((count, len(inputs)))
     lost = steer(
@@ -101,22 +102,24 @@ def keep_station(
     )  # fmt: skip
 
 
-def _memory(model: Model, controller: StationController, dt: float, drift: Array, forces: Array) -> tuple[Array, int]:
-    """Return the memory of `station_keeper` and where its series begin."""
-    n, count, size = len(controller.thrusters), drift.shape[1], len(controller.thrusters[0].share)
+def _memory(model: Model, controller: StationController, dt: float, pushes: Array) -> tuple[Array, int]:
+    """Return the memory of `station_keeper` and where its series begin; pushes: what disturbs, (6, n)."""
+    n, count, size = len(controller.thrusters), pushes.shape[1], len(controller.thrusters[0].share)
+    sampling = controller.sampling
     series = int(kernel.series_start(n, size))
     memory = np.zeros(series + (kernel.DISTURBANCES + 3 * n + 1) * count)
     values = {
-        kernel.THRUSTERS: n, kernel.COUNT: count, kernel.HOLD: round(controller.sample / dt),
-        kernel.DELAY: round(controller.dead_time / dt), kernel.SAMPLE: controller.sample, kernel.TABLE: size,
+        kernel.THRUSTERS: n, kernel.COUNT: count, kernel.HOLD: round(sampling.sample_s / dt),
+        kernel.DELAY: round(sampling.dead_time / dt), kernel.SAMPLE: sampling.sample_s, kernel.TABLE: size,
         kernel.PSI: model.states.index("psi"), kernel.NORTH: model.states.index("x0"),
         kernel.EAST: model.states.index("y0"), kernel.FORCE_INPUT: model.input_names.index(OUTSIDE_FORCES[0]),
+        kernel.RESOLUTION: sampling.resolution,
     }  # fmt: skip
     memory[list(values)] = list(values.values())
-    past, forward = filter_coefficients(controller.lag, controller.sample)
+    past, forward = filter_coefficients(controller.lag, sampling.sample_s)
     parts: tuple[tuple[int, Array], ...] = (
         (kernel.KP, controller.KP), (kernel.KI, controller.KI), (kernel.KD, controller.KD), (kernel.PAST, past),
-        (kernel.FORWARD, forward), (series, drift), (series + 2 * count, forces),
+        (kernel.FORWARD, forward), (series, pushes),
     )  # fmt: skip
     for start, part in parts:
         memory[start : start + part.size] = part.ravel()
