@@ -144,7 +144,7 @@ def _is_inside(box: Region, px: Array, py: Array) -> NDArray[np.bool_]:
 def _clipped_path(panel: Panel, px: Array, py: Array, stroke: Stroke, fill: str = "none") -> str:
     """Path that ends at the edges of the panel."""
     box, path = panel.box, _path(px, py, stroke, fill)
-    if not path or (_is_inside(box, px, py) | np.isnan(px + py)).all():
+    if not path or (_is_inside(box, px, py) | np.isnan(px) | np.isnan(py)).all():
         return path
     x, y, width, height = (f"{v:.1f}" for v in (box.left, box.top, box.width, box.height))
     return f'<svg x="{x}" y="{y}" width="{width}" height="{height}" viewBox="{x} {y} {width} {height}">{path}</svg>'

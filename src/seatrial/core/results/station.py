@@ -78,7 +78,7 @@ class StationTrial:
 
     directions: Annotated[ListedArray, Field(description="from which the current comes, rad off the bow, shape (k,)")]
     position: Annotated[Number, Field(description="rms distance from the station, m")]
-    radius: Annotated[Number, Field(description="m within which it stays 95 % of the time")]
+    radius: Annotated[float, Field(description="m within which it stays 95 % of the time")]
     heading: Annotated[Number, Field(description="rms, rad")]
     thrust: Annotated[Number, Field(description="as in `StationPrecision`")]
     cut: Annotated[Number, Field(description="share of the time in which forces exceed the limits")]

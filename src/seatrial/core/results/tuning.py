@@ -315,9 +315,9 @@ class TuningMethod(StrEnum):
 class CornerResponse:
     """A corner of a track, taken by the nonlinear model within its limits in a steady current towards the outside."""
 
-    turn: Annotated[Number, Field(description="of the track, rad, positive to starboard")]
-    acceptance: Annotated[Number, Field(description="m along the track before the corner at which the leg is taken")]
-    current: Annotated[Number, Field(description="m/s, across the new leg")]
+    turn: Annotated[float, Field(description="of the track, rad, positive to starboard")]
+    acceptance: Annotated[float, Field(description="m along the track before the corner at which the leg is taken")]
+    current: Annotated[float, Field(description="m/s, across the new leg")]
     record: Annotated[StoredRecord, Field(description="position from the corner, heading, actuator, distance")]
     overshoot: Annotated[Number, Field(description="m beyond the new leg")]
     worst_overshoot: Annotated[Number, Field(description="m, over the craft drawn that are stable; null: none")]
