@@ -17,9 +17,8 @@ SMALL = 10.5  # px, chosen
 def row_panel(names: Sequence[str], x: Axis, marks: Sequence[Mark], *, top: float = 22.0, right: float = 24.0,
               has_grid: bool = False, width: float = WIDTH) -> Panel:  # fmt: skip
     """Return a panel whose row k lies at y = k, the first on top; `top` and `right` px are free beside it."""
-    left = min(
-        MAX_NAME_SHARE * width, max((text_width(name, SMALL) for name in names), default=0.0) + 14.0
-    )  # px, chosen
+    widest = max((text_width(name, SMALL) for name in names), default=0.0)
+    left = min(MAX_NAME_SHARE * width, widest + 14.0)  # px, chosen
     box = Region(left, top, width - left - right, ROW * len(names))
     return Panel(box, x, row_axis(names, has_grid=has_grid), tuple(marks), is_y_down=True)
 
