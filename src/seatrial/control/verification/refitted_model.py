@@ -19,8 +19,7 @@ _SOURCE = "the model that was tuned on"
 # standard deviation of a coefficient of a ship that may have changed, as a share of it: a prior so wide that where the
 # log knows a coefficient to 5 % it draws the estimate by no more than 1 % of the difference; chosen
 _OTHER_DAY = 0.5
-# share of unchanged ships of which some coefficient is blamed: half of one in twenty, as gains may be, too; chosen
-_CHANCE = 0.025
+_CHANCE = 0.01  # share of unchanged ships of which some coefficient is blamed; chosen
 
 
 def refitted_coefficients(ship: TrimmedShip, records: Sequence[Record], length: float) -> tuple[ModelCorrection, ...]:
