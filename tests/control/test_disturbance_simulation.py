@@ -1,5 +1,6 @@
 """A heading kept in simulated disturbances: as linear theory predicts without limits, worse with tight ones."""
 
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -7,7 +8,7 @@ import numpy as np
 import pytest
 from tests.control.loop_files import AUTOPILOT, model_file, nomoto, write_loop_file
 
-from seatrial.control.disturbance_simulation import SIGNALS, simulate_disturbances
+from seatrial.control.disturbance_simulation import SIGNALS, correlation_time, simulate_disturbances
 from seatrial.control.loopfile.load import tuning_task
 from seatrial.control.task import TuningTask
 
@@ -55,3 +56,10 @@ def test_seeds_decide_the_realisations(task: TuningTask) -> None:
     one, same, other = (simulate_disturbances(slow, task.loop, gains, seed)[0] for seed in (0, 0, 9))
     assert one == same
     assert one.unlimited != other.unlimited
+
+
+def test_the_correlation_time_of_a_slow_disturbance_is_that_of_its_lag() -> None:
+    """A Gauss-Markov process below 0.2 rad/s forgets in 5 s (Gelb 1974, section 3.8)."""
+    omega = np.geomspace(1e-5, 1e4, 40_000)
+    energy = 2.0 * 0.2 / math.pi / (omega**2 + 0.2**2) * np.gradient(omega)
+    assert correlation_time(omega, energy) == pytest.approx(5.0, rel=0.03)

@@ -64,7 +64,7 @@ def _corrections(free: Sequence[Parameter], prior: Array, fit: Fit) -> tuple[Mod
     changes = np.array([one.estimate - free[k].value for one, k in zip(estimates, tested, strict=True)])
     places = [names.index(free[k].name) for k in tested]
     by_log = _log_covariance(estimates, fit.covariance[np.ix_(places, places)])
-    moved = {tested[k] for k in _moved(changes, prior[np.ix_(tested, tested)] + by_log)}
+    moved = {tested[k] for k in moved_places(changes, prior[np.ix_(tested, tested)] + by_log)}
     return tuple(_correction(free[k], float(deviations[k]), after[free[k].name], is_moved=k in moved) for k in judged)
 
 
@@ -81,7 +81,7 @@ def _log_covariance(estimates: Sequence[Coefficient], covariance: Array) -> Arra
     return np.asarray(scale[:, None] * covariance * scale, dtype=np.float64)
 
 
-def _moved(changes: Array, covariance: Array) -> list[int]:
+def moved_places(changes: Array, covariance: Array) -> list[int]:
     """Return the places of changes (n,) that the errors of both estimates do not explain.
 
     The test of all differences together (Wald). Where it fails, coefficients count as moved one by one, first what
