@@ -1,8 +1,9 @@
 """List numeric constants that do not say what they are: `python tests/conventions/list_constants.py [--count]`.
 
-A constant needs its unit, its meaning and its origin in words: a comment on its line or directly above its statement, a
-docstring below it, the description of its field, its line under "Args:" or "Attributes:", or, in a model's sheet, the
-text beside the value. What needs no words: the numbers in `PLAIN`, indices, exponents, and version numbers.
+A constant needs its unit, its meaning and its origin in words: a comment on its line, alone on the line above it, or on
+the first or last line of its statement, a docstring below it, the description of its field, its line under "Args:" or
+"Attributes:", or, in a model's sheet, the text beside the value. What needs no words: the numbers in `PLAIN`, indices,
+exponents, and version numbers.
 """
 
 import ast
@@ -11,7 +12,7 @@ import re
 import sys
 import tokenize
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -23,7 +24,8 @@ from tests.conventions.source_tree import SourceFile, parameters, source_files
 PLAIN = frozenset({0, 1, 2, 3, 4, 0.5, 0.25, 10, 100, 90, 180, 360})
 # Two words are the least that can hold a meaning, as in "[m] draught".
 _FEWEST_WORDS = 2
-_WORD = re.compile(r"[A-Za-zµ°]{2,}")
+_WORD = re.compile(r"[A-Za-zµ°]{2,}|\b[msNAVKWJ]\b")  # or a unit
+_DIRECTIVE = re.compile(r"# (?:fmt|noqa|type)\b:?.*")  # addressed to a tool
 
 
 @dataclass(frozen=True)
@@ -36,14 +38,15 @@ class BareConstant:
     line: str
 
 
-def bare_constants(package: str = "seatrial") -> list[BareConstant]:
-    """Return the numeric constants of a package that nothing explains, ordered by file."""
-    return [constant for file in source_files(package) for constant in _of_file(file)]
+def bare_constants(files: Iterable[SourceFile]) -> list[BareConstant]:
+    """Return the numeric constants of files that nothing explains."""
+    return [constant for file in files for constant in _of_file(file)]
 
 
 def _of_file(file: SourceFile) -> Iterator[BareConstant]:
     lines = file.text.splitlines()
     comments = _comment_lines(file.text)
+    comments |= {number + 1 for number in comments if lines[number - 1].lstrip().startswith("#")}
     parents = {child: node for node in ast.walk(file.tree) for child in ast.iter_child_nodes(node)}
     for node in ast.walk(file.tree):
         if not isinstance(node, ast.Constant) or not _is_number(node.value) or abs(node.value) in PLAIN:
@@ -67,7 +70,8 @@ def _ancestors(node: ast.AST, parents: dict[ast.AST, ast.AST]) -> Iterator[ast.A
 
 def _comment_lines(text: str) -> set[int]:
     tokens = tokenize.generate_tokens(io.StringIO(text).readline)
-    return {t.start[0] for t in tokens if t.type == tokenize.COMMENT and len(_WORD.findall(t.string)) >= _FEWEST_WORDS}
+    comments = ((t.start[0], _DIRECTIVE.sub("", t.string)) for t in tokens if t.type == tokenize.COMMENT)
+    return {line for line, words in comments if len(_WORD.findall(words)) >= _FEWEST_WORDS}
 
 
 def _is_index_or_exponent(node: ast.AST, above: list[ast.AST]) -> bool:
@@ -87,8 +91,9 @@ def _is_explained(node: ast.Constant, above: list[ast.AST], comments: set[int]) 
     if node.lineno in comments:
         return True
     statement = next(a for a in above if isinstance(a, ast.stmt))
+    last = statement.lineno if hasattr(statement, "body") else statement.end_lineno
     return (
-        bool({statement.lineno - 1, statement.lineno} & comments)
+        bool({statement.lineno, last} & comments)
         or _has_text_beside(above)
         or _is_described(statement, above)
         or _is_documented_default(node, above)
@@ -136,7 +141,7 @@ def _names_in_docstring(node: ast.ClassDef | ast.FunctionDef, name: str) -> bool
 
 def main() -> None:
     """Print the constants without words by place, or with `--count` their number by subpackage."""
-    constants = bare_constants()
+    constants = bare_constants(source_files("seatrial"))
     if "--count" in sys.argv[1:]:
         for folder, count in sorted(Counter(c.folder for c in constants).items()):
             print(f"{count:5d} {folder or 'seatrial'}")

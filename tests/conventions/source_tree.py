@@ -15,11 +15,12 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 @dataclass(frozen=True)
 class SourceFile:
-    """A Python file of the packages: its path, its text and its syntax tree."""
+    """A Python file of the packages: its path, its text, its syntax tree, and the folder that holds the packages."""
 
     path: Path
     text: str
     tree: ast.Module
+    root: Path = SOURCE
 
     @cached_property
     def nodes(self) -> tuple[ast.AST, ...]:
@@ -34,23 +35,23 @@ class SourceFile:
     @property
     def folder(self) -> str:
         """Return the subpackage with slashes, such as ``core/values``; empty at the top of a package."""
-        return "/".join(self.path.relative_to(SOURCE).parts[1:-1])
+        return "/".join(self.path.relative_to(self.root).parts[1:-1])
 
     def place(self, node: ast.stmt | ast.expr | ast.arg) -> str:
         """Return where a node stands, as ``core/values/record.py:12``."""
-        return f"{self.path.relative_to(SOURCE)}:{node.lineno}"
+        return f"{self.path.relative_to(self.root)}:{node.lineno}"
 
 
 @cache
-def source_files(package: str) -> tuple[SourceFile, ...]:
+def source_files(package: str, root: Path = SOURCE) -> tuple[SourceFile, ...]:
     """Return every Python file of a package, parsed, ordered by path."""
-    return tuple(parsed(path) for path in sorted((SOURCE / package).rglob("*.py")))
+    return tuple(parsed(path, root) for path in sorted((root / package).rglob("*.py")))
 
 
-def parsed(path: Path) -> SourceFile:
+def parsed(path: Path, root: Path = SOURCE) -> SourceFile:
     """Return one file with its syntax tree."""
     text = path.read_text(encoding="utf-8")
-    return SourceFile(path, text, ast.parse(text))
+    return SourceFile(path, text, ast.parse(text), root)
 
 
 def functions(tree: ast.AST) -> Iterator[Function]:

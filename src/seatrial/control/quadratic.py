@@ -124,6 +124,7 @@ def full_information(plant: Block, disturbance: Block, shaping: Block, reference
     # half width of the bracket in the logarithm of the weight, widened until it holds the root
     for reach in (4.0, 8.0, 12.0, 16.0):
         if off(middle - reach) > 0.0 > off(middle + reach):
+            # tolerance in the logarithm of the weight: rounding
             return cost(math.exp(float(brentq(off, middle - reach, middle + reach, xtol=1e-9)))).output  # type: ignore[arg-type]
     raise NoBound(f"no weight of the actuator's rate gives a variance of {reference.rate:.3g} of it")
 

@@ -54,6 +54,7 @@ def _controller_cells(
 ) -> list[str]:
     gains = [exact(controller.gains[n], 4) if n in controller.gains else DASH for n in names]
     cpu_time = fixed(cpu_s, 2) if math.isfinite(cpu_s) else DASH
+    # a count with all its digits
     return [*gains, *_objective_cells(controller.objectives, tuning), exact(controller.Ms, 3),
             "no" if controller.violated else "yes", exact(evaluations, 12), cpu_time]  # fmt: skip
 

@@ -33,9 +33,9 @@ from seatrial.reporting.tables import assumption
 POORLY_DETERMINED = 1.0
 # how a result names the criterion that simulates runs whole
 _OUTPUT_ERROR = "output error"
-# entries of each kind that are shown unfolded
 LEAST_MISFIT = 0.01  # rise of chi^2 below which it is called 0: a tenth of a standard error, squared
 LEAST_SHIFT = 5e-4  # relative change of an estimate that is named: 0.1 % when rounded
+# entries of each kind that are shown unfolded
 MAX_SHIFTS, MAX_TEXTS, MAX_ROWS, MAX_DIRECTIONS = 5, 5, 12, 16
 
 

@@ -144,6 +144,7 @@ def _roll_equivalent_matrix(model: Model, A: Array, amplitude: float) -> Array:
         raise InputError(
             f"the roll amplitude of a linearisation must lie between 0 and 86 degrees, not at {amplitude:g} rad"
         )
+    # powers of the roll rate and of the roll in `physics/models/roll.py`
     b, c = (np.array([model.parameters[f"{letter}_{i}"].value for i in of])
             for letter, of in (("b", (1, 2, 3)), ("c", (1, 3, 5))))  # fmt: skip
     damping = float(equivalent_damping(b, c, np.array([amplitude]))[0][0])

@@ -41,6 +41,7 @@ def heat_map(title: str, rows: Sequence[str], columns: Sequence[str], values: Ar
         for i, j in np.argwhere(inside)
         for m in _cell(int(i), int(j), float(values[i, j]), full, side, has_number=len(columns) <= MAX_NUMBERED_COLUMNS)
     ]
+    # px, chosen
     panel = Panel(box, row_axis(columns), row_axis(rows), tuple(marks), is_y_down=True,
                   tick_size=min(11.0, side), has_lines=False)  # fmt: skip
     if is_lower:

@@ -18,9 +18,10 @@ WIDE = 12.0
 CHOSEN = Marker(Shape.DIAMOND, 5.4, "#ffffff", SECOND)  # px, chosen
 # px, chosen
 BASELINES = tuple(Marker(shape, 4.6, INK, "#ffffff") for shape in (Shape.SQUARE, Shape.UP, Shape.DOWN, Shape.RIGHT))
+# px, chosen
 FRONTS = (
-    Marker(Shape.CIRCLE, 1.9, ACCENT, ACCENT, 0.0), Marker(Shape.CROSS, 2.1, "#8e6c1f"),  # px, chosen
-    Marker(Shape.UP, 2.4, "#2e7d5b"), Marker(Shape.SQUARE, 2.0, "#5b4a7a"),  # px, chosen
+    Marker(Shape.CIRCLE, 1.9, ACCENT, ACCENT, 0.0), Marker(Shape.CROSS, 2.1, "#8e6c1f"),
+    Marker(Shape.UP, 2.4, "#2e7d5b"), Marker(Shape.SQUARE, 2.0, "#5b4a7a"),
 )  # fmt: skip
 _RADIANS = re.compile(r"rad(?:\^(\d+))?")
 
@@ -51,6 +52,7 @@ def front_chart(tuning: Tuning) -> Chart | None:
             for k, (name, unit) in enumerate(tuning.objectives.items())]  # fmt: skip
     columns = min(COLUMNS, len(pairs))
     right = 8.0 if columns > 1 else WIDTH - 584.0  # one panel alone is 520 px wide
+    # px, chosen
     boxes = tiles(len(pairs), columns, 200.0 if columns > 1 else 300.0, left=64.0, right=right, gap=52.0, top=6.0)
     panels = tuple(
         Panel(box, axes[i], axes[j], tuple(Points(p[:, i], p[:, j], marker) for p, marker in styled))

@@ -55,6 +55,7 @@ def sensitivity_chart(tuning: Tuning) -> Chart | None:
     x = Axis((float(frequencies.min()), float(frequencies.max())), "ω [rad/s]", is_logarithmic=True)
     sensitivities = [1.0 / np.abs(1.0 + c.open_loop) for c, _ in styled]
     complementary = [np.abs(c.open_loop / (1.0 + c.open_loop)) for c, _ in styled]
+    # px, chosen
     limit = [Rule(allowed, LIMIT), Text(x.ends[0], allowed, f"Ms = {allowed:.3g} allowed", size=10.0, colour=SECOND,
                                         dx=5.0, dy=-4.0)]  # fmt: skip
     panels = []
@@ -111,8 +112,10 @@ def nyquist_chart(tuning: Tuning) -> Chart | None:
             Text(-1.0, radius, f"Ms = {tuning.constraints.Ms:.3g}", Anchor.MIDDLE, 10.0, SECOND, dy=-5.0),  # px, chosen
         ]
     marks += [Line(c.open_loop.real, c.open_loop.imag, stroke) for c, stroke in reversed(styled)]
-    marks += [Points(np.array([-1.0]), np.zeros(1), Marker(Shape.PLUS, 4.0, INK, edge_width=1.6)),  # px, chosen
+    # px, chosen
+    marks += [Points(np.array([-1.0]), np.zeros(1), Marker(Shape.PLUS, 4.0, INK, edge_width=1.6)),
               Text(-1.0, 0.0, "−1", size=10.0, dx=6.0, dy=-5.0)]  # fmt: skip
+    # px, chosen; seven ticks
     panel = Panel(Region(58.0, 4.0, width, NYQUIST_HEIGHT), Axis(REAL, "Re L", tick_count=7),
                   Axis(IMAGINARY, "Im L", tick_count=7), tuple(marks))  # fmt: skip
     return Chart("open loop near -1", (panel,), _legend(styled), width=width + 98.0)
@@ -127,6 +130,7 @@ def _axis_top(sizes: list[Array], allowed: float) -> float:
     highest = max((float(np.max(s[np.isfinite(s)], initial=0.0)) for s in sizes), default=1.0)
     if not math.isfinite(allowed):
         return max(1.2, 1.08 * highest)  # 8 % more than the highest
+    # 8 % more than the highest
     return max(LEAST_TOP * allowed, min(1.08 * highest, CUT * allowed))
 
 

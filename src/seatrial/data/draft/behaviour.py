@@ -205,8 +205,9 @@ def _ground_speed_unit(record: Record) -> Changes:
 
 def _speed_unit(factor: float) -> str:
     """The unit in which a speed is factor m/s; empty where none is near."""
-    unit = min(_SPEED_UNITS, key=lambda one: abs(math.log(max(factor, 1e-9) / _SPEED_UNITS[one])))  # never log of zero
-    return unit if abs(math.log(max(factor, 1e-9) / _SPEED_UNITS[unit])) < math.log(_SPEED_TOLERANCE) else ""
+    size = max(factor, 1e-9)  # never log of zero
+    unit = min(_SPEED_UNITS, key=lambda unit: abs(math.log(size / _SPEED_UNITS[unit])))
+    return unit if abs(math.log(size / _SPEED_UNITS[unit])) < math.log(_SPEED_TOLERANCE) else ""
 
 
 def _rudder_sign(record: Record) -> Changes:

@@ -127,8 +127,9 @@ def _elapsed_excess_sd(holdout_errors: Sequence[HoldoutError], channel: str) -> 
     grown = np.array([[discrepancy_growth(miss.index)] for miss in holdout_errors])
     from scipy.optimize import isotonic_regression
 
-    count = np.maximum(is_read.sum(axis=0), 1e-9)  # above zero, for a division, where nothing is measured
-    weight = np.maximum(np.sum(is_read * grown**2, axis=0), 1e-9)
+    # both above zero, for a division, where nothing is measured
+    count = np.maximum(is_read.sum(axis=0), 1e-9)
+    weight = np.maximum(np.sum(is_read * grown**2, axis=0), 1e-9)  # as the count
     square, foreseen = (np.sum(np.where(is_read, v, 0.0) ** 2, axis=0) for v in (error, expected))
     variance = np.maximum(isotonic_regression(square / count, weights=count).x, foreseen / count)
     precision = count / np.maximum(variance / np.max(variance, initial=1e-300), 1e-6) ** 2  # rounding of a quotient

@@ -19,6 +19,7 @@ from seatrial.numerics.kernels.integrate import DIVERGED, rk4_step
 from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.types import COMMAND, COMMAND_SIGNATURE, F8, FUNCTION, I8, LEAN, MATRIX, OPTIONS, VECTOR
 
+# places in the memory
 (
     CONTROLLER_ORDER, COUNT, OUTPUT, ACTUATOR, DISTURBED_INPUT, TRIM, EFFECT, LIMIT, SLEW, STALL, LOSS, STEP, ANGLE,
     EFFECTIVE_ANGLE, SATURATION_EXCESS, ANTI_WINDUP, OUTPUT_LAST, OUTPUT_BEFORE_LAST, ERROR_LAST, SERIES, EVERY,

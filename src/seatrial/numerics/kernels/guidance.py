@@ -19,6 +19,7 @@ from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.sampled import sampled_controller
 from seatrial.numerics.kernels.types import COMMAND_SIGNATURE, LEAN
 
+# places in the memory
 (
     NORTH, EAST, LOOKAHEAD, INTEGRAL_GAIN, INTEGRAL, ORDER, ORDER_STEP, LEG, CORNER, TURN, ACCEPTANCE,
     INTERVAL, NEW_LEG, TRACK_HEAD,

@@ -155,5 +155,6 @@ def replay(
     failed[s] becomes the sample at which the solution left all bounds (or was not finite), else stays -1.
     """
     nx, nu = x0.shape[1], inputs.shape[1]
+    # scratch of a step: six rows of states, four of inputs
     _replay(f, g, inputs, place, rise, offsets, seg_from, seg_to, dt, substeps, x0, p, gain, offset, delay, select,
             y_out, failed, np.empty((6, nx)), np.empty((4, nu)), np.empty(max(ng, 1)))  # fmt: skip

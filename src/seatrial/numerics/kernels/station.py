@@ -16,6 +16,7 @@ from numba import njit
 from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.types import COMMAND_SIGNATURE, LEAN
 
+# places in the memory
 (
     THRUSTERS, COUNT, STEP, HOLD, DELAY, SAMPLE, TABLE, PSI, NORTH, EAST, FORCE_INPUT, RESOLUTION, HEAD,
 ) = range(13)  # fmt: skip

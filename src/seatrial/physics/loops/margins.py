@@ -126,6 +126,7 @@ def _crossing_frequencies(loop: TransferLoop, function: Callable[[Complex], Arra
     def along(v: float) -> float:
         return float(function(loop.open_loop(np.exp(np.array([v]))))[0])
 
+    # tolerance in the logarithm of the frequency: rounding
     return np.exp(np.array([float(brentq(along, u[i], u[i + 1], xtol=1e-13)) for i in rises]))  # type: ignore[arg-type]
 
 

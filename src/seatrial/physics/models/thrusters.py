@@ -192,6 +192,7 @@ def _accelerations(sheet: Sheet, layout: ThrusterLayout, water: Water, force: Pl
         "M_u", m, "kg", "m + m_x; 1: forces are those on each kg of it", MASSES, free=layout.has_bollard, lower=low * m,
         upper=high * m,
     )  # fmt: skip
+    # where the search of M_v starts: half of m is added mass; chosen
     M_v = sheet.parameter("M_v", 1.5 * m, "kg", "m + m_y", MASSES, free=True, lower=_LEAST_SWAY * m, upper=high * m)
     M_c = sheet.parameter("M_c", 0.0, "kg m", "m x_G - Y_rdot", MASSES, scale=_SCALE * m * layout.length)
     M_r = sheet.parameter(

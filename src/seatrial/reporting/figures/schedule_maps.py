@@ -40,13 +40,14 @@ def schedule_chart(points: Sequence[OperatingPoint]) -> Chart | None:
         for k, name in enumerate(names):
             marks = [m for p in points if p.height == height
                      for m in _cell(p, name, headings.index(p.beta), speeds.index(p.U))]  # fmt: skip
+            # px, chosen
             marks += [Text(-0.5, -0.5, f"{exact(height, 3)} m", Anchor.END, dx=-5.0, dy=-6.0)] if k == 0 else []
             x = replace(columns, name="heading [deg]" if is_last else "", has_labels=is_last)
             y = replace(rows, name="speed [m/s]" if k == 0 else "", has_labels=k == 0)
             box = Region(LEFT + k * (size[0] + GAP), top, *size)
             panels.append(Panel(box, x, y, tuple(marks), name if height == heights[0] else "", is_y_down=True,
                                 has_lines=False))  # fmt: skip
-        top += size[1] + 26.0
+        top += size[1] + 26.0  # px, chosen
     key = colour_key(LEFT + len(names) * (size[0] + GAP) + 4.0, 1.0, is_signed=False, top=40.0)  # px, chosen
     return Chart("costs of the schedule", (*panels, key))
 
