@@ -240,7 +240,6 @@ class TrimmedShip:
         state, inputs: trim about which it was linearised, SI; covariance: of the free parameters (k, k) or (0, 0).
         actuator, disturbance, output: names; the disturbance may be empty.
         warnings: of the fit, a sentence each: what holds for every use of its values.
-        sign: -1 where the record's actuator is positive the other way than the model's.
     """
 
     model: Model

@@ -56,7 +56,7 @@ class FeatureConditions:
     the whole (Cauchy's interlacing theorem): sway's condition number is never below yaw's, whatever the record.
 
     Attributes:
-        printed: as labelled; swapped: labels of surge and sway exchanged.
+        printed: as labelled; labels_exchanged: labels of surge and sway exchanged.
         plain: ours, features of eq. (14); improved: ours, differenced and centred, eq. (17), (18).
         correlations: ours, plain, each (k, k).
         is_possible: whether sway's is at least yaw's, as printed and swapped.

@@ -47,7 +47,7 @@ class ThreeGainOptimum:
     """A controller beside the paper's gains in the same reading and sea.
 
     Attributes:
-        gains: (g,); peak: Ms; shares: J1, J2, J3 over the paper's, (3,).
+        gains: (g,); objective_ratios: J1, J2, J3 over the paper's, (3,).
     """
 
     preamplifier: Preamplifier

@@ -113,7 +113,7 @@ class Trial:
         family: models to compare; None: the default family of the model.
         compare: settings of the regressions that a comparison sets beside the fit.
         feedback: the controller that was on in some runs; None: none is declared.
-        design: the manoeuvre that is to be designed; None: none is.
+        design_request: the manoeuvre that is to be designed; None: none is.
         stream: the stream that is to be followed; None: none is.
         proposal: for which loop gains are proposed meanwhile; None: for none.
         joint_priors: what earlier results say of several coefficients together, besides the priors of each.

@@ -78,7 +78,8 @@ class CriterionChoice:
         inflation: variance inflation of each channel's residuals, (ny,); rho: their autocorrelations.
         whiteness: tests of the residuals (under prediction error of the normalised innovations).
         disturbances: the disturbance models that were compared; None: none were.
-        process: intensities of process noise that suit the estimate; noise: the prediction-error optimum, if used.
+        process_intensities: of process noise that suits the estimate.
+        process_noise: the prediction-error optimum, if used.
         implied_noise: what suits an output-error estimate over a few whole runs, where it makes one-step residuals
             white or the runs are free decays.
     """

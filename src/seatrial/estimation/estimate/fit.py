@@ -60,14 +60,14 @@ class Estimation:
     """An estimate with its interval and how it came about.
 
     Attributes:
-        made: problem and optimum.
+        estimate: problem and optimum.
         shooting: the estimate over segments that came first, by which models are compared.
         uncertainty: intervals of all shared unknowns, and the estimates they rest on.
         residuals: simulated minus measured, under prediction error one step ahead, (rows, ny), SI.
         inflation: variance inflation of each channel's residuals; rho: their autocorrelations.
         whiteness: tests of the residuals.
-        disturbance: what is between model and records, and why this criterion.
-        start: where the search began, in words.
+        noise_model: what is between model and records, and why this criterion.
+        start_method: where the search began, in words.
         criterion, reasons: what was used, and why.
         process_noise: the Kalman filter that suits the estimate; None: none was needed, or multiple shooting was used.
         search_attempts: short searches from several starting points, the best first; empty: there was one.

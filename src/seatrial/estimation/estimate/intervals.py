@@ -35,9 +35,10 @@ class Uncertainty:
     """An interval of all shared unknowns, and what it rests on.
 
     Attributes:
-        left_out: estimates with one run left out each, shape (runs, k); None with fewer runs than a jackknife needs.
-        agreement: median over coefficients of the one-step jackknife's standard error over that of full refits; None
-            unless both were computed.
+        leave_one_out: estimates with one run left out each, shape (runs, k); None with too few
+            runs for a jackknife.
+        one_step_ratio: median over coefficients of the one-step jackknife's standard error over that of full refits;
+            None unless both were computed.
         information: inverse of the covariance where that is another one than the criterion's, shape (k, k).
     """
 

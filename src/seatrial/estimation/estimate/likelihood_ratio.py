@@ -25,9 +25,9 @@ class ProcessNoiseTest:
     """Whether process noise is needed to explain the records, and whether white noise in the states suffices.
 
     Attributes:
-        ratio: 2 (log-likelihood with process noise - without), both at their own optimum; infinite where the model
-            without it diverges.
-        limit: what chance alone exceeds once in a thousand cases.
+        likelihood_ratio: 2 (log-likelihood with process noise - without), both at their own optimum; infinite where the
+            model without it diverges.
+        critical_value: what chance alone exceeds once in a thousand cases.
         inflation_without, inflation: variance inflation of each channel's normalised innovations without and with
             process noise, (ny,); NaN where no fit without it was made.
         whiteness: of the normalised innovations with process noise.

@@ -81,9 +81,9 @@ class ProcessNoise:
 
     Attributes:
         problem: gives exact gradients; optimum: point, normal equations with expected information, history.
-        slope: Newton decrement of the exact gradient at the point: how far above the minimum the cost still is; NaN
+        newton_decrement: of the exact gradient at the point: how far above the minimum the cost still is; NaN
             where the coefficients were not searched, infinite where their search left physics.
-        runs: the output-error problem over whole runs that it was made from; `problem.runs` is another one where the
+        output_error: the problem over whole runs that it was made from; `problem.runs` is another one where the
             model has more states (gusts with a memory, biases, lags), whose parameters stand behind the free ones.
         disturbance_model: the disturbance in words; evidence: what shows its strength.
     """

@@ -59,7 +59,7 @@ class FittedVariant:
     """A member fitted to all training runs.
 
     Attributes:
-        made: None where the fit failed, with the reason in `note`.
+        estimate: None where the fit failed, with the reason in `note`.
         scores: (runs, 2), mean rms over the windows of each run left out: heading [deg], position [m].
         objections: why it must not be chosen, though it may predict well.
     """

@@ -16,9 +16,9 @@ class RestartSettings:
     """How often, and until when, to start again.
 
     Attributes:
-        acceptable: value (half the sum of squares) at or below which a fit is taken; for residuals in standard
+        acceptable_cost: value (half the sum of squares) at or below which a fit is taken; for residuals in standard
             deviations half a quantile of chi-square with the degrees of freedom of the data.
-        most: restarts at most, after the first start.
+        max_restarts: restarts at most, after the first start.
         evaluations: of each start.
         negligible: promised decrease below which a start ends.
     """
@@ -45,7 +45,7 @@ class Multistart:
     Attributes:
         optimum: solution (evaluations and history over all starts), local unknowns, Gauss-Newton model.
         restarts: starts made after the first.
-        accepted: whether the value is acceptable; if not, all restarts are spent.
+        is_accepted: whether the value is acceptable; if not, all restarts are spent.
     """
 
     optimum: Optimum

@@ -59,7 +59,7 @@ class SegmentBatch:
         offsets: shape (segments + 1,).
         dt: s; substeps: Runge-Kutta steps in each.
         outputs: observables that are returned, in order.
-        columns: names of the parameters to differentiate by, then corrections, then states (initial values).
+        parameters, corrections, initial_states: names to differentiate by, in this order.
     """
 
     model: Model

@@ -28,7 +28,7 @@ class ChangeStatistic:
     """A difference of estimates: chi-squared statistic, its degrees of freedom, p, and the largest single move.
 
     Attributes:
-        most: index of the coefficient that moved most in standard errors of its own difference.
+        most_changed: index of the coefficient that moved most in standard errors of its own difference.
     """
 
     statistic: float

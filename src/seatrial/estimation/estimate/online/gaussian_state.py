@@ -10,12 +10,13 @@ from seatrial.core.values import Array, InputError
 
 @dataclass(frozen=True, eq=False)
 class GaussianState:
-    """Gaussian: coefficients theta ~ N(value, covariance), state ~ N(state + sensitivity (theta - value), spread).
+    """Gaussian: coefficients theta ~ N(value, covariance), state ~ N(state + sensitivity (theta - value),
+    state_covariance).
 
     Attributes:
         value (k,), covariance (k, k): of the coefficients; state (nx,): at the present sample.
         sensitivity: (nx, k), change of the present state with the coefficients, given all that was measured.
-        spread: (nx, nx), covariance of the state were the coefficients known.
+        state_covariance: (nx, nx), covariance of the state were the coefficients known.
     """
 
     value: Array

@@ -57,8 +57,9 @@ class InnovationStatistics:
     """What the measurements were beyond their predictions, by channel, (ny,).
 
     Attributes:
-        rms: over the guard's memory, SI; ratio: mean square by its predicted variance, 1 if all is as believed.
-        taken, outliers: counts since the filter began.
+        rms: over the guard's memory, SI.
+        variance_ratio: mean square by its predicted variance, 1 if all is as believed.
+        sample_count, outlier_count: counts since the filter began.
     """
 
     rms: Array

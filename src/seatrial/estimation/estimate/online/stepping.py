@@ -30,8 +30,10 @@ class FilterState:
     """What is carried along, changed in place: z (n,) = [coefficients | state], root (n, n) of its covariance.
 
     Attributes:
-        variance: of each channel, (ny,); running (ny, 2), tally (2, ny): see `kernels.square_root.take`.
-        limit, memory: in standard deviations, in samples; widest, kept, every, since: see `forget`.
+        variance: of each channel, (ny,).
+        running_means, counts: (ny, 2) and (2, ny), see `kernels.square_root.take`.
+        huber_limit, averaging_samples: in standard deviations, in samples.
+        widest_precision, retained_share, forgetting_interval, since_forgetting: see `forget`.
     """
 
     z: Array

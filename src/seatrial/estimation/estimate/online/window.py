@@ -32,10 +32,11 @@ class WindowEstimate:
     """An estimate from everything in the window.
 
     Attributes:
-        made: problem and optimum; left: its residuals, simulated minus measured, (rows, ny), SI.
+        estimate: problem and optimum.
+        residuals: its residuals, simulated minus measured, (rows, ny), SI.
         covariance: of the free coefficients, (k, k); infinite diagonal where singular.
         inflation: of each channel's residuals, (ny,); one where they are white.
-        begins: name and first time of each record.
+        record_starts: name and first time of each record.
     """
 
     estimate: PointEstimate
