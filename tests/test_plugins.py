@@ -1,5 +1,6 @@
-"""Models, readers, estimators, optimisers and studies of other packages: found by name, refused in one sentence."""
+"""Plug-ins of other packages, a group each: found by name, refused in one sentence."""
 
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -7,12 +8,14 @@ import pytest
 from tests.installed_package import install
 
 from seatrial.api import list_models, reproduce
+from seatrial.core.results import Verdict
 from seatrial.core.values import InputError
 from seatrial.data.read import ColumnSpec, Layout, format_of, read_record
 from seatrial.estimation.regress.named import available_estimators, estimator_named
 from seatrial.numerics.optimise import Box, SearchError
 from seatrial.numerics.optimise.named import optimiser_named
 from seatrial.physics.models import model_named
+from seatrial.problems import problem_named
 from seatrial.testing import check_estimator, check_model, check_optimiser, check_reader
 
 MODEL = """
@@ -27,6 +30,7 @@ def model():
     return sheet.model()
 """
 READER = """
+from seatrial.core.results import Verdict
 from seatrial.core.values import InputError
 from seatrial.data.read import Log, RawTable
 
@@ -43,6 +47,12 @@ from seatrial.estimation.regress.solvers import OrdinaryLeastSquares
 
 def estimator(half_width):
     return LinearRegression("addon", Weak(2.0 * half_width), OrdinaryLeastSquares())
+"""
+PROBLEMS = """
+from seatrial.problems import BenchmarkProblem
+
+def problems():
+    return tuple(BenchmarkProblem(f"toy-{k}", 1, "", "", "", 10, None) for k in (2, 3))
 """
 OPTIMISER = """
 from seatrial.numerics.optimise import DifferentialEvolution as optimiser
@@ -122,6 +132,24 @@ def test_a_broken_optimiser_is_one_sentence(monkeypatch: pytest.MonkeyPatch, tmp
     install(monkeypatch, tmp_path, "seatrial.optimisers", "stuck", "raise RuntimeError('no\\nluck')", "optimiser")
     with pytest.raises(SearchError, match=r"'stuck' .* fails: RuntimeError: no luck; update or uninstall"):
         optimiser_named("stuck")
+
+
+def test_an_installed_study_is_reproduced(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, repository: Path) -> None:
+    code = (repository / "examples" / "contributions" / "turning_study.py").read_text(encoding="utf-8")
+    install(monkeypatch, tmp_path, "seatrial.studies", "turning", code, "study")
+    result = reproduce("turning", quick=True)
+    assert result.quick and [claim.verdict for claim in result.claims] == [Verdict.CONFIRMED]
+
+
+def test_installed_problems_are_found_by_name(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    install(monkeypatch, tmp_path, "seatrial.problems", "toy", PROBLEMS, "problems")
+    assert problem_named("toy-3").label == "toy-3@1"
+
+
+def test_a_plug_in_of_each_group_is_tried_here(repository: Path) -> None:
+    groups = tomllib.loads((repository / "pyproject.toml").read_text(encoding="utf-8"))["project"]["entry-points"]
+    source = Path(__file__).read_text(encoding="utf-8")
+    assert [group for group in groups if f'tmp_path, "{group}"' not in source] == []
 
 
 def test_a_broken_study_is_one_sentence(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
