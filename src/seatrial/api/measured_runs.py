@@ -80,7 +80,7 @@ class Reading:
 def readings_of(fit: "Fit") -> tuple[Reading, ...]:
     """Return what is read from the measured runs of a fit, in order; of those with heading and rudder."""
     readings = (_reading(fit, p) for p in fit.predictions if not p.is_reference_simulated)
-    return tuple(one for one in readings if one is not None)
+    return tuple(reading for reading in readings if reading is not None)
 
 
 def measured_quantity(name: str, runs: Sequence[Reading]) -> "PosterQuantity | None":
@@ -88,7 +88,7 @@ def measured_quantity(name: str, runs: Sequence[Reading]) -> "PosterQuantity | N
     from seatrial.core.results.poster import Basis, PosterQuantity
     from seatrial.physics.manoeuvres import bounded_interval
 
-    showing = [one for one in runs if name in one.values]
+    showing = [run for run in runs if name in run.values]
     if not showing:
         return None
     largest = max(showing, key=lambda one: one.values[name])

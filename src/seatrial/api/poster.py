@@ -77,7 +77,9 @@ def poster(
     manoeuvres, measured_at = [], _speed_of_trials(readings) if speed is None else speed
     for number, order in enumerate(orders, 1):
         report(f"manoeuvres: {number} of {len(orders)}, {order.manoeuvre}")
-        manoeuvres.append(_manoeuvre(fit, order, speed, [one for one in readings if _shows(one, order, measured_at)]))
+        manoeuvres.append(
+            _manoeuvre(fit, order, speed, [reading for reading in readings if _shows(reading, order, measured_at)])
+        )
     if not any(m.quantities for m in manoeuvres):
         raise InputError(f"no manoeuvre of the poster can be steered with this fit: {manoeuvres[0].note}")
     held_out, rate = {p.record for p in fit.validation}, rudder_rate_of(fit)
@@ -135,7 +137,7 @@ def _speed_of_trials(readings: "Sequence[Reading]") -> float | None:
     """Median approach speed of the measured runs [m/s]: that of their propulsion, which the model may miss."""
     from statistics import median
 
-    speeds = [one.values["approach_speed"] for one in readings if "approach_speed" in one.values]
+    speeds = [reading.values["approach_speed"] for reading in readings if "approach_speed" in reading.values]
     return median(speeds) if speeds else None
 
 
@@ -167,7 +169,7 @@ def _manoeuvre(fit: "Fit", order: _Order, speed: float | None, runs: "Sequence[R
 
     present = [n for n in order.names if n in values]
     quantities = tuple(quantity(n) for n in present)
-    shown = tuple(one.run for one in runs) if any(q.basis is Basis.MEASURED for q in quantities) else ()
+    shown = tuple(run.run for run in runs) if any(q.basis is Basis.MEASURED for q in quantities) else ()
     return PosterManoeuvre(order.manoeuvre, quantities, (simulated,), shown)
 
 

@@ -131,21 +131,21 @@ def _counted(runs: Sequence[MethodRun]) -> list[MethodRun]:
 def _score(name: str, is_built_in: bool, runs: Sequence[MethodRun], unit: float | None) -> MethodScore:
     """One method on one problem."""
     answers = [run.rows[0] for run in runs if run.rows]
-    errors = sorted(float(one["error"]) for one in answers)
+    errors = sorted(float(answer["error"]) for answer in answers)
     failures = [run.failure for run in runs if not run.rows]
-    successes = sum(bool(one["is_success"]) for one in answers)
-    spent = sum(int(one["evaluations"]) for one in answers)
+    successes = sum(bool(answer["is_success"]) for answer in answers)
+    spent = sum(int(answer["evaluations"]) for answer in answers)
     met = sorted(int(r["evaluations"]) for run in runs for r in run.rows if r["row"] == TARGET)
     rows = [r for run in runs for r in run.rows if r["row"] == COEFFICIENT and r["lower"] is not None]
     covered = sum(r["lower"] <= r["truth"] <= r["upper"] for r in rows)
-    assert all(one["row"] == ANSWER for one in answers)
+    assert all(answer["row"] == ANSWER for answer in answers)
     return MethodScore(
         name, is_built_in, len(answers), len(failures), failures[0] if failures else "", tuple(errors),
         float(np.sqrt(np.mean(np.square(errors)))) if errors else None, successes,
-        float(np.median([one["evaluations"] for one in answers])) if answers else None,
+        float(np.median([answer["evaluations"] for answer in answers])) if answers else None,
         spent / successes if successes else None, TargetCurve(tuple(met), len(runs) * len(TARGETS)), len(rows), covered,
-        coverage_interval(covered, len(rows)) if rows else None, sum(bool(one["is_outside"]) for one in answers),
-        sum(bool(one["is_budget_spent"]) for one in answers),
+        coverage_interval(covered, len(rows)) if rows else None, sum(bool(answer["is_outside"]) for answer in answers),
+        sum(bool(answer["is_budget_spent"]) for answer in answers),
         None if unit is None else float(np.median([run.seconds for run in runs]) / unit),
     )  # fmt: skip
 

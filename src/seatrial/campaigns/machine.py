@@ -30,7 +30,10 @@ def linear_algebra() -> str:
     loaded = [one for one in _loaded().info() if one.get("user_api") == "blas"]
     # other packages bring libraries of their own, which depends on what else this process has imported
     libraries = [one for one in loaded if _is_of_numpy_or_scipy(Path(one["filepath"]))] or loaded
-    words = {f"{one['internal_api']} {one.get('version')} {one.get('architecture', '')}".strip() for one in libraries}
+    words = {
+        f"{library['internal_api']} {library.get('version')} {library.get('architecture', '')}".strip()
+        for library in libraries
+    }
     return ", ".join(sorted(words)) or "unknown"
 
 

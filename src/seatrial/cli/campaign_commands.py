@@ -149,6 +149,6 @@ def _print_summary(summary: "CampaignSummary") -> None:
     if summary.coefficients:
         table = coefficient_table(summary.coefficients)
         print_table([table.header, *table.rows], indent="  ")
-    print_lines(f"{one.count} failed: {one.example}" for one in summary.failures)
+    print_lines(f"{failure.count} failed: {failure.example}" for failure in summary.failures)
     if summary.findings:
         print_findings(summary.findings, 1)

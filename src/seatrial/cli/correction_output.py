@@ -32,7 +32,7 @@ def write_correction(correction: "Correction", trial: Path, findings: "tuple[Fin
         why = "no error has an edit that removes it" if has_errors(findings) else "the checks find no error"
         print_finding("info", f"nothing to correct: {why}; no file is written")
         print_findings(findings, per_code)
-        print_next(after_check(tuple(replace(one, edits=()) for one in findings), trial))
+        print_next(after_check(tuple(replace(finding, edits=()) for finding in findings), trial))
         exit_if_errors(findings)
         return
     if fixed.exists():

@@ -100,9 +100,10 @@ def init(
     known = not_needed_text(draft.not_needed, REASONS_SHOWN)
     print_lines([f"NOTE known, not needed: {known}"] if known else [])
     if draft.header_sizes:
-        says = ", ".join(one.text for one in draft.header_sizes)
-        print_lines([f"NOTE the header says {says}, not used: {' '.join(one.option for one in draft.header_sizes)}"])
-    print_lines(_other_speed_note(one, out) for one in draft.other_speeds)
+        says = ", ".join(header_size.text for header_size in draft.header_sizes)
+        options = " ".join(header_size.option for header_size in draft.header_sizes)
+        print_lines([f"NOTE the header says {says}, not used: {options}"])
+    print_lines(_other_speed_note(other_speed, out) for other_speed in draft.other_speeds)
     _print_runs(draft)
     print_lines([f"NOTE {draft.unlike_decays}"] if draft.unlike_decays else [])
     if draft.held_out.names:
@@ -134,7 +135,7 @@ def _print_runs(draft: "DraftTrial") -> None:
 
     for run, stretches, parts in zip(draft.runs, draft.stretches, draft.parts, strict=True):
         name = run.name or run.sources[0].path.name
-        print_lines(f"{name}: {one.name}, {one.start:.4g} to {one.stop:.4g} s: {one.evidence}" for one in parts)
+        print_lines(f"{name}: {part.name}, {part.start:.4g} to {part.stop:.4g} s: {part.evidence}" for part in parts)
         print_lines([f"{name}: {run_text(stretches)}"] if stretches and not parts else [])
         contradiction = name_contradiction(name, stretches)
         print_lines([f"NOTE {name}: {contradiction}"] if contradiction else [])
@@ -145,7 +146,7 @@ def _other_speed_note(other: "OtherSpeed", out: Path) -> str:
     trial = out.with_name(f"{out.stem}_{other.speed:g}ms{out.suffix}")
     parts = [*other.logs, *other.options, "--out", trial]
     names = ", ".join(log.name for log in other.logs)
-    return f"NOTE left out: {names}: {other.reason}: seatrial init {' '.join(in_shell(one) for one in parts)}"
+    return f"NOTE left out: {names}: {other.reason}: seatrial init {' '.join(in_shell(part) for part in parts)}"
 
 
 def _after_draft(draft: "DraftTrial", out: Path) -> str:

@@ -249,7 +249,7 @@ def _offset_lines(file: "ModelFile", measured: "Record | None", session: str | N
         return []
     if measured is not None and is_measured_motion(file, measured):
         return [f"with what the fit found of its session: {offsets_text(file.offsets, session)}"]
-    of_inputs = [one for one in file.offsets if one.is_of_input]
+    of_inputs = [offset for offset in file.offsets if offset.is_of_input]
     if not of_inputs:
         return []
     text = offsets_text(of_inputs, session)

@@ -72,7 +72,7 @@ def between_readings(values: Array, is_measured: Mask, *, is_angle: bool) -> Arr
 def _renewed_together(symbols: Sequence[str], values: Mapping[str, Array]) -> list[list[str]]:
     """The channels of a message: all of them where they step in the same rows, else each by itself."""
     steps = [_stepping_rows([values[symbol]]) for symbol in symbols]
-    counts = [int(one.sum()) for one in steps]
+    counts = [int(step.sum()) for step in steps]
     moving = [one for one, count in zip(steps, counts, strict=True) if count >= _FEWEST]
     if len(moving) < 2:
         return [list(symbols)]

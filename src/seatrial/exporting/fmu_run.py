@@ -39,11 +39,11 @@ def replay_fmu(path: Path, record: Record) -> Record:
         )
         starts = {v: float(record[v.name][0]) for v in outputs if v.initial == "exact" and v.name in record}
         try:
-            shown = _run(fmu, inputs, outputs, starts, driven, record.dt)
+            values = _run(fmu, inputs, outputs, starts, driven, record.dt)
         except Exception as error:  # FMPy raises its own and those of ctypes
             reason = log[-1] if log else str(error)
             raise InputError(f"FMU '{path}' stopped on record '{record.name}': {printable(reason)}") from None
-    channels = {v.name: _channel(v.name, shown[:, k] * signs.get(v.name, 1.0)) for k, v in enumerate(outputs)}
+    channels = {v.name: _channel(v.name, values[:, k] * signs.get(v.name, 1.0)) for k, v in enumerate(outputs)}
     channels |= {v.name: record.channel(v.name) for v in inputs if v.name in record}
     provenance = Provenance(str(path), steps=(f"inputs of '{record.name}' replayed through the FMU by FMPy",))
     return Record(record.name, record.time, channels, RecordKind.SIMULATED, provenance=provenance)
@@ -105,7 +105,7 @@ def _run(
 ) -> Array:  # fmt: skip
     """Return the outputs at each row of the inputs, shape (n, ny)."""
     references = [v.valueReference for v in inputs]
-    shown = np.empty((len(driven), len(outputs)))
+    rows = np.empty((len(driven), len(outputs)))
     fmu.setupExperiment(startTime=0.0)
     fmu.setReal([v.valueReference for v in starts], list(starts.values()))
     fmu.enterInitializationMode()
@@ -113,12 +113,12 @@ def _run(
     fmu.exitInitializationMode()
     for k, row in enumerate(driven):
         fmu.setReal(references, row.tolist())
-        shown[k] = fmu.getReal([v.valueReference for v in outputs])
+        rows[k] = fmu.getReal([v.valueReference for v in outputs])
         if k + 1 < len(driven):
             slopes = ((driven[k + 1] - row) / dt).tolist()
             fmu.setRealInputDerivatives(references, [1] * len(references), slopes)
             fmu.doStep(currentCommunicationPoint=k * dt, communicationStepSize=dt)
-    return shown
+    return rows
 
 
 def _signs(path: Path) -> dict[str, float]:

@@ -168,9 +168,9 @@ def _refitted(
         bounded = [np.clip(p, -_DIVERGED_SIZE, _DIVERGED_SIZE).ravel() for p in parts]
         return np.concatenate([*bounded, _RIDGE * (scaled - start / unit)])
 
-    begin = np.clip(start, lower + 1e-9 * unit, upper - 1e-9 * unit)  # a hair inside, as the solver requires
-    found = least_squares(residuals, begin / unit, bounds=(lower / unit, upper / unit), max_nfev=_EVALUATIONS)
-    return found.x * unit
+    inner_start = np.clip(start, lower + 1e-9 * unit, upper - 1e-9 * unit)  # a hair inside, as the solver requires
+    solution = least_squares(residuals, inner_start / unit, bounds=(lower / unit, upper / unit), max_nfev=_EVALUATIONS)
+    return solution.x * unit
 
 
 def _unit_sizes(structure: TargetStructure, rigid: RigidBody, records: Sequence[Record]) -> Array:

@@ -137,7 +137,7 @@ def provenance_lines(source: ExportSource) -> list[str]:
         lines.append(f"Ship: {plain(file.ship.name)}, scale 1:{file.ship.scale:g}; {plain(file.ship.source)}")
     if file.provenance.method:
         lines.append(f"Method: {plain(file.provenance.method)}")
-    if of_inputs := [one for one in file.offsets if one.is_of_input]:
+    if of_inputs := [offset for offset in file.offsets if offset.is_of_input]:
         lines.append(f"Inputs are true values; in logs the fit found {plain(offsets_text(of_inputs, None))}.")
     lines += [f"Data: {plain(r.name)} ({r.role}), SHA-256 {r.sha256[:_HASH_DIGITS]}" for r in file.provenance.records]
     versions = file.provenance.versions or {}

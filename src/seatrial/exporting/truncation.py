@@ -38,7 +38,7 @@ def truncation(
         values, k = forces[force], index[key]
         return 0.5 * float(values[k] + parity * values[k + len(rows)])
 
-    made = dict(zip(ADDED, (structure.added_mass_sign * a for a in added), strict=True))
+    added_masses = dict(zip(ADDED, (structure.added_mass_sign * a for a in added), strict=True))
     ahead = part("X", "", 1.0)
     for term in structure.terms:
         kind = f"{term.first}{term.second}"
@@ -53,8 +53,8 @@ def truncation(
             "v|v|": (part(force, "v", -1.0) - linear["v"] * sway) / sway**2,
             "r|r|": (part(force, "r", -1.0) - linear["r"] * turn) / turn**2,
         }.get(kind, 0.0)  # fmt: skip
-        made[term.tag] = term.sign * value
-    return made
+        added_masses[term.tag] = term.sign * value
+    return added_masses
 
 
 def _added_masses(file: ModelFile, rigid: RigidBody, forces: Mapping[str, Array]) -> list[float]:
@@ -63,7 +63,7 @@ def _added_masses(file: ModelFile, rigid: RigidBody, forces: Mapping[str, Array]
     if "m_x" in parameters:
         return [parameters[n].value for n in ("m_x", "m_y", "J_z")]
     sums = [float(forces[n][0]) if n in forces else parameters[n].value for n in ("M_u", "M_v", "M_r")]
-    return [total - own for total, own in zip(sums, (rigid.mass, rigid.mass, rigid.inertia_at_origin), strict=True)]
+    return [total - body for total, body in zip(sums, (rigid.mass, rigid.mass, rigid.inertia_at_origin), strict=True)]
 
 
 def _required_forces(

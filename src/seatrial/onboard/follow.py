@@ -122,7 +122,7 @@ def follow(
     if buffer is not None and is_ended and trial.model.parameters.free_names:
         fit = _final_fit(with_training_records(trial, buffer.records()), estimator, seed, report_progress)
     writers = [one for one in (log, proposer) if one is not None]
-    errors = tuple(one.write_error for one in writers if one.write_error)
+    errors = tuple(writer.write_error for writer in writers if writer.write_error)
     return FollowResult(latest, counts, fit, (*session.messages, *errors))
 
 

@@ -55,10 +55,10 @@ def limit_of(craft: DisturbedCraft, disturbance: Disturbance, record: Record) ->
     else:
         squared = squared * SAMPLE_S
     common, free = estimate.common_parameters, len(problem.free)
-    own = common[free:].copy()
-    own[-1:] = disturbance.offset
+    session_values = common[free:].copy()
+    session_values[-1:] = disturbance.offset
     variances = [craft.sensors[o] ** 2 for o in problem.data.outputs]
-    point = np.concatenate([common[:free], constants, own, squared, variances])
+    point = np.concatenate([common[:free], constants, session_values, squared, variances])
     normal = white.normal(point, NONE)
     exact = replace(white, steps=white.difference_steps(point, normal.hessian))
     at = Optimum(Solution(point, 0.0, Status.CONVERGED, 1), NONE, exact.normal(point, NONE))

@@ -25,8 +25,8 @@ class Placement(StrEnum):
     def text(self) -> str:
         """What it means, in words."""
         if self is Placement.SHIFTED:
-            known = "a known truth scaled, and shifted from the middle of its box, anew by every seed"
-            return f"{known}; of measured trials another session left out"
+            description = "a known truth scaled, and shifted from the middle of its box, anew by every seed"
+            return f"{description}; of measured trials another session left out"
         return "truth as published, in the middle of its box where the paper has it there"
 
 

@@ -130,7 +130,7 @@ def _trajectory_sentences(fit: Fit, solved: Sequence[Baseline]) -> str:
     """How well wrong coefficients can predict trajectories."""
     first, role = fit.baselines[0], "validation" if fit.validation else "training"
     alone = [r for r in fit.baselines if r.is_fit][-1]
-    counts = [_count_better(alone, solved, one) for one in dict.fromkeys((role, "training"))]
+    counts = [_count_better(alone, solved, other_role) for other_role in dict.fromkeys((role, "training"))]
     text = []
     without = "" if alone is first else ", its offsets set to zero"
     if all(counts):

@@ -104,7 +104,7 @@ def _inside_windows(record: Record, channels: Sequence[str], seconds: float) -> 
 
 def largest_error_share(p: Prediction) -> ErrorShare | None:
     """Return the error over a whole run that is the largest share of its own motion; None: none can be compared."""
-    return max(error_shares(p), key=lambda one: one.share, default=None)
+    return max(error_shares(p), key=lambda error_share: error_share.share, default=None)
 
 
 def judging_course(predictions: Sequence[Prediction], course: Stability | None) -> Stability | None:
@@ -113,7 +113,9 @@ def judging_course(predictions: Sequence[Prediction], course: Stability | None) 
     A deviation of a course-unstable craft grows whatever the model is worth: where a whole run is predicted roughly at
     best, windows judge all of them.
     """
-    leaves = any(one.needs_attention for p in predictions for one in error_shares(p) if p.divergence is None)
+    leaves = any(
+        error_share.needs_attention for p in predictions for error_share in error_shares(p) if p.divergence is None
+    )
     return course if leaves and any(p.windows for p in predictions) else None
 
 

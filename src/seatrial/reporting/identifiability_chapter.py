@@ -262,9 +262,9 @@ def _more_directions(rest: Sequence[Direction]) -> str:
 
 
 def _consequence_row(c: Consequence, fit: Fit) -> ConsequenceRow:
-    is_guess = any(one.is_unmeasured for one in fit.coefficients if one.name == c.parameter)
+    is_guess = any(coefficient.is_unmeasured for coefficient in fit.coefficients if coefficient.name == c.parameter)
     parameter = f"{c.parameter} ({NOT_MEASURED})" if is_guess else c.parameter
-    is_open = {one.name for one in fit.coefficients if one.is_sign_open}
+    is_open = {coefficient.name for coefficient in fit.coefficients if coefficient.is_sign_open}
     changes = ((n, x) for n, x in c.estimate_changes.items() if n not in is_open and abs(x) >= LEAST_SHIFT)
     largest = list(changes)[:MAX_SHIFTS]
     moves = ", ".join(f"{name} {signed_percent(move)}" for name, move in largest)

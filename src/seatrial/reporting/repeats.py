@@ -14,7 +14,11 @@ def repeated_runs(p: Prediction, predictions: Sequence[Prediction]) -> list[str]
     orders = steered_orders(p.measured)
     if orders is None:
         return []
-    trained = ((one.record, steered_orders(one.measured)) for one in predictions if one.role == "training")
+    trained = (
+        (prediction.record, steered_orders(prediction.measured))
+        for prediction in predictions
+        if prediction.role == "training"
+    )
     return [name for name, other in trained if other is not None and orders.is_repeated_by(other)]
 
 

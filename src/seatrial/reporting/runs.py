@@ -213,12 +213,12 @@ def reading_note(predictions: Sequence[Prediction]) -> str:
     p = predictions[0]
     reference = "the reference, itself simulated" if p.is_reference_simulated else "measured"
     inputs = "as in the reference" if p.is_reference_simulated else "as measured"
-    has_ships = any(has_track(one.measured) for one in predictions)
+    has_ships = any(has_track(prediction.measured) for prediction in predictions)
     sides = ", along the track to its sides and up to where it is half as wide as the track is long"
     band = f" Pale: 95 % band of the {p.model_word} run{sides if has_ships else ''}."
     return (
         f"Broad grey line: {reference}. Thin dashed line: {p.model_word}, open loop, inputs {inputs}."
-        f"{band if any(has_band(one) for one in predictions) else ''}"
+        f"{band if any(has_band(prediction) for prediction in predictions) else ''}"
         f"{' Ships at equal times, to scale.' if has_ships else ''} Over a plot the cursor shows the values of all "
         f"channels{' and the place on the track' if has_ships else ''}; drag to zoom, double-click to see all."
     )

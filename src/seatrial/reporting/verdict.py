@@ -150,7 +150,7 @@ def _several_runs_clause(
 
 
 def _worst(grades: Iterable[Grade | None]) -> Grade | None:
-    return max((one for one in grades if one is not None), key=list(Grade).index, default=None)
+    return max((grade for grade in grades if grade is not None), key=list(Grade).index, default=None)
 
 
 def _graded(grades: Sequence[Grade | None], errors: str) -> str:

@@ -17,7 +17,7 @@ def wind_sentence(records: Sequence[Record]) -> str:
     The mean is that of the velocity towards north and east; directions are those that the wind comes from.
     """
     winds = [r["wind_speed"] * np.exp(1j * r["wind_direction"]) for r in records if set(r.channels) >= _WIND]
-    means = [complex(np.nanmean(one)) for one in winds if np.isfinite(one).any()]
+    means = [complex(np.nanmean(wind)) for wind in winds if np.isfinite(wind).any()]
     if not means:
         return ""
     mean = complex(np.nanmean(np.concatenate(winds)))

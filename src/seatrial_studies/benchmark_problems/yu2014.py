@@ -79,4 +79,4 @@ def _least(count: int, reading: Preamplifier) -> float:
     """The least objective, the best of long searches; the same bits in every process."""
     box, cost = _box(count, reading), _cost(count, reading)
     searches = (DifferentialEvolution(box, np.random.default_rng([2014, k]), _LONG_SEARCH) for k in range(_SEARCHES))
-    return min(search(one, cost).value for one in searches)
+    return min(search(method, cost).value for method in searches)

@@ -51,7 +51,7 @@ def cleaning_ablation(series: Record, *, quick: bool, seed: int) -> CleaningAbla
         for kind, record in list(spoiled.items())[: 1 if quick else None]
     )  # fmt: skip
     steps = (improved, *ablations(improved))
-    return CleaningAblation(tuple(estimator_result(one, series) for one in steps[: 2 if quick else None]), planted)
+    return CleaningAblation(tuple(estimator_result(step, series) for step in steps[: 2 if quick else None]), planted)
 
 
 def with_outliers(record: Record, generator: np.random.Generator) -> Record:

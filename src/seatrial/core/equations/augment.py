@@ -121,9 +121,9 @@ def with_wave_forces(model: Model, driven: Sequence[str], peak: int, frequency: 
             rates.append(Binding.from_expression(str(eta), -(omega**2) * xi - 2 * zeta * omega * eta, _WAVE_SOURCE))
         return _extended(model, "wave forces", rates, new=names)
 
-    what = f"of the waves' force at peak {peak}"
-    band = _time_constant(names[0], frequency, f"frequency {what}"), Parameter(
-        names[1], damping, "1", *DAMPINGS, damping, None, True, _SOURCE, f"relative damping {what}", ""
+    description = f"of the waves' force at peak {peak}"
+    band = _time_constant(names[0], frequency, f"frequency {description}"), Parameter(
+        names[1], damping, "1", *DAMPINGS, damping, None, True, _SOURCE, f"relative damping {description}", ""
     )  # fmt: skip
     return _augmented(model, (f"wave forces {peak}", *driven), write, *band)
 
@@ -166,8 +166,8 @@ def with_lags(model: Model, channels: Sequence[str], lag: float) -> Model:
     """
 
     def write() -> ModelEquations:
-        shown = {c: _symbol(model.observable_of(c)) for c in channels}
-        late = [(lagged_name(c), (s - _symbol(lagged_name(c))) / _symbol(SENSOR_LAG)) for c, s in shown.items()]
+        symbols = {c: _symbol(model.observable_of(c)) for c in channels}
+        late = [(lagged_name(c), (s - _symbol(lagged_name(c))) / _symbol(SENSOR_LAG)) for c, s in symbols.items()]
         followers = [Binding.from_expression(name, rate, _SOURCE) for name, rate in late]
         return _extended(model, "lags", [*model.equations.rates, *followers], new=(SENSOR_LAG,))
 

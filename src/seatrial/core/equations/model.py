@@ -77,8 +77,8 @@ class Model:
 
     def observable_of(self, channel: str) -> str:
         """Return the observable that a record's channel of this name is compared with: what its instrument shows."""
-        shown = measured_name(channel)
-        return shown if shown in self.outputs else channel
+        sensor_name = measured_name(channel)
+        return sensor_name if sensor_name in self.outputs else channel
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -124,8 +124,8 @@ class Model:
         Raises:
             InputError: a parameter still has no value.
         """
-        known = {n: v for n, v in ship.particulars.items() if n in self.parameters}
-        model = self.with_values(known, source=ship.source or ship.name)
+        particulars = {n: v for n, v in ship.particulars.items() if n in self.parameters}
+        model = self.with_values(particulars, source=ship.source or ship.name)
         if model.parameters.missing:
             names = ", ".join(model.parameters.missing)
             raise InputError(f"model '{self.name}' needs {names}; give them under [ship] or [model.fixed]")

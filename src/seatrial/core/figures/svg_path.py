@@ -26,8 +26,8 @@ def _stretch(px: Array, py: Array) -> str:
 
 def _text(tenths: int, *, is_first: bool = False) -> str:
     """Tenths of a px as short as SVG allows, with a blank before it where the minus does not part it."""
-    whole, rest = divmod(abs(tenths), PLACES)
-    digits = (str(whole) if whole or not rest else "") + (f".{rest}" if rest else "")
+    units, rest = divmod(abs(tenths), PLACES)
+    digits = (str(units) if units or not rest else "") + (f".{rest}" if rest else "")
     sign = "-" if tenths < 0 else ("" if is_first else " ")
     return sign + digits
 

@@ -31,7 +31,7 @@ def linear_ticks(low: float, high: float, count: int) -> tuple[Tick, ...]:
         return (Tick(low, exact(low)),)
     power = 10.0 ** math.floor(math.log10((high - low) / max(1, count)))
     choices = [_multiples(low, high, m * power) for m in (0.5, 1.0, 2.0, 5.0, 10.0)]  # px, chosen
-    values = min(choices, key=lambda some: (len(some) < 2, abs(len(some) - count)))
+    values = min(choices, key=lambda choice: (len(choice) < 2, abs(len(choice) - count)))
     largest = max(abs(low), abs(high))
     return tuple(Tick(v, "0" if abs(v) < ROUNDING * largest else exact(v)) for v in values)
 

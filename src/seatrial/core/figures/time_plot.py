@@ -82,15 +82,15 @@ def packed(values: Array) -> dict[str, Any]:
 
 def _panel(channel: ChannelPanel, base: Array) -> dict[str, Any]:
     curves = [_on_base(curve, base) for curve in channel.curves]
-    shown = list(curves)
+    curves_and_edges = list(curves)
     panel: dict[str, Any] = {"label": channel.label}
     if channel.lower is not None and channel.upper is not None:
         edges = visible_edges(curves, channel.lower, channel.upper)
-        shown += edges
+        curves_and_edges += edges
         kept = np.unique(np.linspace(0, len(base) - 1, min(BAND_POINTS, len(base))).astype(int))
         panel["band"] = [packed(edge[kept]) for edge in edges]
     levels = [rule.value for rule in channel.limits]
-    ends = channel.ends or span([*shown, np.array(levels, float)])
+    ends = channel.ends or span([*curves_and_edges, np.array(levels, float)])
     panel["ends"] = [_short(end) for end in ends]
     panel["curves"] = [
         {"name": curve.name, "stroke": _stroke(curve.stroke), **packed(grid_values(base, values))}

@@ -28,16 +28,16 @@ class ComparisonTable:
 def coefficient_comparison(fit: Fit, reference: ReferenceEstimate) -> ComparisonTable:
     """Return each free coefficient by the method, and by the package with its interval; SI."""
     scatter = fit.search.scatter if fit.search else {}
-    own = {c.name: c for c in reference.coefficients}
+    compared = {c.name: c for c in reference.coefficients}
     free = [c for c in fit.coefficients if not c.fixed]
     has_truth = any(c.truth is not None for c in free)
-    has_intervals = any(own[c.name].lower is not None for c in free)
+    has_intervals = any(compared[c.name].lower is not None for c in free)
     interval_header = ["std. error", "95 % from", "to", "difference/s.e."] if has_intervals else []
     header = ("coefficient", fit.method.name, *(["scatter"] if scatter else []), OWN_NAME, *interval_header,
               *(["known"] if has_truth else []), "unit")  # fmt: skip
     rows = [
         (c.name, exact(c.estimate, _DIGITS), *([significant(scatter[c.name], 2)] if scatter else []),
-         exact(own[c.name].estimate, _DIGITS), *(_interval_cells(c, own[c.name]) if has_intervals else ()),
+         exact(compared[c.name].estimate, _DIGITS), *(_interval_cells(c, compared[c.name]) if has_intervals else ()),
          *([exact(c.truth, _DIGITS)] if has_truth else []), c.unit if c.unit != "1" else "")
         for c in free
     ]  # fmt: skip
@@ -80,9 +80,9 @@ def inside_own_intervals(fit: Fit, reference: ReferenceEstimate) -> str:
 
 def pooled_rms(errors: Mapping[str, Mapping[str, float]], runs: Sequence[str]) -> dict[str, float]:
     """Return the root of the mean square of each error over the runs that have it."""
-    known = [errors[run] for run in runs if run in errors]
-    keys = dict.fromkeys(key for table in known for key in table)
-    return {key: float(np.sqrt(np.mean([table[key] ** 2 for table in known if key in table]))) for key in keys}
+    run_errors = [errors[run] for run in runs if run in errors]
+    keys = dict.fromkeys(key for table in run_errors for key in table)
+    return {key: float(np.sqrt(np.mean([table[key] ** 2 for table in run_errors if key in table]))) for key in keys}
 
 
 def _interval_cells(c: Coefficient, reference: Coefficient) -> tuple[str, str, str, str]:

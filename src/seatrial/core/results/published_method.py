@@ -80,7 +80,7 @@ class Search:
     @property
     def effort(self) -> str:
         """Return how often it was made and how many candidates each judged: ``3 restarts of 8000 evaluations``."""
-        counts = sorted({one.evaluations for one in self.restarts})
+        counts = sorted({restart.evaluations for restart in self.restarts})
         each = " to ".join(map(str, counts[:1] + counts[1:][-1:]))
         return f"{counted(len(self.restarts), 'restart')} of {each} evaluations"
 

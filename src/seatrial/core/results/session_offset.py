@@ -66,14 +66,19 @@ class SessionOffset:
 def session_offsets_of(offsets: Sequence[Offset], populations: Sequence[OffsetPopulation]) -> tuple[SessionOffset, ...]:
     """Return the offsets of a fit, kind by kind."""
     return tuple(
-        SessionOffset(one.name, one.unit, one.mean, {o.group: o.estimate for o in offsets if o.name == one.name})
-        for one in populations
+        SessionOffset(
+            population.name,
+            population.unit,
+            population.mean,
+            {o.group: o.estimate for o in offsets if o.name == population.name},
+        )
+        for population in populations
     )
 
 
 def fitted_session(offsets: Sequence[SessionOffset], session: str) -> str:
     """Return the session where it was fitted, or else what stands for a new one."""
-    return session if any(session in one.by_session for one in offsets) else NEW_SESSION
+    return session if any(session in offset.by_session for offset in offsets) else NEW_SESSION
 
 
 def offsets_text(offsets: Sequence[SessionOffset], session: str | None) -> str:
@@ -85,4 +90,4 @@ def offsets_text(offsets: Sequence[SessionOffset], session: str | None) -> str:
     fitted = list(offsets[0].by_session)
     name = fitted[0] if session is None and len(fitted) == 1 else session
     whose = f"session '{name}'" if name in fitted else "expected of a new session"
-    return f"{', '.join(one.text(session) for one in offsets)} ({whose})"
+    return f"{', '.join(offset.text(session) for offset in offsets)} ({whose})"

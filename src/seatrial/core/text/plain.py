@@ -63,9 +63,9 @@ def wrapped(text: str, width: int | None, indent: str = "") -> list[str]:
     """Return a sentence as lines of at most `width` letters (None: one line), later ones further in."""
     if width is None:
         return [indent + text]
-    own = indent + text[: len(text) - len(text.lstrip())]
+    own_indent = indent + text[: len(text) - len(text.lstrip())]
     lines = textwrap.wrap(
-        text.strip(), max(width, MIN_WORDS), initial_indent=own, subsequent_indent=f"{own}{' ' * GAP}",
+        text.strip(), max(width, MIN_WORDS), initial_indent=own_indent, subsequent_indent=f"{own_indent}{' ' * GAP}",
         break_long_words=False, break_on_hyphens=False,
     )  # fmt: skip
     return lines or [""]
@@ -129,6 +129,6 @@ def _split_tables(rows: Sequence[Sequence[str]], widths: list[int], flush_left: 
             used += GAP + widths[column]
             chosen.append(column)
             column += 1
-        left = [i for i, k in enumerate(chosen) if k in flush_left]
-        lines += [_line([row[k] for k in chosen], [widths[k] for k in chosen], left) for row in rows]
+        flush = [i for i, k in enumerate(chosen) if k in flush_left]
+        lines += [_line([row[k] for k in chosen], [widths[k] for k in chosen], flush) for row in rows]
     return lines or [row[0] for row in rows]

@@ -24,7 +24,7 @@ def correlation_matrix(covariance: Array) -> Array:
 def unwrapped(angle: Array) -> Array:
     """Angle in rad without jumps of a full turn; NaN samples stay NaN and do not break the count."""
     result = np.array(angle, dtype=float)
-    known = np.isfinite(result)
-    if np.any(np.abs(np.diff(result[known])) > np.pi):
-        result[known] = np.unwrap(result[known])
+    is_finite = np.isfinite(result)
+    if np.any(np.abs(np.diff(result[is_finite])) > np.pi):
+        result[is_finite] = np.unwrap(result[is_finite])
     return result

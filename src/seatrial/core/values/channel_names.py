@@ -43,10 +43,14 @@ def _spelled(name: str, valid_names: list[str]) -> str:
     """The valid name that differs by its capitals or by a letter or two; empty where there is none."""
     import difflib
 
-    same = [one for one in valid_names if one.lower() == name.lower().replace("-", "_").replace(" ", "_")]
+    same = [
+        valid_name
+        for valid_name in valid_names
+        if valid_name.lower() == name.lower().replace("-", "_").replace(" ", "_")
+    ]
     if same:
         return same[0]
-    long = [one for one in valid_names if min(len(one), len(name)) >= _FEWEST_LETTERS]
-    swapped = [one for one in long if sorted(one) == sorted(name.lower())]
+    long = [valid_name for valid_name in valid_names if min(len(valid_name), len(name)) >= _FEWEST_LETTERS]
+    swapped = [long_name for long_name in long if sorted(long_name) == sorted(name.lower())]
     near = swapped or difflib.get_close_matches(name.lower(), long, n=1, cutoff=_LIKENESS)
     return near[0] if near and name.lower() not in ALIASES else ""

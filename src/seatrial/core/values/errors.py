@@ -28,12 +28,12 @@ MAX_LISTED = 160
 
 def listed(names: Sequence[str]) -> str:
     """Return names with commas between them; of many the first, and how many more there are."""
-    shown = list[str]()
+    texts = list[str]()
     for name in names:
-        if sum(map(len, shown)) + 2 * len(shown) + len(name) > MAX_LISTED and shown:
-            return f"{', '.join(shown)} and {len(names) - len(shown)} more"
-        shown.append(name)
-    return ", ".join(shown)
+        if sum(map(len, texts)) + 2 * len(texts) + len(name) > MAX_LISTED and texts:
+            return f"{', '.join(texts)} and {len(names) - len(texts)} more"
+        texts.append(name)
+    return ", ".join(texts)
 
 
 def spelling_hint(name: str, valid_names: list[str]) -> str:

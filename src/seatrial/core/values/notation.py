@@ -96,7 +96,7 @@ _PAIRS = {
     "starboard": "port", "north": "south", "east": "west", "forward": "aft", "up": "down", "bow up": "bow down",
     "ahead": "astern",
 }  # fmt: skip
-OPPOSITE: dict[str, str] = _PAIRS | {other: one for one, other in _PAIRS.items()}
+OPPOSITE: dict[str, str] = _PAIRS | {other: first for first, other in _PAIRS.items()}
 _POSITIVE_ON_EARTH = {"u": "north", "v": "east", "u_dot": "north", "v_dot": "east"}
 
 NOTATION: dict[str, Quantity] = {quantity.symbol: quantity for quantity in _TABLE}

@@ -63,7 +63,7 @@ def completed(findings: Iterable[Finding], record: Record) -> list[Finding]:
     codes = list(CONSEQUENCES)
     severities = list(Severity)
     start = float(np.nanmin(record.time))
-    with_consequence = [replace(one, consequence=CONSEQUENCES.get(one.code, "")) for one in findings]
+    with_consequence = [replace(finding, consequence=CONSEQUENCES.get(finding.code, "")) for finding in findings]
     final = [on_run_clock(_with_edits(one, record), start) for one in with_consequence]
     return sorted(
         final,

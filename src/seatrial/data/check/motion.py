@@ -128,7 +128,7 @@ class RecordedMotion:
             )
             if not (from_east and (one.psi_factor != 1.0 or one.frame == "earth"))
         ]  # fmt: skip
-        return [replace(one, changes=one.changes + self._contradicts_yaw_rate(one)) for one in axes]
+        return [replace(axis, changes=axis.changes + self._contradicts_yaw_rate(axis)) for axis in axes]
 
     def _contradicts_yaw_rate(self, reading: VelocityConvention) -> bool:
         return self.yaw_rate_sign == (1.0 if reading.reverses_turning else -1.0)

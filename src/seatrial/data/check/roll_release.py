@@ -74,7 +74,7 @@ def is_in_waves(phi: Array) -> bool:
 
     A ship that is let go lies calm before it is driven or pulled over; in a sea groups of swings follow one another.
     """
-    angles = np.array([one.angle for one in half_swings(phi)])
+    angles = np.array([half_swing.angle for half_swing in half_swings(phi)])
     level = 0.5 * (angles[1:] + angles[:-1])  # of both sides: a heel is no growth
     groups = list(_groups(level))
     dying = sum(1 for start, end in groups if start > end)

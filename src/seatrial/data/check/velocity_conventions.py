@@ -76,9 +76,8 @@ def _comparison_findings(comparison: _Comparison) -> list[Finding]:
         return [*_contradiction_findings(comparison), *findings]
     if comparison.is_better_by(DOUBTFUL_RATIO, ROUGH_MISFIT):
         doubts = _contradiction_findings(comparison)
-        text = (
-            f"another reading fits the position better: {'; '.join(one.message.partition(': ')[2] for one in doubts)}"
-        )
+        readings = "; ".join(doubt.message.partition(": ")[2] for doubt in doubts)
+        text = f"another reading fits the position better: {readings}"
         advice = "check frame, sign and unit of u, v and psi"
         return [comparison.finding(Severity.WARNING, doubts[0].code, text, advice), *findings]
     return findings

@@ -26,7 +26,7 @@ def _key(guess: ColumnGuess) -> tuple[str, str]:
 
 
 def _agreed(guess: ColumnGuess, readings: Sequence[ColumnGuess]) -> ColumnGuess:
-    decided = [one for one in readings if not one.is_open]
+    decided = [reading for reading in readings if not reading.is_open]
     first = next(iter(decided or readings), guess)
     if len({_meaning(one) for one in decided}) > 1:
         other = "; another run shows ".join(_different(decided))

@@ -32,19 +32,22 @@ class AutopilotMode:
 def autopilot_modes(surveys: Sequence[LogSurvey], record: Record) -> list[AutopilotMode]:
     """Return the modes during a record, in order, the same one after itself joined; empty: the log has none."""
     events = sorted(
-        (event.time, _mode_name(event.name)) for one in surveys for event in one.log.events if _mode_name(event.name)
+        (event.time, _mode_name(event.name))
+        for survey in surveys
+        for event in survey.log.events
+        if _mode_name(event.name)
     )
     start, end = float(record.time[0]), float(record.time[-1])
     pairs = pairwise([*events, (end, "")])
     modes = [AutopilotMode(name, max(time, start), min(stop, end)) for (time, name), (stop, _) in pairs]
     joined = list[AutopilotMode]()
-    for one in modes:
-        if one.stop - one.start <= 0.0:
+    for mode in modes:
+        if mode.stop - mode.start <= 0.0:
             continue
-        if joined and joined[-1].name == one.name:
-            joined[-1] = replace(joined[-1], stop=one.stop)
+        if joined and joined[-1].name == mode.name:
+            joined[-1] = replace(joined[-1], stop=mode.stop)
         else:
-            joined.append(one)
+            joined.append(mode)
     return joined
 
 

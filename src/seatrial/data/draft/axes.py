@@ -33,15 +33,15 @@ def with_axes_by_fixes(parts: Parts, record_of: RecordOf) -> Parts:
     fixes, pose = record_of(_fixes_only(parts)), (*_POSITIONS, *_QUATERNION)
     if fixes is None:
         return parts
-    poses = {one: record_of(_with_frame(_only(parts, pose), pose, one, 0.0, "")) for one in _READINGS}
+    poses = {reading: record_of(_with_frame(_only(parts, pose), pose, reading, 0.0, "")) for reading in _READINGS}
     frame = _surer({one: _distance(record, fixes) for one, record in poses.items()})
     if frame is None:
         return parts
     settled = _with_frame(parts, _POSITIONS, *frame, "with the GNSS fixes")
     if not _has_open(parts, _QUATERNION):
         return settled
-    frame = _surer({one: _heading_misfit(record_of(_with_frame(settled, _QUATERNION, one, 0.0, "")))
-                    for one in _READINGS})  # fmt: skip
+    frame = _surer({reading: _heading_misfit(record_of(_with_frame(settled, _QUATERNION, reading, 0.0, "")))
+                    for reading in _READINGS})  # fmt: skip
     return settled if frame is None else _with_frame(settled, _QUATERNION, *frame, "of velocities turned by it")
 
 
@@ -110,7 +110,7 @@ def _heading_misfit(record: Record | None) -> float:
     motion = None if record is None else recorded_motion(record)
     if motion is None or motion.path_length == 0.0:
         return np.inf
-    return min(motion.misfit(one) for one in motion.conventions if one.psi_factor == 1.0)
+    return min(motion.misfit(convention) for convention in motion.conventions if convention.psi_factor == 1.0)
 
 
 def _surer(misfits: dict[str, float]) -> tuple[str, float] | None:

@@ -43,7 +43,7 @@ def checked_by_behaviour(
     surveys: Sequence[LogSurvey], guesses: Sequence[Sequence[ColumnGuess]]
 ) -> list[list[ColumnGuess]]:
     """Return the guesses of the sources of one run with units, frames and signs as the motion shows them."""
-    result = with_axes_by_fixes([list(one) for one in guesses], partial(run_record, surveys))
+    result = with_axes_by_fixes([list(guess) for guess in guesses], partial(run_record, surveys))
     named = {g.symbol: g.side for one in result for g in one if g.is_used and g.symbol.startswith("command_")}
     for decide in (
         _yaw_rate_unit,
@@ -76,7 +76,7 @@ def _as_open_as_the_axes(guess: ColumnGuess) -> ColumnGuess:
 
 
 def _changed(parts: Sequence[Sequence[ColumnGuess]], changes: Changes) -> list[list[ColumnGuess]]:
-    return [[changes.get(g.symbol, _same)(g) if g.is_used else g for g in one] for one in parts]
+    return [[changes.get(g.symbol, _same)(g) if g.is_used else g for g in part] for part in parts]
 
 
 def _same(guess: ColumnGuess) -> ColumnGuess:

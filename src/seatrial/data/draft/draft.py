@@ -99,7 +99,7 @@ class DraftTrial:
     def lacks_heading(self) -> bool:
         """Whether what steers is recorded and no heading is recognised, without which the track shows no drift."""
         symbols = {g.symbol for part in self.guesses for g in part if g.is_used}
-        steers = any(one == "delta" or one.startswith(("command_", "rpm_")) for one in symbols)
+        steers = any(symbol == "delta" or symbol.startswith(("command_", "rpm_")) for symbol in symbols)
         return steers and not symbols & {"psi", "psi_magnetic", "q_w"}
 
     @property
@@ -186,8 +186,8 @@ def draft_trial(
     blocks = _blocks(runs, guesses, stretches, parts, longest[0])
     is_released = model.swings and need_release(list(pieces.values()))
     blocks = [
-        replace(_with_roles(one, model, held_out, session), antenna=size.antenna, is_released=is_released)
-        for one in blocks
+        replace(_with_roles(block, model, held_out, session), antenna=size.antenna, is_released=is_released)
+        for block in blocks
     ]
     rate = thinned_rate(records, size.length, model.speed) if model.has_forces_of_a_ship else None
     decays = _decays(runs, records, stretches) if model.swings else {}
@@ -196,8 +196,8 @@ def draft_trial(
     text = trial_text(blocks, tables, {**surveyed.left_out, **left_out}, Path(folder).resolve())
     return DraftTrial(
         text, surveys, tuple(runs), guesses[longest[0]], tuple(records), stretches, parts, held_out,
-        tuple(name for one in blocks[0].sources for name in unrecognised_columns(*one)),
-        {name: why for one in blocks[0].sources for name, why in known_unneeded(*one).items()}, others,
+        tuple(name for source in blocks[0].sources for name in unrecognised_columns(*source)),
+        {name: why for source in blocks[0].sources for name, why in known_unneeded(*source).items()}, others,
         unlike_decays_text(decays), session,
         sizes_in_header(runs[longest[0]].sources[0], size), may_be_in_fresh_water(size) and "\nrho = " in text,
         bool(model.name) and not size.length, not model.name,
@@ -206,7 +206,7 @@ def draft_trial(
 
 def _named_columns(runs: Sequence[LogRun], size: StatedSize) -> list[list[tuple[ColumnGuess, ...]]]:
     """What the columns of each source of each run are, by their names."""
-    return [without_conflicts([guess_columns(one, size.gear) for one in run.sources]) for run in runs]
+    return [without_conflicts([guess_columns(source, size.gear) for source in run.sources]) for run in runs]
 
 
 def _other_speeds(
@@ -231,7 +231,7 @@ def _refuse_nothing_recognised(
     """Raises:
     InputError: no column of any log stands for a channel; which there are, and how they are stated.
     """
-    has_times = any(topic.time is not None for one in surveys for topic in one.topics)
+    has_times = any(topic.time is not None for survey in surveys for topic in survey.topics)
     if not has_times or any(guess.is_used for run in named for part in run for guess in part):
         return
     names = unrecognised_columns(surveys[0], ())
@@ -262,7 +262,10 @@ def _pieces(
         if record is None:
             return {}
         origin = float(record.time[0])
-        cut = {one.name: record.between(origin + one.start, origin + one.stop) for one in used_parts(offered)}
+        cut = {
+            used_part.name: record.between(origin + used_part.start, origin + used_part.stop)
+            for used_part in used_parts(offered)
+        }
         pieces |= cut or {_whole_name(run): record}
     return pieces
 
@@ -283,7 +286,7 @@ def _kinds(
     kinds = dict[str, str]()
     for run, found, offered in zip(runs, stretches, parts, strict=True):
         whole = found[0].kind if len(found) == 1 else _MIXED
-        cut = {one.name: one.kind for one in used_parts(offered)}
+        cut = {used_part.name: used_part.kind for used_part in used_parts(offered)}
         kinds |= cut or {_whole_name(run): whole}
     return kinds
 
@@ -343,11 +346,11 @@ def _blocks(
 
 def _with_roles(block: RecordsBlock, model: StartingModel, held_out: HeldOutRuns, session: str) -> RecordsBlock:
     """The block with the runs that judge the model, and its session."""
-    names = [block.name, *(run_name(one.path) for one in block.files)]
+    names = [block.name, *(run_name(file.path) for file in block.files)]
     names += [one.name for offered in block.parts for one in offered]
     return replace(
         block,
-        validate=replace(held_out, names=tuple(one for one in held_out.names if one in names)),
+        validate=replace(held_out, names=tuple(name for name in held_out.names if name in names)),
         session=session,
         has_waves=model.has_waves,
     )

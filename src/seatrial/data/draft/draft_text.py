@@ -105,7 +105,7 @@ def _block_lines(block: RecordsBlock, folder: Path) -> list[str]:
 
 def _common_speed(files: Sequence[LogSurvey]) -> float | None:
     """The speed [m/s] that all headers state; None where one states none or another."""
-    speeds = {speed_in_header(one) for one in files}
+    speeds = {speed_in_header(file) for file in files}
     return speeds.pop() if len(speeds) == 1 else None
 
 
@@ -282,7 +282,9 @@ def run_text(stretches: Sequence[LogStretch]) -> str:
     """Return what a run that stays whole is: its manoeuvre, or the kinds of several."""
     if len(stretches) == 1:
         return f"{stretches[0].name}: {stretches[0].evidence}"
-    kinds = list(dict.fromkeys(one.name.rstrip("0123456789").rstrip("_").replace("_", " to ") for one in stretches))
+    kinds = list(
+        dict.fromkeys(stretch.name.rstrip("0123456789").rstrip("_").replace("_", " to ") for stretch in stretches)
+    )
     return f"{counted(len(stretches), 'manoeuvre')}: {', '.join(kinds)}"
 
 

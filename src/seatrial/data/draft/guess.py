@@ -42,7 +42,7 @@ def guess_columns(survey: LogSurvey, gear: float = 0.0) -> tuple[ColumnGuess, ..
     column that is called after the propeller or its shaft is taken as it is.
     """
     topics = [topic for topic in survey.topics if topic.time is not None]
-    ranked = [one for topic in topics for one in _ranked_guesses(survey, topic, gear)]
+    ranked = [ranked_guess for topic in topics for ranked_guess in _ranked_guesses(survey, topic, gear)]
     best: dict[str, _RankedGuess] = {}
     for one in ranked:
         symbol = one.guess.symbol
@@ -100,11 +100,18 @@ def _without_names(survey: LogSurvey, topic: TopicSummary) -> list[ColumnGuess]:
     table = next(one for one in survey.log.tables if one.topic == topic.topic)
     if any(table.names) or not math.isfinite(topic.rate):
         return []
-    columns = {int(one.name): column_values(table, int(one.name) - 1) for one in topic.columns}
+    columns = {int(column.name): column_values(table, int(column.name) - 1) for column in topic.columns}
     complete = {k: values for k, values in columns.items() if values is not None and np.all(np.isfinite(values))}
     return [
-        ColumnGuess(one.index, one.symbol, one.unit, one.frame, one.positive, evidence=(one.evidence,))
-        for one in recognised_columns(complete, 1.0 / topic.rate)
+        ColumnGuess(
+            recognised_column.index,
+            recognised_column.symbol,
+            recognised_column.unit,
+            recognised_column.frame,
+            recognised_column.positive,
+            evidence=(recognised_column.evidence,),
+        )
+        for recognised_column in recognised_columns(complete, 1.0 / topic.rate)
     ]
 
 
@@ -125,13 +132,13 @@ def _has_tilt(survey: LogSurvey, topic: TopicSummary) -> bool:
 
 def _with_units_alike(guesses: Sequence[ColumnGuess]) -> list[ColumnGuess]:
     """The guesses of a topic, roll and pitch that may be radians in degrees where the other angles are."""
-    others = [one.unit for one in guesses if one.symbol in _ATTITUDE and not one.is_open]
+    others = [guess.unit for guess in guesses if guess.symbol in _ATTITUDE and not guess.is_open]
     if not others or set(others) != {"deg"}:
         return list(guesses)
     return [
-        replace(one, unit="deg", other_reading="").with_evidence("degrees, as the other angles")
-        if one.symbol in _TILT and one.other_reading == _MAY_BE_DEGREES else one
-        for one in guesses
+        replace(guess, unit="deg", other_reading="").with_evidence("degrees, as the other angles")
+        if guess.symbol in _TILT and guess.other_reading == _MAY_BE_DEGREES else guess
+        for guess in guesses
     ]  # fmt: skip
 
 
@@ -230,7 +237,7 @@ def _with_two_shafts(parts: Sequence[Sequence[ColumnGuess]]) -> Sequence[Sequenc
     """
     rates = [one for part in parts for one in part if one.symbol == "n" and one.side]
     has_rudder = any(one.is_used and one.symbol == "delta" for part in parts for one in part)
-    if has_rudder or sorted(one.side for one in rates) != ["port", "starboard"]:
+    if has_rudder or sorted(rate.side for rate in rates) != ["port", "starboard"]:
         return parts
     if any(one.is_used and one.symbol.startswith("command_") for part in parts for one in part):
         reason = "the rate of a thruster whose command is taken"

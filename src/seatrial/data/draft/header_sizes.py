@@ -33,7 +33,7 @@ class HeaderSize:
 def sizes_in_header(survey: LogSurvey, size: StatedSize) -> tuple[HeaderSize, ...]:
     """Return what the header of a text log says of the craft's size and what is not stated; nothing of other logs."""
     header = _header(survey)
-    stated = {one.name for one in fields(size) if getattr(size, one.name)}
+    stated = {field.name for field in fields(size) if getattr(size, field.name)}
     return tuple(one for name, one in _sizes(header).items() if name not in stated)
 
 

@@ -113,11 +113,11 @@ def _of_several_kinds(
     if not (model.has_propeller or model.has_thrusters):
         return None
     sizes = {name: _size(model, record) for name, record in records.items()}
-    steered = [one for one in _repeats(orders) if sizes[one[0]] > _HARDLY_STEERED * max(sizes.values())]
+    steered = [repeat for repeat in _repeats(orders) if sizes[repeat[0]] > _HARDLY_STEERED * max(sizes.values())]
     least = _LEAST_SHARE if model.has_thrusters else 0.0
     within = (partial(_lie_within, model, records=records, beyond=share) for share in (_BEYOND, _FARTHER_BEYOND))
     choices = [JudgingRuns(records, steered, kinds, sizes, orders, one).of_several_kinds(least) for one in within]
-    able = [one for one in choices if one]
+    able = [choice for choice in choices if choice]
     if not able:
         return None
     enough = [one for one in able if share_of_time(one, records) >= least]
@@ -143,7 +143,7 @@ def _circles_to_one_side(orders: Mapping[str, SteeredOrders | None]) -> tuple[st
     """The turning circles to the side of fewer, else to port, where there are others and a zigzag; else nothing."""
     port = tuple(name for name, one in orders.items() if one is not None and one.is_turn and one.rudder < 0.0)
     starboard = tuple(name for name, one in orders.items() if one is not None and one.is_turn and one.rudder > 0.0)
-    has_zigzag = any(kind_of_orders(one) == ZIGZAG for one in orders.values())
+    has_zigzag = any(kind_of_orders(order) == ZIGZAG for order in orders.values())
     if not has_zigzag or not port or not starboard:
         return ()
     return port if len(port) <= len(starboard) else starboard
@@ -201,4 +201,4 @@ def _range(model: StartingModel, values: np.ndarray) -> tuple[float, float]:
 def _size(model: StartingModel, record: Record) -> float:
     """The rms of the inputs; of a roll decay about its rest."""
     parts = (record[one] for one in model.inputs if one in record)
-    return float(np.sqrt(sum(np.var(one) if model.swings else np.mean(one**2) for one in parts)))
+    return float(np.sqrt(sum(np.var(part) if model.swings else np.mean(part**2) for part in parts)))

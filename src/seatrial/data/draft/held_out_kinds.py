@@ -85,7 +85,7 @@ class JudgingRuns:
 
 def share_of_time(names: Collection[str], records: Mapping[str, Record]) -> float:
     """Return the share of the time of all runs that some take."""
-    total = math.fsum(one.duration for one in records.values())
+    total = math.fsum(record.duration for record in records.values())
     return math.fsum(records[name].duration for name in names) / total
 
 

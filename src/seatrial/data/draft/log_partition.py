@@ -52,7 +52,7 @@ def _regions(record: Record, modes: Sequence[AutopilotMode]) -> list[_Region]:
     if not modes:
         return [_Region(begin, end, "")]
     origin = float(record.time[0])
-    starts = [begin, *(max(one.start - origin, begin) for one in modes[1:]), end]
+    starts = [begin, *(max(mode.start - origin, begin) for mode in modes[1:]), end]
     clipped = zip(modes, pairwise(starts), strict=True)
     return [_Region(start, min(stop, end), f"; {one.text}") for one, (start, stop) in clipped if start < min(stop, end)]
 
@@ -60,14 +60,14 @@ def _regions(record: Record, modes: Sequence[AutopilotMode]) -> list[_Region]:
 def _parts(region: _Region, stretches: Sequence[LogStretch]) -> list[LogStretch]:
     """The parts of a region; none where it is short and nothing is found in it."""
     parts, reached = list[LogStretch](), region.start
-    for one in stretches:
-        first, last = max(one.start, reached), min(one.stop, region.stop)
+    for stretch in stretches:
+        first, last = max(stretch.start, reached), min(stretch.stop, region.stop)
         if last <= first:
             continue
         if _is_part(first - reached, last - first):
             parts.append(_between(reached, first, region.note))
             reached = first
-        parts.append(replace(one, start=reached, stop=last))
+        parts.append(replace(stretch, start=reached, stop=last))
         reached = last
     rest = region.stop - reached
     if not parts or _is_part(rest, parts[-1].stop - parts[-1].start):

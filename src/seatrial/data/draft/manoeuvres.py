@@ -38,7 +38,7 @@ def find_stretches(surveys: Sequence[LogSurvey], record: Record | None) -> tuple
         return ()
     modes = autopilot_modes(surveys, record)
     stretches = [one for mode in modes for one in _in_mode(record, mode)] if modes else _manoeuvres_of(record)
-    ranked = sorted(stretches, key=lambda one: (one.kind in _ON_THE_WAY, one.start - one.stop))
+    ranked = sorted(stretches, key=lambda stretch: (stretch.kind in _ON_THE_WAY, stretch.start - stretch.stop))
     return tuple(sorted(ranked[:_MOST_STRETCHES], key=lambda one: one.start))
 
 
@@ -71,13 +71,16 @@ def offered_parts(
 
 def changes_course(stretches: Sequence[LogStretch]) -> bool:
     """Return whether a run holds nothing but straight courses: what lies between them is what its rudder does."""
-    return len(stretches) > 1 and all(one.name.startswith(STRAIGHT) for one in stretches)
+    return len(stretches) > 1 and all(stretch.name.startswith(STRAIGHT) for stretch in stretches)
 
 
 def two_thirds_and_a_third(record: Record, stretches: Sequence[LogStretch], *, is_last: bool) -> tuple[LogStretch, ...]:
     """Return a log in two parts of which the last or the first is a third, cut where a manoeuvre begins if one does."""
     share = 2.0 / 3.0 if is_last else 1.0 / 3.0
-    wanted, begins = share * record.duration, [one.start for one in stretches if 0.0 < one.start < record.duration]
+    wanted, begins = (
+        share * record.duration,
+        [stretch.start for stretch in stretches if 0.0 < stretch.start < record.duration],
+    )
     near = [start for start in begins if abs(start - wanted) < _CUT_TOLERANCE * record.duration]
     cut = min(near, key=lambda start: abs(start - wanted)) if near else wanted
     sizes = ("the first two thirds", "the last third") if is_last else ("the first third", "the last two thirds")
@@ -89,7 +92,7 @@ def two_thirds_and_a_third(record: Record, stretches: Sequence[LogStretch], *, i
 
 def _without_straight(stretches: Sequence[LogStretch]) -> tuple[LogStretch, ...]:
     """The stretches, of which straight ones are left out where there are others."""
-    is_straight = [one.name.startswith(STRAIGHT) for one in stretches]
+    is_straight = [stretch.name.startswith(STRAIGHT) for stretch in stretches]
     if all(is_straight):
         return tuple(stretches)
     return tuple(replace(one, is_left_out=out) for one, out in zip(stretches, is_straight, strict=True))
@@ -103,9 +106,9 @@ def _is_whole(record: Record, stretches: Sequence[LogStretch], count: int) -> bo
 
 def _fills(record: Record, stretches: Sequence[LogStretch]) -> bool:
     covered, end = 0.0, 0.0
-    for one in sorted(stretches, key=lambda each: each.start):
-        covered += max(0.0, one.stop - max(one.start, end))
-        end = max(end, one.stop)
+    for stretch in sorted(stretches, key=lambda each: each.start):
+        covered += max(0.0, stretch.stop - max(stretch.start, end))
+        end = max(end, stretch.stop)
     return covered >= _FILLED * record.duration
 
 
@@ -119,7 +122,10 @@ def _manoeuvres_of(record: Record) -> list[LogStretch]:
         return []
     ordered = [one for finder in _FINDERS for one in finder(record)]
     manoeuvres = [*_with_approach(record, ordered), *decays(record)]
-    return [*manoeuvres, *(part for one in straight_runs(record) for part in _outside(one, manoeuvres))]
+    return [
+        *manoeuvres,
+        *(part for straight_run in straight_runs(record) for part in _outside(straight_run, manoeuvres)),
+    ]
 
 
 def _with_approach(record: Record, manoeuvres: Sequence[LogStretch]) -> list[LogStretch]:
@@ -129,12 +135,14 @@ def _with_approach(record: Record, manoeuvres: Sequence[LogStretch]) -> list[Log
     named.
     """
     stretches = list[LogStretch]()
-    for one in sorted(manoeuvres, key=lambda each: each.start):
-        lead = max(_APPROACH_S, _APPROACH_SHARE * (one.stop - one.start))
-        stretches = [_shortened(before, one.start, lead) for before in stretches]
+    for manoeuvre in sorted(manoeuvres, key=lambda each: each.start):
+        lead = max(_APPROACH_S, _APPROACH_SHARE * (manoeuvre.stop - manoeuvre.start))
+        stretches = [_shortened(before, manoeuvre.start, lead) for before in stretches]
         free_from = max((before.stop for before in stretches), default=0.0)
-        start = min(one.start, max(one.start - lead, free_from))
-        stretches.append(replace(one, start=start, evidence=f"{one.evidence}{_approach_text(record, one, lead)}"))
+        start = min(manoeuvre.start, max(manoeuvre.start - lead, free_from))
+        stretches.append(
+            replace(manoeuvre, start=start, evidence=f"{manoeuvre.evidence}{_approach_text(record, manoeuvre, lead)}")
+        )
     return stretches
 
 
@@ -158,11 +166,14 @@ def _approach_text(record: Record, one: LogStretch, lead: float) -> str:
 def _outside(straight: LogStretch, manoeuvres: Sequence[LogStretch]) -> list[LogStretch]:
     """What of a straight run lies in no manoeuvre, where it is long enough to be one."""
     pieces = [straight]
-    for one in manoeuvres:
+    for manoeuvre in manoeuvres:
         cut = [
             replace(piece, start=start, stop=stop)
             for piece in pieces
-            for start, stop in ((piece.start, min(piece.stop, one.start)), (max(piece.start, one.stop), piece.stop))
+            for start, stop in (
+                (piece.start, min(piece.stop, manoeuvre.start)),
+                (max(piece.start, manoeuvre.stop), piece.stop),
+            )
         ]
         pieces = [piece for piece in cut if piece.stop - piece.start >= SHORTEST_STRAIGHT_S]
     return pieces

@@ -153,7 +153,7 @@ def decays(record: Record) -> list[LogStretch]:
 
 def half_swing_angles(phi: Array) -> Array:
     """Return the largest angle of each swing to one side, rad; phi: about its rest."""
-    return np.array([one.angle for one in half_swings(phi)])
+    return np.array([half_swing.angle for half_swing in half_swings(phi)])
 
 
 def _peak(phi: Array, swing: HalfSwing) -> int:

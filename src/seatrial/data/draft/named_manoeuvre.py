@@ -20,7 +20,7 @@ def name_contradiction(name: str, stretches: Sequence[LogStretch]) -> str:
     stretches: the manoeuvres in the run, with their evidence.
     """
     named = [kinds for word, kinds in _NAMED.items() if re.search(rf"(?<![a-z])({word})(?![a-z])", name, re.IGNORECASE)]
-    shown = [one for one in stretches if not one.name.startswith(("straight", "stop"))]
+    shown = [stretch for stretch in stretches if not stretch.name.startswith(("straight", "stop"))]
     if len(named) != 1 or not shown or any(one.name.startswith(named[0]) for one in shown):
         return ""
     return f"the name says {named[0][0]}, the motion does not: {shown[0].evidence}"

@@ -247,7 +247,7 @@ def guess_by_name(topic: str, name: str, stated_unit: str, log_format: str = "te
     last = topic if log_format != "text" else topic.rpartition("/")[2]  # folders are called as anybody likes
     if log_format in _KNOWN_LOGGERS:
         return None
-    names = [one for one in _WORDS if one.symbol.startswith("command_")] if _ORDERS.search(last.lower()) else _WORDS
+    names = [word for word in _WORDS if word.symbol.startswith("command_")] if _ORDERS.search(last.lower()) else _WORDS
     unit = _known_unit(stated_unit) or bracketed_unit(name)
     bare = _BRACKETS.sub("", name)
     for text, word_unit in (*_readings(plain_name(bare)), *_readings(plain_name(_CAPITALS.sub("_", bare)))):

@@ -79,7 +79,7 @@ def not_needed_text(reasons: Mapping[str, str], most: int | None = None) -> str:
 
     most: reasons that are given; None: all.
     """
-    given = [one.reason for one in (*_WORDS, *_MESSAGES) if one.reason in reasons.values()]
+    given = [word.reason for word in (*_WORDS, *_MESSAGES) if word.reason in reasons.values()]
     by_reason = {why: [name for name in reasons if reasons[name] == why] for why in given}
     parts = [f"{enumeration(names, _NAMES_SHOWN)} ({why})" for why, names in by_reason.items()][:most]
     rest = sum(len(names) for names in list(by_reason.values())[len(parts) :])
@@ -88,6 +88,6 @@ def not_needed_text(reasons: Mapping[str, str], most: int | None = None) -> str:
 
 def _reason(name: str, used: Set[str]) -> str:
     field = plain_name(_UNIT.sub("", name).rpartition("/")[2])
-    matched = [one for one in _MESSAGES if re.fullmatch(one.pattern, name.lower())]
-    matched += [one for one in _WORDS if re.fullmatch(one.pattern, in_english(field))]
+    matched = [message for message in _MESSAGES if re.fullmatch(message.pattern, name.lower())]
+    matched += [word for word in _WORDS if re.fullmatch(word.pattern, in_english(field))]
     return next((one.reason for one in matched if not one.beside or one.beside & used), "")

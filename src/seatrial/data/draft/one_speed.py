@@ -46,7 +46,7 @@ def runs_by_speed(runs: Sequence[LogRun]) -> list[tuple[float, list[LogRun]]]:
 
 def stated_options(size: StatedSize, stated: StatedColumns) -> tuple[str, ...]:
     """Return the options of init that state sizes and columns."""
-    sizes = [(one.name, getattr(size, one.name)) for one in fields(size)]
+    sizes = [(field.name, getattr(size, field.name)) for field in fields(size)]
     columns = [f"{heading}={meaning}" for heading, meaning in stated.items()]
     return (
         *(
@@ -55,7 +55,7 @@ def stated_options(size: StatedSize, stated: StatedColumns) -> tuple[str, ...]:
             if value
             for part in (f"--{name}", value if isinstance(value, str) else f"{value:g}")
         ),
-        *(part for one in columns for part in ("--column", one)),
+        *(part for column in columns for part in ("--column", column)),
     )
 
 

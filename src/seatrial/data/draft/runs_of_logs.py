@@ -24,7 +24,7 @@ class LogRun:
     @property
     def duration(self) -> float:
         """s of its longest source; 0 without stamps."""
-        return max((one.duration for one in self.sources if math.isfinite(one.duration)), default=0.0)
+        return max((source.duration for source in self.sources if math.isfinite(source.duration)), default=0.0)
 
 
 def runs_of_logs(surveys: Sequence[LogSurvey]) -> list[LogRun]:
@@ -37,7 +37,7 @@ def runs_of_logs(surveys: Sequence[LogSurvey]) -> list[LogRun]:
     all are sources of one run.
     """
     if len({survey.path for survey in surveys}) < len(surveys):  # sheets of a workbook
-        sheets = [next((one.topic for one in survey.topics), "") for survey in surveys]
+        sheets = [next((topic.topic for topic in survey.topics), "") for survey in surveys]
         return [LogRun(sheet or survey.path.stem, (survey,)) for sheet, survey in zip(sheets, surveys, strict=True)]
     kinds: dict[tuple, list[LogSurvey]] = {}
     for survey in surveys:

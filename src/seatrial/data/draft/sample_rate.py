@@ -16,7 +16,7 @@ def thinned_rate(records: Sequence[Record | None], length: float, speed: float) 
 
     length: of the ship [m]; speed: at which the runs begin [m/s].
     """
-    steps = [one.dt for one in records if one is not None and len(one) > 1]
+    steps = [record.dt for record in records if record is not None and len(record) > 1]
     if not steps or not length or not speed:
         return None
     step = float(np.median(steps))

@@ -70,7 +70,7 @@ def is_one_place(runs: Sequence[LogRun], guesses: Sequence[Sequence[Sequence[Col
 
 def _is_one_clock(runs: Sequence[LogRun]) -> bool:
     """Whether clocks without a date go on from run to run within a day, and do not start anew."""
-    spans = sorted(time_span(max(run.sources, key=lambda one: one.duration)) for run in runs)
+    spans = sorted(time_span(max(run.sources, key=lambda source: source.duration)) for run in runs)
     is_known = all(math.isfinite(end) for span in spans for end in span)
     follows = all(before[1] <= after[0] for before, after in pairwise(spans))
     return is_known and follows and spans[-1][1] - spans[0][0] <= _DAY_S

@@ -117,7 +117,7 @@ class StatedSize:
             ("" if self.draught else f"B/d {self.form.B / self.form.d:.3g}"),
             f"C_b {self.form.C_b:.2g}",
         )
-        return ", ".join(one for one in ratios if one)
+        return ", ".join(ratio for ratio in ratios if ratio)
 
 
 UNSTATED = StatedSize()

@@ -111,7 +111,7 @@ def starting_model(
 
     has_jet: whether the rudder is the nozzle of a jet.
     """
-    commands = tuple(sorted(one for one in symbols if one.startswith(("command_", "rpm_"))))
+    commands = tuple(sorted(symbol for symbol in symbols if symbol.startswith(("command_", "rpm_"))))
     if "delta" in symbols:
         return _steered_model(symbols, records, size, has_jet=has_jet)
     if commands:
@@ -151,15 +151,15 @@ def in_a_current(model: StartingModel, symbols: Set[str], records: Sequence[Reco
 
 def share_current(records: Sequence[Record | None]) -> bool:
     """Return whether no two runs show currents that differ."""
-    fits = [speed_through_water([one]) for one in records if one is not None]
-    known = [one for one in fits if one is not None and one.is_separate]
+    fits = [speed_through_water([record]) for record in records if record is not None]
+    known = [fit for fit in fits if fit is not None and fit.is_separate]
     return all(one.agrees_with(other) for one, other in pairwise(known))
 
 
 def _steered_model(
     symbols: Set[str], records: Sequence[Record | None], size: StatedSize, *, has_jet: bool
 ) -> StartingModel:
-    peaks = [_peak(one["delta"]) for one in records if one is not None and "delta" in one]
+    peaks = [_peak(record["delta"]) for record in records if record is not None and "delta" in record]
     falls = len(peaks) > 1 and max(peaks) > _AMPLITUDE_RATIO * min(peaks)
     approach = _approach_speed(records)
     if size.length and approach and any(one <= symbols for one in _DRIFT):
@@ -180,7 +180,7 @@ def _steered_model(
 
 def _approach_speed(records: Sequence[Record | None]) -> float:
     """The median over the runs of the speed of the approach [m/s]; 0 where one has none."""
-    speeds = [_speed_ahead(one) for one in records if one is not None]
+    speeds = [_speed_ahead(record) for record in records if record is not None]
     return float(np.median(speeds)) if speeds and all(speeds) else 0.0
 
 
@@ -196,7 +196,7 @@ def _speed_ahead(record: Record) -> float:
 
 def _advance(records: Sequence[Record | None]) -> float:
     """The median over the runs of the way [m] that is made in a turn of the propeller; 0 where it is not recorded."""
-    used = [one for one in records if one is not None and "n" in one]
+    used = [record for record in records if record is not None and "n" in record]
     rates = [float(np.median(one["n"])) for one in used]
     ways = [_speed_ahead(one) / rate for one, rate in zip(used, rates, strict=True) if rate > 0.0]
     return float(np.median(ways)) if ways else 0.0
@@ -204,10 +204,10 @@ def _advance(records: Sequence[Record | None]) -> float:
 
 def _is_rate_steady(records: Sequence[Record | None]) -> bool:
     """Whether the propeller turns at one rate in all runs, as far as it is recorded."""
-    rates = [one["n"] for one in records if one is not None and "n" in one]
+    rates = [record["n"] for record in records if record is not None and "n" in record]
     if not rates:
         return True
-    medians = [float(np.median(one)) for one in rates]
+    medians = [float(np.median(rate)) for rate in rates]
     middle = float(np.median(medians))
     low, high = (np.percentile(np.concatenate(rates), one) for one in (100.0 - _PEAK_PERCENTILE, _PEAK_PERCENTILE))
     return max(middle - low, high - middle) <= _STEADY_RATE * abs(middle)

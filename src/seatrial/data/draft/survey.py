@@ -74,7 +74,7 @@ class LogSurvey:
     @property
     def duration(self) -> float:
         """s of the longest topic."""
-        return max((one.duration for one in self.topics if np.isfinite(one.duration)), default=float("nan"))
+        return max((topic.duration for topic in self.topics if np.isfinite(topic.duration)), default=float("nan"))
 
     @property
     def kind(self) -> tuple:
@@ -107,7 +107,7 @@ def _sheets(survey: LogSurvey) -> list[LogSurvey]:
     """The sheets with the most common columns, each alone; empty where no two are alike, and of other logs."""
     if survey.layout.format != _WORKBOOK:
         return []
-    timed = [one for one in survey.topics if one.time is not None]
+    timed = [topic for topic in survey.topics if topic.time is not None]
     layouts = [tuple(column.name for column in one.columns) for one in timed]
     usual = max(layouts, key=layouts.count, default=())
     alike = [one for one, names in zip(timed, layouts, strict=True) if names == usual]

@@ -55,7 +55,11 @@ def tables_text(
         *(_prior_lines(model) if model.has_propeller else []),
         *([f"free = [{names}]    # {model.free_reason}"] if model.free else []),
         *_speed_prior_lines(model),
-        *(["", "[model.fixed]", *(one.line for one in added_masses(size))] if model.has_derivatives else []),
+        *(
+            ["", "[model.fixed]", *(added_mass.line for added_mass in added_masses(size))]
+            if model.has_derivatives
+            else []
+        ),
         *(thruster_tables(guesses, size) if model.has_thrusters else []),
         "",
         *(excitation_lines() if model.has_waves else []),
@@ -72,7 +76,7 @@ def _heel_lines(least: float, largest: float) -> list[str]:
 
 
 def _prior_lines(model: StartingModel) -> list[str]:
-    sources = ", ".join(f'"{one}"' for one in (*_FORMULAS, *(["wind"] if model.has_wind else [])))
+    sources = ", ".join(f'"{formula}"' for formula in (*_FORMULAS, *(["wind"] if model.has_wind else [])))
     return [f"priors_from = [{sources}]", "prior_sd_percent = 50    # of coefficients whose scatter is not known"]
 
 
@@ -81,12 +85,12 @@ def _ship_lines(model: StartingModel, size: StatedSize) -> list[str]:
     missing = "L = 0.0    # MISSING: m, length of the craft, the one number that this file lacks"
     lines = [stated if size.length else missing]
     lines += [f"scale = {size.scale:g}    # a model 1:{size.scale:g}, as stated"] if size.scale else []
-    lines += [one.line for one in model.particulars]
+    lines += [particular.line for particular in model.particulars]
     if model.has_derivatives:
-        lines += [one.line for one in mass_properties(size)]
+        lines += [mass_property.line for mass_property in mass_properties(size)]
         lines += _speed_lines(model)
     if model.has_waves and size.length:
-        lines += [one.line for one in ship_in_waves(size)]
+        lines += [wave.line for wave in ship_in_waves(size)]
     if model.has_thrusters and size.mass:
         lines.append(
             f"m = {size.mass:g}    # kg, as stated: forces come out on each kg of m + m_x until a thruster has bollard"
@@ -94,7 +98,7 @@ def _ship_lines(model: StartingModel, size: StatedSize) -> list[str]:
     if model.swings:
         lines += _roll_lines(size)
     written = {line.partition(" =")[0] for line in lines}
-    return [*lines, *(one.line for one in stated_values(size) if one.key not in written)]
+    return [*lines, *(stated_value.line for stated_value in stated_values(size) if stated_value.key not in written)]
 
 
 def _speed_lines(model: StartingModel) -> list[str]:

@@ -155,7 +155,7 @@ def _zigzag_text(record: Record, chain: list[_Turn]) -> str:
     if manoeuvre.kind is not ManoeuvreKind.ZIGZAG or len(manoeuvre.executes) < _ZIGZAG_TURNS:
         return text
     rudder = float(np.median([abs(hold.angle) for hold in manoeuvre.holds]))
-    psi = [manoeuvre.psi_at(one) for one in manoeuvre.executes[1:]]
+    psi = [manoeuvre.psi_at(execute) for execute in manoeuvre.executes[1:]]
     switched = 0.5 * float(np.median(np.abs(np.diff(psi))))
     angles = f"rudder {ordered_degrees(rudder):.0f} deg, switched at {ordered_degrees(switched):.0f} deg of heading"
     return f"{text}; {angles}"

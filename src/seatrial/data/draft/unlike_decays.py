@@ -62,7 +62,7 @@ def _rest(phi: Array) -> tuple[float, float] | None:
     swing, rho the share that is left from one to the next.
     """
     rest = float(np.median(phi))
-    tops = np.array([_extreme(phi[one.first : one.stop], rest) for one in half_swings(phi - rest)])
+    tops = np.array([_extreme(phi[half_swing.first : half_swing.stop], rest) for half_swing in half_swings(phi - rest)])
     if len(tops) < _FEWEST + 2:
         return None
     middles = 0.25 * (tops[:-2] + 2.0 * tops[1:-1] + tops[2:])

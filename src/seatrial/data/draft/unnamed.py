@@ -57,7 +57,7 @@ def recognised_columns(columns: dict[int, Array], dt: float) -> list[UnnamedColu
 
 
 def _index(columns: list[UnnamedColumn], symbol: str) -> int:
-    return next(one.index for one in columns if one.symbol == symbol)
+    return next(column.index for column in columns if column.symbol == symbol)
 
 
 def _derivative_pairs(smooth: dict[int, Array], rates: dict[int, Array]) -> list[tuple[int, int]]:

@@ -11,7 +11,7 @@ ASSUMED = "ASSUMED"
 
 def ship_in_waves(size: StatedSize) -> tuple[EstimatedValue, ...]:
     """Return breadth, draught, mass, pitch inertia and stiffness [SI] of a ship of this size."""
-    form, mass = size.form, {one.key: one for one in mass_properties(size)}
+    form, mass = size.form, {mass_property.key: mass_property for mass_property in mass_properties(size)}
     fullness = (
         1.0 + 2.0 * form.C_b
     ) / 3.0  # waterplane coefficient; Schneekluth & Bertram 1998, eq. (1.58), V sections

@@ -72,7 +72,7 @@ def wind_readings(record: Record) -> Changes:
 
 
 def _changes(pair: tuple[str, str], scatters: dict[tuple[str, str], float]) -> Changes:
-    reading, unit = min(scatters, key=lambda one: scatters[one])
+    reading, unit = min(scatters, key=lambda scatter: scatters[scatter])
     least = scatters[reading, unit]
     of_readings = {one: min(value for (other, _), value in scatters.items() if other == one) for one, _ in scatters}
     rival = min((value for one, value in of_readings.items() if one != reading), default=math.inf)

@@ -130,7 +130,9 @@ def document_schema(kind: type) -> Table:
 def findings_document(findings: tuple[Finding, ...]) -> Table:
     """Return what `check --json` writes."""
     tables = TypeAdapter(tuple[ReportedFinding, ...]).dump_python(findings)
-    more = ({"consequence": one.consequence, "edits": [str(edit) for edit in one.edits]} for one in findings)
+    more = (
+        {"consequence": finding.consequence, "edits": [str(edit) for edit in finding.edits]} for finding in findings
+    )
     return {"findings": [table | rest for table, rest in zip(tables, more, strict=True)]}
 
 

@@ -87,7 +87,10 @@ _STATION = (
 
 def _discrete_table(controller: DiscreteController) -> dict[str, Any]:
     """Return the controller as it was simulated."""
-    sensor = [{"name": one.name, "num": list(one.num), "den": list(one.den)} for one in controller.sensor]
+    sensor = [
+        {"name": component.name, "num": list(component.num), "den": list(component.den)}
+        for component in controller.sensor
+    ]
     return {
         "sample_s": controller.sample_s,
         "dead_time_s": controller.dead_time,
@@ -237,9 +240,9 @@ def _station_table(station: StationKeeping) -> dict[str, Any]:
         "gain_units": {name: [list(row) for row in units] for name, units in station.gain_units.items()},
         "force_unit": station.force_unit,
         "thrusters": [
-            {"name": one.name, "inverse": one.inverse.tolist(), "thrust": one.thrust[::_EVERY].tolist(),
-             "share": one.share[::_EVERY].tolist()}
-            for one in station.thrusters
+            {"name": thruster.name, "inverse": thruster.inverse.tolist(), "thrust": thruster.thrust[::_EVERY].tolist(),
+             "share": thruster.share[::_EVERY].tolist()}
+            for thruster in station.thrusters
         ],
         **_finite_numbers({
             "Ms_surge": station.margins.surge,

@@ -95,9 +95,9 @@ def model_text(file: ModelFile) -> str:
     if covariance.size:
         table["covariance"] = {"parameters": list(free), "rows": matrix_rows(covariance)}
     if file.offsets:
-        table["offsets"] = [model_tables.offset_table(one) for one in file.offsets]
+        table["offsets"] = [model_tables.offset_table(offset) for offset in file.offsets]
     if file.waves:
-        table["waves"] = [asdict(one) for one in file.waves]
+        table["waves"] = [asdict(wave) for wave in file.waves]
     if file.interval_basis is not None:
         table["interval_basis"] = interval_basis_table(file.interval_basis)
     return tomli_w.dumps(table | {"provenance": model_tables.provenance_table(file.provenance)})
@@ -173,7 +173,7 @@ def _model_file(table: Mapping[str, Any], where: str, own_model: Model | None) -
         model_tables.ship(table.get("ship")),
         number_table(table["approach"]),
         interval_basis(table, where, parameters),
-        tuple(model_tables.session_offset(one, model.input_names, parameters) for one in table.get("offsets", ())),
+        tuple(model_tables.session_offset(row, model.input_names, parameters) for row in table.get("offsets", ())),
         tuple(_waves(one) for one in table.get("waves", ())),
     )
 

@@ -32,10 +32,10 @@ def proposal_toml(proposal: Proposal) -> str:
             "peak_period": _interval(sea.period),
             "heading_deg": _interval(sea.heading, math.degrees(1.0)),
             "is_heading_determined": sea.is_heading_determined,
-            "headings": [_heading_range(one) for one in sea.headings],
+            "headings": [_heading_range(heading) for heading in sea.headings],
         }
     if proposal.craft:
-        table["craft"] = {one.name: _interval(one.factor) for one in proposal.craft}
+        table["craft"] = {property_change.name: _interval(property_change.factor) for property_change in proposal.craft}
     if proposal.margins is not None:
         m = proposal.margins
         table["margins"] = {

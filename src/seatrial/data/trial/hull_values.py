@@ -27,7 +27,7 @@ def hull_value_findings(ship: Ship) -> tuple[Finding, ...]:
         water = significant(box, _DIGITS)
         message = f"m = {significant(mass, _DIGITS)} kg is more than the {water} kg of water in a box of L, B and d"
         findings.append(_finding(message, "correct m, L, B or d under [ship]"))
-    return tuple(one for one in findings if one is not None)
+    return tuple(finding for finding in findings if finding is not None)
 
 
 def _gyradius_finding(name: str, inertia: float, mass: float, length: float) -> Finding | None:

@@ -230,7 +230,7 @@ def _parts_within(parts: Sequence[Record], trimming: Trimming) -> Sequence[Recor
     """The parts of which trimming leaves something; all where it leaves nothing of any."""
     start = -np.inf if trimming.from_s is None else trimming.from_s
     stop = np.inf if trimming.to_s is None else trimming.to_s
-    return [one for one in parts if float(one.time[-2]) > start and float(one.time[1]) < stop] or parts[:1]
+    return [part for part in parts if float(part.time[-2]) > start and float(part.time[1]) < stop] or parts[:1]
 
 
 def _prepared(record: Record, run: TrialRun, reference_point: float) -> Record:

@@ -28,8 +28,8 @@ def recorded_request(trial: Trial) -> tuple[DesignRequest, dict[str, float]]:
     records = [one.record for one in load_records(trial)[0] if one.role is Role.TRAIN] if trial.runs else []
     if not records:
         raise InputError("there is no table [design]; add it with duration, rate and [design.inputs]")
-    longest = max(records, key=lambda one: one.duration)
-    names = [name for name in trial.model.input_names if all(name in one for one in records)]
+    longest = max(records, key=lambda record: record.duration)
+    names = [name for name in trial.model.input_names if all(name in record for record in records)]
     hold = longest.duration / _ORDERS
     ranges = {name: _range(records, name, hold) for name in names}
     moved = {name: one for name, one in ranges.items() if one is not None}
@@ -44,11 +44,11 @@ def recorded_request(trial: Trial) -> tuple[DesignRequest, dict[str, float]]:
 
 def _range(records: Sequence[Record], name: str, hold: float) -> InputRange | None:
     """How far an input went to both sides, SI; None where it hardly moves."""
-    values = np.concatenate([one[name] for one in records])
+    values = np.concatenate([record[name] for record in records])
     low, high = (float(one) for one in np.percentile(values, [100.0 - _REACH, _REACH]))
     if high - low <= 0.1 * max(abs(low), abs(high)):  # of its size: it is steady; chosen
         return None
-    steps = np.concatenate([np.abs(np.diff(one[name])) / one.dt for one in records])
+    steps = np.concatenate([np.abs(np.diff(record[name])) / record.dt for record in records])
     rate = float(np.percentile(steps, _FASTEST))
     unit = records[0].channel(name).unit
     return InputRange(lower=low, upper=high, unit=unit, rate=rate or None, hold=hold)
@@ -56,6 +56,7 @@ def _range(records: Sequence[Record], name: str, hold: float) -> InputRange | No
 
 def _sensors(model: Model, records: Sequence[Record]) -> dict[str, float]:
     levels: Mapping[str, Array] = {
-        name: np.array([sample_noise(one[name]) for one in records if name in one]) for name in model.observables
+        name: np.array([sample_noise(record[name]) for record in records if name in record])
+        for name in model.observables
     }
     return {name: float(np.median(one)) for name, one in levels.items() if one.size and np.median(one) > 0.0}

@@ -36,7 +36,7 @@ def simulate_measured(
         InputError: an input is missing, the time base is uneven, the session is unknown, or the simulation diverges.
     """
     seconds = _start_seconds(model, record, length)
-    values = np.array([one.value_in(session) for one in offsets])
+    values = np.array([offset.value_in(session) for offset in offsets])
     template = _template(model, record, offsets)
     template = with_steps_of_start(template, values, template.measured_initial_states())
     return simulate_open_loop(template, model, record, values, seconds).record, seconds
@@ -52,14 +52,17 @@ def _template(model: Model, record: Record, offsets: Sequence[SessionOffset]) ->
         for name in outputs
     ]
     held = model.with_parameters(model.parameters.fixed(*model.parameters.names))
-    known = {one.name: Prior(one.expected, _ANY_DEVIATION, "of the fit, and held") for one in offsets}
-    own = [one for one in offsets if one.name in model.parameters]
-    corrections = [one for one in offsets if one.name not in model.parameters]
+    known = {offset.name: Prior(offset.expected, _ANY_DEVIATION, "of the fit, and held") for offset in offsets}
+    own = [offset for offset in offsets if offset.name in model.parameters]
+    corrections = [offset for offset in offsets if offset.name not in model.parameters]
     return OutputError(
         held,
         cut_segments(held, [record], outputs, None),
         np.array(noise),
-        tuple(Nuisance(InputCorrection(*one.correction), known[one.name], one.unit) for one in corrections),
+        tuple(
+            Nuisance(InputCorrection(*correction.correction), known[correction.name], correction.unit)
+            for correction in corrections
+        ),
         tuple((one.name, known[one.name]) for one in own),
     )
 

@@ -42,12 +42,12 @@ class Beginnings:
 
     def selected(self, indices: Index) -> "Beginnings":
         """Return those of some segments."""
-        return Beginnings(*(getattr(self, one.name)[indices] for one in fields(self)))
+        return Beginnings(*(getattr(self, field.name)[indices] for field in fields(self)))
 
     @classmethod
     def joined(cls, parts: Sequence["Beginnings"]) -> "Beginnings":
         """Return those of several runs, one after the other."""
-        return cls(*(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(cls)))
+        return cls(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(cls)))
 
     @classmethod
     def of_run(

@@ -157,7 +157,7 @@ def _best(trials: list[_Trial], step: Callable[[ArduPilotGains], StepResponse], 
             f"no gains of ArduPilot's form keep the {subject} stable with Ms <= {_MOST_MS:g} and through a step (least "
             f"Ms {least:.3g}); check the coefficients of the model"
         )
-    faults, cost, _ = min(ranked, key=lambda one: one[:2])
+    faults, cost, _ = min(ranked, key=lambda candidate: candidate[:2])
     equal = [trial for number, error, trial in ranked if number == faults and error <= (1.0 + _EQUAL_COST) * cost]
     return min(equal, key=lambda trial: trial.proportional).gains
 
@@ -170,13 +170,13 @@ def _assessed(craft: SteeredCraft, gains: ArduPilotGains, scale: float) -> ArduP
         raise InputError(
             f"these gains do not keep model '{craft.model.name}' stable in ArduPilot's form; tune with a smaller Ms"
         )
-    drawn = draw_parameters(craft.ship)
-    plants = [replace(craft, ship=ship).heading_plant for ship in drawn.ships]
+    draws = draw_parameters(craft.ship)
+    plants = [replace(craft, ship=ship).heading_plant for ship in draws.ships]
     stable = sum(is_stable(sampled_heading(plant, dt), gains.heading) for plant in plants)
     speed = None if gains.speed is None else CascadeGains(0.0, gains.speed)
     return ArduPilotTuning(
         gains, heading, step,
         None if speed is None else sampled_margins(sampled_speed(craft.speed_plant, dt), speed),
         None if speed is None else speed_step(craft, gains),
-        stable, drawn.draws,
+        stable, draws.draws,
     )  # fmt: skip

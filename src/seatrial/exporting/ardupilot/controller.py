@@ -63,12 +63,12 @@ def simulate_controlled(
     count = math.ceil(duration / dt) + 1
     states, inputs = np.full((count, len(craft.ship.state)), np.nan), np.empty((count, len(craft.ship.inputs)))
     memory = controller_memory(craft, gains, heading, craft.speed if speed is None else speed, dt)
-    lost = steer(
+    loss = steer(
         craft.model.compiled.rates, ardupilot, craft.ship.state.copy(), craft.ship.inputs.copy(),
         craft.model.parameters.values, memory, dt, states, inputs,
     )  # fmt: skip
-    if lost >= 0:
-        states[lost:] = np.nan
+    if loss >= 0:
+        states[loss:] = np.nan
     return np.asarray(dt * np.arange(count), dtype=np.float64), states, inputs
 
 

@@ -173,8 +173,8 @@ def _cruising_speed(file: ModelFile, ship: TrimmedShip) -> float:
     model = ship.model
     if "u" in model.states:
         return float(ship.state[model.states.index("u")])
-    known = model.parameters["U"].value if "U" in model.parameters else math.nan
-    speed = known if known > 0.0 else file.approach.get("u", math.nan)
+    design_speed = model.parameters["U"].value if "U" in model.parameters else math.nan
+    speed = design_speed if design_speed > 0.0 else file.approach.get("u", math.nan)
     if not speed > 0.0:
         raise InputError(
             f"model '{model.name}' does not state the speed of its trials, which ArduPilot's steering needs; add u to "

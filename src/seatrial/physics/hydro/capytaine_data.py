@@ -126,12 +126,12 @@ def hull_data(dataset: xr.Dataset, name: str = "the dataset") -> HullData:
     _refuse_other_conventions(dataset, name)
     dataset = _heave_and_pitch(dataset, name).sortby("omega")
     finite = np.isfinite(dataset["omega"].values)
-    at = dataset.isel(omega=finite)
-    omega = np.asarray(at["omega"].values, dtype=np.float64)
+    part = dataset.isel(omega=finite)
+    omega = np.asarray(part["omega"].values, dtype=np.float64)
     pair = ("omega", "influenced_dof", "radiating_dof")
-    A, B = (_real_values(at[key].transpose(*pair), f"{name}: {key}") for key in ("added_mass", "radiation_damping"))
+    A, B = (_real_values(part[key].transpose(*pair), f"{name}: {key}") for key in ("added_mass", "radiation_damping"))
     limit = _real_values(dataset["added_mass"].isel(omega=~finite).transpose(*pair), f"{name}: added_mass")
-    tables = [_wave_table(at, key, name) for key in ("Froude_Krylov_force", "diffraction_force")]
+    tables = [_wave_table(part, key, name) for key in ("Froude_Krylov_force", "diffraction_force")]
     C = _real_values(dataset["hydrostatic_stiffness"].transpose(*pair[1:]), f"{name}: hydrostatic_stiffness")
     depth = float(dataset["water_depth"]) if "water_depth" in dataset.coords else np.inf
     return HullData(omega, A, B, limit[-1] if limit.size else None, tables[0], tables[1], C, depth)
@@ -151,10 +151,10 @@ def _refuse_other_conventions(dataset: xr.Dataset, name: str) -> None:
 def _heave_and_pitch(dataset: xr.Dataset, name: str) -> xr.Dataset:
     """Return heave and pitch, one water depth, one period axis."""
     for dimension in ("influenced_dof", "radiating_dof"):
-        known = [str(v) for v in np.atleast_1d(dataset[dimension].values)] if dimension in dataset.coords else []
+        labels = [str(v) for v in np.atleast_1d(dataset[dimension].values)] if dimension in dataset.coords else []
         for dof in DOFS:
-            if dof not in known:
-                raise InputError(f"{name} has no degree of freedom '{dof}' among {known}")
+            if dof not in labels:
+                raise InputError(f"{name} has no degree of freedom '{dof}' among {labels}")
     if "omega" not in dataset.dims:
         raise InputError(f"{name} has no dimension 'omega'")
     chosen = dataset.sel(influenced_dof=DOFS, radiating_dof=DOFS)

@@ -51,17 +51,17 @@ class HullForm:
         Raises:
             InputError: L, B, d or C_b is not among its particulars.
         """
-        known = ship.particulars
-        missing = [n for n in ("L", "B", "d") if not known.get(n, 0.0) > 0.0]
-        block, mass = known.get("C_b", 0.0), known.get("m", 0.0)
+        size = ship.particulars
+        missing = [n for n in ("L", "B", "d") if not size.get(n, 0.0) > 0.0]
+        block, mass = size.get("C_b", 0.0), size.get("m", 0.0)
         if not block > 0.0 and mass > 0.0 and not missing:
             # m = rho C_b L B d (Archimedes)
-            block = mass / (known.get("rho", SEA_WATER) * known["L"] * known["B"] * known["d"])
+            block = mass / (size.get("rho", SEA_WATER) * size["L"] * size["B"] * size["d"])
         missing += [] if block > 0.0 or mass > 0.0 else ["C_b"]
         if missing:
             names = ", ".join(missing)
             raise InputError(f"ship '{ship.name}' lacks {names} for empirical coefficients; add them under [ship]")
-        return cls(known["L"], known["B"], known["d"], block, known.get("x_G", 0.0) / known["L"])
+        return cls(size["L"], size["B"], size["d"], block, size.get("x_G", 0.0) / size["L"])
 
     @property
     def aspect_ratio(self) -> float:

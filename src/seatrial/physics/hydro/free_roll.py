@@ -77,9 +77,9 @@ def swing_extremes(roll: Array, dt: float) -> tuple[Array, Array]:
     for a, b in pairwise(crossings.tolist()):
         k = a + int(np.argmax(np.abs(roll[a:b])))
         if 0 < k < len(roll) - 1:
-            left, top, right = np.abs(roll[k - 1 : k + 2])
-            bend = left - 2.0 * top + right
-            shift = 0.5 * (left - right) / bend if bend < 0.0 else 0.0
+            before, top, right = np.abs(roll[k - 1 : k + 2])
+            bend = before - 2.0 * top + right
+            shift = 0.5 * (before - right) / bend if bend < 0.0 else 0.0
             tops.append((k + shift) * dt)
-            sizes.append(top - 0.25 * (left - right) * shift)
+            sizes.append(top - 0.25 * (before - right) * shift)
     return np.array(tops), np.array(sizes)

@@ -24,8 +24,8 @@ _HIGHEST_J, _POINTS = 0.6, 25  # to which the quadratic is fitted, and where: a 
 def thrust_coefficient(J: Array, pitch_ratio: float, area_ratio: float, blades: int) -> Array:
     """Return K_T of a B-series propeller at the advance ratios J, shape (n,)."""
     size, powers = _THRUST[:, 0], _THRUST[:, 1:]
-    others = pitch_ratio ** powers[:, 1] * area_ratio ** powers[:, 2] * float(blades) ** powers[:, 3]
-    return np.asarray(J, dtype=float)[:, None] ** powers[:, 0] @ (size * others)
+    factors = pitch_ratio ** powers[:, 1] * area_ratio ** powers[:, 2] * float(blades) ** powers[:, 3]
+    return np.asarray(J, dtype=float)[:, None] ** powers[:, 0] @ (size * factors)
 
 
 def thrust_quadratic(pitch_ratio: float, area_ratio: float, blades: int) -> tuple[float, float, float]:

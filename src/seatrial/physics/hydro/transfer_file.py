@@ -84,9 +84,9 @@ def read_transfer(
 
 def _complex_values(names: tuple[str, ...], columns: list[Array]) -> Complex:
     """Return F3 and M5 (rows, 2) from the four columns."""
-    one, two, three, four = columns
-    polar = one * np.exp(1j * np.radians(two)), three * np.exp(1j * np.radians(four))
-    parts = (one + 1j * two, three + 1j * four) if names == CARTESIAN_COLUMNS else polar
+    first, two, three, four = columns
+    polar = first * np.exp(1j * np.radians(two)), three * np.exp(1j * np.radians(four))
+    parts = (first + 1j * two, three + 1j * four) if names == CARTESIAN_COLUMNS else polar
     return np.asarray(np.column_stack(parts), dtype=np.complex128)
 
 
@@ -137,12 +137,12 @@ def _to_table(name: str, omega: Array, heading_deg: Array, values: Complex) -> W
     """Return rows in any order to the grid (n, h, 2)."""
     frequencies, i = np.unique(omega, return_inverse=True)
     angles, j = np.unique(heading_deg, return_inverse=True)
-    seen = np.zeros((frequencies.size, angles.size), dtype=np.int64)
-    np.add.at(seen, (i, j), 1)
-    if np.any(seen != 1):
-        a, b = np.argwhere(seen != 1)[0]
+    rows = np.zeros((frequencies.size, angles.size), dtype=np.int64)
+    np.add.at(rows, (i, j), 1)
+    if np.any(rows != 1):
+        a, b = np.argwhere(rows != 1)[0]
         raise InputError(
-            f"{name} has {'no row' if seen[a, b] == 0 else f'{seen[a, b]} rows'} for omega = {frequencies[a]:g} rad/s "
+            f"{name} has {'no row' if rows[a, b] == 0 else f'{rows[a, b]} rows'} for omega = {frequencies[a]:g} rad/s "
             f"at heading {angles[b]:g} degrees; give each pair of frequency and heading once"
         )
     grid = np.empty((frequencies.size, angles.size, 2), dtype=np.complex128)

@@ -103,7 +103,9 @@ class Performance:
         omega, energy = self._noise
         in_output = np.zeros((len(met[0]), seen + heard))
         if heard:
-            heard_in_output, moved = (np.abs(one) ** 2 * energy for one in self.loop.misreading_paths(omega))
+            heard_in_output, moved = (
+                np.abs(misreading_path) ** 2 * energy for misreading_path in self.loop.misreading_paths(omega)
+            )
             rows = {signal: [row for row in self.variances if row.signal is signal] for signal in _ORDER}
             for i, row in enumerate(rows[LoopSignal.OUTPUT]):
                 in_output[i, seen:] = row.magnitude(omega) ** 2 * heard_in_output

@@ -250,6 +250,6 @@ class ThrusterSheet:
         nD = sheet.bind(f"nD_{name}", n * D, FOSSEN_PROPELLER, "m/s")
         V = sheet.bind(f"V_{name}", w * (1 - wake), FOSSEN_PROPELLER, "m/s")
         K = sp.Piecewise((nD * (k[0] * nD + k[1] * V) + k[2] * V * sp.Abs(V), nD > 0), (back * nD**2, True))
-        own = sheet.bind(f"own_{name}", rho_t * D**2 * K, FOSSEN_PROPELLER, "N")
-        self._screws[name] = Screw(n, nD, D, V, own, rho_t)
-        return (1 - deduction) * own
+        open_water = sheet.bind(f"own_{name}", rho_t * D**2 * K, FOSSEN_PROPELLER, "N")
+        self._screws[name] = Screw(n, nD, D, V, open_water, rho_t)
+        return (1 - deduction) * open_water

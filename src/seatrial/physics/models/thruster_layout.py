@@ -183,8 +183,8 @@ class ThrusterLayout:
     def _require_leader(self, thruster: Thruster, names: list[str]) -> None:
         where, leader = f"thruster '{thruster.name}': same_as", thruster.same_as
         if leader not in names or leader == thruster.name:
-            others = [name for name in names if name != thruster.name]
-            raise InputError(f"{where} = '{leader}' is no other thruster{spelling_hint(leader, others)}")
+            other_names = [name for name in names if name != thruster.name]
+            raise InputError(f"{where} = '{leader}' is no other thruster{spelling_hint(leader, other_names)}")
         first = self.thrusters[names.index(leader)]
         if first.same_as:
             raise InputError(f"{where}: '{leader}' shares the coefficients of '{first.same_as}'; name that one")

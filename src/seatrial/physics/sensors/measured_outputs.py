@@ -56,14 +56,14 @@ def with_sensors(model: Model, sensors: Sensors) -> Model:
 
 def without_sensors(model: Model) -> Model:
     """Return the model whose channels show its states, as it was before `with_sensors`."""
-    own, old = {p.name for p in model.parameters if p.source == SENSOR_SOURCE}, model.equations
+    sensor_parameters, old = {p.name for p in model.parameters if p.source == SENSOR_SOURCE}, model.equations
     equations = replace(
         old, rates=tuple(b for b in old.rates if b.source != SENSOR_SOURCE),
         bindings=tuple(b for b in old.bindings if b.source != SENSOR_SOURCE),
         outputs=tuple(o for o in old.outputs if not o.endswith(MEASURED)),
-        parameters=tuple(n for n in old.parameters if n not in own), sensors="",
+        parameters=tuple(n for n in old.parameters if n not in sensor_parameters), sensors="",
     )  # fmt: skip
-    kept = Parameters(tuple(p for p in model.parameters if p.name not in own))
+    kept = Parameters(tuple(p for p in model.parameters if p.name not in sensor_parameters))
     return replace(model, equations=equations, parameters=kept)
 
 
@@ -170,10 +170,10 @@ class _Writer:
         A, B, C = (_symbol(f"compass_{letter}") for letter in "ABC")
         psi = _symbol("psi")
         first = self._bind("deviation_1", A + B * sp.sin(psi) + C * sp.cos(psi), "rad")
-        shown = self._bind("shown_1", psi - first, "rad")
-        second = self._bind("deviation_2", A + B * sp.sin(shown) + C * sp.cos(shown), "rad")
-        shown = self._bind("shown_2", psi - second, "rad")
-        return self._bind("deviation", A + B * sp.sin(shown) + C * sp.cos(shown), "rad")
+        heading = self._bind("shown_1", psi - first, "rad")
+        second = self._bind("deviation_2", A + B * sp.sin(heading) + C * sp.cos(heading), "rad")
+        heading = self._bind("shown_2", psi - second, "rad")
+        return self._bind("deviation", A + B * sp.sin(heading) + C * sp.cos(heading), "rad")
 
     def _lag(self, late: Late) -> "sp.Expr":
         import sympy as sp
@@ -195,10 +195,10 @@ class _Writer:
         return _symbol(name)
 
     def _yaw_rate(self) -> None:
-        sensors, shown = self.sensors, self._filtered(Late.YAW_RATE, "r")
+        sensors, rate = self.sensors, self._filtered(Late.YAW_RATE, "r")
         if sensors.yaw_rate_scale:
-            shown = shown * (1 + _symbol("r_scale"))
-        self._output("r", shown + _symbol("r_bias") if sensors.yaw_rate_bias else shown, "rad/s")
+            rate = rate * (1 + _symbol("r_scale"))
+        self._output("r", rate + _symbol("r_bias") if sensors.yaw_rate_bias else rate, "rad/s")
 
     def _positions(self) -> None:
         """Where the antenna was a lag ago: back along the arc on which the heading halfway lies."""

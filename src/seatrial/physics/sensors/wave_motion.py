@@ -71,8 +71,8 @@ class WaveMotion:
         unknowns: (size,); dt: time step [s].
         """
         shape = unknowns[: 2 * self.peaks].reshape(self.peaks, 2)
-        made = [_pair(float(omega), float(zeta), dt) for omega, zeta in shape for _ in self.motions]
-        return np.array(made).reshape(len(made), PAIR_COLUMNS), np.ascontiguousarray(unknowns[2 * self.peaks :])
+        pairs = [_pair(float(omega), float(zeta), dt) for omega, zeta in shape for _ in self.motions]
+        return np.array(pairs).reshape(len(pairs), PAIR_COLUMNS), np.ascontiguousarray(unknowns[2 * self.peaks :])
 
     def named(self, unknowns: Array) -> dict[str, float]:
         """Return frequency [rad/s], relative damping and standard deviation of each motion [SI], of each peak."""

@@ -49,7 +49,7 @@ def restart_chart(search: Search, reference: ReferenceEstimate) -> Chart | None:
     free = [c for c in reference.coefficients if not c.fixed and c.estimate != 0.0]
     if not free:
         return None
-    rows = [[_deviation(c, one.values[c.name]) for one in search.restarts] for c in free]
+    rows = [[_deviation(c, restart.values[c.name]) for restart in search.restarts] for c in free]
     ends = [abs(_deviation(c, x)) for c in free for x in (c.lower, c.upper, c.truth) if x is not None]
     reach = _MARGIN * max(_LEAST_REACH, *ends, *(abs(x) for row in rows for x in row))
     marks: list[Mark] = [Rule(0.0, _ZERO, is_vertical=True)]

@@ -68,11 +68,11 @@ def read_nmea0183(path: Path, layout: Layout) -> Log:
     received = on_the_clock(np.array(receipts), np.array(own) + day)
     tables = []
     for kind, rows in samples.items():
-        has_own = bool(np.isfinite([own[one.place] for one in rows]).any())
+        has_own = bool(np.isfinite([own[row.place] for row in rows]).any())
         if received is None or has_own:
-            times = _spread(np.array([one.epoch for one in rows]), stamps)
+            times = _spread(np.array([row.epoch for row in rows]), stamps)
         else:
-            times = received[[one.place for one in rows]]
+            times = received[[row.place for row in rows]]
         tables.append(_table(path.name, kind, rows, times))
     return Log(path.name, tuple(tables))
 
@@ -134,11 +134,11 @@ def _day_number(sentence: Sentence) -> int | None:
 
 
 def _table(file: str, kind: str, rows: list[_Sample], times: Array) -> RawTable:
-    names = list(dict.fromkeys(name for one in rows for name in one.values))
+    names = list(dict.fromkeys(name for row in rows for name in row.values))
     fields = {_field(name, kind): name for name in names}
     columns = {"time": times}
     for field, name in fields.items():
-        columns[field] = np.array([one.values.get(name, math.nan) for one in rows])
+        columns[field] = np.array([row.values.get(name, math.nan) for row in rows])
     units = {field: "rps" if kind == "RPM" else _UNITS.get(field.rpartition(" ")[2], "") for field in fields}
     return topic_table(file, kind, columns, units)
 
