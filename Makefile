@@ -2,7 +2,7 @@
 # Works with GNU make on Linux and macOS, and on Windows from Git Bash with `choco install make`; there, without make,
 # run the lines of a target by hand with .venv\Scripts in place of .venv/bin.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test lint style types imports bench docs clean
+.PHONY: help setup demo test lint style types imports bench golden docs clean
 MAKEFLAGS += --no-print-directory
 
 VENV := .venv
@@ -29,6 +29,7 @@ help:
 	@echo 'make test   the whole test suite'
 	@echo 'make lint   style, types and the order of the layers (make style, make types, make imports)'
 	@echo 'make bench  times and ratios on this machine'
+	@echo 'make golden compare results with the recorded ones, trial by trial'
 	@echo 'make docs   build the documentation into site/'
 
 setup: $(READY)
@@ -65,6 +66,9 @@ imports: $(READY)
 
 bench: $(READY)
 	@$(BIN)/python benchmarks/run.py
+
+golden: $(READY)
+	@$(BIN)/python benchmarks/golden.py
 
 docs: $(READY)
 	@$(BIN)/python -m sphinx -W --keep-going -q docs site
