@@ -15,14 +15,10 @@ from tests.conventions.source_tree import REPOSITORY, SourceFile, parsed, source
 LAYERS_OF_SUBPACKAGES = ("core", "data", "estimation", "numerics", "physics")
 
 # Function, and why no test of its own subpackage reaches it.
-_IN_DOCS = "runs in the Python of README, docs pages and the notebook (tests/docs)"
 _COMPILED = "compiled core of one caller that lays out its many arrays; tested through that caller"
 _WINDOW = "step of the recursive estimator; tests/estimation/identify/test_online.py runs each on streams"
 EXCEPTIONS: dict[str, str] = {
     ": export_lazily": "every subpackage that exports names runs it on import",
-    "api: demo": "`make demo` runs it; it takes longer than a test may",
-    "api: draft_trial": "tests/data/draft drafts by it",
-    "api: tune": _IN_DOCS,
     "core/equations: is_cached": "decides what is compiled ahead; tests/core/equations/test_cache.py",
     "data/example_series: write_demo": "tests/api/test_api.py loads what it writes",
     "data/folder: findings_document": "`seatrial check --json` writes it: tests/cli",
