@@ -12,8 +12,7 @@ import shipmmg_equations as peer
 from measure import Line, at_least, at_most, fastest
 
 from seatrial.numerics.kernels.feedback import steer
-from seatrial.physics.manoeuvres.helmsman import Steering, rudder_angles
-from seatrial.physics.manoeuvres.programme import programme
+from seatrial.physics.manoeuvres.programme import Steering, programme, rudder_angles
 from seatrial.physics.simulate.batch import SegmentBatch
 
 HERE = Path(__file__).parent

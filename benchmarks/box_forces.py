@@ -12,8 +12,7 @@ import numpy as np
 from measure import Line, machine
 
 from seatrial.core.values import Array
-from seatrial.physics.hydro.dispersion import G
-from seatrial.physics.hydro.excitation import BoxHull
+from seatrial.physics.hydro.excitation import BoxHull, G
 from seatrial_studies.section2d.lewis import LewisForm
 from seatrial_studies.section2d.multipoles import RHO, SectionMotion, section_hydrodynamics
 

@@ -27,7 +27,7 @@ from seatrial.estimation.design.search_step import search_step
 from seatrial.estimation.design.ships import PriorShips, draw_ships
 from seatrial.estimation.design.standard_manoeuvres import StandardManoeuvre, standard_manoeuvres
 from seatrial.estimation.design.task import DesignTask
-from seatrial.physics.simulate.channels import inputs_of
+from seatrial.physics.simulate.replay import inputs_of
 
 Array = NDArray[np.float64]
 DURATION, HOLD, RANGE = 600.0, 15.0, math.radians(35.0)

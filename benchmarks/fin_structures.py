@@ -28,8 +28,7 @@ from seatrial.physics.loops import (
     WeightedVariance,
     sea_disturbance,
 )
-from seatrial.physics.loops.fin import ROLL, fin_loop
-from seatrial.physics.loops.structures import band_pass, five_gain_loop, low_pass
+from seatrial.physics.loops.structures import ROLL, band_pass, fin_loop, five_gain_loop, low_pass
 from seatrial.physics.sea.spectrum import ittc, jonswap
 
 U, BEAM, HEIGHT = 18.0 * 1852.0 / 3600.0, math.pi / 2.0, 3.3

@@ -21,7 +21,7 @@ from seatrial.core.values import NOTATION, Channel, Record
 from seatrial.data.example_series import series
 from seatrial.data.read import ColumnSpec, Layout
 from seatrial.data.trial import Role, Trial, load_trial
-from seatrial.data.trial.stream import Stream, StreamSource
+from seatrial.data.trial.settings import Stream, StreamSource
 from seatrial.estimation.identify.identify import identify
 from seatrial.estimation.identify.online import OnlineEstimator
 from seatrial.estimation.problem.linear_output_error import LinearOutputError

@@ -22,8 +22,8 @@ from seatrial.estimation.estimate.online.recursive import RecursiveFilter
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import Segments, cut_segments
 from seatrial.numerics.optimise import levenberg_marquardt
-from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
-from seatrial.physics.models.heave_pitch_coefficients import physical_start_values
+from seatrial.physics.models.published import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
+from seatrial.physics.models.published import physical_start_values
 from seatrial.physics.simulate.linear import LinearBatch
 from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE, SeawayScenario, ship, simulate_seaway_run
 

@@ -13,7 +13,7 @@ import numpy as np
 from seatrial.core.results.online import Sample
 from seatrial.core.values import NOTATION
 from seatrial.data.read import ColumnSpec, Layout
-from seatrial.data.trial.stream import Stream, StreamSource
+from seatrial.data.trial.settings import Stream, StreamSource
 from seatrial.data.trial.trial import Trial
 from seatrial.estimation.identify.online import OnlineEstimator
 from seatrial.physics.models.published import QI2025_SHIP

@@ -27,10 +27,10 @@ from seatrial.estimation.problem.segments import cut_segments
 from seatrial.numerics.optimise import Status, levenberg_marquardt
 from seatrial.physics.hydro.capytaine_data import HullData, HullExcitation
 from seatrial.physics.hydro.excitation import Complex, encounter_frequency
-from seatrial.physics.hydro.strip_theory import coefficients_at_speed
+from seatrial.physics.hydro.tabulated import coefficients_at_speed
 from seatrial.physics.models.heave_pitch import heave_pitch
-from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
-from seatrial.physics.models.heave_pitch_coefficients import physical_start_values
+from seatrial.physics.models.published import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
+from seatrial.physics.models.published import physical_start_values
 from seatrial.physics.sea.realise import WaveComponents, harmonic_sum, realise
 from seatrial.physics.sea.spectrum import Spectrum, bretschneider, ittc, jonswap
 

@@ -26,15 +26,15 @@ from fuzz_streams import (
 import seatrial as st
 from seatrial.core.results.online import Sample
 from seatrial.core.values import Record
-from seatrial.core.values.tables import parse_json
+from seatrial.core.values.files import parse_json
 from seatrial.data.folder.gains_file import read_gains
 from seatrial.data.folder.model_file import parse_model
 from seatrial.data.folder.result_folder import KINDS, load_result
-from seatrial.data.read.record_csv import read_record_csv
+from seatrial.data.read.record_file import read_record_csv
 from seatrial.onboard.journal import Journal
 from seatrial.onboard.server import Server
 from seatrial.onboard.sources import open_source
-from seatrial.physics.hydro.transfer_file import read_transfer
+from seatrial.physics.hydro.tabulated import read_transfer
 from seatrial.physics.manoeuvres import programme
 from seatrial.reporting.pages import report_page
 

@@ -20,8 +20,8 @@ from seatrial.numerics.optimise import Box, NormalEquations, Optimum, Solution, 
 from seatrial.numerics.optimise.multistart import Multistart, RestartSettings, multistart
 from seatrial.numerics.optimise.wild_horse import ImprovedHerdSettings, ImprovedWildHorse
 from seatrial.numerics.workers import map_in_threads
-from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
-from seatrial.physics.models.heave_pitch_coefficients import physical_start_values
+from seatrial.physics.models.published import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
+from seatrial.physics.models.published import physical_start_values
 from seatrial.problems import off_centre_box
 from seatrial_studies import swarm_search
 from seatrial_studies.seaway import SeawayScenario, simulate_seaway_run

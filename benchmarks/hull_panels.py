@@ -11,7 +11,7 @@ import numpy as np
 
 from seatrial.core.values import Array, Index, InputError
 from seatrial.physics.hydro.capytaine_data import DOFS, HullData, hull_data
-from seatrial.physics.hydro.dispersion import G
+from seatrial.physics.hydro.excitation import G
 
 if TYPE_CHECKING:
     import xarray as xr

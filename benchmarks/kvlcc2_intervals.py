@@ -14,7 +14,7 @@ from measure import Line, at_least, at_most, machine
 
 from seatrial.core.results import Fit
 from seatrial.data.trial import Role, TrialRecord, load_records, load_trial
-from seatrial.data.trial.approach import approach_condition
+from seatrial.data.trial.records import approach_condition
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
 from seatrial.estimation.estimate.intervals import estimate_uncertainty
 from seatrial.estimation.estimate.runs import training_runs

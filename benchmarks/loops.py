@@ -27,12 +27,12 @@ from seatrial.physics.loops import (
     TransferLoop,
     sea_disturbance,
 )
-from seatrial.physics.loops.block import controllable_form
 from seatrial.physics.loops.encounter_spectrum import disturbance_spectrum
-from seatrial.physics.loops.fin import BOUNDS, ROLL, Preamplifier, fin_loop
+from seatrial.physics.loops.loop import controllable_form
 from seatrial.physics.loops.loop_states import StateSpace, state_space
 from seatrial.physics.loops.objective import squared_deviation, variance
 from seatrial.physics.loops.performance import distinct_variances
+from seatrial.physics.loops.structures import BOUNDS, ROLL, Preamplifier, fin_loop
 from seatrial.physics.sea.spectrum import ittc
 
 DURATION, DT, COUNT, POOL, SOME = 1000.0, 0.1, 20000, 400, 20

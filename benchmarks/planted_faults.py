@@ -24,7 +24,7 @@ from benchmarks.fault_kinds import KINDS, UNDETECTABLE, FaultKind
 
 from seatrial.core.values import Finding, InputError, Record, Severity
 from seatrial.data.check import canonical_record, examine, examined_record
-from seatrial.data.check.thrusters import thruster_findings
+from seatrial.data.check.inputs import thruster_findings
 from seatrial.data.trial import load_runs
 from seatrial.physics.models import model_named
 from seatrial.physics.models.published import kvlcc2

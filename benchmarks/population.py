@@ -16,7 +16,7 @@ from scipy.signal import lsim
 
 from seatrial.numerics.kernels.linear_population import misfit
 from seatrial.physics.models import heave_pitch_zoh
-from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
+from seatrial.physics.models.published import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
 from seatrial.physics.models.published import theoretical_coefficients
 from seatrial.physics.simulate.population import (
     Forcing,

@@ -17,10 +17,10 @@ import numpy as np
 from measure import Line, at_least, at_most, machine
 
 from seatrial.core.results import Prediction
-from seatrial.core.results.window_scores import ChannelScore
+from seatrial.core.results.prediction import ChannelScore
 from seatrial.core.values import InputError
 from seatrial.data.trial import Role, Trial, TrialRecord, checked_records, load_trial
-from seatrial.data.trial.window_lengths import window_lengths
+from seatrial.data.trial.settings import window_lengths
 from seatrial.estimation.estimate import INITIAL_STATE_SHIP_LENGTHS, estimate_model, ship_length_seconds
 from seatrial.estimation.estimate.fit import with_segment_seconds
 from seatrial.estimation.estimate.runs import training_runs

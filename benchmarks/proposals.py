@@ -23,14 +23,13 @@ from seatrial.control.schedule import schedule
 from seatrial.control.task import ScheduleGrid, Seaway, TuningTask
 from seatrial.control.verification.legs import natural_period
 from seatrial.control.verification.stabiliser import prior_deviations
-from seatrial.core.results.proposal import Estimated, Proposal
+from seatrial.core.results.online import Estimated, Proposal
 from seatrial.core.values import Array
 from seatrial.estimation.sea import altered_loop, sea_spectrum
 from seatrial.numerics.workers import map_in_processes
-from seatrial.physics.hydro.dispersion import G
-from seatrial.physics.hydro.excitation import encounter_frequency
+from seatrial.physics.hydro.excitation import G, encounter_frequency
 from seatrial.physics.loops import TransferLoop
-from seatrial.physics.loops.fin import PUBLISHED_GAINS
+from seatrial.physics.loops.structures import PUBLISHED_GAINS
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "fin_stabiliser.toml"
 HOURS = 200  # simulated: four minutes of a core; 1000 take twenty

@@ -18,7 +18,7 @@ from against_shipmmg import HERE, peers_python
 from measure import Line, at_least, at_most, fastest
 
 from seatrial.core.values import Record
-from seatrial.data.check.signal import sample_noise
+from seatrial.data.check.motion import sample_noise
 from seatrial.data.trial import Trial, load_records, load_trial
 from seatrial.estimation.estimate import Estimation, Runs, estimate_model
 from seatrial.estimation.identify.roll_model_selection import halves, roll_structures

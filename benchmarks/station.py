@@ -24,9 +24,9 @@ from seatrial.control.station.trial import StationSetting, StationSimulator
 from seatrial.control.station.tune_station import station_craft, station_disturbances, tune_station
 from seatrial.control.task import StationDemand, TuningTask
 from seatrial.core.results.station import StationKeeping, StationTrial
-from seatrial.physics.loops.sampling import Sampling
+from seatrial.physics.loops.loop import Sampling
 from seatrial.physics.models.thruster_layout import CommandInput, Damping, Thruster, ThrusterLayout
-from seatrial.physics.simulate.station_keeping import StationController, ThrusterOrders
+from seatrial.physics.simulate.craft_control import StationController, ThrusterOrders
 from seatrial.problems.thruster_craft import KnownThrusterCraft, noisy, simulated_runs
 
 ROOT = Path(__file__).parents[1]

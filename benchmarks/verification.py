@@ -21,7 +21,7 @@ from seatrial.core.results.verification import Verification
 from seatrial.core.values import Array, Channel, Provenance, Record, RecordKind, frozen
 from seatrial.estimation.sea import altered_loop
 from seatrial.physics.loops import TransferLoop
-from seatrial.physics.loops.fin import PUBLISHED_GAINS
+from seatrial.physics.loops.structures import PUBLISHED_GAINS
 from seatrial.physics.sea import Spectrum, jonswap
 from seatrial.physics.simulate.closed_loop import ActuatorLimits
 

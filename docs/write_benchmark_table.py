@@ -13,7 +13,7 @@ from fnmatch import fnmatch
 from pathlib import Path
 
 import seatrial as st
-from seatrial.core.results.benchmark import Benchmark, MethodScore, ProblemScore
+from seatrial.core.results.campaign import Benchmark, MethodScore, ProblemScore
 from seatrial.core.text.numbers import fixed, p_value, significant
 from seatrial.problems import problems_matching
 from seatrial.problems.built_in import IDENTIFY, OUTPUT_ERROR

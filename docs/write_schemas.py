@@ -13,8 +13,7 @@ from typing import Any
 from seatrial.campaigns.plan import plan_schema
 from seatrial.control.loopfile.schema import loop_schema
 from seatrial.core.results import Comparison, Design, Fit, Study
-from seatrial.core.results.benchmark import Benchmark
-from seatrial.core.results.campaign import CampaignSummary
+from seatrial.core.results.campaign import Benchmark, CampaignSummary
 from seatrial.core.results.online import Snapshot
 from seatrial.core.results.tuning import Tuning
 from seatrial.core.results.verification import Verification

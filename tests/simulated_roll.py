@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 
 from seatrial.core.values import Record
-from seatrial.physics.hydro.dispersion import G
+from seatrial.physics.hydro.excitation import G
 from seatrial.physics.sea.realise import Spacing, harmonic_sum, realise
 from seatrial.physics.sea.spectrum import Spectrum
 

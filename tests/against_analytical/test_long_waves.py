@@ -11,9 +11,8 @@ import pytest
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array
-from seatrial.physics.hydro.dispersion import G
-from seatrial.physics.hydro.excitation import encounter_frequency
-from seatrial.physics.simulate.harmonics import Complex, frequency_response, linear_system
+from seatrial.physics.hydro.excitation import G, encounter_frequency
+from seatrial.physics.simulate.linear import Complex, frequency_response, linear_system
 from seatrial_studies.published_ship import SPEED
 from seatrial_studies.seaway import box_hull, ship
 

@@ -6,7 +6,7 @@ from benchmarks.hull_panels import capytaine_dataset, solve_hull, wigley
 
 from seatrial.core.values import Array, InputError
 from seatrial.physics.hydro.capytaine_data import HullData, HullExcitation, hull_data, read_capytaine
-from seatrial.physics.hydro.dispersion import G
+from seatrial.physics.hydro.excitation import G
 
 cpt = pytest.importorskip("capytaine", reason="the panel code Capytaine is not installed (extra hydro)")
 

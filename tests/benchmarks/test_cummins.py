@@ -6,8 +6,7 @@ from benchmarks.cummins import RetardationFunctions, retardation_functions, simu
 
 from seatrial.core.values import Array, InputError
 from seatrial.physics.hydro.capytaine_data import HullData
-from seatrial.physics.hydro.strip_theory import coefficients_at_speed
-from seatrial.physics.hydro.tabulated import WaveTable
+from seatrial.physics.hydro.tabulated import WaveTable, coefficients_at_speed
 
 DECAY, TURN = 0.5, 1.2
 K0 = np.array([[1.8e6, 4.0e6], [4.0e6, 2.1e8]])

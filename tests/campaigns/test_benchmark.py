@@ -10,7 +10,7 @@ from tests.installed_package import install
 from seatrial.api import benchmark
 from seatrial.campaigns.benchmark_scores import MethodRun, citation, holm, sign_test
 from seatrial.campaigns.benchmark_work import benchmark_work
-from seatrial.core.results.benchmark import Benchmark
+from seatrial.core.results.campaign import Benchmark
 from seatrial.core.values import InputError
 from seatrial.problems import Placement, built_in_methods, method_named, problems_matching
 

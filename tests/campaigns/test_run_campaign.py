@@ -138,7 +138,7 @@ def test_a_store_of_a_newer_version_or_a_damaged_one_is_refused(tmp_path: Path) 
 
 
 def test_a_full_disk_ends_the_campaign_with_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from seatrial.core.values import frames
+    from seatrial.core.values import files as frames
 
     def full(_descriptor: int) -> None:
         raise OSError(28, "No space left on device")

@@ -13,8 +13,8 @@ from tests.reporting.fabricated_design import fabricated_design
 from seatrial import api
 from seatrial.core.results import TimedOrder
 from seatrial.core.values import InputError, RecordKind, Ship
+from seatrial.data.folder.gains_file import orders_csv
 from seatrial.data.folder.model_file import ModelFile, write_model
-from seatrial.data.folder.orders import orders_csv
 from seatrial.data.read import read_record_csv
 from seatrial.estimation.design.task import design_task
 from seatrial.estimation.information.symmetries import refuse_unidentifiable

@@ -8,8 +8,8 @@ from seatrial.control.front import Effort
 from seatrial.control.task import Seaway, TuningTask
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.physics.loops import HullFactor, LoopSignal, Objective
-from seatrial.physics.loops.fin import PUBLISHED_GAINS, Preamplifier, fin_loop
 from seatrial.physics.loops.objective import squared_deviation, variance
+from seatrial.physics.loops.structures import PUBLISHED_GAINS, Preamplifier, fin_loop
 from seatrial.physics.sea.spectrum import ittc
 
 KNOT = 0.514444

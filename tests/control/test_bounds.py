@@ -34,9 +34,8 @@ from seatrial.physics.loops import (
     margins,
 )
 from seatrial.physics.loops.encounter_spectrum import disturbance_spectrum
-from seatrial.physics.loops.fin import ROLL, fin_loop
 from seatrial.physics.loops.objective import variance
-from seatrial.physics.loops.structures import five_gain_loop
+from seatrial.physics.loops.structures import ROLL, fin_loop, five_gain_loop
 from seatrial.physics.sea.spectrum import ittc
 
 convex = pytest.mark.skipif(not is_available(), reason="cvxpy is not installed (extra 'bounds')")

@@ -12,7 +12,7 @@ from seatrial.control.gradient_refinement import all_gains, free_gain_bounds, re
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import InputError
 from seatrial.numerics.optimise import hypervolume, non_dominated
-from seatrial.physics.loops.fin import Preamplifier
+from seatrial.physics.loops.structures import Preamplifier
 
 FREE = ControllerConstraints(Ms=2.0)
 

@@ -11,7 +11,7 @@ from seatrial.control.gain_evaluation import gain_evaluator
 from seatrial.control.task import Effectiveness
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.physics.loops import Performance
-from seatrial.physics.loops.fin import Preamplifier
+from seatrial.physics.loops.structures import Preamplifier
 
 
 def _differences(of, gains, step=1e-5):

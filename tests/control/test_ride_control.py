@@ -24,8 +24,7 @@ from seatrial.control.seaway_simulation import simulate_in_seaway
 from seatrial.control.task import Seaway, SimulationSettings, TuningTask
 from seatrial.core.values import Array, InputError
 from seatrial.physics.hydro.capytaine_data import HullExcitation, read_capytaine
-from seatrial.physics.hydro.dispersion import G
-from seatrial.physics.hydro.excitation import BoxHull, Complex, Excitation
+from seatrial.physics.hydro.excitation import BoxHull, Complex, Excitation, G
 from seatrial.physics.loops.objective import motion_sickness_weighting
 from seatrial.physics.sea.response import MotionStatistics, motion_sickness
 

@@ -22,14 +22,13 @@ from seatrial.control.task import Effectiveness, Seaway, SimulationSettings, Tri
 from seatrial.core.results.tuning import SeawaySimulation
 from seatrial.core.values import InputError
 from seatrial.physics.loops import LoopSignal, Performance, Sampling
-from seatrial.physics.loops.fin import Preamplifier, fin_loop
+from seatrial.physics.loops.loop_states import plant_model
 from seatrial.physics.loops.objective import variance
 from seatrial.physics.loops.performance import calm_actuator, distinct_variances
-from seatrial.physics.loops.state_space import plant_model
+from seatrial.physics.loops.structures import Preamplifier, fin_loop
 from seatrial.physics.models.roll import roll
 from seatrial.physics.sea.spectrum import ittc, jonswap
-from seatrial.physics.simulate.closed_loop import ClosedLoop
-from seatrial.physics.simulate.sampled_controller import sample_noise, simulation_step
+from seatrial.physics.simulate.closed_loop import ClosedLoop, sample_noise, simulation_step
 
 BEAM = Seaway(ittc(3.3), 18.0 * KNOT, math.pi / 2, HULL)
 QUARTERING = replace(BEAM, beta=math.radians(45.0), spreading=1.0)

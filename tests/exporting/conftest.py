@@ -8,8 +8,7 @@ import pytest
 
 import seatrial as st
 from seatrial.core.results import IntervalBasis
-from seatrial.data.folder.model_file import ModelFile
-from seatrial.data.folder.model_tables import ModelProvenance, RecordSource
+from seatrial.data.folder.model_file import ModelFile, ModelProvenance, RecordSource
 from seatrial.physics.models.published import kvlcc2
 
 ENVELOPE = {"yaw_rate": 0.06, "drift": 0.2, "rudder": 0.5, "fastest": 1.2, "slowest": 0.75}

@@ -9,7 +9,7 @@ from seatrial.core.results import Fit
 from seatrial.core.results.online import EstimatorPhase, Sample, SampleCounts, Snapshot
 from seatrial.data.folder.document import document
 from seatrial.data.trial import Trial, load_trial
-from seatrial.data.trial.follow_table import require_stream
+from seatrial.data.trial.runs import require_stream
 from seatrial.onboard.follow import FollowResult
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -9,7 +9,7 @@ from seatrial.core.results.online import EstimatorPhase, Snapshot
 from seatrial.core.values import NOTATION, Channel, Record, Ship
 from seatrial.data.example_series.series import JET_VELOCITY, SENSOR_NOISE
 from seatrial.data.read import ColumnSpec, Layout
-from seatrial.data.trial.stream import Stream, StreamSource
+from seatrial.data.trial.settings import Stream, StreamSource
 from seatrial.data.trial.trial import Trial
 from seatrial.onboard.advice import ManoeuvreAdviser, advice, ranked_candidates
 from seatrial.onboard.candidate_manoeuvres import candidate_manoeuvres, fisher_information

@@ -26,7 +26,7 @@ from tests.onboard.streams import (
 from seatrial.core.results.online import Sample, SampleCounts, Snapshot
 from seatrial.core.values import InputError
 from seatrial.data.trial import RecordFile, Role, Trial, load_trial
-from seatrial.data.trial.follow_table import require_stream
+from seatrial.data.trial.runs import require_stream
 from seatrial.data.trial.trial import TrialRun
 from seatrial.estimation.identify import identify
 from seatrial.onboard.columns import ColumnReader

@@ -11,7 +11,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from seatrial.core.results.online import Sample
 from seatrial.core.values import InputError
 from seatrial.data.read import ColumnSpec, Layout
-from seatrial.data.trial.stream import Stream, StreamSource
+from seatrial.data.trial.settings import Stream, StreamSource
 from seatrial.onboard.lines import LineBatch
 from seatrial.onboard.message_decoders import BusDecoder, MavlinkDecoder
 from seatrial.onboard.messages import MessageReader

@@ -16,7 +16,7 @@ from seatrial.api import load_loop
 from seatrial.core.results.online import NO_SAMPLE, Sample, SampleCounts
 from seatrial.core.values import Array, InputError
 from seatrial.data.trial import Trial, load_trial
-from seatrial.data.trial.follow_table import resolved_proposal
+from seatrial.data.trial.runs import resolved_proposal
 from seatrial.onboard.follow import follow
 from seatrial.onboard.live import log_line
 from seatrial.onboard.page_state import snapshot_json

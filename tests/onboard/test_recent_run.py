@@ -7,7 +7,7 @@ import numpy as np
 from tests.onboard.streams import sample_range, stream_trial
 from tests.reporting.fabricated import zigzag
 
-from seatrial.data.trial.follow_table import require_stream
+from seatrial.data.trial.runs import require_stream
 from seatrial.onboard.page_state import recent_json
 from seatrial.onboard.recent_run import RecentRun
 

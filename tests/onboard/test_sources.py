@@ -11,7 +11,7 @@ from tests.onboard.sentences import sentence
 from seatrial.core.results.online import Sample
 from seatrial.core.values import InputError
 from seatrial.data.read import ColumnSpec, Layout
-from seatrial.data.trial.stream import Stream, StreamSource
+from seatrial.data.trial.settings import Stream, StreamSource
 from seatrial.onboard.sources import SampleSource, open_source
 
 COLUMNS = Layout("text", ColumnSpec("time", 1, "s"), (ColumnSpec("psi", 2, "deg"),))

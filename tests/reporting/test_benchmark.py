@@ -4,16 +4,16 @@ from dataclasses import replace
 
 import pytest
 
-from seatrial.core.results.benchmark import (
+from seatrial.core.results.campaign import (
     Benchmark,
     BenchmarkMethod,
+    CampaignStatus,
     CheckedClaim,
     MethodScore,
     PairedTest,
     ProblemScore,
     TargetCurve,
 )
-from seatrial.core.results.campaign import CampaignStatus
 from seatrial.reporting.benchmark import html, method_table, outcome, problem_part, target_chart, waterfall_chart
 
 

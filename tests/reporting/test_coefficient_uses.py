@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from seatrial.core.results import Coefficient, Consequence, Fit, Identifiability, Symmetry
-from seatrial.core.results.identifiability import Collinearity, Sensitivity
+from seatrial.core.results.fit import Collinearity, Sensitivity
 from seatrial.reporting.coefficient_uses import Use, coefficient_uses, meaning_lines
 from seatrial.reporting.correlations import Partner
 

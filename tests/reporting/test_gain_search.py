@@ -8,8 +8,7 @@ from tests.reporting.fabricated_tuning import fabricated_fin
 
 from seatrial.cli.application import result_document
 from seatrial.cli.tuning_output import print_tuning
-from seatrial.core.results.gain_search import GainSearch
-from seatrial.core.results.tuning import Tuning, TuningMethod
+from seatrial.core.results.tuning import GainSearch, Tuning, TuningMethod
 from seatrial.reporting.gain_search import convergence_chart, scatter_chart, search_sentences, search_table
 from seatrial.reporting.tuning import html
 

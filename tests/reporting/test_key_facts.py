@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.core.results import ChannelScore, Divergence, Fit, Measure, WindowBaseline, WindowScore
-from seatrial.core.results.identifiability import Collinearity
+from seatrial.core.results.fit import Collinearity
 from seatrial.core.values import Record, Severity
 from seatrial.numerics.optimise import Status
 from seatrial.reporting.first_screen import KeyFact

@@ -8,11 +8,10 @@ import pytest
 
 from seatrial.core.results import Fit, Prediction
 from seatrial.core.values import Array, Record
-from seatrial.physics.manoeuvres.programme import programme
-from seatrial.physics.manoeuvres.release import release_angle
+from seatrial.physics.manoeuvres.programme import programme, release_angle
 from seatrial.physics.manoeuvres.thrust_programme import thrust_programme
 from seatrial.physics.models.thruster_layout import CATAMARAN, AngleInput, CommandInput, Thruster, ThrusterLayout
-from seatrial.physics.simulate.craft_manoeuvre import craft_programme
+from seatrial.physics.simulate.thrust import craft_programme
 from seatrial.reporting.key_facts import key_facts
 from seatrial.reporting.record_gaps import RecordGap, gap_facts, gaps_of_rolling, gaps_of_thrusters, record_gaps
 

@@ -14,8 +14,7 @@ import seatrial as st
 from seatrial.core.equations import Model
 from seatrial.core.values import Array
 from seatrial.physics.models.waterjet import waterjet
-from seatrial.physics.simulate.channels import inputs_of
-from seatrial.physics.simulate.replay import trajectory
+from seatrial.physics.simulate.replay import inputs_of, trajectory
 from seatrial.reporting.resimulation import replay_script
 
 # relative, of a step: rounding, and sines of another library; of the range, over a run: what they grow to

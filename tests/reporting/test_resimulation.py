@@ -14,8 +14,7 @@ from tests.reporting.fabricated import fabricated_fit
 from seatrial.core.results import Fit, Prediction
 from seatrial.core.values import Record
 from seatrial.physics.models import model_named
-from seatrial.physics.simulate.channels import inputs_of
-from seatrial.physics.simulate.replay import trajectory
+from seatrial.physics.simulate.replay import inputs_of, trajectory
 from seatrial.reporting.pages import report_page
 from seatrial.reporting.resimulation import corrected_inputs, resimulation
 

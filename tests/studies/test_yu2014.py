@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from seatrial.core.results import CheckStatus, Study, Verdict
-from seatrial.physics.hydro.dispersion import G
-from seatrial.physics.loops.fin import Preamplifier
+from seatrial.physics.hydro.excitation import G
 from seatrial.physics.loops.loop_states import state_space
+from seatrial.physics.loops.structures import Preamplifier
 from seatrial.physics.sea.spectrum import ittc
 from seatrial_studies import yu2014
 from seatrial_studies.yu2014.audit import audit

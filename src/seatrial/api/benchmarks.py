@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from seatrial.core.results.benchmark import Benchmark
+    from seatrial.core.results.campaign import Benchmark
     from seatrial.core.values import ProgressReporter
 
 RUNS = 30

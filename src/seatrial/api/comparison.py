@@ -58,7 +58,7 @@ def compare(
 
 
 def _is_steered(fit: "Fit") -> bool:
-    from seatrial.physics.simulate.craft_manoeuvre import is_steered_by_angle
+    from seatrial.physics.simulate.thrust import is_steered_by_angle
 
     return is_steered_by_angle(fit.model)
 

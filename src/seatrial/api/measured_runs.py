@@ -10,8 +10,8 @@ from seatrial.core.values import InputError
 
 if TYPE_CHECKING:
     from seatrial.core.results import Fit, Prediction
-    from seatrial.core.results.estimated_current import EstimatedCurrent
     from seatrial.core.results.poster import MeasuredRun, PosterQuantity
+    from seatrial.core.results.prediction import EstimatedCurrent
     from seatrial.core.values import Record
     from seatrial.physics.manoeuvres import ObservedManoeuvre
 
@@ -52,7 +52,7 @@ class Reading:
 
         from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
         from seatrial.estimation.predict.reading_error import reading_errors
-        from seatrial.physics.sensors.current_correction import without_current
+        from seatrial.physics.sensors.measured_outputs import without_current
 
         record = without_current(self.measured, self.current, self.has_ground_velocity)
         noise = reading_errors(record, self.length, np.random.default_rng(self.seed))
@@ -71,7 +71,7 @@ class Reading:
 
     def _values_in(self, current: "EstimatedCurrent | None") -> dict[str, float]:
         from seatrial.physics.manoeuvres import measures
-        from seatrial.physics.sensors.current_correction import without_current
+        from seatrial.physics.sensors.measured_outputs import without_current
 
         record = without_current(self.measured, current, self.has_ground_velocity)
         return measures(record, self.length, reference=self.manoeuvre)
@@ -102,11 +102,10 @@ def measured_quantity(name: str, runs: Sequence[Reading]) -> "PosterQuantity | N
 
 def _reading(fit: "Fit", p: "Prediction") -> Reading | None:
     """None where the run has no heading, and neither a rudder nor thrusters that turn."""
-    from seatrial.core.results.estimated_current import estimated_current
+    from seatrial.core.results.prediction import estimated_current
     from seatrial.physics.manoeuvres import ObservedManoeuvre
-    from seatrial.physics.models.thruster_layout import ThrusterLayout
-    from seatrial.physics.models.thruster_steering import with_steering_order
-    from seatrial.physics.sensors.current_correction import shows_ground_velocity
+    from seatrial.physics.models.thruster_layout import ThrusterLayout, with_steering_order
+    from seatrial.physics.sensors.measured_outputs import shows_ground_velocity
 
     layout = fit.model.equations.layout
     measured = with_steering_order(p.measured, ThrusterLayout.from_text(layout)) if layout else p.measured

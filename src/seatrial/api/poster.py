@@ -63,7 +63,7 @@ def poster(
     from seatrial.api.simulation import rudder_rate_of
     from seatrial.core.results.poster import Poster
     from seatrial.core.values.versions import versions
-    from seatrial.physics.simulate.craft_manoeuvre import is_steered_by_angle
+    from seatrial.physics.simulate.thrust import is_steered_by_angle
 
     if not is_steered_by_angle(fit.model):
         raise InputError(

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from seatrial.core.results import Fit
     from seatrial.core.values import Finding, Record
     from seatrial.data.folder.model_file import ModelFile
-    from seatrial.physics.simulate.rudder_rate import RudderRate
+    from seatrial.physics.simulate.steer import RudderRate
 
 Steering = Callable[["Model"], "Record"]
 
@@ -44,7 +44,7 @@ def steering(
     Raises:
         InputError: unknown manoeuvre, or a rudder that cannot move.
     """
-    from seatrial.physics.simulate.release import rolls_only
+    from seatrial.physics.simulate.steer import rolls_only
 
     file = as_model_file(model)
     _refuse_no_number(speed)
@@ -82,7 +82,7 @@ def rudder_rate_of(model: "Fit | ModelFile | Model", given: float | None = None)
     Raises:
         InputError: the given rate is not positive.
     """
-    from seatrial.physics.simulate.rudder_rate import RudderRate
+    from seatrial.physics.simulate.steer import RudderRate
 
     if given is None:
         return as_model_file(model).rudder_rate
@@ -104,8 +104,7 @@ def _by_thrusters(
 ) -> Steering:
     from seatrial.physics.manoeuvres.thrust_programme import ThrustProgramme
     from seatrial.physics.models.thruster_layout import ThrusterLayout
-    from seatrial.physics.simulate.craft_manoeuvre import craft_manoeuvre, craft_programme
-    from seatrial.physics.simulate.thrust import refuse_rudder_options
+    from seatrial.physics.simulate.thrust import craft_manoeuvre, craft_programme, refuse_rudder_options
 
     orders = craft_programme(ThrusterLayout.from_text(file.model.equations.layout), manoeuvre)
     if isinstance(orders, ThrustProgramme):
@@ -122,7 +121,7 @@ def _by_release(
     duration: float | None,
     rudder_rate: float | None,
 ) -> Steering:
-    from seatrial.physics.simulate.release import natural_period, release
+    from seatrial.physics.simulate.steer import natural_period, release
 
     if speed is not None or rudder_rate is not None or inputs:
         raise InputError("a release needs no speed, no rudder rate and no inputs; leave them out")
@@ -230,7 +229,7 @@ def replay(model: "ModelFile", record: "Record", speed: float | None = None) -> 
     from seatrial.core.values import RecordKind
     from seatrial.data.check import refuse_impossible_commands
     from seatrial.physics.simulate import replay
-    from seatrial.physics.simulate.approach import straight_run
+    from seatrial.physics.simulate.states import straight_run
 
     refuse_impossible_commands(model.model, record)
     is_planned = record.kind is RecordKind.PLANNED or not set(model.model.states) & set(record.channels)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Protocol
 if TYPE_CHECKING:
     from seatrial.core.results import Fit, Study
     from seatrial.core.values import ProgressReporter
-    from seatrial.data.trial.model_guide import ModelGuide
+    from seatrial.data.trial.model_table import ModelGuide
     from seatrial.physics.models.registry import ModelSummary
 
 STUDY_GROUP = "seatrial.studies"
@@ -70,7 +70,7 @@ def model_guide(name: str) -> "ModelGuide":
     Raises:
         InputError: there is no such model; the nearest name is given.
     """
-    from seatrial.data.trial.model_guide import model_guide
+    from seatrial.data.trial.model_table import model_guide
 
     return model_guide(name)
 

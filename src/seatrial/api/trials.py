@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from seatrial.data.folder.model_file import ModelFile
     from seatrial.data.trial import Trial
     from seatrial.data.trial.correction import Correction
-    from seatrial.data.trial.earlier_result import EarlierResult
+    from seatrial.data.trial.priors import EarlierResult
     from seatrial.onboard.follow import FollowResult
     from seatrial.onboard.sources import SampleSource
 
@@ -34,7 +34,7 @@ def load_trial(path: str | Path, own_model: "Model | None" = None) -> "Trial":
     from seatrial.data.trial import load_trial
 
     def read_result(folder: Path) -> "EarlierResult":
-        from seatrial.data.folder.earlier_result import read_earlier_result
+        from seatrial.data.folder.model_file import read_earlier_result
 
         return read_earlier_result(folder, own_model)
 
@@ -74,7 +74,7 @@ def _checked(trial: "Trial") -> "tuple[Finding, ...]":
     """The findings of the records, and one where they lack an input of the model, or a state that nothing implies."""
     from seatrial.core.values import Finding, InputError, Severity
     from seatrial.data.trial import Role, load_records
-    from seatrial.physics.simulate.channels import require_inputs
+    from seatrial.physics.simulate.replay import require_inputs
 
     records, findings = load_records(trial)
     try:
@@ -218,7 +218,7 @@ def identify(
             unknown method, or one that cannot serve this model.
     """
     from seatrial.core.values import InputError, spelling_hint
-    from seatrial.physics.models.precompile import precompile
+    from seatrial.physics.models.registry import precompile
 
     trial = _loaded(trial)
     with precompile(trial.model.name):
@@ -270,7 +270,7 @@ def follow(
         InputError: the trial has no ``[follow]``, lacks channels, its source cannot be opened, or the journal belongs
             to another trial.
     """
-    from seatrial.physics.models.precompile import precompile
+    from seatrial.physics.models.registry import precompile
 
     trial = _loaded(trial)
     with precompile(trial.model.name):
@@ -300,7 +300,7 @@ def design(
         InputError: the trial has no ``[design]``, its sensors or inputs do not fit the model, the model file holds
             another model, or no manoeuvre stays within the limits.
     """
-    from seatrial.physics.models.precompile import precompile
+    from seatrial.physics.models.registry import precompile
 
     trial = _loaded(trial)
     with precompile(trial.model.name):

@@ -14,7 +14,7 @@ from seatrial.campaigns.journal import body_of
 from seatrial.campaigns.outcome import decoded
 from seatrial.campaigns.store import Store
 from seatrial.campaigns.summary import coverage_interval, store_findings
-from seatrial.core.results.benchmark import (
+from seatrial.core.results.campaign import (
     Benchmark,
     BenchmarkMethod,
     CheckedClaim,

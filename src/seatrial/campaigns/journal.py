@@ -15,7 +15,7 @@ from pathlib import Path
 
 from seatrial.campaigns.outcome import Outcome
 from seatrial.core.values import InputError
-from seatrial.core.values.frames import FrameWriter, whole_frames
+from seatrial.core.values.files import FrameWriter, whole_frames
 from seatrial.numerics.platform import flush_folder_to_disk
 
 SUFFIX = ".journal"

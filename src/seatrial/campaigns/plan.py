@@ -8,11 +8,10 @@ from pydantic import BaseModel, Field, TypeAdapter, ValidationError, model_valid
 
 from seatrial.campaigns.work import refuse_count
 from seatrial.core.values import InputError, spelling_hint
-from seatrial.core.values.tables import parse_toml, read_table_text
+from seatrial.core.values.files import parse_toml, read_table_text
 from seatrial.data.trial import EstimateSettings
-from seatrial.data.trial.amounts import InSi, PositiveDuration, SiAmount, Speed, StrictTable
+from seatrial.data.trial.amounts import InSi, PositiveDuration, SiAmount, Speed, StrictTable, schema_error
 from seatrial.data.trial.schema import ModelTable, ShipTable, Strings
-from seatrial.data.trial.schema_errors import schema_error
 from seatrial.estimation.identify import IntervalMethod
 from seatrial.physics.manoeuvres.programme import programme
 

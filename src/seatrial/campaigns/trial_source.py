@@ -9,7 +9,7 @@ from typing import Any
 
 from seatrial.campaigns.work import canonical_json
 from seatrial.core.values import InputError
-from seatrial.data.folder.earlier_result import read_earlier_result
+from seatrial.data.folder.model_file import read_earlier_result
 from seatrial.data.read.record_file import file_digest
 from seatrial.data.trial import Role, Trial, parse_tables, trial_of_tables
 from seatrial.data.trial.load import read_tables

@@ -14,7 +14,7 @@ RUNS = 30
 """Runs of a method where none are stated: COCO has 15 (Hansen et al. 2016); twice that suits paired tests."""
 
 if TYPE_CHECKING:
-    from seatrial.core.results.benchmark import Benchmark
+    from seatrial.core.results.campaign import Benchmark
 
 
 @app.command("benchmark")

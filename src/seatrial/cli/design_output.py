@@ -51,7 +51,7 @@ def _manoeuvre_cells(manoeuvre: "ManoeuvrePrecision", design: "Design") -> list[
 
 
 def _print_orders(design: "Design") -> None:
-    from seatrial.data.folder.orders import order_cells, order_headings
+    from seatrial.data.folder.gains_file import order_cells, order_headings
     from seatrial.reporting.design_text import order_meaning
 
     print_heading("Orders")

@@ -23,11 +23,7 @@ DIGITS = 5  # significant ones of estimates and likelihoods; chosen
 
 def print_method_comparison(fit: "Fit", reference: "ReferenceEstimate") -> None:
     """Print a published method compared with the package's own estimate: coefficients, cost, predictions."""
-    from seatrial.core.results.method_comparison import (
-        coefficient_comparison,
-        cost_comparison,
-        inside_own_intervals,
-    )
+    from seatrial.core.results.comparison import coefficient_comparison, cost_comparison, inside_own_intervals
 
     for table in (coefficient_comparison(fit, reference), cost_comparison(fit, reference)):
         last = len(table.header) - 1

@@ -201,7 +201,7 @@ def _print_thruster_craft(fit: "Fit") -> None:
 
 def _print_course_stability(fit: "Fit") -> None:
     """Whether the craft holds a straight course, and how fast it leaves one."""
-    from seatrial.core.results.identifiability import COURSE_UNSTABLE
+    from seatrial.core.results.fit import COURSE_UNSTABLE
     from seatrial.core.text.words import sentence
     from seatrial.reporting.grades import is_missed
 

@@ -62,7 +62,7 @@ def live_display(heading: str, port: int | None) -> "Iterator[Callable[[Snapshot
 
 def stream_heading(trial: "Trial") -> str:
     """Return what is followed, in a line."""
-    from seatrial.data.trial.follow_table import require_stream
+    from seatrial.data.trial.runs import require_stream
 
     stream = require_stream(trial)
     name = trial.path.name if trial.path else trial.model.name
@@ -90,7 +90,7 @@ def print_outcome(outcome: "FollowResult") -> None:
 
 def journal_path(path: Path | None, trial: "Trial", out: Path | None, *, once: bool) -> Path | None:
     """Return the file of the journal: as given, as in [follow], or in the result folder if the stream has no end."""
-    from seatrial.data.trial.follow_table import require_stream
+    from seatrial.data.trial.runs import require_stream
 
     named = path or require_stream(trial).journal
     if named is not None or out is None or once:

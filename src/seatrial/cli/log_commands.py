@@ -12,7 +12,7 @@ from seatrial.cli.screen import in_shell, print_file, print_lines, print_next, p
 
 if TYPE_CHECKING:
     from seatrial.data.draft import ColumnGuess, ColumnSummary, DraftTrial, LogSurvey, SurveyedLogs, TopicSummary
-    from seatrial.data.draft.one_speed import OtherSpeed
+    from seatrial.data.draft.runs_of_logs import OtherSpeed
 
 COLUMNS_SHOWN = 12  # columns of a topic that `check` lists without --all; ours, one screen for a log of a few topics
 REASONS_SHOWN = 3  # why known columns are not needed, of which the file has all; ours

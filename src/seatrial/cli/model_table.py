@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from seatrial.cli.screen import print_heading, print_lines, print_next, print_table, print_verbatim
 
 if TYPE_CHECKING:
-    from seatrial.data.trial.model_guide import FilledValue, ModelGuide
+    from seatrial.data.trial.model_table import FilledValue, ModelGuide
     from seatrial.physics.models import ModelSummary
 
 

@@ -60,7 +60,7 @@ def after_fit(fit: "Fit", folder: Path, trial: Path | None = None) -> str:
 def _craft_step(fit: "Fit", model: str) -> str:
     """The command that turns a craft with thrusters: by its steering angle, by difference of thrust, or not at all."""
     from seatrial.physics.models.thruster_layout import ThrusterLayout
-    from seatrial.physics.simulate.craft_manoeuvre import craft_programmes
+    from seatrial.physics.simulate.thrust import craft_programmes
 
     kind = craft_programmes(ThrusterLayout.from_text(fit.model.equations.layout))[0].partition(":")[0]
     if kind in ("spin", "straight"):
@@ -76,8 +76,7 @@ def _recorded_rudder(fit: "Fit") -> float:
     import numpy as np
 
     from seatrial.physics.manoeuvres import REACH_PERCENTILE
-    from seatrial.physics.models.thruster_layout import ThrusterLayout
-    from seatrial.physics.models.thruster_steering import with_steering_order
+    from seatrial.physics.models.thruster_layout import ThrusterLayout, with_steering_order
 
     training, layout = [p.measured for p in fit.predictions if p.role == "training"], fit.model.equations.layout
     if layout:

@@ -157,7 +157,7 @@ def follow(
     """
     from seatrial import api
     from seatrial.core.values.files import writable_folder
-    from seatrial.data.trial.follow_table import require_stream, with_source
+    from seatrial.data.trial.runs import require_stream, with_source
 
     if out is not None:
         writable_folder(out)

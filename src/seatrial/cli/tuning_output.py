@@ -73,7 +73,7 @@ def _margins_text(c: "Controller") -> str:
 def _print_controllers(tuning: "Tuning") -> None:
     from seatrial.core.text.numbers import exact, fixed
     from seatrial.core.values import display_unit
-    from seatrial.core.values.channel_text import channel_unit
+    from seatrial.core.values.notation import channel_unit
 
     names = (tuning.output, tuning.actuator)
     (output_factor, output_unit), (actuator_factor, actuator_unit) = (display_unit(channel_unit(n)) for n in names)

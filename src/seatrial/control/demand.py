@@ -23,8 +23,7 @@ from seatrial.core.values import (
 )
 from seatrial.physics.loops import TransferLoop
 from seatrial.physics.loops.autopilot import START, FeedForward, acceleration_feed_forward, working_frequency
-from seatrial.physics.simulate.closed_loop import REFERENCE, ActuatorLimits, ClosedLoop
-from seatrial.physics.simulate.sampled_controller import simulation_step, steps_a_sample
+from seatrial.physics.simulate.closed_loop import REFERENCE, ActuatorLimits, ClosedLoop, simulation_step, steps_a_sample
 
 DEMAND = "demand"
 _SHOWN_DRAWS, _SAMPLES = 20, 1000  # sampled ships and samples in time that a figure shows; chosen

@@ -15,8 +15,14 @@ from seatrial.core.values import Array, DivergedError
 from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.hydro.excitation import Complex
 from seatrial.physics.loops import TransferLoop, plant_model
-from seatrial.physics.simulate.closed_loop import UNLIMITED, ActuatorLimits, ClosedLoop
-from seatrial.physics.simulate.sampled_controller import sample_noise, simulation_step, steps_a_sample
+from seatrial.physics.simulate.closed_loop import (
+    UNLIMITED,
+    ActuatorLimits,
+    ClosedLoop,
+    sample_noise,
+    simulation_step,
+    steps_a_sample,
+)
 
 SEEDS = 8  # realisations; chosen
 _ACCURACY = (

@@ -6,8 +6,7 @@ from typing import Annotated
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
-from seatrial.data.trial.amounts import STRICT_FIELDS
-from seatrial.data.trial.schema_errors import raises_input_error
+from seatrial.data.trial.amounts import STRICT_FIELDS, raises_input_error
 from seatrial.numerics.optimise import GeneticSettings, Normaliser
 
 Probability = Annotated[float, Field(ge=0, le=1)]

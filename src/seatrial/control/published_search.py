@@ -11,8 +11,7 @@ from seatrial.control.genetic import SOURCE, GeneticRun, genetic_runs, searched_
 from seatrial.control.genetic_settings import GeneticTuning
 from seatrial.control.gradient_refinement import all_gains, free_gain_bounds
 from seatrial.control.record_cost import record_cost
-from seatrial.core.results.gain_search import GainSearch
-from seatrial.core.results.tuning import ParetoFront
+from seatrial.core.results.tuning import GainSearch, ParetoFront
 from seatrial.core.values import Array
 from seatrial.numerics.optimise import hypervolume, non_dominated
 

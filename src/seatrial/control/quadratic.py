@@ -22,8 +22,8 @@ from seatrial.control.youla import (
 from seatrial.core.results.tuning import PerformanceBound
 from seatrial.core.values import Array
 from seatrial.physics.loops import Block, EncounterSpectrum, TransferLoop, in_series
-from seatrial.physics.loops.block import controllable_form
 from seatrial.physics.loops.encounter_spectrum import disturbance_spectrum
+from seatrial.physics.loops.loop import controllable_form
 
 _FIT, _SPAN = 800, 30.0  # frequencies of the fit, and their span as a factor either side of the mean frequency; chosen
 _TAIL_FACTOR = 100.0  # span of the rational spectrum either side of the mean frequency; chosen

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from seatrial.core.results.gain_search import RECORD_SECONDS, RECORD_STEP
+from seatrial.core.results.tuning import RECORD_SECONDS, RECORD_STEP
 from seatrial.core.values import Array
 from seatrial.physics.loops import TransferLoop, state_space
-from seatrial.physics.simulate.loop_records import loop_record
+from seatrial.physics.simulate.closed_loop import loop_record
 
 _REPEATS = 3  # of which the fastest counts; chosen
 

@@ -19,10 +19,9 @@ from seatrial.core.values import Array, Channel, InputError, Record, frozen
 from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.hydro.excitation import Complex, encounter_frequency
 from seatrial.physics.loops import LoopSignal, TransferLoop, WaveEffect
-from seatrial.physics.loops.state_space import plant_model
+from seatrial.physics.loops.loop_states import plant_model
 from seatrial.physics.sea.realise import Spacing, WaveComponents, realise, short_crested
-from seatrial.physics.simulate.closed_loop import UNLIMITED, ActuatorLimits, ClosedLoop
-from seatrial.physics.simulate.sampled_controller import sample_noise
+from seatrial.physics.simulate.closed_loop import UNLIMITED, ActuatorLimits, ClosedLoop, sample_noise
 
 LONG_CRESTED_LINES, SHORT_CRESTED_LINES = 800, 1600  # wave components of a simulated sea; chosen
 RUN_IN_SECONDS = 100.0  # before what is counted: several swings of any ship; chosen

@@ -4,8 +4,13 @@ import math
 import re
 
 from seatrial.core.equations.bindings import Binding
-from seatrial.core.equations.generate import function_assignments, live_assignments, tangent_assignments
-from seatrial.core.equations.printer import Assignment, CDialect
+from seatrial.core.equations.generate import (
+    Assignment,
+    CDialect,
+    function_assignments,
+    live_assignments,
+    tangent_assignments,
+)
 from seatrial.exporting.identified_range import identified_range, range_text, range_use
 from seatrial.exporting.source import (
     ExportSource,

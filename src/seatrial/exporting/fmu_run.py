@@ -12,8 +12,8 @@ import numpy as np
 
 from seatrial.core.text.words import printable
 from seatrial.core.values import NOTATION, Array, Channel, InputError, Provenance, Record, RecordKind, frozen
-from seatrial.data.read.extras import require_library
-from seatrial.physics.simulate.channels import ZERO_BY_DEFAULT
+from seatrial.data.read.log import require_library
+from seatrial.physics.simulate.replay import ZERO_BY_DEFAULT
 
 if TYPE_CHECKING:
     from fmpy.fmi2 import FMU2Slave

@@ -21,11 +21,10 @@ from seatrial.exporting.target import Export
 from seatrial.exporting.target_structure import ForceTerm, TargetStructure, unsuitable_hull
 from seatrial.exporting.templating import rendered
 from seatrial.physics.manoeuvres.programme import programme
-from seatrial.physics.models.thruster_layout import ThrusterLayout
-from seatrial.physics.models.thruster_steering import steering_angles
-from seatrial.physics.simulate.craft_manoeuvre import craft_manoeuvre, craft_programme
+from seatrial.physics.models.thruster_layout import ThrusterLayout, steering_angles
 from seatrial.physics.simulate.replay import replay
 from seatrial.physics.simulate.steer import manoeuvre
+from seatrial.physics.simulate.thrust import craft_manoeuvre, craft_programme
 
 VRX = TargetStructure(
     (

@@ -13,13 +13,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from seatrial.core.equations import Model, ModelEquations
-from seatrial.core.equations.manifest import stored_equations
+from seatrial.core.equations.model import stored_equations
 from seatrial.core.values import Array, InputError, Parameter, Parameters, Record
 from seatrial.data.folder.model_file import ModelFile
 from seatrial.exporting.target_structure import ADDED, OFF_COURSE, RigidBody, TargetStructure, rigid_body
 from seatrial.exporting.truncation import truncation
-from seatrial.physics.simulate.channels import inputs_of
-from seatrial.physics.simulate.replay import trajectory
+from seatrial.physics.simulate.replay import inputs_of, trajectory
 
 if TYPE_CHECKING:
     import sympy as sp

@@ -6,9 +6,14 @@ from typing import Any
 import numpy as np
 
 from seatrial.core.equations.bindings import Binding
-from seatrial.core.equations.generate import function_assignments, live_assignments
-from seatrial.core.equations.printer import CasadiDialect, Dialect, MatlabDialect
-from seatrial.data.folder.loop_mat import HEADER
+from seatrial.core.equations.generate import (
+    CasadiDialect,
+    Dialect,
+    MatlabDialect,
+    function_assignments,
+    live_assignments,
+)
+from seatrial.data.folder.gains_file import HEADER
 from seatrial.exporting.identified_range import range_text
 from seatrial.exporting.source import (
     ExportSource,

@@ -5,7 +5,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from seatrial.core.equations.stored import stored
+from seatrial.core.equations.bindings import stored
 
 if TYPE_CHECKING:
     from jinja2 import Environment

@@ -9,7 +9,7 @@ from seatrial.core.values import Array, Record
 from seatrial.data.folder.model_file import ModelFile
 from seatrial.exporting.target_structure import ADDED, OFF_COURSE, RigidBody, TargetStructure
 from seatrial.numerics.kernels.integrate import evaluate
-from seatrial.physics.simulate.channels import inputs_of
+from seatrial.physics.simulate.replay import inputs_of
 
 _SMALL = 1e-3  # v over u, and L r over u, at which linear terms are read off the model; chosen
 

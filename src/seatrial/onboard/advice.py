@@ -13,12 +13,12 @@ from seatrial.core.results.online import EstimatorPhase, Snapshot
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.trial import Trial
-from seatrial.data.trial.follow_table import require_stream
+from seatrial.data.trial.runs import require_stream
 from seatrial.estimation.estimate.fit import is_pure_roll
 from seatrial.estimation.information.covariance import inverse
 from seatrial.onboard.candidate_manoeuvres import CandidateManoeuvre, candidate_manoeuvres, fisher_information
-from seatrial.physics.simulate.channels import ZERO_BY_DEFAULT
-from seatrial.physics.simulate.steer import RUDDER
+from seatrial.physics.simulate.replay import ZERO_BY_DEFAULT
+from seatrial.physics.simulate.states import RUDDER
 
 # a coefficient is identified once its standard error is below this multiple of its value; chosen: its sign is known
 _IDENTIFIED_BELOW = 1.0

@@ -10,7 +10,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.trial import Trial
 from seatrial.data.trial.design_request import DesignRequest, InputRange
-from seatrial.data.trial.follow_table import require_stream
+from seatrial.data.trial.runs import require_stream
 from seatrial.estimation.design.manoeuvre_information import ManoeuvreEvaluator
 from seatrial.estimation.design.search_step import search_step
 from seatrial.estimation.design.ships import PriorShips
@@ -19,11 +19,10 @@ from seatrial.estimation.design.task import DesignTask
 from seatrial.estimation.estimate.time_scale import characteristic_time, is_pure_roll
 from seatrial.estimation.information.extrapolation import motion_envelope
 from seatrial.numerics.optimise import NormalEquations
-from seatrial.physics.simulate.channels import ZERO_BY_DEFAULT
-from seatrial.physics.simulate.divergence import state_limits
 from seatrial.physics.simulate.linear import batch_class
-from seatrial.physics.simulate.rudder_rate import RUDDER_RATE, rudder_rate
-from seatrial.physics.simulate.steer import RUDDER
+from seatrial.physics.simulate.replay import ZERO_BY_DEFAULT, state_limits
+from seatrial.physics.simulate.states import RUDDER
+from seatrial.physics.simulate.steer import RUDDER_RATE, rudder_rate
 
 # where the trial has no [design]: duration and hold in characteristic times of the ship (length over speed, or a
 # period); chosen: 20 cover a zigzag or two, 40 the resonances of a linear model

@@ -15,8 +15,8 @@ from seatrial.core.results import Fit
 from seatrial.core.results.online import NO_SAMPLE, Sample, SampleCounts, Snapshot
 from seatrial.core.values import ProgressReporter
 from seatrial.data.trial import Trial
-from seatrial.data.trial.follow_table import require_stream
-from seatrial.data.trial.stream import Stream, StreamSource
+from seatrial.data.trial.runs import require_stream
+from seatrial.data.trial.settings import Stream, StreamSource
 from seatrial.estimation.identify import identify
 from seatrial.estimation.identify.online import OnlineEstimator, SearchFollower, own_trial
 from seatrial.estimation.identify.strategies.published import own_estimate_progress, published_fit

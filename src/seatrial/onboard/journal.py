@@ -20,7 +20,7 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.results.online import Sample
 from seatrial.core.values import InputError
-from seatrial.core.values.frames import FrameWriter, whole_frames
+from seatrial.core.values.files import FrameWriter, whole_frames
 from seatrial.data.read import Layout
 from seatrial.numerics.platform import lock_exclusively
 

@@ -3,8 +3,8 @@
 import math
 from dataclasses import dataclass
 
-from seatrial.data.read.extras import require_library
 from seatrial.data.read.formats.nmea2000 import decoded_message
+from seatrial.data.read.log import require_library
 
 _STREAM = "the stream"
 _DEGREE, _TENTH_MICRODEGREE = math.pi / 180.0, math.pi / 180.0 * 1e-7  # rad; MAVLink: 1e-7 deg as integers

@@ -8,13 +8,7 @@ import numpy as np
 from seatrial.core.results.online import SampleCounts, Snapshot
 from seatrial.core.text.words import printable
 from seatrial.core.values import NOTATION, Array, Record, display_unit, worst_first
-from seatrial.core.values.channel_text import (
-    POSITIONS,
-    channel_label,
-    channel_unit,
-    display_values,
-    reading_order,
-)
+from seatrial.core.values.notation import POSITIONS, channel_label, channel_unit, display_values, reading_order
 from seatrial.core.values.record_chart import has_track, is_constant
 from seatrial.onboard import snapshot_text
 from seatrial.onboard.history import HistoryPoint

@@ -2,7 +2,7 @@
 
 import math
 
-from seatrial.core.results.proposal import Estimated, Proposal, SeaEstimate
+from seatrial.core.results.online import Estimated, Proposal, SeaEstimate
 from seatrial.core.text.numbers import significant
 from seatrial.core.text.words import enumeration, printable
 

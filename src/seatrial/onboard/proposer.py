@@ -11,17 +11,15 @@ from seatrial.control.proposals.gain_schedule import gain_schedule, refuse_other
 from seatrial.control.proposals.look import RATE, SHORTEST_PERIODS, Stretch, look, no_proposal
 from seatrial.control.task import Seaway, TuningTask
 from seatrial.control.verification.legs import natural_period
-from seatrial.core.results.online import Sample
-from seatrial.core.results.proposal import Proposal
+from seatrial.core.results.online import Proposal, Sample
 from seatrial.core.values import Array, InputError, Record
 from seatrial.core.values.files import write_atomically
 from seatrial.data.check import canonical_record
-from seatrial.data.folder.gains_file import read_schedule
-from seatrial.data.folder.proposal_file import proposal_toml
+from seatrial.data.folder.gains_file import proposal_toml, read_schedule
 from seatrial.data.read.assemble import record_from_values
 from seatrial.data.trial import Trial
-from seatrial.data.trial.follow_table import require_stream
-from seatrial.data.trial.proposal_settings import ProposalSettings
+from seatrial.data.trial.runs import require_stream
+from seatrial.data.trial.settings import ProposalSettings
 from seatrial.onboard.required_channels import rest_record
 
 _SLOWEST_RATE = 6.0  # samples a natural period, below which the motion is not resolved; chosen

@@ -6,8 +6,8 @@ from seatrial.core.values import Channel, InputError, Record
 from seatrial.data.check.conventions import canonical_record
 from seatrial.data.read.assemble import record_from_values
 from seatrial.data.trial import Role, Trial
-from seatrial.data.trial.follow_table import require_stream
-from seatrial.physics.simulate.channels import ZERO_BY_DEFAULT
+from seatrial.data.trial.runs import require_stream
+from seatrial.physics.simulate.replay import ZERO_BY_DEFAULT
 from seatrial.physics.simulate.states import hidden_states, unobserved_states
 
 _WAVE_FORCES = ("F3", "M5")

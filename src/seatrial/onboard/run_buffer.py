@@ -10,7 +10,7 @@ from seatrial.core.values import Record
 from seatrial.data.read import Layout
 from seatrial.data.read.assemble import record_from_values
 from seatrial.data.trial import Role, Trial
-from seatrial.data.trial.follow_table import require_stream
+from seatrial.data.trial.runs import require_stream
 from seatrial.data.trial.trial import TrialRun
 
 # a record needs a time step

@@ -8,7 +8,7 @@ from seatrial.core.results.online import CoefficientChange, EstimatorPhase, Samp
 from seatrial.core.text.numbers import DASH, exponent, fixed, percent, raised, significant
 from seatrial.core.text.words import counted, printable
 from seatrial.core.values import display_unit
-from seatrial.core.values.channel_text import channel_unit, unit_text
+from seatrial.core.values.notation import channel_unit, unit_text
 
 # quantile of the standard normal distribution for 95 %, two-sided
 NORMAL_95 = 1.96

@@ -5,7 +5,7 @@ from typing import Protocol
 
 from seatrial.core.results.online import Sample, SampleCounts
 from seatrial.core.values import InputError
-from seatrial.data.trial.stream import Stream, StreamSource
+from seatrial.data.trial.settings import Stream, StreamSource
 from seatrial.onboard.columns import ColumnReader
 from seatrial.onboard.lines import LineBatch, LineSource
 from seatrial.onboard.message_decoders import BusDecoder, MavlinkDecoder

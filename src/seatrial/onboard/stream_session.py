@@ -5,11 +5,10 @@ from typing import Protocol
 
 import numpy as np
 
-from seatrial.core.results.online import Sample, SampleCounts, Snapshot
-from seatrial.core.results.proposal import Proposal
+from seatrial.core.results.online import Proposal, Sample, SampleCounts, Snapshot
 from seatrial.core.text.words import counted
 from seatrial.core.values import InputError
-from seatrial.data.trial.stream import Stream
+from seatrial.data.trial.settings import Stream
 from seatrial.onboard.journal import Journal, RunEntry
 from seatrial.onboard.proposer import GainProposer
 from seatrial.onboard.recent_run import RecentRun

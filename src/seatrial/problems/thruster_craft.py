@@ -20,8 +20,8 @@ from seatrial.physics.models.thruster_layout import (
     ThrusterLayout,
 )
 from seatrial.physics.models.thrusters import thrusters
-from seatrial.physics.simulate.actuators import actuator_motion
 from seatrial.physics.simulate.replay import replay
+from seatrial.physics.simulate.states import actuator_motion
 from seatrial.problems.boxes import off_centre_box, scaled_values
 from seatrial.problems.problem import BenchmarkProblem, Placement, ProblemDraw
 from seatrial.problems.trial_problem import KnownCraft, craft_draw

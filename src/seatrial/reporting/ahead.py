@@ -8,7 +8,7 @@ from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Fit, FrequencyResponse, KStepErrors
 from seatrial.core.text.numbers import exact, fixed, significant
 from seatrial.core.values import display_unit
-from seatrial.core.values.channel_text import channel_letter
+from seatrial.core.values.notation import channel_letter
 from seatrial.reporting.figures.frequency_chart import frequency_chart
 from seatrial.reporting.figures.k_step_chart import k_step_chart
 from seatrial.reporting.text_tables import TextTable

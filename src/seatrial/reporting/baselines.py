@@ -13,7 +13,7 @@ from seatrial.core.results.prediction import NO_COMPARISON
 from seatrial.core.text.numbers import exact, fixed, significant
 from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import display_unit
-from seatrial.core.values.channel_text import unit_text
+from seatrial.core.values.notation import unit_text
 from seatrial.reporting.figures.relative_errors import CoefficientError, estimator_chart
 from seatrial.reporting.text_tables import TextTable, text_table
 

@@ -11,7 +11,7 @@ from seatrial.core.figures.chart import WIDTH, Axis, Chart, LegendEntry, Panel, 
 from seatrial.core.figures.curves import HEIGHT, LEFT, STROKES
 from seatrial.core.figures.marks import GREY, Line, Mark, Rule, Stroke
 from seatrial.core.figures.svg_text import svg
-from seatrial.core.results.benchmark import Benchmark, CheckedClaim, MethodScore, PairedTest, ProblemScore
+from seatrial.core.results.campaign import Benchmark, CheckedClaim, MethodScore, PairedTest, ProblemScore
 from seatrial.core.text.numbers import DASH, fixed, p_value, significant
 from seatrial.core.text.words import counted, enumeration
 from seatrial.reporting.document import page_text

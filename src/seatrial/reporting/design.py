@@ -20,9 +20,9 @@ from seatrial.core.results.design import (
 )
 from seatrial.core.text.numbers import DASH, exact, fixed, significant
 from seatrial.core.values import NOTATION, Record
-from seatrial.core.values.channel_text import reading_order
+from seatrial.core.values.notation import reading_order
 from seatrial.core.values.record_chart import channel_panels, is_constant
-from seatrial.data.folder.orders import channel_display_unit, order_cells
+from seatrial.data.folder.gains_file import channel_display_unit, order_cells
 from seatrial.reporting import design_text
 from seatrial.reporting.design_text import LARGEST_SHOWN_ERROR
 from seatrial.reporting.document import page_text

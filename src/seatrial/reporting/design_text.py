@@ -16,8 +16,8 @@ from seatrial.core.results.design import (
 from seatrial.core.text.numbers import duration, exact, fixed, significant
 from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import NOTATION, Severity, display_unit
-from seatrial.core.values.channel_text import channel_meaning, unit_text
-from seatrial.data.folder.orders import channel_display_unit
+from seatrial.core.values.notation import channel_meaning, unit_text
+from seatrial.data.folder.gains_file import channel_display_unit
 from seatrial.reporting.first_screen import KeyFact
 from seatrial.reporting.measures import manoeuvre_name
 

@@ -9,8 +9,7 @@ from seatrial.core.figures.bars import bars_chart
 from seatrial.core.figures.chart import Chart
 from seatrial.core.figures.curves import NamedCurve, curves_chart
 from seatrial.core.results.front_chart import degree_unit
-from seatrial.core.results.gain_search import GainSearch
-from seatrial.core.results.tuning import Controller, Tuning
+from seatrial.core.results.tuning import Controller, GainSearch, Tuning
 from seatrial.core.text.numbers import DASH, exact, fixed, significant
 from seatrial.core.text.words import counted
 from seatrial.core.values import Array

@@ -8,7 +8,7 @@ from enum import StrEnum
 import numpy as np
 
 from seatrial.core.results import Fit, Prediction, Stability, WindowScore
-from seatrial.core.results.motion_spread import (
+from seatrial.core.results.prediction import (
     HEADING_SPREAD,
     HELD_COURSE_SPREAD,
     MOTIONS,

@@ -20,7 +20,7 @@ from seatrial.core.results import (
 from seatrial.core.text.numbers import DASH, p_value, rounded, signed_percent, significant
 from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import NOT_MEASURED, display_unit
-from seatrial.core.values.channel_text import channel_meaning, channel_unit, unit_text
+from seatrial.core.values.notation import channel_meaning, channel_unit, unit_text
 from seatrial.reporting.coefficient_uses import WELL_DETERMINED, CoefficientUse, coefficient_uses, meaning_lines
 from seatrial.reporting.correlations import strong_partners
 from seatrial.reporting.disturbance_table import DisturbanceRow, disturbance_rows

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from seatrial.core.results import Fit, Prediction, WindowScore
+from seatrial.core.results.fit import NOT_CONVERGED
 from seatrial.core.results.fit_charts import has_band, headline_view
-from seatrial.core.results.identifiability import NOT_CONVERGED
-from seatrial.core.results.window_scores import ChannelScore
+from seatrial.core.results.prediction import ChannelScore
 from seatrial.core.text.numbers import fixed, significant
 from seatrial.core.text.words import counted, enumeration
 from seatrial.core.values import Severity

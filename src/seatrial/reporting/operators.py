@@ -4,8 +4,7 @@ import math
 from collections.abc import Set
 
 from seatrial.core.results import Fit, RollCharacteristics, Seakeeping
-from seatrial.core.results.ship_motions import IntervalEstimate
-from seatrial.core.results.thruster_craft import CraftMeasure, ThrusterCraft
+from seatrial.core.results.ship_motions import CraftMeasure, IntervalEstimate, ThrusterCraft
 from seatrial.core.text.numbers import estimate_text, significant
 from seatrial.core.text.words import enumeration
 from seatrial.reporting.grades import is_missed

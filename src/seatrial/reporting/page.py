@@ -9,8 +9,8 @@ from seatrial.core.figures.heat_map import heat_map
 from seatrial.core.figures.run import NARROW
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Fit
+from seatrial.core.results.fields import MissingParts
 from seatrial.core.results.fit_charts import coefficients_chart
-from seatrial.core.results.missing_parts import MissingParts
 from seatrial.core.text.words import common_prefix
 from seatrial.core.values.arrays import correlation_matrix
 from seatrial.reporting import (

@@ -1,8 +1,7 @@
 """The page of each kind of result; only the modules that render that kind are imported."""
 
 from seatrial.core.results import Comparison, Design, Fit, Study
-from seatrial.core.results.benchmark import Benchmark
-from seatrial.core.results.campaign import CampaignSummary
+from seatrial.core.results.campaign import Benchmark, CampaignSummary
 from seatrial.core.results.tuning import Tuning
 from seatrial.core.results.verification import Verification
 

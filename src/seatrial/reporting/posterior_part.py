@@ -8,7 +8,7 @@ from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import CredibleInterval, Posterior
 from seatrial.core.text.numbers import estimate_text, fixed
 from seatrial.core.values import display_unit
-from seatrial.core.values.channel_text import unit_text
+from seatrial.core.values.notation import unit_text
 from seatrial.reporting.figures.posterior_densities import posterior_densities
 from seatrial.reporting.text_tables import TextTable
 

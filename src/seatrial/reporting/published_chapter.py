@@ -9,7 +9,7 @@ from seatrial.core.figures.chart import Chart
 from seatrial.core.figures.curves import NamedCurve, curves_chart
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Fit, ReferenceEstimate, Search, SearchTrack
-from seatrial.core.results.method_comparison import (
+from seatrial.core.results.comparison import (
     ComparisonTable,
     coefficient_comparison,
     cost_comparison,

@@ -9,11 +9,10 @@ import numpy as np
 from seatrial.core.results import Fit
 from seatrial.core.text.numbers import significant
 from seatrial.core.values import Array, Record
-from seatrial.core.values.channel_text import channel_meaning, channel_unit, unit_text
+from seatrial.core.values.notation import channel_meaning, channel_unit, unit_text
 from seatrial.physics.manoeuvres import REACH_PERCENTILE, initial_speed, ordered_degrees, steered_orders, to_starboard
 from seatrial.physics.models.thrust_orders import work_shares
-from seatrial.physics.models.thruster_layout import ThrusterLayout
-from seatrial.physics.models.thruster_steering import steering_angles, with_steering_order
+from seatrial.physics.models.thruster_layout import ThrusterLayout, steering_angles, with_steering_order
 from seatrial.reporting.first_screen import KeyFact
 from seatrial.reporting.verdict import LEAST_RUDDER, ONE_SPEED
 

@@ -10,19 +10,12 @@ import numpy as np
 from markupsafe import Markup
 
 from seatrial.core.equations import Model
-from seatrial.core.equations.javascript import rates_function
+from seatrial.core.equations.latex import rates_function
 from seatrial.core.results import Coefficient, Fit, Prediction
 from seatrial.core.values import Array, InputError, Record, display_unit
-from seatrial.core.values.channel_text import (
-    channel_label,
-    channel_letter,
-    channel_meaning,
-    channel_unit,
-    display_values,
-)
-from seatrial.physics.simulate.channels import inputs_of
-from seatrial.physics.simulate.divergence import state_limits
+from seatrial.core.values.notation import channel_label, channel_letter, channel_meaning, channel_unit, display_values
 from seatrial.physics.simulate.filtering import corrected_inputs as delayed_inputs
+from seatrial.physics.simulate.replay import inputs_of, state_limits
 from seatrial.reporting.document import environment
 from seatrial.reporting.runs import badness
 

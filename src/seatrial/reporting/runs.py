@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 from markupsafe import Markup
 
 from seatrial.core.results import Divergence, Extrapolation, Fit, Measure, Prediction
-from seatrial.core.results.estimated_current import estimated_current
 from seatrial.core.results.fit_charts import has_band, has_modelled_position, prediction_view
+from seatrial.core.results.prediction import estimated_current
 from seatrial.core.text.numbers import DASH, column_texts, duration, fixed, interval, ratio_text, significant
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import InputError, Record
 from seatrial.core.values.record_chart import has_track
 from seatrial.physics.manoeuvres import ImoCriterion, imo_criteria
-from seatrial.physics.sensors.current_correction import shows_ground_velocity, without_current
+from seatrial.physics.sensors.measured_outputs import shows_ground_velocity, without_current
 from seatrial.reporting.measures import (
     IntervalVerdict,
     corrected_measure_label,

@@ -1,7 +1,7 @@
 """Sentences at the head of a fit's sections: what the ship is, what limits coefficients, residuals and search."""
 
 from seatrial.core.results import Coefficient, Fit, ReferenceEstimate, Search
-from seatrial.core.results.method_comparison import inside_own_intervals
+from seatrial.core.results.comparison import inside_own_intervals
 from seatrial.core.text.numbers import duration, exact, percent
 from seatrial.core.text.words import counted, enumeration
 

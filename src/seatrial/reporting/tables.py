@@ -12,7 +12,7 @@ from seatrial.core.results import Coefficient, Fit, Method, Noise, Offset
 from seatrial.core.text.numbers import DASH, EstimateText, estimate_text, exact, p_value, significant
 from seatrial.core.text.numbers import fixed as decimals
 from seatrial.core.values import NOTATION, Finding, Severity, display_unit, quantity
-from seatrial.core.values.channel_text import channel_letter, channel_meaning, unit_text
+from seatrial.core.values.notation import channel_letter, channel_meaning, unit_text
 from seatrial.reporting.citations import Citations
 from seatrial.reporting.mathml import inline, pieces
 

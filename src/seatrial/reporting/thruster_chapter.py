@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from seatrial.core.figures.svg_text import svg
-from seatrial.core.results.thruster_craft import CraftMeasure, FossenMatrix, ThrusterCraft
+from seatrial.core.results.ship_motions import CraftMeasure, FossenMatrix, ThrusterCraft
 from seatrial.core.text.numbers import DASH, estimate_text, significant
 from seatrial.core.text.words import enumeration
 from seatrial.reporting.figures.thruster_charts import compass_chart, quadrant_chart, thrust_chart

@@ -9,7 +9,7 @@ from seatrial.core.figures.curves import NamedCurve, curves_chart
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results.tuning import DisturbanceSimulation, TrackKeeping, Tuning
 from seatrial.core.text.numbers import exact, significant
-from seatrial.data.folder.orders import channel_display_unit
+from seatrial.data.folder.gains_file import channel_display_unit
 
 _HALF = 1.96  # standard errors to either side of a mean: 95 % of a Gaussian
 _BEFORE, _AFTER = 2.0, 5.0  # lookahead distances before and behind the corner that the figure shows; chosen

@@ -11,7 +11,7 @@ from seatrial.core.results.station import StationKeeping
 from seatrial.core.results.tuning import ManoeuvreResponse, Tuning
 from seatrial.core.text.numbers import exact, fixed
 from seatrial.core.text.words import enumeration
-from seatrial.core.values.channel_text import channel_meaning
+from seatrial.core.values.notation import channel_meaning
 from seatrial.reporting import gain_search, station_part, track_part, tuning_rows, tuning_text
 from seatrial.reporting.document import page_text
 from seatrial.reporting.figures.controlled_runs import manoeuvre_view, seaway_view

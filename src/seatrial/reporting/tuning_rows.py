@@ -18,8 +18,8 @@ from seatrial.core.results.tuning import (
     Tuning,
 )
 from seatrial.core.text.numbers import DASH, exact, fixed, significant
-from seatrial.core.values.channel_text import channel_meaning
-from seatrial.data.folder.orders import channel_display_unit
+from seatrial.core.values.notation import channel_meaning
+from seatrial.data.folder.gains_file import channel_display_unit
 from seatrial.reporting import tuning_text
 from seatrial.reporting.mathml import inline
 from seatrial.reporting.text_tables import TextTable

@@ -8,8 +8,8 @@ from seatrial.core.results.tuning import Controller, ManoeuvreResponse, PairedDi
 from seatrial.core.text.numbers import duration, exact, fixed, significant
 from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import Severity
-from seatrial.core.values.channel_text import channel_meaning
-from seatrial.data.folder.orders import channel_display_unit
+from seatrial.core.values.notation import channel_meaning
+from seatrial.data.folder.gains_file import channel_display_unit
 from seatrial.reporting.first_screen import KeyFact
 from seatrial.reporting.station_part import precision_sentence
 

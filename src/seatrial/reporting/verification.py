@@ -13,8 +13,8 @@ from seatrial.core.figures.ticks import span
 from seatrial.core.results.verification import Verification, VerifiedLeg, VerifiedQuantity
 from seatrial.core.text.numbers import exact, fixed
 from seatrial.core.values import Array
-from seatrial.core.values.channel_text import channel_meaning
-from seatrial.data.folder.orders import channel_display_unit
+from seatrial.core.values.notation import channel_meaning
+from seatrial.data.folder.gains_file import channel_display_unit
 from seatrial.reporting import verification_text
 from seatrial.reporting.document import page_text
 from seatrial.reporting.first_screen import FirstScreen

@@ -6,7 +6,7 @@ from seatrial.core.results.verification import ModelCorrection, Verification, Ve
 from seatrial.core.text.numbers import DASH, exact, fixed, significant
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Severity, display_unit
-from seatrial.core.values.channel_text import channel_meaning
+from seatrial.core.values.notation import channel_meaning
 from seatrial.reporting.first_screen import KeyFact
 from seatrial.reporting.text_tables import TextTable
 
@@ -169,7 +169,7 @@ def leg_table(v: Verification) -> TextTable:
 
 
 def _channel_unit(symbol: str) -> tuple[float, str]:
-    from seatrial.data.folder.orders import channel_display_unit
+    from seatrial.data.folder.gains_file import channel_display_unit
 
     return channel_display_unit(symbol)
 

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from seatrial.core.results import Fit, Prediction, WindowScore
-from seatrial.core.results.window_scores import ChannelScore
+from seatrial.core.results.prediction import ChannelScore
 from seatrial.core.text.numbers import DASH, fixed, significant
 from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.reporting.text_tables import TextTable

@@ -10,9 +10,8 @@ import numpy as np
 from seatrial.core.values import InputError, Record
 from seatrial.data.read.assemble import assemble_record
 from seatrial.data.read.layout import Layout
-from seatrial.data.read.log import Log, Reader
-from seatrial.data.read.raw_table import RawTable
-from seatrial.data.read.record_csv import read_record_csv, write_record_csv
+from seatrial.data.read.log import Log, RawTable, Reader
+from seatrial.data.read.record_file import read_record_csv, write_record_csv
 from seatrial.testing.conformance import ConformanceError, require, require_refusal
 
 # shares of its length to which a sample file is cut, dimensionless; ours: in the header, in the middle, in the last row

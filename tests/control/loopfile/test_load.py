@@ -18,9 +18,9 @@ from seatrial.control.task import Effectiveness, Seaway, SimulationSettings, Slo
 from seatrial.core.values import InputError
 from seatrial.physics.loops import HullFactor, LoopSignal, Sampling, YawAcceleration
 from seatrial.physics.loops.discrete import default_sample_time
-from seatrial.physics.loops.fin import GYRO, SERVO, Preamplifier, fin_loop
 from seatrial.physics.loops.performance import calm_actuator
-from seatrial.physics.sea.sea_state import sea_state
+from seatrial.physics.loops.structures import GYRO, SERVO, Preamplifier, fin_loop
+from seatrial.physics.sea.spectrum import sea_state
 
 FIN_LINES = sum(bool(line.strip()) for line in FIN.splitlines())
 

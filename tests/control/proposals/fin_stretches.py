@@ -15,7 +15,7 @@ from seatrial.control.schedule import schedule_conditions
 from seatrial.control.task import ScheduleGrid, TuningTask
 from seatrial.core.results.tuning import OperatingPoint
 from seatrial.estimation.sea import altered_loop
-from seatrial.physics.loops.fin import PUBLISHED_GAINS
+from seatrial.physics.loops.structures import PUBLISHED_GAINS
 
 TASK = in_continuous_time(api.load_loop(EXAMPLE))
 SPEEDS, HEADINGS, HEIGHTS = (7.0, 9.26, 11.5), (0.4, math.pi / 2, 2.7), (1.0, 3.0, 6.0)

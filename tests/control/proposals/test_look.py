@@ -9,7 +9,7 @@ from benchmarks.proposals import Look, lines, voyage
 from tests.control.proposals.fin_stretches import QUARTERING, SHIP, TASK, fin_schedule, fin_stretch
 
 from seatrial.control.proposals.look import likeliest_headings, look
-from seatrial.core.results.proposal import Proposal
+from seatrial.core.results.online import Proposal
 
 SCHEDULE = fin_schedule()
 STRETCH = fin_stretch(7, QUARTERING)

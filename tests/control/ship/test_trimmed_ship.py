@@ -18,11 +18,10 @@ from seatrial.control.ship.trimmed_ship import (
 )
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError
-from seatrial.data.folder.model_file import ModelFile
-from seatrial.data.folder.model_tables import ModelProvenance
+from seatrial.data.folder.model_file import ModelFile, ModelProvenance
 from seatrial.physics.models import model_named
 from seatrial.physics.models.published import kvlcc2
-from seatrial.physics.simulate import harmonics
+from seatrial.physics.simulate import linear as harmonics
 
 HULL = {"m": 3000.0, "I5": 9000.0, "c33": 8e4, "c55": 2.5e5, "c35": 4e3, "c53": 4e3}
 COEFFICIENTS = {"a33": 2500.0, "a35": 300.0, "a53": 200.0, "a55": 7000.0}

@@ -31,7 +31,7 @@ from seatrial.control.task import Seaway, StationDemand, TuningTask
 from seatrial.core.results.station import StationKeeping
 from seatrial.core.values import InputError
 from seatrial.physics.loops import HullFactor
-from seatrial.physics.loops.sampling import Sampling
+from seatrial.physics.loops.loop import Sampling
 from seatrial.physics.sea.spectrum import jonswap
 
 HULL = HullFactor(1.2, 0.8, 0.15)

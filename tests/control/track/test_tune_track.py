@@ -17,9 +17,9 @@ from seatrial.control.track.track_task import heading_loop_of, line_of_sight, tr
 from seatrial.control.track.tune_track import tune_track
 from seatrial.core.results.tuning import TrackKeeping
 from seatrial.core.values import InputError
-from seatrial.physics.loops import python_control
+from seatrial.physics.loops import discrete as python_control
 from seatrial.physics.simulate.closed_loop import ActuatorLimits
-from seatrial.physics.simulate.track_following import LineOfSight
+from seatrial.physics.simulate.craft_control import LineOfSight
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ import pytest
 from seatrial.control.verification.legs import legs_on_and_off, natural_period
 from seatrial.core.values import Array, Channel, InputError, Record, RecordKind, frozen
 from seatrial.physics.loops import Block
-from seatrial.physics.loops.fin import fin_loop
+from seatrial.physics.loops.structures import fin_loop
 
 DT, LOOP = 0.5, fin_loop()
 PERIOD = natural_period(LOOP)

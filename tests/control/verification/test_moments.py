@@ -15,7 +15,7 @@ from seatrial.control.verification.moments import (
 from seatrial.control.verification.spread import jackknife_deviation, products
 from seatrial.estimation.sea import encountered_sea, sea_spectrum, stretch_spectra
 from seatrial.physics.loops import HullFactor, LoopSignal, Performance, sea_disturbance, variance
-from seatrial.physics.loops.fin import fin_loop
+from seatrial.physics.loops.structures import fin_loop
 
 LOOP, U, BETA, HULL = fin_loop(), 9.26, math.pi / 2, HullFactor(100.0, 10.5, 3.4)
 SEA = np.log([2.0, 8.0, 1.0])

@@ -13,7 +13,7 @@ from seatrial.control.task import SlowDisturbance, TuningTask
 from seatrial.control.verification.stabiliser import AS_THEY_ARE, BY_MODEL, BY_WAVES
 from seatrial.core.results.verification import Verification
 from seatrial.core.values import Channel, InputError, frozen
-from seatrial.physics.loops.fin import PUBLISHED_GAINS
+from seatrial.physics.loops.structures import PUBLISHED_GAINS
 
 LEG_S = 600.0  # s: half of the benchmark's
 

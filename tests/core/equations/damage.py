@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 from seatrial.core.equations import Model, Sheet
-from seatrial.core.equations.manifest import stored_model
+from seatrial.core.equations.model import stored_model
 from seatrial.numerics.kernels.cache import cache_folder, read_entry
 
 KINDS = {"manifest": "model-*.json", "generated module": "model_*.py", "machine code": "*.rates-*.bin"}

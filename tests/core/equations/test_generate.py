@@ -5,8 +5,7 @@ import pytest
 import sympy as sp
 
 from seatrial.core.equations import Binding, Model, Sheet
-from seatrial.core.equations.differentiate import partial
-from seatrial.core.equations.generate import source_text
+from seatrial.core.equations.generate import partial, source_text
 from seatrial.physics.models.waterjet import waterjet
 
 

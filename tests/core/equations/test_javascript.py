@@ -1,6 +1,6 @@
 """Rates as JavaScript: functions of Math, conditions and signs as the equations have them."""
 
-from seatrial.core.equations.javascript import rates_function
+from seatrial.core.equations.latex import rates_function
 from seatrial.physics.models.published import kvlcc2
 
 

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from seatrial.core.equations.bindings import entry_key, stored
 from seatrial.core.equations.generate import bindings_text, source_text
 from seatrial.core.equations.latex import latex_equations
-from seatrial.core.equations.manifest import stored_equations, stored_model
-from seatrial.core.equations.stored import entry_key, stored
+from seatrial.core.equations.model import stored_equations, stored_model
 from seatrial.numerics.kernels.cache import read_entry, write_entry
 from seatrial.physics.models import MODELS
 

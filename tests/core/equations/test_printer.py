@@ -4,8 +4,17 @@ import pytest
 import sympy as sp
 
 from seatrial.core.equations import Model
-from seatrial.core.equations.generate import function_assignments, live_assignments, tangent_assignments
-from seatrial.core.equations.printer import Assignment, CasadiDialect, CDialect, CodeBlock, Dialect, MatlabDialect
+from seatrial.core.equations.generate import (
+    Assignment,
+    CasadiDialect,
+    CDialect,
+    CodeBlock,
+    Dialect,
+    MatlabDialect,
+    function_assignments,
+    live_assignments,
+    tangent_assignments,
+)
 
 v, r = sp.symbols("v r", real=True)
 EXPRESSION = sp.Piecewise((sp.Abs(v) * v**2, r > 0), (sp.sqrt(v) + sp.sign(r) + sp.pi + v**r, True))

@@ -1,6 +1,6 @@
 """What a closed loop was and costs, in words."""
 
-from seatrial.core.results.closed_loop import FeedbackEvidence, WithoutDisturbance
+from seatrial.core.results.coefficients import FeedbackEvidence, WithoutDisturbance
 
 
 def test_a_tested_loop_gives_its_evidence_and_its_cost() -> None:

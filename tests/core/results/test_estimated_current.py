@@ -6,7 +6,7 @@ import pytest
 from tests.reporting.fabricated import fabricated_fit
 
 from seatrial.core.results import Offset
-from seatrial.core.results.estimated_current import estimated_current
+from seatrial.core.results.prediction import estimated_current
 
 
 def test_a_run_has_the_current_of_its_session() -> None:

@@ -7,7 +7,7 @@ from tests.reporting.fabricated import fabricated_fit
 from tests.reporting.published_fit import published
 
 from seatrial.core.results import Fit
-from seatrial.core.results.method_comparison import (
+from seatrial.core.results.comparison import (
     coefficient_comparison,
     cost_comparison,
     count_inside_own_intervals,

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from seatrial.core.results.missing_parts import MissingParts
+from seatrial.core.results.fields import MissingParts
 from seatrial.core.values import InputError
 
 

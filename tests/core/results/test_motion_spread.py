@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.core.results.motion_spread import HEADING_SPREAD, motion_spread, motion_spreads
+from seatrial.core.results.prediction import HEADING_SPREAD, motion_spread, motion_spreads
 from seatrial.core.values import Record
 
 TIME = np.arange(1000) * 0.1

@@ -10,7 +10,7 @@ from tests.reporting.fabricated_design import fabricated_design
 from tests.reporting.fabricated_study import fabricated_study
 from tests.reporting.fabricated_tuning import fabricated_fin
 
-from seatrial.core.results.summary import Summarised, Summary
+from seatrial.core.results.fields import Summarised, Summary
 from seatrial.data.trial import load_trial
 from seatrial.physics.models.published import kvlcc2
 

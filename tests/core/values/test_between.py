@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from seatrial.core.values import InputError, Record
-from seatrial.core.values.between import held_rows, travel
+from seatrial.core.values.arrays import held_rows, travel
 
 TIME = 0.5 * np.arange(200)
 

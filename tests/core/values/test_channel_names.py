@@ -5,9 +5,9 @@ import difflib
 import pytest
 
 from seatrial.core.values import NOTATION, InputError, channel_hint, quantity
-from seatrial.core.values.channel_names import ALIASES
 from seatrial.core.values.errors import MAX_LISTED, listed
-from seatrial.data.read.quantities import LOG_QUANTITIES, log_quantity
+from seatrial.core.values.notation import ALIASES
+from seatrial.data.read.layout import LOG_QUANTITIES, log_quantity
 
 SYMBOLS = sorted({*NOTATION, *LOG_QUANTITIES})
 

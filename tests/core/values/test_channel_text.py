@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from seatrial.core.values.channel_text import (
+from seatrial.core.values.notation import (
     channel_label,
     channel_letter,
     channel_meaning,

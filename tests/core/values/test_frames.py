@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from seatrial.core.values.frames import FrameWriter, whole_frames
+from seatrial.core.values.files import FrameWriter, whole_frames
 
 CRC_SIZE = 4  # bytes of a CRC-32
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from seatrial.core.values import Channel, InputError, Record
-from seatrial.core.values.froude import froude_factor, froude_scaled
+from seatrial.core.values.record import froude_factor, froude_scaled
 
 
 def test_exponents_follow_the_laws() -> None:

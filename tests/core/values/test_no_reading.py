@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from seatrial.core.values.no_reading import sentinel_value
+from seatrial.core.values.arrays import sentinel_value
 
 
 def test_only_what_recurs_far_outside_is_no_reading() -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from seatrial.core.values import InputError
-from seatrial.core.values.tables import parse_json, parse_toml, read_bounded, read_table_text, refuse_absurd_numbers
+from seatrial.core.values.files import parse_json, parse_toml, read_bounded, read_table_text, refuse_absurd_numbers
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from seatrial.core.values import NOTATION, Finding, InputError, Severity, Ship, display_unit, quantity, si_unit
-from seatrial.core.values.units import _UNITS, is_unit
+from seatrial.core.values.notation import _UNITS, is_unit
 
 
 @pytest.mark.parametrize(

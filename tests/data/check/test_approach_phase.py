@@ -6,8 +6,8 @@ import pytest
 from seatrial.core.equations import Model
 from seatrial.core.values import Record, Severity
 from seatrial.data.check import examine
-from seatrial.data.check.approach_phase import approach_fault, approach_findings, first_execution
-from seatrial.data.trial.approach import approach_condition
+from seatrial.data.check.phases import approach_fault, approach_findings, first_execution
+from seatrial.data.trial.records import approach_condition
 from seatrial.physics.models import model_named
 
 STEP, EXECUTE_S = 0.2, 30.0  # s

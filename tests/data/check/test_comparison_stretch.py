@@ -5,7 +5,7 @@ from tests.data.check.ship import with_values, zigzag
 
 from seatrial.core.values import Record, Severity
 from seatrial.data.check import examine
-from seatrial.data.check.comparison_stretch import MOST_ROWS, comparison_stretch
+from seatrial.data.check.phases import MOST_ROWS, comparison_stretch
 
 COUNT = 4 * MOST_ROWS
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.core.values import Record
-from seatrial.data.check.copies import copies
+from seatrial.data.check.examine import copies
 
 
 def record(name: str, start: float = 0.0, shift: float = 0.0) -> Record:

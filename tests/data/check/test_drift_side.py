@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Record
-from seatrial.data.check.drift_side import drift_side_findings
+from seatrial.data.check.conventions import drift_side_findings
 from seatrial.data.check.motion import RecordedMotion
 
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Array, Channel, Record, Severity
-from seatrial.data.check.dropped_rows import dropped_rows_findings
-from seatrial.data.check.even_base import even_base
 from seatrial.data.check.examine import examined_record
+from seatrial.data.check.repair import dropped_rows_findings
+from seatrial.data.check.time_base import even_base
 
 
 def three_digits(time: Array) -> Array:

@@ -5,7 +5,7 @@ import pytest
 from scipy.special import chdtrc
 
 from seatrial.core.values import Record
-from seatrial.data.check.feedback import chi_square_tail, feedback_findings, feedback_tests, has_feedback
+from seatrial.data.check.inputs import chi_square_tail, feedback_findings, feedback_tests, has_feedback
 
 DT, ROWS, K, T = 0.1, 6001, 0.15, 8.0
 

@@ -9,9 +9,8 @@ from tests.data.check.ship import with_values, zigzag
 from seatrial.core.values import Record, Severity
 from seatrial.core.values.arrays import Mask
 from seatrial.data.check.examine import examined_record, without_repeats
-from seatrial.data.check.lost_samples import bridged, bridged_rows, read_stretch, usual_rows
 from seatrial.data.check.repair import repaired_parts, repaired_whole
-from seatrial.data.check.timestamps import rebuild_time_base
+from seatrial.data.check.time_base import bridged, bridged_rows, read_stretch, rebuild_time_base, usual_rows
 
 
 def turns(step: float = 1.0, seconds: float = 600.0) -> Record:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Finding, Record
-from seatrial.data.check import rudder
+from seatrial.data.check import inputs as rudder
 from seatrial.data.check.examine import examined_record
 
 TIME = 0.1 * np.arange(3000)

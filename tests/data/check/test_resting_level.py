@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Record
-from seatrial.data.check.resting_level import resting_level_findings
+from seatrial.data.check.channels import resting_level_findings
 
 TIME = np.arange(2000) * 0.05
 SWING = np.sin(2.0 * np.pi * TIME / 2.0)

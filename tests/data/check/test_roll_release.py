@@ -4,13 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Record
-from seatrial.data.check.roll_release import (
-    begins_before_release,
-    is_free_decay,
-    is_in_waves,
-    release_findings,
-    release_row,
-)
+from seatrial.data.check.phases import begins_before_release, is_free_decay, is_in_waves, release_findings, release_row
 
 TIME = np.arange(0.0, 60.0, 0.05)
 

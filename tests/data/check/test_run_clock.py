@@ -7,7 +7,7 @@ from tests.data.check.ship import zigzag
 
 from seatrial.core.values import Finding, Severity
 from seatrial.data.check import examine
-from seatrial.data.check.run_clock import moment, on_run_clock
+from seatrial.data.check.consequences import moment, on_run_clock
 
 
 def finding(text: str) -> Finding:

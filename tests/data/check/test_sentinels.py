@@ -7,9 +7,9 @@ import pytest
 from tests.data.check.ship import with_values, zigzag
 
 from seatrial.core.values import InputError, Record
-from seatrial.core.values.no_reading import sentinel_value
+from seatrial.core.values.arrays import sentinel_value
 from seatrial.data.check import examine, examined_record
-from seatrial.data.check.sentinels import without_sentinels
+from seatrial.data.check.repair import without_sentinels
 
 
 @pytest.mark.parametrize(("symbol", "sentinel"), [("u", -999.0), ("psi", -17.435839), ("x0", 1e6), ("r", 32.767)])

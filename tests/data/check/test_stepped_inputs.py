@@ -3,7 +3,7 @@
 import numpy as np
 
 from seatrial.core.values import Record
-from seatrial.data.check.stepped_inputs import integration_step_findings, stepped_input_findings
+from seatrial.data.check.inputs import integration_step_findings, stepped_input_findings
 
 DT, K, T = 0.5, 0.12, 9.0
 

@@ -7,12 +7,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import InputError, Record, Severity
-from seatrial.data.check.thrusters import (
-    SURE_EFFECT,
-    refuse_impossible_commands,
-    thruster_effects,
-    thruster_findings,
-)
+from seatrial.data.check.inputs import SURE_EFFECT, refuse_impossible_commands, thruster_effects, thruster_findings
 from seatrial.physics.models import model_named
 from seatrial.physics.models.thruster_layout import CATAMARAN, AngleInput, CommandInput, Thruster, ThrusterLayout
 from seatrial.physics.simulate.replay import replay

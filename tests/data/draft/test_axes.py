@@ -9,7 +9,7 @@ from tests.data.draft.test_draft import STEP, TRUTH, write
 
 from seatrial.api import draft_trial
 from seatrial.data.draft import ColumnGuess
-from seatrial.data.draft.axes import with_axes_by_fixes
+from seatrial.data.draft.behaviour import with_axes_by_fixes
 
 
 def _fixes(forward: float) -> dict[str, np.ndarray]:

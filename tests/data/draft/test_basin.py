@@ -4,11 +4,10 @@ from dataclasses import replace
 
 import pytest
 
-from seatrial.data.draft.basin import is_in_basin, may_be_in_fresh_water
 from seatrial.data.draft.column_guess import ColumnGuess
-from seatrial.data.draft.ship_estimates import StatedSize
+from seatrial.data.draft.draft_text import tables_text
+from seatrial.data.draft.ship_estimates import StatedSize, is_in_basin, may_be_in_fresh_water
 from seatrial.data.draft.starting_model import StartingModel
-from seatrial.data.draft.tables_text import tables_text
 
 TRACK = [ColumnGuess("X", "x0", "m"), ColumnGuess("Y", "y0", "m")]
 UNUSED_FIX = replace(ColumnGuess("Lat", "lat", "deg"), is_used=False)

@@ -11,7 +11,7 @@ from tests.data.read.samples import dataflash
 from seatrial.api import draft_trial
 from seatrial.core.values import Record
 from seatrial.data.draft.column_guess import ColumnGuess
-from seatrial.data.draft.commands import command_directions, command_guess
+from seatrial.data.draft.guess import command_directions, command_guess
 from seatrial.data.draft.survey import ColumnSummary, survey_log
 
 CRAFT = two_thrusters()

@@ -13,11 +13,10 @@ from tests.data.read.samples import SAMPLES
 from seatrial.api import check, draft_trial, survey_log
 from seatrial.core.values import Array, InputError
 from seatrial.data.draft import ColumnGuess, find_stretches, guess_columns
-from seatrial.data.draft.clocks import zone_offsets
+from seatrial.data.draft.guess import recognised_columns
 from seatrial.data.draft.naming import guess_by_name
-from seatrial.data.draft.text_layout import text_layout
-from seatrial.data.draft.time_columns import column_values, time_column
-from seatrial.data.draft.unnamed import recognised_columns
+from seatrial.data.draft.runs_of_logs import zone_offsets
+from seatrial.data.draft.survey import column_values, text_layout, time_column
 from seatrial.data.trial import load_runs
 
 DEGREE, KNOT = np.pi / 180.0, 1852.0 / 3600.0

@@ -4,10 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.data.draft.header_sizes import sizes_in_header, speed_in_header
-from seatrial.data.draft.ship_estimates import UNSTATED, StatedSize
+from seatrial.data.draft.draft_text import wave_lines
+from seatrial.data.draft.ship_estimates import UNSTATED, StatedSize, sizes_in_header, speed_in_header
 from seatrial.data.draft.survey import LogSurvey, survey_log
-from seatrial.data.draft.waves_text import wave_lines
 
 TANK = "# Free-running model, feeder 1:40\n# LPP 3.400 m  B 580 mm  T 0.210 m  displacement 0.265 t  LCG -0.027 m"
 

@@ -8,9 +8,7 @@ import pytest
 
 from seatrial.api import draft_trial
 from seatrial.core.values import InputError
-from seatrial.data.draft.languages import in_english, without_accents
-from seatrial.data.draft.naming import guess_by_name
-from seatrial.data.draft.stated_columns import stated_columns
+from seatrial.data.draft.naming import guess_by_name, in_english, stated_columns, without_accents
 from seatrial.data.draft.survey import survey_log
 
 

@@ -3,9 +3,8 @@
 import numpy as np
 
 from seatrial.core.values import Record
-from seatrial.data.draft.autopilot_modes import AutopilotMode
-from seatrial.data.draft.log_partition import parts_without_gaps
-from seatrial.data.draft.stretch import LogStretch
+from seatrial.data.draft.manoeuvres import AutopilotMode, parts_without_gaps
+from seatrial.data.draft.stretches import LogStretch
 
 TIME = 1.7e9 + np.arange(3001) * 0.1  # a clock that counts from 1970
 STRETCHES = [

@@ -11,9 +11,17 @@ from tests.data.read.samples import dataflash
 from seatrial.api import draft_trial
 from seatrial.core.values import Array, Record
 from seatrial.data.draft.manoeuvres import find_stretches, numbered
-from seatrial.data.draft.motion_stretches import decays, spirals, stops, straight_runs
-from seatrial.data.draft.stretch import LogStretch, elapsed, padded, smooth_speed
-from seatrial.data.draft.turns import turning_stretches
+from seatrial.data.draft.stretches import (
+    LogStretch,
+    decays,
+    elapsed,
+    padded,
+    smooth_speed,
+    spirals,
+    stops,
+    straight_runs,
+    turning_stretches,
+)
 from seatrial.physics.manoeuvres.measures import measures
 
 STEP = 0.5  # s

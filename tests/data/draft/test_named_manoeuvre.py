@@ -2,8 +2,7 @@
 
 import pytest
 
-from seatrial.data.draft.named_manoeuvre import name_contradiction
-from seatrial.data.draft.stretch import LogStretch
+from seatrial.data.draft.stretches import LogStretch, name_contradiction
 
 CIRCLE = LogStretch("circle_port_1", 0.0, 300.0, "heading changes by 587 deg to port")
 ZIGZAG = LogStretch("zigzag1", 0.0, 300.0, "11 turns to alternate sides")

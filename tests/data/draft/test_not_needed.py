@@ -2,7 +2,7 @@
 
 import pytest
 
-from seatrial.data.draft.not_needed import columns_not_needed, not_needed_text
+from seatrial.data.draft.naming import columns_not_needed, not_needed_text
 
 
 @pytest.mark.parametrize(

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from seatrial.api import draft_trial
-from seatrial.data.draft.one_speed import runs_by_speed, stated_options
-from seatrial.data.draft.runs_of_logs import runs_of_logs
+from seatrial.data.draft.runs_of_logs import runs_by_speed, runs_of_logs, stated_options
 from seatrial.data.draft.ship_estimates import StatedSize
 from seatrial.data.draft.survey import survey_log
 

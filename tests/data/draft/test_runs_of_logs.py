@@ -10,7 +10,7 @@ from tests.data.draft.test_draft import BASE, TRUTH, write
 from seatrial.api import draft_trial, survey_log
 from seatrial.core.values import Array, InputError
 from seatrial.data.draft import ColumnGuess, runs_of_logs
-from seatrial.data.draft.agreement import agreed_guesses
+from seatrial.data.draft.column_guess import agreed_guesses
 from seatrial.data.trial import load_runs
 
 DEGREE = np.pi / 180.0

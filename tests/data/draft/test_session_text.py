@@ -4,8 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.data.draft.runs_of_logs import LogRun
-from seatrial.data.draft.session_text import session_line
+from seatrial.data.draft.runs_of_logs import LogRun, session_line
 from seatrial.data.draft.survey import survey_log
 
 

@@ -8,10 +8,10 @@ from tests.data.draft.test_draft import write
 from tests.onboard.sentences import sentence
 
 from seatrial.data.draft.column_guess import ColumnGuess
+from seatrial.data.draft.draft_text import thruster_tables
 from seatrial.data.draft.guess import guess_columns, with_turned_thruster
 from seatrial.data.draft.ship_estimates import StatedSize
 from seatrial.data.draft.survey import survey_log
-from seatrial.data.draft.tables_text import thruster_tables
 
 
 def guesses(path: Path, *rates: str) -> dict[str, ColumnGuess]:

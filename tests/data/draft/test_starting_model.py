@@ -7,9 +7,9 @@ import pytest
 
 from seatrial.core.values import Record
 from seatrial.data.draft.column_guess import ColumnGuess
+from seatrial.data.draft.draft_text import tables_text, thruster_tables
 from seatrial.data.draft.ship_estimates import StatedSize
 from seatrial.data.draft.starting_model import starting_model, with_wind
-from seatrial.data.draft.tables_text import tables_text, thruster_tables
 from seatrial.data.trial.load import load_trial
 
 SHIP = {"delta", "u", "v", "r", "psi", "lat", "lon"}

@@ -3,7 +3,7 @@
 import numpy as np
 
 from seatrial.core.values import Record
-from seatrial.data.draft.unlike_decays import heels_apart, unlike_decays_text
+from seatrial.data.draft.held_out import heels_apart, unlike_decays_text
 
 
 def decay(damping: float, seed: int, heel: float = 0.0) -> Record:

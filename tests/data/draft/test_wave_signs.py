@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Record
+from seatrial.data.draft.behaviour import wave_motion_signs
 from seatrial.data.draft.column_guess import ColumnGuess
-from seatrial.data.draft.wave_signs import wave_motion_signs
 
 TIME = 0.1 * np.arange(2001)
 PERIODS, PHASES = np.array([6.0, 7.5, 9.0, 11.0]), np.array([0.3, 1.9, 4.0, 5.1])  # s; rad, chosen

@@ -4,8 +4,8 @@ import math
 
 import pytest
 
+from seatrial.data.draft.draft_text import ship_in_waves
 from seatrial.data.draft.ship_estimates import StatedSize
-from seatrial.data.draft.waves_text import ship_in_waves
 
 
 def test_natural_periods_are_those_of_a_ship() -> None:

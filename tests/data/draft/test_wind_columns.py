@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Record
+from seatrial.data.draft.behaviour import tells_wind, wind_readings, with_wind_role
 from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.naming import APPARENT_WIND
-from seatrial.data.draft.wind_columns import tells_wind, wind_readings, with_wind_role
 
 TIME = np.arange(0.0, 400.0, 1.0)
 PSI = 0.02 * TIME

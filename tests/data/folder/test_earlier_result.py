@@ -8,9 +8,14 @@ import pytest
 import seatrial as st
 from seatrial.core.results import IntervalBasis
 from seatrial.core.values import Prior, frozen
-from seatrial.data.folder.earlier_result import joint_prior, read_earlier_result
-from seatrial.data.folder.model_file import ModelFile, write_model
-from seatrial.data.folder.model_tables import ModelProvenance, RecordSource
+from seatrial.data.folder.model_file import (
+    ModelFile,
+    ModelProvenance,
+    RecordSource,
+    joint_prior,
+    read_earlier_result,
+    write_model,
+)
 from seatrial.data.read.record_file import file_digest
 
 COVARIANCE = np.array([[1e-4, 4e-3], [4e-3, 0.25]])  # correlation 0.8

@@ -16,13 +16,14 @@ from seatrial.core.results import IntervalBasis, SessionOffset
 from seatrial.core.values import InputError, Prior, Ship
 from seatrial.data.folder.model_file import (
     ModelFile,
+    ModelProvenance,
+    RecordSource,
     model_text,
     parse_model,
     read_model,
     read_model_file,
     write_model,
 )
-from seatrial.data.folder.model_tables import ModelProvenance, RecordSource
 from seatrial.physics.models import model_named
 
 numbers = st.floats(allow_nan=False, allow_infinity=False)

@@ -6,7 +6,7 @@ import pytest
 from tests.reporting.fabricated_design import fabricated_design
 
 from seatrial.core.results import Actuator, TimedOrder
-from seatrial.data.folder.orders import channel_display_unit, order_cells, order_headings, orders_csv
+from seatrial.data.folder.gains_file import channel_display_unit, order_cells, order_headings, orders_csv
 
 ACTUATORS = (Actuator("delta", -0.6, 0.6, 0.05, 5.0), Actuator("v_j", 1.0, 3.0, 0.5, 5.0))
 

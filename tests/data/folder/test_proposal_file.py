@@ -5,8 +5,8 @@ import tomllib
 
 import pytest
 
-from seatrial.core.results.proposal import Estimated, GainMargins, Proposal
-from seatrial.data.folder.proposal_file import proposal_toml
+from seatrial.core.results.online import Estimated, GainMargins, Proposal
+from seatrial.data.folder.gains_file import proposal_toml
 
 ANY = Estimated(math.inf, 2.0, math.inf)
 ANGLE = Estimated(1.0, 0.5, 2.0)

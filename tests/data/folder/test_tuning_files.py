@@ -14,10 +14,16 @@ from tests.reporting.fabricated_tuning import fabricated_autopilot, fabricated_b
 
 from seatrial.core.results.tuning import Component, Tuning
 from seatrial.core.values import InputError
-from seatrial.data.folder.gains_file import controller_gains, gains_toml, read_gains, read_schedule, schedule_csv
-from seatrial.data.folder.loop_mat import loop_mat
+from seatrial.data.folder.gains_file import (
+    controller_gains,
+    gains_toml,
+    loop_mat,
+    read_gains,
+    read_schedule,
+    schedule_csv,
+)
 from seatrial.physics.loops import TransferLoop, margins
-from seatrial.physics.loops.fin import fin_loop
+from seatrial.physics.loops.structures import fin_loop
 
 MADE = {"fin": fabricated_fin, "autopilot": fabricated_autopilot, "bare": fabricated_bare}
 

@@ -6,7 +6,7 @@ import pytest
 from seatrial.core.values import InputError
 from seatrial.data.read.clock import stamps
 from seatrial.data.read.layout import ColumnSpec, TimeSpec
-from seatrial.data.read.raw_table import RawTable
+from seatrial.data.read.log import RawTable
 
 START = 1_778_750_400.0  # 2026-05-14T09:20:00Z
 STEPS = [0.0, 0.1, 0.25, 61.5]

@@ -7,9 +7,9 @@ import pytest
 
 from seatrial.core.values import InputError
 from seatrial.data.read import ColumnSpec, RawTable
-from seatrial.data.read.degrees_minutes import degrees_of
 from seatrial.data.read.formats.text import read_text
 from seatrial.data.read.layout import Layout
+from seatrial.data.read.log import degrees_of
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@
 
 import pytest
 
-from seatrial.data.read.header import TableHeader, table_header
+from seatrial.data.read.log import TableHeader, table_header
 
 NAMES, UNITS = ("t", "heading", "rudder"), ("s", "deg", "degC")
 

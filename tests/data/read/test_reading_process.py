@@ -9,8 +9,8 @@ import pytest
 from seatrial.core.values import InputError
 from seatrial.data.read import ColumnSpec, Layout
 from seatrial.data.read.assemble import record_from_values
-from seatrial.data.read.extras import fault_text
-from seatrial.data.read.reading_process import read_in_process
+from seatrial.data.read.log import fault_text
+from seatrial.data.read.registry import read_in_process
 
 LAYOUT = Layout("mat", ColumnSpec("time", "t", "s"), (ColumnSpec("u", "speed", "m/s"),))
 

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from seatrial.api import survey_log
-from seatrial.data.read.nmea_sentence import checksum
-from seatrial.data.read.receipt import on_the_clock, receipt_time
+from seatrial.data.read.nmea_sentence import checksum, on_the_clock, receipt_time
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ import re
 import pytest
 
 from seatrial.core.values import Severity, Ship
-from seatrial.data.trial.added_masses import added_mass_findings
+from seatrial.data.trial.model_table import added_mass_findings
 from seatrial.physics.models.abkowitz import abkowitz
 from seatrial.physics.models.nomoto import nomoto
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Record
-from seatrial.data.check.approach_phase import first_execution
-from seatrial.data.trial.approach import APPROACH_SECONDS, approach_condition
+from seatrial.data.check.phases import first_execution
+from seatrial.data.trial.records import APPROACH_SECONDS, approach_condition
 from seatrial.physics.models import model_named
 
 EXECUTE = 5.0  # s, when the rudder is put over

@@ -8,7 +8,7 @@ import pytest
 from seatrial.core.values import InputError, Record
 from seatrial.data.check import canonical_record, examined_record
 from seatrial.data.trial import load_runs
-from seatrial.data.trial.declared_channels import NO_DECLARED, declared_channels
+from seatrial.data.trial.runs import NO_DECLARED, declared_channels
 from seatrial.data.trial.schema import DeclaredChannel
 
 DECLARED = """

@@ -8,8 +8,7 @@ import pytest
 
 import seatrial as st
 from seatrial.core.values import frozen
-from seatrial.data.folder.model_file import ModelFile, write_model
-from seatrial.data.folder.model_tables import ModelProvenance, RecordSource
+from seatrial.data.folder.model_file import ModelFile, ModelProvenance, RecordSource, write_model
 from seatrial.data.read.record_file import file_digest
 
 Writer = Callable[..., None]

@@ -6,7 +6,7 @@ import pytest
 
 from seatrial.core.values import NOT_MEASURED, Severity
 from seatrial.data.trial import load_trial
-from seatrial.data.trial.estimated_values import ESTIMATED, ESTIMATED_VALUES, with_estimates_named
+from seatrial.data.trial.plausibility import ESTIMATED, ESTIMATED_VALUES, with_estimates_named
 
 SHIP = """
 [ship]

@@ -6,8 +6,8 @@ import pytest
 
 from seatrial.core.values import InputError
 from seatrial.data.trial import load_trial
-from seatrial.data.trial.follow_table import require_stream, with_source
-from seatrial.data.trial.stream import StreamSource
+from seatrial.data.trial.runs import require_stream, with_source
+from seatrial.data.trial.settings import StreamSource
 from seatrial.data.trial.trial import Role
 
 SHIP = '[ship]\nname = "craft"\nL = 9.8\n[model]\nname = "nomoto"\n'

@@ -7,7 +7,7 @@ import pytest
 
 from seatrial.core.equations import Model
 from seatrial.core.values import ForcePoints, InputError
-from seatrial.core.values.units import si_unit
+from seatrial.core.values.notation import si_unit
 from seatrial.data.trial.forces import read_force_points
 from seatrial.data.trial.schema import ForcesTable
 from seatrial.physics.models.published import kvlcc2

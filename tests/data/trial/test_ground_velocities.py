@@ -3,7 +3,7 @@
 import pytest
 
 from seatrial.core.equations import Model
-from seatrial.data.trial.ground_velocities import ground_velocity_findings
+from seatrial.data.trial.plausibility import ground_velocity_findings
 from seatrial.data.trial.schema import ChannelColumn, RecordsTable
 from seatrial.physics.models.abkowitz import abkowitz
 from seatrial.physics.models.nomoto import nomoto

@@ -3,7 +3,7 @@
 import pytest
 
 from seatrial.core.values import Ship
-from seatrial.data.trial.hull_values import hull_value_findings
+from seatrial.data.trial.plausibility import hull_value_findings
 
 MODEL = {"L": 3.2, "B": 0.46, "d": 0.17, "m": 118.0, "I5": 118.0 * 0.8**2}
 

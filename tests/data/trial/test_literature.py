@@ -3,8 +3,8 @@
 import pytest
 
 from seatrial.core.values import InputError, Severity, Ship
-from seatrial.data.trial.literature import literature_priors, prior_range_findings
 from seatrial.data.trial.model_table import build_trial_model
+from seatrial.data.trial.priors import literature_priors, prior_range_findings
 from seatrial.data.trial.schema import ModelTable
 from seatrial.physics.hydro.empirical import CLARKE, HullForm, clarke, yoshimura
 from seatrial.physics.models.published import kvlcc2_l7

@@ -8,7 +8,7 @@ import pytest
 
 from seatrial.core.values import InputError
 from seatrial.data.trial import load_trial
-from seatrial.data.trial.model_guide import model_guide
+from seatrial.data.trial.model_table import model_guide
 from seatrial.physics.models import MODELS
 
 RECORD = "t,u,v,r,delta,n\n" + "".join(f"{k},1.0,0.0,0.0,{k % 3},1.0\n" for k in range(40))

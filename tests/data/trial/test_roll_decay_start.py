@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import InputError, Record
-from seatrial.data.trial.roll_decay_start import need_release, require_decay, trim_to_decay_start
+from seatrial.data.trial.records import need_release, require_decay, trim_to_decay_start
 
 TIME = np.arange(0.0, 60.0, 0.05)
 

@@ -8,8 +8,7 @@ import pytest
 from seatrial.core.values import InputError
 from seatrial.data.read import ColumnSpec, Layout
 from seatrial.data.trial.design_request import DesignRequest, InputRange
-from seatrial.data.trial.settings import EstimateSettings, ModelFamily
-from seatrial.data.trial.stream import Stream, StreamSource
+from seatrial.data.trial.settings import EstimateSettings, ModelFamily, Stream, StreamSource
 
 RUDDER = InputRange(lower=-0.6, upper=0.6, unit="rad", hold=4.0)
 REQUEST = DesignRequest(duration=600.0, rate=5.0, inputs={"delta": RUDDER})

@@ -6,7 +6,7 @@ import pytest
 
 from seatrial.core.values import InputError
 from seatrial.data.trial.load import load_trial
-from seatrial.data.trial.session import session_of, valid_session
+from seatrial.data.trial.run_data import session_of, valid_session
 
 
 @pytest.mark.parametrize(

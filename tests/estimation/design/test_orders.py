@@ -21,7 +21,7 @@ from seatrial.estimation.design.orders import (
     sample_count,
 )
 from seatrial.estimation.design.task import DesignTask
-from seatrial.physics.simulate.channels import inputs_of
+from seatrial.physics.simulate.replay import inputs_of
 
 SHARES = st.lists(st.floats(-0.5, 1.5), min_size=12, max_size=12)
 

@@ -17,7 +17,7 @@ from seatrial.estimation.design.search_step import search_step
 from seatrial.estimation.design.ships import draw_ships
 from seatrial.estimation.design.standard_manoeuvres import standard_manoeuvres
 from seatrial.estimation.design.task import DesignTask
-from seatrial.physics.simulate.channels import inputs_of
+from seatrial.physics.simulate.replay import inputs_of
 
 GENERATIONS = 12
 

@@ -16,7 +16,7 @@ from seatrial.estimation.predict.predict_runs import process_noise_floor
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import cut_segments
 from seatrial.physics.models.nomoto import nomoto
-from seatrial.physics.simulate.channels import inputs_of
+from seatrial.physics.simulate.replay import inputs_of
 
 Array = NDArray[np.float64]
 K, T, INTENSITY = 0.15, 8.0, 2e-3

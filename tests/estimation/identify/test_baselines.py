@@ -15,7 +15,7 @@ from seatrial.core.results import Baseline, Fit, Offset
 from seatrial.core.results.prediction import NO_COMPARISON
 from seatrial.core.values import InputError, Record
 from seatrial.data.trial import load_trial
-from seatrial.data.trial.compare_settings import SupportVectorSettings
+from seatrial.data.trial.settings import SupportVectorSettings
 from seatrial.estimation.identify import identify
 from seatrial.estimation.identify.baselines import (
     compare_estimators,

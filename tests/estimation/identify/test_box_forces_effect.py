@@ -8,8 +8,7 @@ import pytest
 from seatrial.core.results import Fit
 from seatrial.data.trial import load_trial
 from seatrial.estimation.identify.identify import identify
-from seatrial.physics.hydro.dispersion import G
-from seatrial.physics.hydro.excitation import BoxForceError, BoxHull
+from seatrial.physics.hydro.excitation import BoxForceError, BoxHull, G
 
 TRUTH = {"a33": 71.5, "a35": 1.9, "a55": 20.7, "a53": 1.9, "b33": 256.0, "b35": 110.0, "b55": 140.0, "b53": -122.0}
 M, I5, C33, C55, LENGTH, SPEED = 70.0, 29.5, 6830.0, 2550.0, 2.6, 1.6

@@ -11,8 +11,7 @@ from seatrial.estimation.identify import EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.identify.box_scale import box_scale
 from seatrial.estimation.identify.identifiability import consequences
 from seatrial.physics.models.heave_pitch import heave_pitch
-from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_STIFFNESSES
-from seatrial.physics.models.published import theoretical_coefficients
+from seatrial.physics.models.published import HEAVE_PITCH_STIFFNESSES, theoretical_coefficients
 from seatrial.physics.simulate import replay
 
 LABEL = "c33, c35, c53 and c55 with the forces of the box"

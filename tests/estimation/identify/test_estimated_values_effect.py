@@ -11,7 +11,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import NOT_MEASURED, Array, Finding, Prior, Record, Severity
 from seatrial.data.example_series.series import simulate_run, true_model, with_sensor_noise
 from seatrial.data.trial import EstimateMethod, EstimateSettings
-from seatrial.data.trial.estimated_values import ESTIMATED_VALUES
+from seatrial.data.trial.plausibility import ESTIMATED_VALUES
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import fit_output_error
 from seatrial.estimation.identify import EstimatorOptions, Runs, estimate_model, identify

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.results import Prediction, WindowScore
-from seatrial.core.results.window_scores import ChannelScore
+from seatrial.core.results.prediction import ChannelScore
 from seatrial.core.values import Record
 from seatrial.estimation.identify.narrow_bands import narrow_band_findings
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.results import Fit, Prediction
-from seatrial.core.results.identifiability import Stability
+from seatrial.core.results.fit import Stability
 from seatrial.core.values import Record, Ship
 from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRun
 from seatrial.estimation.estimate import Estimation

@@ -11,10 +11,10 @@ from tests.estimation.identify.conftest import NOISE, TRUTH, WriteTrial, square,
 import seatrial as st
 from seatrial.core.results import Fit, Posterior
 from seatrial.core.values import Record
-from seatrial.data.folder.earlier_result import joint_prior
+from seatrial.data.folder.model_file import joint_prior
 from seatrial.data.folder.result_folder import load_fit, model_of_fit, save_result
 from seatrial.data.trial import EstimateSettings, load_trial
-from seatrial.data.trial.earlier_result import EarlierResult
+from seatrial.data.trial.priors import EarlierResult
 from seatrial.estimation.estimate import IntervalMethod
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
 from seatrial.estimation.estimate.runs import Runs

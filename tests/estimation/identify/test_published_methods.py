@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.results import Fit
-from seatrial.core.results.method_comparison import coefficient_comparison, cost_comparison
+from seatrial.core.results.comparison import coefficient_comparison, cost_comparison
 from seatrial.core.values import InputError
 from seatrial.data.folder.document import document
 from seatrial.data.folder.result_folder import load_fit, save_result

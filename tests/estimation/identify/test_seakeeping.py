@@ -10,9 +10,8 @@ from seatrial.data.trial import Role, TrialRecord
 from seatrial.estimation.identify.seakeeping import recorded_sea, seakeeping
 from seatrial.physics.hydro.excitation import BoxHull
 from seatrial.physics.models import model_named
-from seatrial.physics.sea.encounter import WaveEncounter
 from seatrial.physics.sea.realise import realise, wave_record
-from seatrial.physics.sea.spectrum import ittc, ittc_two_parameter
+from seatrial.physics.sea.spectrum import WaveEncounter, ittc, ittc_two_parameter
 
 HULL = BoxHull(60.0, 7.14, 2.27, 3.15e6, 6.83e6, 6.83e6, 6.54e8)
 

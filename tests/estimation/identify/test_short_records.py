@@ -8,7 +8,7 @@ import pytest
 from standard_craft import NOMOTO
 
 from seatrial.core.results import Profile
-from seatrial.core.results.closed_loop import FeedbackEvidence
+from seatrial.core.results.coefficients import FeedbackEvidence
 from seatrial.estimation.estimate.fit import estimate_model
 from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions

@@ -12,8 +12,7 @@ from seatrial.estimation.identify.identify import STRATEGIES
 from seatrial.estimation.identify.situation import Situation, situation_of
 from seatrial.physics.hydro.excitation import BoxHull
 from seatrial.physics.models import model_named
-from seatrial.physics.sea.encounter import WaveEncounter
-from seatrial.physics.sea.spectrum import Spectrum, ittc
+from seatrial.physics.sea.spectrum import Spectrum, WaveEncounter, ittc
 
 TIME = np.arange(50.0)
 MOVING, STILL = np.sin(TIME), np.zeros(50)

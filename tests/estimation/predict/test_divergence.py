@@ -15,9 +15,7 @@ from seatrial.data.trial import Role, Trial, TrialRun
 from seatrial.estimation.identify import identify
 from seatrial.estimation.predict.divergence import divergence_of
 from seatrial.physics.models.nomoto import nomoto
-from seatrial.physics.simulate.channels import inputs_of
-from seatrial.physics.simulate.divergence import first_row_outside
-from seatrial.physics.simulate.replay import trajectory
+from seatrial.physics.simulate.replay import first_row_outside, inputs_of, trajectory
 from seatrial.reporting.verdict import verdict
 
 UNSTABLE = {"alpha": -200.0}

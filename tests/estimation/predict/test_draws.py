@@ -16,7 +16,7 @@ from seatrial.estimation.problem.output_error import Nuisance, OutputError
 from seatrial.estimation.problem.segments import cut_segments
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.simulate.batch import InputCorrection
-from seatrial.physics.simulate.channels import inputs_of
+from seatrial.physics.simulate.replay import inputs_of
 
 K, T = 0.15, 8.0
 DRAWS = 4000

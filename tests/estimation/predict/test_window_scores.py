@@ -8,7 +8,7 @@ from tests.estimation.predict.test_divergence import GENTLE, run
 from seatrial.core.results import Fit
 from seatrial.core.values import InputError, Record, Ship
 from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRun
-from seatrial.data.trial.window_lengths import WindowLength, window_lengths
+from seatrial.data.trial.settings import WindowLength, window_lengths
 from seatrial.estimation.identify import identify
 from seatrial.estimation.predict.window_baselines import (
     ARX,

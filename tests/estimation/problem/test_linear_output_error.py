@@ -11,8 +11,8 @@ from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import Segments, cut_segments
 from seatrial.numerics.optimise import levenberg_marquardt
 from seatrial.physics.models.heave_pitch import heave_pitch, heave_pitch_zoh
-from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
-from seatrial.physics.models.heave_pitch_coefficients import physical_start_values
+from seatrial.physics.models.published import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
+from seatrial.physics.models.published import physical_start_values
 from seatrial.physics.simulate.linear import LinearBatch
 from seatrial_studies.seaway import SeawayScenario, simulate_seaway_run
 

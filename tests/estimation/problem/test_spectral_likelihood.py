@@ -9,10 +9,9 @@ from seatrial.core.values import Array, Record
 from seatrial.estimation.identify.strategies.wave_spectrum import spectral_problem
 from seatrial.estimation.problem.spectral_likelihood import SpectralLikelihood
 from seatrial.physics.hydro.excitation import encounter_frequency
-from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
-from seatrial.physics.sea.encounter import WaveEncounter
+from seatrial.physics.models.published import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
 from seatrial.physics.sea.realise import Spacing
-from seatrial.physics.sea.spectrum import ittc
+from seatrial.physics.sea.spectrum import WaveEncounter, ittc
 from seatrial_studies.seaway import (
     HEAVE_NOISE,
     PITCH_NOISE,

@@ -19,7 +19,7 @@ from seatrial.estimation.sea import (
     stretch_spectra,
 )
 from seatrial.physics.loops import HullFactor
-from seatrial.physics.loops.fin import fin_loop
+from seatrial.physics.loops.structures import fin_loop
 
 HULL, U, BETA = HullFactor(100.0, 10.5, 3.4), 9.26, math.pi / 2
 PRIORS = LegPriors(np.array([0.2, 0.1, 0.3]), np.array([0.1, 0.05]))

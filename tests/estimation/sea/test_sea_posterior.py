@@ -18,7 +18,7 @@ from seatrial.estimation.sea import (
 )
 from seatrial.estimation.sea.sea_likelihood import HEADING, PERIOD, POINT_SIZE, SHIP
 from seatrial.physics.loops import HullFactor
-from seatrial.physics.loops.fin import fin_loop
+from seatrial.physics.loops.structures import fin_loop
 
 HULL, U, BETA = HullFactor(100.0, 10.5, 3.4), 9.26, math.radians(110.0)
 DEVIATIONS = np.array([0.2, 0.1, 0.3])

@@ -9,7 +9,7 @@ from seatrial.estimation.sea import ObservedLeg, StretchSpectra, WaveLeg, altere
 from seatrial.estimation.sea.plant_factors import altered_responses
 from seatrial.estimation.sea.wave_leg import STEP
 from seatrial.physics.loops import HullFactor
-from seatrial.physics.loops.fin import fin_loop
+from seatrial.physics.loops.structures import fin_loop
 
 HULL, U, BETA = HullFactor(100.0, 10.5, 3.4), 9.26, math.radians(60.0)
 SHIP, SEA = np.log([1.1, 1.03, 0.9]), np.log([3.0, 9.8, 1.0])

@@ -10,8 +10,8 @@ from tests.numerics.kernels.case import KernelCase
 
 from seatrial.core.equations import Model, Sheet
 from seatrial.numerics.kernels.feedback import steer
+from seatrial.numerics.kernels.kernel import COMMAND_SIGNATURE
 from seatrial.numerics.kernels.sensitivity import DELAY, correct
-from seatrial.numerics.kernels.types import COMMAND_SIGNATURE
 
 K, C, B = 1.5, 0.3, 0.8
 

@@ -7,8 +7,7 @@ import pytest
 from numba import void
 
 from seatrial.numerics.kernels.integrate import evaluate
-from seatrial.numerics.kernels.kernel import Kernel, kernel
-from seatrial.numerics.kernels.types import F8, FUNCTION_SIGNATURE, LEAN, OPTIONS, VECTOR
+from seatrial.numerics.kernels.kernel import F8, FUNCTION_SIGNATURE, LEAN, OPTIONS, VECTOR, Kernel, kernel
 
 
 def doubled() -> Kernel:

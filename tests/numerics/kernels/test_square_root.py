@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seatrial.numerics.kernels.square_root import forget, project_root, update_sample, update_scalar
+from seatrial.numerics.kernels.recursive import forget, project_root, update_sample, update_scalar
 
 Array = np.ndarray
 N = 5

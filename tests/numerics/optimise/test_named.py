@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from seatrial.numerics.optimise.ask_tell import Box, SearchError
 from seatrial.numerics.optimise.named import OPTIMISERS, optimiser_named
+from seatrial.numerics.optimise.population import Box, SearchError
 
 
 @pytest.mark.parametrize("name", sorted(OPTIMISERS))

@@ -8,7 +8,7 @@ import pytest
 
 from seatrial.core.values import InputError
 from seatrial.physics.hydro.capytaine_data import HullExcitation, hull_data, read_capytaine
-from seatrial.physics.hydro.dispersion import G
+from seatrial.physics.hydro.excitation import G
 
 xr = pytest.importorskip("xarray", reason="xarray is not installed (extra hydro)")
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from seatrial.core.values import InputError
-from seatrial.physics.hydro.dispersion import G, group_velocity, wavenumber
+from seatrial.physics.hydro.excitation import G, group_velocity, wavenumber
 
 omegas, depths = st.floats(0.05, 20.0), st.floats(0.05, 500.0)
 

@@ -6,8 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from seatrial.core.values import InputError
-from seatrial.physics.hydro.dispersion import G
-from seatrial.physics.hydro.excitation import BoxHull, box_wave, encounter_frequency
+from seatrial.physics.hydro.excitation import BoxHull, G, box_wave, encounter_frequency
 
 HULL = BoxHull(L=60.0, B=7.14, T=2.27, c33=3.15e6, c35=6.83e6, c53=6.83e6, c55=6.54e8)
 SPEED = 9.26

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seatrial.physics.hydro.propeller_series import thrust_coefficient, thrust_quadratic
+from seatrial.physics.hydro.empirical import thrust_coefficient, thrust_quadratic
 from seatrial.physics.models.published import ParameterSet, esso_osaka, kvlcc2_l7
 
 

@@ -7,9 +7,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from seatrial.core.values import InputError
-from seatrial.physics.hydro.dispersion import G
-from seatrial.physics.hydro.excitation import encounter_frequency
-from seatrial.physics.hydro.strip_theory import coefficients_at_speed, excitation_at_speed
+from seatrial.physics.hydro.excitation import G, encounter_frequency
+from seatrial.physics.hydro.tabulated import coefficients_at_speed, excitation_at_speed
 
 N = 5
 OMEGA_E = np.array([-1.1, 0.3, 0.8, 1.7, 2.6])

@@ -8,7 +8,7 @@ import pytest
 
 from seatrial.core.values import Array, InputError
 from seatrial.physics.hydro.excitation import BoxHull
-from seatrial.physics.hydro.transfer_file import read_transfer
+from seatrial.physics.hydro.tabulated import read_transfer
 
 HULL = BoxHull(L=60.0, B=7.14, T=2.27, c33=3.15e6, c35=6.83e6, c53=6.83e6, c55=6.54e8)
 OMEGA = np.linspace(0.3, 2.0, 120)

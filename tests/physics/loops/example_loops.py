@@ -7,7 +7,7 @@ from scipy.linalg import solve_continuous_lyapunov
 
 from seatrial.core.values import Array, Parameter, Parameters
 from seatrial.physics.loops import Block, LoopSignal, Term, TransferLoop
-from seatrial.physics.loops.block import controllable_form
+from seatrial.physics.loops.loop import controllable_form
 from seatrial.physics.loops.loop_states import state_space
 from seatrial.physics.loops.objective import variance
 from seatrial.physics.loops.performance import distinct_variances

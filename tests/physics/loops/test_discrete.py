@@ -7,13 +7,8 @@ from scipy.signal import bilinear, freqz
 from seatrial.core.values import InputError
 from seatrial.physics.loops import Block
 from seatrial.physics.loops.autopilot import heading_loop
-from seatrial.physics.loops.discrete import (
-    default_sample_time,
-    difference_equation,
-    holding_terms,
-    ringing_blocks,
-)
-from seatrial.physics.loops.fin import fin_loop
+from seatrial.physics.loops.discrete import default_sample_time, difference_equation, holding_terms, ringing_blocks
+from seatrial.physics.loops.structures import fin_loop
 
 BLOCKS = [
     Block("lag", (1.0,), (24.607, 1.0)),

@@ -9,10 +9,10 @@ import pytest
 from scipy.integrate import quad
 
 from seatrial.core.values import Array, InputError
-from seatrial.physics.hydro.dispersion import G
+from seatrial.physics.hydro.excitation import G
 from seatrial.physics.loops import WAVE_SLOPE, Block, EncounterSpectrum, HullFactor, sea_disturbance
 from seatrial.physics.loops.encounter_spectrum import disturbance_spectrum
-from seatrial.physics.loops.fin import ROLL
+from seatrial.physics.loops.structures import ROLL
 from seatrial.physics.sea.spectrum import Spectrum, ittc, jonswap
 
 HULL = HullFactor(100.0, 10.5, 3.4)

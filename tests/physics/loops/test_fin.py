@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 from tests.physics.loops.example_loops import ROWS
 
 from seatrial.physics.loops import HullFactor, Performance, TransferLoop, margins, sea_disturbance
-from seatrial.physics.loops.fin import (
+from seatrial.physics.loops.structures import (
     DERIVATIVE,
     GYRO,
     INTEGRAL,

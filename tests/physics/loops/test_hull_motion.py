@@ -8,7 +8,7 @@ import pytest
 from seatrial.core.values import InputError
 from seatrial.physics.hydro.excitation import BoxHull, encounter_frequency
 from seatrial.physics.loops import Block
-from seatrial.physics.loops.hull_motion import ForcedMotion, HullMotion, refuse_unknown_sea
+from seatrial.physics.loops.encounter_spectrum import ForcedMotion, HullMotion, refuse_unknown_sea
 from seatrial.physics.sea.spectrum import ittc
 
 U, BETA = 9.26, math.radians(135.0)

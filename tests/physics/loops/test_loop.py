@@ -8,8 +8,8 @@ from tests.physics.loops.example_loops import second_order
 
 from seatrial.core.values import InputError, Parameter, Parameters
 from seatrial.physics.loops import Block, Term, TransferLoop
-from seatrial.physics.loops.fin import Preamplifier, fin_loop
 from seatrial.physics.loops.loop_states import state_space
+from seatrial.physics.loops.structures import Preamplifier, fin_loop
 
 OMEGA = np.geomspace(1e-3, 1e2, 40)
 LOOPS = [fin_loop(reading) for reading in Preamplifier]

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Array
-from seatrial.physics.hydro.dispersion import G
+from seatrial.physics.hydro.excitation import G
 from seatrial.physics.loops import HullFactor, LoopSignal, Objective, Performance, sea_disturbance
-from seatrial.physics.loops.fin import ROLL, fin_loop
 from seatrial.physics.loops.objective import (
     motion_interruptions,
     motion_sickness,
@@ -20,6 +19,7 @@ from seatrial.physics.loops.objective import (
     vertical_acceleration,
 )
 from seatrial.physics.loops.performance import distinct_variances
+from seatrial.physics.loops.structures import ROLL, fin_loop
 from seatrial.physics.sea.response import MotionStatistics
 from seatrial.physics.sea.response import motion_sickness as sickness_of
 from seatrial.physics.sea.spectrum import ittc

@@ -20,9 +20,9 @@ from seatrial.physics.loops import (
     sea_disturbance,
 )
 from seatrial.physics.loops.encounter_spectrum import disturbance_spectrum
-from seatrial.physics.loops.fin import ROLL as ROLLING
-from seatrial.physics.loops.fin import Preamplifier, fin_loop
 from seatrial.physics.loops.performance import distinct_variances
+from seatrial.physics.loops.structures import ROLL as ROLLING
+from seatrial.physics.loops.structures import Preamplifier, fin_loop
 from seatrial.physics.sea.spectrum import ittc
 
 HULL = HullFactor(100.0, 10.5, 3.4)

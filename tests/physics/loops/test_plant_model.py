@@ -10,8 +10,8 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError
 from seatrial.numerics.kernels.integrate import evaluate
 from seatrial.physics.loops import Block, TransferLoop
-from seatrial.physics.loops.fin import fin_loop
-from seatrial.physics.loops.state_space import plant_model
+from seatrial.physics.loops.loop_states import plant_model
+from seatrial.physics.loops.structures import fin_loop
 
 OMEGA = np.array([0.05, 0.3, 0.84, 2.0, 7.0])
 ROLL = Block("roll", (1.0,), (1.43242, 0.3796, 1.0))

@@ -8,13 +8,13 @@ from tests.physics.loops.sampled_loops import RIB, sampled_loop
 
 from seatrial.core.values import InputError
 from seatrial.physics.loops import Block, Sampling, TransferLoop
-from seatrial.physics.loops.fin import DERIVATIVE, GYRO, ROLL, SERVO, Preamplifier, fin_loop
-from seatrial.physics.loops.python_control import (
+from seatrial.physics.loops.discrete import (
     block_from_system,
     controller_transfer_function,
     open_loop_transfer_function,
     transfer_function,
 )
+from seatrial.physics.loops.structures import DERIVATIVE, GYRO, ROLL, SERVO, Preamplifier, fin_loop
 
 OMEGA = np.geomspace(1e-3, 1e2, 50)
 BLOCKS = [GYRO, SERVO, ROLL, DERIVATIVE, Block("one")]

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.physics.loops.quadrature import gather_nodes, nodes, weights
+from seatrial.physics.loops.encounter_spectrum import gather_nodes, nodes, weights
 
 
 @pytest.mark.parametrize("power", range(8))

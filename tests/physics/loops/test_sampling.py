@@ -11,9 +11,9 @@ from seatrial.core.values import InputError
 from seatrial.physics.loops import Block, LoopSignal, Performance, Sampling, margins, variance
 from seatrial.physics.loops.discrete import ringing_blocks
 from seatrial.physics.loops.encounter_spectrum import disturbance_spectrum
-from seatrial.physics.loops.fin import SERVO, fin_loop
+from seatrial.physics.loops.loop import held
 from seatrial.physics.loops.performance import calm_actuator
-from seatrial.physics.loops.sampling import held
+from seatrial.physics.loops.structures import SERVO, fin_loop
 
 SAMPLINGS = [Sampling(1.0, 0.2), Sampling(0.1, 0.2), Sampling(0.02, 0.5), Sampling(0.5), Sampling(0.5, 1.3)]
 

@@ -8,9 +8,9 @@ from tests.physics.loops.example_loops import second_order
 
 from seatrial.core.values import InputError
 from seatrial.physics.loops import Block, TransferLoop
-from seatrial.physics.loops.block import controllable_form
-from seatrial.physics.loops.fin import Preamplifier, fin_loop
+from seatrial.physics.loops.loop import controllable_form
 from seatrial.physics.loops.loop_states import state_space
+from seatrial.physics.loops.structures import Preamplifier, fin_loop
 
 OMEGA = np.geomspace(1e-2, 30.0, 25)
 OTHER_SEA = replace(fin_loop(), disturbance=Block("met", (1.0, 0.2), (2.0, 0.9, 1.0)))

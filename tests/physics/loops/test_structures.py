@@ -19,9 +19,11 @@ from seatrial.physics.loops import (
     margins,
     sea_disturbance,
 )
-from seatrial.physics.loops.fin import ROLL, Preamplifier, fin_loop
 from seatrial.physics.loops.structures import (
+    ROLL,
+    Preamplifier,
     band_pass,
+    fin_loop,
     five_gain_loop,
     high_pass,
     low_pass,

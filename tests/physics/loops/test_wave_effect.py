@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Array
-from seatrial.physics.hydro.dispersion import G
+from seatrial.physics.hydro.excitation import G
 from seatrial.physics.loops import HullFactor, WaveSlope, YawAcceleration
 
 HULL = YawAcceleration(100.0, 4.0)

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import InputError
-from seatrial.physics.manoeuvres.helmsman import COUNT, TABLE, Steering, rudder_angles
-from seatrial.physics.manoeuvres.programme import programme
+from seatrial.physics.manoeuvres.programme import COUNT, TABLE, Steering, programme, rudder_angles
 
 STEERING = Steering(psi=0, r=1, delta=0, sign=1.0, slew_rate=0.05, dt=0.1, approach=0.0, characteristic_time=10.0)
 

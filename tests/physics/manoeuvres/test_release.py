@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import InputError, Record
-from seatrial.physics.manoeuvres.release import release_angle, roll_measures
+from seatrial.physics.manoeuvres.programme import release_angle, roll_measures
 
 
 def test_sides_have_their_signs() -> None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import InputError, Record
-from seatrial.physics.manoeuvres.thrust_measures import commands_of, thrust_measures
+from seatrial.physics.manoeuvres.measures import commands_of, thrust_measures
 
 TIME = 0.1 * np.arange(400)
 

@@ -1,6 +1,6 @@
 """The steering model of the other sign: a ship that turns by itself."""
 
-from seatrial.physics.models.course_unstable import course_unstable
+from seatrial.physics.models.candidate_structures import course_unstable
 from seatrial.physics.models.nomoto import nomoto, nomoto2
 from seatrial.physics.models.waterjet import waterjet
 

@@ -3,7 +3,7 @@
 import pytest
 
 from seatrial.physics.models import model_named
-from seatrial.physics.models.derivative_meaning import derivative_meaning
+from seatrial.physics.models.forces import derivative_meaning
 
 
 @pytest.mark.parametrize(

@@ -6,8 +6,13 @@ from tests.control.station.station_cases import craft, cross_drive
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array
-from seatrial.physics.models.outside_forces import OUTSIDE_FORCES, with_outside_forces
-from seatrial.physics.models.thruster_matrices import coefficient_or_zero, inertia_matrix, thrust_configuration
+from seatrial.physics.models.thrust_orders import (
+    OUTSIDE_FORCES,
+    coefficient_or_zero,
+    inertia_matrix,
+    thrust_configuration,
+    with_outside_forces,
+)
 
 STATE = {"u": 0.4, "v": -0.2, "r": 0.3}
 

@@ -6,9 +6,10 @@ from typing import Any, ClassVar
 
 import pytest
 
-from seatrial.core.equations.compiled import compile_equations, is_cached
+from seatrial.core.equations.bindings import compile_equations, is_cached
 from seatrial.numerics.kernels import cache
-from seatrial.physics.models import model_named, precompile
+from seatrial.physics.models import model_named
+from seatrial.physics.models import registry as precompile
 
 
 class Process:

@@ -10,8 +10,7 @@ from seatrial.estimation.identify import estimate_model
 from seatrial.physics.models.heave_pitch import heave_pitch
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.roll import roll
-from seatrial.physics.simulate.channels import inputs_of
-from seatrial.physics.simulate.replay import trajectory
+from seatrial.physics.simulate.replay import inputs_of, trajectory
 
 TRUE = {"b_1": 0.03, "b_2": 0.2, "b_3": 0.1, "c_1": 4.0, "c_3": 6.0, "c_5": -20.0, "phi_0": 0.01}
 DT, ROWS = 0.05, 1600

@@ -6,11 +6,7 @@ import pytest
 
 from seatrial.core.values import InputError, Ship
 from seatrial.physics.models import model_named
-from seatrial.physics.models.heave_pitch_coefficients import (
-    START_DAMPING_RATIO,
-    physical_start_values,
-    with_start_values,
-)
+from seatrial.physics.models.published import START_DAMPING_RATIO, physical_start_values, with_start_values
 from seatrial.physics.models.registry import model_summaries
 
 SHIP = Ship("ship", {"m": 4.42e5, "I5": 9.945e7, "c33": 3.15e6, "c55": 6.54e8, "c35": 6.83e6, "c53": 6.83e6})

@@ -8,15 +8,8 @@ import pytest
 
 from seatrial.core.equations import Model
 from seatrial.physics.models import model_named
-from seatrial.physics.models.thruster_layout import (
-    CommandInput,
-    Damping,
-    Rudder,
-    ThrustCurve,
-    Thruster,
-    ThrusterLayout,
-)
-from seatrial.physics.models.thruster_rudders import lift_gradient
+from seatrial.physics.models.thruster_forces import lift_gradient
+from seatrial.physics.models.thruster_layout import CommandInput, Damping, Rudder, ThrustCurve, Thruster, ThrusterLayout
 from seatrial.physics.models.thrusters import thrusters
 from seatrial.physics.simulate.replay import trajectory
 from seatrial.testing import check_model

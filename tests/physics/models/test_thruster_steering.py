@@ -9,16 +9,14 @@ from seatrial.core.values import Record
 from seatrial.physics.models.thrust_orders import AHEAD, YAW, with_orders
 from seatrial.physics.models.thruster_layout import (
     CATAMARAN,
+    ORDER,
     AngleInput,
     CommandInput,
     Rudder,
+    SteeringAngle,
     ThrustCurve,
     Thruster,
     ThrusterLayout,
-)
-from seatrial.physics.models.thruster_steering import (
-    ORDER,
-    SteeringAngle,
     order_text,
     steering_angles,
     with_steering_order,

@@ -5,7 +5,7 @@ import pytest
 
 from seatrial.core.values import InputError
 from seatrial.physics.hydro.excitation import encounter_frequency
-from seatrial.physics.sea.encounter import speed_factor, wave_frequency
+from seatrial.physics.sea.spectrum import speed_factor, wave_frequency
 
 
 def test_the_wave_of_a_head_sea_is_found_and_that_of_a_following_sea_refused() -> None:

@@ -10,8 +10,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from seatrial.core.values import InputError
-from seatrial.physics.sea.sea_state import sea_state
-from seatrial.physics.sea.spectrum import Spectrum, bretschneider, ittc, ittc_two_parameter, jonswap
+from seatrial.physics.sea.spectrum import Spectrum, bretschneider, ittc, ittc_two_parameter, jonswap, sea_state
 
 ALL = [ittc(2.27), ittc_two_parameter(3.0, 8.0), bretschneider(3.0, 9.0), jonswap(3.0, 9.0), jonswap(1.0, 5.0, 1.0)]
 

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import InputError, Record
-from seatrial.physics.hydro.tabulated import WaveTable
-from seatrial.physics.hydro.transfer_file import TabulatedExcitation
+from seatrial.physics.hydro.tabulated import TabulatedExcitation, WaveTable
 from seatrial.physics.sea.spectrum import ittc
 from seatrial.physics.sea.wave_forces import force_density, with_wave_forces
 from seatrial_studies.seaway import SPEED, SeawayScenario, box_hull, simulate_seaway_run

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from seatrial.core.results.estimated_current import EstimatedCurrent
+from seatrial.core.results.prediction import EstimatedCurrent
 from seatrial.core.values import Record
 from seatrial.physics.manoeuvres import measures
 from seatrial.physics.models.published import kvlcc2
 from seatrial.physics.sensors import Sensors, with_sensors
-from seatrial.physics.sensors.current_correction import shows_ground_velocity, without_current
+from seatrial.physics.sensors.measured_outputs import shows_ground_velocity, without_current
 from seatrial.physics.sensors.settings import VelocityReference
 
 RADIUS, SPEED, LENGTH = 20.0, 2.0, 10.0

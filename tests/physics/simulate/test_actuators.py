@@ -9,11 +9,15 @@ from seatrial.core.values import Prior, Record
 from seatrial.estimation.problem.output_error import Nuisance, OutputError
 from seatrial.estimation.problem.segments import cut_segments
 from seatrial.physics.models import model_named
-from seatrial.physics.simulate.actuators import actuator_motion, actuator_states, settled_actuators
 from seatrial.physics.simulate.batch import InputCorrection
-from seatrial.physics.simulate.channels import inputs_of
-from seatrial.physics.simulate.replay import replay
-from seatrial.physics.simulate.states import hidden_states, measured_states
+from seatrial.physics.simulate.replay import inputs_of, replay
+from seatrial.physics.simulate.states import (
+    actuator_motion,
+    actuator_states,
+    hidden_states,
+    measured_states,
+    settled_actuators,
+)
 
 MEASURED = ("u", "v", "r", "psi", "x0", "y0")
 OFFSET = (Nuisance(InputCorrection("command_1", "zero"), Prior(0.0, 0.1), "1"),)

@@ -11,9 +11,8 @@ from scipy.signal import lsim
 from seatrial.core.values import Array, DivergedError, InputError, Parameter, Parameters, Record
 from seatrial.numerics.kernels.feedback import effective_angle
 from seatrial.physics.loops import Block, Term, TransferLoop
-from seatrial.physics.loops.fin import Preamplifier, fin_loop
-from seatrial.physics.loops.loop_states import state_space
-from seatrial.physics.loops.state_space import plant_model
+from seatrial.physics.loops.loop_states import plant_model, state_space
+from seatrial.physics.loops.structures import Preamplifier, fin_loop
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.waterjet import waterjet
 from seatrial.physics.simulate.closed_loop import ActuatorLimits, ClosedLoop, closed_loop, hold_equivalent

@@ -13,13 +13,8 @@ from seatrial.physics.manoeuvres.measures import measures
 from seatrial.physics.models import model_named
 from seatrial.physics.models.thruster_layout import CATAMARAN, AngleInput, CommandInput, Thruster, ThrusterLayout
 from seatrial.physics.models.thrusters import thrusters
-from seatrial.physics.simulate.craft_manoeuvre import (
-    craft_manoeuvre,
-    craft_programme,
-    is_steered_by_angle,
-    order_at_speed,
-)
 from seatrial.physics.simulate.replay import replay
+from seatrial.physics.simulate.thrust import craft_manoeuvre, craft_programme, is_steered_by_angle, order_at_speed
 
 X, FULL, DRAG, YAW_DRAG = -2.0, 0.8, 0.1, 1.5
 """Place of the outboard [m], its thrust at full command, X_uu and N_r with their sign turned, on each kg of M_u."""

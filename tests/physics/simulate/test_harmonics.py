@@ -7,8 +7,7 @@ from seatrial.core.values import InputError
 from seatrial.physics.models.heave_pitch import heave_pitch
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.published import theoretical_coefficients
-from seatrial.physics.simulate.harmonics import frequency_response, harmonic_motion, linear_system
-from seatrial.physics.simulate.linear import LinearBatch
+from seatrial.physics.simulate.linear import LinearBatch, frequency_response, harmonic_motion, linear_system
 
 
 def test_motion_in_harmonics_equals_the_propagated_one(rng: np.random.Generator) -> None:

@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 from seatrial.core.equations import Model
 from seatrial.core.values import Array
 from seatrial.physics.models.heave_pitch import heave_pitch, heave_pitch_zoh
-from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
+from seatrial.physics.models.published import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
 from seatrial.physics.models.published import QI2025_HEADINGS, theoretical_coefficients
 from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch
 from seatrial.physics.simulate.linear import LinearBatch

@@ -7,7 +7,7 @@ from scipy.signal import lsim
 
 from seatrial.core.values import InputError
 from seatrial.physics.loops import fin_loop, state_space
-from seatrial.physics.simulate.loop_records import loop_record
+from seatrial.physics.simulate.closed_loop import loop_record
 
 LOOP = fin_loop()
 STATES = state_space(LOOP)

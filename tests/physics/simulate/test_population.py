@@ -10,8 +10,8 @@ from scipy.signal import lsim
 
 from seatrial.core.values import Array, InputError
 from seatrial.physics.models import heave_pitch_zoh
-from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
-from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_STIFFNESSES as STIFFNESSES
+from seatrial.physics.models.published import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
+from seatrial.physics.models.published import HEAVE_PITCH_STIFFNESSES as STIFFNESSES
 from seatrial.physics.models.published import QI2025_SHIP, theoretical_coefficients
 from seatrial.physics.simulate.population import (
     Forcing,

@@ -10,7 +10,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import InputError
 from seatrial.physics.manoeuvres.measures import measures
 from seatrial.physics.models import nomoto, roll
-from seatrial.physics.simulate.release import natural_period, release, rolls_only
+from seatrial.physics.simulate.steer import natural_period, release, rolls_only
 
 OMEGA, ZETA = 0.85, 0.03
 

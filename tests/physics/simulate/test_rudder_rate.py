@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Array, Record
-from seatrial.physics.simulate.rudder_rate import rudder_rate, sustained_rudder_rate
-from seatrial.physics.simulate.steer import SOLAS_SLEW_RATE
+from seatrial.physics.simulate.steer import SOLAS_SLEW_RATE, rudder_rate, sustained_rudder_rate
 
 RATE, ANGLE, DT = math.radians(12.0), math.radians(25.0), 0.2
 """rad/s, rad and s: a boat's rudder, logged as boats' plotters do."""

@@ -9,12 +9,8 @@ from seatrial.control.station.capability import current_force
 from seatrial.control.station.craft import StationCraft
 from seatrial.control.station.station_loop import StationLoop, place_poles, station_point
 from seatrial.control.station.trial import sampled_controller
-from seatrial.physics.loops.sampling import Sampling
-from seatrial.physics.simulate.station_keeping import (
-    StationRun,
-    filter_coefficients,
-    keep_station,
-)
+from seatrial.physics.loops.loop import Sampling
+from seatrial.physics.simulate.craft_control import StationRun, filter_coefficients, keep_station
 
 
 def run_of(own: StationCraft, speed: float, forces: tuple[float, float, float], count: int, omega: float) -> StationRun:

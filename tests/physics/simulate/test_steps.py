@@ -9,8 +9,8 @@ from scipy.integrate import solve_ivp
 from seatrial.core.values import Array
 from seatrial.physics.models import model_named
 from seatrial.physics.simulate import trajectory
-from seatrial.physics.simulate.actuators import actuator_motion
-from seatrial.physics.simulate.steps import MOST_SUBSTEPS, is_within_range, sufficient_substeps
+from seatrial.physics.simulate.batch import MOST_SUBSTEPS, is_within_range, sufficient_substeps
+from seatrial.physics.simulate.states import actuator_motion
 
 ROLL = {"b_1": 0.04, "b_2": 0.25, "c_1": (2.0 * math.pi / 5.0) ** 2, "phi_0": 0.0}  # a period of 5 s
 RELEASE = np.array([math.radians(15.0), 0.0])

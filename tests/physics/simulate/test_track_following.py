@@ -10,7 +10,7 @@ from seatrial.core.values import Array, Parameter, Parameters
 from seatrial.physics.loops import Block, Term, TransferLoop
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.simulate.closed_loop import ActuatorLimits, ClosedLoop
-from seatrial.physics.simulate.track_following import LineOfSight, PlannedTrack, TrackRun, follow_track
+from seatrial.physics.simulate.craft_control import LineOfSight, PlannedTrack, TrackRun, follow_track
 
 K, T, U, TAU = 0.1, 8.0, 5.0, 0.5
 KP, KD = 2.0, 20.0

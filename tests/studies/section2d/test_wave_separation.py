@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import InputError
-from seatrial.physics.hydro.dispersion import group_velocity, wavenumber
+from seatrial.physics.hydro.excitation import group_velocity, wavenumber
 from seatrial_studies.section2d.harmonics import harmonics
 from seatrial_studies.section2d.wave_separation import Probes, calibrate_wave_probes, separate_waves
 

@@ -8,10 +8,11 @@ from seatrial.control.loopfile.quantities import positive_value
 from seatrial.control.loopfile.schema import ExtendedStructureTable, PassTable
 from seatrial.core.values import InputError, Parameter, Parameters
 from seatrial.physics.loops import Block, Term, TransferLoop
-from seatrial.physics.loops.fin import PUBLISHED_GAINS, ROLL
 from seatrial.physics.loops.structures import (
     ADDED_GAINS,
     FREQUENCIES_AND_DAMPINGS,
+    PUBLISHED_GAINS,
+    ROLL,
     band_pass,
     five_gain_loop,
     low_pass,

@@ -42,12 +42,12 @@ from seatrial.control.track.track_task import refuse_impossible_track
 from seatrial.core.equations import Model
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import InputError, spelling_hint
-from seatrial.core.values.tables import parse_toml, read_table_text, refuse_absurd_numbers
-from seatrial.data.trial.schema_errors import schema_error
+from seatrial.core.values.files import parse_toml, read_table_text, refuse_absurd_numbers
+from seatrial.data.trial.amounts import schema_error
 from seatrial.physics.loops import ActuatorDrive, Block, Objective, Sampling, TransferLoop
 from seatrial.physics.loops.discrete import default_sample_time, ringing_blocks, round_sample_time
 from seatrial.physics.models.thruster_layout import ThrusterLayout
-from seatrial.physics.simulate.sampled_controller import simulation_step
+from seatrial.physics.simulate.closed_loop import simulation_step
 
 _TIME_CONSTANTS = 30.0  # duration of a demand where none is given, in its time constants; chosen
 _DELAY_OVER_DEAD_TIME = 1.0  # least delay margin beyond the declared dead time, over it; chosen

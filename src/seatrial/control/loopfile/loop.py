@@ -10,7 +10,7 @@ from seatrial.control.loopfile.schema import BlockTable, ControllerTable, GainTa
 from seatrial.core.values import InputError, Parameter, Parameters, spelling_hint
 from seatrial.physics.loops import Block, Term, TransferLoop
 from seatrial.physics.loops.autopilot import heading_loop, pitch_loop, speed_loop
-from seatrial.physics.loops.fin import SERVO, Preamplifier, fin_loop
+from seatrial.physics.loops.structures import SERVO, Preamplifier, fin_loop
 
 PID = ("KP", "KI", "KD")
 MEANINGS = {"KP": "proportional gain", "KI": "gain of the integral", "KD": "gain of the filtered derivative"}

@@ -20,10 +20,9 @@ from seatrial.data.folder.model_file import ModelFile, read_model_file
 from seatrial.data.trial.amounts import Amount
 from seatrial.data.trial.runs import expand_variables
 from seatrial.physics.loops import Block, HullFactor
-from seatrial.physics.loops.fin import K_alpha_at
+from seatrial.physics.loops.structures import K_alpha_at
 from seatrial.physics.models.thrust_orders import AHEAD, YAW, with_orders
-from seatrial.physics.models.thruster_layout import ThrusterLayout
-from seatrial.physics.models.thruster_steering import ORDER, order_text
+from seatrial.physics.models.thruster_layout import ORDER, ThrusterLayout, order_text
 from seatrial.physics.simulate.thrust import DEFAULT_AHEAD
 
 FINS = ("phi", "alpha_f", "alpha_w")

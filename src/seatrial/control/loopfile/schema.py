@@ -1,4 +1,4 @@
-"""The tables of a loop file: strict pydantic models; `seatrial.data.trial.schema_errors` words what they refuse."""
+"""The tables of a loop file: strict pydantic models; `seatrial.data.trial.amounts` words what they refuse."""
 
 from typing import Annotated, Any, Literal, Self
 
@@ -16,8 +16,7 @@ from seatrial.data.trial.amounts import (
     StrictTable,
     Unit,
 )
-from seatrial.data.trial.schema import ExcitationTable
-from seatrial.data.trial.sea_table import SeaTable
+from seatrial.data.trial.schema import ExcitationTable, SeaTable
 
 Coefficients = Annotated[tuple[float, ...], Field(min_length=1)]
 Share = Annotated[float, Field(gt=0, lt=1)]

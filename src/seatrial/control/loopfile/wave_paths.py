@@ -7,11 +7,11 @@ from seatrial.control.loopfile.plant import LoopPlant, yaw_acceleration_path
 from seatrial.control.ship.trimmed_ship import response_of_states
 from seatrial.control.task import Seaway, TrimmedShip
 from seatrial.core.values import InputError
-from seatrial.data.trial.excitation import excitation_of
+from seatrial.data.trial.runs import excitation_of
 from seatrial.data.trial.schema import ExcitationTable
 from seatrial.physics.hydro.excitation import Excitation
 from seatrial.physics.loops import WAVE_SLOPE, Block, HullFactor, WaveEffect, YawAcceleration
-from seatrial.physics.loops.hull_motion import ForcedMotion, HullMotion, refuse_unknown_sea
+from seatrial.physics.loops.encounter_spectrum import ForcedMotion, HullMotion, refuse_unknown_sea
 from seatrial.physics.loops.loop import HullPoint
 from seatrial.physics.sea.spectrum import Spectrum
 

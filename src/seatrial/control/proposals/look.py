@@ -10,7 +10,7 @@ from seatrial.control.proposals.propose import ChosenGains, estimated, propose_g
 from seatrial.control.task import Seaway, TuningTask
 from seatrial.control.verification.legs import natural_period
 from seatrial.control.verification.stabiliser import prior_deviations
-from seatrial.core.results.proposal import CraftFactor, HeadingRange, Proposal, SeaEstimate
+from seatrial.core.results.online import CraftFactor, HeadingRange, Proposal, SeaEstimate
 from seatrial.core.values import Array
 from seatrial.estimation.problem.spectral_likelihood import hann_transform
 from seatrial.estimation.sea import (

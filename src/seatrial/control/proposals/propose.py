@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from seatrial.control.gain_evaluation import GainEvaluator, exceedance_share
 from seatrial.control.proposals.gain_schedule import GainSchedule
 from seatrial.control.task import Effectiveness, Seaway, TuningTask
-from seatrial.core.results.proposal import Estimated, GainMargins
+from seatrial.core.results.online import Estimated, GainMargins
 from seatrial.core.values import Array, Index
 from seatrial.estimation.sea import ShipInSea, altered_loop, sea_spectrum
 from seatrial.physics.loops import margins

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.core.values import NOTATION, InputError, Parameter, Parameters, frozen
-from seatrial.core.values.froude import froude_factor
+from seatrial.core.values.record import froude_factor
 from seatrial.data.folder.model_file import ModelFile
 
 _LENGTHS = ("L", "B", "d")

@@ -6,7 +6,7 @@ import numpy as np
 
 from seatrial.control.task import TrimmedShip
 from seatrial.core.equations import Model
-from seatrial.core.equations.manifest import stored_model
+from seatrial.core.equations.model import stored_model
 from seatrial.core.values import Array, InputError
 from seatrial.physics.loops import TransferLoop
 

@@ -8,9 +8,8 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError
 from seatrial.numerics.kernels.sensitivity import evaluate_tangent
 from seatrial.physics.models.thrust_orders import YAW
-from seatrial.physics.simulate.actuators import settled_actuators
-from seatrial.physics.simulate.approach import RUDDER, approach_speed, balancing_input, held_inputs
-from seatrial.physics.simulate.channels import ZERO_BY_DEFAULT
+from seatrial.physics.simulate.replay import ZERO_BY_DEFAULT
+from seatrial.physics.simulate.states import RUDDER, approach_speed, balancing_input, held_inputs, settled_actuators
 
 _ITERATIONS = 30  # Newton steps at most; chosen
 _MOST_RUDDER = 0.6  # rad, 34 deg: largest mean rudder of a trim; of a yaw command a share of the full one; chosen

@@ -17,7 +17,7 @@ from seatrial.data.folder.model_file import ModelFile
 from seatrial.estimation.information.stability import lateral_states
 from seatrial.physics.hydro.free_roll import equivalent_damping
 from seatrial.physics.loops import Block
-from seatrial.physics.simulate.approach import RUDDER
+from seatrial.physics.simulate.states import RUDDER
 
 # SI, off the straight course, for one-sided slopes; relative rounding error
 _LATERAL_OFFSET, _NEGLIGIBLE = 1e-12, 1e-10

@@ -10,9 +10,13 @@ import numpy as np
 from seatrial.control.ship.trim import jacobian_at
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError
-from seatrial.physics.models.outside_forces import with_outside_forces
+from seatrial.physics.models.thrust_orders import (
+    coefficient_or_zero,
+    inertia_matrix,
+    thrust_configuration,
+    with_outside_forces,
+)
 from seatrial.physics.models.thruster_layout import AngleInput, Thruster, ThrusterLayout
-from seatrial.physics.models.thruster_matrices import coefficient_or_zero, inertia_matrix, thrust_configuration
 
 _SHARES = 201  # of full command at which thrust is tabled; chosen
 _ACROSS = 0.5 * np.pi  # rad: direction of the second component of an azimuth thruster's thrust

@@ -14,14 +14,9 @@ from seatrial.core.results.station import StationTrial
 from seatrial.core.values import Array, Channel, DivergedError, InputError, Provenance, Record, RecordKind, frozen
 from seatrial.estimation.predict.draws import square_root
 from seatrial.numerics.workers import map_in_threads
-from seatrial.physics.loops.sampling import Sampling
+from seatrial.physics.loops.loop import Sampling
 from seatrial.physics.models.thruster_layout import MIN_LAG
-from seatrial.physics.simulate.station_keeping import (
-    StationController,
-    StationRun,
-    ThrusterOrders,
-    keep_station,
-)
+from seatrial.physics.simulate.craft_control import StationController, StationRun, ThrusterOrders, keep_station
 
 # time constants of the integral before what is counted, and counted of craft that are drawn; chosen
 _RUN_IN, _COUNTED = 8.0, 40.0

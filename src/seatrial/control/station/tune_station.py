@@ -19,7 +19,7 @@ from seatrial.control.task import Seaway, SlowDisturbance, StationDemand, Tuning
 from seatrial.core.results.station import StationCapability, StationKeeping, StationMargins, StationThruster
 from seatrial.core.values import Array, InputError
 from seatrial.physics.loops.discrete import round_sample_time
-from seatrial.physics.loops.sampling import Sampling
+from seatrial.physics.loops.loop import Sampling
 
 STATION_DIRECTIONS = 8
 """Directions of the steady current that a station is tried in, every 45 degrees; chosen."""

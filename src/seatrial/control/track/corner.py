@@ -12,9 +12,8 @@ from seatrial.control.track.paths import HeadingLoop
 from seatrial.core.results.tuning import CornerResponse
 from seatrial.core.values import Array, Channel, DivergedError, InputError, Provenance, Record, RecordKind, frozen
 from seatrial.physics.loops import TransferLoop
-from seatrial.physics.simulate.closed_loop import ActuatorLimits, ClosedLoop
-from seatrial.physics.simulate.sampled_controller import simulation_step
-from seatrial.physics.simulate.track_following import LineOfSight, PlannedTrack, TrackRun, follow_track
+from seatrial.physics.simulate.closed_loop import ActuatorLimits, ClosedLoop, simulation_step
+from seatrial.physics.simulate.craft_control import LineOfSight, PlannedTrack, TrackRun, follow_track
 
 # time constants Delta / U of the track before and after the corner; chosen
 _BEFORE, _AFTER = 8.0, 20.0

@@ -23,7 +23,7 @@ from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.hydro.excitation import Complex
 from seatrial.physics.loops import TransferLoop
 from seatrial.physics.simulate.closed_loop import UNLIMITED, ActuatorLimits, ClosedLoop
-from seatrial.physics.simulate.track_following import LineOfSight, follow_track
+from seatrial.physics.simulate.craft_control import LineOfSight, follow_track
 
 _YAW_RATE = "r"  # state whose rate the waves' yaw acceleration is
 

@@ -8,7 +8,7 @@ from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import InputError, Parameter, Parameters
 from seatrial.physics.loops import Block, Term, TransferLoop
 from seatrial.physics.loops.autopilot import lag_frequency
-from seatrial.physics.simulate.track_following import LineOfSight
+from seatrial.physics.simulate.craft_control import LineOfSight
 
 # crossover U KP of the outer loop over the lag frequency of the heading loop: least, first, largest; chosen
 _SLOWEST, _START, _FASTEST = 0.003, 0.1, 1.0

@@ -26,10 +26,9 @@ from seatrial.control.verification.followed_gains import FollowedGains, GainTest
 from seatrial.control.verification.logged_changes import LoggedChange, logged_changes
 from seatrial.core.results.verification import VerifiedChange, VerifiedQuantity
 from seatrial.core.values import Array, InputError, Record, frozen
-from seatrial.core.values.channel_text import channel_unit
+from seatrial.core.values.notation import channel_unit
 from seatrial.physics.loops import TransferLoop
-from seatrial.physics.simulate.closed_loop import ActuatorLimits
-from seatrial.physics.simulate.sampled_controller import simulation_step, steps_a_sample
+from seatrial.physics.simulate.closed_loop import ActuatorLimits, simulation_step, steps_a_sample
 
 SHIPS, WEATHERS = 40, 10  # ships drawn from the fit, and moments of the log's weather for each; chosen
 _STEP_SHARE = 0.2  # step of a simulation as a share of the fastest pole's time constant; chosen

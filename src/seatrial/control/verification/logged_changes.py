@@ -7,7 +7,7 @@ import numpy as np
 
 from seatrial.control.task import Demand
 from seatrial.core.values import Array, InputError, Record
-from seatrial.core.values.channel_text import channel_unit
+from seatrial.core.values.notation import channel_unit
 from seatrial.physics.loops import TransferLoop
 
 _SMALLEST = 0.1  # of the demand's change, below which an order is no change but a correction; chosen

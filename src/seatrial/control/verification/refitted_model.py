@@ -12,7 +12,7 @@ from seatrial.core.results.fit import Fit
 from seatrial.core.results.verification import ModelCorrection
 from seatrial.core.values import Array, InputError, Parameter, Prior, Record, Ship
 from seatrial.data.trial import Feedback, Trial, TrialRun
-from seatrial.data.trial.earlier_result import JointPrior
+from seatrial.data.trial.priors import JointPrior
 from seatrial.estimation.identify import identify
 
 _SOURCE = "the model that was tuned on"

@@ -25,7 +25,7 @@ from seatrial.core.results.verification import (
     normal_interval,
 )
 from seatrial.core.values import Array, InputError, Record
-from seatrial.core.values.channel_text import channel_unit
+from seatrial.core.values.notation import channel_unit
 from seatrial.estimation.sea import (
     LegFit,
     LegPriors,

@@ -21,7 +21,7 @@ from seatrial.core.results.verification import (
 )
 from seatrial.core.values import Array, Finding, InputError, Record, Severity, spelling_hint
 from seatrial.core.values.versions import versions
-from seatrial.data.folder.orders import channel_display_unit
+from seatrial.data.folder.gains_file import channel_display_unit
 from seatrial.physics.loops import margins
 
 _GAIN_TOLERANCE = 0.15  # of what a stabiliser's gains order, beyond which the fins did something else; chosen

@@ -10,8 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from seatrial.core.equations.bindings import Binding, ModelEquations
-from seatrial.core.equations.manifest import stored_equations
-from seatrial.core.equations.model import Model
+from seatrial.core.equations.model import Model, stored_equations
 from seatrial.core.values import InputError, Parameter, Parameters
 
 if TYPE_CHECKING:

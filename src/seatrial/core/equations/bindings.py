@@ -1,17 +1,58 @@
-"""What is written down of a model: inputs, named bindings, rates. Everything numeric is generated from it.
-
-Expressions are kept in SymPy's own notation, so that a process whose code is in the compile cache never imports SymPy.
-"""
+"""What is written down of a model, and its machine code: everything numeric is generated from bindings."""
 
 import hashlib
+import json
+import sys
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import TYPE_CHECKING, Self
+from functools import cached_property, lru_cache
+from importlib.metadata import version
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, Any, Self
 
-from seatrial.core.values import NOTATION, quantity
+import numpy as np
+
+from seatrial.core.values import NOTATION, Index, quantity
+from seatrial.numerics.kernels.cache import discard_entry, entry_path, read_entry, source_digest, write_entry
 
 if TYPE_CHECKING:
     import sympy as sp
+
+
+# What was worked out once about equations, as JSON in the compile cache: a warm process neither repeats it nor needs
+
+_HERE = Path(__file__).parent
+
+
+def entry_key(key: Sequence[object], sources: Sequence[Path] = ()) -> str:
+    """Return 24 hexadecimal digits for a question and all source text that decides its answer.
+
+    key: values whose `repr` is the same in every process. sources: folders of Python files, besides this one.
+    """
+    digests = [source_digest(folder) for folder in (_HERE, *sources)]
+    facts = repr((tuple(key), version("sympy"))).encode()
+    return hashlib.sha256(b"\0".join((facts, *digests))).hexdigest()[:24]
+
+
+def stored(kind: str, key: Sequence[object], work_out: Callable[[], Any], sources: Sequence[Path] = ()) -> Any:
+    """Return a JSON value from the compile cache, or work it out and keep it there.
+
+    kind: first part of the entry's name. key, sources: as for `entry_key`.
+    """
+    name = f"{kind}-{entry_key(key, sources)}.json"
+    content = read_entry(name)
+    if content is not None:
+        try:
+            return json.loads(content)
+        except ValueError as error:
+            discard_entry(name, str(error))
+    content = json.dumps(work_out()).encode()
+    write_entry(name, content)
+    return json.loads(content)
+
+
+# What is written down of a model: inputs, named bindings, rates. Everything numeric is generated from it.
 
 
 @dataclass(frozen=True)
@@ -43,7 +84,7 @@ class Binding:
     @cached_property
     def expression(self) -> "sp.Expr":
         """The SymPy expression."""
-        from seatrial.core.equations.differentiate import parsed
+        from seatrial.core.equations.generate import parsed
 
         return parsed(self.text)
 
@@ -117,7 +158,7 @@ class ModelEquations:
     @cached_property
     def is_affine(self) -> bool:
         """Whether rates and outputs are affine in states and inputs, so that exact propagators serve."""
-        from seatrial.core.equations.differentiate import is_affine
+        from seatrial.core.equations.generate import is_affine
 
         return is_affine(self)
 
@@ -129,3 +170,100 @@ class ModelEquations:
         lines += [f"{b.name} = {b.text}" for b in self.bindings]
         lines += [f"d{b.name} = {b.text}" for b in self.rates]
         return hashlib.sha256("\n".join(lines).encode()).hexdigest()
+
+
+# Machine code of a set of equations: generated modules in the compile cache, their functions compiled at first use.
+
+_MAIN = ("main",)  # kind of the module with the four functions
+
+
+@dataclass(frozen=True)
+class CompiledEquations:
+    """Functions of one set of equations.
+
+    Attributes:
+        rates_pattern, outputs_pattern: structural nonzeros of their Jacobians, (row, column) with columns [x | u | p].
+    """
+
+    equations: ModelEquations
+    rates: Callable[..., None]
+    rates_tangent: Callable[..., None]
+    outputs: Callable[..., None]
+    outputs_tangent: Callable[..., None]
+    rates_pattern: Index
+    outputs_pattern: Index
+
+    def load(self) -> None:
+        """Load or compile the four functions now."""
+        from seatrial.numerics.kernels.kernel import load_kernels
+
+        load_kernels(sys.modules[self.rates.__module__])
+
+    @cached_property
+    def bindings(self) -> Callable[..., None]:
+        """Every binding in order: the breakdown of forces."""
+
+        def text() -> str:
+            from seatrial.core.equations.generate import bindings_text
+
+            return bindings_text(self.equations)
+
+        return _load_or_generate(self.equations, ("bindings",), text).bindings
+
+    def tangent_function(self, names: tuple[str, ...]) -> Callable[..., None]:
+        """Return the function of the named bindings, in that order, with their exact Jacobians by [x | u | p]."""
+
+        def text() -> str:
+            from seatrial.core.equations.generate import tangent_text
+
+            return tangent_text(self.equations, names)
+
+        return _load_or_generate(self.equations, ("tangent", *names), text).tangent
+
+
+def is_cached(equations: ModelEquations) -> bool:
+    """Return whether the generated module lies in the compile cache, and so its machine code."""
+    return entry_path(_entry_name(equations, _MAIN)).exists()
+
+
+def _entry_name(equations: ModelEquations, kind: tuple[str, ...]) -> str:
+    return f"model_{entry_key((equations.digest, *kind))}.py"
+
+
+def _load_or_generate(equations: ModelEquations, kind: tuple[str, ...], text: Callable[[], str]) -> ModuleType:
+    """The generated module of that kind; its text is generated where the cache has none."""
+    name = _entry_name(equations, kind)
+    content = read_entry(name)
+    if content is None:
+        content = text().encode()
+        write_entry(name, content)
+    module = ModuleType(name.removesuffix(".py"))
+    vars(module)["SOURCE_DIGEST"] = hashlib.sha256(content).digest()  # decides its machine code, see `kernel`
+    sys.modules[module.__name__] = module
+    exec(compile(content, str(entry_path(name)), "exec"), vars(module))
+    return module
+
+
+@lru_cache(maxsize=64)  # models kept in a process; chosen
+def compile_equations(equations: ModelEquations) -> CompiledEquations:
+    """Return the functions of a set of equations, generated where the cache does not hold them."""
+
+    def text() -> str:
+        from seatrial.core.equations.generate import source_text
+
+        return source_text(equations)
+
+    module = _load_or_generate(equations, _MAIN, text)
+
+    def table(pairs: list[tuple[int, int]]) -> Index:
+        return np.array(pairs, dtype=np.int64).reshape(-1, 2)
+
+    return CompiledEquations(
+        equations,
+        module.rates,
+        module.rates_tangent,
+        module.outputs,
+        module.outputs_tangent,
+        table(module.RATES_PATTERN),
+        table(module.OUTPUTS_PATTERN),
+    )

@@ -1,12 +1,40 @@
-"""A model's equations as LaTeX, one line for each binding and rate, with its source: what a report prints."""
+"""A model's equations for pages: LaTeX, one line for each binding and rate, and JavaScript of its rates."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from seatrial.core.equations.bindings import Binding
+from seatrial.core.equations.bindings import Binding, stored
 from seatrial.core.equations.model import Model
-from seatrial.core.equations.stored import stored
 from seatrial.core.values.notation import NOTATION
+
+if TYPE_CHECKING:
+    from seatrial.core.equations.generate import Assignment
+
+
+# JavaScript of a model's rates, for pages that simulate: the assignments of the C99 export in another dialect.
+
+
+def rates_function(model: "Model") -> str:
+    """Return ``(x, u, p, out) => {...}``, which sets `out` to the rates of the states; arrays in the model's order."""
+    lines = stored("javascript", (model.equation_hash,), lambda: _lines(model))
+    return "\n".join(["(x, u, p, out) => {", *(f"  {line}" for line in lines), "}"])
+
+
+def _lines(model: "Model") -> list[str]:
+    from seatrial.core.equations.generate import JavaScriptDialect, function_assignments, live_assignments
+
+    equations = model.equations
+    assignments = function_assignments(equations, equations.rates, JavaScriptDialect())
+    return [_statement(a) for a in live_assignments(assignments)]
+
+
+def _statement(assignment: "Assignment") -> str:
+    declared = "const " if assignment.target.isidentifier() else ""
+    return f"{declared}{assignment.target} = {assignment.text};"
+
+
+# A model's equations as LaTeX, one line for each binding and rate, with its source: what a report prints.
 
 _GREEK = {
     "alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "kappa", "lambda", "mu", "nu", "xi", "rho",

@@ -1,14 +1,23 @@
-"""A model: equations, written once, and the values of their parameters."""
+"""A model: equations, written once, and the values of their parameters; read from the compile cache where it can."""
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
-from typing import Self
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any, Self
 
 import numpy as np
 
-from seatrial.core.equations.bindings import Binding, Input, ModelEquations
-from seatrial.core.equations.compiled import CompiledEquations, compile_equations
-from seatrial.core.values import Array, InputError, Parameters, Ship
+from seatrial.core.equations.bindings import (
+    Binding,
+    CompiledEquations,
+    Input,
+    ModelEquations,
+    compile_equations,
+    stored,
+)
+from seatrial.core.values import Array, InputError, Parameter, Parameters, Ship
+
+# A model: equations, written once, and the values of their parameters.
 
 MEASURED = "_measured"
 
@@ -139,3 +148,44 @@ class Model:
         x, u = np.ascontiguousarray(states), np.ascontiguousarray(inputs)
         evaluate(self.compiled.bindings, x, u, self.parameters.values, 0.0, out)
         return {b.name: out[:, i] for i, b in enumerate(self.bindings)}
+
+
+# ModelEquations and models read from the compile cache instead of being written again with SymPy.
+
+
+def stored_equations(
+    key: Sequence[object], write: Callable[[], ModelEquations], sources: Sequence[Path] = ()
+) -> ModelEquations:
+    """Return the equations that `write` returns, from their manifest where there is one.
+
+    key: what `write` depends on, with the same `repr` in every process. sources: folders of the code that it runs.
+    """
+    return _equations(stored("equations", key, lambda: _manifest(write()), sources))
+
+
+def stored_model(key: Sequence[object], write: Callable[[], Model], sources: Sequence[Path]) -> Model:
+    """Return the model that `write` returns, from its manifest where there is one.
+
+    key, sources: as for `stored_equations`.
+    """
+
+    def manifest() -> dict[str, Any]:
+        model = write()
+        return {"equations": _manifest(model.equations), "parameters": [asdict(p) for p in model.parameters]}
+
+    about = stored("model", key, manifest, sources)
+    return Model(_equations(about["equations"]), Parameters(tuple(Parameter(**p) for p in about["parameters"])))
+
+
+def _manifest(equations: ModelEquations) -> dict[str, Any]:
+    return {**asdict(equations), "is_affine": equations.is_affine}
+
+
+def _equations(about: dict[str, Any]) -> ModelEquations:
+    equations = ModelEquations(
+        about["name"], about["source"], tuple(Input(**i) for i in about["inputs"]),
+        tuple(Binding(**b) for b in about["bindings"]), tuple(Binding(**b) for b in about["rates"]),
+        tuple(about["outputs"]), tuple(about["parameters"]), about["meaning"], about["layout"], about["sensors"],
+    )  # fmt: skip
+    vars(equations)["is_affine"] = about["is_affine"]  # of the cached property, which would import SymPy
+    return equations

@@ -2,49 +2,25 @@
 
 from seatrial.core.results.coefficients import (
     CandidateModel, Coefficient, DisturbanceCandidate, Method, Noise, NoiseModel, Offset, OffsetPopulation, Residuals,
-    Waves,
+    SessionOffset, Waves, fitted_session, offsets_text, session_offsets_of,
 )  # fmt: skip
 from seatrial.core.results.comparison import ComparedFit, Comparison, Difference, JointTest, ManoeuvreDifferences
 from seatrial.core.results.design import Actuator, Confirmation, Design, ManoeuvrePrecision, TimedOrder, TrialLimits
-from seatrial.core.results.fit import Fit
-from seatrial.core.results.frequency_response import FrequencyResponse
-from seatrial.core.results.identifiability import (
-    Collinearity,
-    Consequence,
-    Direction,
-    Identifiability,
-    Profile,
-    Sensitivity,
-    Stability,
-    Symmetry,
-)
-from seatrial.core.results.k_step import KStepErrors
-from seatrial.core.results.posterior import CredibleInterval, Posterior
+from seatrial.core.results.fields import Summary
+from seatrial.core.results.fit import (
+    Collinearity, Consequence, CredibleInterval, Direction, Fit, Identifiability, Posterior, Profile, SearchAttempt,
+    Sensitivity, Stability, Symmetry,
+)  # fmt: skip
 from seatrial.core.results.prediction import (
-    Baseline,
-    Divergence,
-    Extrapolation,
-    IntervalBasis,
-    Measure,
-    OpenLoopScores,
-    Prediction,
-    RowScore,
-)
-from seatrial.core.results.search_attempts import SearchAttempt
-from seatrial.core.results.ship_motions import IntervalEstimate, PointMotion, RollCharacteristics, Seakeeping
-from seatrial.core.results.session_offset import SessionOffset, fitted_session, offsets_text, session_offsets_of
-from seatrial.core.results.study import Bars, Check, CheckStatus, Claim, Curve, Figure, Matrix, Study, Table, Verdict
+    Baseline, ChannelScore, Divergence, Extrapolation, IntervalBasis, KStepErrors, Measure, OpenLoopScores, Prediction,
+    RowScore, WindowBaseline, WindowScore,
+)  # fmt: skip
 from seatrial.core.results.published_method import ReferenceEstimate, Search, SearchRestart, SearchTrack
-from seatrial.core.results.summary import Summary
-from seatrial.core.results.thruster_craft import (
-    CommandCurve,
-    CompassCurve,
-    CraftMeasure,
-    FossenMatrix,
-    QuadrantMap,
-    ThrusterCraft,
-)
-from seatrial.core.results.window_scores import ChannelScore, WindowBaseline, WindowScore
+from seatrial.core.results.ship_motions import (
+    CommandCurve, CompassCurve, CraftMeasure, FossenMatrix, FrequencyResponse, IntervalEstimate, PointMotion,
+    QuadrantMap, RollCharacteristics, Seakeeping, ThrusterCraft,
+)  # fmt: skip
+from seatrial.core.results.study import Bars, Check, CheckStatus, Claim, Curve, Figure, Matrix, Study, Table, Verdict
 from seatrial.numerics.optimise import Solution, Status
 
 __all__ = [

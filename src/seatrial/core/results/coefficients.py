@@ -1,17 +1,120 @@
-"""What a fit says of each parameter and of the noise, how it was estimated, and which models it was compared with."""
+"""What a fit says of parameters, noise, session offsets and inputs that followed outputs, and how it was estimated."""
 
 import math
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Annotated
 
 from pydantic import Field, PlainSerializer, WithJsonSchema
 
-from seatrial.core.results.closed_loop import FeedbackEvidence
 from seatrial.core.results.fields import ABSENT, Number, StoredArray
-from seatrial.core.text.numbers import significant
+from seatrial.core.text.numbers import p_value, significant
 from seatrial.core.text.words import enumeration
-from seatrial.core.values import NOT_MEASURED, InputError, display_unit
-from seatrial.core.values.channel_text import channel_unit
+from seatrial.core.values import NOT_MEASURED, InputError, display_unit, spelling_hint
+from seatrial.core.values.notation import channel_unit
+
+# What a fit says of inputs that followed outputs while its records were made.
+
+# digits of numbers in sentences; standard errors beyond which a distance says no more than that it is large; chosen
+_DIGITS, _FAR = 2, 100.0
+
+
+@dataclass(frozen=True)
+class WithoutDisturbance:
+    """A coefficient fitted without a disturbance, as output error would fit it, next to the one with."""
+
+    name: str
+    estimate: Annotated[Number, Field(description="SI")]
+    standard_error: Annotated[Number, Field(description="SI")]
+    normalised_difference: Annotated[
+        Number, Field(description="this estimate less the one with a disturbance, in standard errors of the latter")
+    ]
+    standard_error_ratio: Annotated[Number, Field(description="standard error with a disturbance over this one")]
+
+
+@dataclass(frozen=True)
+class FeedbackEvidence:
+    """An input that followed an output: the evidence, what is declared of the controller, and what the loop costs."""
+
+    input: str
+    output: str
+    runs: Annotated[tuple[str, ...], Field(description="names of the training runs in which it did")]
+    correlation: Annotated[
+        Number | None, Field(description="cross-correlation in the clearest run; null: declared, and no test shows it")
+    ] = None
+    lag: Annotated[
+        Number | None, Field(description="s by which the output precedes the input there; null as above")
+    ] = None
+    p: Annotated[Number | None, Field(description="that chance gives such correlations; null as above")] = None
+    is_declared: Annotated[bool, Field(description="whether the trial declares it under [feedback]")] = False
+    reference: Annotated[
+        str, Field(description="channel with what was ordered, or a constant, SI; empty: not declared")
+    ] = ""
+    reference_steps: Annotated[
+        int | None, Field(description="how often the reference changes, in all runs; null: not declared")
+    ] = None
+    reference_p: Annotated[
+        Number | None,
+        Field(
+            description="p-value that innovations do not depend on earlier changes of the reference; null: not tested"
+        ),
+    ] = None
+    controller_correlation: Annotated[
+        Number | None, Field(description="between the declared controller's orders and the input; null: not declared")
+    ] = None
+    controller_delay: Annotated[
+        Number | None, Field(description="s by which the input follows these orders; null as above")
+    ] = None
+    without_disturbance: Annotated[
+        tuple[WithoutDisturbance, ...],
+        Field(description="the free coefficients fitted without a disturbance; empty: not compared"),
+    ] = ()
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """Return what is known of the loop and what it costs, a sentence each."""
+        return tuple(self._sentences())
+
+    def _sentences(self) -> Iterator[str]:
+        where = enumeration(self.runs)
+        evidence = "as [feedback] declares" if self.is_declared else ""
+        if self.correlation is not None and self.lag is not None and self.p is not None:
+            test = (
+                f"cross-correlation {significant(self.correlation, _DIGITS)}, "
+                f"output {significant(self.lag, _DIGITS)} s ahead, {p_value(self.p)}"
+            )
+            evidence = f"{evidence}; {test}" if evidence else test
+        yield f"closed loop: '{self.input}' follows '{self.output}' in {where} ({evidence})"
+        if self.without_disturbance:
+            yield self._cost
+        if self.reference_p is not None:
+            verb = "do not depend" if self.reference_p >= REFERENCE_LEVEL else "depend"
+            p = p_value(self.reference_p)
+            yield f"the innovations {verb} on earlier changes of the reference {self.reference} ({p})"
+        if self.controller_correlation is not None and self.controller_delay is not None:
+            yield (
+                "the declared controller adds nothing to the likelihood, because its orders depend on the craft "
+                f"through predicted outputs alone; they agree with '{self.input}' to a correlation of "
+                f"{significant(self.controller_correlation, _DIGITS)} at a delay of "
+                f"{significant(self.controller_delay, _DIGITS)} s"
+            )
+
+    @property
+    def _cost(self) -> str:
+        worst = max(self.without_disturbance, key=lambda c: abs(c.normalised_difference))
+        away, ratio = abs(worst.normalised_difference), worst.standard_error_ratio
+        distance = f"more than {_FAR:g}" if away > _FAR else significant(away, _DIGITS)
+        text = f"output error without a disturbance would put {worst.name} {distance} standard errors away"
+        return (
+            f"{text}, with a standard error {significant(1.0 / ratio, _DIGITS)} times as large" if away < _FAR else text
+        )
+
+
+REFERENCE_LEVEL = 0.01
+"""p-value below which innovations depend on the reference; chosen: one false alarm in a hundred fits."""
+
+
+# What a fit says of each parameter and of the noise, how it was estimated, and which models it was compared with.
 
 _ANGLE = "rad"  # unit of parameters that say where something rests or reads zero, not the strength of an effect
 
@@ -318,3 +421,91 @@ class Residuals:
     autocorrelation: Annotated[
         StoredArray, Field(description="shape (k,), lags 0, 1, ... at `rate`, averaged over segments")
     ]
+
+
+# What logs of a session were found to be off by: a zero, gain or delay of an input, or a parameter of that session.
+
+KINDS = ("zero", "gain", "delay")
+"""Corrections of an input: added to the logged value, multiplied with it, and time by which it acts later [s]."""
+NEW_SESSION = "new"
+"""Stands for a session of which nothing was fitted."""
+
+
+@dataclass(frozen=True)
+class SessionOffset:
+    """One kind of offset: its value in each session that was fitted, and what another session is expected to have.
+
+    Attributes:
+        name: input and kind of correction (``delta zero``), or a parameter that each session has of its own.
+        unit: of SI.
+        expected: of a session that was not fitted.
+        by_session: session -> estimate.
+    """
+
+    name: str
+    unit: str
+    expected: float
+    by_session: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def is_of_input(self) -> bool:
+        """Whether it corrects a logged input; else it is a parameter, such as a current."""
+        return self.correction[1] in KINDS
+
+    @property
+    def correction(self) -> tuple[str, str]:
+        """The input and the kind of its correction; the name and nothing for a parameter."""
+        symbol, _, kind = self.name.partition(" ")
+        return symbol, kind
+
+    def value_in(self, session: str | None) -> float:
+        """Return the value in a session; where none is stated, of the only one there is, or as expected of another.
+
+        Raises:
+            InputError: no session of that name was fitted.
+        """
+        if session is None:
+            return next(iter(self.by_session.values())) if len(self.by_session) == 1 else self.expected
+        if session == NEW_SESSION and session not in self.by_session:
+            return self.expected
+        if session not in self.by_session:
+            raise InputError(
+                f"no session '{session}' was fitted{spelling_hint(session, list(self.by_session))}; state "
+                f"'{NEW_SESSION}' for what is expected of another one"
+            )
+        return self.by_session[session]
+
+    def text(self, session: str | None) -> str:
+        """Return name, value and unit, angles in degrees: ``delta zero 2.4 deg``."""
+        factor, unit = display_unit(self.unit)
+        return f"{self.name} {significant(factor * self.value_in(session), 2)} {unit}".removesuffix(" 1")
+
+
+def session_offsets_of(offsets: Sequence[Offset], populations: Sequence[OffsetPopulation]) -> tuple[SessionOffset, ...]:
+    """Return the offsets of a fit, kind by kind."""
+    return tuple(
+        SessionOffset(
+            population.name,
+            population.unit,
+            population.mean,
+            {o.group: o.estimate for o in offsets if o.name == population.name},
+        )
+        for population in populations
+    )
+
+
+def fitted_session(offsets: Sequence[SessionOffset], session: str) -> str:
+    """Return the session where it was fitted, or else what stands for a new one."""
+    return session if any(session in offset.by_session for offset in offsets) else NEW_SESSION
+
+
+def offsets_text(offsets: Sequence[SessionOffset], session: str | None) -> str:
+    """Return the values of a session and which it is: ``delta zero 2.4 deg (session 'day 1')``.
+
+    Raises:
+        InputError: no session of that name was fitted.
+    """
+    fitted = list(offsets[0].by_session)
+    name = fitted[0] if session is None and len(fitted) == 1 else session
+    whose = f"session '{name}'" if name in fitted else "expected of a new session"
+    return f"{', '.join(offset.text(session) for offset in offsets)} ({whose})"

@@ -14,9 +14,10 @@ from seatrial.core.results.fields import (
     ReportedFinding,
     StoredRecord,
     StoredSolution,
+    Summarised,
+    Summary,
     named_by,
 )
-from seatrial.core.results.summary import Summarised, Summary
 from seatrial.core.values import Array
 
 BY_COEFFICIENT = named_by("coefficients")

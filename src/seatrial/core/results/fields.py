@@ -1,11 +1,9 @@
-"""Types of the fields of a result: what each becomes in JSON, and how it is read back.
+"""Types of the fields of a result, its short table, and sentences in place of parts that cannot be computed."""
 
-`seatrial.data.folder` writes, documents and reads every result by these annotations; nothing else describes one.
-"""
-
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Annotated, Any, Protocol
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from html import escape
+from typing import Annotated, Any, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,8 +11,10 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo,
 from pydantic_core import CoreSchema, core_schema
 
 from seatrial.core.equations import Model
-from seatrial.core.values import Array, Finding, Record, Severity, frozen
+from seatrial.core.values import Array, Finding, InputError, Record, Severity, frozen
 from seatrial.numerics.optimise import Solution, Status
+
+# Types of the fields of a result: what each becomes in JSON, and how it is read back.
 
 JsonSchema = dict[str, Any]
 _NUMBER: JsonSchema = {"type": ["number", "null"]}
@@ -182,3 +182,108 @@ def named_by(key: str) -> FieldFormat:
         "anyOf": [{"type": "object", "additionalProperties": _NUMBER}, {"type": "array", "items": {"type": "object"}}]
     }
     return FieldFormat(np.ndarray, lambda values: NamedValues(key, values), _named_array, schema)
+
+
+# A result as a short table, in text and in HTML, as an interactive session shows it.
+
+GAP = 2
+"""Spaces between two columns of a text table."""
+
+
+@dataclass(frozen=True, repr=False)
+class Summary:
+    """A table to print: `print(fit.summary())`, or the last line of a notebook cell.
+
+    Attributes:
+        title: what it is about.
+        header: heading of each column; the first column holds names and is aligned left, the others right.
+        rows: text of each cell, one entry for each column.
+        facts: name -> value, printed above the table.
+        notes: sentences printed below it.
+    """
+
+    title: str
+    header: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    facts: Mapping[str, str] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        lines = (self.header, *self.rows)
+        widths = [max(len(line[i]) for line in lines) for i in range(len(self.header))]
+        names = max(map(len, self.facts), default=0)
+        facts = [f"{name + ':':<{names + GAP}}{value}" for name, value in self.facts.items()]
+        table = [_text_line(line, widths) for line in lines]
+        rule = "=" * max(sum(widths) + GAP * (len(widths) - 1), len(self.title))
+        return "\n".join([self.title, rule, *facts, *(["-" * len(rule)] if facts else []), *table, rule, *self.notes])
+
+    def __repr__(self) -> str:
+        return str(self)
+
+    def _repr_html_(self) -> str:
+        facts = "".join(f"<tr><th>{escape(n)}</th><td>{escape(v)}</td></tr>" for n, v in self.facts.items())
+        head = "".join(f"<th>{escape(cell)}</th>" for cell in self.header)
+        body = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in self.rows)
+        notes = "".join(f"<p>{escape(note)}</p>" for note in self.notes)
+        return (
+            f"<table><caption>{escape(self.title)}</caption>{facts}</table>"
+            f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>{notes}"
+        )
+
+
+class Summarised:
+    """A result that an interactive session shows by its summary, and in one line where it stands within others."""
+
+    def summary(self) -> Summary:
+        """Return the result as a short table."""
+        raise NotImplementedError
+
+    def _repr_html_(self) -> str:
+        return self.summary()._repr_html_()
+
+    def __repr__(self) -> str:
+        summary = self.summary()
+        facts = ", ".join(f"{name} {value}" for name, value in summary.facts.items())
+        return f"<{summary.title}: {facts}>"
+
+
+def _text_line(cells: tuple[str, ...], widths: list[int]) -> str:
+    first, *rest = zip(cells, widths, strict=True)
+    return (" " * GAP).join([first[0].ljust(first[1]), *(cell.rjust(width) for cell, width in rest)]).rstrip()
+
+
+# Parts of a finished result that cannot be computed: each is a sentence in its place, and the rest stays.
+
+Part = TypeVar("Part")
+
+_ERRORS = (InputError, ArithmeticError, ValueError, LookupError, TypeError, AttributeError)
+"""Of numbers that lead nowhere (ValueError: of linear algebra, too), and of results that were edited by hand."""
+
+
+@dataclass
+class MissingParts:
+    """Notes which parts of a result were left out, and why.
+
+    Attributes:
+        findings: one for each part that could not be computed.
+    """
+
+    findings: list[Finding] = field(default_factory=list)
+
+    def computed(self, name: str, compute: Callable[[], Part], otherwise: Part) -> Part:
+        """Return a part of a result, or what stands for it where it cannot be computed; name: as users know it."""
+        try:
+            return compute()
+        except _ERRORS as error:
+            self.findings.append(
+                Finding(
+                    Severity.WARNING, "part-missing", f"the result is without {name}, which could not be computed",
+                    _reason(error), "the rest of the result stands; correct what it names, and repeat",
+                )
+            )  # fmt: skip
+            return otherwise
+
+
+def _reason(error: Exception) -> str:
+    """Return why, in the error's words; with its kind where these were written for no user."""
+    return str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}"

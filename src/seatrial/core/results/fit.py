@@ -1,4 +1,4 @@
-"""A fit: a solution read in the field's terms, with everything a report shows."""
+"""A fit: a solution read in the field's terms, what the records identify, draws, searches; all that a report shows."""
 
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Annotated
@@ -16,22 +16,227 @@ from seatrial.core.results.coefficients import (
     Residuals,
     at_level,
 )
-from seatrial.core.results.fields import ListedArray, NamedModel, ReportedFinding, StoredRecord, StoredSolution
-from seatrial.core.results.frequency_response import FrequencyResponse
-from seatrial.core.results.identifiability import Identifiability
-from seatrial.core.results.k_step import KStepErrors
-from seatrial.core.results.posterior import Posterior
-from seatrial.core.results.prediction import Baseline, IntervalBasis, Prediction
+from seatrial.core.results.fields import (
+    ListedArray,
+    NamedModel,
+    Number,
+    ReportedFinding,
+    StoredArray,
+    StoredRecord,
+    StoredSolution,
+    Summarised,
+    Summary,
+)
+from seatrial.core.results.prediction import Baseline, IntervalBasis, KStepErrors, Prediction
 from seatrial.core.results.published_method import ReferenceEstimate, Search
-from seatrial.core.results.search_attempts import SearchAttempt
-from seatrial.core.results.ship_motions import RollCharacteristics, Seakeeping
-from seatrial.core.results.summary import Summarised, Summary
-from seatrial.core.results.thruster_craft import ThrusterCraft
+from seatrial.core.results.ship_motions import FrequencyResponse, RollCharacteristics, Seakeeping, ThrusterCraft
+from seatrial.core.text.numbers import exact
 from seatrial.core.values import InputError, Record, Ship, spelling_hint
 
 if TYPE_CHECKING:
     import pandas
     from matplotlib.figure import Figure
+
+
+# What the records identify of a model and what they do not, in numbers and in sentences.
+
+NOT_CONVERGED, SIGN_OPEN = "not-converged", "sign-open"
+"""Codes of the findings that coefficients must not be used, or some of them not alone."""
+COURSE_UNSTABLE = "course-unstable"
+"""Code of the finding that a craft does not hold a straight course by itself."""
+
+
+@dataclass(frozen=True)
+class Symmetry:
+    """A change of parameters that no record of the compared outputs can show, whatever the manoeuvre."""
+
+    parameters: Annotated[tuple[str, ...], Field(description="those involved, free and fixed")]
+    text: Annotated[str, Field(description="in a sentence, with what to fix")]
+    change: Annotated[
+        dict[str, Number],
+        Field(description="parameter -> relative change for a unit step; absolute where the value is zero"),
+    ]
+
+
+@dataclass(frozen=True)
+class Direction:
+    """One combination of free coefficients with an independent error (eigen-direction of the Fisher information)."""
+
+    combination: Annotated[
+        dict[str, Number], Field(description="parameter -> part of a unit vector of relative changes, largest first")
+    ]
+    standard_deviation: Annotated[
+        Number, Field(description="of the relative change along it, 1: 100 %; null: no information at all")
+    ]
+    text: str
+
+
+@dataclass(frozen=True)
+class Collinearity:
+    """How far one coefficient can be replaced by others, and by which most."""
+
+    parameter: str
+    variance_inflation: Annotated[Number, Field(description="factor; null: without limit")]
+    partner: Annotated[str, Field(description="the most correlated other coefficient")]
+    correlation: Annotated[Number, Field(description="with the partner, -1 to 1")]
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """Change of the compared outputs (rms, in units of their noise) for 10 % of a coefficient."""
+
+    parameter: str
+    effect: Annotated[Number, Field(description="over all outputs together")]
+    outputs: Annotated[dict[str, Number], Field(description="output -> its own change")]
+
+
+@dataclass(frozen=True)
+class Consequence:
+    """What a wrong assumed value would do to the estimates."""
+
+    parameter: Annotated[str, Field(description="the fixed one")]
+    change: Annotated[Number, Field(description="relative")]
+    estimate_changes: Annotated[
+        dict[str, Number], Field(description="free coefficient -> relative change of its estimate, largest first")
+    ]
+    misfit: Annotated[Number, Field(description="increase of chi squared by which the records would show it")]
+    text: str
+
+
+@dataclass(frozen=True)
+class Stability:
+    """Course stability on a straight course; intervals are at 95 %."""
+
+    index: Annotated[Number, Field(description="stability index C, positive: stable")]
+    lower: Number
+    upper: Number
+    text: str
+    speed: Annotated[Number | None, Field(description="ahead, m/s; null: not stated")] = None
+    growth_rate: Annotated[
+        Number | None,
+        Field(description="largest real part of the eigenvalues of sway and yaw, 1/s; positive: a deviation grows"),
+    ] = None
+    growth_lower: Annotated[Number | None, Field(description="end of its interval, 1/s")] = None
+    growth_upper: Annotated[Number | None, Field(description="end of its interval, 1/s")] = None
+    stable_below: Annotated[
+        Number | None, Field(description="speed below which an unstable craft is stable, m/s; null: none in the runs")
+    ] = None
+
+    @property
+    def is_unstable(self) -> bool:
+        """Whether a deviation grows beyond doubt: the whole interval of its rate lies above zero, or C's below.
+
+        C is the product of two rates, and the one that decides may be well known where the other is not.
+        """
+        return self.upper < 0.0 or (self.growth_lower is not None and self.growth_lower > 0.0)
+
+    @property
+    def is_stable(self) -> bool:
+        """Whether a deviation dies out beyond doubt: the whole interval of its rate lies below zero."""
+        return self.growth_upper is not None and self.growth_upper < 0.0
+
+
+@dataclass(frozen=True)
+class Profile:
+    """Profile likelihood of one coefficient: the others are fitted again at each value."""
+
+    parameter: str
+    values: Annotated[tuple[Number, ...], Field(description="SI")]
+    costs: Annotated[
+        tuple[Number, ...],
+        Field(description="twice the loss above its minimum: chi squared, one degree of freedom"),
+    ]
+    lower: Annotated[Number | None, Field(description="where the cost passes 3.84 (95 %); null: not within the values")]
+    upper: Annotated[Number | None, Field(description="as `lower`")]
+
+
+@dataclass(frozen=True)
+class Identifiability:
+    """What the records identify, together."""
+
+    structural: Annotated[tuple[Symmetry, ...], Field(description="changes that no record can show")]
+    directions: Annotated[tuple[Direction, ...], Field(description="weakest first")]
+    effective_parameters: Annotated[
+        Number,
+        Field(description="number of coefficients that the data determine (trace of information over it with prior)"),
+    ]
+    condition: Annotated[
+        Number, Field(description="condition number of the information scaled to unit diagonal; null: singular")
+    ]
+    collinearity: tuple[Collinearity, ...] = ()
+    sensitivities: tuple[Sensitivity, ...] = ()
+    consequences: tuple[Consequence, ...] = ()
+    stability: Annotated[Stability | None, Field(description="null: not known")] = None
+    profiles: tuple[Profile, ...] = ()
+
+
+# Draws from what records and priors leave open: credible intervals, and how far the draws can be trusted.
+
+
+@dataclass(frozen=True)
+class CredibleInterval:
+    """One coefficient as the draws have it, next to the interval that the fit would have without them, both at 95 %."""
+
+    name: str
+    unit: Annotated[str, Field(description="SI; 1 for a number, in the prime system of the model's source")]
+    mean: Annotated[Number, Field(description="of the draws")]
+    standard_deviation: Annotated[Number, Field(description="of the draws")]
+    lower: Annotated[Number, Field(description="2.5 % quantile of the draws")]
+    upper: Annotated[Number, Field(description="97.5 % quantile of the draws")]
+    other_lower: Annotated[Number, Field(description="lower end by `other_intervals`")]
+    other_upper: Annotated[Number, Field(description="as `other_lower`")]
+    r_hat: Annotated[Number, Field(description="split R-hat (Vehtari et al. 2021): 1 where the chains agree")]
+    effective_size: Annotated[Number, Field(description="independent draws that the draws are worth")]
+
+
+@dataclass(frozen=True, eq=False)
+class Posterior:
+    """Draws of the free coefficients, those of sessions and disturbances marginalised."""
+
+    coefficients: tuple[CredibleInterval, ...]
+    points: Annotated[StoredArray, Field(description="shape (chains, draws, coefficients), SI; also in posterior.npz")]
+    log_density: Annotated[StoredArray, Field(description="shape (chains, draws), up to a constant")]
+    tempering: Annotated[
+        dict[str, Number],
+        Field(description="channel -> correlated samples that count as one; empty: all count in full"),
+    ]
+    other_intervals: Annotated[str, Field(description="method of the intervals that stand next to the credible ones")]
+    acceptance: Annotated[Number, Field(description="share of the proposals that were taken")]
+    is_converged: Annotated[bool, Field(description="R-hat at most 1.01 and 400 independent draws of each unknown")]
+    is_interrupted: Annotated[bool, Field(description="whether a user ended the draws early")] = False
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """Return how much was drawn, whether the chains agree, and what counted for less, as sentences."""
+        chains, draws = self.points.shape[:2]
+        fewest, worst = min(c.effective_size for c in self.coefficients), max(c.r_hat for c in self.coefficients)
+        agree = "agree" if self.is_converged else "do not agree" if not self.is_interrupted else "were interrupted"
+        sampled = (
+            f"Sampling: {chains} chains of {draws} draws {agree}: R-hat at most {worst:.3f}, at least {fewest:.0f} "
+            f"independent draws of each coefficient; {100.0 * self.acceptance:.0f} % of the proposals were taken."
+        )
+        if not self.tempering:
+            return (sampled,)
+        counted = ", ".join(f"{exact(many, 2)} of {name}" for name, many in self.tempering.items())
+        return sampled, f"Residuals are correlated; so many samples count as one: {counted}."
+
+
+# Searches from several starting points, and where each ended.
+
+
+@dataclass(frozen=True)
+class SearchAttempt:
+    """One short search; losses are negative log-likelihoods, the noise of each channel at its residuals' own."""
+
+    origin: Annotated[str, Field(description="where it started")]
+    start_loss: Annotated[Number, Field(description="at its start, above the lowest end of all; null: diverges there")]
+    loss: Annotated[Number, Field(description="at its end, above the lowest end of all; null: no finite one")]
+    evaluations: Annotated[int, Field(description="of the residuals")]
+    values: Annotated[dict[str, Number], Field(description="coefficient -> SI, at its end")]
+    is_used: Annotated[bool, Field(description="whether the estimate goes on from its end")]
+
+
+# A fit: a solution read in the field's terms, with everything a report shows.
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -23,9 +23,10 @@ from seatrial.core.figures.marks import (
 )
 from seatrial.core.figures.rows import row_panel
 from seatrial.core.figures.run import ChannelPanel, RunView, TimeCurve, channel_panel, run_chart
-from seatrial.core.results.fit import Coefficient, Prediction
+from seatrial.core.results.coefficients import Coefficient
+from seatrial.core.results.prediction import Prediction
 from seatrial.core.values import Record, display_unit
-from seatrial.core.values.channel_text import channel_label, reading_order
+from seatrial.core.values.notation import channel_label, reading_order
 from seatrial.core.values.record_chart import PLAIN, has_moving_track, has_track, is_constant, record_track, time_curve
 
 # least and largest reach of the axis of coefficients [% of the estimate]

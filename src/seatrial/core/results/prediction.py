@@ -1,13 +1,173 @@
-"""Runs simulated open loop and compared with their measurement, by the fit and by other estimators."""
+"""Runs simulated and compared with their measurement: open loop, over windows, samples ahead."""
 
+import math
+from collections.abc import Container, Sequence
 from dataclasses import dataclass, field
 from typing import Annotated
 
+import numpy as np
 from pydantic import Field
 
+from seatrial.core.results.coefficients import Offset
 from seatrial.core.results.fields import ListedArray, Number, ReportedFinding, StoredArray, StoredRecord
-from seatrial.core.results.window_scores import WindowScore
-from seatrial.core.values import RecordKind
+from seatrial.core.values import Array, Record, RecordKind
+
+# How far the motions of a run spread: what errors of its prediction are compared with.
+
+MOTIONS = {"psi_deg": ("psi",), "position_m": ("x0", "y0"), "z": ("z",), "theta_deg": ("theta",), "phi_deg": ("phi",)}
+"""Name of an error, as in `Prediction.rms` -> the channels of that motion."""
+HEADING_SPREAD = math.pi / math.sqrt(3.0)
+"""rad, standard deviation of a heading that points anywhere alike: turns on and on spread it no further."""
+HELD_COURSE_SPREAD = math.radians(10.0)
+"""rad, by which a heading that is held over a whole run counts as spread: what a helmsman leaves of it is no motion to
+measure a model by; chosen: of a 10/10 zigzag."""
+_HELD_WITHIN = math.radians(5.0)  # standard deviation of a heading below which it is held; chosen: of small zigzags
+_DEGREES = math.degrees(1.0)
+
+
+@dataclass(frozen=True)
+class MotionSpread:
+    """Standard deviation of a motion in the unit of its error.
+
+    is_turning: the heading spreads further than all directions alike do, so that it is theirs. is_held: the heading is
+    held over the run, so that it is that of a small turn.
+    """
+
+    size: float
+    is_turning: bool = False
+    is_held: bool = False
+
+
+def motion_spread(name: str, motions: Sequence[Array]) -> MotionSpread:
+    """Return the spread of the channels of a motion together; name: of its error; motions: shape (n,) each, SI."""
+    spread = math.sqrt(sum(float(np.nanvar(motion)) for motion in motions))
+    is_turning = name == "psi_deg" and spread > HEADING_SPREAD
+    size = (HEADING_SPREAD if is_turning else spread) * (_DEGREES if name.endswith("_deg") else 1.0)
+    return MotionSpread(size, is_turning)
+
+
+def motion_spreads(names: Container[str], measured: Record) -> dict[str, MotionSpread]:
+    """Return what errors of these names over a whole run are compared with, as far as it holds their channels."""
+    spreads = _own_spreads(names, measured)
+    heading = spreads.get("psi_deg")
+    if heading is not None and heading.size < _DEGREES * _HELD_WITHIN:
+        spreads["psi_deg"] = MotionSpread(_DEGREES * HELD_COURSE_SPREAD, is_held=True)
+    return spreads
+
+
+def _own_spreads(names: Container[str], measured: Record) -> dict[str, MotionSpread]:
+    compared = (name for name, channels in MOTIONS.items() if name in names and all(c in measured for c in channels))
+    return {name: motion_spread(name, [measured[c] for c in MOTIONS[name]]) for name in compared}
+
+
+# Errors of predictions some samples ahead, from the samples up to each moment.
+
+
+@dataclass(frozen=True)
+class KStepErrors:
+    """How far one channel is missed k samples ahead, by the fit's Kalman filter, over all runs of a role.
+
+    Inputs are those recorded. Without a disturbance in the fit every horizon has the error of a simulation.
+    """
+
+    channel: str
+    unit: Annotated[str, Field(description="SI")]
+    role: Annotated[str, Field(description="validation or training")]
+    steps: Annotated[tuple[int, ...], Field(description="horizons k, samples")]
+    seconds: Annotated[tuple[Number, ...], Field(description="the same, s")]
+    rms: Annotated[tuple[Number, ...], Field(description="root-mean-square error at each horizon, `unit`")]
+    fit_percent: Annotated[
+        tuple[Number, ...],
+        Field(description="100 (1 - |error| / |measured - mean|) at each horizon, as MATLAB's compare (NRMSE)"),
+    ]
+    held_rms: Annotated[
+        tuple[Number, ...],
+        Field(description="root-mean-square error of a baseline: the last measured value stays as it is, `unit`"),
+    ]
+    count: Annotated[tuple[int, ...], Field(description="number of predictions at each horizon")]
+
+
+# Predictions over windows of a run, with baselines that anybody could make.
+
+
+@dataclass(frozen=True)
+class ChannelScore:
+    """How one channel is predicted over all windows of a length; null where a window diverges."""
+
+    rms: Annotated[Number, Field(description="root-mean-square error, unit as in `Prediction.rms`")]
+    fit_percent: Annotated[
+        Number, Field(description="100 (1 - |error| / |measured - mean|), as MATLAB's compare (NRMSE); 100 is perfect")
+    ]
+    r_squared: Annotated[Number, Field(description="1 - sum of squared errors over that about the mean")]
+    inside_band: Annotated[
+        Number | None,
+        Field(description="share of samples inside their 95 % band (sensor noise included); null: no band"),
+    ] = None
+    band_share: Annotated[
+        Number | None,
+        Field(description="rms half width of the band over the standard deviation of the motion; null: no band"),
+    ] = None
+
+    @property
+    def band_over_error(self) -> float | None:
+        """Return the rms half width of the band over the rms error, about 2 where the band is right; None: no band."""
+        if self.band_share is None or not self.r_squared < 1.0:
+            return None
+        return self.band_share / math.sqrt(1.0 - self.r_squared)  # the error is that share of the motion
+
+    @property
+    def is_band_too_wide(self) -> bool:
+        """Whether the band is wider than the motion itself, so that the mean of the motion would lie inside it, too."""
+        return self.band_share is not None and self.band_share > 1.0
+
+
+@dataclass(frozen=True)
+class WindowBaseline:
+    """A prediction that needs no fit of this model, over the same windows from the same beginnings."""
+
+    name: str
+    scores: Annotated[
+        dict[str, ChannelScore], Field(description="keys as in `WindowScore.scores`, as far as it predicts them")
+    ]
+
+
+@dataclass(frozen=True)
+class WindowScore:
+    """A run cut into windows of one length, each predicted open loop from the state estimated in its beginning."""
+
+    window: Annotated[str, Field(description="as required: 10 s, 5 L (ship lengths at the run's speed)")]
+    seconds: Annotated[Number, Field(description="length of the windows")]
+    count: Annotated[int, Field(description="number of windows")]
+    scores: Annotated[dict[str, ChannelScore], Field(description="keys as in `Prediction.rms`")] = field(
+        default_factory=dict
+    )
+    baselines: tuple[WindowBaseline, ...] = ()
+    diverged: Annotated[int, Field(description="number of windows in which the model diverges")] = 0
+
+    @property
+    def divergence_text(self) -> str:
+        """Return in how many windows the model diverges; empty where it does in none."""
+        return f"the model diverges in {self.diverged} of {self.count} windows" if self.diverged else ""
+
+    @property
+    def better_baselines(self) -> dict[str, str]:
+        """Return the channel of each baseline that errs less than the fit -> name of the best one there.
+
+        An error of the fit without a number, after a divergence, is compared with none.
+        """
+        better: dict[str, str] = {}
+        for channel, score in self.scores.items():
+            if not math.isfinite(score.rms):
+                continue
+            rivals = [
+                (b.scores[channel].rms, b.name) for b in self.baselines if b.scores.get(channel, score).rms < score.rms
+            ]
+            if rivals:
+                better[channel] = min(rivals)[1]
+        return better
+
+
+# Runs simulated open loop and compared with their measurement, by the fit and by other estimators.
 
 
 @dataclass(frozen=True)
@@ -215,3 +375,39 @@ class Baseline:
         if fit.error:
             return self.error
         return {n: value / fit.values[n] - 1.0 for n, value in self.values.items() if fit.values.get(n)}
+
+
+# The current that a fit estimated for the session of a run.
+
+CURRENT_NORTH, CURRENT_EAST = "current_north", "current_east"
+"""Parameters of a session: velocity of the water towards north and east, m/s."""
+
+
+@dataclass(frozen=True)
+class EstimatedCurrent:
+    """Velocity of the water over ground towards north and east with standard errors, m/s."""
+
+    north: float
+    east: float
+    north_error: float = 0.0
+    east_error: float = 0.0
+
+    @property
+    def speed(self) -> float:
+        """The current's speed, m/s."""
+        return math.hypot(self.north, self.east)
+
+
+def estimated_current(p: Prediction, offsets: Sequence[Offset]) -> EstimatedCurrent | None:
+    """Return the current of a run's session; None where none was estimated, as of a session that was not fitted.
+
+    offsets: of the fit.
+    """
+    north, east = (_of_session(p, offsets, name) for name in (CURRENT_NORTH, CURRENT_EAST))
+    if north is None or east is None:
+        return None
+    return EstimatedCurrent(north.estimate, east.estimate, north.standard_error or 0.0, east.standard_error or 0.0)
+
+
+def _of_session(p: Prediction, offsets: Sequence[Offset], name: str) -> Offset | None:
+    return next((o for o in offsets if o.name == name and o.group == p.session), None)

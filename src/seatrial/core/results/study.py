@@ -9,9 +9,17 @@ from typing import Annotated, Self
 
 from pydantic import Field, PlainSerializer, WithJsonSchema
 
-from seatrial.core.results.fields import ABSENT, Cell, ListedArray, Number, ReportedFinding, StoredArray
+from seatrial.core.results.fields import (
+    ABSENT,
+    Cell,
+    ListedArray,
+    Number,
+    ReportedFinding,
+    StoredArray,
+    Summarised,
+    Summary,
+)
 from seatrial.core.results.prediction import Prediction
-from seatrial.core.results.summary import Summarised, Summary
 from seatrial.core.values import InputError
 
 

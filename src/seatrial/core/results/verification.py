@@ -6,8 +6,7 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field, computed_field
 
-from seatrial.core.results.fields import ListedArray, Number, ReportedFinding, StoredArray
-from seatrial.core.results.summary import Summarised, Summary
+from seatrial.core.results.fields import ListedArray, Number, ReportedFinding, StoredArray, Summarised, Summary
 
 
 @dataclass(frozen=True)

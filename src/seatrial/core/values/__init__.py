@@ -2,16 +2,20 @@
 
 from seatrial.core.values.arrays import Array, Index, frozen
 from seatrial.core.values.channel import Channel, Provenance
-from seatrial.core.values.channel_names import channel_hint
-from seatrial.core.values.errors import DivergedError, InputError, spelling_hint
-from seatrial.core.values.finding import Finding, Severity, TrialEdit, worst_first
-from seatrial.core.values.force_points import ForceContent, ForcePoints
-from seatrial.core.values.notation import NOTATION, Quantity, quantity
+from seatrial.core.values.errors import (
+    DivergedError,
+    Finding,
+    InputError,
+    ProgressReporter,
+    Severity,
+    TrialEdit,
+    spelling_hint,
+    worst_first,
+)
+from seatrial.core.values.notation import NOTATION, Quantity, channel_hint, display_unit, quantity, si_unit
 from seatrial.core.values.parameters import NOT_MEASURED, Parameter, Parameters, Prior
-from seatrial.core.values.progress import ProgressReporter
 from seatrial.core.values.record import Record, RecordKind
-from seatrial.core.values.ship import Ship
-from seatrial.core.values.units import display_unit, si_unit
+from seatrial.core.values.ship import ForceContent, ForcePoints, Ship
 from seatrial.core.values.versions import versions
 
 __all__ = [

@@ -1,7 +1,15 @@
-"""Array types, and arrays that cannot be written to."""
+"""Array types, arrays that cannot be written to, values between samples, values that stand for no reading."""
+
+import math
+from dataclasses import dataclass, fields
+from itertools import accumulate
+from types import MappingProxyType
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+# Array types, and arrays that cannot be written to.
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -28,3 +36,100 @@ def unwrapped(angle: Array) -> Array:
     if np.any(np.abs(np.diff(result[is_finite])) > np.pi):
         result[is_finite] = np.unwrap(result[is_finite])
     return result
+
+
+# How a channel runs between its samples: held until the next one, or straight to it.
+
+Kind = Literal["", "command", "measured"]
+"""Who set a channel: nobody says, an order, or a sensor."""
+Between = Literal["", "held", "straight"]
+"""How it runs between samples; empty: a command is held, of another one its steps decide."""
+KINDS: tuple[Kind, ...] = ("command", "measured")
+BETWEEN: tuple[Between, ...] = ("held", "straight")
+
+_QUIET = 0.2  # of a move, what the samples before and after it may move at most where it is a step; chosen
+_NOISE = 0.05  # of the range of the values, within which they move without being followed; chosen
+_LEAST_SHARE = 0.5  # of the travel that lies within single samples where an input is held; chosen, between 0 and 1
+
+
+@dataclass(frozen=True)
+class Travel:
+    """How far values move in all, and how far of it in steps within a single sample, in their unit."""
+
+    total: float = 0.0
+    steps: float = 0.0
+
+    def __add__(self, more: "Travel") -> "Travel":
+        """Return the travel of two records together."""
+        return Travel(self.total + more.total, self.steps + more.steps)
+
+    @property
+    def is_stepped(self) -> bool:
+        """Whether most of it lies within single samples: of orders all, of a slewing rudder hardly any."""
+        return self.total > 0.0 and self.steps >= _LEAST_SHARE * self.total
+
+
+def travel(values: Array) -> Travel:
+    """Return how far the values move, (n,); moves to and fro within a twentieth of their range are noise.
+
+    A step has hardly any move in the samples before and after it; a slewing rudder takes several samples.
+    """
+    finite = values[np.isfinite(values)]
+    if finite.size < 2:
+        return Travel()
+    play = _NOISE * float(np.ptp(finite))
+    followed = np.fromiter(accumulate(finite.tolist(), lambda y, v: min(max(y, v - play), v + play)), np.float64)
+    moves = np.abs(np.diff(followed))
+    beside = np.concatenate([[0.0], moves, [0.0]])
+    is_step = (moves > play) & (np.maximum(beside[:-2], beside[2:]) <= _QUIET * moves)
+    return Travel(float(moves.sum()), float(moves[is_step].sum()))
+
+
+def held_rows(values: Array, ratio: int) -> Array:
+    """Return every `ratio`-th sample of a held channel as the mean of what was held until the next one."""
+    starts = np.arange(0, len(values), ratio)
+    counts = np.minimum(starts + ratio, len(values)) - starts
+    return np.add.reduceat(values, starts) / counts
+
+
+# Values that stand for no reading, such as -999: one far outside all others, again and again.
+
+EMPTIED = "count as empty"
+"""What a step of the provenance says of such readings; the checks repeat the sentence."""
+# ranges of the other values by which such a value lies outside them, how often it occurs at least, and how many
+# different values the others have at least (a switch has two); chosen
+FAR_RANGES, FEWEST_TIMES, FEWEST_VALUES = 5.0, 2, 10
+_TURN_SLACK = 1e-3  # rad by which rounded angles may span more than a turn: half of a tenth of a degree
+
+
+def sentinel_value(values: Array, unit: str = "") -> float | None:
+    """Return the one value, lowest or highest, that recurs far outside the range of all others; None: there is none.
+
+    unit: of angles, rad, for which the way round counts: 0 lies next to 359 degrees.
+    """
+    finite = values[np.isfinite(values)]
+    if finite.size == 0:
+        return None
+    for extreme in (float(finite.min()), float(finite.max())):
+        rest = finite[finite != extreme]
+        if finite.size - rest.size < FEWEST_TIMES or rest.size == 0:
+            continue
+        low, high = float(rest.min()), float(rest.max())
+        distance = max(low - extreme, extreme - high)
+        round_about = math.tau - (max(high, extreme) - min(low, extreme))
+        if unit == "rad" and round_about > -_TURN_SLACK:
+            distance = min(distance, round_about)
+        if distance > FAR_RANGES * (high - low) and np.unique(rest).size >= FEWEST_VALUES:
+            return extreme
+    return None
+
+
+# Pickling of values that hold read-only mappings, which Python's pickle does not know: by their constructor.
+
+
+class PickledByConstructor:
+    """A dataclass that is pickled as the call that makes it, so that it reaches other processes."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        values = [getattr(self, field.name) for field in fields(self) if field.init]  # type: ignore[arg-type]
+        return type(self), tuple(dict(value) if isinstance(value, MappingProxyType) else value for value in values)

@@ -1,13 +1,24 @@
-"""Files and folders written whole or not at all: beside the target, through to the disk, then put in its place."""
+"""Files written whole or not at all, files that only grow, tables read within limits."""
 
+import errno
+import json
+import math
 import os
+import re
 import secrets
 import shutil
+import struct
 import tempfile
-from collections.abc import Collection, Iterator, Mapping, Set
+import tomllib
+import zlib
+from collections.abc import Callable, Collection, Iterator, Mapping, Set
 from contextlib import contextmanager, suppress
+from io import RawIOBase
 from itertools import islice
+from mmap import mmap
 from pathlib import Path
+from time import monotonic
+from typing import Any
 
 from seatrial.core.values.errors import InputError
 from seatrial.numerics.platform import (
@@ -15,9 +26,12 @@ from seatrial.numerics.platform import (
     flush_folder_to_disk,
     flush_to_disk,
     held_lock,
+    open_without_waiting,
     replace_file,
     write_to_device,
 )
+
+# Files and folders written whole or not at all: beside the target, through to the disk, then put in its place.
 
 _DRAFT = ".writing-"  # begins the names of files and folders that are being written
 _MOST_ADOPTED = 1000  # entries, folders within included, of a folder that is replaced as one: chosen
@@ -235,3 +249,173 @@ def _sentence(place: str) -> Iterator[None]:
     except (OSError, RuntimeError, ValueError) as error:  # of links in a circle, of a name with a zero byte
         reason = error.strerror if isinstance(error, OSError) else error
         raise InputError(f"{place} cannot be written ({reason}); choose another place") from None
+
+
+# Files of entries that are only ever appended, each with its CRC-32: a torn end and damage in between are recognised.
+
+_CRC = struct.Struct("<I")
+PayloadSize = Callable[[bytes | mmap, int], int]
+"""(content, offset) -> bytes of the payload that begins there; 0 where none can begin."""
+
+
+def whole_frames(content: bytes | mmap, start: int, payload_size: PayloadSize) -> Iterator[range]:
+    """Yield the bytes of every frame whose checksum holds, checksum included; behind damage, from the next one on."""
+    offset, size = start, len(content)
+    while offset < size:
+        length = payload_size(content, offset)
+        end = offset + length
+        if length and end + _CRC.size <= size:
+            stored = int.from_bytes(content[end : end + _CRC.size], "little")
+            if stored == zlib.crc32(content[offset:end]):
+                yield range(offset, end + _CRC.size)
+                offset = end + _CRC.size
+                continue
+        offset += 1
+
+
+class FrameWriter:
+    """Appends frames to an open file: to the operating system at once, through to the disk in groups."""
+
+    def __init__(self, file: RawIOBase, flush_s: float, clock: Callable[[], float] = monotonic) -> None:
+        """Write at the file's position; flush_s: s between two flushes to the disk."""
+        self._file, self._flush_s, self._clock, self._flushed_at = file, flush_s, clock, clock()
+        self._pending: list[bytes] = []
+
+    def append(self, payload: bytes) -> None:
+        """Append a frame, to be written by `write_pending`."""
+        self._pending.append(payload + _CRC.pack(zlib.crc32(payload)))
+
+    def write_pending(self) -> None:
+        """Hand the frames to the operating system, where they survive this process; when it is time also to the disk.
+
+        Raises:
+            OSError: the disk is full or has failed.
+        """
+        data, self._pending = b"".join(self._pending), []
+        if data and self._file.write(data) != len(data):  # half a frame must be the last
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        if self._clock() - self._flushed_at >= self._flush_s:
+            self._flushed_at = self._clock()
+            flush_to_disk(self._file.fileno())
+
+    def flush(self) -> None:
+        """Write all frames through to the disk now; errors as in `write_pending`."""
+        self._flushed_at = -self._flush_s
+        self.write_pending()
+
+
+# Tables of TOML and JSON files: read within a size, parsed within a depth, whole numbers within 64 bits.
+
+# bytes of a file of tables, at most: 64 times the largest that the package writes; chosen
+_LARGEST_FILE = 2**28
+# sizes of a number of a trial or loop file, unless it is 0 or infinite, in any unit: 1e30 N m exceeds what the heaviest
+# ship can meet by 1e16, and its tenth power is still a float64; ours
+_SMALLEST_NUMBER, _LARGEST_NUMBER = 1e-30, 1e30
+# whole numbers that TOML promises (toml.io, v1.0.0, "Integer"), and that any program reads as numbers
+_LARGEST_INTEGER = 2**63
+
+
+# how JSON writes halves of characters beyond 16 bits (RFC 8259, section 8.2), of which pairs are right
+_HALF_CHARACTER = re.compile(r"\\u[dD][89a-fA-F]")
+
+
+def read_bounded(path: Path, limit: int = _LARGEST_FILE) -> bytes:
+    """Return the bytes of a file, or of a pipe; one without a writer is empty.
+
+    Raises:
+        OSError: it cannot be read.
+        ValueError: it holds more than `limit` bytes; no more than these are read.
+    """
+    with open(path, "rb", opener=open_without_waiting) as file:
+        size = file.seek(0, 2) if file.seekable() else 0
+        file.seek(0) if size else None
+        content = file.read(limit + 1) if size <= limit else b""
+    if max(size, len(content)) > limit:
+        raise ValueError(f"it is larger than {limit >> 20} MiB, which no such file is")
+    return content
+
+
+def read_table_text(path: Path) -> str:
+    """Return the text of a file of tables, without the mark that some editors put first; errors as `read_bounded`.
+
+    Raises:
+        ValueError: it is not UTF-8 text.
+    """
+    try:
+        return read_bounded(path).decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise ValueError("it is not UTF-8 text; save it as UTF-8") from None
+
+
+def parse_toml(text: str) -> dict[str, Any]:
+    """Return the tables of a TOML text.
+
+    Raises:
+        ValueError: no TOML, nested too deep, or a whole number beyond 64 bits; the text says which.
+    """
+    try:
+        table = tomllib.loads(text)
+        for _ in _numbers(table):
+            pass
+    except RecursionError:
+        raise ValueError("its tables are nested too deep") from None
+    return table
+
+
+def parse_json(text: str) -> Any:
+    """Return the value of a JSON text.
+
+    Raises:
+        ValueError: no JSON, nested too deep, NaN, infinity, a whole number beyond 64 bits, or half of a character; the
+            text says which.
+    """
+    try:
+        value = json.loads(text, parse_int=_whole_number, parse_float=_finite_number, parse_constant=_finite_number)
+        if _HALF_CHARACTER.search(text):
+            json.dumps(value, ensure_ascii=False).encode()
+    except RecursionError:
+        raise ValueError("its tables are nested too deep") from None
+    except UnicodeEncodeError:
+        raise ValueError("it holds half of a character, which no text is") from None
+    return value
+
+
+def refuse_absurd_numbers(table: Mapping[str, Any], where: str) -> None:
+    """Refuse tables with a number that no quantity of a ship has in any unit; where: names the file.
+
+    Raises:
+        InputError: there is one; its key is named.
+    """
+    for key, number in _numbers(table):
+        if math.isfinite(number) and number and not _SMALLEST_NUMBER <= abs(number) <= _LARGEST_NUMBER:
+            raise InputError(f"{where}: {key} = {number:g} is no size that a quantity of a ship can have; correct it")
+
+
+def _numbers(value: object, key: str = "") -> Iterator[tuple[str, float]]:
+    """Yield every number of nested tables with its key."""
+    if isinstance(value, Mapping):
+        for name, inner in value.items():
+            yield from _numbers(inner, f"{key}.{name}" if key else str(name))
+    elif isinstance(value, list):
+        for index, inner in enumerate(value, 1):
+            yield from _numbers(inner, f"{key}[{index}]")
+    elif isinstance(value, float):
+        yield key, value
+    elif isinstance(value, int):
+        yield key, float(_within_64_bits(value))
+
+
+def _whole_number(text: str) -> int:
+    return _within_64_bits(int(text))
+
+
+def _within_64_bits(number: int) -> int:
+    if abs(number) > _LARGEST_INTEGER:
+        raise ValueError("it holds a whole number beyond 64 bits")
+    return number
+
+
+def _finite_number(text: str) -> float:
+    if not math.isfinite(number := float(text)):
+        raise ValueError(f"it holds {text[:20]}, which is no finite number")
+    return number

@@ -1,13 +1,126 @@
-"""The one table of channel names: symbol, meaning, unit, frame, sign, LaTeX, standard name.
+"""The one table of channel names: symbol, meaning, unit, frame, sign; as people write and read them."""
 
-Axes: earth-fixed x0 north (or along the basin), y0 east, psi clockwise from x0;
-body-fixed x forward, y starboard, z down (ITTC 2021 symbols; SNAME 1950; Fossen 2021, section 2.1).
-"""
-
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from seatrial.core.values.channel_names import channel_hint
-from seatrial.core.values.errors import InputError
+import numpy as np
+
+from seatrial.core.values.arrays import Array, unwrapped
+from seatrial.core.values.errors import InputError, listed
+
+# What to write for a name that is no channel: the field's other words, else a name that is nearly the same.
+
+ALIASES: dict[str, str] = {
+    "latitude": "lat", "longitude": "lon", "lng": "lon", "hdt": "psi", "yaw": "psi", "hdm": "psi_magnetic",
+    "hdg": "psi (true heading) or psi_magnetic", "heading": "psi (true heading) or psi_magnetic",
+    "rot": 'r with unit = "deg/min"', "yaw_rate": "r", "course": "cog", "vtw": "stw",
+    "speed": "sog (over ground) or stw (through water)", "rudder": "delta", "rud": "delta", "rsa": "delta",
+    "helm": "delta", "roll": "phi", "heel": "phi", "pitch": "theta", "heave": "z", "surge": "u", "sway": "v",
+    "x": "x0", "y": "y0", "rpm": 'n with unit = "rpm", or rpm_1, rpm_2 of several propellers', "azimuth": "alpha_1",
+    "pwm": "command_1 with zero and span", "throttle": "command_1 with zero and span",
+    **dict.fromkeys(("utc", "t", "time", "timestamp"), "time = { column = ... } beside the channels, not among them"),
+    "north": 'x0 (position) or u with frame = "earth"', "east": 'y0 (position) or v with frame = "earth"',
+}  # fmt: skip
+"""Name that people use -> what to write for a column."""
+_DERIVED = {
+    "lat": "x0", "lon": "y0", "sog": "u", "cog": "v", "stw": "u", "psi_magnetic": "psi",
+    **dict.fromkeys(("q_w", "q_x", "q_y", "q_z"), "psi"),
+}  # fmt: skip
+_TIME = "time"
+_FEWEST_LETTERS, _LIKENESS = 3, 0.75  # of a name that may be meant; ours: one letter of four may differ
+
+
+def channel_hint(name: str, valid_names: list[str]) -> str:
+    """Return the end of a sentence on a name that is no channel: what to write, a name nearly the same, or all names.
+
+    valid_names: the channels there are; of a measurement from which channels derive, that channel is named.
+    """
+    written = _spelled(name, valid_names)
+    if written:
+        return f"; did you mean '{written}'?"
+    meant = ALIASES.get(name.lower(), name.lower())
+    symbol = meant.split()[0].strip(",")
+    if symbol in (*valid_names, _TIME) and meant != name.lower():
+        return f"; write {meant}"
+    if _DERIVED.get(symbol) in valid_names:
+        return f"; a record has '{_DERIVED[symbol]}', which follows from it"
+    return f"; known are {listed(valid_names)}"
+
+
+def _spelled(name: str, valid_names: list[str]) -> str:
+    """The valid name that differs by its capitals or by a letter or two; empty where there is none."""
+    import difflib
+
+    same = [
+        valid_name
+        for valid_name in valid_names
+        if valid_name.lower() == name.lower().replace("-", "_").replace(" ", "_")
+    ]
+    if same:
+        return same[0]
+    long = [valid_name for valid_name in valid_names if min(len(valid_name), len(name)) >= _FEWEST_LETTERS]
+    swapped = [long_name for long_name in long if sorted(long_name) == sorted(name.lower())]
+    near = swapped or difflib.get_close_matches(name.lower(), long, n=1, cutoff=_LIKENESS)
+    return near[0] if near and name.lower() not in ALIASES else ""
+
+
+# Units at the boundary: factors to SI. Inside the package everything is SI and radians.
+
+_DEGREE = math.pi / 180.0  # rad
+# unit -> (factor to SI, SI unit); exact by definition (SI brochure 2019; 1 kn = 1852 m/h)
+_UNITS: dict[str, tuple[float, str]] = {
+    "1": (1.0, "1"), "percent": (0.01, "1"), "s": (1.0, "s"), "ms": (1e-3, "s"), "us": (1e-6, "s"), "ns": (1e-9, "s"),
+    "min": (60.0, "s"), "h": (3600.0, "s"), "m": (1.0, "m"), "mm": (1e-3, "m"), "cm": (1e-2, "m"), "km": (1e3, "m"),
+    "ft": (0.3048, "m"), "nmi": (1852.0, "m"), "rad": (1.0, "rad"), "deg": (_DEGREE, "rad"), "°": (_DEGREE, "rad"),
+    "m/s": (1.0, "m/s"), "km/h": (1.0 / 3.6, "m/s"), "kn": (1852.0 / 3600.0, "m/s"), "kt": (1852.0 / 3600.0, "m/s"),
+    "rad/s": (1.0, "rad/s"), "deg/s": (_DEGREE, "rad/s"), "°/s": (_DEGREE, "rad/s"),
+    "deg/min": (_DEGREE / 60.0, "rad/s"), "°/min": (_DEGREE / 60.0, "rad/s"), "m/s^2": (1.0, "m/s^2"),
+    "g": (9.80665, "m/s^2"), "rps": (1.0, "rps"), "rpm": (1.0 / 60.0, "rps"), "N": (1.0, "N"), "kN": (1e3, "N"),
+    "MN": (1e6, "N"), "N m": (1.0, "N m"), "kN m": (1e3, "N m"), "kg": (1.0, "kg"), "t": (1e3, "kg"),
+    "kg/m^3": (1.0, "kg/m^3"), "kg m^2": (1.0, "kg m^2"), "V": (1.0, "V"), "mV": (1e-3, "V"), "m^2": (1.0, "m^2"),
+    "m^3": (1.0, "m^3"),
+}  # fmt: skip
+# unit -> spellings that people use, in small letters
+_SPELLINGS = {
+    "deg": "deg degs degree degrees °", "rad": "rad rads radian radians", "kn": "kn kt kts knt knts knot knots",
+    "m/s": "m/s mps ms m/sec", "km/h": "km/h kmh kph", "deg/s": "deg/s deg/sec degrees/s dps °/s",
+    "deg/min": "deg/min degrees/min °/min", "rad/s": "rad/s", "rpm": "rpm 1/min rev/min", "rps": "rps 1/s rev/s",
+    "m": "m metre metres meter meters", "m/s^2": "m/s2", "V": "v volt volts", "us": "us pwm",
+    "percent": "% pct percent",
+}  # fmt: skip
+UNIT_WORDS: dict[str, str] = {word: unit for unit, words in _SPELLINGS.items() for word in words.split()}
+"""Spelling, in small letters -> unit."""
+
+
+def si_unit(unit: str) -> tuple[float, str]:
+    """Return factor and SI unit of a unit.
+
+    Raises:
+        InputError: the unit is unknown; the nearest known one is named.
+    """
+    if unit not in _UNITS:
+        raise InputError(f"unknown unit '{unit}'{_unit_hint(unit)}")
+    return _UNITS[unit]
+
+
+def is_unit(text: str) -> bool:
+    """Return whether a text is a unit or one of its usual spellings."""
+    return text in _UNITS or text.lower() in UNIT_WORDS
+
+
+def _unit_hint(unit: str) -> str:
+    """The end of a sentence on an unknown unit: how it is written here, else all units."""
+    meant = UNIT_WORDS.get(unit.strip().lower()) or next((u for u in _UNITS if u.lower() == unit.strip().lower()), "")
+    return f"; write '{meant}'" if meant else f"; known are {listed(list(_UNITS))}"
+
+
+def display_unit(unit: str) -> tuple[float, str]:
+    """Return the factor from SI and the unit for reading: degrees for angles, otherwise SI."""
+    return {"rad": (180.0 / math.pi, "deg"), "rad/s": (180.0 / math.pi, "deg/s")}.get(unit, (1.0, unit))
+
+
+# The one table of channel names: symbol, meaning, unit, frame, sign, LaTeX, standard name.
 
 
 @dataclass(frozen=True)
@@ -122,3 +235,59 @@ def positive_direction(symbol: str, frame: str) -> str:
     if frame == "earth" and symbol in _POSITIVE_ON_EARTH:
         return _POSITIVE_ON_EARTH[symbol]
     return quantity(symbol).positive
+
+
+# Names, letters, meanings and units of channels as people read them.
+
+# channels whose letter differs from their name
+_LETTERS = {
+    "psi": "ψ", "delta": "δ", "delta_f1": "δ₁", "delta_f2": "δ₂", "phi": "φ", "theta": "θ", "alpha_f": "α",
+    "x0": "x₀", "y0": "y₀", "v_j": "vⱼ",
+    "wind_speed": "wind", "wind_direction": "wind from", "wind_speed_relative": "app. wind",
+    "wind_direction_relative": "app. wind from",
+}  # fmt: skip
+POSITIONS = ("x0", "y0")
+READING_ORDER = (
+    "psi", "r", "u", "v", "phi", "p", "thrust", "torque", "delta", "n", "v_j", "wind_speed", "wind_direction",
+)  # fmt: skip
+
+
+def unit_text(si: str) -> str:
+    """Return the unit people read for an SI unit, with raised powers; empty for numbers."""
+    unit = display_unit(si)[1]
+    return "" if unit == "1" else unit.replace("^2", "²").replace("^3", "³")
+
+
+def channel_unit(channel: str) -> str:
+    """Return the SI unit of a channel of the notation table, ``1`` for others."""
+    return NOTATION[channel].unit if channel in NOTATION else "1"
+
+
+def channel_meaning(channel: str) -> str:
+    """Return what a channel is: ``psi`` -> heading; the name itself for others."""
+    return NOTATION[channel].meaning if channel in NOTATION else channel
+
+
+def channel_letter(channel: str) -> str:
+    """Return the letter of a channel: ``psi`` -> ψ."""
+    return _LETTERS.get(channel, channel)
+
+
+def channel_label(channel: str, si: str) -> str:
+    """Return the letter of a channel with the unit people read: ``ψ [deg]``."""
+    unit = display_unit(si)[1]
+    return channel_letter(channel) if unit == "1" else f"{channel_letter(channel)} [{unit}]".strip()
+
+
+def display_values(channel: str, values: Array, si: str) -> Array:
+    """Return values in the unit people read; headings without wrap, from within a half turn of north."""
+    if channel == "psi" and np.isfinite(values).any():
+        values = unwrapped(values)
+        values = values - 2.0 * np.pi * np.round(values[np.isfinite(values)][0] / (2.0 * np.pi))
+    return values * display_unit(si)[0]
+
+
+def reading_order(channels: Sequence[str]) -> list[str]:
+    """Return channels in the order of reading, positions left out."""
+    names = [s for s in dict.fromkeys(channels) if s not in POSITIONS]
+    return sorted(names, key=lambda s: (READING_ORDER.index(s) if s in READING_ORDER else len(READING_ORDER), s))

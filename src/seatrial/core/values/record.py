@@ -1,4 +1,4 @@
-"""A record: one run on one time base, named channels with unit, frame, sign and reference point."""
+"""A record: one run on one time base, named channels with unit, frame, sign and reference point; at any scale."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
@@ -10,18 +10,18 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from seatrial.core.text.words import NAMES_SHOWN, enumeration
-from seatrial.core.values.arrays import Array, frozen
-from seatrial.core.values.between import held_rows
-from seatrial.core.values.channel import Channel, Provenance
-from seatrial.core.values.channel_names import channel_hint
-from seatrial.core.values.dataframe import ColumnDeclarations, channel_columns, column_numbers
+from seatrial.core.values.arrays import Array, PickledByConstructor, frozen, held_rows
+from seatrial.core.values.channel import Channel, ColumnDeclarations, Provenance, channel_columns, column_numbers
 from seatrial.core.values.errors import InputError
-from seatrial.core.values.pickled import PickledByConstructor
+from seatrial.core.values.notation import channel_hint
 
 if TYPE_CHECKING:
     import pandas
     import xarray
     from matplotlib.figure import Figure
+
+
+# A record: one run on one time base, named channels with unit, frame, sign and reference point.
 
 
 # dimensionless, ours: how far steps of an even time base may differ, in mean steps; how far a ratio of rates may be
@@ -339,3 +339,57 @@ def _check_time(name: str, time: Array) -> None:
 
 def _channel_from_metadata(symbol: str, values: Array, metadata: dict | None) -> Channel:
     return Channel(frozen(values), **metadata) if metadata else Channel.from_notation(symbol, values)
+
+
+# Froude similarity: a record of one scale, expressed at another.
+
+# exponent of the length ratio by base unit, equal gravity and density (ITTC 2021, 7.5-02-06-01, Froude scaling)
+_EXPONENTS = {"1": 0.0, "rad": 0.0, "m": 1.0, "s": 0.5, "rps": -0.5, "N": 3.0, "kg": 3.0}
+
+
+def froude_factor(unit: str, ratio: float) -> float:
+    """Return the factor from model to ship for a quantity of SI `unit` at length ratio `ratio` = L_ship / L_model.
+
+    Raises:
+        InputError: the ratio is not positive, or the unit has no known exponent.
+    """
+    if not (np.isfinite(ratio) and ratio > 0):
+        raise InputError(f"scale must be a positive number, not {ratio:g}; give 45.7 for a model 1:45.7")
+    return float(ratio ** _exponent(unit))
+
+
+def _exponent(unit: str) -> float:
+    """Return the exponent of a product of powers over another, such as ``kg m^2/s``."""
+    total, sign = 0.0, 1.0
+    for side in unit.split("/"):
+        for factor in side.split():
+            base, _, power = factor.partition("^")
+            if base not in _EXPONENTS or not (power or "1").isdecimal():
+                raise InputError(
+                    f"no Froude exponent is known for unit '{unit}'; convert the channel to an SI unit first"
+                )
+            total += sign * _EXPONENTS[base] * int(power or "1")
+        sign = -1.0
+    return total
+
+
+def froude_scaled(record: Record, ratio: float) -> Record:
+    """Return the record at `ratio` times its scale (ratio > 1: model to ship; the inverse is `1 / ratio`).
+
+    Lengths and reference points x ratio, time and velocities x ratio^1/2, rates x ratio^-1/2, forces x ratio^3,
+    moments x ratio^4; equal water density at both scales.
+
+    Raises:
+        InputError: as `froude_factor`.
+    """
+    if ratio == 1.0:
+        return record
+    length, seconds = froude_factor("m", ratio), froude_factor("s", ratio)
+    channels = {}
+    for symbol, channel in record.channels.items():
+        scaled = channel.with_values(channel.values * froude_factor(channel.unit, ratio))
+        channels[symbol] = replace(
+            scaled, reference_point=channel.reference_point * length, sample_s=channel.sample_s * seconds
+        )
+    time = record.time * seconds
+    return replace(record, time=time, channels=channels).with_step(f"Froude-scaled by {ratio:g}")

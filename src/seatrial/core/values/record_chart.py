@@ -8,7 +8,7 @@ from seatrial.core.figures.chart import Chart
 from seatrial.core.figures.marks import INK, Stroke
 from seatrial.core.figures.run import ChannelPanel, RunView, TimeCurve, run_chart
 from seatrial.core.figures.tracks import Track
-from seatrial.core.values.channel_text import POSITIONS, channel_label, display_values, reading_order
+from seatrial.core.values.notation import POSITIONS, channel_label, display_values, reading_order
 from seatrial.core.values.record import Record
 
 PLAIN = Stroke(INK, 0.9)  # px, chosen

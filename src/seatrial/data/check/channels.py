@@ -1,20 +1,76 @@
-"""Single channels: dead or stuck, constant, holes, wraps; and lags between channels."""
+"""Single channels: dead or stuck, constant, holes, wraps, sizes, levels at rest; and lags between channels."""
 
 import numpy as np
 
-from seatrial.core.values import Array, Finding, Record, Severity
-from seatrial.data.check.kinematic_consistency import shift_text
-from seatrial.data.check.motion import RecordedMotion
-from seatrial.data.check.repair import INPUT_CHANNELS
-from seatrial.data.check.run_clock import moment
-from seatrial.data.check.signal import (
+from seatrial.core.values import NOTATION, Array, Finding, InputError, Record, Severity
+from seatrial.data.check.consequences import moment
+from seatrial.data.check.consistency import FOLLOWS, heading_rate, shift_text
+from seatrial.data.check.motion import (
+    RecordedMotion,
     jackknife_least_squares,
     mask_intervals,
     smoothed,
     smoothed_derivative,
     window_length,
 )
-from seatrial.data.check.yaw_rate_consistency import FOLLOWS, heading_rate
+from seatrial.data.check.time_base import INPUT_CHANNELS
+
+# Readings that no ship can show, such as 1e150 m/s: refused before anything is computed from them.
+
+# in SI units: the pitching moment of the heaviest ship is 1e12 N m; ours, a thousand times that
+_LARGEST_READING = 1e15
+
+
+def require_possible_sizes(record: Record) -> None:
+    """Refuse a record with a reading that no ship can show; empty readings pass.
+
+    Raises:
+        InputError: there is one; the first is named.
+    """
+    for symbol, channel in record.channels.items():
+        rows = np.flatnonzero(np.abs(channel.values) > _LARGEST_READING)
+        if rows.size:
+            raise InputError(
+                f"record '{record.name}': channel '{symbol}' is {channel.values[rows[0]]:.3g} {channel.unit} at "
+                f"{record.time[rows[0]]:.6g} s, which no ship shows; correct its unit, or leave the cell empty"
+            )
+
+
+# The level about which a craft heaves and pitches in recorded waves: sinkage, trim, or the zero of a sensor.
+
+_WAVES, _MOTIONS = ("zeta", "F3"), ("z", "theta")
+# of the standard deviation of a motion, from which on its mean is no part of an oscillation of whole periods; chosen
+_LEAST_SHARE = 0.1
+# periods that a record must have, in which an oscillation about zero has a mean of 1 / (2 pi 10) of its amplitude
+_FEWEST_PERIODS = 10
+
+
+def resting_level_findings(record: Record) -> tuple[Finding, ...]:
+    """Return a warning `resting-level` for each motion in recorded waves whose mean is not zero.
+
+    record: complete, standard signs.
+    """
+    if not any(name in record for name in _WAVES):
+        return ()
+    return tuple(finding for name in _MOTIONS if name in record for finding in _of_motion(record, name))
+
+
+def _of_motion(record: Record, name: str) -> tuple[Finding, ...]:
+    values, quantity = record[name], NOTATION[name]
+    mean, size = float(np.mean(values)), float(np.std(values))
+    crossings = np.count_nonzero(np.diff(np.sign(values - mean)))
+    if crossings < 2 * _FEWEST_PERIODS or abs(mean) < _LEAST_SHARE * size:
+        return ()
+    degrees = quantity.unit == "rad"
+    level = f"{np.degrees(mean):.3g} deg" if degrees else f"{mean:.3g} {quantity.unit}"
+    return (Finding(
+        Severity.WARNING, "resting-level", f"record '{record.name}': '{name}' moves about {level}, not about 0",
+        f"its mean is {abs(mean) / size:.2g} of its standard deviation",
+        f"subtract it: zero = ... in channels.{name}, in the column's unit and sign",
+    ),)  # fmt: skip
+
+
+# Single channels: dead or stuck, constant, holes, wraps; and lags between channels.
 
 OUTPUT_CHANNELS = ("x0", "y0", "psi", "u", "v", "r", "phi", "p", "theta", "z", "u_dot", "v_dot")
 # a channel sticks where it repeats a value for so many samples and this share of the record, ours

@@ -1,33 +1,55 @@
-"""One record repaired and checked, in one pass."""
+"""One record repaired and checked, in one pass; runs that are copies of one another."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from seatrial.core.values import Finding, Record
 from seatrial.core.values.arrays import unwrapped
-from seatrial.data.check.approach_phase import approach_findings
-from seatrial.data.check.channels import channel_findings, lag_findings
-from seatrial.data.check.comparison_stretch import comparison_stretch
+from seatrial.data.check.channels import channel_findings, lag_findings, require_possible_sizes, resting_level_findings
 from seatrial.data.check.consequences import completed
-from seatrial.data.check.conventions import with_standard_signs
-from seatrial.data.check.drift_side import drift_side_findings
-from seatrial.data.check.dropped_rows import dropped_rows_findings
-from seatrial.data.check.feedback import feedback_findings
-from seatrial.data.check.kinematic_consistency import kinematic_consistency_findings
-from seatrial.data.check.lost_samples import read_stretch
+from seatrial.data.check.consistency import kinematic_consistency_findings, yaw_rate_findings
+from seatrial.data.check.conventions import drift_side_findings, velocity_convention_findings, with_standard_signs
+from seatrial.data.check.inputs import (
+    feedback_findings,
+    integration_step_findings,
+    rudder_findings,
+    stepped_input_findings,
+)
 from seatrial.data.check.motion import recorded_motion
-from seatrial.data.check.possible_sizes import require_possible_sizes
-from seatrial.data.check.repair import repaired_parts
-from seatrial.data.check.resting_level import resting_level_findings
-from seatrial.data.check.rudder import rudder_findings
-from seatrial.data.check.run_phases import phase_findings
-from seatrial.data.check.sentinels import without_sentinels
-from seatrial.data.check.stepped_inputs import integration_step_findings, stepped_input_findings
-from seatrial.data.check.timestamps import rebuild_time_base
-from seatrial.data.check.velocity_conventions import velocity_convention_findings
-from seatrial.data.check.yaw_rate_consistency import yaw_rate_findings
+from seatrial.data.check.phases import approach_findings, comparison_stretch, phase_findings
+from seatrial.data.check.repair import dropped_rows_findings, repaired_parts, without_sentinels
+from seatrial.data.check.time_base import read_stretch, rebuild_time_base
 from seatrial.data.held_readings import slower_channels
+
+# Runs that are copies of one another: a run counts once, however often it is in the files.
+
+
+def copies(records: Sequence[Record]) -> dict[int, int]:
+    """Return the index of each record that repeats an earlier one, sample by sample -> the index of that one.
+
+    Times count from the first sample; the names of the records do not matter.
+    """
+    earlier: dict[tuple[object, ...], int] = {}
+    repeated = {}
+    for index, record in enumerate(records):
+        first = earlier.setdefault(_content(record), index)
+        if first != index:
+            repeated[index] = first
+    return repeated
+
+
+def _content(record: Record) -> tuple[object, ...]:
+    time = np.round((record.time - record.time[0]) / record.dt) if record.is_uniform else record.time
+    channels = tuple((s, record[s].tobytes()) for s in sorted(record.channels))
+    return (time.tobytes(), round(record.duration, _DECIMALS), channels)
+
+
+_DECIMALS = 6  # of seconds, to which durations are compared; chosen
+
+
+# One record repaired and checked, in one pass.
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,25 +1,108 @@
 """Repair of a record: wild samples, held positions, empty cells; everything is reported."""
 
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
 from seatrial.core.text.words import counted
-from seatrial.core.values import Channel, Finding, InputError, Record, Severity
-from seatrial.core.values.arrays import unwrapped
-from seatrial.data.check.jumps import spike_rows, track_jumps
-from seatrial.data.check.lost_samples import (
+from seatrial.core.values import Array, Channel, Finding, InputError, Record, Severity
+from seatrial.core.values.arrays import EMPTIED, sentinel_value, unwrapped
+from seatrial.data.check.consequences import moment
+from seatrial.data.check.motion import RowIndices
+from seatrial.data.check.time_base import (
     INPUT_CHANNELS,
     BridgedRecord,
     bridged,
     complete_parts,
     lost_sample_findings,
     usual_rows,
+    without_empty_ends,
 )
-from seatrial.data.check.run_clock import moment
-from seatrial.data.check.signal import RowIndices
-from seatrial.data.check.timestamps import without_empty_ends
+
+# Jumps of position (held and catching up, or staying) and single wild samples.
+
+# samples on each side over which the mean step of the track is taken, ours
+HALF_WINDOW = 15
+# a step is a jump beyond these multiples of the mean and of the median step, ours
+STEP_RATIO, MEDIAN_STEP_RATIO = 4.0, 6.0
+# a position is held where it moves by less than this share of the mean step, for so many samples at most, ours
+HELD_RATIO, LONGEST_HOLD = 0.35, 50
+# a jump matches the distance missed while the position was held between these shares of it; chosen
+MATCHING = (0.3, 2.5)
+# least step of a wild sample: over the quantile of all steps, and over the smallest (quantisation); chosen
+STEP_QUANTILE, OVER_QUANTILE, OVER_SMALLEST = 0.95, 3.0, 5.0
+# a sample is wild where it leaves and returns by this multiple of the largest of so many neighbouring steps, ours
+SPIKE_RATIO, NEIGHBOURS = 4.0, 8
+_NO_ROWS: RowIndices = np.empty(0, dtype=np.intp)
+
+
+@dataclass(frozen=True)
+class Jumps:
+    """Jumps of a track.
+
+    Attributes:
+        rows: index of the sample after each jump.
+        sizes: length of each jump [m].
+        held: samples to replace: the position stood still there before it caught up.
+    """
+
+    rows: RowIndices
+    sizes: Array
+    held: RowIndices
+
+
+def track_jumps(x: Array, y: Array) -> Jumps:
+    """Return steps of more than four times the mean step around them and six times the median step of the run.
+
+    x, y: shape (n,), no NaN. A receiver that holds its last position and then catches up shows small steps first.
+    """
+    steps = np.hypot(np.diff(x), np.diff(y))
+    rows = np.arange(len(steps))
+    first, last = np.maximum(rows - HALF_WINDOW, 0), np.minimum(rows + 1 + HALF_WINDOW, len(x) - 1)
+    mean = np.hypot(x[last] - x[first], y[last] - y[first]) / np.maximum(last - first, 1)
+    moving = steps[steps > 0]
+    typical = float(np.median(moving)) if moving.size else 0.0
+    jumped = np.flatnonzero((steps > STEP_RATIO * mean) & (steps > MEDIAN_STEP_RATIO * typical))
+    held = [_held_before(j, steps, mean) for j in jumped.tolist()]
+    return Jumps(jumped + 1, steps[jumped], np.unique(np.concatenate([*held, _NO_ROWS])))
+
+
+def _held_before(j: int, steps: Array, mean: Array) -> RowIndices:
+    """Samples held before step j, or none where the jump does not match the distance missed."""
+    count = 0
+    while count < LONGEST_HOLD and j - 1 - count >= 0 and steps[j - 1 - count] < HELD_RATIO * mean[j]:
+        count += 1
+    missed = (count + 1) * mean[j]
+    if count == 0 or not MATCHING[0] * missed < steps[j] < MATCHING[1] * missed:
+        return _NO_ROWS
+    return np.arange(j - count + 1, j + 1, dtype=np.intp)
+
+
+def spike_rows(values: Array) -> RowIndices:
+    """Return rows of single samples that leave and return in steps over four times any other within eight samples.
+
+    values: shape (n,), no NaN. The step must also exceed three times the record's 95 % step, and five times its
+    smallest (quantisation).
+    """
+    steps = np.diff(values)
+    sizes = np.abs(steps)
+    moving = sizes[sizes > 0]
+    if moving.size == 0 or len(values) < 2 * NEIGHBOURS:
+        return _NO_ROWS
+    floor = max(OVER_QUANTILE * float(np.quantile(sizes, STEP_QUANTILE)), OVER_SMALLEST * float(moving.min()))
+    both = np.minimum(sizes[:-1], sizes[1:])
+    candidates = np.flatnonzero((steps[:-1] * steps[1:] < 0) & (both > floor))
+    spikes = []
+    for c in candidates.tolist():
+        before, after = sizes[max(0, c - NEIGHBOURS) : c], sizes[c + 2 : c + 2 + NEIGHBOURS]
+        if both[c] > SPIKE_RATIO * max(before.max(initial=0.0), after.max(initial=0.0)):
+            spikes.append(c + 1)
+    return np.array(spikes, dtype=np.intp)
+
+
+# Repair of a record: wild samples, held positions, empty cells; everything is reported.
 
 
 def repair(record: Record) -> tuple[Record, tuple[Finding, ...]]:
@@ -162,3 +245,77 @@ def _without_gaps(rows: RowIndices) -> RowIndices:
     usual = round(usual_rows(rows))
     due = [np.arange(a + usual, b, usual) for a, b in pairwise(rows.tolist()) if b - a > usual]
     return np.unique(np.concatenate([rows, *due]))
+
+
+# Readings that stand for none, such as -999: one value far outside all others, again and again.
+
+_ADVICE = "no action needed for a few"
+
+
+def without_sentinels(record: Record) -> tuple[Record, tuple[Finding, ...]]:
+    """Return the record with readings that stand for none made empty, and a finding for each channel that has such.
+
+    Judged by behaviour, whatever the unit: commands are left alone. What was emptied as the log was read is found too.
+    """
+    emptied = [step for step in record.provenance.steps if step.endswith(EMPTIED)]
+    findings = [
+        Finding(Severity.WARNING, "no-reading", f"record '{record.name}', {step}", "", _ADVICE) for step in emptied
+    ]
+    for symbol in [s for s in record.channels if s not in INPUT_CHANNELS]:
+        values = record[symbol]
+        sentinel = sentinel_value(values, record.channel(symbol).unit)
+        if sentinel is None:
+            continue
+        rows = values == sentinel
+        channel = record.channel(symbol)
+        record = record.with_channel(
+            symbol, channel.with_values(np.where(rows, np.nan, values)), f"{rows.sum()} readings of {symbol} made empty"
+        )
+        text = f"record '{record.name}', channel '{symbol}': {rows.sum()} readings of {sentinel:.6g} {channel.unit} "
+        text += "stand for none; they count as empty"
+        rest = values[~rows & np.isfinite(values)]
+        times = record.time[rows]
+        evidence = f"the first and the last at {moment(times[0], times[-1])}; all others lie between "
+        evidence += f"{rest.min():.4g} and {rest.max():.4g}"
+        findings.append(Finding(Severity.WARNING, "no-reading", text, evidence, _ADVICE))
+    return record, tuple(findings)
+
+
+# How much of a run its repair leaves: a repair never destroys quietly.
+
+# share of the rows of a run that a repair may drop as a warning; the project's rule
+LARGEST_DROPPED_SHARE = 0.05
+
+
+def dropped_rows_findings(record: Record, parts: Sequence[Record]) -> tuple[Finding, ...]:
+    """An error where the repair leaves less than 95 % of the rows that hold a value.
+
+    record: as it was read; parts: what the repair keeps.
+    """
+    filled = ~np.all([np.isnan(c.values) for c in record.channels.values()], axis=0) & np.isfinite(record.time)
+    rows, kept = int(np.sum(filled)), 0
+    for part in parts:
+        half = 0.5 * part.dt if len(part) > 1 else 0.0
+        inside = (record.time >= part.time[0] - half) & (record.time <= part.time[-1] + half) & filled
+        kept += min(int(np.sum(inside)), len(part))
+    complete = max(parts, key=len)
+    if rows == 0 or kept >= (1.0 - LARGEST_DROPPED_SHARE) * rows:
+        return ()
+    return (
+        Finding(
+            Severity.ERROR,
+            "rows-dropped",
+            f"record '{record.name}': the repair drops {1.0 - kept / rows:.0%} of its rows",
+            f"{kept} of {rows} rows remain, {moment(complete.time[0], complete.time[-1])}",
+            _advice(record),
+        ),
+    )
+
+
+def _advice(record: Record) -> str:
+    """The emptiest channel to leave out."""
+    empty = {symbol: int(np.sum(np.isnan(channel.values))) for symbol, channel in record.channels.items()}
+    emptiest = max(empty, key=lambda symbol: empty[symbol])
+    if empty[emptiest]:
+        return f"remove channels.{emptiest}, which is empty in {empty[emptiest]} rows, from the trial file"
+    return "check the unit of time and the time column; the stamps are too uneven to keep the rows"

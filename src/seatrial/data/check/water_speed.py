@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.values import Array, Record
-from seatrial.data.check.signal import jackknife_least_squares, least_squares, smoothed, smoothed_derivative
+from seatrial.data.check.motion import jackknife_least_squares, least_squares, smoothed, smoothed_derivative
 
 _SMOOTHING_S = 3.0  # s over which velocities and yaw rate are smoothed; chosen: short against a turn
 _FEWEST_ROWS = 60  # of all runs together, for a fit of some eight coefficients; chosen

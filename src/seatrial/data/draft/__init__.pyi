@@ -3,15 +3,12 @@ from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.draft import DraftTrial, draft_trial
 from seatrial.data.draft.draft_text import run_text
 from seatrial.data.draft.guess import guess_columns
-from seatrial.data.draft.log_files import SurveyedLogs, survey_logs
 from seatrial.data.draft.manoeuvres import find_stretches
-from seatrial.data.draft.named_manoeuvre import name_contradiction
-from seatrial.data.draft.not_needed import not_needed_text
+from seatrial.data.draft.naming import not_needed_text, stated_columns
 from seatrial.data.draft.runs_of_logs import LogRun, runs_of_logs
 from seatrial.data.draft.ship_estimates import StatedSize
-from seatrial.data.draft.stated_columns import stated_columns
-from seatrial.data.draft.stretch import LogStretch
-from seatrial.data.draft.survey import ColumnSummary, LogSurvey, TopicSummary, survey_log
+from seatrial.data.draft.stretches import LogStretch, name_contradiction
+from seatrial.data.draft.survey import ColumnSummary, LogSurvey, SurveyedLogs, TopicSummary, survey_log, survey_logs
 
 __all__ = [
     "ColumnGuess",

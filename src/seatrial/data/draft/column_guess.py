@@ -1,9 +1,13 @@
-"""What one column is taken for, with the evidence."""
+"""What one column is taken for, with the evidence; guesses of several runs made one."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from seatrial.core.values import Record
+from seatrial.data.check.motion import recorded_motion
 from seatrial.data.read import ColumnSpec
+
+# What one column is taken for, with the evidence.
 
 RELATIVE = "_relative"
 """The end of the channels of an apparent wind."""
@@ -77,3 +81,91 @@ class ColumnGuess:
 
 Changes = Mapping[str, Callable[[ColumnGuess], ColumnGuess]]
 """Channel -> what its guess becomes."""
+
+
+# Guesses of several runs made one: what one run shows holds for all, what two runs contradict stays open.
+
+
+def agreed_guesses(
+    parts: Sequence[Sequence[ColumnGuess]], examined: Sequence[Sequence[Sequence[ColumnGuess]]]
+) -> tuple[tuple[ColumnGuess, ...], ...]:
+    """Return the guesses of the sources of one run as the runs that were examined decide them, column by column."""
+    known: dict[tuple[str, str], list[ColumnGuess]] = {}
+    for run in examined:
+        for guess in (g for part in run for g in part if g.is_used):
+            known.setdefault(_key(guess), []).append(guess)
+    return tuple(tuple(_agreed(g, known.get(_key(g), ())) for g in part) for part in parts)
+
+
+def _key(guess: ColumnGuess) -> tuple[str, str]:
+    """The name of a column without its topic, as runs that are sheets of a workbook have it, and its channel.
+
+    A wind that a run shows to be an apparent one is the same column.
+    """
+    return str(guess.source).rpartition("/")[2], guess.symbol.removesuffix(RELATIVE)
+
+
+def _agreed(guess: ColumnGuess, readings: Sequence[ColumnGuess]) -> ColumnGuess:
+    decided = [reading for reading in readings if not reading.is_open]
+    first = next(iter(decided or readings), guess)
+    if len({_meaning(one) for one in decided}) > 1:
+        other = "; another run shows ".join(_different(decided))
+        return replace(
+            first, source=guess.source, other_reading=f"{other}: the runs contradict each other", is_used=guess.is_used
+        )
+    return replace(first, source=guess.source, is_used=guess.is_used)
+
+
+def _meaning(guess: ColumnGuess) -> tuple[str, str, str]:
+    return guess.unit, guess.frame, guess.positive
+
+
+def _different(guesses: Iterable[ColumnGuess]) -> list[str]:
+    """What each reading that differs from the first says."""
+    first, *rest = dict.fromkeys(map(_meaning, guesses))
+    keys = ("unit", "frame", "positive")
+    return [
+        ", ".join(f'{key} = "{new}"' for key, old, new in zip(keys, first, one, strict=True) if new != old)
+        for one in rest
+    ]
+
+
+# Of which point the velocities of a log are where the antenna's place is stated: of the antenna, or of midship.
+
+_VELOCITIES = frozenset({"u", "v"})
+
+
+def with_velocities_of_antenna(
+    runs: Sequence[Sequence[Sequence[ColumnGuess]]], records: Sequence[Record | None], antenna: float | None
+) -> list[tuple[tuple[ColumnGuess, ...], ...]]:
+    """Return the guesses of each run's sources, velocities that change the positions as the antenna's own.
+
+    records: of each run, whose positions are the antenna's; antenna: m forward of midship; None: not stated.
+    """
+    if not antenna or not _are_of_antenna(records, antenna):
+        return [tuple(map(tuple, parts)) for parts in runs]
+    return [tuple(tuple(_of_antenna(one, antenna) for one in part) for part in parts) for parts in runs]
+
+
+def _are_of_antenna(records: Sequence[Record | None], antenna: float) -> bool:
+    """Whether the derivative of the positions fits the velocities better as they are than moved from midship."""
+    here, midship = 0.0, 0.0
+    for record in records:
+        as_recorded = None if record is None else recorded_motion(record)
+        moved = None if record is None or as_recorded is None else recorded_motion(_with_positions_at(record, antenna))
+        if as_recorded is not None and moved is not None:
+            here += as_recorded.misfit(as_recorded.conventions[0])
+            midship += moved.misfit(moved.conventions[0])
+    return here < midship
+
+
+def _with_positions_at(record: Record, place: float) -> Record:
+    for symbol in ("x0", "y0"):
+        record = record.with_channel(symbol, replace(record.channel(symbol), reference_point=place))
+    return record
+
+
+def _of_antenna(guess: ColumnGuess, antenna: float) -> ColumnGuess:
+    if not (guess.is_used and guess.symbol in _VELOCITIES and guess.follows_track):
+        return guess
+    return replace(guess, reference_point=antenna).with_evidence("of the antenna, as the positions are")

@@ -7,41 +7,67 @@ from pathlib import Path
 
 from seatrial.core.values import InputError, Record
 from seatrial.core.values.errors import listed
-from seatrial.data.draft.agreement import agreed_guesses
-from seatrial.data.draft.autopilot_modes import autopilot_modes
-from seatrial.data.draft.basin import is_in_basin, may_be_in_fresh_water
-from seatrial.data.draft.behaviour import checked_by_behaviour, run_record
-from seatrial.data.draft.column_guess import ColumnGuess
-from seatrial.data.draft.draft_text import NO_ANTENNA, RecordsBlock, known_unneeded, trial_text, unrecognised_columns
+from seatrial.data.draft.behaviour import checked_by_behaviour, run_record, tells_wind, with_wind_role
+from seatrial.data.draft.column_guess import ColumnGuess, agreed_guesses, with_velocities_of_antenna
+from seatrial.data.draft.draft_text import (
+    ASSUMED,
+    NO_ANTENNA,
+    OPEN_SPEED,
+    RecordsBlock,
+    known_unneeded,
+    tables_text,
+    trial_text,
+    unrecognised_columns,
+)
 from seatrial.data.draft.guess import guess_columns, with_turned_thruster, without_conflicts
-from seatrial.data.draft.header_sizes import HeaderSize, sizes_in_header
-from seatrial.data.draft.held_out import NOTHING_HELD_OUT, HeldOutRuns, can_judge, held_out_runs
-from seatrial.data.draft.log_files import survey_logs
-from seatrial.data.draft.log_partition import parts_without_gaps
+from seatrial.data.draft.held_out import (
+    NOTHING_HELD_OUT,
+    HeldOutRuns,
+    can_judge,
+    heels_apart,
+    held_out_runs,
+    unlike_decays_text,
+)
 from seatrial.data.draft.manoeuvres import (
+    autopilot_modes,
     changes_course,
     find_stretches,
     is_decay,
     numbered,
     offered_parts,
+    parts_without_gaps,
     two_thirds_and_a_third,
 )
-from seatrial.data.draft.one_speed import OtherSpeed, runs_by_speed, stated_options
-from seatrial.data.draft.runs_of_logs import LogRun, runs_of_logs
-from seatrial.data.draft.sample_rate import thinned_rate
-from seatrial.data.draft.session_text import is_one_place, session_line
-from seatrial.data.draft.ship_estimates import UNSTATED, StatedSize
-from seatrial.data.draft.starting_model import StartingModel, in_a_current, share_current, starting_model, with_wind
-from seatrial.data.draft.stated_columns import CHANNELS, NOTHING_STATED, StatedColumns
-from seatrial.data.draft.stretch import LogStretch, used_parts
-from seatrial.data.draft.survey import LogSurvey, apart_by_sheet, with_common_ranges
-from seatrial.data.draft.tables_text import OPEN_SPEED, tables_text
-from seatrial.data.draft.unlike_decays import heels_apart, unlike_decays_text
-from seatrial.data.draft.velocity_place import with_velocities_of_antenna
-from seatrial.data.draft.waves_text import ASSUMED
-from seatrial.data.draft.wind_columns import tells_wind, with_wind_role
-from seatrial.data.trial.estimated_values import ESTIMATED
-from seatrial.data.trial.roll_decay_start import need_release
+from seatrial.data.draft.naming import CHANNELS, NOTHING_STATED, StatedColumns
+from seatrial.data.draft.runs_of_logs import (
+    LogRun,
+    OtherSpeed,
+    is_one_place,
+    runs_by_speed,
+    runs_of_logs,
+    session_line,
+    stated_options,
+)
+from seatrial.data.draft.ship_estimates import (
+    UNSTATED,
+    HeaderSize,
+    StatedSize,
+    is_in_basin,
+    may_be_in_fresh_water,
+    sizes_in_header,
+)
+from seatrial.data.draft.starting_model import (
+    StartingModel,
+    in_a_current,
+    share_current,
+    starting_model,
+    thinned_rate,
+    with_wind,
+)
+from seatrial.data.draft.stretches import LogStretch, used_parts
+from seatrial.data.draft.survey import LogSurvey, apart_by_sheet, survey_logs, with_common_ranges
+from seatrial.data.trial.plausibility import ESTIMATED
+from seatrial.data.trial.records import need_release
 from seatrial.data.trial.run_data import run_name
 
 _NOZZLE = re.compile("nozzle|jet|bucket", re.IGNORECASE)  # in the name of a column that steers by the jet itself

@@ -1,19 +1,270 @@
-"""What the columns of a log are by name and range; unsure stays open, with both readings."""
+"""What the columns of a log are by name, range and command; unsure stays open, with both readings."""
 
 import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
+from itertools import permutations
 
 import numpy as np
 
-from seatrial.data.draft.column_guess import ColumnGuess
-from seatrial.data.draft.commands import command_guess, rudder_in_percent
+from seatrial.core.values import Array, InputError, Record
+from seatrial.data.check import canonical_record
+from seatrial.data.check.inputs import SURE_EFFECT, ThrusterEffect, thruster_effects
+from seatrial.data.check.motion import jackknife_least_squares, smoothed, smoothed_derivative, window_length
+from seatrial.data.draft.column_guess import Changes, ColumnGuess
 from seatrial.data.draft.naming import NameGuess, bracketed_unit, guess_by_name, named_side
-from seatrial.data.draft.survey import ColumnSummary, LogSurvey, TopicSummary
-from seatrial.data.draft.time_columns import column_values
-from seatrial.data.draft.unnamed import recognised_columns
-from seatrial.data.read.quantities import log_quantity
+from seatrial.data.draft.stored_parameters import OutputSetting, is_disabled, output_setting
+from seatrial.data.draft.stretches import padded, smooth_speed
+from seatrial.data.draft.survey import ColumnSummary, LogSurvey, TopicSummary, column_values
+from seatrial.data.read.layout import log_quantity
+from seatrial.physics.models.thruster_layout import CommandInput, Thruster, ThrusterLayout
+
+# Columns without names, by what they do: derivatives of one another, the heading of the track, what turns the ship.
+
+# correlation of a column with the derivative of another that makes them a pair, and share by which their ratio may
+# differ from one unit to the other; chosen
+_PAIR_CORRELATION, _PAIR_RATIO = 0.98, 0.05
+_COURSE_ANGLE = math.radians(25.0)  # rad rms between course and heading, up to which ships drift in turns; chosen
+_SURE_T = 5.0  # effect over standard error that proves a rudder; as in the checks
+_ANGLE_UNITS = {"deg": math.pi / 180.0, "rad": 1.0}  # rad
+
+
+@dataclass(frozen=True)
+class UnnamedColumn:
+    """What a column without a name is, and why."""
+
+    index: int
+    symbol: str
+    unit: str
+    frame: str
+    positive: str
+    evidence: str
+
+
+def recognised_columns(columns: dict[int, Array], dt: float) -> list[UnnamedColumn]:
+    """Return what columns (numbered from 1, each (n,) without gaps) are; empty where no motion is recognised.
+
+    Two pairs of a position and its rate whose course a third, an angle with its rate, follows are x0, y0, u, v
+    (earth-fixed), psi and r; of the rest what leads the yaw acceleration is the rudder.
+    """
+    length = window_length(len(next(iter(columns.values()), ())))
+    if length < 3 or len(columns) < 6:  # columns of a motion; samples of a window
+        return []
+    rates = {k: smoothed_derivative(values, dt, length) for k, values in columns.items()}
+    smooth = {k: smoothed(values, length) for k, values in columns.items()}
+    pairs = _derivative_pairs(smooth, rates)
+    best: tuple[float, list[UnnamedColumn]] = (_COURSE_ANGLE, [])
+    for (x, u), (y, v), (psi, r) in permutations(pairs, 3):
+        for unit, size in _ANGLE_UNITS.items():
+            misfit = _course_misfit(smooth[u], smooth[v], size * smooth[psi])
+            if misfit < best[0]:
+                best = (misfit, _motion(x, y, psi, u, v, r, unit, misfit))
+    if not best[1]:
+        return []
+    taken = {one.index for one in best[1]}
+    psi = next(one for one in best[1] if one.symbol == "psi")
+    yaw = smooth[next(one.index for one in best[1] if one.symbol == "r")]
+    rest = {k: values for k, values in smooth.items() if k not in taken}
+    return [*best[1], *_rudder(rest, yaw, rates[_index(best[1], "r")], psi.unit)]
+
+
+def _index(columns: list[UnnamedColumn], symbol: str) -> int:
+    return next(column.index for column in columns if column.symbol == symbol)
+
+
+def _derivative_pairs(smooth: dict[int, Array], rates: dict[int, Array]) -> list[tuple[int, int]]:
+    """Column and the column that is its derivative, in the same unit."""
+    pairs = []
+    for i, rate in rates.items():
+        power = float(rate @ rate)
+        for j, values in smooth.items():
+            if i == j or power == 0.0 or not np.any(values):
+                continue
+            factor = float(values @ rate) / power
+            match = factor * math.sqrt(power / float(values @ values))
+            if match > _PAIR_CORRELATION and abs(factor - 1.0) < _PAIR_RATIO:
+                pairs.append((i, j))
+    return pairs
+
+
+def _course_misfit(north: Array, east: Array, psi: Array) -> float:
+    """The rms angle [rad] between course and heading where the craft moves."""
+    speed = np.hypot(north, east)
+    moving = speed > 0.3 * float(np.max(speed))  # of the largest speed: a course is well defined
+    angle = np.angle(np.exp(1j * (np.arctan2(east, north) - psi)))[moving]
+    return float(np.sqrt(np.mean(angle**2))) if angle.size else math.inf
+
+
+def _motion(x: int, y: int, psi: int, u: int, v: int, r: int, unit: str, misfit: float) -> list[UnnamedColumn]:
+    text = f"the track leads where column {psi} points, within {math.degrees(misfit):.0f} deg"
+    return [
+        UnnamedColumn(x, "x0", "m", "", "", f"column {u} is its derivative; {text}"),
+        UnnamedColumn(y, "y0", "m", "", "", f"column {v} is its derivative; {text}"),
+        UnnamedColumn(psi, "psi", unit, "", "", f"column {r} is its derivative; {text}"),
+        UnnamedColumn(u, "u", "m/s", "earth", "", f"the derivative of column {x}"),
+        UnnamedColumn(v, "v", "m/s", "earth", "", f"the derivative of column {y}"),
+        UnnamedColumn(r, "r", f"{unit}/s", "", "", f"the derivative of column {psi}"),
+    ]
+
+
+def _rudder(rest: dict[int, Array], yaw: Array, acceleration: Array, unit: str) -> list[UnnamedColumn]:
+    """The column that the yaw acceleration follows best: dr/dt = a r + b delta + c (Nomoto 1957, eq. 1)."""
+    best = (0.0, 0)
+    for k, values in rest.items():
+        if np.ptp(values) > 0.0:
+            features = np.column_stack([yaw, values, np.ones_like(values)])
+            answer, errors = jackknife_least_squares(features, acceleration)
+            t = float(answer[1] / errors[1]) if errors[1] > 0 else 0.0
+            best = max(best, (t, k), key=lambda one: abs(one[0]))
+    t, k = best
+    if abs(t) < _SURE_T:
+        return []
+    side = "starboard" if t > 0 else "port"
+    text = f"the yaw acceleration follows it, a positive one turns to {side} (effect over standard error {abs(t):.0f})"
+    return [UnnamedColumn(k, "delta", unit, "", "" if t > 0 else "port", text)]
+
+
+# Commands of thrusters and rudders: what a pulse means, and which way each drives and turns the craft.
+
+_RANGE, _REST, _SPAN = (700.0, 2300.0), 1500.0, 400.0  # us, of servo pulses (ArduPilot, SERVOn_MIN, MAX)
+_NEVER_IDLE = 1200.0  # us; a motor of one direction idles between 1000 and 1100, and every log holds that; chosen
+_REST_TOLERANCE = 60.0  # us; chosen: trims of motors that stand still
+_SURELY_PERCENT = 20.0  # largest size of a command from which on up to 100 is per cent, not volts or amperes; chosen
+_FULL_RUDDER = 35.0  # deg, of most ships' rudders (SOLAS II-1/29): what a draft proposes
+# share of the largest speed below which a craft stands still, s of it at least, share of full command that is no more
+# than rest; chosen
+_STILL, _STILL_S, _REST_SHARE = 0.05, 1.0, 0.05
+_ONLY_SIGN = 'positive = "astern", and which side it drives: the log does not say'
+
+
+def command_guess(guess: ColumnGuess, column: ColumnSummary, survey: LogSurvey) -> ColumnGuess | None:
+    """Return a command as a share of its range: by the parameters of the output where the log has them, else its rest.
+
+    An output that steers is a rudder angle; None: the output is disabled.
+    """
+    parameters = survey.log.parameters
+    number = int(guess.symbol.removeprefix("command_"))
+    if guess.unit == "percent":
+        return guess.with_evidence("in per cent, as the log says")
+    if column.low >= -1.0 and column.high <= 1.0:
+        return replace(guess, unit="1").with_evidence("between -1 and 1")
+    if column.low >= -100.0 and column.high <= 100.0 and max(-column.low, column.high) > _SURELY_PERCENT:
+        other = _ONLY_SIGN if column.low < 0.0 else "set zero and span: command = (cell - zero) / span"
+        text = f"from {column.low:g} to {column.high:g}: per cent of full command"
+        return replace(guess, unit="percent", other_reading=other).with_evidence(text)
+    if not (_RANGE[0] <= column.low and column.high <= _RANGE[1]):
+        return replace(guess, unit="1", other_reading="set zero and span: command = (cell - zero) / span")
+    if is_disabled(parameters, number):
+        return None
+    setting = output_setting(parameters, number)
+    if setting is not None and setting.is_rudder:
+        return _as_rudder(guess, setting)
+    if setting is not None and setting.span:
+        stated = replace(guess, unit="us", zero=setting.zero, span=setting.span)
+        return replace(stated, positive="astern" if setting.is_reversed else "").with_evidence(setting.evidence)
+    pulse = _by_rest(guess, column)
+    return pulse if setting is None else pulse.with_evidence(setting.evidence)
+
+
+def _by_rest(guess: ColumnGuess, column: ColumnSummary) -> ColumnGuess:
+    text = f"pulses of {column.low:g} to {column.high:g} us, {column.common:g} the most often"
+    distance = abs(column.common - _REST)
+    zero = column.common if distance < _REST_TOLERANCE else _REST
+    pulse = replace(guess, unit="us", zero=zero, span=_SPAN).with_evidence(text)
+    to_both_sides = column.low > _NEVER_IDLE and min(_REST - column.low, column.high - _REST) > _REST_TOLERANCE
+    if distance == 0.0 or (to_both_sides and distance >= _REST_TOLERANCE):
+        return replace(pulse, other_reading=_ONLY_SIGN)
+    other = f"zero = {_REST:g}" if distance < _REST_TOLERANCE else "zero = 1000, span = 1000 (one direction)"
+    return replace(pulse, other_reading=other)
+
+
+def _as_rudder(guess: ColumnGuess, setting: OutputSetting) -> ColumnGuess:
+    """A rudder's order: the angle at full deflection is no parameter of an autopilot."""
+    zero, span = (setting.zero, setting.span) if setting.span else (_REST, _SPAN)
+    rudder = replace(guess, symbol="delta", unit="deg", zero=zero, span=span, scale=_FULL_RUDDER, kind="command")
+    other = "scale = the rudder angle at full deflection in deg: the log does not say"
+    side = "port" if setting.is_reversed else ""
+    return replace(rudder, positive=side, other_reading=other).with_evidence(setting.evidence)
+
+
+def rudder_in_percent(guess: ColumnGuess) -> ColumnGuess:
+    """Return a rudder that is logged as a share of its range as an angle; which one full deflection is stays open."""
+    other = f"scale = the angle at 100 per cent in deg, not {_FULL_RUDDER:g}: the log does not say"
+    percent = replace(guess, unit="deg", span=100.0, scale=_FULL_RUDDER, other_reading=other)  # per cent of full
+    return percent.with_evidence("in per cent")
+
+
+def rest_of_commands(record: Record) -> Changes:
+    """Return the commands that are at rest at 0 or the middle pulse, as the craft stands still with it at the start."""
+    names = [name for name in record.channels if name.startswith("command_")]
+    flow = smooth_speed(record)
+    if not names or flow is None:
+        return {}
+    moving = np.flatnonzero(flow > _STILL * np.max(flow))
+    rows = int(moving[0]) if moving.size else 0
+    if rows * record.dt < _STILL_S:
+        return {}
+    resting = [name for name in names if np.max(np.abs(record[name][:rows])) < _REST_SHARE]
+    return dict.fromkeys(resting, _with_known_rest)
+
+
+def _with_known_rest(guess: ColumnGuess) -> ColumnGuess:
+    if guess.unit not in ("us", "percent") or not guess.is_open:
+        return guess
+    text = f"the craft stands still with {guess.zero:g} {'us' if guess.unit == 'us' else 'per cent'} at the start"
+    return replace(guess, other_reading=_ONLY_SIGN).with_evidence(text)
+
+
+def command_directions(record: Record) -> Changes:
+    """Return what shows which way each command drives the craft and to which side it turns it."""
+    names = [name for name in record.channels if name.startswith("command_")]
+    record = _with_speeds(record)
+    if not names or not {"u", "r", "psi"} <= set(record.channels):
+        return {}
+    try:
+        body = canonical_record(record, 0.0)
+    except InputError:
+        return {}
+    # one metre to port: ahead turns to starboard, so that an effect on yaw is positive to that side
+    to_port = tuple(Thruster(name, 0.0, -1.0, CommandInput(name)) for name in names)
+    effects = thruster_effects(ThrusterLayout(to_port), [body])
+    return {
+        name: partial(_with_direction, effect)
+        for name, effect in zip(names, effects, strict=True)
+        if abs(effect.surge) > SURE_EFFECT
+    }
+
+
+def _with_speeds(record: Record) -> Record:
+    """The record with the speeds ahead and to starboard as the positions show them, where no speed is recorded."""
+    if "u" in record or not {"x0", "y0", "psi"} <= set(record.channels):
+        return record
+    north, east = (np.gradient(padded(record, record[one]), record.dt) for one in ("x0", "y0"))
+    cos, sin = np.cos(record["psi"]), np.sin(record["psi"])
+    speeds = {"u": north * cos + east * sin, "v": east * cos - north * sin}
+    motion = Record.from_arrays("motion", record.time, speeds)
+    return record.with_channel("u", motion.channel("u")).with_channel("v", motion.channel("v"))
+
+
+def _with_direction(effect: ThrusterEffect, guess: ColumnGuess) -> ColumnGuess:
+    """The guess with its direction where nothing but that is open; open where its parameters contradict the motion."""
+    if guess.is_open and guess.other_reading != _ONLY_SIGN:
+        return guess
+    is_astern = (guess.positive == "astern") == (effect.surge > 0.0)
+    word = "astern" if is_astern else "ahead"
+    text = f"more drives {word} (effect over standard error {abs(effect.surge):.0f})"
+    if abs(effect.yaw) > SURE_EFFECT:
+        side = "port" if effect.yaw * effect.surge > 0.0 else "starboard"
+        guess = replace(guess, side=side)
+        text += f"; it turns the craft as a thruster on the {side} side does ({abs(effect.yaw):.0f})"
+    if not guess.is_open and is_astern != (guess.positive == "astern"):
+        return replace(guess, other_reading=f'positive = "{word}": {text}')
+    return replace(guess, positive="astern" if is_astern else "", other_reading="").with_evidence(text)
+
+
+# What the columns of a log are by name and range; unsure stays open, with both readings.
 
 _FULL_TURN = 2.0 * math.pi
 # rad: a range of headings beyond which the column is not in radians; rad: one that shows a heading through the circle

@@ -1,20 +1,186 @@
-"""The runs that judge the model of a draft: what tests it most, and no repeat of what trains where there is another."""
+"""The runs that judge the model of a draft, and roll decays that do not belong with the others."""
 
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Callable, Collection, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import pairwise
 from types import MappingProxyType
 
 import numpy as np
 
 from seatrial.core.text.numbers import duration
 from seatrial.core.text.words import enumeration
-from seatrial.core.values import Record
-from seatrial.data.draft.held_out_kinds import CIRCLE, ZIGZAG, JudgingRuns, kind_of_orders, share_of_time
+from seatrial.core.values import Array, Record
+from seatrial.data.check.phases import half_swings
 from seatrial.data.draft.starting_model import StartingModel
-from seatrial.physics.manoeuvres import SteeredOrders, steered_orders
+from seatrial.data.draft.stretches import STRAIGHT, half_swing_angles
+from seatrial.physics.manoeuvres import ManoeuvreKind, SteeredOrders, steered_orders
+
+# Roll decays that differ: in how they die out, of another speed or loading, or in the heel about which they roll.
+
+_UNLIKE = (
+    1.5  # of the decrement of the next decay, from which on two groups of decays differ; chosen: scatter is a tenth
+)
+_SMALLEST_SHARE = 0.25  # of the first swing, down to which swings count: below, wind and noise swing along; chosen
+_FEWEST = 4  # swings that give a decrement; chosen
+_NAMES_SHOWN = 4  # ours
+_CERTAIN = 4.0  # standard errors by which heels differ; chosen: they are correlated from swing to swing
+_LEAST_HEEL = math.radians(0.2)  # rad, difference of heels from which on it matters; chosen: 2 % of a release of 10 deg
+
+
+def unlike_decays_text(decays: Mapping[str, Record]) -> str:
+    """Return which decays die out faster than the others, and what to do; empty where all are alike.
+
+    decays: records of roll decays from their releases, by name.
+    """
+    decrements = {name: found for name, record in decays.items() if (found := _decrement(record["phi"])) is not None}
+    ordered = sorted(decrements, key=decrements.__getitem__)
+    ratios = [decrements[b] / max(decrements[a], 1e-9) for a, b in pairwise(ordered)]  # never a division by zero
+    if not ratios or max(ratios) < _UNLIKE:
+        return ""
+    cut = int(np.argmax(ratios)) + 1
+    slow, fast = ordered[:cut], ordered[cut:]
+    low, high = (float(np.median([decrements[name] for name in group])) for group in (slow, fast))
+    names = enumeration(sorted(fast), _NAMES_SHOWN)
+    verb = "dies" if len(fast) == 1 else "die"
+    return (
+        f"{names} {verb} out {high / low:.2g} times as fast as the others: if they were run at another speed or "
+        "loading, draft each condition by itself, from its logs alone"
+    )
+
+
+def heels_apart(decays: Mapping[str, Record]) -> tuple[float, float] | None:
+    """Return least and largest heel about which decays roll [rad], where they differ; None: one angle serves all.
+
+    decays: as above.
+    """
+    rests = [found for record in decays.values() if (found := _rest(record["phi"])) is not None]
+    if len(rests) < 2:
+        return None
+    (low, low_error), (high, high_error) = min(rests), max(rests)
+    limit = max(_CERTAIN * math.hypot(low_error, high_error), _LEAST_HEEL)
+    return (low, high) if high - low > limit else None
+
+
+def _rest(phi: Array) -> tuple[float, float] | None:
+    """The heel between the swings' extremes [rad], and its standard error; None of too few swings.
+
+    A quarter of two extremes to one side and half of the one between lie at the rest but for (1 - rho)^2 / 4 of the
+    swing, rho the share that is left from one to the next.
+    """
+    rest = float(np.median(phi))
+    tops = np.array([_extreme(phi[half_swing.first : half_swing.stop], rest) for half_swing in half_swings(phi - rest)])
+    if len(tops) < _FEWEST + 2:
+        return None
+    middles = 0.25 * (tops[:-2] + 2.0 * tops[1:-1] + tops[2:])
+    return float(np.median(middles)), float(np.std(middles)) / math.sqrt(len(middles))
+
+
+def _extreme(swing: Array, rest: float) -> float:
+    return float(swing[np.argmax(np.abs(swing - rest))])
+
+
+def _decrement(phi: Array) -> float | None:
+    """The mean decrease of the logarithm of the angle from swing to swing; None of too few swings."""
+    angles = half_swing_angles(phi - float(np.median(phi)))
+    large = angles[angles > _SMALLEST_SHARE * angles.max(initial=0.0)]
+    if len(large) < _FEWEST:
+        return None
+    return -float(np.polyfit(np.arange(len(large)), np.log(large), 1)[0])
+
+
+# The runs of several kinds of manoeuvre that judge a model, where two of each kind are left to train it.
+
+_KEPT = 2  # runs of a kind that train at least where others of it are held out: one alone sets no interval; chosen
+_LARGEST_SHARE = 1.0 / 3.0  # of the time of all runs that is held out at most; chosen
+_AS_LARGE = 0.9  # of a rudder angle, from which on another is as large: what helmsmen repeat, as in orders
+ZIGZAG, CIRCLE = "zigzag", "circle"
+"""Kinds of manoeuvre that a rudder orders."""
+
+
+@dataclass(frozen=True)
+class JudgingRuns:
+    """Runs, those with the same orders together, among which the ones that judge a model are chosen.
+
+    Attributes:
+        records: of each run.
+        groups: names of the runs with the same orders.
+        kinds: of the manoeuvre of each run; one whose kind is empty is not held out.
+        sizes: of the inputs of each run.
+        orders: rudder orders; None of runs that have none.
+        lies_within: whether the inputs of some runs stay in the range of those of the others.
+    """
+
+    records: Mapping[str, Record]
+    groups: Sequence[tuple[str, ...]]
+    kinds: Mapping[str, str]
+    sizes: Mapping[str, float]
+    orders: Mapping[str, SteeredOrders | None]
+    lies_within: Callable[[Set[str]], bool]
+
+    def of_several_kinds(self, least_share: float) -> tuple[str, ...]:
+        """Return of each kind the middle group by size; more of them in turn until they last a share of all time.
+
+        Straight runs only where the others do not last that long: on a course that a helmsman holds, what he corrects
+        is all that could be predicted.
+        """
+        counts = Counter(kind for name in self.records if (kind := self.kinds[name]))
+        kinds, held = sorted(counts, key=lambda kind: -counts[kind]), ()
+        for chosen in ([kind for kind in kinds if kind != STRAIGHT], kinds):
+            before = None
+            while held != before and (before is None or share_of_time(held, self.records) < least_share):
+                before = held
+                for kind in chosen:
+                    held = (*held, *self._next_of(kind, held))
+            if held and share_of_time(held, self.records) >= least_share:
+                break
+        return held
+
+    def _next_of(self, kind: str, held: tuple[str, ...]) -> tuple[str, ...]:
+        """The upper middle one by size of the groups of a kind that may be held out as well; empty where none may."""
+        able = [group for group in self.groups if group[0] not in held and self._may_judge(kind, group, held)]
+        able.sort(key=lambda group: self.sizes[group[0]])
+        return able[len(able) // 2] if able else ()
+
+    def _may_judge(self, kind: str, group: tuple[str, ...], held: tuple[str, ...]) -> bool:
+        """Whether enough is left to train where a group is held out beside what is held out already."""
+        if any(self.kinds[name] != kind for name in group):
+            return False
+        out = {*held, *group}
+        rest = [name for name in self.records if name not in out]
+        return (
+            sum(self.kinds[name] == kind for name in rest) >= _KEPT
+            and share_of_time(out, self.records) <= _LARGEST_SHARE
+            and self._keeps_circles(group[0], rest)
+            and self.lies_within(out)
+        )
+
+    def _keeps_circles(self, name: str, rest: Sequence[str]) -> bool:
+        """Whether circles of no smaller rudder angle train on both sides, where the run is one."""
+        circle = self.orders[name]
+        if circle is None or not circle.is_turn:
+            return True
+        turns = [one.rudder for other in rest if (one := self.orders[other]) is not None and one.is_turn]
+        as_large = [rudder for rudder in turns if abs(rudder) >= _AS_LARGE * abs(circle.rudder)]
+        return min(as_large, default=0.0) < 0.0 < max(as_large, default=0.0)
+
+
+def share_of_time(names: Collection[str], records: Mapping[str, Record]) -> float:
+    """Return the share of the time of all runs that some take."""
+    total = math.fsum(record.duration for record in records.values())
+    return math.fsum(records[name].duration for name in names) / total
+
+
+def kind_of_orders(orders: SteeredOrders | None) -> str:
+    """Return the kind of manoeuvre that is ordered by a rudder; empty of others."""
+    if orders is None:
+        return ""
+    return CIRCLE if orders.is_turn else ZIGZAG if orders.kind is ManoeuvreKind.ZIGZAG else ""
+
+
+# The runs that judge the model of a draft: what tests it most, and no repeat of what trains where there is another.
 
 _NO_KINDS: Mapping[str, str] = MappingProxyType({})
 _LEAST_SHARE = 0.2  # of the time of all runs of a craft with thrusters that judges its model, if it can be; chosen

@@ -1,13 +1,82 @@
 """What a column may be, by its name: the messages of known loggers first, then the names that people use."""
 
 import re
+import unicodedata
+from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 
-from seatrial.core.values import InputError, si_unit
-from seatrial.core.values.units import UNIT_WORDS
-from seatrial.data.draft.languages import in_english, plain_name
+from seatrial.core.text.words import enumeration
+from seatrial.core.values import InputError, si_unit, spelling_hint
+from seatrial.core.values.notation import UNIT_WORDS
 from seatrial.data.draft.stored_parameters import PX4_MAIN_OUTPUTS
-from seatrial.data.read.quantities import log_quantity
+from seatrial.data.read.layout import log_quantity
+
+# Headings of logs in other languages of seafarers, as the English names that a draft knows.
+
+_HEADINGS = {
+    "time": "tid tidspunkt klokke klokken klokkeslett klokkeslet klockslag zeit uhrzeit zeitstempel tijd tijdstip "
+            "heure temps horodatage hora tiempo ora orario tempo",
+    "date": "dato datum fecha data",
+    "latitude": "bredde breddegrad latitud breite breitengrad breedte breedtegraad latitudine",
+    "longitude": "lengde lengdegrad laengde laengdegrad langd longitud laenge lange langengrad laengengrad lengte "
+                 "lengtegraad longitudine",
+    "speed_over_ground": "fart_over_grunn fart_over_bunn hastighet_over_grunn fart_over_grund hastighed_over_grund "
+                         "fahrt_uber_grund fahrt_ueber_grund geschwindigkeit_uber_grund geschwindigkeit_ueber_grund "
+                         "fug grondsnelheid snelheid_over_de_grond vitesse_fond vitesse_sur_le_fond "
+                         "velocidad_sobre_el_fondo velocidad_sobre_fondo velocita_sul_fondo velocidade_sobre_o_fundo",
+    "course_over_ground": "kurs_over_grunn kurs_over_grund kurs_uber_grund kurs_ueber_grund kug grondkoers "
+                          "koers_over_de_grond route_fond route_sur_le_fond rumbo_sobre_el_fondo rumbo_sobre_fondo "
+                          "rotta_sul_fondo rumo_sobre_o_fundo",
+    "speed_through_water": "fart_gjennom_vann fart_gjennom_vannet fart_gennem_vand fart_genom_vattnet "
+                           "fart_genom_vatten fahrt_durchs_wasser fahrt_durch_das_wasser fdw "
+                           "snelheid_door_het_water vitesse_surface velocidad_respecto_al_agua",
+    "heading": "kurs stevning styrekurs gyrokurs steuerkurs vorausrichtung koers cap cap_vrai rumbo rumbo_verdadero "
+               "proa prua prora aproamento",
+    "compass": "kompass kompasskurs kompas kompaskurs kompaskoers cap_compas",
+    "rate_of_turn": "svinghastighet girrate girehastighet drejehastighed svanghastighet girhastighet drehrate "
+                    "drehgeschwindigkeit wendegeschwindigkeit gierrate giergeschwindigkeit draaisnelheid "
+                    "vitesse_de_giration taux_de_giration vitesse_de_lacet velocidad_de_giro velocidad_de_guinada "
+                    "velocita_di_accostata velocita_di_imbardata taxa_de_guinada",
+    "rudder_angle": "ror rorvinkel roder rodervinkel roderlage rorlage ruder ruderwinkel ruderlage roer roerhoek "
+                    "roerstand barre angle_de_barre safran timon angulo_de_timon angulo_del_timon timone "
+                    "angolo_timone angolo_di_barra leme angulo_do_leme",
+    "shaft_rpm": "turtall omdreininger propellerturtall varvtal propellervarvtal omdrejningstal omdrejninger drehzahl "
+                 "wellendrehzahl propellerdrehzahl toerental omwentelingen tours_minute regime_helice "
+                 "regime_ligne_d_arbre revoluciones giri giri_elica numero_di_giri rotacoes",
+    "engine_speed": "maskinturtall motorturtall motorvarvtal motordrehzahl motortoerental regime_moteur "
+                    "revoluciones_del_motor giri_motore",
+    "roll": "rull rulling rullevinkel krengning krangning rullning kraengning rulning krengningsvinkel slagside "
+            "rollwinkel krangung rolhoek helling roulis gite balanceo escora rollio sbandamento balanco",
+    "roll_rate": "rullhastighet rullehastighet rollrate rollgeschwindigkeit rolsnelheid vitesse_de_roulis",
+    "pitch": "stamping stampvinkel nickwinkel stampfwinkel stampning stamphoek tangage cabeceo beccheggio "
+             "arfagem",
+    "heave": "hiv hivning havning tauchbewegung dompen pilonnement sussulto",
+}  # fmt: skip
+_ENGLISH = {word: english for english, words in _HEADINGS.items() for word in words.split()}
+# letters that do not come apart into a letter and its accent
+_LETTERS = str.maketrans({"ø": "o", "æ": "ae", "ß": "ss", "œ": "oe", "ł": "l", "đ": "d"})
+
+
+def without_accents(text: str) -> str:
+    """Return a text in small letters, without accents."""
+    apart = unicodedata.normalize("NFKD", text.lower().translate(_LETTERS))
+    return "".join(letter for letter in apart if not unicodedata.combining(letter))
+
+
+def plain_name(name: str) -> str:
+    """Return a heading in small letters and figures without accents, with a line between words."""
+    return re.sub(r"[^a-z0-9]+", "_", without_accents(name)).strip("_")
+
+
+def in_english(plain: str) -> str:
+    """Return the English heading of a plain one in another language; as it is where it is not known.
+
+    plain: small letters without accents, words joined by underscores.
+    """
+    return _ENGLISH.get(plain, plain)
+
+
+# What a column may be, by its name: the messages of known loggers first, then the names that people use.
 
 _SCALED_DEGREE, _CENTI = 1e-7, 1e-2  # MAVLink and PX4: degrees as integers of 1e-7, centidegrees and cm/s
 
@@ -131,7 +200,7 @@ APPARENT_WIND = "the apparent wind, if so called wind_speed_relative, wind_direc
 _PROBE = "counts as at midship; of a probe on the craft elsewhere add reference_point, m forward of midship"
 _PORT, _STARBOARD = "(left|port)", "(right|starboard|stbd)"
 # letters of thrusters, as in motor_l
-_LETTERS = {"port": re.compile("(^|_)l($|_)"), "starboard": re.compile("(^|_)r($|_)")}
+_SIDE_LETTERS = {"port": re.compile("(^|_)l($|_)"), "starboard": re.compile("(^|_)r($|_)")}
 _SIDES = {"port": _PORT, "starboard": _STARBOARD}
 _SIDE = f"({_PORT}|{_STARBOARD})"
 _TWO_RUDDERS = "of rudders that move together one is read: A_R is the area of all"
@@ -312,7 +381,7 @@ def _guess(rule: NameRule, match: re.Match[str], unit: str, evidence: str) -> Na
         unit = ""
     side = named_side(match.string)
     if not side and symbol.startswith("command_"):
-        side = next((one for one, letter in _LETTERS.items() if letter.search(match.string)), "")
+        side = next((one for one, letter in _SIDE_LETTERS.items() if letter.search(match.string)), "")
     return NameGuess(rule, symbol, unit, evidence, side)
 
 
@@ -330,3 +399,136 @@ def _known_unit(text: str) -> str:
     except InputError:
         return ""
     return text.strip()
+
+
+# Columns whose meaning is stated: the name of each, as the log has it, and what it is.
+
+StatedColumns = Mapping[str, str]
+"""Heading of a column -> ``time``, or a channel or name that a draft knows, such as ``psi`` or ``heading``."""
+TIME = "time"
+CHANNELS = "lat, lon, sog, cog, psi, r, u, v, delta, n, phi, theta, z, zeta, command_1"
+"""Channels that logs hold most often."""
+NOTHING_STATED: StatedColumns = {}
+
+
+def stated_columns(texts: Iterable[str]) -> dict[str, str]:
+    """Return what texts such as ``Klokke=time`` state, the heading before the last equals sign.
+
+    Raises:
+        InputError: a text without an equals sign, a heading stated twice, or a meaning that a draft does not know.
+    """
+    stated = dict[str, str]()
+    for text in texts:
+        heading, equals, meaning = (part.strip() for part in text.rpartition("="))
+        if not equals or not heading or not meaning:
+            raise InputError(f"--column '{text}': write HEADING=CHANNEL, as in --column 'Klokke=time'")
+        if heading in stated:
+            raise InputError(f"--column '{text}': the column '{heading}' is stated twice; state it once")
+        if meaning != TIME and guess_by_name("", meaning, "") is None:
+            raise InputError(
+                f"--column '{text}': '{meaning}' is no channel that a log can hold; known are {TIME}, {CHANNELS}"
+            )
+        stated[heading] = meaning
+    return stated
+
+
+def refuse_absent(stated: StatedColumns, headings: Iterable[str]) -> None:
+    """Refuse a stated column that no log has.
+
+    Raises:
+        InputError: there is one; the heading most like it is named.
+    """
+    known = list(dict.fromkeys(headings))
+    for heading in stated:
+        if heading not in known:
+            raise InputError(f"--column '{heading}=...': no log has this column{spelling_hint(heading, known)}")
+
+
+# Columns that are known and that no draft takes, with the reason: others say the same, or they show no motion.
+
+_UNIT = re.compile(r"\[.*?\]|\(.*?\)")  # in brackets behind a heading
+_NAMES_SHOWN = 4  # columns of one reason that a line names; ours
+_PLACES = frozenset({"lat", "x0"})
+_ANGLES = frozenset({"delta", "alpha_1"})
+_UNNEEDED_HEADINGS = frozenset({"psi"})
+_ROLL = frozenset({"phi"})
+_ORDERED = "order(ed)?|command(ed)?|cmd|demand(ed)?|set_?point|target|desired"
+
+
+@dataclass(frozen=True)
+class _Rule:
+    """A pattern of names in small letters, and why they are not needed.
+
+    beside: channels of which one is used where that holds; empty: it holds always.
+    """
+
+    pattern: str
+    reason: str
+    beside: frozenset[str] = frozenset()
+
+
+# messages of MAVLink, common.xml, as topic/field
+_UNNEEDED_MESSAGES = (
+    _Rule(r"global_position_int/v[xy]|vfr_hud/groundspeed", "the positions show the speed over ground", _PLACES),
+    _Rule(
+        r"global_position_int/hdg|vfr_hud/heading|gps\d?_raw(_int)?/yaw",
+        "another column has the heading",
+        _UNNEEDED_HEADINGS,
+    ),
+    _Rule(r"gps\d?_raw(_int)?/(lat|lon|vel|cog)", "of the receiver alone; the estimated position is used", _PLACES),
+    _Rule(r"vfr_hud/throttle", "the mean of the outputs, each of which is known", frozenset({"command_1"})),
+    _Rule(r"servo_output_raw/servo\d+_raw", "an output that does not change, or is disabled"),
+    _Rule(r"attitude/pitchspeed", "no model in the plane takes it"),
+    _Rule(r"\w+/((relative_)?alt|alt_ellipsoid|vz|climb|airspeed)", "height and air: no model in the plane takes them"),
+    _Rule(r"\w+/time_(boot_ms|usec)", "the log has stamps of its own"),
+    _Rule(
+        r"(sys_status|power_status|heartbeat|meminfo|system_time|timesync)/\w+|servo_output_raw/port|"
+        r"gps\d?_raw(_int)?/(fix_type|eph|epv|satellites_visible|(h|v|vel|hdg)_acc)",
+        "the state of autopilot and receiver",
+    ),
+)
+# what people call columns of a table
+_UNNEEDED_WORDS = (
+    _Rule(rf"(rudder|helm|steering|nozzle)_(angle_)?({_ORDERED})", "an order; the angle that follows is used", _ANGLES),
+    _Rule(rf"({_ORDERED})_(rudder|helm|steering|nozzle)(_angle)?", "an order; the angle that follows is used", _ANGLES),
+    _Rule(
+        r"(gps_|gnss_)?(speed|velocity)(_(kmh|kn|knots|kts|mps|m_s))?",
+        "the positions show the speed over ground",
+        _PLACES,
+    ),
+    _Rule(r"[hvp]dop|n?_?(um_)?sats?(ellites)?(_used)?|fix(_(type|quality))?|rssi", "the state of the receiver"),
+    _Rule(r"g_?f[xyz]|(lin(ear)?_)?acc(el)?(eration)?_?[xyz]", "no model takes accelerations"),
+    _Rule(r"(imu_)?(gyro?_?x|roll_?(rate|speed)|w_?x)(_rate)?", "the roll angle shows it", _ROLL),
+    _Rule(r"(imu_)?(gyro?_?y|pitch_?(rate|speed)|w_?y)(_rate)?", "no model in the plane takes it"),
+    _Rule(r"((prop(eller)?|shaft|(main_)?engine)_)?(power|torque)(_kw|_knm)?", "no model takes power or torque"),
+)
+
+
+def columns_not_needed(names: Sequence[str], used: Set[str]) -> dict[str, str]:
+    """Return those of the columns that are known and not needed, with the reason; the others are left to be named.
+
+    Args:
+        names: of columns that stand for no channel, as the trial file addresses them.
+        used: channels of the same log that are used.
+    """
+    reasons = {name: _reason(name, used) for name in names}
+    return {name: reason for name, reason in reasons.items() if reason}
+
+
+def not_needed_text(reasons: Mapping[str, str], most: int | None = None) -> str:
+    """Return the columns with why they are not needed, those of one reason together, those of motions first.
+
+    most: reasons that are given; None: all.
+    """
+    given = [word.reason for word in (*_UNNEEDED_WORDS, *_UNNEEDED_MESSAGES) if word.reason in reasons.values()]
+    by_reason = {why: [name for name in reasons if reasons[name] == why] for why in given}
+    parts = [f"{enumeration(names, _NAMES_SHOWN)} ({why})" for why, names in by_reason.items()][:most]
+    rest = sum(len(names) for names in list(by_reason.values())[len(parts) :])
+    return "; ".join([*parts, f"{rest} more, in the file"] if rest else parts)
+
+
+def _reason(name: str, used: Set[str]) -> str:
+    field = plain_name(_UNIT.sub("", name).rpartition("/")[2])
+    matched = [message for message in _UNNEEDED_MESSAGES if re.fullmatch(message.pattern, name.lower())]
+    matched += [word for word in _UNNEEDED_WORDS if re.fullmatch(word.pattern, in_english(field))]
+    return next((one.reason for one in matched if not one.beside or one.beside & used), "")

@@ -1,14 +1,82 @@
-"""Which logs belong to one run: files that overlap in time, or whose names agree but for what kind they are."""
+"""Which logs belong to one run, and which runs to one session or one speed."""
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from itertools import takewhile
+from dataclasses import dataclass, fields, replace
+from datetime import UTC, datetime
+from itertools import pairwise, takewhile
 from pathlib import Path
 
-from seatrial.data.draft.clocks import shifted, time_span, zone_offsets
-from seatrial.data.draft.naming import command_of_topic
-from seatrial.data.draft.survey import LogSurvey
+from seatrial.data.draft.column_guess import ColumnGuess
+from seatrial.data.draft.naming import StatedColumns, command_of_topic
+from seatrial.data.draft.ship_estimates import StatedSize, speed_in_header
+from seatrial.data.draft.survey import LogSurvey, TopicSummary
+from seatrial.data.read.layout import TimeSpec
+from seatrial.data.trial.run_data import date_in
+
+# Clocks of the sources of one run that differ by whole quarters of an hour: local time beside UTC.
+
+_ZONE_STEP_S = 900.0  # s; time zones differ by quarters of an hour
+_LARGEST_ZONE_S = 15.0 * 3600.0  # s; of the zones in use
+_LEAST_OVERLAP = 0.5  # of the shorter source, that the shift must give; chosen
+
+
+def zone_offsets(surveys: Sequence[LogSurvey]) -> list[float]:
+    """Return the s to add to the clock of each source of one run so that it runs with the others.
+
+    The others are those that overlap with most; of equal numbers those with stamps in a message's header.
+    """
+    spans = [time_span(survey) for survey in surveys]
+    counts = [
+        (sum(_overlap(one, other) > 0.0 for other in spans), _has_header_stamp(survey))
+        for one, survey in zip(spans, surveys, strict=True)
+    ]
+    reference = spans[max(range(len(spans)), key=lambda k: counts[k])]
+    return [_zone_offset(span, reference) for span in spans]
+
+
+def time_span(survey: LogSurvey) -> tuple[float, float]:
+    """Return the first and the last stamp [s]; NaN where there is none."""
+    topics = [topic for topic in survey.topics if math.isfinite(topic.start)]
+    if not topics:
+        return math.nan, math.nan
+    return min(one.start for one in topics), max(one.start + one.duration for one in topics)
+
+
+def _overlap(one: tuple[float, float], other: tuple[float, float]) -> float:
+    return min(one[1], other[1]) - max(one[0], other[0])
+
+
+def _has_header_stamp(survey: LogSurvey) -> bool:
+    return any(isinstance(topic.time, TimeSpec) and bool(topic.time.nanoseconds) for topic in survey.topics)
+
+
+def _zone_offset(span: tuple[float, float], reference: tuple[float, float]) -> float:
+    """The s to add to a clock so that it runs with the reference; 0 where it does, or where no zone explains it."""
+    if not math.isfinite(span[0] + reference[0]) or _overlap(span, reference) > 0.0:
+        return 0.0
+    offset = _ZONE_STEP_S * round((reference[0] - span[0]) / _ZONE_STEP_S)
+    shorter = min(span[1] - span[0], reference[1] - reference[0])
+    moved = (span[0] + offset, span[1] + offset)
+    return offset if abs(offset) <= _LARGEST_ZONE_S and _overlap(moved, reference) > _LEAST_OVERLAP * shorter else 0.0
+
+
+def shifted(survey: LogSurvey, offset: float) -> LogSurvey:
+    """Return the survey with `offset` s added to its clock."""
+    if offset == 0.0:
+        return survey
+    return replace(survey, topics=tuple(_with_offset(topic, offset) for topic in survey.topics))
+
+
+def _with_offset(topic: TopicSummary, offset: float) -> TopicSummary:
+    time = topic.time
+    if time is None:
+        return topic
+    spec = time if isinstance(time, TimeSpec) else TimeSpec(time.symbol, time.source, time.unit)
+    return replace(topic, time=replace(spec, clock_offset=offset), start=topic.start + offset)
+
+
+# Which logs belong to one run: files that overlap in time, or whose names agree but for what kind they are.
 
 _EPOCH_CLOCK_S = 1e8  # s beyond which a clock counts from 1970 or the like, three years; as in the parts of a run
 _SEPARATORS = "_-. /"
@@ -120,3 +188,137 @@ def _named(clusters: Sequence[Sequence[LogSurvey]]) -> list[LogRun]:
 
 def _cluster_name(paths: Sequence[Path]) -> str:
     return paths[0].stem if len(paths) == 1 else _common_beginning([path.name for path in paths]).strip(_SEPARATORS)
+
+
+# The line of a draft that says which runs share their current and their zeros: those of one day.
+
+_ONE_CLOCK = "clocks without a date go on from run to run: of one day they share its current and zeros"
+_ONE_SETUP = 'of one model in a basin: they share the zero of its rudder; write "run" where it was set anew'
+_ONE_OUTING = (
+    "of one place by their fixes, without dates, and no two show different currents: of one outing, they share its "
+    'current and zeros; write "run" where days lie between them'
+)
+_LARGEST_AREA = 0.05  # deg of latitude, and of longitude, in which the fixes of one outing lie; chosen: some 5 km
+_DAY_S = 86400.0  # s of a day
+
+
+def session_line(runs: Sequence[LogRun], *, is_in_basin: bool = False, is_one_place: bool = False) -> str:
+    """Return ``session = ...`` with its reason; empty where a run has no date, or all days differ.
+
+    is_in_basin: whether they are of one model in a basin: without dates they are then taken for those of one setup.
+    is_one_place: whether their fixes lie together and no two of them show different currents: without dates they are
+    then taken for those of one outing.
+    """
+    days = [_day_of(run) for run in runs]
+    if len(runs) > 1 and not any(days) and _is_one_clock(runs):
+        return f'session = "all"    # {_ONE_CLOCK}'
+    if len(runs) > 1 and not any(days) and is_in_basin:
+        return f'session = "all"    # {_ONE_SETUP}'
+    if len(runs) > 1 and not any(days) and is_one_place:
+        return f'session = "all"    # {_ONE_OUTING}'
+    if len(runs) < 2 or not all(days):
+        return ""
+    if len(set(days)) == 1:
+        return f'session = "all"    # every run is of {days[0]}: they share the current and the zeros of that day'
+    if len(set(days)) == len(days):
+        return ""
+    return f'session = "day"    # runs of {len(set(days))} days: those of one share its current and its zeros'
+
+
+def is_one_place(runs: Sequence[LogRun], guesses: Sequence[Sequence[Sequence[ColumnGuess]]]) -> bool:
+    """Return whether the fixes of all runs lie within some kilometres.
+
+    guesses: of the columns of each source of each run.
+    """
+    for symbol in ("lat", "lon"):
+        ranges = list[tuple[float, float]]()
+        for run, parts in zip(runs, guesses, strict=True):
+            used = [g for part in parts for g in part if g.is_used and g.symbol == symbol and g.unit == "deg"]
+            columns = [
+                column
+                for source in run.sources
+                for topic in source.topics
+                for column in topic.columns
+                if used and column.name == str(used[0].source).removeprefix(f"{topic.topic}/")
+            ]
+            if not columns:
+                return False
+            ranges.append((columns[0].low, columns[0].high))
+        if max(high for _, high in ranges) - min(low for low, _ in ranges) > _LARGEST_AREA:
+            return False
+    return True
+
+
+def _is_one_clock(runs: Sequence[LogRun]) -> bool:
+    """Whether clocks without a date go on from run to run within a day, and do not start anew."""
+    spans = sorted(time_span(max(run.sources, key=lambda source: source.duration)) for run in runs)
+    is_known = all(math.isfinite(end) for span in spans for end in span)
+    follows = all(before[1] <= after[0] for before, after in pairwise(spans))
+    return is_known and follows and spans[-1][1] - spans[0][0] <= _DAY_S
+
+
+def _day_of(run: LogRun) -> str:
+    """The day in the names of its files, else of the first time stamp; empty where there is none."""
+    for survey in run.sources:
+        start = time_span(survey)[0]
+        if named := date_in(survey.path.stem):
+            return named
+        if math.isfinite(start) and start > _EPOCH_CLOCK_S:
+            return f"{datetime.fromtimestamp(start, UTC):%Y-%m-%d}"
+    return ""
+
+
+# Roll decays at several speeds: damping depends on the speed, so that a trial holds the decays of one.
+
+_ALIKE = 0.05  # of a speed, by which a carriage misses it from run to run at most; chosen
+
+
+@dataclass(frozen=True)
+class OtherSpeed:
+    """Runs that a draft leaves out: their headers state another speed [m/s] than those of its trial.
+
+    options: of init, as stated for the draft, with which these runs are a trial of their own.
+    """
+
+    speed: float
+    logs: tuple[Path, ...]
+    options: tuple[str, ...]
+
+    @property
+    def reason(self) -> str:
+        """Why they are left out."""
+        return f"at {self.speed:g} m/s by its header: roll damping depends on the speed, fit each by itself"
+
+
+def runs_by_speed(runs: Sequence[LogRun]) -> list[tuple[float, list[LogRun]]]:
+    """Return the speeds [m/s] that headers state, with the runs at each; the one with most runs first, then by size.
+
+    A run whose header states no speed counts as at rest.
+    """
+    groups = list[tuple[float, list[LogRun]]]()
+    for run in sorted(runs, key=_speed):
+        if groups and _speed(run) - groups[-1][0] <= _ALIKE * _speed(run):
+            groups[-1][1].append(run)
+        else:
+            groups.append((_speed(run), [run]))
+    in_order = [(speed, [run for run in runs if run in group]) for speed, group in groups]
+    return sorted(in_order, key=lambda one: -len(one[1]))
+
+
+def stated_options(size: StatedSize, stated: StatedColumns) -> tuple[str, ...]:
+    """Return the options of init that state sizes and columns."""
+    sizes = [(field.name, getattr(size, field.name)) for field in fields(size)]
+    columns = [f"{heading}={meaning}" for heading, meaning in stated.items()]
+    return (
+        *(
+            part
+            for name, value in sizes
+            if value
+            for part in (f"--{name}", value if isinstance(value, str) else f"{value:g}")
+        ),
+        *(part for column in columns for part in ("--column", column)),
+    )
+
+
+def _speed(run: LogRun) -> float:
+    return speed_in_header(run.sources[0]) or 0.0

@@ -1,14 +1,18 @@
-"""What a ship's stated size says of its mass, rudder and propeller: values for a draft, until better ones are known."""
+"""What is stated of a ship and what follows from it: mass, rudder, propeller, whether it runs in a basin."""
 
 import math
-from dataclasses import dataclass
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, fields
 
 import numpy as np
 
-from seatrial.core.values import InputError
-from seatrial.data.trial.estimated_values import ESTIMATED
-from seatrial.data.trial.literature import USUAL_PROPELLER
-from seatrial.physics.hydro.dispersion import SEA_WATER, G
+from seatrial.core.values import InputError, si_unit
+from seatrial.data.draft.column_guess import ColumnGuess
+from seatrial.data.draft.survey import LogSurvey
+from seatrial.data.read.formats.text import decoded_text
+from seatrial.data.trial.plausibility import ESTIMATED
+from seatrial.data.trial.priors import USUAL_PROPELLER
 from seatrial.physics.hydro.empirical import (
     RESISTANCE,
     ZHOU,
@@ -17,8 +21,11 @@ from seatrial.physics.hydro.empirical import (
     displacement,
     interaction_wake,
     propulsion,
+    thrust_coefficient,
 )
-from seatrial.physics.hydro.propeller_series import thrust_coefficient
+from seatrial.physics.hydro.excitation import SEA_WATER, G
+
+# What a ship's stated size says of its mass, rudder and propeller: values for a draft, until better ones are known.
 
 # L/B, B/d and C_b of a ship of which only the length is stated; chosen: in the middle of the forms of Zhou's regression
 _LENGTH_TO_BREADTH, _BREADTH_TO_DRAUGHT, _BLOCK = 6.0, 3.0, 0.65
@@ -263,3 +270,93 @@ def _pitch_ratio(J: float, thrust: float) -> float:
 def _as_float(number: str) -> str:
     """The number as TOML writes a float."""
     return number if "." in number or "e" in number else f"{number}.0"
+
+
+# Sizes of the craft and its speed that stand in the header of a text log.
+
+# names of main dimensions in the headers of towing tanks and trial reports; a letter as it is, D is a diameter; ours
+_NAMES = {
+    "length": (r"L|(?i:L[ _]?pp|length(?: between perpendiculars)?)", "m"),
+    "beam": (r"B|(?i:B[ _]?wl|beam|breadth)", "m"),
+    "draught": (r"T|d|(?i:draught|draft)", "m"),
+    "mass": (r"(?i:displ(?:acement|\.)|mass)", "kg"),
+    "gm": (r"(?i:GM(?:[ _]?[0tT])?)", "m"),
+}
+_UNITS = {"m": "mm|cm|m", "kg": "kg|t"}
+# the speed of a carriage or craft, as headers have it
+_SPEED = re.compile(r"(?:(?i:speed)|(?<![\w.])V(?=[ \t]*[=:]))[ \t]*[=:]?[ \t]*(\d+(?:\.\d+)?)[ \t]*(m/s|kn)\b")
+_SCALE = re.compile(r"(?<![\d:])1\s?:\s?(\d+(?:\.\d+)?)(?![\d:])")
+
+
+@dataclass(frozen=True)
+class HeaderSize:
+    """A size as a header has it, and the option of init that states it."""
+
+    text: str
+    option: str
+
+
+def sizes_in_header(survey: LogSurvey, size: StatedSize) -> tuple[HeaderSize, ...]:
+    """Return what the header of a text log says of the craft's size and what is not stated; nothing of other logs."""
+    header = _header(survey)
+    stated = {field.name for field in fields(size) if getattr(size, field.name)}
+    return tuple(one for name, one in _sizes(header).items() if name not in stated)
+
+
+def speed_in_header(survey: LogSurvey) -> float | None:
+    """Return the speed [m/s] that the header of a text log states once; None where it states none."""
+    matches = _SPEED.findall(_header(survey))
+    if len(matches) != 1:
+        return None
+    number, unit = matches[0]
+    return float(number) * si_unit(unit)[0]
+
+
+def _header(survey: LogSurvey) -> str:
+    """The lines above the numbers of a text log; empty of other logs, and where they are column names alone."""
+    lines = survey.layout.header_lines if survey.layout.format == "text" else 0
+    if lines < 2:  # a line of column names alone
+        return ""
+    try:
+        return "\n".join(decoded_text(survey.path, survey.layout.encoding).splitlines()[:lines])
+    except InputError:
+        return ""
+
+
+def _sizes(header: str) -> dict[str, HeaderSize]:
+    """Each size that is named once in a header."""
+    sizes = dict[str, HeaderSize]()
+    for name, (words, unit) in _NAMES.items():
+        pattern = rf"(?<![\w.])(?:{words})[ \t]*[=:]?[ \t]*(\d+(?:\.\d+)?)[ \t]*({_UNITS[unit]})\b"
+        matches = list(re.finditer(pattern, header))
+        if len(matches) == 1:
+            value = float(matches[0][1]) * si_unit(matches[0][2])[0]
+            sizes[name] = HeaderSize(" ".join(matches[0][0].split()), f"--{name} {value:g}")
+    scales = list(_SCALE.finditer(header))
+    if len(scales) == 1:
+        sizes["scale"] = HeaderSize(scales[0][0], f"--scale {float(scales[0][1]):g}")
+    return sizes
+
+
+# Whether logs are of a free-running model in a basin, where no current runs and one model has one rudder zero.
+
+_OFTEN_FRESH = 12.0  # m, of the craft that are tried on lakes and in basins; chosen
+_LONGEST_MODEL = 10.0  # m; chosen: the largest free-running models of ships have 7 to 8
+_SATELLITES = frozenset({"lat", "lon", "sog", "cog"})  # what a receiver of satellites logs
+
+
+def is_in_basin(guesses: Iterable[ColumnGuess], size: StatedSize) -> bool:
+    """Return whether a craft is a model whose place was measured from the shore: x0, y0, and nothing of a receiver.
+
+    guesses: of all sources of a run, used or not.
+    """
+    known = list(guesses)
+    is_model = size.scale > 1.0 or 0.0 < size.length < _LONGEST_MODEL
+    has_track = any(one.symbol == "x0" and one.is_used and one.frame != "enu" for one in known)
+    is_over_ground = any(one.is_used and one.symbol == "u" and one.frame in ("earth", "enu") for one in known)
+    return is_model and has_track and not is_over_ground and not any(one.symbol in _SATELLITES for one in known)
+
+
+def may_be_in_fresh_water(size: StatedSize) -> bool:
+    """Return whether a craft of this size is often tried in fresh water, and the density is not stated."""
+    return not size.rho and (size.scale > 1.0 or 0.0 < size.length < _OFTEN_FRESH)

@@ -1,17 +1,328 @@
-"""What is in a log: topics, columns, rates, ranges, share missing."""
+"""What is in a log, or in a folder of logs: layout, topics, columns, time stamps, rates, ranges."""
 
-from collections.abc import Sequence
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
-from seatrial.data.draft.stated_columns import NOTHING_STATED, TIME, StatedColumns
-from seatrial.data.draft.text_layout import text_layout
-from seatrial.data.draft.time_columns import column_values, date_fault, is_date_column, time_column
-from seatrial.data.read import ColumnSpec, Layout, Log, RawTable, format_of, read_log
+from seatrial.core.values import Array, InputError
+from seatrial.core.values.files import is_folder
+from seatrial.data.draft.naming import NOTHING_STATED, TIME, StatedColumns, in_english, refuse_absent, without_accents
+from seatrial.data.read import FORMATS, ColumnSpec, Layout, Log, format_of, read_log
 from seatrial.data.read.clock import stamps
+from seatrial.data.read.formats.text import column_names, decoded_text, detect_separator
 from seatrial.data.read.layout import TimeSpec
+from seatrial.data.read.log import RawTable, table_header
+
+# How a text file is laid out, from its first lines: header, separator, decimal sign, encoding.
+
+# lines in which the first row of numbers is sought, ours: the longest header of a towing tank's files has forty
+_HEADER_LINES = 60
+_SECOND_ENCODING = "cp1252"  # of programs on Windows that write no mark
+_CELL = re.compile(
+    r"[+-]?(\d+[.,]?\d*|[.,]\d+)([eE][+-]?\d+)?|nan|inf|true|false|\d{4}[-/]\d\d?[-/]\d\d?([T ].*)?|\d\d?:\d\d:\d\d.*|",
+    re.IGNORECASE,
+)
+_DECIMAL_COMMA = re.compile(r"[+-]?\d+(,\d+)?")
+_WHITESPACE = r"\s+"
+_HEAD_BYTES, _ZERO_SHARE = 2048, 0.9  # bytes looked at for lost marks of UTF-16, share of zeros in its high bytes; ours
+_NUMBER_SHARE = 0.5  # of the cells of a row of data that must be numbers or times; ours
+
+
+def text_layout(path: Path) -> Layout:
+    """Return the layout of a text file without channels: what stands above the first two rows of numbers is header.
+
+    Raises:
+        InputError: no rows of numbers in its first lines; empty or binary.
+    """
+    encoding, text = _decoded(path)
+    lines = text.splitlines()[: _HEADER_LINES + 2]
+    for first in range(max(len(lines) - 1, 0)):
+        separator = _separator(lines[first])
+        rows = [_cells(line, separator) for line in lines[first : first + 2]]
+        if len(rows[0]) == len(rows[1]) and all(_is_data(row) for row in rows):
+            return _layout(lines, first, separator, encoding)
+    raise InputError(f"{path.name} has no rows of numbers in its first {len(lines)} lines; check what it is")
+
+
+def _decoded(path: Path) -> tuple[str, str]:
+    """The encoding of a file and its text: UTF-8, else that of Windows, or UTF-16 of which the mark was lost."""
+    try:
+        return "utf-8", decoded_text(path, "utf-8")
+    except InputError as error:
+        encoding = _unmarked_encoding(path) if "binary" in str(error) else ""
+        encoding = _SECOND_ENCODING if "is not utf-8 text" in str(error) else encoding
+        if not encoding:
+            raise
+    return encoding, decoded_text(path, encoding)
+
+
+def _unmarked_encoding(path: Path) -> str:
+    """UTF-16 in the order in which every second byte of the file's beginning is zero; empty for other files."""
+    with path.open("rb") as file:
+        head = file.read(_HEAD_BYTES)
+    zeros = {head[0::2].count(0): "utf-16-be", head[1::2].count(0): "utf-16-le"}
+    most = max(zeros)
+    return zeros[most] if most > _ZERO_SHARE * (len(head) // 2) and len(zeros) > 1 and min(zeros) == 0 else ""
+
+
+def _separator(line: str) -> str:
+    """`;` or tab where the line has one, else comma unless that is the decimal sign, else whitespace."""
+    separator = detect_separator(line, Layout("text", ColumnSpec("time", 1, "s"), ()))
+    cells = line.split()
+    if separator == "," and len(cells) > 1 and all(_DECIMAL_COMMA.fullmatch(cell) for cell in cells):
+        return _WHITESPACE
+    return separator
+
+
+def _cells(line: str, separator: str) -> list[str]:
+    return column_names(line, separator) if line.strip() else []
+
+
+def _is_data(row: list[str]) -> bool:
+    """Whether a row has a number, and numbers or times in most cells."""
+    filled = [cell for cell in row if cell]
+    known = sum(_CELL.fullmatch(cell) is not None for cell in filled)
+    return bool(filled) and known >= _NUMBER_SHARE * len(filled) and any(cell[0] in "+-.0123456789" for cell in filled)
+
+
+def _layout(lines: list[str], first: int, separator: str, encoding: str) -> Layout:
+    row = _cells(lines[first], separator)
+    decimal = "," if separator != "," and any("," in cell and _DECIMAL_COMMA.fullmatch(cell) for cell in row) else "."
+    while first and not lines[first - 1].strip():  # the reader passes over empty lines between header and data
+        first -= 1
+    header = table_header([_cells(line, separator) for line in lines[:first]]).names
+    named = len(header) == len(row) and any(cell and not _CELL.fullmatch(cell) for cell in header)
+    source: str | int = next(cell for cell in header if cell) if named else 1
+    return Layout("text", ColumnSpec("time", source, "s"), (), first, encoding, decimal=decimal)
+
+
+# Which column of a table holds the time stamps, and in what unit: by name, size, step and cells.
+
+# names of time columns in the order of preference, without a unit behind; ours, from the logs of a dozen programs
+_TIME_NAMES = (
+    "time", "t", "timestamp", "utc", "time_utc", "utc_time", "timestamp_utc", "utc_timestamp", "datetime", "date_time",
+    "original_timestamp", "timeus", "seconds", "sec", "clock", "epoch", "unix", "unix_time", "epoch_time",
+    "time_of_day", "header_stamp_secs", "header_stamp", "stamp",
+)  # fmt: skip
+_DATE_NAMES = ("date", "day", "utc_date", "date_utc")
+_DATE_LIKE = re.compile(r"\d{1,4}[-/. ]\w{1,3}[-/. ]\d{1,4}")
+_LONGEST_DATE = 20  # characters of a cell that a message quotes; chosen
+_WEEK_NAMES, _WEEK_SECONDS = ("gps_week", "gnss_week", "week"), ("tow", "gps_tow", "time_of_week", "seconds_of_week")
+_WHOLE_SECONDS = re.compile(r"(.*_)?(secs?|seconds)")
+_NANOSECONDS = ("nsecs", "nsec", "nanosecs", "nanosec", "nanoseconds")
+_UNITS = {
+    "s": "s", "sec": "s", "secs": "s", "seconds": "s", "ms": "ms", "us": "us", "ns": "ns", "min": "min", "h": "h",
+    "hhmmss": "hhmmss", "excel": "excel",
+}  # fmt: skip
+"""What a name of a time column ends with -> unit."""
+_DAY_S = 86400.0  # s of a day
+# stamps since 1970 that lie between 1979 and 2096 [s], with steps between these [s]; chosen: what logs have
+_SINCE_1970, _STEPS_S = (3e8, 4e9), (1e-4, 60.0)
+# a clock of six digits, hhmmss: 24 h, where seconds and minutes end, two digits each; by definition
+_MIDNIGHT, _SIXTY, _TWO_DIGITS = 240000.0, 60.0, 100.0
+# stamps that show a clock, and share of the steps' range that is left when they are read so; chosen
+_FEWEST_STAMPS, _EVENED = 3, 0.5
+_EXCEL_DAYS, _LARGEST_EXCEL_STEP = (2e4, 8e4), 2e-4  # days, of the years 1954 to 2119; days, of 17 s
+# unit -> units of it beyond which a median step is in the next smaller unit (a log has 0.2 Hz or more)
+_STEP_LIMITS = {"ns": 5e6, "us": 5e3, "ms": 5.0}
+
+
+def time_column(table: RawTable, layout: Layout, stated: str = "") -> tuple[ColumnSpec | None, str]:
+    """Return the column of time stamps and how it was recognised: the format's own, by name, cells, or behaviour.
+
+    stated: the name of the column that a person says is the time; empty: none.
+    By its cells it is the only column of dates with times, or else of times of day, that increase; by behaviour the
+    first column of numbers that increases throughout in nearly equal steps.
+    """
+    if table.time_name:
+        return ColumnSpec("time", "", "s"), f"time of the {layout.format} log"
+    if stated in table.names and stated:
+        return _with_unit(table, stated, "")[0], "as stated"
+    plain = {_plain_name(name): name for name in reversed(table.names) if name}
+    completed = _of_two_columns(plain)
+    if completed is not None:
+        return completed
+    fault = ""
+    for name, unit in _named_as_time(plain, dict(zip(table.names, table.units, strict=False))):
+        fault = fault or _backwards(table, name)
+        spec, note = _with_unit(table, name, unit)
+        if spec is not None:
+            return _with_date(table, spec, plain), f"named '{name}', {note}"
+    daily = [index for index in range(len(table.names)) if _has_increasing_times_of_day(table, index)]
+    dated = [k for k in range(len(table.names)) if k not in daily and _has_increasing_dates(table, k)]
+    if len(dated) == 1:
+        source = table.names[dated[0]] or dated[0] + 1
+        return ColumnSpec("time", source, "utc"), "the only column of dates and times"
+    if len(daily) == 1 and not dated:
+        source = table.names[daily[0]] or daily[0] + 1
+        return _with_date(table, ColumnSpec("time", source, "utc"), plain), "the only column of times of day"
+    for index in range(len(table.names)):
+        values = column_values(table, index)
+        if values is not None and _is_clock(values):
+            spec, note = _with_unit(table, table.names[index] or index + 1, "")
+            return spec, f"the only column that increases evenly, {note}"
+    return None, fault
+
+
+def _of_two_columns(plain: dict[str, str]) -> tuple[TimeSpec, str] | None:
+    """Whole seconds and nanoseconds, or GNSS weeks and seconds of the week."""
+    for name, source in plain.items():
+        match = _WHOLE_SECONDS.fullmatch(name)
+        prefix = (match[1] or "") if match else ""
+        rest = next((plain[prefix + word] for word in _NANOSECONDS if match and prefix + word in plain), None)
+        if rest is not None:
+            spec = TimeSpec("time", source, "s", nanoseconds=rest)
+            return spec, "stamp of the message's header, seconds and nanoseconds"
+    week = next((plain[name] for name in _WEEK_NAMES if name in plain), None)
+    tow = next((plain[name] for name in _WEEK_SECONDS if name in plain), None)
+    if week is None or tow is None:
+        return None
+    return TimeSpec("time", tow, "s", week=week), "GNSS week and seconds of the week"
+
+
+def _named_as_time(plain: dict[str, str], units: dict[str, str]) -> Iterator[tuple[str, str]]:
+    """Columns that are called as time is, in the order of preference, with the unit that the name or its bracket ends
+    with, or that the line of units gives.
+    """
+    for wanted in _TIME_NAMES:
+        for name, source in plain.items():
+            head, _, last = name.rpartition("_")
+            if name == wanted:
+                bracket = re.search(r"[\[(](\w+)[\])]", source)
+                yield source, _UNITS.get((bracket[1] if bracket else units.get(source, "")).strip().lower(), "")
+            elif head == wanted and last in _UNITS:
+                yield source, _UNITS[last]
+
+
+def _with_date(table: RawTable, spec: ColumnSpec, plain: dict[str, str]) -> ColumnSpec:
+    """The time of day with the column of its date, where there is one."""
+    date = next((plain[name] for name in _DATE_NAMES if name in plain), None)
+    if date is None or date == spec.source or spec.unit != "utc":
+        return spec
+    dated = TimeSpec(spec.symbol, spec.source, spec.unit, date=date)
+    try:
+        seconds = stamps(table, dated).seconds
+    except InputError:
+        return spec
+    known = seconds[np.isfinite(seconds)]
+    return dated if known.size and np.all(np.diff(known) >= 0.0) else spec
+
+
+def is_date_column(table: RawTable, index: int) -> bool:
+    """Return whether a column of text is called as dates are, in any language, and holds what looks like one."""
+    is_called = _plain_name(table.names[index]) in _DATE_NAMES
+    return is_called and len(table) > 0 and _DATE_LIKE.match(str(table.cells[index][0]).strip()) is not None
+
+
+def date_fault(table: RawTable, index: int) -> str:
+    """Return why the dates of a column of them cannot be read; empty where they can."""
+    try:
+        stamps(table, ColumnSpec("time", index + 1, "utc"))
+    except InputError:
+        cell = str(table.cells[index][0]).strip()[:_LONGEST_DATE]
+        return f"'{table.names[index]}': '{cell}' is no date that is read; as 2026-10-08 or 8.10.2026 it would be"
+    return ""
+
+
+def _backwards(table: RawTable, name: str) -> str:
+    """Where a clock of numbers runs backwards; empty where it does not."""
+    values = column_values(table, table.names.index(name))
+    known = np.flatnonzero(np.isfinite(values)) if values is not None else np.empty(0, dtype=np.intp)
+    back = np.flatnonzero(np.diff(values[known]) < 0.0) if values is not None else known
+    if values is None or not back.size:
+        return ""
+    row = int(known[back[0] + 1])
+    return f"'{name}' runs backwards from {values[known[back[0]]]:g} to {values[row]:g} in row {table.first_row + row}"
+
+
+def _plain_name(name: str) -> str:
+    """A column's name in small letters without what stands in brackets, in English where it is in a known language."""
+    plain = re.sub(r"[ /.]", "_", without_accents(name.partition("[")[0].partition("(")[0].strip()))
+    return in_english(plain)
+
+
+def _with_unit(table: RawTable, source: str | int, stated: str) -> tuple[ColumnSpec | None, str]:
+    """The time column with the unit of its numbers, stated or by size and step; text is read by itself."""
+    spec = ColumnSpec("time", source, stated or "s")
+    values = column_values(table, table.column_index(spec))
+    if values is None:
+        return replace(spec, unit="utc"), "dates and times"
+    known = values[np.isfinite(values)]
+    if stated in ("", "hhmmss") and _is_hhmmss(table, replace(spec, unit="hhmmss"), known):
+        return replace(spec, unit="hhmmss"), "hours, minutes and seconds in one number"
+    steps = np.diff(known)
+    if not steps.size or np.any(steps < 0) or not np.any(steps > 0):
+        return None, ""
+    if stated:
+        return spec, "with its unit"
+    step, size = float(np.median(steps[steps > 0])), float(np.median(known))
+    if _EXCEL_DAYS[0] < size < _EXCEL_DAYS[1] and step < _LARGEST_EXCEL_STEP:
+        return replace(spec, unit="excel"), "days since 1899-12-30 by their size and step"
+    for unit in ("s", "ms", "us", "ns"):
+        factor = replace(spec, unit=unit).si_factor("s")
+        if _SINCE_1970[0] < factor * size < _SINCE_1970[1] and _STEPS_S[0] < factor * step < _STEPS_S[1]:
+            return replace(spec, unit=unit), f"{unit} since 1970 by their size"
+    unit = next((unit for unit, limit in _STEP_LIMITS.items() if step > limit), "s")
+    return replace(spec, unit=unit), "unit by its step"
+
+
+def _is_hhmmss(table: RawTable, spec: ColumnSpec, numbers: Array) -> bool:
+    """Whether numbers are hours, minutes and seconds in digits, none beyond 59, whose steps even out when read so."""
+    if numbers.size < _FEWEST_STAMPS or np.min(numbers) < 0.0 or np.max(numbers) >= _MIDNIGHT:
+        return False
+    digits = numbers % _TWO_DIGITS, numbers // _TWO_DIGITS % _TWO_DIGITS
+    if np.ptp(numbers) < _SIXTY or np.any(np.maximum(*digits) >= _SIXTY):
+        return False
+    seconds = stamps(table, spec).seconds
+    evened = float(np.ptp(np.diff(seconds[np.isfinite(seconds)])))
+    return evened < _EVENED * float(np.ptp(np.diff(numbers)))
+
+
+def column_values(table: RawTable, index: int) -> Array | None:
+    """Return a column as numbers; None where it holds text."""
+    try:
+        return table.numbers(ColumnSpec("column", index + 1, ""))
+    except InputError:
+        return None
+
+
+def _has_increasing_dates(table: RawTable, index: int) -> bool:
+    """Whether a column of text holds dates with their time of day that do not go back; a day alone is no stamp."""
+    seconds = _text_stamps(table, index)
+    dated = seconds[np.isfinite(seconds) & (seconds >= _DAY_S)]  # before: a time of day without a date
+    has_times = bool(np.any(dated % _DAY_S > 0.0))
+    return has_times and bool(np.all(np.diff(dated) >= 0.0)) and dated[0] < dated[-1]
+
+
+def _has_increasing_times_of_day(table: RawTable, index: int) -> bool:
+    """Whether a column of text holds times of day, none missing, that do not go back."""
+    seconds = _text_stamps(table, index)
+    if seconds.size < _FEWEST_STAMPS or not np.all(np.isfinite(seconds)):
+        return False
+    return bool(seconds[0] < _DAY_S and seconds[0] < seconds[-1] and np.all(np.diff(seconds) >= 0.0))
+
+
+def _text_stamps(table: RawTable, index: int) -> Array:
+    """The cells of a column of text as stamps [s]; none where it holds numbers, or something else."""
+    if column_values(table, index) is not None:
+        return np.empty(0)
+    try:
+        return stamps(table, ColumnSpec("time", index + 1, "utc")).seconds
+    except InputError:
+        return np.empty(0)
+
+
+def _is_clock(values: Array) -> bool:
+    steps = np.diff(values)
+    if steps.size < 2 or not np.all(np.isfinite(steps)) or not np.all(steps > 0):
+        return False
+    return float(np.ptp(steps)) < 0.5 * float(np.median(steps))  # steps that differ by less than half of one: a clock
+
+
+# What is in a log: topics, columns, rates, ranges, share missing.
 
 _WORKBOOK = "excel"  # the format whose sheets are often runs
 _LONGEST_CELL = 20  # characters of a cell that a message quotes; ours
@@ -192,3 +503,65 @@ def _fault(table: RawTable, index: int) -> str:
         return ""
     name, cell = table.names[index] or f"{index + 1}", str(table.cells[index][row])[:_LONGEST_CELL]
     return f"'{name}': row {table.first_row + row} holds '{cell}', no number"
+
+
+# The logs among files and folders: each surveyed, and what is none with the reason.
+
+
+@dataclass(frozen=True, eq=False)
+class SurveyedLogs:
+    """The logs among files and folders, in order, and the files of folders that are none: path -> reason."""
+
+    logs: tuple[LogSurvey, ...]
+    left_out: Mapping[Path, str]
+
+
+def survey_logs(paths: Sequence[Path], stated: StatedColumns = NOTHING_STATED) -> SurveyedLogs:
+    """Survey the files, and those of known endings in the folders; a file that is named must be a log.
+
+    Raises:
+        InputError: there is none, one that is named cannot be read, or no log has a stated column.
+    """
+    named = {path for path in paths if not is_folder(path)}
+    surveys, reasons = list[LogSurvey](), dict[Path, str]()
+    for path in _log_files(paths):
+        try:
+            survey = survey_log(path, stated)
+        except InputError as error:
+            if path in named:
+                raise
+            reasons[path] = str(error)
+            continue
+        if path in named or any(topic.time is not None for topic in survey.topics):
+            surveys.append(survey)
+        else:
+            reasons[path] = f"no column is a time{_how_to_state(survey, TIME)}"
+    if not surveys:
+        first = next(iter(reasons.items()))
+        raise InputError(f"there is no log to draft a trial of: {first[0]}: {first[1]}")
+    refuse_absent(stated, (name for one in surveys for table in one.log.tables for name in table.names))
+    return SurveyedLogs(tuple(surveys), reasons)
+
+
+def _how_to_state(survey: LogSurvey, meaning: str) -> str:
+    """The end of a sentence that says how a column is named: with the first one of text, or else of all."""
+    topic = next((one for one in survey.topics if one.text_columns or one.columns), None)
+    if topic is None:
+        return ""
+    heading = topic.text_columns[0] if topic.text_columns else topic.columns[0].name
+    return f"; if it is '{heading}', add --column '{heading}={meaning}'"
+
+
+def _log_files(paths: Sequence[Path]) -> list[Path]:
+    """The files, and those of known endings in the folders."""
+    known = {suffix for one in FORMATS.values() for suffix in one.suffixes}
+    files = []
+    for one in paths:
+        if is_folder(one):
+            inside = sorted(path for path in one.rglob("*") if path.is_file())
+            files += [path for path in inside if Path(path.name.removesuffix(".gz")).suffix.lower() in known]
+        else:
+            files.append(one)
+    if not files:
+        raise InputError("there is no log to draft a trial of; name files, or a folder with logs")
+    return files

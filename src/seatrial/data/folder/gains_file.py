@@ -1,16 +1,24 @@
-"""A tuned controller for its maker: gains, margins and schedule as TOML, the schedule as CSV."""
+"""What a tuning gives its maker: gains with margins, proposals, the helmsman's table, the loop as a MAT-file."""
 
+import keyword
 import math
 import re
 from collections.abc import Mapping
 from dataclasses import asdict
+from functools import reduce
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import tomli_w
+from numpy.typing import NDArray
 
+from seatrial.core.results import Actuator, Design, TimedOrder
+from seatrial.core.results.online import Estimated, HeadingRange, Proposal
 from seatrial.core.results.station import StationKeeping
 from seatrial.core.results.tuning import (
+    Component,
     Controller,
     DiscreteController,
     OperatingPoint,
@@ -18,9 +26,52 @@ from seatrial.core.results.tuning import (
     TrackKeeping,
     Tuning,
 )
-from seatrial.core.values import InputError
-from seatrial.core.values.tables import parse_toml, read_table_text
-from seatrial.data.folder.orders import channel_display_unit
+from seatrial.core.values import NOTATION, InputError, display_unit
+from seatrial.core.values.files import parse_toml, read_table_text
+
+# The helmsman's table in the units people read: as columns of text, and as the file for the trial.
+
+TIME_DECIMALS = 3
+"""Decimals of a time in seconds: milliseconds, below any helmsman's delay."""
+RANGE_DECIMALS = 2
+"""Decimals of an order relative to its range: the last digit is less than a hundredth of it."""
+
+
+def channel_display_unit(name: str) -> tuple[float, str]:
+    """Return the factor from SI and the unit of an input as people read it."""
+    return display_unit(NOTATION[name].unit if name in NOTATION else "1")
+
+
+def order_headings(actuators: tuple[Actuator, ...]) -> list[str]:
+    """Return the headings: ``time [s]``, then each input with its unit."""
+    return ["time [s]", *(f"{a.name} [{channel_display_unit(a.name)[1]}]" for a in actuators)]
+
+
+def order_cells(order: TimedOrder, actuators: tuple[Actuator, ...]) -> list[str]:
+    """Return time and orders as text; an input that the order does not change stays empty."""
+    return [_decimal_text(order.time, TIME_DECIMALS), *(_order_text(order, a) for a in actuators)]
+
+
+def orders_csv(design: Design) -> str:
+    """Return the table as CSV."""
+    rows = [order_headings(design.actuators), *(order_cells(order, design.actuators) for order in design.orders)]
+    return "\n".join(",".join(cells) for cells in rows) + "\n"
+
+
+def _order_text(order: TimedOrder, actuator: Actuator) -> str:
+    if actuator.name not in order.values:
+        return ""
+    factor = channel_display_unit(actuator.name)[0]
+    reach = (actuator.upper - actuator.lower) * factor
+    return _decimal_text(order.values[actuator.name] * factor, max(0, RANGE_DECIMALS - math.floor(math.log10(reach))))
+
+
+def _decimal_text(value: float, decimals: int) -> str:
+    text = f"{round(value, decimals) + 0.0:.{decimals}f}"
+    return text.rstrip("0").rstrip(".") if "." in text else text
+
+
+# A tuned controller for its maker: gains, margins and schedule as TOML, the schedule as CSV.
 
 FORMAT = 1
 REVERSED = "reversed"
@@ -296,3 +347,155 @@ def _schedule_point(entry: Mapping[str, Any]) -> OperatingPoint:
 
 def _csv_cell(text: str) -> str:
     return '"' + text.replace('"', '""') + '"' if re.search(r'[",\n]', text) else text
+
+
+# Proposed gains as a file for the person who may set them: gains, sea, craft, margins and reasons as TOML.
+PROPOSAL = "proposal.toml"
+_DIGITS = 6  # of what is estimated: finer than any interval, short enough to be read; chosen
+
+
+def proposal_toml(proposal: Proposal) -> str:
+    """Return ``proposal.toml``: angles in degrees where the key says so; what is infinite (any margin) is left out."""
+    table: dict[str, Any] = {
+        "format": FORMAT,
+        "note": "a proposal for a person to judge; nothing sets it",
+        "loop": proposal.loop,
+        "has_gains": proposal.has_gains,
+        "is_new": proposal.is_new,
+        "reasons": list(proposal.reasons),
+        "stretch": _finite({"start_s": proposal.start, "stop_s": proposal.stop, "U": proposal.U}),
+        "gains": proposal.gains,
+        "gain_units": proposal.gain_units,
+    }
+    if proposal.sea is not None:
+        sea = proposal.sea
+        table["sea"] = {
+            "height": _interval(sea.height),
+            "peak_period": _interval(sea.period),
+            "heading_deg": _interval(sea.heading, math.degrees(1.0)),
+            "is_heading_determined": sea.is_heading_determined,
+            "headings": [_heading_range(heading) for heading in sea.headings],
+        }
+    if proposal.craft:
+        table["craft"] = {property_change.name: _interval(property_change.factor) for property_change in proposal.craft}
+    if proposal.margins is not None:
+        m = proposal.margins
+        table["margins"] = {
+            "Ms": _interval(m.Ms),
+            "gain_margin": _interval(m.gain_margin),
+            "phase_margin_deg": _interval(m.phase_margin, math.degrees(1.0)),
+            "delay_margin_s": _interval(m.delay_margin),
+            "reduction": _interval(m.reduction),
+            "saturation": _interval(m.saturation),
+            "stable_draws": m.stable_draws,
+            "draws": m.draws,
+        }
+    return tomli_w.dumps(table)
+
+
+def _interval(estimated: Estimated, factor: float = 1.0) -> dict[str, float]:
+    ends = {"value": estimated.value, "lower": estimated.lower, "upper": estimated.upper}
+    return _finite({name: _rounded(factor * value) for name, value in ends.items()})
+
+
+def _heading_range(one: HeadingRange) -> dict[str, float]:
+    return {
+        "from_deg": _rounded(math.degrees(one.lower)),
+        "to_deg": _rounded(math.degrees(one.upper)),
+        "probability": _rounded(one.probability),
+    }
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.{_DIGITS}g}")
+
+
+def _finite(values: dict[str, float]) -> dict[str, float]:
+    return {name: float(value) for name, value in values.items() if math.isfinite(value)}
+
+
+# The chosen loop of a tuning as a MAT-file: every block, the controller and the open loop as polynomials.
+
+HEADER = b"MATLAB 5.0 MAT-file, a feedback loop written by seatrial".ljust(116)
+"""Text at the start of a MAT-file, 116 bytes by its format; it names no date, so that the same loop gives the same
+bytes."""
+RESERVED = {"end", "function", "otherwise", "switch", "case", "parfor", "spmd", "persistent", "catch", *keyword.kwlist}
+"""Words that MATLAB or Python do not take for a variable."""
+LONGEST_NAME = 60
+"""Characters of a variable's name; MATLAB takes 63, a number may follow."""
+POLYNOMIALS = ("controller_num", "controller_den", "open_loop_num", "open_loop_den")
+Rational = tuple[NDArray[Any], NDArray[Any]]
+
+
+def loop_mat(tuning: Tuning) -> bytes:
+    """Return the chosen loop as a MAT-file of version 5; the same tuning gives the same bytes.
+
+    A struct for each block (``num``, ``den``, ``role``, ``name``, ``gain``, ``value``), ``gains``, and where there are
+    terms ``controller_num``, ``controller_den`` (K, from the output to the actuator, which moves by minus K y) and
+    ``open_loop_num``, ``open_loop_den`` (L = P K). Powers of s fall, angles are radians.
+    """
+    from scipy.io import savemat
+
+    gains = tuning.chosen.gains
+    content: dict[str, Any] = {"gains": {_matlab_name(name): value for name, value in gains.items()}}
+    for name, component in _matlab_names(tuning.components, {*content, *POLYNOMIALS}).items():
+        content[name] = {
+            "num": np.array(component.num), "den": np.array(component.den), "role": component.role,
+            "name": component.name, "gain": component.gain,
+            "value": gains.get(component.gain, 1.0) if component.gain else 1.0,
+        }  # fmt: skip
+    if any(c.role == "term" for c in tuning.components):
+        controller, loop = controller_polynomials(tuning), open_loop_polynomials(tuning)
+        content |= dict(zip(POLYNOMIALS, (*controller, *loop), strict=True))
+    buffer = BytesIO()
+    savemat(buffer, content, format="5", long_field_names=True, oned_as="row")  # type: ignore[arg-type]
+    return HEADER + buffer.getvalue()[len(HEADER) :]
+
+
+def controller_polynomials(tuning: Tuning) -> Rational:
+    """Return K(s) = sensors * (sum of gain_i term_i) * filters * servo as num and den, highest power first.
+
+    Raises:
+        InputError: a term's gain is not among the chosen ones.
+    """
+    terms = [c for c in tuning.components if c.role == "term"]
+    dens = list(dict.fromkeys(c.den for c in terms))
+    parallel = np.zeros(1)
+    for term in terms:
+        if term.gain not in tuning.chosen.gains:
+            raise InputError(f"term '{term.name}' is multiplied by '{term.gain}', which is none of the chosen gains")
+        other_dens = (den for den in dens if den != term.den)
+        numerator = reduce(np.polymul, other_dens, tuning.chosen.gains[term.gain] * np.array(term.num))
+        parallel = np.polyadd(parallel, np.atleast_1d(numerator))
+    sum_of_terms = np.atleast_1d(parallel), reduce(np.polymul, dens, np.ones(1))
+    return _product(sum_of_terms, tuple(c for c in tuning.components if c.role in ("sensor", "filter", "servo")))
+
+
+def open_loop_polynomials(tuning: Tuning) -> Rational:
+    """Return L(s) = P(s) K(s) as num and den; the loop is closed negatively."""
+    return _product(controller_polynomials(tuning), tuple(c for c in tuning.components if c.role == "plant"))
+
+
+def _product(first: Rational, components: tuple[Component, ...]) -> Rational:
+    num, den = first
+    for c in components:
+        num, den = np.polymul(num, c.num), np.polymul(den, c.den)
+    return num, den
+
+
+def _matlab_names(components: tuple[Component, ...], reserved: set[str]) -> dict[str, Component]:
+    """Return each block under a different name that MATLAB takes for a variable."""
+    named: dict[str, Component] = {}
+    for c in components:
+        word = stem = _matlab_name(c.name if c.name.startswith(c.role) else f"{c.role}_{c.name}")
+        count = 2
+        while word in named or word in reserved:
+            word, count = f"{stem}_{count}", count + 1
+        named[word] = c
+    return named
+
+
+def _matlab_name(name: str) -> str:
+    """Return a name of letters, digits and underscores, a letter first."""
+    word = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")[:LONGEST_NAME] or "unnamed"
+    return f"x_{word}" if not word[0].isalpha() else f"{word}_" if word.lower() in RESERVED else word

@@ -17,8 +17,7 @@ from seatrial.core.results.online import Snapshot
 from seatrial.core.results.tuning import Tuning
 from seatrial.core.results.verification import Verification
 from seatrial.core.values import Array, InputError
-from seatrial.core.values.files import is_file, write_files_atomically
-from seatrial.core.values.tables import parse_json, read_bounded, read_table_text
+from seatrial.core.values.files import is_file, parse_json, read_bounded, read_table_text, write_files_atomically
 from seatrial.data.folder.document import (
     FORMAT,
     document,
@@ -28,13 +27,10 @@ from seatrial.data.folder.document import (
     stored_document,
     strict_json,
 )
-from seatrial.data.folder.gains_file import gains_toml, schedule_csv
-from seatrial.data.folder.loop_mat import loop_mat
-from seatrial.data.folder.model_file import ModelFile, model_text, parse_model
-from seatrial.data.folder.model_tables import ModelProvenance, RecordSource
-from seatrial.data.folder.orders import orders_csv
-from seatrial.data.read.record_csv import record_csv
-from seatrial.data.trial.approach import approach_condition
+from seatrial.data.folder.gains_file import gains_toml, loop_mat, orders_csv, schedule_csv
+from seatrial.data.folder.model_file import ModelFile, ModelProvenance, RecordSource, model_text, parse_model
+from seatrial.data.read.record_file import record_csv
+from seatrial.data.trial.records import approach_condition
 
 # bytes of a data file of a folder, at most: half an hour at 10 kHz of eight channels, thrice; chosen
 _LARGEST_COMPANION = 2**32

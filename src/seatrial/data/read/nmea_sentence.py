@@ -1,17 +1,19 @@
-"""One NMEA 0183 sentence: its checksum, its fields, and those that a ship model can use.
-
-Fields and signs as collected by E. S. Raymond, "NMEA Revealed" (gpsd project), from published manuals; the standard
-itself (IEC 61162-1) is sold. Negative is to port for ROT, RSA and transverse VBW, astern for longitudinal VBW, and
-counter-clockwise for RPM. RSA is proportional to the rudder angle and need not equal it: a gain may be needed.
-"""
+"""One NMEA 0183 sentence: its checksum, its fields, when it was received."""
 
 import math
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from enum import StrEnum
 from functools import reduce
 from operator import xor
+
+import numpy as np
+
+from seatrial.core.values import Array
+
+# One NMEA 0183 sentence: its checksum, its fields, and those that a ship model can use.
 
 # address of a talker or a maker; number; hhmmss.ss; dddmm.mm
 _ADDRESS = re.compile(r"P[A-Z0-9]{2,}|[A-Z0-9]{5}")
@@ -220,3 +222,41 @@ _READERS: dict[str, Callable[[Sentence], dict[str, float]]] = {
     "GLL": lambda s: _fix(s, 1, is_valid=s.text(6) != "V"), "VHW": _through_water, "VBW": _dual_speed,
     "RPM": _revolutions, "XDR": _transducers, "MWV": _wind,
 }  # fmt: skip
+
+
+# When a logger received each sentence, as it wrote before it: for those that have no time of their own.
+
+# date and time with parts of a second; seconds or milliseconds since 1970
+_ISO = re.compile(rb"(\d{4}-\d\d-\d\d)[T ](\d\d:\d\d:\d\d[.,]\d{1,6})")
+_UNIX = re.compile(rb"(?<!\d)(1\d{9}\.\d{1,9})(?!\d)")
+_UNIX_MS = re.compile(rb"(?<!\d)(1\d{12})(?!\d)")
+_MS = 1e-3  # s, of a millisecond
+_LEAST_SHARE = 0.99  # of the sentences that have a receipt, from which on it is used; chosen
+
+
+def receipt_time(line: bytes) -> float:
+    """Return the time before the ``$`` of a line [s since 1970, zone left out]; NaN without one to parts of a s."""
+    head = line[: max(line.rfind(b"$"), line.rfind(b"!"), 0)]
+    if match := _ISO.search(head):
+        text = b"T".join(match.groups()).replace(b",", b".").decode()
+        return datetime.fromisoformat(text).replace(tzinfo=UTC).timestamp()
+    if match := _UNIX.search(head):
+        return float(match[1])
+    return _MS * int(match[1]) if (match := _UNIX_MS.search(head)) else math.nan
+
+
+def on_the_clock(receipts: Array, stamps: Array) -> Array | None:
+    """Return the times of sentences by their receipt, moved to the clock of those that have a time of their own.
+
+    Args:
+        receipts: (n,) s, NaN where there is none; stamps: (n,) s, of sentences with a time of their own, NaN else.
+
+    The logger's clock and the delay of the line are the median difference. None: too few receipts, or they run back.
+    """
+    differences = receipts - stamps
+    if np.mean(np.isfinite(receipts)) < _LEAST_SHARE or not np.isfinite(differences).any():
+        return None
+    rows = np.arange(len(receipts))
+    known = np.isfinite(receipts)
+    times = np.interp(rows, rows[known], receipts[known]) - float(np.nanmedian(differences))
+    return None if np.any(np.diff(times) < 0.0) else times

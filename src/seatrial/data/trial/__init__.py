@@ -1,13 +1,25 @@
 """Trials: ship, runs and their roles, model and settings, from a trial file or made in Python."""
 
-from seatrial.data.trial.approach import approach_condition
 from seatrial.data.trial.correction import corrected_trial
-from seatrial.data.trial.estimate_method import SEARCHES, EstimateMethod, FitCriterion
 from seatrial.data.trial.feedback_table import ControllerGains, Feedback
 from seatrial.data.trial.load import load_runs, load_trial, parse_tables, trial_of_tables
-from seatrial.data.trial.records import CheckedRecords, TrialRecord, checked_records, load_records, refuse_errors
-from seatrial.data.trial.search_settings import SearchFitness, SearchSettings
-from seatrial.data.trial.settings import EstimateSettings, ModelFamily
+from seatrial.data.trial.records import (
+    CheckedRecords,
+    TrialRecord,
+    approach_condition,
+    checked_records,
+    load_records,
+    refuse_errors,
+)
+from seatrial.data.trial.settings import (
+    SEARCHES,
+    EstimateMethod,
+    EstimateSettings,
+    FitCriterion,
+    ModelFamily,
+    SearchFitness,
+    SearchSettings,
+)
 from seatrial.data.trial.trial import RecordFile, Role, Trial, TrialRun, Trimming
 
 __all__ = [

@@ -8,7 +8,7 @@ import tomlkit
 from tomlkit.exceptions import TOMLKitError
 
 from seatrial.core.values import Finding, InputError, Severity, TrialEdit, si_unit
-from seatrial.core.values.tables import parse_toml, read_table_text
+from seatrial.core.values.files import parse_toml, read_table_text
 from seatrial.data.trial.load import parse_tables
 from seatrial.data.trial.records import load_run
 from seatrial.data.trial.runs import runs_of

@@ -23,8 +23,8 @@ from seatrial.data.trial.amounts import (
     PositiveSpeed,
     SiAmount,
     Unit,
+    raises_input_error,
 )
-from seatrial.data.trial.schema_errors import raises_input_error
 from seatrial.data.trial.settings import Positive
 
 _HALF_TURN = math.pi

@@ -9,8 +9,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from pydantic.dataclasses import dataclass
 
 from seatrial.core.values import NOTATION, Array, InputError, Record, si_unit
-from seatrial.data.trial.amounts import STRICT_FIELDS, Amount
-from seatrial.data.trial.schema_errors import raises_input_error
+from seatrial.data.trial.amounts import STRICT_FIELDS, Amount, raises_input_error
 
 RATE_OF = {"psi": "r", "phi": "p", "theta": "theta_dot"}
 """Channel that a controller holds -> the channel of its rate."""

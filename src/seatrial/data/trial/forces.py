@@ -7,8 +7,8 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, ForceContent, ForcePoints, InputError, quantity, si_unit, spelling_hint
 from seatrial.core.values.files import is_file
-from seatrial.core.values.froude import froude_factor
 from seatrial.core.values.notation import OPPOSITE
+from seatrial.core.values.record import froude_factor
 from seatrial.data.read import ColumnSpec, Layout, RawTable, format_of, read_log
 from seatrial.data.trial.runs import expand_variables
 from seatrial.data.trial.schema import ForceColumn, ForcesTable, MotionColumn

@@ -9,26 +9,31 @@ from pydantic import ValidationError
 from seatrial.core.equations import Model
 from seatrial.core.values import NOTATION, InputError, Ship, channel_hint, spelling_hint
 from seatrial.core.values.errors import listed
-from seatrial.core.values.tables import parse_toml, read_table_text, refuse_absurd_numbers
+from seatrial.core.values.files import parse_toml, read_table_text, refuse_absurd_numbers
 from seatrial.data.check.captive_forces import force_findings
-from seatrial.data.trial.added_masses import added_mass_findings
-from seatrial.data.trial.declared_channels import declared_channels
+from seatrial.data.trial.amounts import schema_error
 from seatrial.data.trial.design_request import refuse_unsuitable
-from seatrial.data.trial.earlier_result import ResultReader, earlier_results
-from seatrial.data.trial.estimated_values import with_estimates_named
-from seatrial.data.trial.excitation import excitation_of
-from seatrial.data.trial.follow_table import resolved_proposal, stream_of
 from seatrial.data.trial.forces import read_force_points
-from seatrial.data.trial.ground_velocities import ground_velocity_findings
-from seatrial.data.trial.hull_values import hull_value_findings
-from seatrial.data.trial.literature import prior_range_findings
-from seatrial.data.trial.model_table import build_trial_model, ship_of
-from seatrial.data.trial.runs import expand_variables, require_training_run, runs_of
+from seatrial.data.trial.model_table import added_mass_findings, build_trial_model, ship_of
+from seatrial.data.trial.plausibility import (
+    ground_velocity_findings,
+    hull_value_findings,
+    refuse_used_records,
+    with_estimates_named,
+)
+from seatrial.data.trial.priors import ResultReader, earlier_results, prior_range_findings
+from seatrial.data.trial.runs import (
+    declared_channels,
+    excitation_of,
+    expand_variables,
+    require_training_run,
+    resolved_proposal,
+    runs_of,
+    stream_of,
+)
 from seatrial.data.trial.schema import NO_CHANNELS, TrialFile
-from seatrial.data.trial.schema_errors import schema_error
 from seatrial.data.trial.thruster_table import layout_text
 from seatrial.data.trial.trial import Trial, TrialRun
-from seatrial.data.trial.used_records import refuse_used_records
 from seatrial.physics.sensors.settings import TIMED_CHANNELS
 from seatrial.physics.simulate.states import rest_parameter
 

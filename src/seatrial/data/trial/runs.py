@@ -1,25 +1,151 @@
-"""Which files a trial names, what each is for and with which others it shares its offsets."""
+"""Which files a trial names or follows, what each is for and with which others it shares its offsets."""
 
 import fnmatch
 import glob
+import math
 import os
 import re
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 
-from seatrial.core.values import InputError, RecordKind, si_unit, spelling_hint
+from seatrial.core.equations import Model
+from seatrial.core.values import NOTATION, InputError, RecordKind, Ship, si_unit, spelling_hint
+from seatrial.core.values.arrays import Between, Kind
 from seatrial.core.values.files import is_file, is_folder, is_present
+from seatrial.core.values.notation import OPPOSITE, Quantity
 from seatrial.data.read import ColumnSpec, Layout, format_of
-from seatrial.data.read.layout import Geometry, TimeSpec
-from seatrial.data.read.quantities import log_quantity
-from seatrial.data.trial.declared_channels import NO_DECLARED, Declared, DeclaredQuantity
-from seatrial.data.trial.excitation import wave_encounter
-from seatrial.data.trial.run_data import RecordFile, RecordSources, RunPart, SourceFile
-from seatrial.data.trial.schema import ChannelColumn, ColumnsTable, RecordsTable
-from seatrial.data.trial.session import session_of
-from seatrial.data.trial.trial import Role, TrialRun, Trimming
-from seatrial.physics.hydro.excitation import Excitation
+from seatrial.data.read.layout import LOG_QUANTITIES, Geometry, TimeSpec, log_quantity
+from seatrial.data.trial.run_data import RecordFile, RecordSources, RunPart, SourceFile, run_name, session_of
+from seatrial.data.trial.schema import (
+    ChannelColumn,
+    ColumnsTable,
+    DeclaredChannel,
+    ExcitationTable,
+    FollowTable,
+    RecordsTable,
+    WavesTable,
+)
+from seatrial.data.trial.settings import ProposalSettings, Stream, StreamSettings, StreamSource
+from seatrial.data.trial.trial import Role, Trial, TrialRun, Trimming
+from seatrial.physics.hydro.excitation import BoxHull, Excitation, G
+from seatrial.physics.sea.spectrum import WaveEncounter, speed_factor
+
+# Channels that a trial file declares for models of its own: what they mean, unit, side, whether they are orders.
+
+
+@dataclass(frozen=True)
+class DeclaredQuantity:
+    """What a declared channel means, who sets it, and how it runs between samples."""
+
+    quantity: Quantity
+    kind: Kind
+    between: Between = ""
+
+    def require_side(self, positive: str | None, where: str) -> None:
+        """Refuse a column whose positive direction is neither the declared one nor its opposite.
+
+        Raises:
+            InputError: which directions there are.
+        """
+        own = self.quantity.positive
+        sides = [own, *([OPPOSITE[own]] if own in OPPOSITE else [])]
+        if positive is not None and positive not in sides:
+            raise InputError(f"{where}.positive: '{positive}' is none of {' and '.join(sides)}; correct it")
+
+
+Declared = Mapping[str, DeclaredQuantity]
+"""Symbol -> what the trial file declares."""
+NO_DECLARED: Declared = MappingProxyType({})
+
+
+def declared_channels(tables: Mapping[str, DeclaredChannel]) -> Declared:
+    """Return the channels of `[channels]` by symbol.
+
+    Raises:
+        InputError: a name that is no identifier, or one that the notation table has.
+    """
+    return {symbol: _declared(symbol, table) for symbol, table in tables.items()}
+
+
+def _declared(symbol: str, table: DeclaredChannel) -> DeclaredQuantity:
+    if not (symbol.isidentifier() and symbol.isascii()):
+        raise InputError(f"channels.'{symbol}': a channel is named by letters, digits and _; choose another name")
+    known = NOTATION.get(symbol) or LOG_QUANTITIES.get(symbol)
+    if known is not None:
+        raise InputError(f"channels.{symbol} is known already ({known.meaning}); use it undeclared, or rename yours")
+    unit = si_unit(table.unit)[1]
+    meaning = Quantity(symbol, table.meaning, unit, table.frame, table.positive, symbol, symbol)
+    return DeclaredQuantity(meaning, table.kind, table.between or "")
+
+
+# `[excitation]` and `[records.waves]` of a trial file: wave forces, and how the ship meets the waves.
+
+# Froude number beyond which the speed is taken for one in knots, ours
+_MAX_FROUDE = 1.0
+_BOX_DIMENSIONS = ("L", "B", "d", "c33", "c35", "c53", "c55")
+
+
+def excitation_of(table: ExcitationTable | None, ship: Ship, model: Model, data_folder: Path) -> Excitation | None:
+    """The excitation that the table names; files lie under `base`.
+
+    Raises:
+        InputError: a model that knows no wave force, a dimension of the box that nobody gives, or a file that cannot be
+            read.
+    """
+    if table is None:
+        return None
+    if not {"F3", "M5"} <= set(model.input_names):
+        raise InputError(f"[excitation]: model '{model.name}' has no inputs F3 and M5; remove the table")
+    if table.source == "table":
+        from seatrial.physics.hydro.tabulated import read_transfer
+
+        return read_transfer(data_folder / str(table.file))
+    if table.source == "capytaine":
+        from seatrial.physics.hydro.capytaine_data import HullExcitation, read_capytaine
+
+        return HullExcitation(read_capytaine(data_folder / str(table.file)))
+    return _box_excitation(ship, model)
+
+
+def _box_excitation(ship: Ship, model: Model) -> BoxHull:
+    values = {p.name: p.value for p in model.parameters} | dict(ship.particulars)
+    for name in _BOX_DIMENSIONS:
+        if name not in values:
+            raise InputError(f"[excitation] source = 'box' needs ship.{name}; add it")
+    L, B, T, c33, c35, c53, c55 = (values[name] for name in _BOX_DIMENSIONS)
+    return BoxHull(L, B, T, c33, c35, c53, c55)
+
+
+def wave_encounter(
+    table: WavesTable | None, excitation: Excitation | None, length: float, where: str
+) -> WaveEncounter | None:
+    """How a block's runs met the waves; None for records that carry their wave forces themselves. length: m.
+
+    Raises:
+        InputError: waves without an excitation, or a speed or heading out of sense.
+    """
+    if table is None:
+        return None
+    froude = table.speed / math.sqrt(G * length)
+    if froude > _MAX_FROUDE:
+        raise InputError(
+            f"{where}.waves: {table.speed:.3g} m/s is a Froude number of {froude:.2g} at L = {length:g} m, where "
+            "no strip theory holds; is the speed in knots?"
+        )
+    if excitation is None:
+        raise InputError(f"{where}.waves: nothing turns the elevation into forces; add [excitation] source = 'box'")
+    try:
+        speed_factor(table.speed, table.heading)
+    except InputError as error:
+        raise InputError(f"{where}.waves: {error}") from None
+    spectrum = None if table.sea is None else table.sea.to_spectrum(f"{where}.waves.sea")
+    return WaveEncounter(excitation, table.speed, table.heading, spectrum)
+
+
+# Which files a trial names, what each is for and with which others it shares its offsets.
 
 _RunData = RecordFile | RecordSources
 _VARIABLE = re.compile(r"\$\{(\w+)\}")
@@ -243,3 +369,103 @@ def _column(symbol: str, column: ChannelColumn, where: str, declared: DeclaredQu
         between=column.between or ("" if declared is None else declared.between),
         declared=None if declared is None else declared.quantity,
     )
+
+
+# The table `[follow]` of a trial file into a `Stream`: its settings, paths resolved, columns as in `[[records]]`.
+
+_FILE_SOURCES = (StreamSource.FILE, StreamSource.NMEA_FILE)
+_UDP_SOURCES = tuple(source for source in StreamSource if source.endswith("udp"))
+_HOST_PATTERN = re.compile(r"[A-Za-z0-9.:_-]+")
+
+
+def stream_of(
+    table: FollowTable,
+    data_folder: Path,
+    trial_folder: Path,
+    excitation: Excitation | None = None,
+    length: float = 1.0,
+    declared: Declared = NO_DECLARED,
+) -> Stream:
+    """Return the stream that the table describes; files count from `data_folder`, the journal from `trial_folder`.
+
+    excitation, length [m]: of a ship that meets waves. declared: channels of the trial's own.
+
+    Raises:
+        InputError: a unit of another kind than the channel's, waves that no excitation turns into forces or that are
+            known by their spectrum alone, a host that is no address.
+    """
+    if table.waves is not None and table.waves.sea is not None:
+        raise InputError(
+            "follow.waves.sea: a sea known by its spectrum alone cannot be followed sample by sample; record the "
+            "elevation zeta, or run 'seatrial identify' on the whole record"
+        )
+    if not _HOST_PATTERN.fullmatch(table.host):
+        raise InputError(f"follow.host = '{table.host}' is no address; give one such as 127.0.0.1")
+    file = None if table.file is None else data_folder / expand_variables(str(table.file))
+    journal = None if table.journal is None else trial_folder / expand_variables(str(table.journal))
+    resolved = replace(table, file=file, journal=journal)
+    settings: dict[str, Any] = {setting.name: getattr(resolved, setting.name) for setting in fields(StreamSettings)}
+    return Stream(
+        **settings,
+        layout=layout_of(table, "text", "follow", declared),
+        name=_stream_name(table.source, file),
+        waves=wave_encounter(table.waves, excitation, length, "follow"),
+    )
+
+
+def resolved_proposal(settings: ProposalSettings | None, stream: Stream | None, home: Path) -> ProposalSettings | None:
+    """Return the settings with their files counted from `home`.
+
+    Raises:
+        InputError: there is no stream to follow.
+    """
+    if settings is None:
+        return None
+    if stream is None:
+        raise InputError("proposal: gains are proposed while a stream is followed; add [follow]")
+    loop, gains = (home / expand_variables(str(path)) for path in (settings.loop, settings.gains))
+    return replace(settings, loop=loop, gains=gains)
+
+
+def with_source(trial: Trial, source: str) -> Trial:
+    """The trial with its stream coming from elsewhere: the same columns, another source.
+
+    Raises:
+        InputError: the trial has no [follow], no such source, columns in place of NMEA sentences or the reverse, or a
+            place ([follow] file, port) that the table does not name.
+    """
+    stream = require_stream(trial)
+    if source not in [one.value for one in StreamSource]:
+        raise InputError(f"unknown source '{source}'{spelling_hint(source, [one.value for one in StreamSource])}")
+    wanted = StreamSource(source)
+    if _kind(wanted) != _kind(stream.source):
+        raise InputError(
+            f"source '{wanted}' has other columns than [follow] source = '{stream.source}'; change the table"
+        )
+    if wanted in _FILE_SOURCES and stream.file is None:
+        raise InputError(f"source '{wanted}' needs a file; add file to [follow]")
+    if wanted in _UDP_SOURCES and not stream.port:
+        raise InputError(f"source '{wanted}' needs a port; add port to [follow]")
+    return replace(trial, stream=replace(stream, source=wanted, name=_stream_name(wanted, stream.file)))
+
+
+def require_stream(trial: Trial) -> Stream:
+    """The trial's stream.
+
+    Raises:
+        InputError: it has none.
+    """
+    if trial.stream is None:
+        where = f"{trial.path}: " if trial.path else ""
+        raise InputError(f"{where}there is no [follow] that says where samples come from; add it")
+    return trial.stream
+
+
+def _kind(source: StreamSource) -> str:
+    """What the samples are written in: nmea, nmea2000, mavlink; empty: columns."""
+    return source.value.rpartition("-")[0]
+
+
+def _stream_name(source: StreamSource, file: Path | None) -> str:
+    """Runs are called after the file, or after where they come from."""
+    return run_name(file) if file is not None and source in _FILE_SOURCES else source.value.rpartition("-")[2]

@@ -1,26 +1,94 @@
-"""The tables of a trial file: strict pydantic models; `seatrial.data.trial.schema_errors` words what they refuse."""
+"""The tables of a trial file: strict pydantic models; `seatrial.data.trial.amounts` words what they refuse."""
 
+from collections.abc import Callable
 from math import pi
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 from pydantic.dataclasses import dataclass
 
-from seatrial.core.values import si_unit
+from seatrial.core.values import InputError, si_unit
 from seatrial.data.read.layout import TEXT_CLOCKS, Separator
 from seatrial.data.read.registry import require_format
-from seatrial.data.trial.amounts import STRICT_FIELDS, Angle, Deviation, SiAmount, Speed, StrictTable, Unit
-from seatrial.data.trial.compare_settings import CompareSettings
+from seatrial.data.trial.amounts import (
+    STRICT_FIELDS,
+    Angle,
+    Deviation,
+    PositiveDuration,
+    PositiveLength,
+    SiAmount,
+    Speed,
+    StrictTable,
+    Unit,
+)
 from seatrial.data.trial.design_request import DesignRequest
 from seatrial.data.trial.feedback_table import Feedback
-from seatrial.data.trial.proposal_settings import ProposalSettings
-from seatrial.data.trial.sea_table import SeaTable
-from seatrial.data.trial.session import valid_session
-from seatrial.data.trial.settings import EstimateSettings, ModelFamily
-from seatrial.data.trial.stream import StreamSettings
+from seatrial.data.trial.run_data import valid_session
+from seatrial.data.trial.settings import (
+    CompareSettings,
+    EstimateSettings,
+    ModelFamily,
+    ProposalSettings,
+    StreamSettings,
+)
 from seatrial.data.trial.thruster_table import ThrusterTable
 from seatrial.physics.models.thruster_layout import Damping
+from seatrial.physics.sea.spectrum import Spectrum, bretschneider, ittc, ittc_two_parameter, jonswap, sea_state
 from seatrial.physics.sensors import Sensors
+
+# A sea in a file: the spectrum by its name and what it needs.
+
+_NEEDED = {"ittc": {"height"}, "sea-state": {"state"}}
+_NEEDED_BY_OTHERS = {"height", "period"}
+
+
+class SeaTable(StrictTable):
+    """A spectrum; `height` is the significant one, `period` the mean T_1 for ittc2, else that of the peak."""
+
+    spectrum: Literal["ittc", "ittc2", "bretschneider", "jonswap", "sea-state"] = "ittc"
+    height: PositiveLength | None = None
+    period: PositiveDuration | None = None
+    gamma: float = 3.3  # mean peak enhancement of JONSWAP, Hasselmann et al. 1973
+    state: Annotated[int, Field(ge=0, le=9)] | None = None  # sea states of the WMO code
+
+    @model_validator(mode="after")
+    def _keys_of_the_spectrum(self) -> Self:
+        needed = _NEEDED.get(self.spectrum, _NEEDED_BY_OTHERS)
+        given = {key for key in ("height", "period", "state") if getattr(self, key) is not None}
+        for key in sorted(needed - given):
+            raise ValueError(f"spectrum '{self.spectrum}' needs a {key}")
+        for key in sorted(given - needed):
+            raise ValueError(f"spectrum '{self.spectrum}' has no {key}")
+        return self
+
+    def to_spectrum(self, where: str) -> Spectrum:
+        """Return the spectrum; `where` is the key of the table, for messages.
+
+        Raises:
+            InputError: a sea state without waves, or a peak enhancement out of range.
+        """
+        height, period = self.height or 0.0, self.period or 0.0
+        match self.spectrum:
+            case "sea-state":
+                return _with_key(where, lambda: sea_state(self.state or 0).spectrum())
+            case "ittc":
+                return ittc(height)
+            case "ittc2":
+                return ittc_two_parameter(height, period)
+            case "bretschneider":
+                return bretschneider(height, period)
+            case "jonswap":
+                return _with_key(f"{where}.gamma", lambda: jonswap(height, period, self.gamma))
+
+
+def _with_key(where: str, make: Callable[[], Spectrum]) -> Spectrum:
+    try:
+        return make()
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
+
+
+# The tables of a trial file: strict pydantic models; `seatrial.data.trial.amounts` words what they refuse.
 
 
 def _as_tuple(value: object) -> object:

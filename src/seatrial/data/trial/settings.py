@@ -1,18 +1,228 @@
-"""Settings of the estimator and of the comparison of models: tables of a trial file, values in Python."""
+"""Settings of estimator, search, comparison, proposal and stream: tables of a trial file, values in Python."""
 
+import re
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from pathlib import Path
 from typing import Annotated, Self
 
-from pydantic import AfterValidator, BeforeValidator, Field, model_validator
-from pydantic.dataclasses import dataclass
+from pydantic import AfterValidator, BeforeValidator, Field, InstanceOf, model_validator
+from pydantic.dataclasses import dataclass as pydantic_dataclass
 
-from seatrial.core.values import InputError
-from seatrial.data.trial.amounts import STRICT_FIELDS, DelayDeviation, Deviation
-from seatrial.data.trial.estimate_method import EstimateMethod, FitCriterion, method_named
-from seatrial.data.trial.schema_errors import raises_input_error
-from seatrial.data.trial.search_settings import SearchSettings
-from seatrial.data.trial.window_lengths import window_lengths
+from seatrial.core.values import InputError, spelling_hint
+from seatrial.data.read import Layout
+from seatrial.data.trial.amounts import STRICT_FIELDS, DelayDeviation, Deviation, raises_input_error
+from seatrial.physics.sea.spectrum import WaveEncounter
+
+# Lengths of the windows in which validation runs are predicted: of a trial file's `windows` and of `--windows`.
+
+
+@dataclass(frozen=True)
+class WindowLength:
+    """Length of a window; `unit`: s, or L for the time of a ship length at the run's speed."""
+
+    value: float
+    unit: str
+
+    def __str__(self) -> str:
+        return f"{self.value:g} {self.unit}"
+
+
+def window_lengths(text: str) -> tuple[WindowLength, ...]:
+    """Return the lengths that a text such as ``10s,5L`` names.
+
+    Raises:
+        InputError: a part is no positive number with s or L.
+    """
+    lengths = []
+    for part in filter(None, (p.strip() for p in text.split(","))):
+        match = re.fullmatch(r"(\d+\.?\d*|\.\d+)\s*([sL])", part)
+        if match is None or not float(match[1]) > 0.0:
+            raise InputError(f"windows: '{part}' is no length of a window; write seconds or ship lengths, as 10s,5L")
+        lengths.append(WindowLength(float(match[1]), match[2]))
+    return tuple(lengths)
+
+
+# Methods of estimation by the names that trial files and the command line have for them.
+
+
+class FitCriterion(StrEnum):
+    """What the package's own estimate minimises; `auto` is the decision table's choice."""
+
+    AUTO = "auto"
+    OUTPUT_ERROR = "output-error"
+    MULTIPLE_SHOOTING = "multiple-shooting"
+    PREDICTION_ERROR = "prediction-error"
+
+
+class EstimateMethod(StrEnum):
+    """The package's own criteria, searches by a population, and regressions."""
+
+    AUTO = "auto"
+    OUTPUT_ERROR = "output-error"
+    MULTIPLE_SHOOTING = "multiple-shooting"
+    PREDICTION_ERROR = "prediction-error"
+
+    PSO = "pso"
+    WHO = "who"
+    IWHO = "iwho"
+    ICPSO = "icpso"
+    DE = "de"
+    CMA_ES = "cma-es"
+
+    EULER = "euler"
+    EULER_DIFFERENCED = "euler-differenced"
+    EULER_CENTRED = "euler-centred"
+    OLS = "ols"
+    RIDGE = "ridge"
+    TSVD = "tsvd"
+    LASSO = "lasso"
+    LS_SVM = "ls-svm"
+    SVR = "svr"
+    SMOOTHED = "smoothed"
+    WEAK_FORM = "weak-form"
+    WEAK_FORM_RIDGE = "weak-form-ridge"
+    SONG2025 = "song2025"
+    SONG2025_IMPROVED = "song2025-improved"
+    INSTRUMENTAL_VARIABLES = "iv"
+
+    @property
+    def criterion(self) -> FitCriterion:
+        """Return what the package's own estimate minimises, which a published method is compared with."""
+        return FitCriterion.AUTO if self.is_published else FitCriterion(self.value)
+
+    @property
+    def is_search(self) -> bool:
+        """Whether a population searches a box of coefficients."""
+        return self in SEARCHES
+
+    @property
+    def is_published(self) -> bool:
+        """Whether the estimate is not the package's own."""
+        return self.value not in [criterion.value for criterion in FitCriterion]
+
+
+SEARCHES = (
+    EstimateMethod.PSO, EstimateMethod.WHO, EstimateMethod.IWHO, EstimateMethod.ICPSO, EstimateMethod.DE,
+    EstimateMethod.CMA_ES,
+)  # fmt: skip
+"""Methods in which a population searches a box of coefficients."""
+
+
+def method_named(name: object) -> object:
+    """Return the method of that name, for a validator: what is no text is passed on.
+
+    Raises:
+        InputError: there is no such method; the nearest is named.
+    """
+    if not isinstance(name, str):
+        return name
+    names = [method.value for method in EstimateMethod]
+    if name not in names:
+        raise InputError(f"unknown method '{name}'{spelling_hint(name, names)}")
+    return EstimateMethod(name)
+
+
+# Settings of a search by a population: a table of a trial file, a value in Python.
+
+
+class SearchFitness(StrEnum):
+    """What one iteration of a search judges candidates by."""
+
+    RECORD = "record"
+    SAMPLE = "sample"
+
+
+@raises_input_error
+@pydantic_dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
+class SearchSettings:
+    """`[estimate.search]`: a search by a population; what is not given is as the method's source has it.
+
+    Attributes:
+        population: points of one iteration.
+        iterations: populations judged, the first included.
+        fitness: the whole record, or one sample in each iteration (Qi et al. 2025, eq. (28)).
+        restarts: searches with random numbers of their own, at least 1.
+        bounds: coefficient -> ends of its range, SI; those of `[model.bounds]` where it is not named.
+    """
+
+    population: Annotated[int, Field(ge=1)] | None = None
+    iterations: Annotated[int, Field(ge=1)] | None = None
+    fitness: SearchFitness = SearchFitness.RECORD
+    restarts: Annotated[int, Field(ge=1)] = 3
+    bounds: Mapping[str, tuple[float, float]] = Field(default_factory=dict)
+
+    @model_validator(mode="after")
+    def _ends_in_order(self) -> Self:
+        for name, (lower, upper) in self.bounds.items():
+            if not lower < upper:
+                raise ValueError(
+                    f"the bounds of {name} run from {lower:g} to {upper:g}; write {name} = [{upper:g}, {lower:g}]"
+                    if lower > upper
+                    else f"both bounds of {name} are {lower:g}; widen them, or fix {name} under [model]"
+                )
+        return self
+
+
+# Settings of the regressions that `--compare` sets beside a fit: tables of a trial file, values in Python.
+
+Positive = Annotated[float, Field(gt=0)]
+
+
+@raises_input_error
+@pydantic_dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
+class SupportVectorSettings:
+    """`[compare.svr]`: the pipeline of Song et al. 2025, clean, split, select by Lasso, regress by support vectors.
+
+    C, epsilon, thresholds and the number of penalties are not printed there; their defaults are ours.
+
+    Attributes:
+        C: penalty of what lies outside the tube, eq. (19).
+        epsilon: half width of the tube in standard deviations of the target; in its own unit where `scaled` is false.
+        scaled: whether columns and target are brought to unit root mean square first.
+        max_iterations: steps of the solver, after which a finding says that it did not converge.
+        outlier_score: largest standard score that stays, eq. (5); 0 keeps all samples.
+        small_share: least absolute value that stays, as a share of each velocity's standard deviation, eq. (8).
+        drop_duplicates: whether repeated samples go, eq. (6).
+        folds: contiguous folds of Lasso's cross-validation.
+        lambda_: smallest and largest penalty of Lasso, eq. (12); lambda_count: how many between, evenly in decades.
+        test_share: share of each record, its end, that is kept for testing, eq. (9).
+        candidates: whether Lasso chooses among all candidate terms that the model knows, or among its own alone.
+        ablation: whether the pipeline is repeated with each of its steps left out.
+    """
+
+    C: Positive = 1.0
+    epsilon: Annotated[float, Field(ge=0)] = 0.1
+    scaled: bool = True
+    max_iterations: Annotated[int, Field(ge=1)] = 100_000
+    outlier_score: Annotated[float, Field(ge=0)] = 3.0
+    small_share: Annotated[float, Field(ge=0)] = 1e-3
+    drop_duplicates: bool = True
+    folds: Annotated[int, Field(ge=2)] = 10
+    lambda_: Annotated[tuple[Positive, Positive], Field(alias="lambda")] = (1e-6, 1e6)
+    lambda_count: Annotated[int, Field(ge=1, le=1000)] = 49
+    test_share: Annotated[float, Field(gt=0, lt=1)] = 0.2
+    candidates: bool = True
+    ablation: bool = False
+
+    @model_validator(mode="after")
+    def _penalties_in_order(self) -> Self:
+        if self.lambda_[0] >= self.lambda_[1]:
+            low, high = self.lambda_
+            raise ValueError(f"lambda runs from {low:g} to {high:g}; give the smaller first")
+        return self
+
+
+@raises_input_error
+@pydantic_dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
+class CompareSettings:
+    """`[compare]`: settings of the regressions that `--compare` sets beside the fit."""
+
+    svr: SupportVectorSettings = Field(default_factory=SupportVectorSettings)
+
+
+# Settings of the estimator and of the comparison of models: tables of a trial file, values in Python.
 
 
 def _as_deviations(value: object) -> object:
@@ -29,14 +239,13 @@ def _checked_windows(value: str) -> str:
     return value
 
 
-Positive = Annotated[float, Field(gt=0)]
 Method = Annotated[EstimateMethod, BeforeValidator(method_named)]
 Deviations = Annotated[Mapping[str, Deviation], BeforeValidator(_as_deviations)]
 DelayDeviations = Annotated[Mapping[str, DelayDeviation], BeforeValidator(_as_deviations)]
 
 
 @raises_input_error
-@dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
+@pydantic_dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
 class EstimateSettings:
     """`[estimate]`: settings of the estimator; what is not given follows the decision table.
 
@@ -112,7 +321,7 @@ class EstimateSettings:
 
 
 @raises_input_error
-@dataclass(frozen=True, config=STRICT_FIELDS)
+@pydantic_dataclass(frozen=True, config=STRICT_FIELDS)
 class ModelFamily:
     """`[family]`: models to compare on runs left out of the fit.
 
@@ -124,3 +333,97 @@ class ModelFamily:
     structures: Mapping[str, tuple[str, ...]] = Field(default_factory=dict)
     prior_factors: tuple[Positive, ...] = ()
     segment_factors: tuple[Positive, ...] = ()
+
+
+# The table `[proposal]` of a trial file: for which loop gains are proposed while a stream is followed.
+
+
+@raises_input_error
+@pydantic_dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
+class ProposalSettings:
+    """`[proposal]`: gains proposed for the sea and the craft that the latest stretch of the stream shows.
+
+    Attributes:
+        loop: the loop file that was tuned.
+        gains: the ``gains.toml`` of its tuning, with a schedule.
+        stretch_s: length of the stretch at one speed and heading that a proposal rests on [s].
+        every_s: s of the stream between two proposals.
+    """
+
+    loop: Path
+    gains: Path
+    stretch_s: Positive = 1200.0
+    every_s: Positive = 300.0
+
+
+# A stream of samples and how it is followed: the keys of the table `[follow]`, and a `Stream` in Python.
+
+
+class StreamSource(StrEnum):
+    """Where samples come from: lines of columns, NMEA 0183 sentences, messages of a bus or an autopilot."""
+
+    FILE = "file"
+    STDIN = "stdin"
+    UDP = "udp"
+    NMEA_FILE = "nmea-file"
+    NMEA_STDIN = "nmea-stdin"
+    NMEA_UDP = "nmea-udp"
+    NMEA2000_UDP = "nmea2000-udp"
+    MAVLINK_UDP = "mavlink-udp"
+
+
+@pydantic_dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
+class StreamSettings:
+    """Where samples come from while the record is being made, and how they are followed.
+
+    Attributes:
+        source: lines of a growing file, of standard input or of UDP datagrams, or NMEA 0183 sentences from them; NMEA
+            2000 as text and MAVLink in UDP datagrams.
+        rate: nominal rate of the samples [Hz].
+        file: of a source that is a file.
+        host, port: on which UDP is listened to.
+        batch_window_s: time over which the batch criterion is kept [s].
+        forgetting_time_s: time after which the past counts 1/e [s]; None: it counts for ever.
+        longest_gap_s: time without a sample after which a new run begins [s].
+        page: port of the local page; 0: none.
+        journal: file in which admitted samples are kept; None: beside the result.
+    """
+
+    source: StreamSource
+    rate: Positive
+    file: Path | None = None
+    host: str = "127.0.0.1"
+    port: Annotated[int, Field(ge=1, le=65535)] | None = None
+    batch_window_s: Positive = 3600.0
+    forgetting_time_s: Positive | None = None
+    longest_gap_s: Positive = 30.0
+    page: Annotated[int, Field(ge=0, le=65535)] = 0
+    journal: Path | None = None
+
+    @model_validator(mode="after")
+    def _place_where_needed(self) -> Self:
+        if self.source.endswith("file") and self.file is None:
+            raise ValueError(f"source = '{self.source}' needs a file; add it")
+        if self.source.endswith("udp") and self.port is None:
+            raise ValueError(f"source = '{self.source}' needs a port; add it")
+        if self.longest_gap_s * self.rate < 1.0:
+            raise ValueError(
+                f"longest_gap_s = {self.longest_gap_s:g} is shorter than a step at {self.rate:g} Hz; make it longer"
+            )
+        return self
+
+
+@raises_input_error
+@pydantic_dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
+class Stream(StreamSettings):
+    """Samples that come while the record is being made, with the layout of their columns.
+
+    Attributes:
+        layout: which column is what.
+        name: of the runs it makes, as the stem of a file names a record's.
+        waves: how the ship meets them, for an elevation in the stream.
+    """
+
+    layout: InstanceOf[Layout]
+    name: str = "stream"
+    waves: InstanceOf[WaveEncounter] | None = None

@@ -8,15 +8,12 @@ from typing import TYPE_CHECKING
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Finding, ForcePoints, Record, RecordKind, Ship
-from seatrial.data.trial.compare_settings import CompareSettings
 from seatrial.data.trial.design_request import DesignRequest
-from seatrial.data.trial.earlier_result import JointPrior
 from seatrial.data.trial.feedback_table import Feedback
-from seatrial.data.trial.proposal_settings import ProposalSettings
+from seatrial.data.trial.priors import JointPrior
 from seatrial.data.trial.run_data import RecordFile, RecordSources
-from seatrial.data.trial.settings import EstimateSettings, ModelFamily
-from seatrial.data.trial.stream import Stream
-from seatrial.physics.sea.encounter import WaveEncounter
+from seatrial.data.trial.settings import CompareSettings, EstimateSettings, ModelFamily, ProposalSettings, Stream
+from seatrial.physics.sea.spectrum import WaveEncounter
 
 if TYPE_CHECKING:
     from seatrial.estimation.estimate.trial_problem import TrialProblem

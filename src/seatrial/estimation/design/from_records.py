@@ -6,7 +6,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError, Record
-from seatrial.data.check.signal import sample_noise
+from seatrial.data.check.motion import sample_noise
 from seatrial.data.trial import Trial, load_records
 from seatrial.data.trial.design_request import DesignRequest, InputRange
 from seatrial.data.trial.trial import Role

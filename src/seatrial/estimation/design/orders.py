@@ -5,7 +5,7 @@ import numpy as np
 from seatrial.core.results import Actuator, TimedOrder
 from seatrial.core.values import Array, Record, RecordKind, frozen
 from seatrial.estimation.design.task import DesignTask
-from seatrial.physics.simulate.channels import record_of
+from seatrial.physics.simulate.replay import record_of
 
 # rounding of orders and of their times
 _ORDER_TOLERANCE = 1e-9

@@ -11,10 +11,10 @@ from seatrial.core.values import Array, InputError
 from seatrial.estimation.design.manoeuvre_information import ManoeuvreEvaluator, leaves_limits
 from seatrial.estimation.design.orders import actuator_response, input_series, sample_count
 from seatrial.estimation.design.task import FEWEST_ORDERS, DesignTask
-from seatrial.physics.manoeuvres.helmsman import binary_sequence
-from seatrial.physics.manoeuvres.programme import programme
-from seatrial.physics.simulate.channels import inputs_of
-from seatrial.physics.simulate.steer import RUDDER, SOLAS_SLEW_RATE, manoeuvre
+from seatrial.physics.manoeuvres.programme import binary_sequence, programme
+from seatrial.physics.simulate.replay import inputs_of
+from seatrial.physics.simulate.states import RUDDER
+from seatrial.physics.simulate.steer import SOLAS_SLEW_RATE, manoeuvre
 
 # switching times as shares of the designed one's hold; amplitudes as shares of the range, the first that keeps within
 SWITCHING_SHARES = (1.0 / 3.0, 2.0 / 3.0, 1.0, 4.0 / 3.0)

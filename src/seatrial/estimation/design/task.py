@@ -11,8 +11,7 @@ from seatrial.data.folder.model_file import ModelFile
 from seatrial.data.trial import Trial
 from seatrial.data.trial.design_request import DesignRequest
 from seatrial.estimation.design.from_records import recorded_request
-from seatrial.physics.simulate.actuators import settled_actuators
-from seatrial.physics.simulate.approach import approach_speed, held_inputs
+from seatrial.physics.simulate.states import approach_speed, held_inputs, settled_actuators
 
 # orders of an actuator that a trial must have room for, ours
 FEWEST_ORDERS = 4

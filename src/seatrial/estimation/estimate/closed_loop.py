@@ -14,9 +14,9 @@ from itertools import pairwise
 import numpy as np
 from scipy.special import chdtrc
 
-from seatrial.core.results.closed_loop import FeedbackEvidence, WithoutDisturbance
+from seatrial.core.results.coefficients import FeedbackEvidence, WithoutDisturbance
 from seatrial.core.values import Array, Record
-from seatrial.data.check.feedback import FeedbackTest, feedback_tests
+from seatrial.data.check.inputs import FeedbackTest, feedback_tests
 from seatrial.data.trial.feedback_table import Feedback
 from seatrial.estimation.estimate.disturbance_choice import DisturbanceChoice
 from seatrial.estimation.estimate.process_noise import ProcessNoise

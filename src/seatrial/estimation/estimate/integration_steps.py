@@ -10,7 +10,7 @@ from seatrial.estimation.information.covariance import inverse
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.prediction_error import PredictionError
 from seatrial.numerics.optimise import NormalEquations, Optimum, bounded_step
-from seatrial.physics.simulate.steps import MOST_SUBSTEPS, SIMULATION_ERROR, is_within_range, sufficient_substeps
+from seatrial.physics.simulate.batch import MOST_SUBSTEPS, SIMULATION_ERROR, is_within_range, sufficient_substeps
 
 _START_ERROR = 0.1
 """Error of the outputs with which a search may begin (rms, share of the noise); chosen."""

@@ -3,7 +3,7 @@
 import numpy as np
 
 from seatrial.core.values import Parameters
-from seatrial.data.trial.earlier_result import JointPrior
+from seatrial.data.trial.priors import JointPrior
 from seatrial.estimation.estimate.online.marginal_prior import MarginalPrior
 from seatrial.estimation.information.covariance import inverse
 

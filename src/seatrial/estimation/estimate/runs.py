@@ -5,8 +5,8 @@ from dataclasses import dataclass, field, replace
 
 from seatrial.core.values import ForcePoints, Record
 from seatrial.data.trial import Feedback, Role, Trial, TrialRecord
-from seatrial.data.trial.earlier_result import JointPrior
 from seatrial.data.trial.feedback_table import refuse_unusable_feedback
+from seatrial.data.trial.priors import JointPrior
 from seatrial.estimation.problem.output_error import DataTerm
 
 

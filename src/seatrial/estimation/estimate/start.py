@@ -13,8 +13,8 @@ from seatrial.estimation.estimate.time_scale import dominant_period, is_pure_rol
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.regress.weak import WeakForm
 from seatrial.numerics.optimise import levenberg_marquardt
-from seatrial.physics.models.course_unstable import course_unstable
-from seatrial.physics.simulate.channels import inputs_of
+from seatrial.physics.models.candidate_structures import course_unstable
+from seatrial.physics.simulate.replay import inputs_of
 from seatrial.physics.simulate.states import hidden_states, measured_states
 
 RESTORING = "c_1"

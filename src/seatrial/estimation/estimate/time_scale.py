@@ -8,7 +8,7 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError, Record
 from seatrial.estimation.estimate.settings import SEGMENT_SHIP_LENGTHS
-from seatrial.physics.hydro.dispersion import G
+from seatrial.physics.hydro.excitation import G
 
 PERIOD_SHARE = 0.4
 """Time scale of a rolling ship as a share of its period; windows of the start are then 0.6 periods wide each side."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import NOTATION, Prior, Record
-from seatrial.core.values.between import Travel, travel
+from seatrial.core.values.arrays import Travel, travel
 from seatrial.data.trial import EstimateSettings
 from seatrial.estimation.problem.output_error import Nuisance
 from seatrial.physics.simulate.batch import InputCorrection

@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from seatrial.core.results import Fit, Identifiability, Posterior, Profile
-from seatrial.core.results.missing_parts import MissingParts
+from seatrial.core.results.fields import MissingParts
 from seatrial.core.values import Finding
 from seatrial.core.values.versions import versions
-from seatrial.data.trial.approach import approach_condition
-from seatrial.data.trial.window_lengths import window_lengths
+from seatrial.data.trial.records import approach_condition
+from seatrial.data.trial.settings import window_lengths
 from seatrial.estimation.estimate import Estimation, IntervalMethod
 from seatrial.estimation.identify import fit_result
 from seatrial.estimation.identify.abandoned_criterion import abandoned_criterion_finding

@@ -14,7 +14,7 @@ from seatrial.core.results import Baseline, Coefficient, Fit, OpenLoopScores, Pr
 from seatrial.core.results.prediction import NO_COMPARISON
 from seatrial.core.values import Finding, InputError, ProgressReporter, Record, Severity
 from seatrial.data.trial import SEARCHES, SearchFitness, SearchSettings, Trial
-from seatrial.data.trial.compare_settings import SupportVectorSettings
+from seatrial.data.trial.settings import SupportVectorSettings
 from seatrial.estimation.identify.strategies.search import estimate_by_search
 from seatrial.estimation.predict.open_loop import rms_errors
 from seatrial.estimation.regress.estimators import RegressionEstimator

@@ -9,7 +9,7 @@ from seatrial.core.results import Coefficient
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import NOT_MEASURED, Array, Finding, Severity
 from seatrial.data.trial import TrialRecord
-from seatrial.data.trial.estimated_values import ESTIMATED_VALUES
+from seatrial.data.trial.plausibility import ESTIMATED_VALUES
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.identify.assumed_information import output_error_estimate
 from seatrial.estimation.identify.estimated_values_effect import EstimatedValueShift
@@ -17,7 +17,7 @@ from seatrial.estimation.identify.score_test import added_input, score_test
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.physics.hydro.excitation import BoxForceError, BoxHull
 from seatrial.physics.sea.wave_forces import with_wave_forces
-from seatrial.physics.simulate.channels import inputs_of
+from seatrial.physics.simulate.replay import inputs_of
 
 _FORCES = ("F3", "M5")
 

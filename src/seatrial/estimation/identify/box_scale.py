@@ -16,7 +16,7 @@ from seatrial.core.values import Array
 from seatrial.data.trial import Trial
 from seatrial.estimation.information.symmetry_text import join_names
 from seatrial.physics.hydro.excitation import BoxHull
-from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_COEFFICIENTS, HEAVE_PITCH_STIFFNESSES
+from seatrial.physics.models.published import HEAVE_PITCH_COEFFICIENTS, HEAVE_PITCH_STIFFNESSES
 
 _OWN_INERTIA = {"a33": "m", "a55": "I5"}
 _LIFTS = ("lift_1", "lift_2")

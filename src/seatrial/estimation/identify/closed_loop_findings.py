@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from seatrial.core.results.closed_loop import REFERENCE_LEVEL, FeedbackEvidence
+from seatrial.core.results.coefficients import REFERENCE_LEVEL, FeedbackEvidence
 from seatrial.core.text.numbers import p_value, significant
 from seatrial.core.values import Finding, Severity
 from seatrial.estimation.estimate.fit import Estimation

@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 
 from seatrial.core.equations import Model
 from seatrial.core.results import Stability
-from seatrial.core.results.identifiability import COURSE_UNSTABLE
+from seatrial.core.results.fit import COURSE_UNSTABLE
 from seatrial.core.text.numbers import significant
 from seatrial.core.values import Array, Finding, InputError, Severity
 from seatrial.estimation.information.stability import growth_rate, stability

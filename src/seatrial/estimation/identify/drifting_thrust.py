@@ -12,7 +12,7 @@ from seatrial.estimation.identify.assumed_information import output_error_estima
 from seatrial.estimation.identify.held_couplings import standard_error_ratio
 from seatrial.estimation.identify.score_test import added_input, score_test
 from seatrial.physics.models.thruster_layout import ThrusterLayout
-from seatrial.physics.simulate.channels import inputs_of
+from seatrial.physics.simulate.replay import inputs_of
 
 _STANDARD_ERRORS = 3.0  # of the slope, from which on it is named; of a normal error one in 370 by chance; chosen
 _LEAST = 0.03  # change of the order over a run that matters, as of a battery's voltage over some minutes; chosen

@@ -9,7 +9,7 @@ import numpy as np
 from seatrial.core.text.numbers import percent, signed_percent, significant
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import NOT_MEASURED, Array, Finding, Parameter, Severity
-from seatrial.data.trial.estimated_values import ESTIMATED_VALUES
+from seatrial.data.trial.plausibility import ESTIMATED_VALUES
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.identify.identifiability import RELATIVE_CHANGE
 from seatrial.estimation.identify.score_test import Candidate, own_criterion, score_test

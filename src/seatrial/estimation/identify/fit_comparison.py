@@ -8,7 +8,7 @@ from seatrial.core.results import Fit
 from seatrial.core.results.comparison import ComparedFit, Difference, JointTest
 from seatrial.core.text.numbers import exact
 from seatrial.core.values import Finding, Record, Severity
-from seatrial.data.trial.approach import approach_condition
+from seatrial.data.trial.records import approach_condition
 from seatrial.estimation.information.differences import QuantityInterval, differences, joint_test
 
 _ROUNDING, _ALIKE = 1e-6, 5e-3

@@ -8,7 +8,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.results import Coefficient, Method, Noise, Offset, OffsetPopulation, Residuals
-from seatrial.core.results.identifiability import NOT_CONVERGED, SIGN_OPEN
+from seatrial.core.results.fit import NOT_CONVERGED, SIGN_OPEN
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import NOTATION, Array, Finding, InputError, Parameter, Parameters, Severity
 from seatrial.estimation.estimate.fit import Estimation

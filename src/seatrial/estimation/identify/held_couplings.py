@@ -25,8 +25,7 @@ from seatrial.estimation.identify.score_test import Candidate, own_criterion, sc
 from seatrial.estimation.information.covariance import inverse
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.numerics.optimise import Optimum, levenberg_marquardt
-from seatrial.physics.models.candidate_structures import structural_terms
-from seatrial.physics.models.candidate_terms import with_candidate_terms, with_terms
+from seatrial.physics.models.candidate_structures import structural_terms, with_candidate_terms, with_terms
 from seatrial.physics.models.thruster_layout import ThrusterLayout
 
 _CHANCE = 1.0 / 60.0  # that a term is named where all are 0 in truth; chosen

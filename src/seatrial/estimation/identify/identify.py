@@ -8,7 +8,7 @@ from types import MappingProxyType
 from seatrial.core.results import Fit
 from seatrial.core.values import InputError, ProgressReporter
 from seatrial.data.trial import EstimateMethod, FitCriterion, Role, Trial, checked_records
-from seatrial.data.trial.window_lengths import window_lengths
+from seatrial.data.trial.settings import window_lengths
 from seatrial.estimation.estimate import EstimatorOptions, IntervalMethod
 from seatrial.estimation.estimate.criterion_choice import is_explained
 from seatrial.estimation.estimate.plausibility import OutsidePhysicsError

@@ -28,8 +28,7 @@ from seatrial.estimation.identify.physical_limits import objections
 from seatrial.estimation.information.paired_errors import is_no_worse, standard_error
 from seatrial.estimation.predict.predict_runs import TiedModel
 from seatrial.numerics.workers import map_in_threads
-from seatrial.physics.models.candidate_structures import FREED_PARAMETERS, PRIOR_FACTORS, SEGMENT_FACTORS
-from seatrial.physics.models.candidate_terms import with_terms
+from seatrial.physics.models.candidate_structures import FREED_PARAMETERS, PRIOR_FACTORS, SEGMENT_FACTORS, with_terms
 
 HOLDOUT_WINDOW_SHIP_LENGTHS = 4.0
 """Length of the windows in which runs left out are predicted, in ship lengths travelled."""

@@ -7,7 +7,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.results import Prediction
-from seatrial.core.results.identifiability import Stability
+from seatrial.core.results.fit import Stability
 from seatrial.core.text.numbers import significant
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Finding, InputError, Severity

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from seatrial.core.results.posterior import CredibleInterval, Posterior
+from seatrial.core.results.fit import CredibleInterval, Posterior
 from seatrial.core.values import Array, Finding, Index, InputError, ProgressReporter, Severity
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.information.covariance import Interval, inverse

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
-from seatrial.core.results.frequency_response import FrequencyResponse
+from seatrial.core.results.ship_motions import FrequencyResponse
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Finding, Severity
 

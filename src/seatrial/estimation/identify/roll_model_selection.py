@@ -13,7 +13,7 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.results import CandidateModel
 from seatrial.core.values import Array, Finding, InputError, ProgressReporter, Record, Severity
-from seatrial.data.check.signal import sample_noise
+from seatrial.data.check.motion import sample_noise
 from seatrial.data.trial import EstimateSettings, ModelFamily
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
 from seatrial.estimation.estimate.runs import Runs

@@ -9,8 +9,7 @@ from seatrial.core.equations import Model
 from seatrial.core.results.ship_motions import PointMotion, Seakeeping
 from seatrial.core.values import Array, Record
 from seatrial.data.trial import TrialRecord
-from seatrial.physics.hydro.excitation import encounter_frequency
-from seatrial.physics.sea.encounter import WaveEncounter, speed_factor, wave_frequency
+from seatrial.physics.hydro.excitation import G, encounter_frequency
 from seatrial.physics.sea.response import (
     MotionStatistics,
     motion_sickness,
@@ -18,8 +17,15 @@ from seatrial.physics.sea.response import (
     response_spectrum,
     vertical_motion,
 )
-from seatrial.physics.sea.spectrum import G, Spectrum, ittc, ittc_two_parameter
-from seatrial.physics.simulate.harmonics import Complex, frequency_response, linear_system
+from seatrial.physics.sea.spectrum import (
+    Spectrum,
+    WaveEncounter,
+    ittc,
+    ittc_two_parameter,
+    speed_factor,
+    wave_frequency,
+)
+from seatrial.physics.simulate.linear import Complex, frequency_response, linear_system
 
 # frequencies of the curves, ours
 _POINTS = 160

@@ -5,7 +5,7 @@ from enum import StrEnum
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Record
-from seatrial.data.check.roll_release import is_free_decay
+from seatrial.data.check.phases import is_free_decay
 from seatrial.data.trial import TrialRecord
 from seatrial.estimation.estimate.criterion_choice import WAVE_FORCES
 from seatrial.estimation.estimate.fit import moving_inputs

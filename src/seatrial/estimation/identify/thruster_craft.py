@@ -9,7 +9,7 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.results import IntervalBasis
 from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
-from seatrial.core.results.thruster_craft import (
+from seatrial.core.results.ship_motions import (
     CommandCurve,
     CompassCurve,
     CraftMeasure,
@@ -22,11 +22,10 @@ from seatrial.estimation.information.extrapolation import extrapolation
 from seatrial.estimation.information.thruster_conditions import thruster_conditions
 from seatrial.estimation.predict.measure_intervals import measure_intervals, perturbed_models
 from seatrial.physics.manoeuvres import measures
+from seatrial.physics.models.thrust_orders import coefficient_or_zero, inertia_matrix, thrust_configuration
 from seatrial.physics.models.thruster_layout import AngleInput, Thruster, ThrusterLayout
-from seatrial.physics.models.thruster_matrices import coefficient_or_zero, inertia_matrix, thrust_configuration
-from seatrial.physics.simulate.craft_manoeuvre import craft_manoeuvre, craft_programme
-from seatrial.physics.simulate.rudder_rate import RUDDER_RATE, rudder_rate
-from seatrial.physics.simulate.thrust import AHEAD
+from seatrial.physics.simulate.steer import RUDDER_RATE, rudder_rate
+from seatrial.physics.simulate.thrust import AHEAD, craft_manoeuvre, craft_programme
 
 CIRCLE = "turning-circle:35"
 """Of a craft that is steered by an angle, with full command ahead; 35 deg as of a rudder (IMO MSC.137(76)); chosen."""

@@ -8,9 +8,8 @@ from seatrial.core.results import Extrapolation
 from seatrial.core.values import Array, Record
 from seatrial.estimation.information.thruster_conditions import thruster_conditions
 from seatrial.physics.manoeuvres import REACH_PERCENTILE, to_starboard
-from seatrial.physics.models.thruster_layout import ThrusterLayout
-from seatrial.physics.models.thruster_steering import with_steering_order
-from seatrial.physics.simulate.rudder_rate import RUDDER_RATE, sustained_rudder_rate
+from seatrial.physics.models.thruster_layout import ThrusterLayout, with_steering_order
+from seatrial.physics.simulate.steer import RUDDER_RATE, sustained_rudder_rate
 
 SIDES = ("port", "starboard")
 """Of the rudder: to which it turns the ship; ranges are called ``rudder to port`` and ``rudder to starboard``."""

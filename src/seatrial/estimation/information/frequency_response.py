@@ -5,10 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.results.frequency_response import FrequencyResponse, Mask
 from seatrial.core.results.prediction import Prediction
+from seatrial.core.results.ship_motions import FrequencyResponse, Mask
 from seatrial.core.values import Record
-from seatrial.core.values.channel_text import channel_unit
+from seatrial.core.values.notation import channel_unit
 from seatrial.estimation.information.cross_spectra import CrossSpectra, cross_spectra
 
 SEGMENTS = 8

@@ -15,7 +15,7 @@ from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
 from seatrial.core.text.numbers import significant
 from seatrial.core.values import Array
 from seatrial.numerics.kernels.sensitivity import evaluate_tangent
-from seatrial.physics.simulate.actuators import settled_actuators
+from seatrial.physics.simulate.states import settled_actuators
 
 _STEP = 1e-4  # of a coefficient's characteristic size, for central differences
 # of the speed, for one-sided slopes; relative difference of equal sides; chosen

@@ -12,11 +12,10 @@ import numpy as np
 from llvmlite.binding import get_host_cpu_name
 
 from seatrial.core.equations import Model
-from seatrial.core.equations.stored import stored
+from seatrial.core.equations.bindings import stored
 from seatrial.core.results import Symmetry
 from seatrial.core.values import InputError
-from seatrial.data.trial.added_masses import has_held_added_masses
-from seatrial.data.trial.model_table import COMMON_PARTICULARS
+from seatrial.data.trial.model_table import COMMON_PARTICULARS, has_held_added_masses
 from seatrial.estimation.information.generator import Generator
 from seatrial.estimation.information.generators import SymmetrySearch, search_symmetries
 from seatrial.estimation.information.invariance import invariance_conditions

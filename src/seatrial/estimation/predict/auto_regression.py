@@ -12,7 +12,7 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index, Record
 from seatrial.estimation.predict.windows import Windows, like_window
-from seatrial.physics.simulate.channels import inputs_of
+from seatrial.physics.simulate.replay import inputs_of
 
 _LAG_S, _MIN_LAGS = 0.5, 2
 """Past that a regression sees: several time constants of a small craft's thrusters [s], two samples or more; chosen."""

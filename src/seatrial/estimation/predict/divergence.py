@@ -11,8 +11,7 @@ from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, Finding, InputError, Record, Severity
 from seatrial.data.trial.model_table import COMMON_PARTICULARS
 from seatrial.numerics.kernels.sensitivity import evaluate_tangent
-from seatrial.physics.simulate.channels import inputs_of
-from seatrial.physics.simulate.divergence import first_row_outside, state_limits
+from seatrial.physics.simulate.replay import first_row_outside, inputs_of, state_limits
 
 MEASURED_FACTOR = 10.0
 """A diverging run is scored until a state exceeds its largest measured magnitude this many times; chosen."""

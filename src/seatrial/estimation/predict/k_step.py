@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from seatrial.core.results.k_step import KStepErrors
+from seatrial.core.results.prediction import KStepErrors
 from seatrial.core.values import Array, Index, InputError
-from seatrial.core.values.channel_text import channel_unit
+from seatrial.core.values.notation import channel_unit
 from seatrial.data.trial import Role, TrialRecord
 from seatrial.estimation.estimate.criterion_choice import is_coarsely_sampled
 from seatrial.estimation.estimate.fit import Estimation

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from seatrial.core.values import Array, InputError, Record
-from seatrial.data.check.signal import sample_noise
+from seatrial.data.check.motion import sample_noise
 from seatrial.estimation.information.discrepancy import Discrepancy, HoldoutError, discrepancy
 from seatrial.estimation.predict.draws import PredictionUncertainty, StartStates
 from seatrial.estimation.predict.open_loop import open_loop_runs

@@ -15,8 +15,7 @@ from seatrial.estimation.predict.windows import Windows, simulate_windows
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.physics.manoeuvres import ObservedManoeuvre, measures
 from seatrial.physics.manoeuvres.measures import ORDERED_MEASURE
-from seatrial.physics.simulate.channels import inputs_of, record_of
-from seatrial.physics.simulate.divergence import require_bounded
+from seatrial.physics.simulate.replay import inputs_of, record_of, require_bounded
 
 _ERROR_ORDER = ("psi_deg", "position_m", "theta_deg", "phi_deg", "z", "u", "v", "r")
 

@@ -10,7 +10,7 @@ from seatrial.core.equations import Model
 from seatrial.core.results import Extrapolation, IntervalBasis, Prediction
 from seatrial.core.values import Array, Finding, InputError, ProgressReporter, Record
 from seatrial.data.trial import Role, TrialRecord
-from seatrial.data.trial.window_lengths import WindowLength
+from seatrial.data.trial.settings import WindowLength
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.information.discrepancy import Discrepancy, HoldoutError, discrepancy
@@ -48,8 +48,8 @@ from seatrial.estimation.predict.window_baselines import window_baselines
 from seatrial.estimation.predict.window_scores import WindowPredictor, window_scores
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.numerics.workers import map_in_threads
-from seatrial.physics.simulate.channels import inputs_of
 from seatrial.physics.simulate.filtering import FilterPoint, KalmanFilter
+from seatrial.physics.simulate.replay import inputs_of
 
 _MOTION = frozenset({"u", "v", "r"})
 """Channels that show how a craft with thrusters moved; where they are not recorded, the fit's own runs show it."""

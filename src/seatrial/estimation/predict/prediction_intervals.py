@@ -9,7 +9,7 @@ from seatrial.core.equations import Model
 from seatrial.core.results import Measure, Prediction
 from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
 from seatrial.core.values import Array, InputError, Record
-from seatrial.data.check.signal import sample_noise
+from seatrial.data.check.motion import sample_noise
 from seatrial.estimation.information.discrepancy import BAND_CHANNELS, Discrepancy, HoldoutError
 from seatrial.estimation.predict.draws import PredictionUncertainty, StartStates, draw_runs
 from seatrial.estimation.predict.open_loop import (
@@ -25,7 +25,7 @@ from seatrial.estimation.predict.windows import Windows
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.physics.manoeuvres import bounded_interval, measures
 from seatrial.physics.manoeuvres.recognition import ObservedManoeuvre
-from seatrial.physics.simulate.channels import inputs_of
+from seatrial.physics.simulate.replay import inputs_of
 
 # ships drawn for the interval of a prediction, and for that of a run left out, ours
 DRAWS, HOLDOUT_DRAWS = 100, 32

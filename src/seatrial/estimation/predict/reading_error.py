@@ -3,7 +3,7 @@
 import numpy as np
 
 from seatrial.core.values import Record
-from seatrial.data.check.signal import sample_noise
+from seatrial.data.check.motion import sample_noise
 from seatrial.physics.manoeuvres import measures
 from seatrial.physics.manoeuvres.recognition import ObservedManoeuvre
 

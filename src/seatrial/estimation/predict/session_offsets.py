@@ -15,7 +15,7 @@ from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.population import SessionPopulation
 from seatrial.estimation.problem.segments import segments_between
 from seatrial.numerics.optimise import levenberg_marquardt
-from seatrial.physics.simulate.channels import inputs_of
+from seatrial.physics.simulate.replay import inputs_of
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,9 +7,9 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
-from seatrial.core.results.window_scores import ChannelScore, WindowBaseline, WindowScore
+from seatrial.core.results.prediction import ChannelScore, WindowBaseline, WindowScore
 from seatrial.core.values import Array, InputError, Record
-from seatrial.data.trial.window_lengths import WindowLength
+from seatrial.data.trial.settings import WindowLength
 from seatrial.estimation.estimate.time_scale import characteristic_time
 from seatrial.estimation.information.discrepancy import Discrepancy
 from seatrial.estimation.predict.draws import PredictionUncertainty, StartStates

@@ -13,7 +13,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index, Record, RecordKind
 from seatrial.estimation.predict.draws import simulate_points
 from seatrial.estimation.problem.output_error import OutputError
-from seatrial.physics.simulate.channels import inputs_of
+from seatrial.physics.simulate.replay import inputs_of
 
 MIN_STEPS = 4
 """Steps of the shortest window, and of the shortest beginning that an initial state is estimated from; chosen."""

@@ -12,7 +12,7 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index, InputError
 from seatrial.estimation.problem.segments import Segments
-from seatrial.numerics.kernels.compiled_function import TangentPointer
+from seatrial.numerics.kernels.kernel import TangentPointer
 from seatrial.numerics.kernels.linear_fit import residuals_and_jacobian
 from seatrial.numerics.optimise import NormalEquations
 from seatrial.physics.simulate.linear import LinearBatch

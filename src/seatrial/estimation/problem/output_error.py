@@ -18,9 +18,9 @@ from seatrial.estimation.problem.population import SessionPopulation
 from seatrial.estimation.problem.segments import Segments
 from seatrial.numerics.optimise import NormalEquations
 from seatrial.numerics.workers import map_in_threads
-from seatrial.physics.simulate.actuators import ActuatorHistory
 from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch
 from seatrial.physics.simulate.linear import batch_class
+from seatrial.physics.simulate.states import ActuatorHistory
 
 _ROWS_PER_RANGE = 4000  # samples that one thread takes at a time; chosen
 

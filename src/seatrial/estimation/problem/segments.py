@@ -12,9 +12,9 @@ from seatrial.core.values import Array, Index, InputError, Record, channel_hint
 from seatrial.estimation.problem.initial_states import Beginnings
 from seatrial.numerics.resolution import resolution
 from seatrial.physics.sensors import Sensors
-from seatrial.physics.simulate.actuators import ActuatorHistory
 from seatrial.physics.simulate.batch import RunInputs
-from seatrial.physics.simulate.channels import inputs_of
+from seatrial.physics.simulate.replay import inputs_of
+from seatrial.physics.simulate.states import ActuatorHistory
 
 
 @dataclass(frozen=True, eq=False)

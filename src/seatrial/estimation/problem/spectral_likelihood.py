@@ -15,7 +15,7 @@ from seatrial.core.values import Array
 from seatrial.estimation.problem.free_parameters import FreeParameterProblem
 from seatrial.numerics.kernels.linear import affine_matrices
 from seatrial.numerics.optimise import NormalEquations
-from seatrial.physics.simulate.harmonics import Complex
+from seatrial.physics.simulate.linear import Complex
 
 # a Hann window spreads each frequency over its neighbours: that many times fewer of them are independent
 WINDOW_CORRELATION = 35.0 / 18.0

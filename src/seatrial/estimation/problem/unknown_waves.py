@@ -13,7 +13,7 @@ import numpy as np
 from seatrial.core.values import Array
 from seatrial.estimation.problem.spectral_likelihood import WINDOW_CORRELATION, apply_leakage, fine_grid
 from seatrial.numerics.optimise import NormalEquations
-from seatrial.physics.simulate.harmonics import Complex
+from seatrial.physics.simulate.linear import Complex
 
 DAMPING, RESTORING = 5, 6  # places among the unknowns
 _SIGMA = (0.07, 0.09)  # peak widths of JONSWAP, Hasselmann et al. 1973

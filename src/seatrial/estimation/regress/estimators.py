@@ -18,7 +18,7 @@ from seatrial.estimation.regress.solvers import (
     solve_with_instruments,
 )
 from seatrial.estimation.regress.system import RegressionSystem, build_systems
-from seatrial.physics.models.candidate_terms import with_candidate_terms
+from seatrial.physics.models.candidate_structures import with_candidate_terms
 from seatrial.physics.simulate.replay import replay
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError, Record
 from seatrial.numerics.kernels.sensitivity import evaluate_tangent
-from seatrial.physics.simulate.channels import inputs_of
+from seatrial.physics.simulate.replay import inputs_of
 from seatrial.physics.simulate.states import hidden_states, measured_states
 
 _PROBE_FACTOR = 1.37  # no round number, so that no term vanishes at the probe; chosen

@@ -5,8 +5,7 @@ from types import MappingProxyType
 
 from seatrial._plugins import failure_text, installed, load_plugin
 from seatrial.core.values import InputError, spelling_hint
-from seatrial.data.trial.compare_settings import SupportVectorSettings
-from seatrial.data.trial.estimate_method import EstimateMethod
+from seatrial.data.trial.settings import EstimateMethod, SupportVectorSettings
 from seatrial.estimation.regress.estimators import RegressionEstimator
 from seatrial.estimation.regress.standard_estimators import standard_estimators
 

@@ -11,7 +11,7 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.results.prediction import RowScore
 from seatrial.core.values import Array, Finding, Record, Severity
-from seatrial.data.trial.compare_settings import SupportVectorSettings
+from seatrial.data.trial.settings import SupportVectorSettings
 from seatrial.estimation.regress.cleaning import without_duplicates, without_missing, without_outliers, without_small
 from seatrial.estimation.regress.estimators import RegressionEstimate, solve_systems
 from seatrial.estimation.regress.features import RegressionMotion
@@ -20,7 +20,7 @@ from seatrial.estimation.regress.solvers import Lasso, LinearSolver, RegressionS
 from seatrial.estimation.regress.split import blocks
 from seatrial.estimation.regress.support_vectors import SupportVectors
 from seatrial.estimation.regress.system import RegressionSystem, assemble_systems, build_systems
-from seatrial.physics.models.candidate_terms import with_candidate_terms
+from seatrial.physics.models.candidate_structures import with_candidate_terms
 
 # section 1.4: differenced and centred
 DIFFERENCED_AND_CENTRED = Centred(Differenced(Euler()))

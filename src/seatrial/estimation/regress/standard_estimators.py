@@ -1,6 +1,6 @@
 """The regressions that a comparison shows, by name."""
 
-from seatrial.data.trial.compare_settings import SupportVectorSettings
+from seatrial.data.trial.settings import SupportVectorSettings
 from seatrial.estimation.regress.estimators import InstrumentalVariables, LinearRegression, RegressionEstimator
 from seatrial.estimation.regress.operators import Central, Centred, Differenced, Euler, Smoothed, Weak
 from seatrial.estimation.regress.pipeline import pipelines

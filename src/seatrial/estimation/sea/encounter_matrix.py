@@ -16,7 +16,7 @@ from seatrial.core.values import Array, Index
 from seatrial.estimation.problem.spectral_likelihood import hann_leakage
 from seatrial.physics.hydro.excitation import encounter_frequency
 from seatrial.physics.loops import WaveEffect
-from seatrial.physics.sea.encounter import speed_factor
+from seatrial.physics.sea.spectrum import speed_factor
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array

@@ -18,7 +18,7 @@ from seatrial.estimation.problem.spectral_likelihood import hann_leakage
 from seatrial.physics.hydro.excitation import encounter_frequency
 from seatrial.physics.loops import WaveEffect
 from seatrial.physics.sea import Spectrum, bretschneider
-from seatrial.physics.sea.encounter import speed_factor
+from seatrial.physics.sea.spectrum import speed_factor
 
 SEA_UNKNOWNS = ("height", "peak period", "peak")
 """What is unknown of a sea: logarithms of significant height [m] and peak period [s], and of gamma - 1."""

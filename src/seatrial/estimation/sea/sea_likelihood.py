@@ -19,8 +19,7 @@ from seatrial.estimation.sea.encounter_matrix import BAND, TransformBins, band_e
 from seatrial.estimation.sea.encountered_sea import sea_spectrum
 from seatrial.estimation.sea.legs_in_waves import PEAK_DEVIATION, PEAK_MEAN
 from seatrial.estimation.sea.plant_factors import altered_responses
-from seatrial.physics.hydro.dispersion import G
-from seatrial.physics.hydro.excitation import Complex
+from seatrial.physics.hydro.excitation import Complex, G
 from seatrial.physics.loops import TransferLoop, WaveEffect
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import partial
 from types import MappingProxyType
 
-from seatrial.data.trial.estimate_method import EstimateMethod
+from seatrial.data.trial.settings import EstimateMethod
 from seatrial.numerics.optimise import (
     AdaptationSettings,
     CloudParticleSwarm,

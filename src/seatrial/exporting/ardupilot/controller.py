@@ -15,8 +15,7 @@ from seatrial.core.values import Array
 from seatrial.exporting.ardupilot.craft import SteeredCraft
 from seatrial.exporting.ardupilot.gains import CascadeGains, PidGains, filter_share
 from seatrial.numerics.kernels.feedback import clamp, steer
-from seatrial.numerics.kernels.kernel import kernel
-from seatrial.numerics.kernels.types import COMMAND_SIGNATURE, OPTIONS
+from seatrial.numerics.kernels.kernel import COMMAND_SIGNATURE, OPTIONS, kernel
 
 LOOP_RATE = 50.0  # Hz, default of SCHED_LOOP_RATE for Rover (AP_Scheduler.cpp)
 SLEW_RATE = 1.0  # of full throttle in a second, default of MOT_SLEWRATE (AP_MotorsUGV.cpp)

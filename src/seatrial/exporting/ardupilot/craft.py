@@ -13,8 +13,7 @@ from seatrial.data.folder.model_file import ModelFile
 from seatrial.physics.loops import Block
 from seatrial.physics.models.thrust_orders import AHEAD, YAW, with_orders, work_shares
 from seatrial.physics.models.thruster_layout import ThrusterLayout
-from seatrial.physics.simulate.channels import ZERO_BY_DEFAULT
-from seatrial.physics.simulate.replay import trajectory
+from seatrial.physics.simulate.replay import ZERO_BY_DEFAULT, trajectory
 from seatrial.physics.simulate.thrust import DEFAULT_AHEAD
 
 RUDDER = "delta"

@@ -7,8 +7,7 @@ are those of one generator, whatever is compiled.
 import numpy as np
 from numba import njit, types, void
 
-from seatrial.numerics.kernels.kernel import kernel
-from seatrial.numerics.kernels.types import I8, INDEX, MATRIX, OPTIONS, VECTOR
+from seatrial.numerics.kernels.kernel import I8, INDEX, MATRIX, OPTIONS, VECTOR, kernel
 
 CODES = types.Array(types.uint8, 2, "C")
 

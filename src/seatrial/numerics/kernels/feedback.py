@@ -16,8 +16,18 @@ import numpy as np
 from numba import njit
 
 from seatrial.numerics.kernels.integrate import DIVERGED, rk4_step
-from seatrial.numerics.kernels.kernel import kernel
-from seatrial.numerics.kernels.types import COMMAND, COMMAND_SIGNATURE, F8, FUNCTION, I8, LEAN, MATRIX, OPTIONS, VECTOR
+from seatrial.numerics.kernels.kernel import (
+    COMMAND,
+    COMMAND_SIGNATURE,
+    F8,
+    FUNCTION,
+    I8,
+    LEAN,
+    MATRIX,
+    OPTIONS,
+    VECTOR,
+    kernel,
+)
 
 # places in the memory
 (

@@ -15,9 +15,8 @@ from seatrial.numerics.kernels.feedback import (
     clamp,
     linear_controller,
 )
-from seatrial.numerics.kernels.kernel import kernel
+from seatrial.numerics.kernels.kernel import COMMAND_SIGNATURE, LEAN, kernel
 from seatrial.numerics.kernels.sampled import sampled_controller
-from seatrial.numerics.kernels.types import COMMAND_SIGNATURE, LEAN
 
 # places in the memory
 (

@@ -19,9 +19,8 @@ import numpy as np
 from numba import njit
 
 from seatrial.numerics.kernels.integrate import DIVERGED
-from seatrial.numerics.kernels.kernel import kernel
+from seatrial.numerics.kernels.kernel import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, TABLE, TANGENT, VECTOR, kernel
 from seatrial.numerics.kernels.sensitivity import propagate_tangent
-from seatrial.numerics.kernels.types import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, TABLE, TANGENT, VECTOR
 
 PHI, NOISE, SQUARED_FREQUENCY = 0, 12, 21
 """Columns of a pair: its transition matrix and derivatives by frequency and damping, four each; the variance that it

@@ -8,8 +8,7 @@ import math
 import numpy as np
 from numba import njit, void
 
-from seatrial.numerics.kernels.kernel import kernel
-from seatrial.numerics.kernels.types import F8, FUNCTION, I8, INDEX, LEAN, MATRIX, OPTIONS, TABLE, VECTOR
+from seatrial.numerics.kernels.kernel import F8, FUNCTION, I8, INDEX, LEAN, MATRIX, OPTIONS, TABLE, VECTOR, kernel
 
 DIVERGED = 1e9  # summed size of states, SI, that no ship reaches; chosen
 

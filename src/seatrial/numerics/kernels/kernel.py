@@ -1,9 +1,4 @@
-"""Compiled functions with one fixed signature, whose machine code is loaded from the compile cache at their first use.
-
-Numba's own decorator loads the code when the module is imported, after building tables that only a compilation needs
-(0.3 s), and its cache files are unpickled unverified. Here nothing is loaded before it is called or handed to another
-kernel, a loaded function needs no tables, and its bytes are those that were written (see `cache`).
-"""
+"""Compiled functions with fixed signatures, whose machine code is loaded from the compile cache at their first use."""
 
 # Numba annotates what may be overridden too narrowly, and not its settings:
 # pyright: reportIncompatibleMethodOverride=false, reportAttributeAccessIssue=false
@@ -18,7 +13,9 @@ from types import FunctionType, ModuleType
 from typing import Any, cast
 
 import numba
-from numba.core import config, types
+from numba import types
+from numba.core import config
+from numba.core import types as numba_types
 from numba.core.caching import _Cache
 from numba.core.compiler import CompileResult
 from numba.core.compiler_lock import global_compiler_lock
@@ -26,8 +23,61 @@ from numba.core.registry import CPUDispatcher
 from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
 from numba.core.typing.templates import Signature
+from numba.experimental.function_type import _get_wrapper_address
 
 from seatrial.numerics.kernels.cache import cache_folder, discard_entry, read_entry, source_digest, write_entry
+
+# Kernel signatures, fixed for the project: one compiled integrator serves every model.
+
+F8 = types.float64
+I8 = types.int64
+VECTOR = types.Array(F8, 1, "C")
+MATRIX = types.Array(F8, 2, "C")
+CUBE = types.Array(F8, 3, "C")
+QUARTIC = types.Array(F8, 4, "C")
+INDEX = types.Array(I8, 1, "C")
+TABLE = types.Array(I8, 2, "C")
+
+# f(t, x, u, p, out): rates or outputs
+FUNCTION_SIGNATURE = types.void(F8, VECTOR, VECTOR, VECTOR, VECTOR)
+# f(t, x, u, p, out, jacobian): the same with its Jacobian, columns [x | u | p]
+TANGENT_SIGNATURE = types.void(F8, VECTOR, VECTOR, VECTOR, VECTOR, MATRIX)
+# command(t, x, memory, u): feedback, called once at the start of each step; writes u, may change memory
+COMMAND_SIGNATURE = types.void(F8, VECTOR, VECTOR, VECTOR)
+
+FUNCTION = types.FunctionType(FUNCTION_SIGNATURE)
+TANGENT = types.FunctionType(TANGENT_SIGNATURE)
+COMMAND = types.FunctionType(COMMAND_SIGNATURE)
+
+OPTIONS = {"nogil": True, "error_model": "numpy", "fastmath": {"contract"}}
+
+# kernels that allocate nothing take their scratch from the caller: without Numba's reference counting around every
+# call through a pointer a step costs half (measured)
+LEAN = {**OPTIONS, "_nrt": False}
+
+
+# A compiled function with its address looked up once: Numba's look-up at every call takes 20 us (measured).
+
+
+class TangentPointer(numba_types.WrapperAddressProtocol):
+    """The argument of kernels where a function with its Jacobian is wanted."""
+
+    _numba_type_ = TANGENT
+
+    def __init__(self, function: Callable[..., None]) -> None:
+        self.function = function  # kept, as the address lives no longer than its code
+        self._address = _get_wrapper_address(function, TANGENT_SIGNATURE)
+
+    def __wrapper_address__(self) -> int:
+        """Return the address of the compiled code."""
+        return self._address
+
+    def signature(self) -> Signature:
+        """Return the signature of every function with a Jacobian."""
+        return TANGENT_SIGNATURE
+
+
+# Compiled functions with one fixed signature, whose machine code is loaded from the compile cache at their first use.
 
 _PACKAGE = Path(__file__).parents[2]
 
@@ -102,7 +152,7 @@ class Kernel(CPUDispatcher):
 
     fixed: Signature
 
-    def compile(self, sig: Signature | tuple[types.Type, ...]) -> Any:
+    def compile(self, sig: Signature | tuple[numba_types.Type, ...]) -> Any:
         """Load or compile the one signature; every request of Numba for code comes through here.
 
         Raises:
@@ -123,8 +173,8 @@ class Kernel(CPUDispatcher):
         self.compile(self.fixed)
 
     @cached_property
-    def _numba_type_(self) -> types.Dispatcher:
-        return types.Dispatcher(self)
+    def _numba_type_(self) -> numba_types.Dispatcher:
+        return numba_types.Dispatcher(self)
 
     @cached_property
     def _result(self) -> CompileResult:
@@ -138,7 +188,7 @@ class Kernel(CPUDispatcher):
         """Return the one compilation there is; Numba looks it up by its types, at every call that passes a kernel."""
         return self._result
 
-    def get_function_type(self) -> types.FunctionType | None:
+    def get_function_type(self) -> numba_types.FunctionType | None:
         """Return its type as an argument of other kernels, which Numba knows of compiled functions only."""
         self.load()
         return super().get_function_type()

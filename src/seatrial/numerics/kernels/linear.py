@@ -9,8 +9,19 @@ import numpy as np
 from numba import njit, void
 
 from seatrial.numerics.kernels.integrate import DIVERGED
-from seatrial.numerics.kernels.kernel import kernel
-from seatrial.numerics.kernels.types import CUBE, I8, INDEX, LEAN, MATRIX, OPTIONS, QUARTIC, TABLE, TANGENT, VECTOR
+from seatrial.numerics.kernels.kernel import (
+    CUBE,
+    I8,
+    INDEX,
+    LEAN,
+    MATRIX,
+    OPTIONS,
+    QUARTIC,
+    TABLE,
+    TANGENT,
+    VECTOR,
+    kernel,
+)
 
 
 @kernel(void(TANGENT, I8, I8, INDEX, VECTOR, MATRIX, CUBE, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX), **LEAN)

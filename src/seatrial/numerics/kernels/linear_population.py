@@ -12,7 +12,7 @@ import math
 
 from numba import njit, void
 
-from seatrial.numerics.kernels.kernel import kernel
+from seatrial.numerics.kernels.kernel import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, VECTOR, kernel
 from seatrial.numerics.kernels.propagate import MAX_HALVINGS, SERIES_NORM, SERIES_TERMS
 from seatrial.numerics.kernels.simd import (
     LANES,
@@ -22,7 +22,6 @@ from seatrial.numerics.kernels.simd import (
     copy_where_greater,
     dot,
 )
-from seatrial.numerics.kernels.types import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, VECTOR
 
 
 @njit(inline="always", **OPTIONS)

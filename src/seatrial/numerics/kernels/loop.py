@@ -6,8 +6,7 @@ L(j omega_f) = sum_i k_i (re[i, f] + j im[i, f]). Loops over frequencies stand i
 import numpy as np
 from numba import void
 
-from seatrial.numerics.kernels.kernel import kernel
-from seatrial.numerics.kernels.types import F8, I8, MATRIX, OPTIONS, VECTOR
+from seatrial.numerics.kernels.kernel import F8, I8, MATRIX, OPTIONS, VECTOR, kernel
 
 # sums over frequencies may be taken in any order: four or eight at once
 _ANY_ORDER_SUMS = {**OPTIONS, "fastmath": {"contract", "reassoc", "nsz", "arcp"}}

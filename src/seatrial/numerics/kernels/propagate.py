@@ -11,8 +11,7 @@ import math
 import numpy as np
 from numba import njit, void
 
-from seatrial.numerics.kernels.kernel import kernel
-from seatrial.numerics.kernels.types import CUBE, F8, LEAN, MATRIX, OPTIONS, QUARTIC
+from seatrial.numerics.kernels.kernel import CUBE, F8, LEAN, MATRIX, OPTIONS, QUARTIC, kernel
 
 # norm to which A h is halved, terms of the series there (the next is 0.25^12 / 12! = 1e-16, rounding), and halvings
 # after which a matrix counts as too large; chosen

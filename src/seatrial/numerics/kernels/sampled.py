@@ -49,8 +49,7 @@ from seatrial.numerics.kernels.feedback import (
     clamp,
     effective_angle,
 )
-from seatrial.numerics.kernels.kernel import kernel
-from seatrial.numerics.kernels.types import COMMAND_SIGNATURE, LEAN, OPTIONS
+from seatrial.numerics.kernels.kernel import COMMAND_SIGNATURE, LEAN, OPTIONS, kernel
 
 # places of a block in the memory: order, gain, sign of what it holds, last output, and where its numbers begin
 BLOCK_ORDER, BLOCK_GAIN, BLOCK_HOLDS, BLOCK_LAST, BLOCK_HEAD = range(5)

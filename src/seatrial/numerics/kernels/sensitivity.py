@@ -10,9 +10,8 @@ import numpy as np
 from numba import njit, void
 
 from seatrial.numerics.kernels.integrate import DIVERGED, delayed_sample, effective_input
-from seatrial.numerics.kernels.kernel import kernel
+from seatrial.numerics.kernels.kernel import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, TABLE, TANGENT, VECTOR, kernel
 from seatrial.numerics.kernels.simd import LANES, add_multiple, aligned_scratch, gather_scaled
-from seatrial.numerics.kernels.types import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, TABLE, TANGENT, VECTOR
 
 OFFSET, GAIN, DELAY = 0, 1, 2
 # parts of the slots of a step, each with the columns of every state: sensitivities, then the rates of a stage, their

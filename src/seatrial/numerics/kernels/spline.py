@@ -3,8 +3,7 @@
 import numpy as np
 from numba import void
 
-from seatrial.numerics.kernels.kernel import kernel
-from seatrial.numerics.kernels.types import LEAN, MATRIX, VECTOR
+from seatrial.numerics.kernels.kernel import LEAN, MATRIX, VECTOR, kernel
 
 
 @kernel(void(MATRIX, MATRIX, VECTOR), **LEAN)

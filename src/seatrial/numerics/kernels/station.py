@@ -13,8 +13,7 @@ import math
 
 from numba import njit
 
-from seatrial.numerics.kernels.kernel import kernel
-from seatrial.numerics.kernels.types import COMMAND_SIGNATURE, LEAN
+from seatrial.numerics.kernels.kernel import COMMAND_SIGNATURE, LEAN, kernel
 
 # places in the memory
 (

@@ -4,8 +4,7 @@ import math
 
 from numba import types
 
-from seatrial.numerics.kernels.kernel import kernel
-from seatrial.numerics.kernels.types import F8, OPTIONS
+from seatrial.numerics.kernels.kernel import F8, OPTIONS, kernel
 
 _TWO_OVER_PI = 2.0 / math.pi
 # pi/2 in three parts, the first two of 33 bits, so that k times them is exact (Cody & Waite 1980, chapter 8)

@@ -1,14 +1,14 @@
 """Names of this package, imported when first used."""
 
-from seatrial.numerics.optimise.ask_tell import Box as Box, Optimiser as Optimiser, SearchError as SearchError
-from seatrial.numerics.optimise.ask_tell import fitness_function as fitness_function, search as search
+from seatrial.numerics.optimise.population import Box as Box, Optimiser as Optimiser, SearchError as SearchError
+from seatrial.numerics.optimise.population import fitness_function as fitness_function, search as search
 from seatrial.numerics.optimise.particle_swarm import CloudParticleSwarm as CloudParticleSwarm
 from seatrial.numerics.optimise.particle_swarm import CloudSettings as CloudSettings
 from seatrial.numerics.optimise.cma_es import AdaptationSettings as AdaptationSettings
 from seatrial.numerics.optimise.cma_es import CovarianceAdaptation as CovarianceAdaptation
 from seatrial.numerics.optimise.differential_evolution import DifferentialEvolution as DifferentialEvolution
 from seatrial.numerics.optimise.differential_evolution import EvolutionSettings as EvolutionSettings
-from seatrial.numerics.optimise.dominance import hypervolume as hypervolume, non_dominated as non_dominated
+from seatrial.numerics.optimise.population import hypervolume as hypervolume, non_dominated as non_dominated
 from seatrial.numerics.optimise.wild_horse import ImprovedHerdSettings as ImprovedHerdSettings
 from seatrial.numerics.optimise.wild_horse import ImprovedWildHorse as ImprovedWildHorse
 from seatrial.numerics.optimise.least_squares import LeastSquaresProblem as LeastSquaresProblem
@@ -28,6 +28,6 @@ from seatrial.numerics.optimise.random_weight_genetic import Normaliser as Norma
 from seatrial.numerics.optimise.random_weight_genetic import RandomWeightGenetic as RandomWeightGenetic
 from seatrial.numerics.optimise.random_weight_genetic import decode as decode, encode as encode
 from seatrial.numerics.optimise.random_weight_genetic import selection_probabilities as selection_probabilities
-from seatrial.numerics.optimise.solution import Solution as Solution, Status as Status
+from seatrial.numerics.optimise.least_squares import Solution as Solution, Status as Status
 from seatrial.numerics.optimise.wild_horse import HerdSettings as HerdSettings, StrideVariant as StrideVariant
 from seatrial.numerics.optimise.wild_horse import WildHorse as WildHorse

@@ -5,9 +5,8 @@ from math import floor, log
 
 import numpy as np
 
-from seatrial.numerics.optimise.ask_tell import Box, SearchError
-from seatrial.numerics.optimise.population import Population, reject_nonfinite_settings
-from seatrial.numerics.optimise.solution import Array, Status
+from seatrial.numerics.optimise.least_squares import Array, Status
+from seatrial.numerics.optimise.population import Box, Population, SearchError, reject_nonfinite_settings
 
 
 @dataclass(frozen=True)

@@ -4,9 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from seatrial.numerics.optimise.ask_tell import Box, SearchError
-from seatrial.numerics.optimise.population import FitnessMemory, Population, reject_nonfinite_settings
-from seatrial.numerics.optimise.solution import Array
+from seatrial.numerics.optimise.least_squares import Array
+from seatrial.numerics.optimise.population import Box, FitnessMemory, Population, SearchError, reject_nonfinite_settings
 
 
 @dataclass(frozen=True)

@@ -1,16 +1,53 @@
-"""Levenberg-Marquardt for least squares with shared and local unknowns, bounds on the shared ones.
-
-Local unknowns (initial states of segments) touch one block of residuals each and are eliminated block by block
-(Schur complement; Golub & Pereyra 2003, section 5). Damping after Nielsen 1999 (IMM-REP-1999-05), eq. (2.4).
-"""
+"""Levenberg-Marquardt with shared and local unknowns, and the solution that every optimiser returns."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from enum import StrEnum
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
-from seatrial.numerics.optimise.solution import Array, Solution, Status
+# What an optimiser found.
+
+Array = NDArray[np.float64]
+
+
+class Status(StrEnum):
+    """How a search ended; the text says what to do next."""
+
+    CONVERGED = "converged: no smaller residual within rounding"
+    STALLED = "stalled: no step lowers the residual; check the model, or start elsewhere"
+    EXHAUSTED = "stopped at the evaluation limit; raise it, or look at the history for slow directions"
+    FAILED = "the residual could not be evaluated at the start; check start values and records"
+
+    @property
+    def is_success(self) -> bool:
+        """Whether the point can be used."""
+        return self is Status.CONVERGED
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """A point, its value (half the sum of squared residuals, or an objective) and how it was reached.
+
+    Attributes:
+        point: shape (n,), physical units.
+        value: objective at the point.
+        evaluations: number of objective evaluations.
+        history: best value after each iteration.
+        seed: of the search, where it draws at random.
+    """
+
+    point: Array
+    value: float
+    status: Status
+    evaluations: int
+    history: tuple[float, ...] = ()
+    seed: int | None = None
+
+
+# Levenberg-Marquardt for least squares with shared and local unknowns, bounds on the shared ones.
 
 # where no step lowers the cost: promises this small, against the cost and against the first cost, are rounding
 _ROUNDING = 1e-8

@@ -5,10 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from seatrial.numerics.optimise.ask_tell import Box, SearchError
-from seatrial.numerics.optimise.least_squares import LeastSquaresProblem, Optimum, levenberg_marquardt
-from seatrial.numerics.optimise.population import integer_seed
-from seatrial.numerics.optimise.solution import Array, Solution
+from seatrial.numerics.optimise.least_squares import Array, LeastSquaresProblem, Optimum, Solution, levenberg_marquardt
+from seatrial.numerics.optimise.population import Box, SearchError, integer_seed
 
 
 @dataclass(frozen=True)

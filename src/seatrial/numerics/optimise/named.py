@@ -6,10 +6,10 @@ from types import MappingProxyType
 import numpy as np
 
 from seatrial._plugins import installed, load_plugin
-from seatrial.numerics.optimise.ask_tell import Box, Optimiser, SearchError
 from seatrial.numerics.optimise.cma_es import CovarianceAdaptation
 from seatrial.numerics.optimise.differential_evolution import DifferentialEvolution
 from seatrial.numerics.optimise.particle_swarm import CloudParticleSwarm, ParticleSwarm
+from seatrial.numerics.optimise.population import Box, Optimiser, SearchError
 from seatrial.numerics.optimise.wild_horse import ImprovedWildHorse, WildHorse
 
 ENTRY_POINT_GROUP = "seatrial.optimisers"

@@ -1,18 +1,170 @@
-"""What the population optimisers share: the order of ask and tell, what is refused, the record of the best."""
+"""What population optimisers share: the protocol of ask and tell, the record of the best, dominance."""
 
 from abc import ABC, abstractmethod
-from dataclasses import fields
+from collections.abc import Callable
+from dataclasses import dataclass, fields
 from enum import Enum
 from math import isfinite
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
-from seatrial.numerics.optimise.ask_tell import Box, SearchError
-from seatrial.numerics.optimise.solution import Array, Status
+from seatrial.numerics.optimise.least_squares import Array, LeastSquaresProblem, Solution, Status
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
+
+
+# The protocol of every population optimiser: `ask` gives points of a box, `tell` takes their fitness.
+
+
+class SearchError(ValueError):
+    """Input a search cannot run with, in one sentence; callers add where it came from."""
+
+
+@dataclass(frozen=True, eq=False)
+class Box:
+    """Bounds of a search, shapes (d,), in whatever unit the fitness takes.
+
+    Raises:
+        SearchError: bounds that are not finite, not of one shape, not in order, or too far apart for a number.
+    """
+
+    lower: Array
+    upper: Array
+
+    def __post_init__(self) -> None:
+        lower, upper = (np.array(bound, dtype=np.float64, ndmin=1) for bound in (self.lower, self.upper))
+        if lower.ndim != 1 or lower.shape != upper.shape or not lower.size:
+            raise SearchError(f"Bounds need one shape (d,), but they have {lower.shape} and {upper.shape}.")
+        with np.errstate(over="ignore", invalid="ignore"):
+            wrong = np.flatnonzero(~(np.isfinite(lower) & np.isfinite(upper - lower) & (lower < upper)))
+        if wrong.size:
+            low, high = lower[wrong[0]], upper[wrong[0]]
+            raise SearchError(
+                f"Bound {wrong[0]} runs from {low} to {high}; give two numbers a finite way apart, the smaller first."
+            )
+        for name, bound in (("lower", lower), ("upper", upper)):
+            bound.flags.writeable = False
+            object.__setattr__(self, name, bound)
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+        return len(self.lower)
+
+    @property
+    def width(self) -> Array:
+        """Upper minus lower bound, shape (d,)."""
+        return self.upper - self.lower
+
+    def scaled(self, unit: Array) -> Array:
+        """Return points of the unit box, shape (..., d), in this one."""
+        return np.clip(self.lower + unit * self.width, self.lower, self.upper)
+
+    def random_points(self, generator: np.random.Generator, count: int) -> Array:
+        """Return points drawn uniformly, shape (count, d)."""
+        return self.scaled(generator.random((count, self.size)))
+
+
+class Optimiser(Protocol):
+    """What a search asks of an optimiser.
+
+    Attributes:
+        done: whether its iterations are spent, or nothing is left to improve.
+        best: the point it would return now, shape (d,), and its fitness.
+        history: fitness of `best` after each iteration.
+        trace: `best` after each iteration, shape (iterations, d).
+        status: how it stands, for the solution.
+        seed: of its generator, where that is one whole number.
+    """
+
+    def ask(self) -> Array:
+        """Return points to evaluate next, shape (n, d), inside the box; the same until `tell` is called."""
+        ...
+
+    def tell(self, fitness: Array) -> None:
+        """Take the fitness of the points asked about, shape (n,)."""
+        ...
+
+    @property
+    def done(self) -> bool: ...
+
+    @property
+    def best(self) -> tuple[Array, float]: ...
+
+    @property
+    def history(self) -> tuple[float, ...]: ...
+
+    @property
+    def trace(self) -> Array: ...
+
+    @property
+    def status(self) -> Status: ...
+
+    @property
+    def seed(self) -> int | None: ...
+
+
+def search(
+    optimiser: Optimiser, fitness: Callable[[Array], Array], report_progress: Callable[[int, float], None] | None = None
+) -> Solution:
+    """Ask and tell until the optimiser is done; `fitness` takes (n, d) and gives (n,).
+
+    `progress` is called after each iteration with the number of evaluations and the best fitness.
+
+    Raises:
+        SearchError: a fitness that is NaN or has another shape.
+    """
+    evaluations = 0
+    while not optimiser.done:
+        points = optimiser.ask()
+        optimiser.tell(fitness(points))
+        evaluations += len(points)
+        if report_progress:
+            report_progress(evaluations, optimiser.best[1])
+    point, value = optimiser.best
+    status = optimiser.status if np.isfinite(value) else Status.FAILED
+    return Solution(point, value, status, evaluations, optimiser.history, optimiser.seed)
+
+
+def fitness_function(problem: LeastSquaresProblem, local_unknowns: Array | None = None) -> Callable[[Array], Array]:
+    """Return half the sum of squares of a least-squares problem at each row, local unknowns (s, m) held where given."""
+    held = np.zeros((0, 0)) if local_unknowns is None else local_unknowns
+
+    def fitness(points: Array) -> Array:
+        return np.array([problem.cost(point, held) for point in points])
+
+    return fitness
+
+
+# Which points of several objectives no other point beats, and how much they beat together.
+
+
+def non_dominated(objectives: Array) -> NDArray[np.intp]:
+    """Return rows no other row is as small as in every objective and smaller in one, shape (k,), in rising order.
+
+    `objectives` has the shape (n, m), each to be made small; a row with infinity or NaN takes no part, and of equal
+    rows the first stands for all.
+    """
+    from moocore import is_nondominated
+
+    finite = np.flatnonzero(np.isfinite(objectives).all(axis=1))
+    if not finite.size:
+        return finite
+    kept = finite[np.asarray(is_nondominated(objectives[finite], keep_weakly=False), dtype=bool)]
+    return kept[np.lexsort(objectives[kept].T[::-1])]
+
+
+def hypervolume(objectives: Array, reference: Array) -> float:
+    """Return the volume that the points (n, m) dominate within the reference point (m,)."""
+    from moocore import hypervolume as volume
+
+    return float(volume(objectives, ref=reference))
+
+
+# What the population optimisers share: the order of ask and tell, what is refused, the record of the best.
 
 
 class FitnessMemory(Enum):

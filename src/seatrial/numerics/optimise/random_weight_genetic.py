@@ -7,10 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatrial.numerics.kernels.breeding import breed, decode_codes, exchange_tails, selection_shares, spin
-from seatrial.numerics.optimise.ask_tell import Box, SearchError
-from seatrial.numerics.optimise.dominance import non_dominated
-from seatrial.numerics.optimise.population import Population, reject_nonfinite_settings
-from seatrial.numerics.optimise.solution import Array
+from seatrial.numerics.optimise.least_squares import Array
+from seatrial.numerics.optimise.population import Box, Population, SearchError, non_dominated, reject_nonfinite_settings
 
 Bits = NDArray[np.uint8]  # 0 and 1
 MOST_BITS = 52  # mantissa bits of a double

@@ -16,10 +16,14 @@ import numpy as np
 
 from seatrial.core.values import Array, InputError, spelling_hint
 from seatrial.core.values.files import is_file
-from seatrial.physics.hydro.dispersion import wavenumber
-from seatrial.physics.hydro.excitation import Complex, checked_waves
-from seatrial.physics.hydro.strip_theory import coefficients_at_speed, excitation_at_speed
-from seatrial.physics.hydro.tabulated import WaveTable, interpolated, refuse_outside
+from seatrial.physics.hydro.excitation import Complex, checked_waves, wavenumber
+from seatrial.physics.hydro.tabulated import (
+    WaveTable,
+    coefficients_at_speed,
+    excitation_at_speed,
+    interpolated,
+    refuse_outside,
+)
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from seatrial.core.values import Array
-from seatrial.physics.hydro.dispersion import G
+from seatrial.physics.hydro.excitation import G
 
 _POINTS = 32  # points of the trapezoidal rule on a period; chosen
 

@@ -15,8 +15,7 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from seatrial.core.values import Array, InputError, Parameter, Parameters
-from seatrial.physics.loops.block import Block
-from seatrial.physics.loops.loop import Term, TransferLoop
+from seatrial.physics.loops.loop import Block, Term, TransferLoop
 
 FOSSEN = "pole placement, Fossen 2021, section 15.3"
 DAMPING_RATIO = 0.8  # of the closed loop, Fossen 2021, section 15.3

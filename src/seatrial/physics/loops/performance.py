@@ -14,11 +14,10 @@ import numpy as np
 
 from seatrial.core.values import Array, InputError
 from seatrial.numerics.kernels.loop import evaluate_loops, variance_gradients
-from seatrial.physics.loops.encounter_spectrum import EncounterSpectrum, disturbance_spectrum
+from seatrial.physics.loops.encounter_spectrum import EncounterSpectrum, disturbance_spectrum, nodes
 from seatrial.physics.loops.loop import TransferLoop
 from seatrial.physics.loops.margins import frequency_band
 from seatrial.physics.loops.objective import LoopSignal, Objective, WeightedVariance
-from seatrial.physics.loops.quadrature import nodes
 
 _ORDER = (LoopSignal.OUTPUT, LoopSignal.ACTUATOR, LoopSignal.POINT)
 _MS_SAMPLES = 192  # frequencies that the peak of |S| is bracketed on; chosen

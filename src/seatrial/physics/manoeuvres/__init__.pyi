@@ -3,7 +3,7 @@
 from seatrial.physics.manoeuvres.imo import ImoCriterion as ImoCriterion, imo_criteria as imo_criteria
 from seatrial.physics.manoeuvres.measures import measures as measures
 from seatrial.physics.manoeuvres.programme import programme as programme
-from seatrial.physics.manoeuvres.ranges import bounded_interval as bounded_interval
+from seatrial.physics.manoeuvres.measures import bounded_interval as bounded_interval
 from seatrial.physics.manoeuvres.recognition import (
     REACH_PERCENTILE as REACH_PERCENTILE,
     ManoeuvreKind as ManoeuvreKind,
@@ -11,7 +11,7 @@ from seatrial.physics.manoeuvres.recognition import (
     recognise_manoeuvre as recognise_manoeuvre,
     to_starboard as to_starboard,
 )
-from seatrial.physics.manoeuvres.steered_orders import (
+from seatrial.physics.manoeuvres.recognition import (
     SteeredOrders as SteeredOrders,
     initial_speed as initial_speed,
     ordered_degrees as ordered_degrees,

@@ -1,22 +1,194 @@
-"""Measures of a manoeuvre as IMO and ITTC define them, from a measured or a simulated record alike.
+"""Measures of a manoeuvre as IMO and ITTC define them, from a measured or a simulated record alike."""
 
-IMO MSC.137(76) and MSC/Circ.1053 (2002); ITTC 7.5-02-06-01 (free running model tests); ISO 13643-3:2017.
-"""
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
-from seatrial.core.values import InputError, Record
-from seatrial.physics.manoeuvres.own_motion import own_motion
-from seatrial.physics.manoeuvres.recognition import ManoeuvreKind, ObservedManoeuvre
-from seatrial.physics.manoeuvres.release import roll_measures
-from seatrial.physics.manoeuvres.thrust_measures import commands_of, thrust_measures
+from seatrial.core.values import Array, Index, InputError, Record
+from seatrial.physics.manoeuvres.programme import roll_measures
+from seatrial.physics.manoeuvres.recognition import ManoeuvreKind, ObservedManoeuvre, own_motion
 from seatrial.physics.manoeuvres.track import Swing, mean_between, peak, speed, steady_turning
+
+# Values that a measure can take, and intervals that stay among them.
+
+UNDETERMINED_FACTOR = 5.0
+"""An interval from a fifth to five times the value says nothing: the measure is not determined; chosen."""
+LARGEST_DRIFT = 90.0  # deg; beyond it the craft goes astern, which no steady turn ahead does
+
+
+@dataclass(frozen=True)
+class _Scale:
+    """A scale on which a measure has no limits: `to` it, `back` from it, and its `slope` d(scale)/d(measure)."""
+
+    to: Callable[[float], float]
+    back: Callable[[float], float]
+    slope: Callable[[float], float]
+
+
+_LOGARITHM = _Scale(math.log, math.exp, lambda value: 1.0 / value)  # of what is positive
+_RETAINED_SHARE = _Scale(  # of a share lost, which is below one: the logarithm of the share that is left
+    lambda value: math.log1p(-value), lambda scaled: -math.expm1(scaled), lambda value: 1.0 / (1.0 - value)
+)
+_DRIFT = _Scale(  # of an angle between -90 and 90 deg
+    lambda value: math.atanh(value / LARGEST_DRIFT),
+    lambda scaled: LARGEST_DRIFT * math.tanh(scaled),
+    lambda value: LARGEST_DRIFT / (LARGEST_DRIFT**2 - value**2),
+)
+
+
+def bounded_interval(name: str, value: float, half_width: float) -> tuple[float, float] | None:
+    """Return the interval of a measure within the values it can take, by the delta method on a scale without limits.
+
+    Lengths, times, speeds and rudder angles are positive, as are overshoots and steady yaw rates; a share lost is below
+    one, a drift angle within 90 deg. What is narrow stays symmetric about its value.
+
+    Args:
+        half_width: of the symmetric interval, in the unit of the measure.
+
+    Returns:
+        None where the measure is not determined: the interval would reach a fifth or five times the value, or all
+        drift angles; or the value itself is none that the measure can take.
+    """
+    scale = _scale_of(name)
+    if scale is None:
+        return value - half_width, value + half_width
+    try:
+        centre, half = scale.to(value), half_width * scale.slope(value)
+    except (ValueError, ZeroDivisionError):
+        return None
+    if not half <= math.log(UNDETERMINED_FACTOR):
+        return None
+    ends = (scale.back(centre - half), scale.back(centre + half))
+    return min(ends), max(ends)
+
+
+def _scale_of(name: str) -> _Scale | None:
+    """None: the measure has no limits (transfer, residual yaw rate)."""
+    if name == "speed_loss":
+        return _RETAINED_SHARE
+    if name == "steady_drift_deg":
+        return _DRIFT
+    if name in _UNLIMITED:
+        return None
+    return _LOGARITHM
+
+
+_UNLIMITED = frozenset({"transfer_L", "residual_yaw_rate_deg_s"})
+
+
+# Measures of runs of craft with thrusters, read from commands and motion alone: speed, turn rate, stop, overshoots.
+
+_FULL_TURN = float(np.radians(360.0))
+_RISE = 1.0 - float(np.exp(-1.0))  # of a step that a first-order lag has reached after its time constant
+_MOVED = 1e-6  # share of a command's range by which it has changed; chosen
+_LAST_SHARE = 0.25  # of a spin, over which its rate is taken; chosen
+
+
+def commands_of(record: Record) -> tuple[str, ...]:
+    """Return the record's channels that command thrusters."""
+    return tuple(name for name in record.channels if name.split("_")[0] in ("command", "rpm") and name[-1].isdigit())
+
+
+def thrust_measures(record: Record) -> dict[str, float]:
+    """Return measures of the manoeuvre that a record of a craft with thrusters shows, by name.
+
+    Spin (commands held, more than a turn): ``steady_yaw_rate_deg_s``, ``time_360_s``, ``time_constant_s`` to 63 % of
+    the rate. Straight run (commands held):
+    ``steady_speed`` [m/s], ``time_constant_s`` to 63 % of it. Stop (the speed falls through zero behind a change of
+    commands): ``approach_speed`` [m/s], ``stopping_distance_m``, ``stopping_time_s``. Zigzag (two changes and more,
+    between the same two commands): ``approach_speed``, ``overshoot_1_deg`` and so on, ``period_s``. Commands that
+    change otherwise are no manoeuvre: no measures.
+
+    Raises:
+        InputError: heading or surge speed is missing.
+    """
+    for name in ("psi", "u"):
+        if name not in record:
+            raise InputError(f"record '{record.name}' has no '{name}', which measures of a craft with thrusters need")
+    psi, executes = np.unwrap(record["psi"]), _changes(record)
+    if len(executes) == 0:
+        return _spin(record.time, psi) if abs(psi[-1] - psi[0]) > _FULL_TURN else _straight(record)
+    if len(executes) == 1:
+        return _stop(record, int(executes[0]))
+    if not _alternates(record, executes):
+        return {}
+    return {"approach_speed": float(record["u"][executes[0]])} | _overshoots(record.time, psi, executes)
+
+
+def _changes(record: Record) -> Index:
+    """Rows at which commands change, each change once."""
+    values = np.stack([record[name] for name in commands_of(record)], axis=1)
+    moved = np.any(np.abs(np.diff(values, axis=0)) > _MOVED * np.maximum(np.ptp(values, axis=0), _MOVED), axis=1)
+    rows = np.flatnonzero(moved)
+    return rows[np.diff(rows, prepend=-2) > 1] if len(rows) else rows
+
+
+def _alternates(record: Record, executes: Index) -> bool:
+    """Whether commands after the first change alternate between two settings."""
+    values = np.stack([record[name] for name in commands_of(record)], axis=1)
+    held = values[[*executes[1:], len(values) - 1]]  # the last sample of what each change ordered
+    near = _MOVED * np.maximum(np.ptp(values, axis=0), _MOVED)
+    return bool(np.all(np.abs(held[2:] - held[:-2]) <= near))
+
+
+def _spin(time: Array, psi: Array) -> dict[str, float]:
+    last = time >= time[-1] - _LAST_SHARE * (time[-1] - time[0])
+    turned = np.abs(psi - psi[0])
+    rate = abs(np.polyfit(time[last], psi[last], 1)[0])
+    speed = np.maximum.accumulate(np.gradient(turned, time))
+    return {
+        "steady_yaw_rate_deg_s": float(np.degrees(rate)),
+        "time_360_s": float(np.interp(_FULL_TURN, turned, time) - time[0]),
+        "time_constant_s": float(np.interp(_RISE * rate, speed, time) - time[0]),
+    }
+
+
+def _straight(record: Record) -> dict[str, float]:
+    u = record["u"]
+    steady = float(u[-1])
+    if steady == u[0]:
+        return {"steady_speed": steady}
+    rising = np.maximum.accumulate((u - u[0]) / (steady - u[0]))
+    return {"steady_speed": steady, "time_constant_s": float(np.interp(_RISE, rising, record.time) - record.time[0])}
+
+
+def _stop(record: Record, row: int) -> dict[str, float]:
+    u, time = record["u"][row:], record.time[row:]
+    approach = {"approach_speed": float(u[0])}
+    ended = np.flatnonzero(u * np.sign(u[0]) <= 0.0)
+    if not len(ended) or u[0] == 0.0:
+        return approach
+    k = int(ended[0])
+    share = u[k - 1] / (u[k - 1] - u[k])
+    stopped = time[k - 1] + share * (time[k] - time[k - 1])
+    speeds, times = np.append(u[:k], 0.0), np.append(time[:k], stopped)
+    distance = np.sum(0.5 * (speeds[1:] + speeds[:-1]) * np.diff(times))
+    return approach | {"stopping_distance_m": float(abs(distance)), "stopping_time_s": float(stopped - time[0])}
+
+
+def _overshoots(time: Array, psi: Array, executes: Index) -> dict[str, float]:
+    """Overshoot k: how far the heading goes on behind execute k + 1; none where it does not turn back."""
+    ends, measures, peaks = [*executes[2:], len(psi) - 1], {}, []
+    for k, (execute, end) in enumerate(zip(executes[1:], ends, strict=True), start=1):
+        side = np.sign(psi[execute] - psi[executes[k - 1]])
+        extreme = peak(time, side * (psi - psi[execute]), float(time[execute]), float(time[end]))
+        if extreme is not None:
+            measures[f"overshoot_{k}_deg"] = float(np.degrees(extreme[1]))
+            peaks.append(extreme[0])
+    periods = [2.0 * (b - a) for a, b in pairwise(peaks)]
+    return measures | ({"period_s": float(np.mean(periods))} if periods else {})
+
+
+# Measures of a manoeuvre as IMO and ITTC define them, from a measured or a simulated record alike.
 
 QUARTER_TURN, HALF_TURN = float(np.radians(90.0)), float(np.radians(180.0))
 INITIAL_TURN = float(np.radians(10.0))
 ORDERED_MEASURE = "rudder_deg"
 """The measure that is the order itself: no simulation predicts it."""
-_LAST_SHARE = 0.1  # of the time amidships, over which the residual rate is taken; chosen
+_RESIDUAL_SHARE = 0.1  # of the time amidships, over which the residual rate is taken; chosen
 
 
 def measures(
@@ -158,6 +330,6 @@ def _pull_out_measures(manoeuvre: ObservedManoeuvre) -> dict[str, float]:
     swing = Swing(manoeuvre, execute, float(np.sign(hold.angle)))
     made = _approach_measures(manoeuvre, swing, hold.angle)
     released, stop = float(manoeuvre.record.time[hold.last - 1]), float(manoeuvre.record.time[-1])
-    last = stop - _LAST_SHARE * (stop - released)
+    last = stop - _RESIDUAL_SHARE * (stop - released)
     rate = swing.side * (manoeuvre.psi_at(stop) - manoeuvre.psi_at(last)) / (stop - last)
     return {**made, "residual_yaw_rate_deg_s": float(np.degrees(rate))}

@@ -1,12 +1,172 @@
 """Programmes of manoeuvres: from a text such as ``zigzag:20/10:port`` to a compiled helmsman and his memory."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from seatrial.core.values import Array, InputError
-from seatrial.physics.manoeuvres import helmsman
-from seatrial.physics.manoeuvres.helmsman import Steering
+import numpy as np
+from numba import njit
+
+from seatrial.core.values import Array, InputError, Record
+from seatrial.numerics.kernels.kernel import COMMAND_SIGNATURE, OPTIONS, kernel
+from seatrial.physics.hydro.free_roll import swing_extremes
+
+# Helmsmen, and what they know of the ship they steer: compiled commands that work through a table.
+
+# positions in the memory
+PSI, R, DELTA, SIGN, SLEW, DT, APPROACH, COURSE, ANGLE, FINISHED, STAGE, STAGE_START, COUNT, TABLE = range(14)
+NOT_FINISHED = -1.0
+REGISTER_BITS, _ONES = 9, 5  # of the shift register: 511 switching times a period; ones at its start; chosen
+
+
+@dataclass(frozen=True)
+class Steering:
+    """Where a helmsman finds heading and rudder in a model, and how fast the rudder moves.
+
+    Attributes:
+        psi, r: places of heading and yaw rate among the states; r is -1 where there is none.
+        delta: place of the rudder among the inputs.
+        sign: +1 where a positive input turns to starboard, -1 where it turns to port.
+        slew_rate: rad/s.
+        dt: step of the simulation [s].
+        approach: s before the first execute.
+        characteristic_time: L/U0 [s], the time in which the ship travels its length.
+    """
+
+    psi: int
+    r: int
+    delta: int
+    sign: float
+    slew_rate: float
+    dt: float
+    approach: float
+    characteristic_time: float
+
+    def memory(self, count: int, table: Sequence[float]) -> Array:
+        """Return the helmsman's initial memory, shape (TABLE + len(table),): `count` stages, described in `table`."""
+        head = np.zeros(TABLE)
+        head[[PSI, R, DELTA, SIGN, SLEW]] = self.psi, self.r, self.delta, self.sign, self.slew_rate * self.dt
+        head[[DT, APPROACH, FINISHED, COUNT]] = self.dt, self.approach, NOT_FINISHED, count
+        return np.concatenate([head, np.asarray(table, dtype=np.float64)])
+
+
+@njit(**OPTIONS)
+def turn_rudder(memory, order, u):
+    """Move the rudder towards `order` [rad, positive to starboard] by at most one step of the slew rate."""
+    before = memory[ANGLE]
+    step = min(max(order - before, -memory[SLEW]), memory[SLEW])
+    memory[ANGLE] = before + step
+    u[int(memory[DELTA])] = memory[SIGN] * (before + 0.5 * step)
+
+
+@njit(**OPTIONS)
+def is_past_approach(t, x, memory):
+    """Return whether the approach is over; the heading of that moment becomes the original course."""
+    if memory[STAGE] == 0.0:
+        if t < memory[APPROACH] - 0.5 * memory[DT]:
+            return False
+        memory[COURSE], memory[STAGE], memory[STAGE_START] = x[int(memory[PSI])], 1.0, t
+    return True
+
+
+@njit(**OPTIONS)
+def heading_deviation(x, memory):
+    """Return the heading off the course [rad] half a step ahead, so that executes are not late on average."""
+    place = int(memory[R])
+    lead = 0.5 * memory[DT] * x[place] if place >= 0 else 0.0
+    return x[int(memory[PSI])] + lead - memory[COURSE]
+
+
+@njit(**OPTIONS)
+def next_stage(t, memory):
+    """Go to the next stage; after the last one note the time and stay."""
+    if memory[FINISHED] >= 0.0:
+        return
+    if memory[STAGE] >= memory[COUNT]:
+        memory[FINISHED] = t
+    else:
+        memory[STAGE] += 1.0
+        memory[STAGE_START] = t
+
+
+def rudder_angles(step_means: Array) -> Array:
+    """Rudder angle at the samples, shape (n,), from the step means a helmsman wrote, shape (n,); amidships at first."""
+    signs = np.where(np.arange(len(step_means)) % 2, 1.0, -1.0)
+    angles = np.zeros(len(step_means))
+    angles[1:] = np.cumsum(2.0 * signs[:-1] * step_means[:-1]) * signs[:-1]
+    return np.round(angles, 14) + 0.0  # 14 decimals: rounding of the sums
+
+
+@kernel(COMMAND_SIGNATURE, **OPTIONS)
+def turning(t, x, memory, u):
+    """Hold the rudder over until the heading has changed by so much.
+
+    Table: rudder order, heading change that ends the turn [rad, both positive to starboard]. A second stage puts the
+    rudder amidships for as long as the turn has taken.
+    """
+    order = 0.0
+    if is_past_approach(t, x, memory):
+        if memory[STAGE] == 1.0:
+            over = heading_deviation(x, memory) / memory[TABLE + 1] >= 1.0
+        else:
+            over = t - memory[STAGE_START] >= memory[STAGE_START] - memory[APPROACH]
+        if over:
+            next_stage(t, memory)
+        order = memory[TABLE] if memory[STAGE] == 1.0 else 0.0
+    turn_rudder(memory, order, u)
+
+
+@kernel(COMMAND_SIGNATURE, **OPTIONS)
+def zigzag(t, x, memory, u):
+    """Reverse the rudder when the heading has deviated by the switching heading.
+
+    Table: order and switching heading [rad, positive to starboard] of every execute.
+    """
+    order = 0.0
+    if is_past_approach(t, x, memory):
+        place = TABLE + 2 * (int(memory[STAGE]) - 1)
+        switching = memory[place + 1]
+        if heading_deviation(x, memory) * np.sign(switching) >= abs(switching):
+            next_stage(t, memory)
+        order = memory[TABLE + 2 * (int(memory[STAGE]) - 1)]
+    turn_rudder(memory, order, u)
+
+
+def zigzag_table(executes: list[tuple[float, float]], side: int) -> tuple[float, ...]:
+    """Return orders and switching headings [rad] of executes given as (rudder, heading) [deg]; the first to `side`."""
+    signs = [side * (1 - 2 * (k % 2)) for k in range(len(executes))]
+    return tuple(s * float(np.radians(a)) for s, pair in zip(signs, executes, strict=True) for a in pair)
+
+
+@kernel(COMMAND_SIGNATURE, **OPTIONS)
+def timetable(t, x, memory, u):
+    """Hold each order for the same time. Table: that time [s], the orders [rad, positive to starboard]."""
+    order = 0.0
+    if is_past_approach(t, x, memory):
+        if t - memory[STAGE_START] >= memory[TABLE] - 0.5 * memory[DT]:
+            next_stage(t, memory)
+        order = memory[TABLE + int(memory[STAGE])]
+    turn_rudder(memory, order, u)
+
+
+def spiral_steps(largest: float, side: int) -> tuple[float, ...]:
+    """Return rudder orders [rad] from `largest` [deg] through amidships to the other side and back (direct spiral)."""
+    # deg, steps of the direct spiral, closer near amidships; chosen
+    inner = [a for a in (25.0, 20.0, 15.0, 10.0, 5.0, 3.0, 1.0) if a < largest]
+    down = [largest, *inner, 0.0, *(-a for a in reversed(inner)), -largest]
+    return tuple(side * float(np.radians(a)) for a in (*down, *down[-2::-1]))
+
+
+def binary_sequence(amplitude: float, seed: int) -> tuple[float, ...]:
+    """Rudder orders [rad] of one period of a maximum length sequence, 2^9 - 1 switching times; the seed shifts it."""
+    from scipy.signal import max_len_seq
+
+    state = np.random.default_rng(seed).permutation([1] * _ONES + [0] * (REGISTER_BITS - _ONES))
+    bits = max_len_seq(REGISTER_BITS, state=state)[0]
+    return tuple(float(a) for a in np.radians(amplitude) * (2.0 * bits - 1.0))
+
+
+# Programmes of manoeuvres: from a text such as ``zigzag:20/10:port`` to a compiled helmsman and his memory.
 
 SIDES = {"starboard": 1, "port": -1}
 ZIGZAG_EXECUTES = 5  # executes of a zigzag where none are given: two overshoots each side; chosen
@@ -97,16 +257,16 @@ def _consecutive_zigzags(text: str, fields: list[str]) -> Programme:
 
 
 def _zigzag_programme(text: str, kind: str, executes: list[tuple[float, float]], side: int) -> Programme:
-    table, count = helmsman.zigzag_table(executes, side), len(executes)
+    table, count = zigzag_table(executes, side), len(executes)
     longest = LENGTHS_PER_EXECUTE * count
-    return Programme(text, kind, helmsman.zigzag, lambda steering: steering.memory(count, table), longest)
+    return Programme(text, kind, zigzag, lambda steering: steering.memory(count, table), longest)
 
 
 def _turning_circle(text: str, fields: list[str]) -> Programme:
     side, fields = _split_side(fields)
     _refuse_extra_fields(fields, 1)
     table = side * math.radians(_angle(fields[0])), side * math.radians(TURNING_CIRCLE_TURN)
-    return Programme(text, "turning-circle", helmsman.turning, lambda ship: ship.memory(1, table), _CIRCLE_LENGTHS)
+    return Programme(text, "turning-circle", turning, lambda ship: ship.memory(1, table), _CIRCLE_LENGTHS)
 
 
 def _pull_out(text: str, fields: list[str]) -> Programme:
@@ -114,18 +274,18 @@ def _pull_out(text: str, fields: list[str]) -> Programme:
     _refuse_extra_fields(fields, 1)
     rudder = _angle(fields[0]) if fields else _RUDDER
     table = side * math.radians(rudder), side * math.radians(PULL_OUT_TURN)
-    return Programme(text, "pull-out", helmsman.turning, lambda ship: ship.memory(2, table), _PULL_OUT_LENGTHS)
+    return Programme(text, "pull-out", turning, lambda ship: ship.memory(2, table), _PULL_OUT_LENGTHS)
 
 
 def _spiral(text: str, fields: list[str]) -> Programme:
     side, fields = _split_side(fields)
     _refuse_extra_fields(fields, 1)
-    steps = helmsman.spiral_steps(_angle(fields[0]) if fields else _SPIRAL_RUDDER, side)
+    steps = spiral_steps(_angle(fields[0]) if fields else _SPIRAL_RUDDER, side)
 
     def memory(steering: Steering) -> Array:
         return steering.memory(len(steps), (SPIRAL_HOLD_LENGTHS * steering.characteristic_time, *steps))
 
-    return Programme(text, "spiral", helmsman.timetable, memory, SPIRAL_HOLD_LENGTHS * len(steps) + 10.0)
+    return Programme(text, "spiral", timetable, memory, SPIRAL_HOLD_LENGTHS * len(steps) + 10.0)
 
 
 def _prbs(text: str, fields: list[str]) -> Programme:
@@ -135,12 +295,12 @@ def _prbs(text: str, fields: list[str]) -> Programme:
     hold = float(fields[1]) if stated else 0.0
     if stated and not (math.isfinite(hold) and hold > 0.0):
         raise InputError(f"the switching time {fields[1]} s is not positive")
-    steps = helmsman.binary_sequence(amplitude, int(fields[2]) if len(fields) > 2 else 0)
+    steps = binary_sequence(amplitude, int(fields[2]) if len(fields) > 2 else 0)
 
     def memory(steering: Steering) -> Array:
         return steering.memory(len(steps), (hold or steering.characteristic_time, *steps))
 
-    return Programme(text, "prbs", helmsman.timetable, memory, _PRBS_LENGTHS)
+    return Programme(text, "prbs", timetable, memory, _PRBS_LENGTHS)
 
 
 _KINDS: dict[str, tuple[Callable[[str, list[str]], Programme], str]] = {
@@ -151,3 +311,49 @@ _KINDS: dict[str, tuple[Callable[[str, list[str]], Programme], str]] = {
     "spiral": (_spiral, "spiral:25"),
     "prbs": (_prbs, "prbs:20:5:1 (amplitude, switching time in s, seed)"),
 }
+
+
+# A release: a ship that rolls is let go from an angle and rolls out, as in a decay test (ITTC 7.5-02-07-04.5).
+
+EXAMPLE = "release:15 or release:15:port"
+_LARGEST = 60.0  # deg, beyond which no decay test goes; chosen
+
+
+def release_angle(text: str) -> float:
+    """Return the angle [rad] of ``release:15`` or ``release:15:port``, from the angle of rest, positive to starboard.
+
+    Raises:
+        InputError: the text names no release, or its angle is not between 0 and 60 degrees.
+    """
+    kind, *fields = text.strip().split(":")
+    side = SIDES.get(fields[1], 0) if len(fields) == 2 else int(len(fields) == 1)
+    try:
+        angle = float(fields[0]) if kind == "release" and side else math.nan
+    except ValueError:
+        angle = math.nan
+    if math.isnan(angle):
+        raise InputError(f"unknown manoeuvre '{text}' of a model that only rolls; known is {EXAMPLE} (deg)")
+    if not 0.0 < angle <= _LARGEST:
+        raise InputError(f"the angle {fields[0]} of a release is not between 0 and {_LARGEST:g} degrees")
+    return side * math.radians(angle)
+
+
+def roll_measures(record: Record) -> dict[str, float]:
+    """Return measures of a decay that begins with its release, by name; those it does not show are absent.
+
+    ``swing_1_deg`` and ``swing_2_deg``, the extremes to the other side and back; ``period_s``, from the release to the
+    second of them; ``half_time_s``, until swings are half as large as the release, log-linear between extremes.
+    """
+    roll = record["phi"]
+    if not np.all(np.isfinite(roll)) or roll[0] == 0.0:
+        return {}
+    times, sizes = swing_extremes(roll, record.dt)
+    measures = {f"swing_{k}_deg": math.degrees(size) for k, size in enumerate(sizes[:2], start=1)}
+    if len(times) > 1:
+        measures["period_s"] = float(times[1])
+    sizes, times = np.append(abs(roll[0]), sizes), np.append(0.0, times)
+    if sizes[-1] <= 0.5 * sizes[0]:
+        lower = int(np.argmax(sizes <= 0.5 * sizes[0]))
+        share = math.log(2.0 * sizes[lower - 1] / sizes[0]) / math.log(sizes[lower - 1] / sizes[lower])
+        measures["half_time_s"] = float(times[lower - 1] + share * (times[lower] - times[lower - 1]))
+    return measures

@@ -12,8 +12,7 @@ import numpy as np
 from numba import njit
 
 from seatrial.core.values import Array, InputError
-from seatrial.numerics.kernels.kernel import kernel
-from seatrial.numerics.kernels.types import COMMAND_SIGNATURE, OPTIONS
+from seatrial.numerics.kernels.kernel import COMMAND_SIGNATURE, OPTIONS, kernel
 from seatrial.physics.manoeuvres.programme import SIDES, ZIGZAG_EXECUTES
 
 # positions in a helmsman's memory; the table of thrusters follows

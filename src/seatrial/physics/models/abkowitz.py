@@ -15,8 +15,7 @@ from functools import cache
 import sympy as sp
 
 from seatrial.core.equations import Model, Sheet
-from seatrial.physics.models.derivative_meaning import derivative_meaning
-from seatrial.physics.models.pose import pose_rates
+from seatrial.physics.models.forces import derivative_meaning, pose_rates
 
 ABKOWITZ = "Abkowitz 1964, Hydro- and Aerodynamics Laboratory report Hy-5"
 TERMS_SOURCE = "Abkowitz 1964, Taylor series; terms of Chislett & Stroem-Tejsen 1965, Hy-6"

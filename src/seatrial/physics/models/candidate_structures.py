@@ -1,10 +1,14 @@
-"""Families of models worth comparing on the same records: which parameters a structure frees beyond the trial's own.
+"""Models worth comparing on the same records: families, terms beyond a model's own, an unstable twin."""
 
-They are the same for every ship; a trial file may declare another under `[family]`.
-"""
-
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from types import MappingProxyType
+
+from seatrial.core.equations import Model
+from seatrial.core.values import Parameters
+from seatrial.physics.models.registry import model_named
+
+# Families of models worth comparing on the same records: which parameters a structure frees beyond the trial's own.
 
 SURGE_TERMS = ("X_u", "X_uu", "X_vv", "X_rr", "X_dd", "X_vr")
 """What surge of an expansion may need: resistance, and the speed that drift, turning and rudder cost."""
@@ -64,3 +68,44 @@ by the forces that they cause (Newman 1977, Marine Hydrodynamics, section 6)."""
 
 PRIOR_FACTORS = (0.5, 3.0)
 SEGMENT_FACTORS = (0.7, 1.5)  # of the segments' length, by which a choice of structure is repeated; chosen
+
+
+# Models with all terms that a choice of structure may take, beyond those that a model has.
+
+_WIDER: Mapping[str, str] = MappingProxyType({"waterjet": "waterjet_candidates"})
+
+
+def with_candidate_terms(model: Model) -> Model:
+    """Return the model with every candidate term known for it, free and zero; the model itself where none is."""
+    if model.name not in _WIDER:
+        return model
+    wide = model_named(_WIDER[model.name]).with_held(model.held)
+    given = {p.name: p for p in model.parameters.items}
+    return replace(wide, parameters=Parameters(tuple(given.get(p.name, p) for p in wide.parameters.items)))
+
+
+def with_terms(model: Model, names: Iterable[str]) -> Model:
+    """Return the model if it has all parameters of these names, else with its candidate terms, held where they are."""
+    if set(names) <= set(model.parameters.names):
+        return model
+    wide = with_candidate_terms(model)
+    return wide.with_parameters(wide.parameters.fixed(*(n for n in wide.parameters.names if n not in model.parameters)))
+
+
+# The twin of a steering model that does not hold its course: where a search for such a ship begins.
+
+_SLOW_TIME_CONSTANTS = ("T", "T_1")
+
+
+def course_unstable(model: Model) -> Model:
+    """Return a steering model with the gain and the slow time constant of the other sign, which turns by itself.
+
+    K delta / T, by which the rudder acts, stays as it is. Another model, or one whose signs are bounded or fixed, is
+    returned itself.
+    """
+    parameters = model.parameters
+    names = [name for name in ("K", *_SLOW_TIME_CONSTANTS) if name in parameters.free_names]
+    is_bounded = any(not parameters[name].lower <= -parameters[name].value <= parameters[name].upper for name in names)
+    if len(names) != 2 or is_bounded:  # the gain and one time constant
+        return model
+    return model.with_values({name: -parameters[name].value for name in names})

@@ -8,12 +8,7 @@ from functools import cache
 import sympy as sp
 
 from seatrial.core.equations import Model, Sheet
-from seatrial.physics.models.heave_pitch_coefficients import (
-    DAMPINGS,
-    HEAVE_PITCH_COEFFICIENTS,
-    HEAVE_PITCH_STIFFNESSES,
-    MASSES,
-)
+from seatrial.physics.models.published import DAMPINGS, HEAVE_PITCH_COEFFICIENTS, HEAVE_PITCH_STIFFNESSES, MASSES
 
 QI = "Qi et al. 2025, eq. (1)"
 MENG = "Meng et al. 2014, eq. (1)"

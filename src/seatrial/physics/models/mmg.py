@@ -16,10 +16,18 @@ from functools import cache
 import sympy as sp
 
 from seatrial.core.equations import Model, Sheet
-from seatrial.physics.models.derivative_meaning import derivative_meaning
-from seatrial.physics.models.pose import pose_rates
-from seatrial.physics.models.rudder import EXTENSION, KITAGAWA, YASUKAWA, RudderCoefficients, RudderFlow, normal_force
-from seatrial.physics.models.wind import SERIES, wind_force
+from seatrial.physics.models.forces import (
+    EXTENSION,
+    KITAGAWA,
+    SERIES,
+    YASUKAWA,
+    RudderCoefficients,
+    RudderFlow,
+    derivative_meaning,
+    normal_force,
+    pose_rates,
+    wind_force,
+)
 
 HULL_X = ("R_0", "X_vv", "X_vr", "X_rr", "X_vvvv")
 HULL_Y = ("Y_v", "Y_r", "Y_vvv", "Y_vvr", "Y_vrr", "Y_rrr")

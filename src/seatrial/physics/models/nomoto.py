@@ -9,7 +9,7 @@ from functools import cache
 import sympy as sp
 
 from seatrial.core.equations import Model, Sheet
-from seatrial.physics.models.pose import pose_rates
+from seatrial.physics.models.forces import pose_rates
 
 NOMOTO = "Nomoto et al. 1957, Int. Shipbuilding Progress 4(35), 354-370"
 NORRBIN = "Norrbin 1963, cubic manoeuvring characteristic"

@@ -1,7 +1,4 @@
-"""Published coefficients as named parameter sets, each with its ship and its source.
-
-Numbers were compared with several independent transcriptions of the same table; where these differ it is said here.
-"""
+"""Coefficients as named parameter sets with their sources, and start values where nothing is known."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -10,7 +7,64 @@ from types import MappingProxyType
 
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Ship, spelling_hint
-from seatrial.physics.models.heave_pitch_coefficients import HEAVE_PITCH_COEFFICIENTS
+
+# Typical coefficients of the force of the wind, for starts of searches and priors.
+
+SYMMETRIC = {"C_X1": -0.7, "C_Y1": -0.8, "C_N2": 0.0}
+"""Those of a craft symmetrical fore and aft, where a search starts: the middle of typical values (Fossen 2021, section
+10.1, c_x 0.5 to 0.9, c_y 0.7 to 0.95); the moment has either sign."""
+TYPICAL_SPREAD = {"C_X1": 0.35, "C_Y1": 0.4, "C_N2": 0.1}
+"""Standard deviations about them where the areas are estimates, too: half of the forces' (areas of ships of one length
+differ by that); the moment's is the middle of its typical size, 0.05 to 0.20 (Fossen 2021, section 10.1)."""
+TYPICAL = "Fossen 2021, section 10.1, typical values of craft symmetrical fore and aft"
+
+
+# Names and units of the coefficients of heave and pitch, and start values where nothing is known of them.
+
+MASSES = {"a33": "kg", "a35": "kg m", "a55": "kg m^2", "a53": "kg m"}
+DAMPINGS = {"b33": "kg/s", "b35": "kg m/s", "b55": "kg m^2/s", "b53": "kg m/s"}
+HEAVE_PITCH_STIFFNESSES = {"c33": "N/m", "c35": "N/rad", "c53": "N m/m", "c55": "N m/rad"}
+HEAVE_PITCH_COEFFICIENTS = (*MASSES, *DAMPINGS)
+
+START_DAMPING_RATIO = 0.3  # of critical, in both motions: chosen, of the order of a hull's at resonance
+
+
+def physical_start_values(values: dict[str, float]) -> dict[str, float]:
+    """Return start values of the eight coefficients from m, I5, c33 and c55.
+
+    Added mass as large as the mass, no coupling, damping ratio 0.3 in both motions.
+    """
+    m, inertia = values["m"], values["I5"]
+    start = dict.fromkeys(HEAVE_PITCH_COEFFICIENTS, 0.0)
+    start["a33"], start["a55"] = m, inertia
+    start["b33"] = 2.0 * START_DAMPING_RATIO * (values["c33"] * 2.0 * m) ** 0.5
+    start["b55"] = 2.0 * START_DAMPING_RATIO * (values["c55"] * 2.0 * inertia) ** 0.5
+    return start
+
+
+_MEANING = {"m": "mass", "I5": "moment of inertia", "c33": "heave stiffness", "c55": "pitch stiffness"}
+
+
+def with_start_values(model: Model, ship: Ship) -> Model:
+    """Return heave and pitch with missing coefficients from mass, inertia and stiffness; other models as given.
+
+    Raises:
+        InputError: mass, inertia or stiffness is not positive.
+    """
+    absent = [n for n in model.parameters.missing if n.removesuffix("_0") in HEAVE_PITCH_COEFFICIENTS]
+    model_values = {p.name: p.value for p in model.parameters}
+    basis = {n: ship.particulars.get(n, model_values.get(n, float("nan"))) for n in _MEANING}
+    if not absent or any(value != value for value in basis.values()):
+        return model
+    for name, value in basis.items():
+        if value <= 0.0:
+            raise InputError(f"{name} = {value:g} is not positive; the {_MEANING[name]} of a craft that floats is")
+    start = physical_start_values(basis)
+    values = {n: start[n.removesuffix("_0")] for n in absent}
+    return model.with_values(values, source="start: added mass as mass, no coupling, damping ratio 0.3")
+
+
+# Published coefficients as named parameter sets, each with its ship and its source.
 
 YASUKAWA = "Yasukawa & Yoshimura 2015, J Mar Sci Technol 20, 37-52, doi 10.1007/s00773-014-0293-y"
 MIYAUCHI = "Miyauchi et al. 2022, J Mar Sci Technol 27, 1065-1083, doi 10.1007/s00773-022-00889-3, captive tests"

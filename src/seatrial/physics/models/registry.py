@@ -1,8 +1,12 @@
-"""The registry of models: built-in ones, installed ones, and those of a Python file."""
+"""The registry of models: built-in ones, installed ones, those of a Python file; and their machine code ahead."""
 
+import os
 import runpy
+import subprocess
+import sys
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -11,10 +15,14 @@ from typing import TYPE_CHECKING
 from seatrial._plugins import failure_text, installed, load_plugin
 from seatrial.core.values import InputError, spelling_hint
 from seatrial.core.values.files import is_file
+from seatrial.numerics.platform import usable_cores
 from seatrial.physics import models
 
 if TYPE_CHECKING:
     from seatrial.core.equations import Model
+
+
+# The registry of models: built-in ones, installed ones, and those of a Python file.
 
 ENTRY_POINT_GROUP = "seatrial.models"
 
@@ -54,7 +62,7 @@ def _require_model(model: object, where: str) -> "Model":
 
 @cache
 def _built_in(name: str, layout: str) -> "Model":
-    from seatrial.core.equations.manifest import stored_model
+    from seatrial.core.equations.model import stored_model
 
     if not layout:
         return stored_model((name,), MODELS[name], (Path(__file__).parent,))
@@ -144,3 +152,50 @@ def _summary(name: str, package: str) -> ModelSummary:
     except InputError as error:
         return ModelSummary(name, package=package, problem=str(error))
     return ModelSummary(name, model.states, model.input_names, model.equations.source, package)
+
+
+# The machine code of a model compiled in another process while this one compiles the integrators: half the wait.
+
+_PROGRAM = "import sys; from seatrial.physics.models import model_named; model_named(sys.argv[1]).compiled.load()"
+# the other process is given up after that: the largest model (MMG, 77 parameters) takes 6 s, measured
+_PATIENCE_S = 20.0
+
+
+@contextmanager
+def precompile(name: str) -> Iterator[None]:
+    """Compile a built-in model and its integrators while the body runs; at the end all of it is in the compile cache.
+
+    Does nothing for other models, for one that is in the cache already, or on a single core. Whatever goes wrong in the
+    other process goes wrong again here, where it is reported.
+    """
+    if name not in MODELS or usable_cores() < 2 or _is_cached(name):
+        yield
+        return
+    from seatrial.numerics.kernels.cache import cache_folder
+
+    environment = {**os.environ, "SEATRIAL_CACHE": str(cache_folder().parent)}
+    command = [sys.executable, "-c", _PROGRAM, name]
+    process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    try:
+        yield
+        _load_integrators(is_affine=model_named(name).is_affine)
+        process.wait(_PATIENCE_S)
+    except subprocess.TimeoutExpired:
+        pass
+    finally:
+        process.kill()
+        process.wait()
+
+
+def _is_cached(name: str) -> bool:
+    from seatrial.core.equations.bindings import is_cached
+
+    return is_cached(model_named(name).equations)
+
+
+def _load_integrators(*, is_affine: bool) -> None:
+    from seatrial.numerics.kernels import integrate, linear, propagate, sensitivity
+    from seatrial.numerics.kernels.kernel import load_kernels
+
+    for module in (linear, propagate) if is_affine else (integrate, sensitivity):
+        load_kernels(module)

@@ -1,20 +1,19 @@
-"""Orders of a craft with thrusters: how far it is to go ahead and to turn, shared out over the thrusters.
-
-Each thruster works for the order ahead to the side its thrust drives the craft, and for yaw to the side it turns it.
-Azimuth thrusters and outboards point ahead, but for an order of their angle to starboard, which is that of a rudder. An
-autopilot or a speed control gives such orders.
-"""
+"""Orders of a craft with thrusters, its matrices, and forces from outside that its equations do not have."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from seatrial.core.equations import Model
 from seatrial.core.equations.bindings import Binding, Input, ModelEquations
-from seatrial.core.equations.manifest import stored_equations
-from seatrial.core.values import InputError
-from seatrial.physics.models.thruster_layout import AngleInput, Thruster, ThrusterLayout
-from seatrial.physics.models.thruster_steering import ORDER, steering_angles
+from seatrial.core.equations.model import stored_equations
+from seatrial.core.values import Array, InputError
+from seatrial.physics.models.thruster_layout import ORDER, AngleInput, Thruster, ThrusterLayout, steering_angles
+
+# Orders of a craft with thrusters: how far it is to go ahead and to turn, shared out over the thrusters.
 
 AHEAD, YAW = "order_ahead", "order_yaw"
 """Inputs of `with_orders`: shares of full command, positive ahead and to starboard."""
@@ -99,3 +98,57 @@ def _arm(thruster: Thruster) -> float:
     """Yaw moment of unit thrust [m], positive to starboard (Fossen 2021, section 9.1)."""
     angle = _angle(thruster)
     return thruster.x * math.sin(angle) - thruster.y * math.cos(angle)
+
+
+# A craft with thrusters that something outside pushes: gusts and waves, as forces that its equations do not have.
+
+OUTSIDE_FORCES = ("X_outside", "Y_outside", "N_outside")
+"""Inputs of `with_outside_forces`: force ahead and to starboard, moment to starboard, in the model's unit of force."""
+_SUMS = ("X_sum", "Y_sum", "N_sum")  # bindings of the model `thrusters` that they are added to
+
+
+def with_outside_forces(model: Model) -> Model:
+    """Return a craft of the model ``thrusters`` with the inputs `OUTSIDE_FORCES` behind its own."""
+    return replace(model, equations=stored_equations((model.equation_hash, "outside"), lambda: _pushed(model)))
+
+
+def _pushed(model: Model) -> ModelEquations:
+    import sympy as sp
+
+    added = dict(zip(_SUMS, OUTSIDE_FORCES, strict=True))
+
+    def rewritten(binding: Binding) -> Binding:
+        if binding.name not in added:
+            return binding
+        return binding.bound_to(binding.expression + sp.Symbol(added[binding.name], real=True))
+
+    old = model.equations
+    return replace(
+        old, name=f"{old.name} pushed from outside", inputs=(*old.inputs, *map(Input, OUTSIDE_FORCES)),
+        bindings=tuple(map(rewritten, old.bindings)),
+    )  # fmt: skip
+
+
+# Matrices of M dnu/dt + C(M) nu + D(nu) nu = B T of a craft with thrusters, nu = (u, v, r), from its coefficients.
+
+
+def coefficient_or_zero(model: Model, name: str) -> float:
+    """Return the value of a coefficient, zero where the model has none of that name."""
+    return model.parameters[name].value if name in model.parameters else 0.0
+
+
+def inertia_matrix(model: Model) -> Array:
+    """Return mass and added mass (3, 3) (Fossen 2021, eqs. (6.14) and (6.40), surge, sway and yaw)."""
+    M_u, M_v, M_r, M_c = (coefficient_or_zero(model, f"M_{x}") for x in "uvrc")
+    return np.array([[M_u, 0.0, 0.0], [0.0, M_v, M_c], [0.0, M_c, M_r]])
+
+
+def thrust_configuration(model: Model, thrusters: Sequence[Thruster], angles: Sequence[float]) -> Array:
+    """Return B (3, n): rows of (cos a, sin a, x sin a - y cos a), the side force of the wash with them.
+
+    angles: direction of each thrust clockwise from ahead [rad] (Fossen 2021, section 9.2).
+    """
+    X, Y = np.cos(angles), np.sin(angles)
+    N = np.array([t.x for t in thrusters]) * Y - np.array([t.y for t in thrusters]) * X
+    Y = Y + coefficient_or_zero(model, "Y_T") * X + coefficient_or_zero(model, "Y_NT") * N
+    return np.stack([X, Y, N])

@@ -1,14 +1,20 @@
-"""The thrusters of a craft, their places, commands and curves: what its equations depend on."""
+"""The thrusters of a craft, their places, commands and curves, and how an angle of them steers it."""
 
 import json
+import math
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from enum import StrEnum
 from functools import cached_property, lru_cache
 from itertools import pairwise
 
+import numpy as np
 from pydantic import TypeAdapter
 
-from seatrial.core.values import InputError, spelling_hint
+from seatrial.core.values import Channel, InputError, Record, spelling_hint
+from seatrial.core.values.notation import OPPOSITE
+
+# The thrusters of a craft, their places, commands and curves: what its equations depend on.
 
 MIN_LAG = 0.05
 """Least time constant of a thruster [s] that equations with a state for it can hold at 10 Hz; chosen."""
@@ -240,3 +246,70 @@ CATAMARAN = ThrusterLayout(
     )
 )
 """Two fixed thrusters with one curve: what the name ``thrusters`` stands for without a layout; chosen."""
+
+
+# Steering by an angle: thrusters that turn, and rudders behind screws, as one order to starboard like a rudder's.
+
+ORDER = "delta"
+"""Channel and input of the order [rad], positive to starboard as a rudder's angle."""
+_NO_ARM = 0.05
+"""Arm along the craft over the longest one below which a thruster does not steer by its angle; chosen."""
+
+_ABEAM = 0.5 * math.pi + 1e-6  # rad: thrust across the craft, and rounding
+
+
+@dataclass(frozen=True)
+class SteeringAngle:
+    """A channel of angles that steer a craft, and its sign: the angle over the order to starboard, +1 or -1."""
+
+    channel: str
+    sign: float
+
+
+def steering_angles(layout: ThrusterLayout) -> tuple[SteeringAngle, ...]:
+    """Return the angles that steer a craft, each channel once; empty where all thrusters are fixed.
+
+    A channel that turns several thrusters has the sign of the sum of their arms.
+    """
+    arms: dict[str, float] = {}
+    for channel, arm in _arms(layout):
+        arms[channel] = arms.get(channel, 0.0) + arm
+    longest = max(map(abs, arms.values()), default=0.0)
+    return tuple(
+        SteeringAngle(channel, math.copysign(1.0, arm)) for channel, arm in arms.items() if abs(arm) > _NO_ARM * longest
+    )
+
+
+def _arms(layout: ThrusterLayout) -> Iterator[tuple[str, float]]:
+    """Channels of angles with the arm [m] by which thrust or lift at a positive angle turns the craft to starboard."""
+    for thruster in layout.thrusters:
+        if isinstance(thruster.angle, AngleInput):
+            yield thruster.angle.channel, thruster.x
+        if thruster.rudder is not None:
+            yield thruster.rudder.channel, -thruster.rudder.x  # lift of a positive angle is to port
+
+
+def order_text(layout: ThrusterLayout) -> str:
+    """Return what an order stands for: ``alpha_1 = -delta``; empty where the order is the angle itself."""
+    signs = {1.0: "", -1.0: "-"}
+    angles = [angle for angle in steering_angles(layout) if (angle.channel, angle.sign) != (ORDER, 1.0)]
+    return ", ".join(f"{angle.channel} = {signs[angle.sign]}{ORDER}" for angle in angles)
+
+
+def with_steering_order(record: Record, layout: ThrusterLayout) -> Record:
+    """Return the record with `ORDER`, the mean of what its steering angles stand for, where it has all of these.
+
+    A record that has the channel, one of a craft without such angles, and one in which an azimuth thruster turns beyond
+    abeam, where it is no rudder any more, is returned as it is.
+    """
+    angles = steering_angles(layout)
+    if not angles or ORDER in record or any(angle.channel not in record for angle in angles):
+        return record
+    turned = [angle.sign * _to_starboard(record.channel(angle.channel)) for angle in angles]
+    if np.nanmax(np.abs(turned), initial=0.0) > _ABEAM:
+        return record
+    return record.with_channel(ORDER, Channel.from_notation(ORDER, np.mean(turned, axis=0)))
+
+
+def _to_starboard(channel: Channel) -> np.ndarray:
+    return -channel.values if channel.positive == OPPOSITE["starboard"] else channel.values

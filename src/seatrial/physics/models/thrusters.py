@@ -14,13 +14,10 @@ from dataclasses import dataclass
 import sympy as sp
 
 from seatrial.core.equations import Model, Sheet
-from seatrial.physics.models.planar_force import PlanarForce
-from seatrial.physics.models.pose import Current, pose_rates
-from seatrial.physics.models.thruster_forces import ThrusterSheet, Water
+from seatrial.physics.models.forces import Current, PlanarForce, pose_rates, wind_force
+from seatrial.physics.models.published import SYMMETRIC
+from seatrial.physics.models.thruster_forces import ThrusterSheet, Water, craft_flow
 from seatrial.physics.models.thruster_layout import CATAMARAN, Damping, ThrusterLayout
-from seatrial.physics.models.thruster_rudders import craft_flow
-from seatrial.physics.models.typical_wind import SYMMETRIC
-from seatrial.physics.models.wind import wind_force
 
 FOSSEN = "Fossen 2021, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed."
 HULL = f"{FOSSEN}, section 6.5, damping"

@@ -9,8 +9,7 @@ from functools import cache
 import sympy as sp
 
 from seatrial.core.equations import Model, Sheet
-from seatrial.physics.models.derivative_meaning import derivative_meaning
-from seatrial.physics.models.pose import pose_rates
+from seatrial.physics.models.forces import derivative_meaning, pose_rates
 
 SONG = "Song et al. 2025, doi 10.19693/j.issn.1673-3185.03832"
 ZHOU = "Zhou et al. 1983, through Song et al. 2025"

@@ -8,8 +8,7 @@ import numpy as np
 
 from seatrial.core.values import Array, Channel, Index, InputError, Provenance, Record, RecordKind, frozen
 from seatrial.physics.hydro.excitation import Complex, Excitation, encounter_frequency
-from seatrial.physics.sea.encounter import speed_factor
-from seatrial.physics.sea.spectrum import Spectrum
+from seatrial.physics.sea.spectrum import Spectrum, speed_factor
 
 DEFAULT_COMPONENTS = 30  # wave components of a realisation; chosen
 _NO_ENERGY = 1e-6  # share of the sea's energy that counts as none; chosen

@@ -10,8 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.values import Array, InputError
-from seatrial.physics.hydro.dispersion import G
-from seatrial.physics.hydro.excitation import Complex
+from seatrial.physics.hydro.excitation import Complex, G
 from seatrial.physics.sea.spectrum import Spectrum
 
 # least share of the sea's energy between the ends of a response, -; below it the response says nothing (our choice)

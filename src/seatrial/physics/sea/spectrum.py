@@ -1,4 +1,4 @@
-"""Wave spectra of one height and one period: S(omega) = A / omega^5 exp(-B / omega^4), the peak raised or not."""
+"""Wave spectra, the seas that states stand for, and their frequencies as a ship meets them."""
 
 import math
 from dataclasses import dataclass, replace
@@ -7,7 +7,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from seatrial.core.values import Array, InputError
-from seatrial.physics.hydro.dispersion import G
+from seatrial.physics.hydro.excitation import MAX_SHIP_SPEED, Excitation, G
+
+# Wave spectra of one height and one period: S(omega) = A / omega^5 exp(-B / omega^4), the peak raised or not.
 
 SIGMA_BELOW, SIGMA_ABOVE = 0.07, 0.09  # peak widths of JONSWAP, Hasselmann et al. 1973
 # beyond nine sigma the raised peak adds less than a rounding error
@@ -192,3 +194,121 @@ def _gamma(x: float) -> float:
     from scipy.special import gamma
 
     return float(gamma(x))
+
+
+# The sea as a moving ship meets it, in deep water: omega_e = omega - q omega^2, q = U cos(beta) / g.
+
+# |cos(beta)| below which the sea is from abeam, -: cos(pi / 2) is 6e-17 by rounding
+_BEAM_TOLERANCE = 1e-12
+
+
+@dataclass(frozen=True)
+class WaveEncounter:
+    """The encounter of a run with waves: ship speed [m/s], heading [rad, 0 following, pi head], excitation.
+
+    `spectrum`: of the sea, where its elevation was not recorded.
+    """
+
+    excitation: Excitation
+    U: float
+    beta: float
+    spectrum: Spectrum | None = None
+
+
+def speed_factor(U: float, beta: float) -> float:
+    """Return q = U cos(beta) / g [s/rad]; exactly zero in beam seas.
+
+    Args:
+        U: ship speed, m/s.
+        beta: heading to the waves, rad; 0 following, pi head.
+
+    Raises:
+        InputError: U is negative or above `MAX_SHIP_SPEED`, or beta lies outside 0 to pi.
+    """
+    if not 0.0 <= U <= MAX_SHIP_SPEED:
+        raise InputError(f"the ship speed must lie between 0 and {MAX_SHIP_SPEED:g} m/s, not {U:g}; is it in knots?")
+    if not 0.0 <= beta <= math.pi:
+        raise InputError(
+            f"the heading to the waves must lie between 0 and pi rad (head), not {beta:g}; is it in degrees?"
+        )
+    cosine = math.cos(beta)
+    return U * cosine / G if abs(cosine) > _BEAM_TOLERANCE else 0.0
+
+
+def wave_frequency(omega_e: ArrayLike, U: float, beta: float) -> Array:
+    """Return the wave frequency [rad/s] of each frequency of encounter [rad/s, >= 0] in head and beam seas, any shape.
+
+    Raises:
+        InputError: the sea is following, where up to three waves share one frequency of encounter; as `speed_factor`.
+    """
+    q = speed_factor(U, beta)
+    if q > 0.0:
+        raise InputError(
+            f"at {math.degrees(beta):.0f} deg and {U:.3g} m/s up to three waves share one frequency of encounter, and "
+            "an elevation recorded on board cannot separate them; give the waves themselves, or F3 and M5"
+        )
+    encountered = np.asarray(omega_e, dtype=np.float64)
+    # the root of omega - q omega^2 = omega_e that vanishes with omega_e, free of cancellation
+    return np.asarray(2.0 * encountered / (1.0 + np.sqrt(1.0 - 4.0 * q * encountered)), dtype=np.float64)
+
+
+# Sea states by number: heights of the WMO code, and the periods that go with them on the open ocean.
+
+
+@dataclass(frozen=True)
+class SeaState:
+    """One row of the table.
+
+    Attributes:
+        number: 0 to 9.
+        name: in the words of the WMO.
+        lowest, highest: range of the significant height, m; the last has no upper end.
+        significant_height: typical, m; none where the range has no middle.
+        modal_period: most probable peak period, s; none where waves are ripples.
+    """
+
+    number: int
+    name: str
+    lowest: float
+    highest: float
+    significant_height: float | None
+    modal_period: float | None
+
+    def spectrum(self) -> Spectrum:
+        """Return the Bretschneider spectrum of the typical height and period.
+
+        Raises:
+            InputError: the state has no typical height or no typical period (0, 1, 9).
+        """
+        if self.significant_height is None or self.modal_period is None:
+            raise InputError(
+                f"sea state {self.number} ({self.name}) has no typical height and period; give a height and a period"
+            )
+        return bretschneider(self.significant_height, self.modal_period)
+
+
+# Ranges and names: WMO code table 3700. Typical heights and modal periods: Bales 1983, open North Atlantic
+# (a transcription was at hand, not the report), with one row for 0 and 1.
+_STATES = (
+    SeaState(0, "calm (glassy)", 0.0, 0.0, 0.0, None),
+    SeaState(1, "calm (rippled)", 0.0, 0.1, 0.05, None),
+    SeaState(2, "smooth (wavelets)", 0.1, 0.5, 0.3, 7.5),
+    SeaState(3, "slight", 0.5, 1.25, 0.88, 7.5),
+    SeaState(4, "moderate", 1.25, 2.5, 1.88, 8.8),
+    SeaState(5, "rough", 2.5, 4.0, 3.25, 9.7),
+    SeaState(6, "very rough", 4.0, 6.0, 5.0, 12.4),
+    SeaState(7, "high", 6.0, 9.0, 7.5, 15.0),
+    SeaState(8, "very high", 9.0, 14.0, 11.5, 16.4),
+    SeaState(9, "phenomenal", 14.0, float("inf"), None, 20.0),
+)
+
+
+def sea_state(number: int) -> SeaState:
+    """Return the sea state of that number.
+
+    Raises:
+        InputError: the number is not one of 0 to 9.
+    """
+    if number not in range(len(_STATES)):
+        raise InputError(f"there is no sea state {number}; sea states go from 0 to {len(_STATES) - 1}")
+    return _STATES[number]

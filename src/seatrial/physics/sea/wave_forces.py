@@ -5,10 +5,8 @@ from numpy.typing import NDArray
 
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, Channel, InputError, Record, frozen
-from seatrial.physics.hydro.dispersion import G
-from seatrial.physics.hydro.excitation import BoxForceError, BoxHull, Complex, Excitation, encounter_frequency
-from seatrial.physics.sea.encounter import speed_factor, wave_frequency
-from seatrial.physics.sea.spectrum import Spectrum
+from seatrial.physics.hydro.excitation import BoxForceError, BoxHull, Complex, Excitation, G, encounter_frequency
+from seatrial.physics.sea.spectrum import Spectrum, speed_factor, wave_frequency
 
 # frequencies that hold this share of the elevation's energy pass the filter, from either end
 _NEGLIGIBLE = 1e-4

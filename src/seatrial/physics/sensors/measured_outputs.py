@@ -1,27 +1,25 @@
-"""A model with what its instruments show: for each channel they change, an output of that name with ``_measured``.
-
-States keep their names and meaning; who compares with records asks `Model.observable_of`. The compass turns what a
-receiver measures over ground: with e = A + B sin(shown) + C cos(shown) it shows psi - e (deviation of the first
-harmonic; Bowditch 2019, American Practical Navigator, ch. 8), and velocities over ground resolved along the shown
-heading are turned by e. A lag of velocities is two equal time constants in a row, which together delay by their sum.
-A compass and a rate gyro follow theirs behind a filter of first order. What a late receiver shows is taken back by its
-own rates, which leaves the second power of the lag for velocities, and for a position what its speed changes meanwhile.
-"""
+"""A model with what its instruments show, as outputs ``_measured``; and a run corrected for the current."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from seatrial.core.equations import Model
 from seatrial.core.equations.bindings import Binding, ModelEquations
-from seatrial.core.equations.manifest import stored_equations
-from seatrial.core.equations.model import MEASURED, measured_name
-from seatrial.core.values import InputError, Parameter, Parameters, Prior
+from seatrial.core.equations.model import MEASURED, measured_name, stored_equations
+from seatrial.core.results.prediction import EstimatedCurrent
+from seatrial.core.values import Array, InputError, Parameter, Parameters, Prior, Record
+from seatrial.physics.manoeuvres import to_starboard
 from seatrial.physics.sensors.settings import Compass, Late, Sensors, VelocityReference
 
 if TYPE_CHECKING:
     import sympy as sp
+
+
+# A model with what its instruments show: for each channel they change, an output of that name with ``_measured``.
 
 SENSOR_SOURCE = "sensor model"
 """Source of the coefficients of instruments, by which they differ from the craft's own."""
@@ -275,3 +273,41 @@ def _symbol(name: str) -> "sp.Symbol":
     import sympy as sp
 
     return sp.Symbol(name, real=True)
+
+
+# A run corrected for the current: the drift of the water is taken off its track, and off velocities over ground.
+
+
+def shows_ground_velocity(model: Model) -> bool:
+    """Return whether u and v in records of this model's craft are over ground, so that a current is in them."""
+    text = model.equations.sensors
+    return bool(text) and Sensors.from_text(text).velocity is VelocityReference.GROUND
+
+
+def without_current(record: Record, current: EstimatedCurrent | None, has_ground_velocity: bool) -> Record:
+    """Return the run as it went through the water, from where it began; the record itself where no current is known.
+
+    The position becomes that of the start plus the way through the water, x'(t) = x(t) - v_c t. u and v over ground
+    lose the current's components along and across the heading that the compass showed.
+    """
+    if current is None:
+        return record
+    elapsed = record.time - record.time[0]
+    for symbol, drift in (("x0", current.north), ("y0", current.east)):
+        if symbol in record:
+            record = _less(record, symbol, drift * elapsed)  # MSC/Circ.1053, 3.4.2.5
+    if not has_ground_velocity or "psi" not in record:
+        return record
+    psi = to_starboard(record, "psi")
+    ahead = current.north * np.cos(psi) + current.east * np.sin(psi)
+    to_the_right = -current.north * np.sin(psi) + current.east * np.cos(psi)
+    for symbol, part in (("u", ahead), ("v", to_the_right)):
+        if symbol in record:
+            record = _less(record, symbol, part)
+    return record
+
+
+def _less(record: Record, symbol: str, part: Array) -> Record:
+    channel = record.channel(symbol)
+    sign = -1.0 if channel.positive == "port" else 1.0
+    return record.with_channel(symbol, channel.with_values(channel.values - sign * part))

@@ -1,22 +1,249 @@
-"""A loop in time: a controller, exactly discretised or sampled, on any model, with the limits of its actuator."""
+"""A loop in time: a controller, exactly discretised or sampled, on any model, within its actuator's limits."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, reduce
 
 import numpy as np
+from scipy.linalg import expm
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, DivergedError, InputError, Provenance, Record, frozen, spelling_hint
 from seatrial.numerics.kernels import feedback as kernel
 from seatrial.numerics.kernels.feedback import steer
+from seatrial.numerics.kernels.linear import replay
+from seatrial.numerics.kernels.propagate import propagators
 from seatrial.numerics.kernels.sampled import sampled_controller
-from seatrial.physics.loops import TransferLoop
-from seatrial.physics.simulate.channels import record_of
-from seatrial.physics.simulate.controller import controller_state_space
-from seatrial.physics.simulate.divergence import require_bounded
-from seatrial.physics.simulate.sampled_controller import sample_noise, sampled_body, steps_a_sample
+from seatrial.physics.loops import Block, TransferLoop
+from seatrial.physics.loops.discrete import difference_equation, holding_terms
+from seatrial.physics.loops.loop import Sampling, controllable_form, in_series
+from seatrial.physics.loops.loop_states import StateSpace
+from seatrial.physics.simulate.replay import record_of, require_bounded
+
+# The controller of a loop in steps: its own states, discretised exactly for an error that runs straight between them.
+
+
+@dataclass(frozen=True, eq=False)
+class ControllerStateSpace:
+    """x' = A x + b e, order = c x + d e, from the error e = reference - output to the actuator without limits.
+
+    Attributes:
+        A: (n, n); b, c: (n,).
+        is_slow: which states belong to terms that wind up, (n,): see `holding_terms`.
+        slow_rate: row (n + 1,) over [x, e] that gives the rate of change of the slow terms' share of the order.
+    """
+
+    A: Array
+    b: Array
+    c: Array
+    d: float
+    is_slow: Array
+    slow_rate: Array
+
+    def discretised(self, dt: float, *, is_holding: bool) -> Array:
+        """Return E by columns, g0, g1 and the row that gives the order a step ahead, flat.
+
+        Slow states stand still if `is_holding`.
+        """
+        moving = np.where(self.is_slow, 0.0, 1.0) if is_holding else np.ones(len(self.b))
+        n = len(self.b)
+        whole = np.zeros((n + 2, n + 2))
+        whole[:n, :n], whole[:n, n] = moving[:, None] * self.A * dt, moving * self.b * dt
+        whole[n, n + 1] = 1.0
+        made = expm(whole)
+        E, held, ramp = made[:n, :n], made[:n, n], made[:n, n + 1]
+        ahead = (self.c @ E, [self.c @ (held - ramp)], [self.c @ ramp + self.d])
+        return np.concatenate([E.T.ravel(), held - ramp, ramp, *ahead])
+
+
+_UNIT_GAIN = ControllerStateSpace(np.zeros((0, 0)), np.zeros(0), np.zeros(0), 1.0, np.zeros(0, dtype=bool), np.zeros(1))
+
+
+def controller_state_space(loop: TransferLoop, gains: Array) -> ControllerStateSpace:
+    """Return sensor, terms with those gains (g,), filters and servo in a row."""
+    seen = reduce(_append_block, loop.sensor, _UNIT_GAIN)
+    made = replace(seen, c=np.zeros(len(seen.c)), d=0.0)
+    holds, share = holding_terms(loop)
+    for gain, term, is_held in zip(gains, loop.terms, holds, strict=True):
+        made = _add_term(made, seen, float(gain), term.block, is_slow=is_held)
+    before = len(made.b)
+    made = reduce(_append_block, (*loop.filters, *loop.servo), made)
+    drift = np.zeros(len(made.b) + 1)
+    drift[:before], drift[-1] = share * made.slow_rate[:before], share * made.slow_rate[-1]
+    return replace(made, slow_rate=drift)
+
+
+def _append_block(first: ControllerStateSpace, block: Block) -> ControllerStateSpace:
+    """Return a block behind."""
+    A, b, c, d = controllable_form(block)
+    n, m = len(first.b), len(b)
+    whole = np.zeros((n + m, n + m))
+    whole[:n, :n], whole[n:, :n], whole[n:, n:] = first.A, np.outer(b, first.c), A
+    return ControllerStateSpace(
+        whole, np.concatenate([first.b, b * first.d]), np.concatenate([d * first.c, c]), d * first.d,
+        np.concatenate([first.is_slow, np.zeros(m, dtype=bool)]),
+        np.concatenate([first.slow_rate[:-1], np.zeros(m), first.slow_rate[-1:]]),
+    )  # fmt: skip
+
+
+def _add_term(
+    controller: ControllerStateSpace, sensor: ControllerStateSpace, gain: float, block: Block, *, is_slow: bool
+) -> ControllerStateSpace:
+    """Return one more term on what the sensor shows; `controller` has the sensor's states first."""
+    A, b, c, d = controllable_form(block)
+    n, m, s = len(controller.b), len(b), len(sensor.b)
+    whole = np.zeros((n + m, n + m))
+    whole[:n, :n], whole[n:, :s], whole[n:, n:] = controller.A, np.outer(b, sensor.c), A
+    drift = np.concatenate([controller.slow_rate[:-1], np.zeros(m), controller.slow_rate[-1:]])
+    if is_slow:
+        drift[n : n + m] += gain * (c @ A)
+        drift[:s] += gain * (c @ b) * sensor.c
+        drift[-1] += gain * (c @ b) * sensor.d
+    direct = np.zeros(n)
+    direct[:s] = gain * d * sensor.c
+    return ControllerStateSpace(
+        whole, np.concatenate([controller.b, b * sensor.d]), np.concatenate([controller.c + direct, gain * c]),
+        controller.d + gain * d * sensor.d, np.concatenate([controller.is_slow, np.full(m, is_slow)]), drift,
+    )  # fmt: skip
+
+
+# A sampled controller in steps: its blocks by Tustin's rule, sensor and servo exactly, the dead time as a queue.
+
+_WHOLE = 1e-6  # of a sample: a step that divides it
+_TRIED = 40  # numbers of steps a sample that are tried, for one in which the dead time is whole; chosen
+_NEAR = 0.02  # of a step: a dead time that counts as whole; chosen
+_NOISE_STREAM = 12  # of random numbers, apart from those of disturbances of the same seed; chosen
+_FINEST = 0.2  # of the dead time, the longest step where there is one; chosen
+
+
+def simulation_step(sampling: Sampling | None, longest: float) -> float:
+    """Return the longest step [s] up to `longest` that divides the sample time, and the dead time as well as can be."""
+    if sampling is None:
+        return longest
+    T, dead = sampling.sample_s, sampling.dead_time
+    least = max(1, math.ceil(T / min(longest, _FINEST * dead if dead else math.inf) - _WHOLE))
+    counts = range(least, least + _TRIED)
+    misses = {count: abs(dead * count / T - round(dead * count / T)) for count in counts}
+    return T / next((count for count, miss in misses.items() if miss < _NEAR), min(misses, key=misses.__getitem__))
+
+
+def steps_a_sample(sampling: Sampling, dt: float) -> int:
+    """Return how many steps of dt [s] make a sample.
+
+    Raises:
+        InputError: they do not make one.
+    """
+    every = round(sampling.sample_s / dt)
+    if every < 1 or abs(every * dt - sampling.sample_s) > _WHOLE * sampling.sample_s:
+        raise InputError(
+            f"steps of {dt:g} s do not make a sample of {sampling.sample_s:g} s; give a step that divides it"
+        )
+    return every
+
+
+def sample_noise(sampling: Sampling, count: int, seed: int) -> Array:
+    """Return the noise of so many samples, (n,)."""
+    if not sampling.noise:
+        return np.zeros(count)
+    return sampling.noise * np.random.default_rng([seed, _NOISE_STREAM]).standard_normal(count)
+
+
+def sampled_body(
+    loop: TransferLoop, gains: Array, dt: float, rate: float, noise: Array
+) -> tuple[Array, Mapping[int, float]]:
+    """Return what `sampled_controller` reads behind the head of its memory, and the entries of the head for it.
+
+    rate: of the actuator, per second; noise: of each sample.
+    """
+    assert loop.sampling is not None
+    T, every = loop.sampling.sample_s, steps_a_sample(loop.sampling, dt)
+    sensor, sensor_order = _sensor(in_series("sensor", loop.sensor), dt)
+    servo, servo_order = _servo(in_series("servo", loop.servo), dt)
+    holds, sign = holding_terms(loop)
+    terms = [
+        _block(term.block, T, float(gain), sign if held else 0.0)
+        for gain, term, held in zip(gains, loop.terms, holds, strict=True)
+    ]
+    blocks = np.concatenate([*terms, *(_block(block, T, 1.0, 0.0) for block in loop.filters)])
+    queue = round(loop.sampling.dead_time / dt)
+    servo_at = kernel.HEAD_SIZE + len(sensor)
+    blocks_at = servo_at + len(servo)
+    queue_at = blocks_at + len(blocks)
+    body = np.concatenate([sensor, servo, blocks, np.zeros(queue), noise])
+    values = {
+        kernel.EVERY: every,
+        kernel.SENSOR: kernel.HEAD_SIZE,
+        kernel.SENSOR_ORDER: sensor_order,
+        kernel.SERVO: servo_at,
+        kernel.SERVO_ORDER: servo_order,
+        kernel.BLOCKS: blocks_at,
+        kernel.TERM_COUNT: len(loop.terms),
+        kernel.FILTER_COUNT: len(loop.filters),
+        kernel.QUEUE: queue_at,
+        kernel.QUEUE_SIZE: queue,
+        kernel.NOISE: queue_at + queue,
+        kernel.RESOLUTION: loop.sampling.resolution,
+        kernel.SAMPLE_SLEW: rate * T,
+    }
+    return body, values
+
+
+def _block(block: Block, T: float, gain: float, holds: float) -> Array:
+    made = difference_equation(block, T)
+    n = len(made.a) - 1
+    return np.concatenate([[n, gain, holds, 0.0], made.b, made.a, np.zeros(n)])
+
+
+def _sensor(block: Block, dt: float) -> tuple[Array, int]:
+    """Return a sensor for an input that runs straight over each step (Franklin, Powell & Workman 1998, section 6.3)."""
+    A, b, c, d = controllable_form(block)
+    n = len(b)
+    whole = np.zeros((n + 2, n + 2))
+    whole[:n, :n], whole[:n, n], whole[n, n + 1] = A * dt, b * dt, 1.0
+    made = np.asarray(expm(whole), dtype=np.float64)
+    held, ramp = made[:n, n], made[:n, n + 1]
+    return np.concatenate([made[:n, :n].T.ravel(), held - ramp, ramp, c, [d], np.zeros(2 * n + 1)]), n
+
+
+def _servo(block: Block, dt: float) -> tuple[Array, int]:
+    """Return a servo for an input that is held over each step."""
+    A, b, c, d = controllable_form(block)
+    n = len(b)
+    whole = np.zeros((n + 1, n + 1))
+    whole[:n, :n], whole[:n, n] = A * dt, b * dt
+    made = np.asarray(expm(whole), dtype=np.float64)
+    return np.concatenate([made[:n, :n].T.ravel(), made[:n, n], c, [d], np.zeros(2 * n)]), n
+
+
+# A linear loop simulated in time: output, actuator and actuator rate, met by one series of the disturbance.
+
+
+def loop_record(states: StateSpace, gains: Array, disturbance: Array, dt: float) -> Array:
+    """Return output, actuator and actuator rate (n, 3) with the gains (g,), from rest, by a compiled scalar loop.
+
+    The disturbance (n,) is held over each step of `dt` [s]: x_{k+1} = e^(A h) x_k + h phi_1(A h) b w_k, exact.
+
+    Raises:
+        InputError: a disturbance of fewer than two samples or with gaps.
+    """
+    if len(disturbance) < 2 or not np.isfinite(disturbance).all():
+        raise InputError("the disturbance of a loop needs two samples or more, without gaps")
+    A, row = states.closed_loop_matrix(gains), states.actuator_row(gains)
+    n = len(A)
+    held = propagators(A, np.zeros((0, n, n)), dt)[0]
+    rows = np.stack([states.c, row, row @ A])
+    direct = np.array([[0.0], [0.0], [row @ states.b]])
+    out, failed = np.empty((len(disturbance), 3)), np.full(1, -1, dtype=np.int64)
+    inputs = np.ascontiguousarray(disturbance, dtype=np.float64)[:, None]
+    replay(
+        held[:1].copy(), (held[1] @ states.b)[None, :, None], np.zeros((1, n, 1)), rows[None], direct[None],
+        np.zeros(1, dtype=np.int64), inputs, np.array([0, len(disturbance)]), 1, np.zeros((1, n)), out, failed,
+    )  # fmt: skip
+    return out
+
+
+# A loop in time: a controller, exactly discretised or sampled, on any model, with the limits of its actuator.
 
 REFERENCE = "reference"
 

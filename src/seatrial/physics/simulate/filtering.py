@@ -7,7 +7,7 @@ import numpy as np
 
 from seatrial.core.equations.model import channel_of
 from seatrial.core.values import Array, Index
-from seatrial.numerics.kernels.compiled_function import TangentPointer
+from seatrial.numerics.kernels.kernel import TangentPointer
 from seatrial.numerics.kernels.sensitivity import correct
 from seatrial.physics.sensors.wave_motion import STILL, WaveMotion
 from seatrial.physics.simulate.batch import SegmentBatch

@@ -11,7 +11,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError
-from seatrial.numerics.kernels.compiled_function import TangentPointer
+from seatrial.numerics.kernels.kernel import TangentPointer
 from seatrial.numerics.kernels.linear import affine_population
 from seatrial.numerics.kernels.linear_population import discretise, misfit
 from seatrial.numerics.kernels.linear_population import trajectories as simulated

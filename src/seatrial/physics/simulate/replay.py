@@ -6,13 +6,152 @@ from functools import cache
 
 import numpy as np
 
-from seatrial.core.equations import Model
-from seatrial.core.values import NOTATION, Array, InputError, Provenance, Record, spelling_hint
-from seatrial.core.values.between import Between
-from seatrial.physics.simulate.channels import inputs_of, record_of
-from seatrial.physics.simulate.divergence import require_bounded
+from seatrial.core.equations import Input, Model
+from seatrial.core.equations.model import MEASURED
+from seatrial.core.values import (
+    NOTATION,
+    Array,
+    Channel,
+    DivergedError,
+    InputError,
+    Provenance,
+    Record,
+    RecordKind,
+    frozen,
+    spelling_hint,
+)
+from seatrial.core.values.arrays import Between
+from seatrial.core.values.notation import OPPOSITE
+from seatrial.physics.manoeuvres.recognition import TRUE
+from seatrial.physics.simulate.batch import is_within_range, sufficient_substeps
 from seatrial.physics.simulate.linear import batch_class
-from seatrial.physics.simulate.steps import is_within_range, sufficient_substeps
+
+# Between records and a model's arrays: where inputs take the model's signs, and lose them again.
+
+ZERO_BY_DEFAULT = ("wind_speed", "wind_direction", "F3", "M5", "delta_f1", "delta_f2", "alpha_w", "alpha_f")
+
+
+def inputs_of(model: Model, record: Record) -> Array:
+    """Inputs in the model's own signs, shape (n, nu); absent wind, waves and fins are at rest.
+
+    A channel whose positive direction is the opposite of the input's is turned.
+
+    Raises:
+        InputError: an input channel is missing, holds NaN, or points in a direction that has nothing to do with the
+            model's.
+    """
+    require_inputs(model, record)
+    columns = [_input_values(model, record, item) for item in model.inputs]
+    return np.ascontiguousarray(np.stack(columns, axis=1)) if columns else np.empty((len(record), 0))
+
+
+def require_inputs(model: Model, record: Record) -> None:
+    """Raise for a record without a channel of an input of the model.
+
+    Raises:
+        InputError: the first input that the record lacks and that is not zero by default.
+    """
+    for item in model.inputs:
+        if item.name not in record and item.name not in ZERO_BY_DEFAULT:
+            raise InputError(
+                f"record '{record.name}' has no channel '{item.name}', an input of model '{model.name}'; add it "
+                "to the channels, or choose another model"
+            )
+
+
+def _input_values(model: Model, record: Record, item: Input) -> Array:
+    if item.name not in record:
+        return np.zeros(len(record))
+    channel = record.channel(item.name)
+    if not np.all(np.isfinite(channel.values)):
+        row = int(np.argmin(np.isfinite(channel.values)))
+        raise InputError(
+            f"record '{record.name}': input channel '{item.name}' has no value at sample {row} "
+            f"(t = {record.time[row]:g} s); repair it first"
+        )
+    if item.direction in (channel.positive, "none"):
+        return channel.values
+    if OPPOSITE.get(item.direction) == channel.positive:
+        return -channel.values
+    raise InputError(
+        f"record '{record.name}': input channel '{item.name}' is positive to '{channel.positive}', "
+        f"model '{model.name}' has it positive to '{item.direction}'; declare one of the two directions"
+    )
+
+
+def record_of(
+    model: Model,
+    name: str,
+    time: Array,
+    states: Array,
+    outputs: Array,
+    inputs: Array,
+    kind: RecordKind = RecordKind.SIMULATED,
+) -> Record:
+    """States, measurable outputs and inputs (model's signs) as a record in the notation table's signs.
+
+    Of a model with sensors a channel is what its instrument shows; the state itself has `_true` behind its name.
+    """
+    shown = {s: s if model.observable_of(s) == s else f"{s}{TRUE}" for s in model.states}
+    channels = {shown[s]: _channel(s, states[:, i]) for i, s in enumerate(model.states)}
+    for i, output in enumerate(model.outputs):
+        channel = output.removesuffix(MEASURED)
+        channels[channel] = _channel(channel, outputs[:, i])
+    for j, item in enumerate(model.inputs):
+        channels[item.name] = _channel(item.name, -inputs[:, j] if item.is_reversed else inputs[:, j])
+    return Record(name, frozen(time), channels, kind)
+
+
+def _channel(symbol: str, values: Array) -> Channel:
+    if symbol in NOTATION:
+        return Channel.from_notation(symbol, values)
+    return Channel(frozen(values), "1", "none", "none")
+
+
+# When a simulation leaves the world: a sentence that says when, and which channel went first.
+
+# by SI unit: beyond these no ship is believable (and nothing is, beyond 1e9)
+_LIMITS_BY_UNIT = {"m": 1e7, "m/s": 150.0, "rad": 1e4, "rad/s": 20.0}
+_DEFAULT_LIMIT = 1e9  # of a state in any other unit, as said above
+
+
+def state_limits(model: Model) -> Array:
+    """Return bounds of the states' magnitudes, shape (nx,)."""
+    units = [NOTATION[s].unit if s in NOTATION else "" for s in model.states]
+    return np.array([_LIMITS_BY_UNIT.get(unit, _DEFAULT_LIMIT) for unit in units])
+
+
+def first_row_outside(states: Array, limits: Array) -> int | None:
+    """Return the first row of states (n, nx) in which one exceeds its limit (nx,) or is NaN; None where none is."""
+    inside = np.abs(states) <= limits
+    return None if inside.all() else int(np.argmin(inside.all(axis=1)))
+
+
+def require_bounded(model: Model, time: Array, states: Array, subject: str) -> None:
+    """Accept states (n, nx) that stay within their bounds.
+
+    Raises:
+        DivergedError: they do not; the first time [s] and channel are named.
+    """
+    row = first_row_outside(states, state_limits(model))
+    if row is None:
+        return
+    state = model.states[_diverging_state(states, row, state_limits(model))]
+    raise DivergedError(
+        f"the simulation of {subject} with model '{model.name}' diverges: '{state}' left its bounds at "
+        f"t = {time[row]:g} s; check the model's coefficients and initial state, or take a smaller step"
+    )
+
+
+def _diverging_state(states: Array, row: int, bounds: Array) -> int:
+    """The state farthest outside at `row`, or the fastest growing one before it where nothing there is finite."""
+    here = np.abs(states[row]) / bounds
+    if np.isfinite(here).any() and np.nanmax(here) > 1.0:
+        return int(np.nanargmax(here))
+    return int(np.argmax(np.abs(states[max(row - 1, 0)]) / bounds))
+
+
+# A record's inputs run through a model: what the model says the ship would have done.
 
 ZERO_STARTS = ("x0", "y0", "psi")
 

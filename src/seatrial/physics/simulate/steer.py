@@ -1,22 +1,82 @@
-"""A programme steered through a model: zigzags, turning circles and the rest, with the helmsman in the loop."""
+"""A programme steered through a model: zigzags, turning circles, a release; with the rudder's rate."""
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError, Provenance, Record, frozen
 from seatrial.core.values.record import MAX_SAMPLES
 from seatrial.numerics.kernels.feedback import steer
-from seatrial.physics.manoeuvres.helmsman import FINISHED, NOT_FINISHED, Steering, rudder_angles
-from seatrial.physics.manoeuvres.programme import Programme
-from seatrial.physics.simulate.actuators import settled_actuators
-from seatrial.physics.simulate.approach import RUDDER, approach_speed, characteristic_time, held_inputs
-from seatrial.physics.simulate.channels import record_of
-from seatrial.physics.simulate.divergence import require_bounded
-from seatrial.physics.simulate.replay import trajectory
+from seatrial.physics.manoeuvres import REACH_PERCENTILE
+from seatrial.physics.manoeuvres.programme import (
+    FINISHED,
+    NOT_FINISHED,
+    Programme,
+    Steering,
+    release_angle,
+    rudder_angles,
+)
+from seatrial.physics.simulate.replay import record_of, require_bounded, trajectory
+from seatrial.physics.simulate.states import RUDDER, approach_speed, characteristic_time, held_inputs, settled_actuators
+
+# A ship that rolls, let go from an angle: the decay that a model foresees.
+
+_PERIODS = 15.0  # natural periods that a decay is simulated for where nothing is said; chosen
+_SAMPLES_A_PERIOD = 100.0  # chosen; Runge-Kutta of fourth order then errs by 1e-6 of the angle a period
+
+
+def rolls_only(model: Model) -> bool:
+    """Return whether the model can only be released: it rolls, and has no heading to be steered."""
+    return {"phi", "p"} <= set(model.states) and "psi" not in model.states
+
+
+def natural_period(model: Model) -> float:
+    """Return the natural period at small angles [s] of a model that rolls, 2 pi / sqrt(c_1).
+
+    Raises:
+        InputError: the model has no restoring moment `c_1`, or one that is not positive.
+    """
+    c_1 = model.parameters["c_1"].value if "c_1" in model.parameters else math.nan
+    if not c_1 > 0.0:
+        raise InputError(f"model '{model.name}' cannot be released: it needs a positive restoring moment c_1")
+    return 2.0 * math.pi / math.sqrt(c_1)
+
+
+def release(model: Model, text: str, period: float, duration: float | None = None) -> Record:
+    """Let the ship go from an angle, at rest, in calm water with fins amidships.
+
+    Args:
+        model: states phi and p; all parameters must have values.
+        text: ``release:15`` or ``release:15:port`` [deg], counted from the angle of rest `phi_0`.
+        period: natural period [s], which sets sample interval and duration.
+        duration: s; by default 15 natural periods.
+
+    Returns:
+        A simulated record of phi, p and the inputs, all zero.
+
+    Raises:
+        InputError: the text names no release, a duration that is not positive, or the simulation diverges.
+    """
+    angle, longest = release_angle(text), _PERIODS * period if duration is None else duration
+    if not (math.isfinite(longest) and longest > 0.0):
+        raise InputError(f"the duration {longest:g} s of a release is not positive")
+    dt = period / _SAMPLES_A_PERIOD
+    time = frozen(dt * np.arange(round(longest / dt) + 1))
+    start = np.zeros(len(model.states))
+    rest = model.parameters["phi_0"].value if "phi_0" in model.parameters else 0.0
+    start[model.states.index("phi")] = rest + angle
+    inputs = np.zeros((len(time), len(model.inputs)))
+    states, outputs = trajectory(model, inputs, dt, start)
+    require_bounded(model, time, states, f"manoeuvre '{text}'")
+    simulated = record_of(model, text, time, states, outputs, inputs)
+    return replace(simulated, provenance=Provenance(f"manoeuvre '{text}' of model '{model.name}'"))
+
+
+# A programme steered through a model: zigzags, turning circles and the rest, with the helmsman in the loop.
 
 # 35 deg to 30 deg on the other side in 28 s: SOLAS, chapter II-1, regulation 29.3.2
 SOLAS_SLEW_RATE = math.radians(65.0 / 28.0)
@@ -111,3 +171,66 @@ def _steer_programme(
     used = np.ascontiguousarray(inputs[:last])
     used[:, steering.delta] = rudder_angles(used[:, steering.delta])
     return used, bool(finished)
+
+
+# How fast the rudder of a simulated manoeuvre moves: as fast as the runs show it, at least as SOLAS requires.
+
+RUDDER_RATE = "rudder_rate"
+"""Key of the fastest rate of the training runs [rad/s] in what a model file says they cover."""
+MOVE_SHARE = 0.5
+"""Share of the range of rudder angles that a sustained move covers: noise and small corrections do not; chosen."""
+CLEARLY_FASTER = 1.2
+"""Times the rate that SOLAS requires from which recorded moves are faster: slopes are read to some 10 %; chosen."""
+_SPIKE = 3  # samples of the running median: a single bad reading is no move; the least a median can have
+
+
+@dataclass(frozen=True)
+class RudderRate:
+    """Rate of a rudder, rad/s, and where it is from."""
+
+    value: float
+    origin: str
+
+    @property
+    def text(self) -> str:
+        """A phrase for people."""
+        return f"rudder rate {math.degrees(self.value):.3g} deg/s, {self.origin}"
+
+
+def rudder_rate(scale: float, recorded: float | None = None) -> RudderRate:
+    """Return the rate that manoeuvres are steered with: that of the records, where clearly faster than SOLAS requires.
+
+    Args:
+        scale: of the ship, full scale over that of the trials; a rate grows with its root (Froude's law).
+        recorded: fastest sustained move of the training runs [rad/s], as `sustained_rudder_rate` has it.
+    """
+    required = SOLAS_SLEW_RATE * math.sqrt(scale)
+    if recorded is not None and recorded >= CLEARLY_FASTER * required:
+        return RudderRate(recorded, "the fastest of the training runs")
+    return RudderRate(required, "as SOLAS requires, at the ship's scale" if scale != 1.0 else "as SOLAS requires")
+
+
+def sustained_rudder_rate(record: Record) -> float | None:
+    """Return the fastest rate at which the rudder moves through half its range [rad/s]; None: it hardly moves.
+
+    A run of fewer samples, one whose rudder needs longer than at SOLAS's rate at full scale, and one without rudder
+    angles have none. A move between two samples counts as taking one sample interval.
+    """
+    if "delta" not in record or len(record) <= _SPIKE:
+        return None
+    angles = np.median(sliding_window_view(record["delta"], _SPIKE), axis=1)
+    if not np.isfinite(angles).any():
+        return None
+    least, most = np.nanpercentile(angles, (100.0 - REACH_PERCENTILE, REACH_PERCENTILE))
+    threshold = MOVE_SHARE * float(most - least)
+    slowest = math.ceil(threshold / (SOLAS_SLEW_RATE * record.dt))
+    for steps in range(1, min(slowest, len(angles) - 1) + 1):
+        largest = _largest_move(angles, steps)
+        if largest >= threshold:
+            return largest / (steps * record.dt)
+    return None
+
+
+def _largest_move(angles: Array, steps: int) -> float:
+    moves = np.abs(angles[steps:] - angles[:-steps])
+    return float(np.nanmax(moves, initial=0.0))

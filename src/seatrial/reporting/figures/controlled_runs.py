@@ -13,7 +13,7 @@ from seatrial.core.figures.ticks import span
 from seatrial.core.results.tuning import ManoeuvreResponse, Tuning
 from seatrial.core.text.words import counted
 from seatrial.core.values import Record, display_unit
-from seatrial.core.values.channel_text import channel_label, unit_text
+from seatrial.core.values.notation import channel_label, unit_text
 
 # simulations of a seaway drawn at most, and the stretch of each [s]
 MAX_SIMULATIONS, WINDOW = 3, 150.0

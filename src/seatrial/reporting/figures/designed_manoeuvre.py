@@ -11,7 +11,7 @@ from seatrial.core.figures.tracks import Track, is_slender, strip_height, track_
 from seatrial.core.results import Actuator, Design
 from seatrial.core.results.design import has_drift
 from seatrial.core.values import Record, display_unit
-from seatrial.core.values.channel_text import channel_label, channel_unit, display_values
+from seatrial.core.values.notation import channel_label, channel_unit, display_values
 from seatrial.core.values.record_chart import has_moving_track, record_track
 
 ORDERED, EXECUTED, LIMIT = Stroke(GREY, 2.6), Stroke(ACCENT, 1.3), Stroke(SECOND, 1.0, "6 3")  # px, chosen

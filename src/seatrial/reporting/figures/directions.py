@@ -26,7 +26,7 @@ from seatrial.core.figures.rows import SMALL, decades_axis, no_information, row_
 from seatrial.core.results import Direction, Profile
 from seatrial.core.text.numbers import MINUS, fixed
 from seatrial.core.values import display_unit
-from seatrial.core.values.channel_text import unit_text
+from seatrial.core.values.notation import unit_text
 
 # standard deviation [%] from which on a direction is poorly determined, and from which on it is not
 POORLY_DETERMINED, UNDETERMINED = 10.0, 100.0

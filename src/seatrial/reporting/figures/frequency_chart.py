@@ -7,9 +7,9 @@ import numpy as np
 from seatrial.core.figures.chart import WIDTH, Axis, Chart, LegendEntry, Panel, Region
 from seatrial.core.figures.marks import ACCENT, INK, SECOND, Array, Line, Mark, Marker, Points, Shape, Stroke
 from seatrial.core.figures.ticks import span
-from seatrial.core.results.frequency_response import FrequencyResponse
+from seatrial.core.results.ship_motions import FrequencyResponse
 from seatrial.core.values import display_unit
-from seatrial.core.values.channel_text import channel_letter, channel_unit
+from seatrial.core.values.notation import channel_letter, channel_unit
 
 MAX_PAIRS, COLUMNS = 6, 2  # pairs drawn at most, and side by side
 MAGNITUDE_HEIGHT, PHASE_HEIGHT, GAP, ROW_GAP = 120.0, 80.0, 8.0, 62.0  # px, chosen

@@ -5,9 +5,9 @@ import numpy as np
 from seatrial.core.figures.chart import Axis, Chart, LegendEntry, Panel, Region, tiles
 from seatrial.core.figures.marks import ACCENT, GREY, INK, Array, Line, Mark, Marker, Points, Shape, Stroke
 from seatrial.core.figures.ticks import whole_decades
-from seatrial.core.results.k_step import KStepErrors
+from seatrial.core.results.prediction import KStepErrors
 from seatrial.core.values import display_unit
-from seatrial.core.values.channel_text import channel_label
+from seatrial.core.values.notation import channel_label
 
 COLUMNS, HEIGHT = 3, 130.0  # panels in a row; px, chosen
 HELD_OUT, TRAINING = Stroke(ACCENT, 1.8), Stroke(INK, 1.1, "5 3")  # px, chosen

@@ -11,7 +11,7 @@ from seatrial.core.figures.run import RunView
 from seatrial.core.figures.time_plot import TimeSpan
 from seatrial.core.figures.tracks import Track
 from seatrial.core.values import InputError, Record
-from seatrial.core.values.channel_text import reading_order
+from seatrial.core.values.notation import reading_order
 from seatrial.core.values.record_chart import channel_panels, has_track, is_constant, record_track
 from seatrial.data.check import canonical_record
 from seatrial.data.draft import LogStretch

@@ -21,7 +21,7 @@ from seatrial.core.figures.marks import (
     Text,
 )
 from seatrial.core.results.tuning import Component
-from seatrial.core.values.channel_text import channel_letter
+from seatrial.core.values.notation import channel_letter
 
 # height of a block, distance of parallel ones, radius of a sum [px]
 HEIGHT, ROW, RADIUS = 42.0, 54.0, 8.0

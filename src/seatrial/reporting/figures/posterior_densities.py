@@ -6,7 +6,7 @@ from seatrial.core.figures.chart import Axis, Chart, Panel, Region, tiles
 from seatrial.core.figures.marks import ACCENT, SECOND, Line, Stroke
 from seatrial.core.results import CredibleInterval, Posterior
 from seatrial.core.values import Array, display_unit
-from seatrial.core.values.channel_text import unit_text
+from seatrial.core.values.notation import unit_text
 from seatrial.reporting.figures.directions import COLUMNS, HEIGHT
 
 _BINS, _HEADROOM = 30, 1.1

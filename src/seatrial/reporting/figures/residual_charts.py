@@ -12,7 +12,7 @@ from seatrial.core.figures.run import ChannelPanel, RunView, TimeCurve
 from seatrial.core.figures.ticks import decimated
 from seatrial.core.results import Residuals
 from seatrial.core.values import display_unit
-from seatrial.core.values.channel_text import channel_label, channel_letter, channel_unit
+from seatrial.core.values.notation import channel_label, channel_letter, channel_unit
 from seatrial.reporting.time_figures import run_figure
 
 # bars of the histogram, its reach in standard deviations, and the density of the normal at zero

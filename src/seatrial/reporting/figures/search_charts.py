@@ -10,7 +10,7 @@ from seatrial.core.figures.curves import NamedCurve, curves_chart
 from seatrial.core.figures.marks import ACCENT, GREY, INK, SECOND, Line, Mark, Marker, Points, Rule, Shape, Stroke
 from seatrial.core.figures.rows import row_panel
 from seatrial.core.results import Coefficient, ReferenceEstimate, Search, SearchAttempt, SearchTrack
-from seatrial.core.results.method_comparison import OWN_NAME
+from seatrial.core.results.comparison import OWN_NAME
 from seatrial.core.text.numbers import power_of_ten
 from seatrial.core.values import NOTATION, Array, display_unit
 

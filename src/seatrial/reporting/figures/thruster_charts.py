@@ -8,7 +8,7 @@ from seatrial.core.figures.bands import band, visible_edges
 from seatrial.core.figures.chart import Axis, Chart, LegendEntry, Panel, tiles
 from seatrial.core.figures.marks import ACCENT, INK, Array, Line, Mark, Rectangle, Rule, Stroke
 from seatrial.core.figures.ticks import span
-from seatrial.core.results.thruster_craft import CommandCurve, CompassCurve, QuadrantMap
+from seatrial.core.results.ship_motions import CommandCurve, CompassCurve, QuadrantMap
 
 COLUMNS, HEIGHT = 2, 230.0  # panels in a row; px, chosen
 _STILL, _MOVING, _ZERO = Stroke(INK, 1.5), Stroke(ACCENT, 1.4, "5 3"), Stroke("#999999", 0.8)  # px, chosen

@@ -8,8 +8,8 @@ from seatrial.core.results.online import Sample, Snapshot
 from seatrial.core.values import NOTATION, Record
 from seatrial.data.read import ColumnSpec, Layout
 from seatrial.data.trial import Trial
-from seatrial.data.trial.follow_table import require_stream
-from seatrial.data.trial.stream import Stream, StreamSource
+from seatrial.data.trial.runs import require_stream
+from seatrial.data.trial.settings import Stream, StreamSource
 from seatrial.estimation.identify.online import OnlineEstimator
 from seatrial.estimation.identify.online.stream_window import StreamWindow
 from seatrial.physics.models.published import QI2025_SHIP

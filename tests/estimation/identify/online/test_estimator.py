@@ -10,7 +10,7 @@ from tests.estimation.identify.online.streams import feed, samples, sea_stream
 from seatrial.core.results.online import EstimatorPhase
 from seatrial.core.values import InputError
 from seatrial.data.trial import load_trial
-from seatrial.data.trial.follow_table import require_stream
+from seatrial.data.trial.runs import require_stream
 from seatrial.estimation.identify.identify import identify
 from seatrial.estimation.identify.online import OnlineEstimator
 from seatrial.onboard.sources import open_source

@@ -11,8 +11,8 @@ from seatrial.core.results import Fit
 from seatrial.core.results.online import EstimatorPhase, Snapshot
 from seatrial.core.values import Record
 from seatrial.data.trial import Role, Trial, load_trial
-from seatrial.data.trial.roll_decay_start import trim_to_decay_start
-from seatrial.data.trial.stream import Stream, StreamSource
+from seatrial.data.trial.records import trim_to_decay_start
+from seatrial.data.trial.settings import Stream, StreamSource
 from seatrial.estimation.identify.identify import identify
 from seatrial.estimation.identify.online import OnlineEstimator
 

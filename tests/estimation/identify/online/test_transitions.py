@@ -12,7 +12,7 @@ from seatrial.estimation.identify.online.recursive_phase import BLOCK_SAMPLES, R
 from seatrial.estimation.identify.online.schedule import CONTINUED_INTERVALS, REPEATED_INTERVALS, SearchSchedule
 from seatrial.estimation.identify.online.search import ContinuedSearch
 from seatrial.estimation.identify.online.transitions import carried_phase, filter_phase, is_window_full
-from seatrial.physics.sea.encounter import WaveEncounter
+from seatrial.physics.sea.spectrum import WaveEncounter
 from seatrial_studies.seaway import box_hull
 
 

@@ -8,10 +8,8 @@ from typing import Any
 import numpy as np
 
 from seatrial.core.values import InputError
-from seatrial.data.read.extras import fault_text, require_library
 from seatrial.data.read.layout import Layout
-from seatrial.data.read.log import Log, LogEvent, topic_table
-from seatrial.data.read.raw_table import RawTable
+from seatrial.data.read.log import Log, LogEvent, RawTable, fault_text, require_library, topic_table
 
 _MICRO = 1e-6  # s, of a microsecond
 _HEADER_BYTES = 3  # two bytes that mark a message and its type (ArduPilot, AP_Logger/LogStructure.h)

@@ -9,10 +9,8 @@ from typing import Any
 import numpy as np
 
 from seatrial.core.values import InputError
-from seatrial.data.read.extras import fault_text, require_library
 from seatrial.data.read.layout import Layout
-from seatrial.data.read.log import Log, LogEvent, topic_table
-from seatrial.data.read.raw_table import RawTable
+from seatrial.data.read.log import Log, LogEvent, RawTable, fault_text, require_library, topic_table
 
 # clocks of the sender in messages, and their unit in s
 _SENDER_CLOCKS = {"time_boot_ms": 1e-3, "time_usec": 1e-6}

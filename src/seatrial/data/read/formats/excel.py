@@ -6,11 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from seatrial.core.values import InputError
-from seatrial.data.read.extras import fault_text, require_library
-from seatrial.data.read.header import table_header
 from seatrial.data.read.layout import Layout
-from seatrial.data.read.log import Log
-from seatrial.data.read.raw_table import RawTable
+from seatrial.data.read.log import Log, RawTable, fault_text, require_library, table_header
 
 _LARGEST_EXPANSION = 200  # unpacked over packed bytes; ours: number tables reach 20
 _HEADER_ROWS = 20  # rows in which the names of the columns are sought; ours

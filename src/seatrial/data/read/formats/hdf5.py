@@ -7,10 +7,8 @@ from typing import Any
 import numpy as np
 
 from seatrial.core.values import InputError
-from seatrial.data.read.extras import require_library
 from seatrial.data.read.layout import Layout
-from seatrial.data.read.log import Log
-from seatrial.data.read.raw_table import RawTable
+from seatrial.data.read.log import Log, RawTable, require_library
 
 _WIDEST = 64  # columns of a two-dimensional dataset that become columns of a table; ours
 

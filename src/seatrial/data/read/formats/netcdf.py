@@ -5,10 +5,8 @@ from pathlib import Path
 import numpy as np
 
 from seatrial.core.values import InputError
-from seatrial.data.read.extras import require_library
 from seatrial.data.read.layout import Layout
-from seatrial.data.read.log import Log
-from seatrial.data.read.raw_table import RawTable
+from seatrial.data.read.log import Log, RawTable, require_library
 
 
 def read_netcdf(path: Path, layout: Layout) -> Log:

@@ -12,10 +12,16 @@ import numpy as np
 from seatrial.core.values import Array, InputError
 from seatrial.data.read.formats.text import decoded_text
 from seatrial.data.read.layout import Layout
-from seatrial.data.read.log import Log, topic_table
-from seatrial.data.read.nmea_sentence import Sentence, SentenceFault, parse_sentence, readings, utc_time
-from seatrial.data.read.raw_table import RawTable
-from seatrial.data.read.receipt import on_the_clock, receipt_time
+from seatrial.data.read.log import Log, RawTable, topic_table
+from seatrial.data.read.nmea_sentence import (
+    Sentence,
+    SentenceFault,
+    on_the_clock,
+    parse_sentence,
+    readings,
+    receipt_time,
+    utc_time,
+)
 
 _DAY_S = 86400.0  # s, of a day
 _RMC_DATE = 9  # field of RMC with the date, ddmmyy

@@ -9,11 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from seatrial.core.values import InputError
-from seatrial.data.read.extras import require_library
 from seatrial.data.read.formats.text import decoded_text
 from seatrial.data.read.layout import Layout
-from seatrial.data.read.log import Log, topic_table
-from seatrial.data.read.raw_table import RawTable
+from seatrial.data.read.log import Log, RawTable, require_library, topic_table
 
 _LEFT_OUT = ("sid", "instance")
 _Key = tuple[str, int, str]

@@ -3,10 +3,8 @@
 from pathlib import Path
 
 from seatrial.core.values import InputError
-from seatrial.data.read.extras import fault_text, require_library
 from seatrial.data.read.layout import Layout
-from seatrial.data.read.log import Log
-from seatrial.data.read.raw_table import RawTable
+from seatrial.data.read.log import Log, RawTable, fault_text, require_library
 
 
 def read_parquet(path: Path, layout: Layout) -> Log:  # noqa: ARG001

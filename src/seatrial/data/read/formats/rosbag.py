@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 
 from seatrial.core.values import InputError
-from seatrial.data.read.extras import fault_text, require_library
 from seatrial.data.read.layout import Layout
-from seatrial.data.read.log import Log, topic_table
+from seatrial.data.read.log import Log, fault_text, require_library, topic_table
 
 # numbers of an array field that become columns of their own; ours, so that covariances and images do not
 _LARGEST_ARRAY = 16

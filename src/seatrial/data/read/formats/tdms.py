@@ -6,10 +6,8 @@ from typing import Any
 import numpy as np
 
 from seatrial.core.values import InputError
-from seatrial.data.read.extras import fault_text, require_library
 from seatrial.data.read.layout import Layout
-from seatrial.data.read.log import Log, topic_table
-from seatrial.data.read.raw_table import RawTable
+from seatrial.data.read.log import Log, RawTable, fault_text, require_library, topic_table
 
 
 def read_tdms(path: Path, layout: Layout) -> Log:  # noqa: ARG001

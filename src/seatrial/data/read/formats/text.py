@@ -13,11 +13,8 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 import numpy as np
 
 from seatrial.core.values import InputError
-from seatrial.data.read.degrees_minutes import with_sides
-from seatrial.data.read.header import table_header
 from seatrial.data.read.layout import Layout
-from seatrial.data.read.log import Log
-from seatrial.data.read.raw_table import EMPTY_CELLS, RawTable
+from seatrial.data.read.log import EMPTY_CELLS, Log, RawTable, table_header, with_sides
 
 if TYPE_CHECKING:
     import pandas

@@ -6,9 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from seatrial.core.values import InputError
-from seatrial.data.read.extras import fault_text, require_library
 from seatrial.data.read.layout import Layout
-from seatrial.data.read.log import Log, LogEvent, topic_table
+from seatrial.data.read.log import Log, LogEvent, fault_text, require_library, topic_table
 
 _MICRO = 1e-6  # s, of a microsecond
 

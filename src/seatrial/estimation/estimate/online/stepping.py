@@ -8,7 +8,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index
-from seatrial.numerics.kernels.compiled_function import TangentPointer
+from seatrial.numerics.kernels.kernel import TangentPointer
 from seatrial.numerics.kernels.recursive import filter_linear, filter_runge_kutta
 from seatrial.numerics.kernels.sensitivity import step_scratch, step_tables
 from seatrial.numerics.kernels.spline import spline_slopes

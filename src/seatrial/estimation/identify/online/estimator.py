@@ -13,7 +13,7 @@ import numpy as np
 from seatrial.core.results.online import CoefficientChange, Sample, Snapshot
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.trial import Trial, TrialRun
-from seatrial.data.trial.follow_table import require_stream
+from seatrial.data.trial.runs import require_stream
 from seatrial.estimation.estimate.online.change_detection import ChangeDetector
 from seatrial.estimation.estimate.online.window import WindowEstimate
 from seatrial.estimation.identify.online.phases import Carried, KeptPhase, WarmUp, Window

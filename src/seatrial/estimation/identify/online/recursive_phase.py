@@ -6,7 +6,7 @@ from seatrial.core.results.online import CoefficientChange
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.check.conventions import canonical_record
 from seatrial.data.read.assemble import record_from_values
-from seatrial.data.trial.stream import Stream
+from seatrial.data.trial.settings import Stream
 from seatrial.estimation.estimate.online.change_detection import ChangeDetector
 from seatrial.estimation.estimate.online.curvature import LINEAR_ENOUGH, curvature
 from seatrial.estimation.estimate.online.handover import filter_from_fit
@@ -16,7 +16,7 @@ from seatrial.estimation.estimate.online.sample_rows import SampleRows
 from seatrial.estimation.estimate.online.window import WindowEstimate
 from seatrial.estimation.identify.online.phases import Carried, WarmUp
 from seatrial.estimation.information.covariance import inverse
-from seatrial.physics.simulate.channels import inputs_of
+from seatrial.physics.simulate.replay import inputs_of
 
 # samples taken in at once: enough to spread the cost of a block, few enough that numbers move within a second at 10 Hz
 BLOCK_SAMPLES = 10

@@ -8,7 +8,7 @@ from seatrial.core.results import Fit, Search, SearchRestart, SearchTrack
 from seatrial.core.results.online import Sample, Snapshot
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.trial import EstimateMethod, Role, SearchFitness, SearchSettings, Trial
-from seatrial.data.trial.follow_table import require_stream
+from seatrial.data.trial.runs import require_stream
 from seatrial.estimation.identify.online.estimator import OnlineEstimator
 from seatrial.estimation.identify.search_problem import (
     search_box,

@@ -6,8 +6,8 @@ from seatrial.core.results.online import Sample
 from seatrial.core.values import Record
 from seatrial.data.read.assemble import record_from_values
 from seatrial.data.trial import Role, Trial, TrialRun
-from seatrial.data.trial.follow_table import require_stream
 from seatrial.data.trial.records import load_run
+from seatrial.data.trial.runs import require_stream
 from seatrial.estimation.estimate.online.sample_rows import SampleRows
 
 # a run of fewer samples is left out: no slope can be taken from it

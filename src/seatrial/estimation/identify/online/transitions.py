@@ -3,7 +3,7 @@
 import numpy as np
 
 from seatrial.core.values import InputError
-from seatrial.data.trial.stream import Stream
+from seatrial.data.trial.settings import Stream
 from seatrial.estimation.estimate.online.change_detection import ChangeDetector
 from seatrial.estimation.estimate.online.window import WindowEstimate
 from seatrial.estimation.identify.online.phases import Carried, KeptPhase, WarmUp, Window

@@ -10,7 +10,7 @@ from seatrial.core.results import Method, Solution, Status
 from seatrial.core.text.numbers import significant
 from seatrial.core.values import Finding, InputError, Record, Severity
 from seatrial.data.trial import EstimateMethod
-from seatrial.data.trial.compare_settings import SupportVectorSettings
+from seatrial.data.trial.settings import SupportVectorSettings
 from seatrial.estimation.identify.strategies.published import NO_INTERVALS, PublishedEstimate
 from seatrial.estimation.regress import RegressionEstimate, estimator_of_method
 

@@ -19,10 +19,10 @@ from seatrial.estimation.information.frequency_range import frequency_range, fre
 from seatrial.estimation.problem.segments import compared_outputs
 from seatrial.estimation.problem.spectral_likelihood import SpectralLikelihood, fine_grid, hann_transform
 from seatrial.numerics.optimise import Optimum, levenberg_marquardt
-from seatrial.physics.sea.encounter import WaveEncounter
+from seatrial.physics.sea.spectrum import WaveEncounter
 from seatrial.physics.sea.wave_forces import force_density
-from seatrial.physics.simulate.channels import inputs_of
-from seatrial.physics.simulate.harmonics import Complex
+from seatrial.physics.simulate.linear import Complex
+from seatrial.physics.simulate.replay import inputs_of
 
 # sensors are first thought this many times worse, so that the search sees the shape before the detail
 _NOISE_FACTORS = (100.0, 30.0, 10.0, 3.0)

@@ -1,0 +1,422 @@
+"""Stretches of a log that are manoeuvres: straight runs, turns, zigzags, circles, spirals, stops, roll decays."""
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from seatrial.core.values import Array, InputError, Record
+from seatrial.data.check.motion import Mask, mask_intervals, smoothed
+from seatrial.data.check.phases import HalfSwing, driven_swings, half_swings, is_in_waves, release_row
+from seatrial.physics.manoeuvres import ManoeuvreKind, ObservedManoeuvre, ordered_degrees
+from seatrial.physics.manoeuvres.track import speed
+
+# A stretch of a log that is a manoeuvre, and the signals in which manoeuvres are sought.
+
+MIN_SAMPLES = 30
+"""Samples below which nothing is a manoeuvre; as in the checks."""
+_SMOOTHING_S = 2.0  # s over which rates and speeds are smoothed; chosen
+
+
+@dataclass(frozen=True)
+class LogStretch:
+    """A manoeuvre in a log.
+
+    Attributes:
+        name: its kind, with the side.
+        start, stop: s after the first sample.
+        evidence: what shows it.
+        released: s after the first sample from which on the rudder is amidships to the stop; None: it is not.
+        is_left_out: whether it is offered as a run, and not used unless a person says so.
+    """
+
+    name: str
+    start: float
+    stop: float
+    evidence: str
+    released: float | None = None
+    is_left_out: bool = False
+
+    @property
+    def kind(self) -> str:
+        """What it is, without side and number."""
+        return self.name.partition("_")[0].rstrip("0123456789")
+
+
+def used_parts(offered: Sequence[LogStretch]) -> tuple[LogStretch, ...]:
+    """Return those of the offered stretches of a run that are runs of their own."""
+    return tuple(one for one in offered if not one.is_left_out)
+
+
+def padded(record: Record, values: Array) -> Array:
+    """Return values smoothed over two seconds, of the same length: the ends are held."""
+    length = min(max(3, round(_SMOOTHING_S / record.dt)) | 1, (len(values) // 4) | 1)
+    return np.pad(smoothed(values, length), length // 2, mode="edge")[: len(values)]
+
+
+def elapsed(record: Record) -> Array:
+    """Return the s since the first sample, shape (n,)."""
+    return record.time - record.time[0]
+
+
+def smooth_speed(record: Record) -> Array | None:
+    """Return the smoothed speed [m/s], shape (n,); None where it is not recorded."""
+    known = speed(record)
+    if known is None and {"x0", "y0"} <= set(record.channels):
+        known = np.hypot(*(np.gradient(padded(record, record[one]), record.dt) for one in ("x0", "y0")))
+    return None if known is None else padded(record, known)
+
+
+# Straight runs, spirals, stops and roll decays in a log.
+
+DECAY, STRAIGHT = "decay", "straight"  # kinds of a stretch
+SHORTEST_STRAIGHT_S = 20.0  # s, of the shortest straight run; chosen
+_STRAIGHT_HEADING = np.radians(5.0)  # rad, range of headings of a straight run; chosen
+_MOVES = 0.2  # of the largest speed, above which a craft moves; chosen
+# deg within which a rudder is held, and largest step between two holds; s of a hold; holds of a spiral; chosen
+_HOLD_DEG, _LARGEST_STEP_DEG, _HOLD_S, _SPIRAL_HOLDS = 1.0, 12.0, 20.0, 5
+_FAST, _STOPPED = 0.7, 0.1  # of the largest speed, between which a craft stops; chosen
+_FALLING = 0.9  # share of a stop's samples at which the speed falls; chosen
+_LOOK_S = 0.5  # s between two looks at the rudder; chosen: short against a hold
+# half swings of a roll decay, factor by which they shrink in all, scatter of their time; chosen
+_HALF_SWINGS, _SHRINKS, _PERIOD_SCATTER = 6, 2.0, 0.25
+# of the first swing, by which later ones grow where slow forces disturb a decay, and no more than a tail is; chosen
+_DISTURBED = 0.15
+_HELD = 1.5  # of the time of the half swings that follow, beyond which the first one was held; chosen
+_SMALLEST_ROLL = np.radians(2.0)  # rad, of the first swing of a decay; chosen
+
+
+def straight_runs(record: Record) -> list[LogStretch]:
+    """Return stretches over which the heading stays within five degrees while the craft moves."""
+    window = max(2, round(SHORTEST_STRAIGHT_S / record.dt))
+    if "psi" not in record or len(record) <= window:
+        return []
+    from scipy.ndimage import maximum_filter1d, minimum_filter1d
+
+    psi, time = np.unwrap(record["psi"]), elapsed(record)
+    even = maximum_filter1d(psi, window) - minimum_filter1d(psi, window) < _STRAIGHT_HEADING
+    flow = smooth_speed(record)
+    if flow is not None:
+        even &= flow > _MOVES * np.max(flow)
+    text = f"heading within {np.degrees(_STRAIGHT_HEADING):.0f} deg"
+    ends = mask_intervals(_widened(even, window // 2))
+    return [LogStretch(STRAIGHT, float(time[a]), float(time[b - 1]), text) for a, b in ends]
+
+
+def _widened(mask: Mask, half: int) -> Mask:
+    """The mask with the windows about its samples filled: stretches that overlap are one."""
+    from scipy.ndimage import maximum_filter1d
+
+    return np.asarray(maximum_filter1d(mask.astype(np.uint8), 2 * half + 1), dtype=bool)
+
+
+def spirals(record: Record) -> list[LogStretch]:
+    """Return stretches in which the rudder stands at one angle after the other from one side to the other."""
+    if "delta" not in record:
+        return []
+    holds = _rudder_holds(record)
+    time, stretches, chain = elapsed(record), list[LogStretch](), list[tuple[int, int, float]]()
+    for hold in [*holds, (len(record), len(record), np.inf)]:
+        if chain and not _goes_on(chain, hold):
+            angles = [angle for _, _, angle in chain]
+            if len(chain) >= _SPIRAL_HOLDS and min(angles) < 0.0 < max(angles):
+                text = f"rudder held at {len(chain)} angles from {angles[0]:.0f} to {angles[-1]:.0f} deg"
+                stretches.append(LogStretch("spiral", float(time[chain[0][0]]), float(time[chain[-1][1] - 1]), text))
+            chain = chain[-1:] if chain and abs(hold[2] - chain[-1][2]) <= _LARGEST_STEP_DEG else []
+        chain.append(hold)
+    return stretches
+
+
+def _rudder_holds(record: Record) -> list[tuple[int, int, float]]:
+    """First row, row after the last, and angle [deg] of the stretches in which the rudder stays within a degree."""
+    stride = max(1, round(_LOOK_S / record.dt))
+    degrees = np.degrees(padded(record, record["delta"]))[::stride].tolist()
+    holds, first = list[tuple[int, int, float]](), 0
+    for row in range(1, len(degrees) + 1):
+        if row < len(degrees) and abs(degrees[row] - degrees[first]) <= _HOLD_DEG:
+            continue
+        if (row - first) * stride * record.dt >= _HOLD_S:
+            holds.append((first * stride, min(row * stride, len(record)), float(np.median(degrees[first:row]))))
+        first = row
+    return holds
+
+
+def _goes_on(chain: list[tuple[int, int, float]], hold: tuple[int, int, float]) -> bool:
+    """Whether a hold continues a chain: one step further to the same side."""
+    step = hold[2] - chain[-1][2]
+    direction = np.sign(chain[-1][2] - chain[0][2])
+    return 0.0 < abs(step) <= _LARGEST_STEP_DEG and (direction == 0.0 or np.sign(step) == direction)
+
+
+def stops(record: Record) -> list[LogStretch]:
+    """Return stretches in which the speed falls from most of its largest to a tenth."""
+    flow, time = smooth_speed(record), elapsed(record)
+    if flow is None:
+        return []
+    largest, stretches = float(np.max(flow)), list[LogStretch]()
+    for first, _ in mask_intervals(flow < _STOPPED * largest):
+        fast = np.flatnonzero(flow[:first] > _FAST * largest)
+        if not fast.size:
+            continue
+        falling = np.diff(flow[fast[-1] : first + 1]) < 0.0
+        if falling.size and np.mean(falling) > _FALLING:
+            row = int(fast[-1])
+            text = f"speed falls from {flow[row]:.2g} to {flow[first]:.2g} m/s, {_propulsion(record, row, first)}"
+            start = float(time[_start_of_fall(flow, row)])
+            stretches.append(LogStretch("stop", start, float(time[first]), text))
+    return stretches
+
+
+def _start_of_fall(flow: Array, row: int) -> int:
+    """The last row before `row` at which the speed did not fall."""
+    steady = np.flatnonzero(np.diff(flow[: row + 1]) >= 0.0)
+    return int(steady[-1]) + 1 if steady.size else 0
+
+
+def _propulsion(record: Record, first: int, last: int) -> str:
+    names = [s for s in record.channels if s == "n" or s.startswith(("command_", "rpm_"))]
+    if not names:
+        return "propeller not recorded"
+    is_astern = any(float(np.mean(record[name][first : last + 1])) < 0.0 for name in names)
+    return "propeller astern" if is_astern else "coasting"
+
+
+def decays(record: Record) -> list[LogStretch]:
+    """Return stretches in which the roll swings evenly and dies out, each to where it is released anew.
+
+    A record in waves has none: groups of swings die out in it that nobody released.
+    """
+    if "phi" not in record:
+        return []
+    phi = record["phi"] - float(np.median(record["phi"]))
+    if is_in_waves(phi):
+        return []
+    time, stretches = elapsed(record), list[LogStretch]()
+    before, chain = list[HalfSwing](), list[HalfSwing]()
+    for swing in [*half_swings(phi), HalfSwing(len(phi), len(phi), np.inf)]:
+        if chain and swing.angle > _smallest_level(chain) + _DISTURBED * chain[0].angle:
+            even = [one for one in chain if one.angle > _DISTURBED * chain[0].angle]
+            driven = max(driven_swings([*before, *even]) - len(before), 0)
+            free = even[driven:]
+            if _dies_out(free):
+                text = f"roll swings {len(free)} half periods from {np.degrees(free[0].angle):.1f} deg down"
+                start, stop = _peak(phi, free[0]) if driven else _release(phi, free), chain[-1].stop - 1
+                stretches.append(LogStretch(DECAY, float(time[start]), float(time[stop]), text))
+                before = []
+            else:
+                before += chain
+            chain = []
+        chain.append(swing)
+    return stretches
+
+
+def half_swing_angles(phi: Array) -> Array:
+    """Return the largest angle of each swing to one side, rad; phi: about its rest."""
+    return np.array([half_swing.angle for half_swing in half_swings(phi)])
+
+
+def _peak(phi: Array, swing: HalfSwing) -> int:
+    """The row of its largest angle."""
+    return swing.first + int(np.argmax(np.abs(phi[swing.first : swing.stop])))
+
+
+def _smallest_level(chain: Sequence[HalfSwing]) -> float:
+    """The smallest angle [rad] so far that swings to both sides stayed within: one rest angle is no growth."""
+    return min((max(a.angle, b.angle) for a, b in pairwise(chain)), default=chain[0].angle)
+
+
+def _release(phi: Array, chain: Sequence[HalfSwing]) -> int:
+    """The row of the release: of a first swing that was held, else before it, or its own where nothing shows one."""
+    first = chain[0].first
+    if chain[0].stop - first > _HELD * float(np.median([one.stop - one.first for one in chain[1:]])):
+        return first + release_row(phi[first : chain[0].stop])
+    sides = np.flatnonzero(np.diff(phi[: first + 1] >= 0.0))[:-1]
+    start = int(sides[-1]) + 1 if sides.size else 0
+    return start + release_row(phi[start:first]) if first > start else first
+
+
+def _dies_out(chain: Sequence[HalfSwing]) -> bool:
+    lengths = np.array([one.stop - one.first for one in chain[1:]], dtype=float)  # the first one may have been held
+    return (
+        len(chain) >= _HALF_SWINGS
+        and chain[0].angle > max(_SMALLEST_ROLL, _SHRINKS * chain[-1].angle)
+        and float(np.std(lengths)) < _PERIOD_SCATTER * float(np.mean(lengths))
+    )
+
+
+# Turns by the heading: zigzags, turns, circles with or without the pull-out that follows, spins on the spot.
+
+_CIRCLE, _ZIGZAG_TURNS = np.radians(270.0), 3  # rad of a circle, and turns of a zigzag; chosen
+_SMALLEST_TURN, _LARGEST_ZIGZAG = np.radians(8.0), np.radians(120.0)  # rad of a turn of a zigzag; chosen
+_TURNING_SHARE = 0.1  # of the largest yaw rate: beyond, the ship turns; chosen
+# share of the log's largest speed, and m of radius, below which a craft turns on the spot; chosen: less than any circle
+_SPIN_SPEED, _SPIN_RADIUS = 0.25, 0.5
+_OVER, _AMIDSHIPS = 0.5, 0.1  # of the rudder's angle in a turn: put over, and amidships; as in the recognition of runs
+_LULL = 0.1  # of the whole, the longest time in a turn in which the yaw rate is small; chosen
+_PULL_OUT_SHARE = 0.1  # of the time of the turn that the rudder is amidships after it; chosen
+
+
+@dataclass(frozen=True)
+class _Turn:
+    """Rows first..last of a turn and the change of heading [rad], positive to starboard."""
+
+    first: int
+    last: int
+    angle: float
+
+    @property
+    def side(self) -> str:
+        return "starboard" if self.angle > 0.0 else "port"
+
+
+def turning_stretches(record: Record) -> list[LogStretch]:
+    """Return turns, circles, spins and zigzags of a record; none without a heading.
+
+    A turn lasts while the yaw rate is over a tenth of its largest.
+    """
+    if "psi" not in record:
+        return []
+    psi = np.unwrap(record["psi"])
+    rate = padded(record, np.gradient(psi, record.dt))
+    largest = float(np.max(np.abs(rate)))
+    ends = sorted(end for side in (1.0, -1.0) for end in mask_intervals(side * rate > _TURNING_SHARE * largest))
+    turns = [_Turn(a, b - 1, float(psi[b - 1] - psi[a])) for a, b in ends]
+    turns = _joined(record, [turn for turn in turns if abs(turn.angle) > _SMALLEST_TURN])
+    long = [turn for turn in turns if abs(turn.angle) > _LARGEST_ZIGZAG]
+    starts = [0, *((one.last + after.first) // 2 for one, after in pairwise(long))]
+    stops = [*(after.first for after in long[1:]), len(record) - 1]
+    turned = [_turned(record, turn, limits) for turn, *limits in zip(long, starts, stops, strict=False)]
+    return turned + _zigzags(record, [turn for turn in turns if abs(turn.angle) < _LARGEST_ZIGZAG])
+
+
+def _joined(record: Record, turns: list[_Turn]) -> list[_Turn]:
+    """Turns to one side that a short lull parts made one, unless the rudder was released in it."""
+    joined = list[_Turn]()
+    for turn in turns:
+        before = joined[-1] if joined else None
+        is_lull = before is not None and turn.first - before.last < _LULL * (turn.last - before.first)
+        if before is not None and is_lull and before.angle * turn.angle > 0.0 and _is_held(record, before, turn):
+            joined[-1] = _Turn(before.first, turn.last, before.angle + turn.angle)
+        else:
+            joined.append(turn)
+    return joined
+
+
+def _is_held(record: Record, before: _Turn, after: _Turn) -> bool:
+    """Whether the rudder stands over between two turns as it did in the first; so where it is not recorded."""
+    if "delta" not in record:
+        return True
+    delta = np.abs(record["delta"])
+    return float(np.min(delta[before.last : after.first + 1])) > _OVER * float(
+        np.median(delta[before.first : before.last])
+    )
+
+
+def _turned(record: Record, turn: _Turn, limits: list[int]) -> LogStretch:
+    """A turn to one side, with what belongs to it between two rows: half way from the turn before, to the one after."""
+    time, text = elapsed(record), f"heading changes by {np.degrees(abs(turn.angle)):.0f} deg to {turn.side}"
+    first, last, kind = turn.first, turn.last, "turn"
+    if _is_on_the_spot(record, turn):
+        kind, text = "spin", f"{text} on the spot"
+    elif abs(turn.angle) > _CIRCLE:
+        first, last, released = _with_rudder(record, turn, limits)
+        kind = "circle"
+        if released is not None:
+            name, text = f"circle_{turn.side}_with_pull_out_", f"{text}; then the rudder is amidships"
+            return LogStretch(name, float(time[first]), float(time[last]), text, float(time[released]))
+    return LogStretch(f"{kind}_{turn.side}_", float(time[first]), float(time[last]), text)
+
+
+def _is_on_the_spot(record: Record, turn: _Turn) -> bool:
+    flow = smooth_speed(record)
+    if flow is None:
+        return False
+    inside = flow[turn.first : turn.last + 1]
+    radius = float(np.sum(inside)) * record.dt / abs(turn.angle)
+    return float(np.mean(inside)) < _SPIN_SPEED * float(np.max(flow)) or radius < _SPIN_RADIUS
+
+
+def _with_rudder(record: Record, turn: _Turn, limits: list[int]) -> tuple[int, int, int | None]:
+    """First and last row from the order of the rudder to the end of the pull-out, and where that begins.
+
+    It ends with the next order, within the limits.
+    """
+    if "delta" not in record:
+        return turn.first, turn.last, None
+    delta = record["delta"] - float(np.median(record["delta"]) if _is_mostly_amidships(record) else 0.0)
+    held = float(np.median(delta[turn.first : turn.last + 1]))
+    over = np.abs(delta - held) < _OVER * abs(held)
+    pieces = [(a, b) for a, b in mask_intervals(over) if a <= turn.last and b >= turn.first]
+    if not pieces:
+        return turn.first, turn.last, None
+    first, released = max(min(pieces[0][0], turn.first), limits[0]), pieces[-1][1]
+    small = np.abs(delta) < max(_AMIDSHIPS * abs(held), np.finfo(float).tiny)
+    after = next(((a, b) for a, b in mask_intervals(small) if b > released and a <= turn.last), None)
+    if after is None or after[1] - max(after[0], released) < _PULL_OUT_SHARE * (released - first):
+        return first, max(turn.last, min(released - 1, limits[1])), None
+    return first, min(after[1] - 1, limits[1]), max(after[0], released)
+
+
+def _is_mostly_amidships(record: Record) -> bool:
+    """Whether the rudder is small for most of the log: its median is then its zero."""
+    delta = record["delta"]
+    return bool(abs(float(np.median(delta))) < _AMIDSHIPS * float(np.max(np.abs(delta))))
+
+
+def _zigzags(record: Record, turns: list[_Turn]) -> list[LogStretch]:
+    """Runs of at least three turns that alternate without a pause longer than themselves."""
+    chains: list[list[_Turn]] = []
+    for turn in turns:
+        before = chains[-1][-1] if chains else None
+        if before and turn.angle * before.angle < 0 and turn.first - before.last < turn.last - turn.first:
+            chains[-1].append(turn)
+        else:
+            chains.append([turn])
+    time = elapsed(record)
+    return [
+        LogStretch("zigzag", float(time[chain[0].first]), float(time[chain[-1].last]), _zigzag_text(record, chain))
+        for chain in chains
+        if len(chain) >= _ZIGZAG_TURNS
+    ]
+
+
+def _zigzag_text(record: Record, chain: list[_Turn]) -> str:
+    """Turns and how far the heading swings; rudder and the heading of its switches, where recorded."""
+    swing = float(np.median([abs(turn.angle) for turn in chain]))
+    text = f"{len(chain)} turns to alternate sides, the heading swings over {np.degrees(swing):.0f} deg"
+    try:
+        manoeuvre = ObservedManoeuvre.from_record(record.rows(slice(chain[0].first, chain[-1].last + 1)))
+    except InputError:
+        return text
+    if manoeuvre.kind is not ManoeuvreKind.ZIGZAG or len(manoeuvre.executes) < _ZIGZAG_TURNS:
+        return text
+    rudder = float(np.median([abs(hold.angle) for hold in manoeuvre.holds]))
+    psi = [manoeuvre.psi_at(execute) for execute in manoeuvre.executes[1:]]
+    switched = 0.5 * float(np.median(np.abs(np.diff(psi))))
+    angles = f"rudder {ordered_degrees(rudder):.0f} deg, switched at {ordered_degrees(switched):.0f} deg of heading"
+    return f"{text}; {angles}"
+
+
+# A run whose file is called after another manoeuvre than the one that it shows.
+
+# what files are called -> the kinds of stretches that fit
+_NAMED: Mapping[str, tuple[str, ...]] = {
+    r"zig_?-? ?zag|zz": ("zigzag",),
+    r"circle|turning": ("circle", "turn", "spin"),
+    r"spiral": ("spiral",),
+    r"decay": ("decay",),
+}
+
+
+def name_contradiction(name: str, stretches: Sequence[LogStretch]) -> str:
+    """Return what the name of a run says that its motion does not show; empty where they agree, or it says nothing.
+
+    stretches: the manoeuvres in the run, with their evidence.
+    """
+    named = [kinds for word, kinds in _NAMED.items() if re.search(rf"(?<![a-z])({word})(?![a-z])", name, re.IGNORECASE)]
+    shown = [stretch for stretch in stretches if not stretch.name.startswith(("straight", "stop"))]
+    if len(named) != 1 or not shown or any(one.name.startswith(named[0]) for one in shown):
+        return ""
+    return f"the name says {named[0][0]}, the motion does not: {shown[0].evidence}"
