@@ -20,11 +20,11 @@ from typing import Any
 from measure import Line, at_least, at_most, machine
 
 from seatrial.campaigns import Row, Work, open_store
-from seatrial.campaigns.gather import campaign_table, write_table
-from seatrial.campaigns.local_engine import WorkerKind
-from seatrial.campaigns.outcome import Outcome, attempted
+from seatrial.campaigns.engines import WorkerKind
 from seatrial.campaigns.run_campaign import CampaignOptions, Shard, run_campaign, work_of_plan
 from seatrial.campaigns.store import store_for
+from seatrial.campaigns.summary import campaign_table, write_table
+from seatrial.campaigns.work import Outcome, attempted
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "coverage.toml"
 ROOT = Path(__file__).parents[1]

@@ -22,11 +22,8 @@ from seatrial.data.example_series.series import JET_VELOCITY, SAMPLE_RATE, SENSO
 from seatrial.data.trial.design_request import DesignRequest, InputRange
 from seatrial.estimation.design.design import CONFIRMATION_RUNS, design
 from seatrial.estimation.design.manoeuvre_information import ManoeuvreEvaluator, leaves_limits
-from seatrial.estimation.design.search import GENERATIONS
-from seatrial.estimation.design.search_step import search_step
-from seatrial.estimation.design.ships import PriorShips, draw_ships
-from seatrial.estimation.design.standard_manoeuvres import StandardManoeuvre, standard_manoeuvres
-from seatrial.estimation.design.task import DesignTask
+from seatrial.estimation.design.search import GENERATIONS, StandardManoeuvre, search_step, standard_manoeuvres
+from seatrial.estimation.design.task import DesignTask, PriorShips, draw_ships
 from seatrial.physics.simulate.replay import inputs_of
 
 Array = NDArray[np.float64]

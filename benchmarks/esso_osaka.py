@@ -11,9 +11,9 @@ from pathlib import Path
 
 from seatrial.core.values import InputError
 from seatrial.data.trial import load_records, load_trial
+from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.fit import estimate_model
-from seatrial.estimation.estimate.runs import Runs
-from seatrial.estimation.predict.holdout_windows import HoldoutProtocol
+from seatrial.estimation.predict.windows import HoldoutProtocol
 from seatrial.physics.models import model_named
 from seatrial.physics.models.published import parameter_set
 from seatrial_studies.cross_validation import (

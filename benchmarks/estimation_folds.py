@@ -26,9 +26,9 @@ from seatrial.estimation.estimate.point_estimate import PointEstimate, fit_outpu
 from seatrial.estimation.estimate.settings import WEAK_FORM_SHIP_LENGTHS
 from seatrial.estimation.estimate.start import find_start
 from seatrial.estimation.predict import HoldoutProtocol
-from seatrial.estimation.predict.holdout_windows import window_errors
 from seatrial.estimation.predict.open_loop import rms_errors, simulate_open_loop
 from seatrial.estimation.predict.session_offsets import new_session_offsets
+from seatrial.estimation.predict.windows import window_errors
 
 TRIAL = Path(__file__).parents[1] / "examples" / "kvlcc2_hsva.toml"
 FOLDS = 4

@@ -16,9 +16,9 @@ from measure import machine
 
 from seatrial.data.trial import Role, Trial, TrialRecord, load_records, load_trial
 from seatrial.estimation.estimate import estimate_model
-from seatrial.estimation.estimate.runs import training_runs
+from seatrial.estimation.estimate.assemble import training_runs
 from seatrial.estimation.information.discrepancy import GROWTH_POWER, HoldoutError
-from seatrial.estimation.predict.holdout_windows import HoldoutProtocol
+from seatrial.estimation.predict.windows import HoldoutProtocol
 from seatrial_studies.alexandersson2022.window_bands import MissedWindows, band_coverage, holdout_windows
 
 TRIAL = Path(__file__).parents[1] / "examples" / "kvlcc2_hsva.toml"

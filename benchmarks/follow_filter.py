@@ -16,9 +16,8 @@ from measure import Line, at_least, at_most, machine
 from seatrial.core.equations import Model
 from seatrial.core.values import Array
 from seatrial.estimation.estimate.online.change_detection import ChangeDetector
-from seatrial.estimation.estimate.online.gaussian_state import GaussianState
-from seatrial.estimation.estimate.online.handover import gaussian_state_from_fit
-from seatrial.estimation.estimate.online.recursive import RecursiveFilter
+from seatrial.estimation.estimate.online.recursive import GaussianState, RecursiveFilter
+from seatrial.estimation.estimate.online.window import gaussian_state_from_fit
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import Segments, cut_segments
 from seatrial.numerics.optimise import levenberg_marquardt

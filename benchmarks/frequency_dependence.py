@@ -20,8 +20,8 @@ from measure import Line, at_least, machine
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Channel, InputError, Record, RecordKind, frozen
-from seatrial.estimation.identify.seakeeping import transfer_functions
-from seatrial.estimation.information.frequency_range import frequency_range
+from seatrial.estimation.identify.unrecorded_waves import transfer_functions
+from seatrial.estimation.information.frequency_response import frequency_range
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import cut_segments
 from seatrial.numerics.optimise import Status, levenberg_marquardt

@@ -26,7 +26,7 @@ from measure import Line, at_most, machine
 from seatrial.core.equations import Model
 from seatrial.core.values import ForcePoints, Prior, Record
 from seatrial.data.trial import EstimateMethod, EstimateSettings, Role, load_records, load_trial
-from seatrial.estimation.estimate.runs import training_runs
+from seatrial.estimation.estimate.assemble import training_runs
 from seatrial.estimation.identify import EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.problem.static_forces import StaticForces
 from seatrial.physics.manoeuvres.measures import measures

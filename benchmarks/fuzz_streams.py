@@ -11,8 +11,7 @@ import seatrial as st
 from seatrial.core.results.online import Sample
 from seatrial.onboard.columns import ColumnReader
 from seatrial.onboard.lines import LineBatch
-from seatrial.onboard.message_decoders import BusDecoder, MavlinkDecoder
-from seatrial.onboard.messages import MessageReader
+from seatrial.onboard.messages import BusDecoder, MavlinkDecoder, MessageReader
 from seatrial.onboard.nmea import NmeaReader
 from seatrial.onboard.sources import LineReader
 

@@ -32,7 +32,7 @@ from seatrial.data.folder.model_file import parse_model
 from seatrial.data.folder.result_folder import KINDS, load_result
 from seatrial.data.read.record_file import read_record_csv
 from seatrial.onboard.journal import Journal
-from seatrial.onboard.server import Server
+from seatrial.onboard.page import Server
 from seatrial.onboard.sources import open_source
 from seatrial.physics.hydro.tabulated import read_transfer
 from seatrial.physics.manoeuvres import programme

@@ -22,13 +22,12 @@ from standard_craft import CRAFT
 
 from seatrial.core.values import InputError, Record
 from seatrial.data.trial import EstimateSettings
+from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.fit import estimate_model
-from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions
-from seatrial.estimation.identify.short_records import default_profiles
+from seatrial.estimation.identify.profile import default_profiles
 from seatrial.numerics.workers import map_in_processes
-from seatrial.problems.disturbed_craft import SECONDS, Disturbance, independent_nomoto, records
-from seatrial.problems.gust_bound import limit_of
+from seatrial.problems.disturbed_craft import SECONDS, Disturbance, independent_nomoto, limit_of, records
 
 Array = NDArray[np.float64]
 SIZES, MEMORIES, RUNS, SEED = (0.1, 0.3, 1.0), (0.0, 1.0, 5.0, 30.0), 80, 16

@@ -20,8 +20,7 @@ from seatrial.core.equations import Model
 from seatrial.core.results import Prediction
 from seatrial.core.values import Prior, Record
 from seatrial.data.trial import EstimateSettings, Role, TrialRecord
-from seatrial.estimation.estimate.settings import IntervalMethod
-from seatrial.estimation.estimate.time_scale import ship_length_seconds
+from seatrial.estimation.estimate.settings import IntervalMethod, ship_length_seconds
 from seatrial.estimation.identify import EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.information.discrepancy import measure_kind
 from seatrial.estimation.predict.predict_runs import predict_runs

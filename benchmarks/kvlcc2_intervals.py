@@ -15,12 +15,12 @@ from measure import Line, at_least, at_most, machine
 from seatrial.core.results import Fit
 from seatrial.data.trial import Role, TrialRecord, load_records, load_trial
 from seatrial.data.trial.records import approach_condition
+from seatrial.estimation.estimate.assemble import training_runs
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
 from seatrial.estimation.estimate.intervals import estimate_uncertainty
-from seatrial.estimation.estimate.runs import training_runs
 from seatrial.estimation.estimate.settings import IntervalMethod
 from seatrial.estimation.identify.identify import identify
-from seatrial.estimation.predict.holdout_windows import HoldoutProtocol
+from seatrial.estimation.predict.windows import HoldoutProtocol
 from seatrial_studies.alexandersson2022.prediction_coverage import (
     HALF_WIDTH_LIMIT,
     HELD_OUT_SHARE,

@@ -23,8 +23,8 @@ from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Record
 from seatrial.data.trial import Role, TrialRun
 from seatrial.data.trial.records import load_parts
+from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
-from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions
 from seatrial.estimation.predict.open_loop import rms_errors, simulate_open_loop
 from seatrial.physics.models import nomoto, waterjet

@@ -20,11 +20,11 @@ from measure import machine
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Prior, Record
 from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRecord, load_records, load_trial
-from seatrial.estimation.estimate.runs import training_runs
+from seatrial.estimation.estimate.assemble import training_runs
 from seatrial.estimation.identify import Runs, estimate_model
-from seatrial.estimation.predict.holdout_windows import HoldoutProtocol, window_errors
 from seatrial.estimation.predict.open_loop import rms_errors, simulate_open_loop
 from seatrial.estimation.predict.session_offsets import session_offsets
+from seatrial.estimation.predict.windows import HoldoutProtocol, window_errors
 from seatrial.physics.models.abkowitz import STANDARD, abkowitz
 from seatrial.physics.models.nomoto import nomoto2
 from seatrial_studies.cross_validation import cross_validate, fit_folds

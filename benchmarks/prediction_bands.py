@@ -22,8 +22,8 @@ from seatrial.core.values import InputError
 from seatrial.data.trial import Role, Trial, TrialRecord, checked_records, load_trial
 from seatrial.data.trial.settings import window_lengths
 from seatrial.estimation.estimate import INITIAL_STATE_SHIP_LENGTHS, estimate_model, ship_length_seconds
+from seatrial.estimation.estimate.assemble import training_runs
 from seatrial.estimation.estimate.fit import with_segment_seconds
-from seatrial.estimation.estimate.runs import training_runs
 from seatrial.estimation.predict.predict_runs import predict_runs
 
 EXAMPLES = Path(__file__).parents[1] / "examples"

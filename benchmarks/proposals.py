@@ -17,12 +17,10 @@ import numpy as np
 from measure import Line, at_most
 
 from seatrial import api
-from seatrial.control.proposals.gain_schedule import GainSchedule, gain_schedule
-from seatrial.control.proposals.look import Stretch, look
+from seatrial.control.proposals import GainSchedule, Stretch, gain_schedule, look
 from seatrial.control.schedule import schedule
 from seatrial.control.task import ScheduleGrid, Seaway, TuningTask
-from seatrial.control.verification.legs import natural_period
-from seatrial.control.verification.stabiliser import prior_deviations
+from seatrial.control.verification.stabiliser import natural_period, prior_deviations
 from seatrial.core.results.online import Estimated, Proposal
 from seatrial.core.values import Array
 from seatrial.estimation.sea import altered_loop, sea_spectrum

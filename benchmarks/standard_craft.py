@@ -9,8 +9,7 @@ import sympy as sp
 from seatrial.core.equations import Model, Sheet
 from seatrial.physics.models.roll import roll
 from seatrial.physics.models.waterjet import waterjet
-from seatrial.problems.disturbed_craft import DisturbedCraft
-from seatrial.problems.nomoto_gusts import NOMOTO
+from seatrial.problems.disturbed_craft import NOMOTO, DisturbedCraft
 
 # accelerations by a nozzle angle of 20 deg, and in surge a force of the same size as in sway
 WATERJET = DisturbedCraft(

@@ -17,8 +17,7 @@ import numpy as np
 from thrusters_truth import write_table
 
 from seatrial.control.loopfile.load import tuning_task
-from seatrial.control.station.allocation import generalised_inverse, inverse_rows
-from seatrial.control.station.craft import StationCraft
+from seatrial.control.station.craft import StationCraft, generalised_inverse, inverse_rows
 from seatrial.control.station.station_loop import StationGains, StationLoop, station_point
 from seatrial.control.station.trial import StationSetting, StationSimulator
 from seatrial.control.station.tune_station import station_craft, station_disturbances, tune_station

@@ -17,8 +17,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Record
 from seatrial.data.example_series.series import SENSOR_NOISE
 from seatrial.estimation.regress.estimators import RegressionEstimate, RegressionEstimator
-from seatrial.estimation.regress.features import RegressionMotion
-from seatrial.estimation.regress.weak import window_function
+from seatrial.estimation.regress.operators import RegressionMotion, window_function
 from seatrial.numerics.kernels.sensitivity import evaluate_tangent
 from seatrial.physics.simulate.replay import replay
 

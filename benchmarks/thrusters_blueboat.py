@@ -18,12 +18,11 @@ import numpy as np
 from seatrial.core.values import Record
 from seatrial.data.trial import checked_records, load_trial
 from seatrial.estimation.estimate import estimate_model
+from seatrial.estimation.estimate.assemble import training_runs
 from seatrial.estimation.estimate.fit import Estimation, with_segment_seconds
-from seatrial.estimation.estimate.runs import training_runs
 from seatrial.estimation.predict.open_loop import open_loop_runs
 from seatrial.estimation.predict.session_offsets import new_session_offsets
-from seatrial.estimation.predict.window_baselines import window_baselines
-from seatrial.estimation.predict.window_scores import Predictor, pooled_rms
+from seatrial.estimation.predict.window_scores import Predictor, pooled_rms, window_baselines
 from seatrial.estimation.predict.windows import Windows
 
 TRIAL = Path(__file__).parents[1] / "examples" / "blueboat.toml"

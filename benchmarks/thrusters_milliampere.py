@@ -13,11 +13,10 @@ import numpy as np
 from seatrial.core.values import Record
 from seatrial.data.trial import Role, checked_records, load_trial
 from seatrial.estimation.estimate import estimate_model
-from seatrial.estimation.estimate.runs import training_runs
+from seatrial.estimation.estimate.assemble import training_runs
 from seatrial.estimation.predict.open_loop import open_loop_runs
 from seatrial.estimation.predict.session_offsets import new_session_offsets
-from seatrial.estimation.predict.window_baselines import window_baselines
-from seatrial.estimation.predict.window_scores import Predictor, pooled_rms
+from seatrial.estimation.predict.window_scores import Predictor, pooled_rms, window_baselines
 from seatrial.estimation.predict.windows import Windows, like_window
 
 TRIAL = Path(__file__).parents[1] / "examples" / "milliampere.toml"

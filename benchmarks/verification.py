@@ -14,7 +14,7 @@ import numpy as np
 from measure import Line, at_least, at_most
 
 from seatrial import api
-from seatrial.control.seaway_simulation import RUN_IN_SECONDS, closed_loop, disturbance_series
+from seatrial.control.simulation import RUN_IN_SECONDS, closed_loop, disturbance_series
 from seatrial.control.task import Seaway, SimulationSettings, TuningTask
 from seatrial.control.verification.stabiliser import SEA_CHANGE, prior_deviations
 from seatrial.core.results.verification import Verification

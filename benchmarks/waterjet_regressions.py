@@ -22,9 +22,8 @@ from seatrial.data.example_series.series import simulate_run as steered
 from seatrial.estimation.identify import EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.regress.estimators import InstrumentalVariables, LinearRegression, RegressionEstimator
 from seatrial.estimation.regress.operators import Central, Smoothed, Weak
-from seatrial.estimation.regress.pipeline import Pipeline
+from seatrial.estimation.regress.pipeline import Pipeline, standard_estimators
 from seatrial.estimation.regress.solvers import OrdinaryLeastSquares
-from seatrial.estimation.regress.standard_estimators import standard_estimators
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.simulate.steer import manoeuvre
 

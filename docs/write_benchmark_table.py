@@ -16,7 +16,7 @@ import seatrial as st
 from seatrial.core.results.campaign import Benchmark, MethodScore, ProblemScore
 from seatrial.core.text.numbers import fixed, p_value, significant
 from seatrial.problems import problems_matching
-from seatrial.problems.built_in import IDENTIFY, OUTPUT_ERROR
+from seatrial.problems.method import IDENTIFY, OUTPUT_ERROR
 
 PAGE = Path(__file__).parent / "benchmark-table.md"
 OWN_LIMIT = 1.1

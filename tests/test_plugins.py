@@ -11,7 +11,7 @@ from seatrial.api import list_models, reproduce
 from seatrial.core.results import Verdict
 from seatrial.core.values import InputError
 from seatrial.data.read import ColumnSpec, Layout, format_of, read_record
-from seatrial.estimation.regress.named import available_estimators, estimator_named
+from seatrial.estimation.regress.pipeline import available_estimators, estimator_named
 from seatrial.numerics.optimise import Box, SearchError
 from seatrial.numerics.optimise.named import optimiser_named
 from seatrial.physics.models import model_named

@@ -14,10 +14,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import seatrial as st
-from seatrial.control.proposals.gain_schedule import gain_schedule
-from seatrial.control.proposals.look import Stretch, look
+from seatrial.control.proposals import Stretch, gain_schedule, look
 from seatrial.control.schedule import schedule
-from seatrial.control.seaway_simulation import closed_loop, disturbance_series
+from seatrial.control.simulation import closed_loop, disturbance_series
 from seatrial.control.task import ScheduleGrid, SimulationSettings
 from seatrial.physics.sea import jonswap
 from seatrial.physics.simulate.closed_loop import ActuatorLimits

@@ -12,7 +12,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import seatrial as st
-from seatrial.control.seaway_simulation import closed_loop, disturbance_series
+from seatrial.control.simulation import closed_loop, disturbance_series
 from seatrial.control.task import SimulationSettings
 from seatrial.physics.sea import jonswap
 from seatrial.physics.simulate.closed_loop import ActuatorLimits

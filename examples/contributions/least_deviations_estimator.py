@@ -8,10 +8,8 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.values import Record
 from seatrial.estimation.regress.estimators import RegressionEstimate, solve_systems
-from seatrial.estimation.regress.features import RegressionMotion
-from seatrial.estimation.regress.operators import Weak
-from seatrial.estimation.regress.solvers import RegressionSolution
-from seatrial.estimation.regress.system import RegressionSystem, build_systems
+from seatrial.estimation.regress.operators import RegressionMotion, Weak
+from seatrial.estimation.regress.solvers import RegressionSolution, RegressionSystem, build_systems
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ import pytest
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Record
+from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.fit import Estimation
-from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.identify import estimate_model
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.abkowitz import STANDARD, abkowitz

@@ -8,8 +8,8 @@ import pytest
 from tests.installed_package import install
 
 from seatrial.api import benchmark
-from seatrial.campaigns.benchmark_scores import MethodRun, citation, holm, sign_test
 from seatrial.campaigns.benchmark_work import benchmark_work
+from seatrial.campaigns.summary import MethodRun, citation, holm, sign_test
 from seatrial.core.results.campaign import Benchmark
 from seatrial.core.values import InputError
 from seatrial.problems import Placement, built_in_methods, method_named, problems_matching

@@ -12,9 +12,9 @@ import pytest
 from tests.campaigns.tasks import slow_squares, work
 
 from seatrial.campaigns import open_store
-from seatrial.campaigns.dask_engine import outcomes_by_dask
-from seatrial.campaigns.gather import campaign_table
+from seatrial.campaigns.engines import outcomes_by_dask
 from seatrial.campaigns.run_campaign import CampaignOptions, run_campaign
+from seatrial.campaigns.summary import campaign_table
 from seatrial.campaigns.work import Work
 from seatrial.core.values import InputError
 
@@ -105,6 +105,6 @@ def test_workers_of_other_versions_are_refused_by_name(
 
 
 def test_no_scheduler_is_one_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("seatrial.campaigns.dask_engine._CONNECT_S", 0.5)
+    monkeypatch.setattr("seatrial.campaigns.engines._CONNECT_S", 0.5)
     with pytest.raises(InputError, match=r"no Dask scheduler answers at 'tcp://127\.0\.0\.1:9'"):
         list(outcomes_by_dask(work(2), work(2).tasks(), "tcp://127.0.0.1:9", None))

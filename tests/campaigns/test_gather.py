@@ -8,9 +8,8 @@ from scipy.stats import binomtest
 from tests.campaigns.tasks import work
 
 from seatrial.campaigns import Store, Work, open_store
-from seatrial.campaigns.gather import campaign_table, write_table
 from seatrial.campaigns.run_campaign import CampaignOptions, run_campaign
-from seatrial.campaigns.summary import campaign_summary, coverage_interval, failure_reasons
+from seatrial.campaigns.summary import campaign_summary, campaign_table, coverage_interval, failure_reasons, write_table
 from seatrial.core.values import InputError
 
 

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.campaigns.journal import OutcomeJournal, body_of, read_journal
-from seatrial.campaigns.outcome import Outcome
+from seatrial.campaigns.store import OutcomeJournal, body_of, read_journal
+from seatrial.campaigns.work import Outcome
 from seatrial.core.values import InputError
 
 OUTCOMES = [Outcome(bytes([k]) * 32, k == 2, 0.5 * k, b'{"n":%d}' % k) for k in range(5)]

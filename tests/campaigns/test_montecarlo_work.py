@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 
 from seatrial.campaigns import Work, open_store
-from seatrial.campaigns.gather import campaign_table
 from seatrial.campaigns.montecarlo_work import NoisyRepeats, with_noise
 from seatrial.campaigns.plan import plan_schema
 from seatrial.campaigns.run_campaign import CampaignOptions, run_campaign, work_of_plan
-from seatrial.campaigns.summary import campaign_summary
+from seatrial.campaigns.summary import campaign_summary, campaign_table
 from seatrial.core.values import InputError
 
 PLAN = """

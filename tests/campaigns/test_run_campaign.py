@@ -8,10 +8,10 @@ import pytest
 from tests.campaigns.tasks import dies_once, slow_squares, work
 
 from seatrial.campaigns import Store, Work, open_store
-from seatrial.campaigns.gather import campaign_table, write_table
-from seatrial.campaigns.local_engine import WorkerKind
-from seatrial.campaigns.outcome import Outcome
+from seatrial.campaigns.engines import WorkerKind
 from seatrial.campaigns.run_campaign import CampaignOptions, Shard, retry_campaign, run_campaign, shard_named
+from seatrial.campaigns.summary import campaign_table, write_table
+from seatrial.campaigns.work import Outcome
 from seatrial.core.values import InputError
 
 ONE = CampaignOptions(workers=1)
@@ -85,7 +85,7 @@ def test_an_interrupt_leaves_a_store_that_goes_on(undisturbed: bytes, tmp_path: 
 def test_a_process_that_dies_costs_an_attempt_and_one_that_always_dies_a_row(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("seatrial.campaigns.local_engine.MAX_ATTEMPTS", 2)
+    monkeypatch.setattr("seatrial.campaigns.engines.MAX_ATTEMPTS", 2)
     keys = [{"seed": seed, "folder": str(tmp_path)} for seed in range(7)]
     status = run_campaign(Work({}, keys, dies_once), tmp_path / "store", CampaignOptions(workers=2))
     assert (status.done, status.failed) == (6, 1)
@@ -160,7 +160,7 @@ def test_results_of_other_processors_are_marked(tmp_path: Path, monkeypatch: pyt
     from seatrial.campaigns.summary import campaign_summary
 
     run_campaign(work(4), tmp_path / "store", CampaignOptions(workers=1, shard=Shard(1, 2)))
-    monkeypatch.setattr("seatrial.campaigns.outcome.processor", lambda: "another")
+    monkeypatch.setattr("seatrial.campaigns.work.processor", lambda: "another")
     run_campaign(work(4), tmp_path / "store", ONE)
     store: Store = open_store(tmp_path / "store")
     summary = campaign_summary(store, campaign_table(store))
@@ -171,7 +171,7 @@ def test_results_of_other_processors_are_marked(tmp_path: Path, monkeypatch: pyt
 def test_unfinished_outcomes_do_not_leave_processes() -> None:
     import multiprocessing
 
-    from seatrial.campaigns.local_engine import outcomes_in_processes
+    from seatrial.campaigns.engines import outcomes_in_processes
 
     outcomes: Iterator[Outcome] = outcomes_in_processes(slow_squares, work(8).tasks(), 2)
     next(outcomes)

@@ -7,12 +7,11 @@ import pytest
 
 import seatrial as st
 from seatrial.campaigns import open_store
-from seatrial.campaigns.gather import campaign_table
-from seatrial.campaigns.overrides import overridden
+from seatrial.campaigns.plan import trial_source
 from seatrial.campaigns.run_campaign import CampaignOptions, run_campaign, work_of_plan
-from seatrial.campaigns.summary import campaign_summary
-from seatrial.campaigns.trial_source import trial_source
+from seatrial.campaigns.summary import campaign_summary, campaign_table
 from seatrial.campaigns.trial_work import TrialTask
+from seatrial.campaigns.work import overridden
 from seatrial.core.values import InputError
 
 ONE = CampaignOptions(workers=1)

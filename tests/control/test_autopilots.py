@@ -6,12 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.control.choose import choose
-from seatrial.control.demand import shortfall, simulate_manoeuvres
+from seatrial.control.choice import choose
+from seatrial.control.controller import shortfall, simulate_manoeuvres
 from seatrial.control.front import Effort, pareto_front
 from seatrial.control.gain_evaluation import gain_evaluator
-from seatrial.control.ship.parameter_draws import stable_draws
-from seatrial.control.ship.trimmed_ship import plant_and_disturbance, trim_ship
+from seatrial.control.ship import plant_and_disturbance, stable_draws, trim_ship
 from seatrial.control.task import Demand, SlowDisturbance, TrimmedShip, TuningTask
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.data.folder.model_file import ModelFile

@@ -9,18 +9,22 @@ import numpy as np
 import pytest
 
 from seatrial.control import bounds as bounds_module
-from seatrial.control.bounds import bounds, is_available
-from seatrial.control.quadratic import fit_shaping_filter, full_information, quadratic_bound, rational_spectrum
-from seatrial.control.task import Seaway, TuningTask
-from seatrial.control.youla import (
+from seatrial.control.bounds import (
     BOUND_ROWS,
     NoBound,
     ReferenceVariances,
+    bounds,
+    fit_shaping_filter,
+    full_information,
+    is_available,
     least_variance,
+    quadratic_bound,
+    rational_spectrum,
     reference_variances,
     without_negative_energy,
     youla_bound,
 )
+from seatrial.control.task import Seaway, TuningTask
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import InputError, Parameter, Parameters
 from seatrial.physics.loops import (

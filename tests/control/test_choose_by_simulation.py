@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from tests.control.fin_tasks import fin_task
 
-from seatrial.control.choose_by_simulation import HARD_WORKING, ROBUST, _best_candidate, _Candidate, _designs
-from seatrial.control.gain_choice import gains_on_bound
-from seatrial.control.gain_evaluation import gain_evaluator
+from seatrial.control.choice import HARD_WORKING, ROBUST, _best_candidate, _Candidate, _designs
+from seatrial.control.gain_evaluation import gain_evaluator, gains_on_bound
 
 SEAS = np.array([0.70, 0.72, 0.69, 0.71])
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from seatrial.control.demand import (
+from seatrial.control.controller import (
     reference_model,
     relative_overshoot,
     settling_time,
@@ -15,9 +15,7 @@ from seatrial.control.demand import (
     simulate_manoeuvres,
     simulate_tracking,
 )
-from seatrial.control.ship.parameter_draws import draw_parameters, stable_draws
-from seatrial.control.ship.plant_as_model import plant_as_model
-from seatrial.control.ship.trimmed_ship import plant_and_disturbance, trim_ship
+from seatrial.control.ship import draw_parameters, plant_and_disturbance, plant_as_model, stable_draws, trim_ship
 from seatrial.control.task import Demand, SlowDisturbance, TrimmedShip, TuningTask
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import Array, InputError

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from tests.control.loop_files import AUTOPILOT, model_file, nomoto, write_loop_file
 
-from seatrial.control.disturbance_simulation import SIGNALS, correlation_time, simulate_disturbances
 from seatrial.control.loopfile.load import tuning_task
+from seatrial.control.simulation import SIGNALS, correlation_time, simulate_disturbances
 from seatrial.control.task import TuningTask
 
 SEAS = """

@@ -7,8 +7,7 @@ import pytest
 from tests.control.fin_tasks import PAPER_OBJECTIVES, PUBLISHED, QUICK, VARIANCES, fin_task
 
 from seatrial.control.front import Effort, grid_front, pareto_front, refuse_infeasible, spread_points, thin_front
-from seatrial.control.gain_evaluation import gain_evaluator
-from seatrial.control.gradient_refinement import all_gains, free_gain_bounds, refine_gains
+from seatrial.control.gain_evaluation import all_gains, free_gain_bounds, gain_evaluator, refine_gains
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import InputError
 from seatrial.numerics.optimise import hypervolume, non_dominated

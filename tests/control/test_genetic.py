@@ -15,9 +15,7 @@ from seatrial.control import (
     pareto_front,
     record_cost,
 )
-from seatrial.control.front import Effort
-from seatrial.control.genetic import searched_objectives
-from seatrial.control.published_search import published_search
+from seatrial.control.front import Effort, published_search, searched_objectives
 from seatrial.control.tune import tune
 from seatrial.core.results.tuning import ControllerConstraints, TuningMethod
 from seatrial.core.values import InputError

@@ -20,7 +20,7 @@ from tests.control.loop_files import (
 from seatrial.control.controller import components
 from seatrial.control.gain_evaluation import gain_evaluator
 from seatrial.control.loopfile.load import tuning_task
-from seatrial.control.seaway_simulation import simulate_in_seaway
+from seatrial.control.simulation import simulate_in_seaway
 from seatrial.control.task import Seaway, SimulationSettings, TuningTask
 from seatrial.core.values import Array, InputError
 from seatrial.physics.hydro.capytaine_data import HullExcitation, read_capytaine

@@ -8,8 +8,7 @@ import pytest
 from tests.control.fin_tasks import PUBLISHED, fin_task
 
 from seatrial.control.robustness import robustness, slowed_plant
-from seatrial.control.ship.parameter_draws import draw_parameters, stable_draws
-from seatrial.control.ship.trimmed_ship import plant_and_disturbance, trim_ship
+from seatrial.control.ship import draw_parameters, plant_and_disturbance, stable_draws, trim_ship
 from seatrial.control.task import PlantUncertainty, SlowDisturbance, TuningTask
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import Parameter, Parameters

@@ -9,8 +9,7 @@ from tests.control.fin_tasks import KNOT, PUBLISHED, VARIANCES, fin_task
 from tests.control.loop_files import PATROL_BOAT, write_loop_file
 
 from seatrial.control.loopfile.load import tuning_task
-from seatrial.control.schedule import schedule, schedule_conditions
-from seatrial.control.smooth_schedule import interpolated_gains, midpoints
+from seatrial.control.schedule import interpolated_gains, midpoints, schedule, schedule_conditions
 from seatrial.control.task import Effectiveness, ScheduleGrid
 from seatrial.physics.loops import margins
 

@@ -8,7 +8,7 @@ import pytest
 from scipy import stats
 from tests.control.fin_tasks import HULL, KNOT, PUBLISHED, fin_task
 
-from seatrial.control.seaway_simulation import (
+from seatrial.control.simulation import (
     compare_pairwise,
     disturbance_series,
     effect_amplitudes,

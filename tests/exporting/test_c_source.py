@@ -22,8 +22,7 @@ from seatrial.core.values import Channel, InputError, Record, RecordKind
 from seatrial.data.folder.model_file import ModelFile
 from seatrial.estimation.information.extrapolation import extrapolation
 from seatrial.exporting.c_source import export_c
-from seatrial.exporting.identified_range import range_text, range_use
-from seatrial.exporting.source import ExportSource, plain
+from seatrial.exporting.source import ExportSource, plain, range_text, range_use
 from seatrial.physics.models.published import kvlcc2
 
 TOLERANCE = 1e-12  # of a step, relative: rounding, a thousand times over

@@ -11,7 +11,7 @@ from benchmarks.export_c99 import complete_model
 import seatrial as st
 from seatrial.core.values import Channel, InputError, Record, RecordKind
 from seatrial.data.folder.model_file import ModelFile
-from seatrial.exporting.fmu_run import replay_fmu
+from seatrial.exporting.fmu import replay_fmu
 from seatrial.physics.simulate import replay
 
 fmpy = pytest.importorskip("fmpy", reason="FMPy is not installed: pip install 'seatrial[fmu]'")

@@ -11,8 +11,13 @@ from seatrial.data.example_series.series import JET_VELOCITY, SENSOR_NOISE
 from seatrial.data.read import ColumnSpec, Layout
 from seatrial.data.trial.settings import Stream, StreamSource
 from seatrial.data.trial.trial import Trial
-from seatrial.onboard.advice import ManoeuvreAdviser, advice, ranked_candidates
-from seatrial.onboard.candidate_manoeuvres import candidate_manoeuvres, fisher_information
+from seatrial.onboard.advice import (
+    ManoeuvreAdviser,
+    advice,
+    candidate_manoeuvres,
+    fisher_information,
+    ranked_candidates,
+)
 from seatrial.physics.models.heave_pitch import heave_pitch
 from seatrial.physics.models.published import QI2025_SHIP, theoretical_coefficients
 from seatrial.physics.models.roll import roll

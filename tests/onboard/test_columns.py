@@ -14,8 +14,7 @@ from seatrial.core.values import InputError
 from seatrial.data.read import ColumnSpec, Layout, read_record
 from seatrial.data.trial import load_trial
 from seatrial.onboard.columns import ColumnReader
-from seatrial.onboard.lines import LineBatch
-from seatrial.onboard.tail import TailLines
+from seatrial.onboard.lines import LineBatch, TailLines
 
 NAMED = Layout(
     "text", ColumnSpec("time", "t", "ms"), (ColumnSpec("u", "speed", "kn"), ColumnSpec("psi", "head", "deg"))

@@ -31,10 +31,9 @@ from seatrial.data.trial.trial import TrialRun
 from seatrial.estimation.identify import identify
 from seatrial.onboard.columns import ColumnReader
 from seatrial.onboard.follow import follow
-from seatrial.onboard.required_channels import check_required_channels
+from seatrial.onboard.lines import TailLines, UdpLines
+from seatrial.onboard.proposer import check_required_channels
 from seatrial.onboard.sources import LineSampleSource
-from seatrial.onboard.tail import TailLines
-from seatrial.onboard.udp import UdpLines
 
 FOLLOWER = """
 import sys

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from seatrial.core.results.online import EstimatorPhase, Snapshot
-from seatrial.onboard.history import History, RecentHistory
+from seatrial.onboard.table import History, RecentHistory
 
 
 def snapshot(time: float, *, runs: int = 1, names: Sequence[str] = ("a", "b")) -> Snapshot:

@@ -12,9 +12,8 @@ from tests.onboard.fabricated import faulty_counts, heave_pitch, mmg
 
 from seatrial.core.results.online import EstimatorPhase, SampleCounts, Snapshot
 from seatrial.onboard import live as module
-from seatrial.onboard.history import History, RecentHistory
 from seatrial.onboard.live import LiveDisplay, log_line
-from seatrial.onboard.table import TableContent, render_table
+from seatrial.onboard.table import History, RecentHistory, TableContent, render_table
 
 
 class Terminal(io.StringIO):

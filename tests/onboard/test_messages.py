@@ -13,8 +13,7 @@ from seatrial.core.values import InputError
 from seatrial.data.read import ColumnSpec, Layout
 from seatrial.data.trial.settings import Stream, StreamSource
 from seatrial.onboard.lines import LineBatch
-from seatrial.onboard.message_decoders import BusDecoder, MavlinkDecoder
-from seatrial.onboard.messages import MessageReader
+from seatrial.onboard.messages import BusDecoder, MavlinkDecoder, MessageReader
 from seatrial.onboard.sources import open_source
 
 TIME = np.arange(20) * 0.5  # s

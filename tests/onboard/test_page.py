@@ -16,8 +16,7 @@ from tests.onboard.fabricated import faulty_counts, heave_pitch, mmg
 from seatrial.core.results.online import SampleCounts
 from seatrial.core.values import InputError
 from seatrial.onboard import page as module
-from seatrial.onboard.page import Page
-from seatrial.onboard.server import content_security_policy, html
+from seatrial.onboard.page import Page, content_security_policy, html
 
 
 @pytest.fixture

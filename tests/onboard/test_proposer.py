@@ -19,9 +19,9 @@ from seatrial.data.trial import Trial, load_trial
 from seatrial.data.trial.runs import resolved_proposal
 from seatrial.onboard.follow import follow
 from seatrial.onboard.live import log_line
-from seatrial.onboard.page_state import snapshot_json
-from seatrial.onboard.proposal_text import gains_text, proposal_lines
+from seatrial.onboard.page import snapshot_json
 from seatrial.onboard.proposer import GainProposer
+from seatrial.onboard.table import gains_text, proposal_lines
 
 STRETCH = fin_stretch(7, QUARTERING)
 RATE = 1.0 / STRETCH.dt

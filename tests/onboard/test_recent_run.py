@@ -8,8 +8,8 @@ from tests.onboard.streams import sample_range, stream_trial
 from tests.reporting.fabricated import zigzag
 
 from seatrial.data.trial.runs import require_stream
-from seatrial.onboard.page_state import recent_json
-from seatrial.onboard.recent_run import RecentRun
+from seatrial.onboard.page import recent_json
+from seatrial.onboard.stream_session import RecentRun
 
 
 def test_a_long_run_is_thinned_and_ends_with_the_newest() -> None:

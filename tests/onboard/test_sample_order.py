@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from seatrial.core.results.online import Sample, SampleCounts
-from seatrial.onboard.sample_order import RunStart, SampleOrder, StreamEvent, combined_counts
+from seatrial.onboard.stream_session import RunStart, SampleOrder, StreamEvent, combined_counts
 
 TIMES = st.lists(
     st.one_of(

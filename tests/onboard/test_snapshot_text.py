@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from seatrial.core.results.online import CoefficientChange, EstimatorPhase, Snapshot
-from seatrial.onboard.snapshot_text import change_sentence, estimate_rows, phase_meaning, residual_rms, time_text
+from seatrial.onboard.table import change_sentence, estimate_rows, phase_meaning, residual_rms, time_text
 
 
 def one(value: float, error: float, unit: str = "1") -> Snapshot:

@@ -7,7 +7,7 @@ from time import monotonic
 import pytest
 
 from seatrial.core.values import InputError
-from seatrial.onboard.stdin import PipeLines
+from seatrial.onboard.lines import PipeLines
 
 
 def test_lines_come_as_they_are_written_and_end_with_the_writer() -> None:

@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from seatrial.core.values import InputError
-from seatrial.onboard.tail import TailLines
+from seatrial.onboard.lines import TailLines
 
 
 def everything(tail: TailLines) -> list[bytes]:

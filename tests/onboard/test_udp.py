@@ -9,7 +9,7 @@ from time import monotonic
 import pytest
 
 from seatrial.core.values import InputError
-from seatrial.onboard.udp import MAX_DATAGRAM_BYTES, TokenBucket, UdpLines
+from seatrial.onboard.lines import MAX_DATAGRAM_BYTES, TokenBucket, UdpLines
 
 
 class Clock:

@@ -18,7 +18,7 @@ from seatrial.problems import (
     built_in_methods,
     repeats_itself,
 )
-from seatrial.problems.ask_tell import searched
+from seatrial.problems.method import searched
 
 
 def method(estimate: object) -> EnteredMethod:

@@ -8,12 +8,12 @@ from seatrial.problems import (
     attempt,
     built_in_methods,
     centred_box,
-    nomoto_gusts,
     off_centre_box,
     scaled_values,
     thruster_craft,
     waterjet_craft,
 )
+from seatrial.problems import disturbed_craft as nomoto_gusts
 
 PROBLEMS = {p.name: p for family in (nomoto_gusts, thruster_craft, waterjet_craft) for p in family.problems()}
 QUICK = ("song2025-zigzags", "nomoto-gusts-closed", "thrusters-two-fixed")

@@ -19,7 +19,7 @@ from seatrial.data.trial import (
     load_trial,
 )
 from seatrial.estimation.identify import identify
-from seatrial.estimation.identify.search_problem import search_candidates, simulated_starts
+from seatrial.estimation.identify.search import search_candidates, simulated_starts
 from seatrial.estimation.search import run_search, whole_record_fitness
 from seatrial.numerics.optimise import Box, FitnessMemory
 from seatrial.physics.simulate import record_of

@@ -43,10 +43,10 @@ def benchmark(
     Raises:
         InputError: no such problem or method, a file that is no method, no runs, or a folder of something else.
     """
-    from seatrial.campaigns.benchmark_scores import benchmark_result
     from seatrial.campaigns.benchmark_work import benchmark_work
     from seatrial.campaigns.run_campaign import CampaignOptions, run_campaign
     from seatrial.campaigns.store import open_store
+    from seatrial.campaigns.summary import benchmark_result
     from seatrial.core.values import InputError
     from seatrial.core.values.files import remove_file, write_atomically
     from seatrial.data.folder.document import document, strict_json

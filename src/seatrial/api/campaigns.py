@@ -87,8 +87,7 @@ def gather_campaign(
         InputError: no campaign, no result yet, another ending, or a file that cannot be written.
     """
     from seatrial.campaigns import open_store
-    from seatrial.campaigns.gather import campaign_table, write_table
-    from seatrial.campaigns.summary import campaign_summary
+    from seatrial.campaigns.summary import campaign_summary, campaign_table, write_table
     from seatrial.core.values.files import write_atomically
     from seatrial.reporting.pages import report_page
 
@@ -105,7 +104,7 @@ def gather_campaign(
 def _options(
     workers: int | None, dask: str = "", shard: str = "1/1", *, threads: bool = False, retry: bool = False
 ) -> "CampaignOptions":
-    from seatrial.campaigns.local_engine import WorkerKind
+    from seatrial.campaigns.engines import WorkerKind
     from seatrial.campaigns.run_campaign import CampaignOptions, shard_named
     from seatrial.core.values import InputError
 

@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from seatrial.core.results import Comparison, Fit
     from seatrial.core.results.comparison import ManoeuvreDifferences
     from seatrial.core.values import ProgressReporter
-    from seatrial.estimation.information.differences import QuantityInterval
+    from seatrial.estimation.information.covariance import QuantityInterval
 
 MANOEUVRES = ("turning-circle:35", "turning-circle:35:port", "zigzag:10/10", "zigzag:20/20")
 """Manoeuvres that are compared where none are named: those of IMO MSC.137(76)."""
@@ -37,7 +37,7 @@ def compare(
     """
     from seatrial.core.results.comparison import Comparison
     from seatrial.core.values.versions import versions
-    from seatrial.estimation.identify.fit_comparison import changes, coefficient_differences, compared_fit, findings
+    from seatrial.estimation.identify.fit_result import changes, coefficient_differences, compared_fit, findings
 
     report = report_progress or (lambda _: None)
     rows, test = coefficient_differences(first, second)
@@ -66,7 +66,7 @@ def _is_steered(fit: "Fit") -> bool:
 def _manoeuvre(first: "Fit", second: "Fit", manoeuvre: str, speed: float | None) -> "ManoeuvreDifferences":
     """Both models steered through a manoeuvre, and the measures that both show."""
     from seatrial.core.results.comparison import ManoeuvreDifferences
-    from seatrial.estimation.information.differences import differences
+    from seatrial.estimation.information.covariance import differences
     from seatrial.physics.manoeuvres.measures import ORDERED_MEASURE
 
     try:
@@ -82,7 +82,7 @@ def _measured(fit: "Fit", manoeuvre: str, speed: float | None) -> "dict[str, Qua
     """Measure -> value and ends of its interval."""
     from seatrial.api.prediction import measure_intervals, measures
     from seatrial.api.simulation import as_model_file, steering
-    from seatrial.estimation.information.differences import QuantityInterval
+    from seatrial.estimation.information.covariance import QuantityInterval
 
     file = as_model_file(fit)
     steer = steering(file, manoeuvre, speed=speed)

@@ -69,7 +69,7 @@ def replay_fmu(path: str | Path, record: "Record") -> "Record":
     Raises:
         InputError: FMPy is not installed, no FMU for co-simulation on this platform, or an input that the record lacks.
     """
-    from seatrial.exporting.fmu_run import replay_fmu
+    from seatrial.exporting.fmu import replay_fmu
 
     return replay_fmu(Path(path), record)
 

@@ -51,7 +51,7 @@ class Reading:
         import numpy as np
 
         from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
-        from seatrial.estimation.predict.reading_error import reading_errors
+        from seatrial.estimation.predict.prediction_intervals import reading_errors
         from seatrial.physics.sensors.measured_outputs import without_current
 
         record = without_current(self.measured, self.current, self.has_ground_velocity)

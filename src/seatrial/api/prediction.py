@@ -35,8 +35,8 @@ def predict(model: "Fit | ModelFile | Model", record: "Record", session: str | N
     """
     from seatrial.core.results import Prediction
     from seatrial.core.values import RecordKind
-    from seatrial.estimation.predict.measured_run import simulate_measured
     from seatrial.estimation.predict.open_loop import compare_measures, is_steered, rms_errors
+    from seatrial.estimation.predict.session_offsets import simulate_measured
     from seatrial.physics.simulate import replay
 
     file = as_model_file(model)
@@ -60,7 +60,7 @@ def measure_intervals(model: "ModelFile", steer: "Steering") -> dict[str, tuple[
     Raises:
         InputError: most of the ships within the fit's uncertainty cannot be steered through the manoeuvre.
     """
-    from seatrial.estimation.predict.measure_intervals import measure_intervals
+    from seatrial.estimation.predict.draws import measure_intervals
 
     if model.interval_basis is None or model.ship is None:
         return {}

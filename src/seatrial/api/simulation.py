@@ -289,7 +289,7 @@ def course_findings(
     """
     import numpy as np
 
-    from seatrial.estimation.identify.course_stability import course_finding, course_stability
+    from seatrial.estimation.identify.identifiability import course_finding, course_stability
     from seatrial.physics.manoeuvres.thrust_programme import thrust_programme
 
     if not model.model.equations.layout or not manoeuvre.startswith("straight:"):

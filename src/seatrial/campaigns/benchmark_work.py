@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from seatrial.campaigns.fit_rows import COEFFICIENT
-from seatrial.campaigns.work import Row, Work
+from seatrial.campaigns.work import COEFFICIENT, Row, Work
 from seatrial.core.values import InputError
 from seatrial.problems import (
     Answer,

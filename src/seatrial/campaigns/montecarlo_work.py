@@ -8,9 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from seatrial.campaigns.fit_rows import fit_rows
 from seatrial.campaigns.plan import MonteCarloPlan
-from seatrial.campaigns.work import Row, Work
+from seatrial.campaigns.work import Row, Work, fit_rows
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Record, Ship, channel_hint, spelling_hint
 from seatrial.data.folder.model_file import read_model_file

@@ -5,16 +5,10 @@ from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
-from seatrial.campaigns.local_engine import (
-    WorkerKind,
-    outcomes_here,
-    outcomes_in_processes,
-    outcomes_in_threads,
-)
-from seatrial.campaigns.outcome import Outcome, Outcomes
+from seatrial.campaigns.engines import WorkerKind, outcomes_here, outcomes_in_processes, outcomes_in_threads
 from seatrial.campaigns.plan import MonteCarloPlan, read_plan
 from seatrial.campaigns.store import open_store, store_for
-from seatrial.campaigns.work import Task, Work
+from seatrial.campaigns.work import Outcome, Outcomes, Task, Work
 from seatrial.core.results.campaign import CampaignStatus
 from seatrial.core.text.numbers import duration
 from seatrial.core.values import InputError, ProgressReporter
@@ -148,7 +142,7 @@ def _outcomes(work: Work, tasks: Sequence[Task], options: CampaignOptions) -> Ou
     from seatrial.numerics.workers import worker_count
 
     if options.dask:
-        from seatrial.campaigns.dask_engine import outcomes_by_dask
+        from seatrial.campaigns.engines import outcomes_by_dask
 
         return outcomes_by_dask(work, tasks, options.dask, options.workers)
     count = worker_count(options.workers)

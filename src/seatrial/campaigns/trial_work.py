@@ -6,12 +6,9 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from seatrial.campaigns.files_elsewhere import CarriedFiles, carried_files, common_folder
-from seatrial.campaigns.fit_rows import fit_rows
-from seatrial.campaigns.overrides import overridden
-from seatrial.campaigns.plan import FleetPlan, FoldsPlan, GridPlan
-from seatrial.campaigns.trial_source import TrialSource, loaded, trial_source
-from seatrial.campaigns.work import Row, Work, refuse_count
+from seatrial.campaigns.engines import CarriedFiles, carried_files, common_folder
+from seatrial.campaigns.plan import FleetPlan, FoldsPlan, GridPlan, TrialSource, loaded, trial_source
+from seatrial.campaigns.work import Row, Work, fit_rows, overridden, refuse_count
 from seatrial.core.values import InputError
 from seatrial.data.trial import Role, Trial, parse_tables
 from seatrial.estimation.identify import IntervalMethod, identify

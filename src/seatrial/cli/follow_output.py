@@ -74,7 +74,7 @@ def stream_heading(trial: "Trial") -> str:
 def print_outcome(outcome: "FollowResult") -> None:
     """Print the counts of samples, the latest fault and the findings; messages go to standard error."""
     from seatrial.core.text.words import printable
-    from seatrial.onboard.snapshot_text import faults_text
+    from seatrial.onboard.table import faults_text
 
     counts = outcome.counts
     print_lines([f"{counts.accepted} samples accepted; {faults_text(counts) or 'no faults'}"])

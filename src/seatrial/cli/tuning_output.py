@@ -40,7 +40,7 @@ def print_tuning(tuning: "Tuning") -> None:
 
 def _effort_text(tuning: "Tuning") -> str:
     """What each part of the work took; with a published search, the parts that it is compared with, too."""
-    from seatrial.control.published_search import FRONT_NAME
+    from seatrial.control.front import FRONT_NAME
     from seatrial.core.text.numbers import duration
 
     search = tuning.search

@@ -5,9 +5,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from seatrial.control.choose_by_simulation import MAX_SATURATION_LOSS
-from seatrial.control.gain_choice import ON_BOUND, gains_on_bound
-from seatrial.control.gain_evaluation import GainEvaluator
+from seatrial.control.choice import MAX_SATURATION_LOSS
+from seatrial.control.gain_evaluation import ON_BOUND, GainEvaluator, gains_on_bound
 from seatrial.control.schedule import Schedule
 from seatrial.control.station.tune_station import STATION_DIRECTIONS
 from seatrial.control.task import Demand

@@ -1,16 +1,66 @@
-"""The Pareto front of a task: NSGA-II finds it, gradients press it to its edge, neighbours fill it."""
+"""The Pareto front of a task, and the published genetic algorithm compared with it."""
 
 import math
+import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
+from enum import Enum
 
 import numpy as np
 
-from seatrial.control.gain_evaluation import GainEvaluator
-from seatrial.control.gradient_refinement import all_gains, free_gain_bounds, refine_gains
-from seatrial.core.results.tuning import Controller, ParetoFront
+from seatrial.control.gain_evaluation import GainChoice, GainEvaluator, all_gains, free_gain_bounds, refine_gains
+from seatrial.control.task import GeneticTuning, SearchedObjectives
+from seatrial.core.results.tuning import RECORD_SECONDS, RECORD_STEP, Controller, GainSearch, ParetoFront
 from seatrial.core.values import Array, Index, InputError
-from seatrial.numerics.optimise import non_dominated
+from seatrial.numerics.optimise import (
+    Box,
+    GeneticSettings,
+    NonDominatedSet,
+    RandomWeightGenetic,
+    SearchError,
+    hypervolume,
+    non_dominated,
+)
+from seatrial.physics.loops import LoopSignal, Objective, TransferLoop, squared_deviation, state_space, variance
+from seatrial.physics.simulate.closed_loop import loop_record
+
+# What a controller costs when it is judged by a simulated record in place of a spectrum: a measurement, no verdict.
+
+_REPEATS = 3  # of which the fastest counts; chosen
+
+
+@dataclass(frozen=True)
+class RecordCost:
+    """CPU time [s] of one record of 1000 s at 0.1 s: by a compiled scalar loop, and by scipy.signal.lsim."""
+
+    compiled: float
+    lsim: float
+
+
+def record_cost(loop: TransferLoop, gains: Array, seed: int) -> RecordCost:
+    """Measure records of one loop with the gains (g,) in white noise: each one holds its input exactly."""
+    from scipy.signal import lsim
+
+    states = state_space(loop)
+    disturbance = np.random.default_rng(seed).standard_normal(round(RECORD_SECONDS / RECORD_STEP) + 1)
+    system = (states.closed_loop_matrix(gains), states.b[:, None], states.c[None], np.zeros((1, 1)))
+    times = RECORD_STEP * np.arange(len(disturbance))
+    return RecordCost(
+        _least_cpu_time(lambda: loop_record(states, gains, disturbance, RECORD_STEP)),
+        _least_cpu_time(lambda: lsim(system, disturbance, times, interp=False)),
+    )
+
+
+def _least_cpu_time(run: Callable[[], object]) -> float:
+    seconds = []
+    for _ in range(_REPEATS):
+        began = time.process_time()
+        run()
+        seconds.append(time.process_time() - began)
+    return min(seconds)
+
+
+# The Pareto front of a task: NSGA-II finds it, gradients press it to its edge, neighbours fill it.
 
 _SPREADS = 0.06, 0.004  # of random neighbours in the first and last round, as shares of each gain's range; chosen
 _INFEASIBLE = 1e30  # in the place of infinity, which NSGA-II does not take
@@ -163,4 +213,196 @@ def refuse_infeasible(evaluator: GainEvaluator, seed: int) -> None:
     raise InputError(
         f"no gains within their bounds keep all limits: the nearest ({where}) exceed {' and '.join(said)}; "
         "raise that limit, or widen the bounds of the gains"
+    )
+
+
+# The published search for gains (Yu et al. 2014, section 3) on a task: a genetic algorithm with random weights.
+
+SOURCE = "Yu et al. 2014, CAAI Transactions on Intelligent Systems 9(4), section 3"
+
+
+@dataclass(frozen=True, eq=False)
+class GeneticRun:
+    """One search.
+
+    Attributes:
+        gains: free gains of the answer (f,); J: its mean of normalised objectives, infinite where nothing was stable.
+        history: J after each generation.
+        front: points that no evaluated one beats in the objectives searched.
+        cpu_s: CPU time with the front.
+    """
+
+    gains: Array
+    J: float
+    history: tuple[float, ...]
+    front: NonDominatedSet
+    evaluations: int
+    cpu_s: float
+
+
+def genetic_run(
+    objective_values: Callable[[Array], Array], box: Box, settings: GeneticSettings, generator: np.random.Generator
+) -> GeneticRun:
+    """Run one search; `objective_values` takes gains (n, f) and gives objectives (n, m), infinite where unstable."""
+    began = time.process_time()
+    search, evaluations = RandomWeightGenetic(box, generator, settings), 0
+    while not search.done:
+        points = search.ask()
+        search.tell(objective_values(points))
+        evaluations += len(points)
+    front = search.front
+    gains, J = search.best
+    return GeneticRun(gains, J, search.history, front, evaluations, time.process_time() - began)
+
+
+def genetic_runs(evaluator: GainEvaluator, settings: GeneticTuning, seed: int) -> tuple[GeneticRun, ...]:
+    """Run one search for each of the settings' seeds over the free gains of the evaluator's loop.
+
+    Raises:
+        InputError: the print's second objective needs a limit of the actuator, too few individuals, or no search met
+            a stable loop.
+    """
+    searched = replace(evaluator, objectives=searched_objectives(evaluator, settings))
+    box = Box(*free_gain_bounds(evaluator)[1])
+    try:
+        algorithm = settings.algorithm_settings(len(searched.objectives))
+    except SearchError as error:
+        raise InputError(f"genetic: {error}") from None
+
+    def objective_values(free: Array) -> Array:
+        return searched.objective_values(all_gains(evaluator, free))
+
+    runs = tuple(
+        genetic_run(objective_values, box, algorithm, np.random.default_rng([seed, k])) for k in range(settings.seeds)
+    )
+    unstable = [k for k, run in enumerate(runs) if not np.isfinite(run.J)]
+    if unstable:
+        raise InputError(
+            f"genetic: search {unstable[0] + 1} of {len(runs)} met no stable loop in {runs[0].evaluations} "
+            "controllers; narrow the bounds of the gains, or give it more generations"
+        )
+    return runs
+
+
+def searched_objectives(evaluator: GainEvaluator, settings: GeneticTuning) -> tuple[Objective, ...]:
+    """Return what the settings say is to be made small.
+
+    Raises:
+        InputError: as printed, where the actuator has no limit.
+    """
+    if settings.objectives is SearchedObjectives.OWN:
+        return evaluator.objectives
+    target = float(evaluator.allowed_variances[0])
+    if not np.isfinite(target):
+        raise InputError(
+            "genetic: the published objective of the actuator needs its limit; give [actuator] limit, or "
+            'set objectives = "minimise" in [genetic]'
+        )
+    one_sided = settings.objectives is SearchedObjectives.ONE_SIDED
+    return (
+        variance("J1", "rad^2", LoopSignal.OUTPUT),
+        squared_deviation("J2", LoopSignal.ACTUATOR, target, one_sided=one_sided),
+        variance("J3", "rad^2/s^2", LoopSignal.ACTUATOR, 1),
+    )
+
+
+# The published genetic algorithm compared with the package's own front: answer as a choice, cost and scatter.
+
+FRONT_NAME = "the genetic algorithm"
+OWN_CHOICE = "own front"
+
+
+@dataclass(frozen=True, eq=False)
+class PublishedSearch:
+    """The answer as a choice of gains, the search in numbers, and what it saw of the front."""
+
+    choice: GainChoice
+    result: GainSearch
+    front: ParetoFront
+
+
+def published_search(
+    evaluator: GainEvaluator, settings: GeneticTuning, package_front: ParetoFront, seed: int
+) -> PublishedSearch:
+    """Run the published search on the loop of `evaluator` and compare it with the package's front of that loop.
+
+    Raises:
+        InputError: as `genetic_runs`.
+    """
+    runs = genetic_runs(evaluator, settings, seed)
+    answers = all_gains(evaluator, np.stack([run.gains for run in runs]))
+    front = _searched_front(evaluator, runs[0])
+    result = _search_result(evaluator, settings, runs, answers, package_front, front, seed)
+    choice = GainChoice(evaluator, answers[0], FRONT_NAME, _reasons(result))
+    return PublishedSearch(choice, result, front)
+
+
+def _search_result(
+    evaluator: GainEvaluator,
+    settings: GeneticTuning,
+    runs: tuple[GeneticRun, ...],
+    answers: Array,
+    package_front: ParetoFront,
+    front: ParetoFront,
+    seed: int,
+) -> GainSearch:
+    judged, (low, high) = evaluator.evaluate(answers), free_gain_bounds(evaluator)[1]
+    beaten = (package_front.objectives[:, None] < judged.objectives).all(axis=2).any(axis=0)
+    cost = record_cost(evaluator.loop, answers[0], seed)
+    return GainSearch(
+        source=SOURCE,
+        settings={field.name: _setting_text(getattr(settings, field.name)) for field in fields(settings)},
+        objectives={one.name: one.unit for one in searched_objectives(evaluator, settings)},
+        evaluations=runs[0].evaluations,
+        cpu_s=float(np.median([run.cpu_s for run in runs])),
+        histories=np.array([run.history for run in runs]),
+        gain_names=evaluator.loop.gains.free_names,
+        gains=np.stack([run.gains for run in runs]),
+        lower=low,
+        upper=high,
+        spread=np.ptp([run.gains for run in runs], axis=0) / (high - low),
+        values=judged.objectives,
+        Ms=judged.Ms,
+        is_feasible=tuple(judged.is_feasible.tolist()),
+        dominated=int(beaten.sum()),
+        hypervolume=_covered_share(front.objectives, package_front.objectives),
+        compiled_record_s=cost.compiled,
+        lsim_record_s=cost.lsim,
+    )
+
+
+def _searched_front(evaluator: GainEvaluator, run: GeneticRun) -> ParetoFront:
+    """Return what one search saw of the front in the task's objectives, restrictions kept."""
+    seen = all_gains(evaluator, run.front.points)
+    judged = evaluator.evaluate(seen)
+    feasible = np.flatnonzero(judged.is_feasible)
+    rows = feasible[non_dominated(judged.objectives[feasible])]
+    return ParetoFront(
+        FRONT_NAME, evaluator.loop.gains.names, seen[rows], judged.objectives[rows], judged.Ms[rows], run.evaluations,
+        cpu_s=run.cpu_s,
+    )  # fmt: skip
+
+
+def _covered_share(objectives: Array, reference: Array) -> float:
+    """Return hypervolume of objectives (k, m) over that of a reference front (n, m), both up to the latter's nadir."""
+    live = np.ptp(reference, axis=0) > 0.0
+    if not live.any():
+        return float("nan")
+    nadir = reference[:, live].max(axis=0)
+    within = objectives[:, live][(objectives[:, live] < nadir).all(axis=1)]
+    return hypervolume(within, nadir) / hypervolume(reference[:, live], nadir) if len(within) else 0.0
+
+
+def _setting_text(value: object) -> str:
+    return str(value.value if isinstance(value, Enum) else value)
+
+
+def _reasons(result: GainSearch) -> tuple[str, ...]:
+    seeds, spread = len(result.gains), ", ".join(f"{100.0 * share:.0f}" for share in result.spread)
+    return (
+        "It is the answer of the genetic algorithm of Yu et al. 2014: the fittest of the last generation under equal "
+        f"weights of {', '.join(result.objectives)}. The search knows no restriction but stability.",
+        f"Over {seeds} seeds its answers spread over {spread} % of the ranges of {', '.join(result.gain_names)}, Ms "
+        f"{result.Ms.min():.3g} to {result.Ms.max():.3g}; {result.feasible_count} of {seeds} keep the limits, "
+        f"{result.dominated} are beaten in every objective by a controller of the package's front.",
     )

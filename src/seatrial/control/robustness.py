@@ -6,7 +6,7 @@ from itertools import product
 
 import numpy as np
 
-from seatrial.control.ship.parameter_draws import SEED, draw_parameters
+from seatrial.control.ship import SEED, draw_parameters
 from seatrial.control.task import PlantUncertainty, TuningTask
 from seatrial.core.results.tuning import Robustness
 from seatrial.core.values import Array

@@ -1,17 +1,22 @@
-"""What is to be tuned: a loop, what disturbs it, what is to be small, what must be kept."""
+"""A tuning task: loop, disturbances, objectives, limits, and the settings of the published search for its gains."""
 
+import dataclasses
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
-from enum import Enum
+from dataclasses import field, replace
+from enum import Enum, StrEnum
 from functools import lru_cache
+from typing import Annotated
 
 import numpy as np
+from pydantic import Field
+from pydantic.dataclasses import dataclass
 
-from seatrial.control.genetic_settings import GeneticTuning
 from seatrial.core.equations import Model
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import Array, InputError, display_unit
+from seatrial.data.trial.amounts import STRICT_FIELDS, raises_input_error
+from seatrial.numerics.optimise import GeneticSettings, Normaliser
 from seatrial.physics.loops import (
     WAVE_SLOPE,
     ActuatorDrive,
@@ -29,6 +34,70 @@ from seatrial.physics.loops.encounter_spectrum import PointSpectrum, disturbance
 from seatrial.physics.loops.objective import vertical_acceleration
 from seatrial.physics.sea.spectrum import Spectrum
 
+# Settings of the published genetic algorithm: a table of the loop file, a value in Python.
+
+Probability = Annotated[float, Field(ge=0, le=1)]
+
+
+class SearchedObjectives(StrEnum):
+    """What the genetic algorithm makes small.
+
+    PRINTED: variances of output and actuator rate, and (actuator variance - target)^2 (Yu et al. 2014, eqs. (2)-(4)),
+        the target being the variance at which the allowed share of amplitudes exceeds the actuator's limit.
+    ONE_SIDED: the same, an actuator quieter than the target counting as met.
+    OWN: the objectives of the task (`minimise` of a loop file).
+    """
+
+    PRINTED = "printed"
+    ONE_SIDED = "one-sided"
+    OWN = "minimise"
+
+
+@raises_input_error
+@dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
+class GeneticTuning:
+    """`[genetic]`: settings of `--method genetic` (Yu et al. 2014, section 3); the defaults are published.
+
+    Attributes:
+        population: individuals of a generation; generations: how many of them, the first included.
+        crossover: probability Pc that a pair of parents crosses over; mutation: probability Pm that a bit flips.
+        bits: length of each gain's code; not printed: 17 is the fewest that hold the published gains.
+        largest_weight: the random integers of the weights run from 1 to this; not printed.
+        normaliser: what objectives are divided by: "max" or "best" of the first generation.
+        objectives: what is made small.
+        seeds: searches, the first of which gives the gains and the others show how far its answer scatters.
+    """
+
+    population: Annotated[int, Field(ge=5, le=10_000)] = 50
+    generations: Annotated[int, Field(ge=1, le=10_000)] = 200
+    crossover: Probability = 0.8  # Pc, as published
+    mutation: Probability = 0.01  # Pm, as published
+    bits: Annotated[int, Field(ge=2, le=52)] = 17
+    largest_weight: Annotated[int, Field(ge=1)] = 100
+    normaliser: Normaliser = Normaliser.MAX
+    objectives: SearchedObjectives = SearchedObjectives.PRINTED
+    seeds: Annotated[int, Field(ge=1, le=1000)] = 12
+
+    def algorithm_settings(self, objective_count: int) -> GeneticSettings:
+        """Return the settings of the algorithm for so many objectives.
+
+        Raises:
+            SearchError: fewer individuals than it needs for these.
+        """
+        return GeneticSettings(
+            population=self.population,
+            generations=self.generations,
+            objectives=objective_count,
+            Pc=self.crossover,
+            Pm=self.mutation,
+            bits=self.bits,
+            largest_weight=self.largest_weight,
+            normaliser=self.normaliser,
+        )
+
+
+# What is to be tuned: a loop, what disturbs it, what is to be small, what must be kept.
+
 # damping ratio below which a swing counts as undamped: a tenth of the least of bare hulls (0.01: Lloyd 1989); chosen
 _UNDAMPED = 1e-3
 OUTPUT = variance("output", "rad^2", LoopSignal.OUTPUT)
@@ -38,7 +107,7 @@ _SLOWEST, _FASTEST = 1e-3, 1e2  # frequencies of a slow disturbance over its ban
 _BEYOND = 30.0  # its highest frequency over the plant's fastest pole; chosen
 
 
-@dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True)
 class Seaway:
     """A sea met at a speed and heading: U [m/s], beta [rad, 0 following]; spreading: exponent s, None long-crested.
 
@@ -87,7 +156,7 @@ class Seaway:
         )
 
 
-@dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True)
 class SlowDisturbance:
     """A slow disturbance: coloured noise of `rms` [`unit`] and `bandwidth` [rad/s], `acting_like` an input.
 
@@ -140,7 +209,7 @@ class Effectiveness(Enum):
     SPEED_SQUARED = "U^2"
 
 
-@dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True)
 class ScheduleGrid:
     """Conditions of a schedule: U [m/s], beta [rad], significant height [m]; every combination is tuned.
 
@@ -153,7 +222,7 @@ class ScheduleGrid:
     largest_step: float = 0.3  # chosen
 
 
-@dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True)
 class SimulationSettings:
     """Nonlinear simulation: seeds of the sea, duration [s], step [s]."""
 
@@ -162,7 +231,7 @@ class SimulationSettings:
     dt: float = 0.05  # s, step of the simulation; chosen
 
 
-@dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True)
 class Demand:
     """What a servo loop has to follow: a change of the output and a zigzag, through a reference filter.
 
@@ -182,7 +251,7 @@ class Demand:
     feeds_forward: bool = False
 
 
-@dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True)
 class TrackDemand:
     """A track to be kept in a current across it: coloured noise of rms `current` [m/s] and `bandwidth` [rad/s].
 
@@ -196,7 +265,7 @@ class TrackDemand:
     acceptance: float
 
 
-@dataclass(frozen=True, eq=False)
+@dataclasses.dataclass(frozen=True, eq=False)
 class StationDemand:
     """A place and heading to be kept in a steady `current` [m/s] from any direction, and in what varies.
 
@@ -222,7 +291,7 @@ class StationDemand:
     hull: HullFactor | None
 
 
-@dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True)
 class PlantUncertainty:
     """How far a ship may differ from the model: shares of the plant's gain and time constants, dead time [s], draws."""
 
@@ -232,7 +301,7 @@ class PlantUncertainty:
     draws: int = 1000  # ships from the covariance of the fit; chosen
 
 
-@dataclass(frozen=True, eq=False)
+@dataclasses.dataclass(frozen=True, eq=False)
 class TrimmedShip:
     """The model behind the plant, for simulation and for draws.
 
@@ -252,7 +321,7 @@ class TrimmedShip:
     warnings: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, eq=False)
+@dataclasses.dataclass(frozen=True, eq=False)
 class TuningTask:
     """One tuning.
 

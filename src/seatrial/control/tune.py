@@ -8,18 +8,23 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.control.bounds import bounds, is_available
-from seatrial.control.choose import choose
-from seatrial.control.controller import components, describe_controller, discrete_controller
-from seatrial.control.demand import simulate_manoeuvres
-from seatrial.control.disturbance_simulation import simulate_disturbances
+from seatrial.control.choice import choose
+from seatrial.control.controller import components, describe_controller, discrete_controller, simulate_manoeuvres
 from seatrial.control.findings import Checks, findings
-from seatrial.control.front import Effort, grid_front, pareto_front, refuse_idle, refuse_infeasible, thin_front
-from seatrial.control.gain_choice import GainChoice, NamedGains
-from seatrial.control.gain_evaluation import GainEvaluator, gain_evaluator
-from seatrial.control.published_search import OWN_CHOICE, published_search
+from seatrial.control.front import (
+    OWN_CHOICE,
+    Effort,
+    grid_front,
+    pareto_front,
+    published_search,
+    refuse_idle,
+    refuse_infeasible,
+    thin_front,
+)
+from seatrial.control.gain_evaluation import GainChoice, GainEvaluator, NamedGains, gain_evaluator
 from seatrial.control.robustness import robustness
 from seatrial.control.schedule import schedule
-from seatrial.control.seaway_simulation import compare_pairwise, simulate_in_seaway
+from seatrial.control.simulation import compare_pairwise, simulate_disturbances, simulate_in_seaway
 from seatrial.control.station.tune_station import tune_station
 from seatrial.control.task import OUTPUT, TuningTask
 from seatrial.control.track.tune_track import tune_track

@@ -1,5 +1,5 @@
 from seatrial.exporting.source import ExportSource
-from seatrial.exporting.target import Export, Target
+from seatrial.exporting.source import Export, Target
 from seatrial.exporting.targets import TARGETS, target_named
 
 __all__ = ["TARGETS", "Export", "ExportSource", "Target", "target_named"]

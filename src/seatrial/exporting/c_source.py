@@ -11,20 +11,23 @@ from seatrial.core.equations.generate import (
     live_assignments,
     tangent_assignments,
 )
-from seatrial.exporting.identified_range import identified_range, range_text, range_use
 from seatrial.exporting.source import (
+    Export,
     ExportSource,
+    identified_range,
     input_variables,
     output_variables,
     parameter_variables,
     plain,
     provenance_lines,
+    range_text,
+    range_use,
+    rendered,
     require_identifiers,
     require_values,
     state_variables,
+    stored_text,
 )
-from seatrial.exporting.target import Export
-from seatrial.exporting.templating import rendered, stored_text
 from seatrial.numerics.kernels.trigonometry import COSINE_SERIES, HALF_PI, SINE_SERIES
 
 

@@ -14,12 +14,16 @@ from contextlib import suppress
 import numpy as np
 
 from seatrial.core.values import InputError, Record
-from seatrial.exporting.identified_range import range_text
-from seatrial.exporting.projection import MotionError, project
-from seatrial.exporting.source import ExportSource, plain, provenance_lines, require_values
-from seatrial.exporting.target import Export
-from seatrial.exporting.target_structure import ForceTerm, TargetStructure, unsuitable_hull
-from seatrial.exporting.templating import rendered
+from seatrial.exporting.projection import ForceTerm, MotionError, TargetStructure, project, unsuitable_hull
+from seatrial.exporting.source import (
+    Export,
+    ExportSource,
+    plain,
+    provenance_lines,
+    range_text,
+    rendered,
+    require_values,
+)
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.thruster_layout import ThrusterLayout, steering_angles
 from seatrial.physics.simulate.replay import replay

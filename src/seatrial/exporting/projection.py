@@ -1,14 +1,8 @@
-"""A craft's hull forces projected onto the structure that another simulator computes, refitted over manoeuvres.
-
-Simulators for robots know a few coefficients; what they leave out of a model cannot be copied. Truncation takes the
-terms that they have, from the model at its approach speed. The refit then moves all coefficients until the simulator's
-equations, under the same inputs, repeat the motions of the model; what remains is the price, stated with the file.
-"""
+"""A craft's hull forces projected onto the structure that another simulator computes."""
 
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,12 +10,167 @@ from seatrial.core.equations import Model, ModelEquations
 from seatrial.core.equations.model import stored_equations
 from seatrial.core.values import Array, InputError, Parameter, Parameters, Record
 from seatrial.data.folder.model_file import ModelFile
-from seatrial.exporting.target_structure import ADDED, OFF_COURSE, RigidBody, TargetStructure, rigid_body
-from seatrial.exporting.truncation import truncation
+from seatrial.numerics.kernels.integrate import evaluate
 from seatrial.physics.simulate.replay import inputs_of, trajectory
 
-if TYPE_CHECKING:
-    import sympy as sp
+# What another simulator computes for a hull: the terms that it has, and the rigid body that they act on.
+
+HULL = ("X_H", "Y_H", "N_H")
+ADDED: tuple[str, ...] = ("xDotU", "yDotV", "nDotR")
+"""Tags of added mass in surge, sway and yaw."""
+OFF_COURSE = 0.2
+"""v over u, and L r over u, at which quadratic terms are read off a model; chosen."""
+
+
+@dataclass(frozen=True)
+class RigidBody:
+    """Mass [kg], yaw inertia about the centre of gravity [kg m^2], and how far forward of the origin that is [m]."""
+
+    mass: float
+    inertia: float
+    x_G: float
+
+    @property
+    def inertia_at_origin(self) -> float:
+        """Yaw inertia about the origin [kg m^2]."""
+        return self.inertia + self.mass * self.x_G**2
+
+
+@dataclass(frozen=True)
+class ForceTerm:
+    """A term of the target: `tag` times `first` times `second` (of u, v, r; ``|u|`` for a magnitude; empty: 1)."""
+
+    tag: str
+    force: str
+    first: str
+    second: str = ""
+    sign: float = 1.0
+
+
+@dataclass(frozen=True)
+class TargetStructure:
+    """What a simulator computes for one link.
+
+    Attributes:
+        terms: of damping.
+        added_mass_sign: of xDotU, yDotV, nDotR for an added mass that is positive.
+        is_inertial: whether added mass acts on the acceleration in space (u' - v r), else on the rate (u') alone.
+    """
+
+    terms: tuple[ForceTerm, ...]
+    added_mass_sign: float
+    is_inertial: bool
+
+
+def unsuitable_hull(file: ModelFile) -> str:
+    """Return why a model cannot be projected; empty where it can."""
+    model = file.model
+    absent = [s for s in ("u", "v", "r", "psi") if s not in model.states]
+    if absent:
+        return f"it has no state '{absent[0]}', and the target is a craft in surge, sway and yaw"
+    names = {b.name for b in model.bindings}
+    absent = [b for b in (*HULL, "X_sum", "Y_sum", "N_sum") if b not in names]
+    if absent:
+        return f"it has no binding '{absent[0]}', so that forces of hull and actuators cannot be separated"
+    rigid = rigid_body(file)
+    if rigid is None:
+        return "neither the model nor its ship states the mass m and the inertia I_z that the link needs"
+    if "M_u" in model.parameters and model.parameters["M_u"].value < rigid.mass:
+        return (
+            f"its M_u of {model.parameters['M_u'].value:.4g} kg is less than the mass m of {rigid.mass:.4g} kg, so "
+            "that its forces are not in newtons; identify it with the bollard thrust of a thruster"
+        )
+    return ""
+
+
+def rigid_body(file: ModelFile) -> RigidBody | None:
+    """Return mass and inertia of the model or its ship; None where neither states both."""
+    ship = {} if file.ship is None else file.ship.particulars
+    values = {**ship, **{p.name: p.value for p in file.model.parameters}}
+    if not {"m", "I_z"} <= set(values):
+        return None
+    return RigidBody(float(values["m"]), float(values["I_z"]), float(values.get("x_G", 0.0)))
+
+
+# The coefficients that a model itself has for the terms of another simulator, at its approach speed.
+
+_SMALL = 1e-3  # v over u, and L r over u, at which linear terms are read off the model; chosen
+
+
+def truncation(
+    file: ModelFile, structure: TargetStructure, rigid: RigidBody, records: Sequence[Record]
+) -> dict[str, float]:
+    """Return the coefficients that the model itself has for the target's terms, at its approach speed."""
+    model, speed = file.model, float(records[0]["u"][0]) or 1.0
+    length = model.parameters["L"].value if "L" in model.parameters else 1.0
+    sway, turn = OFF_COURSE * speed, OFF_COURSE * speed / length
+    rows = {"": (speed, 0.0, 0.0), "v": (speed, sway, 0.0), "r": (speed, 0.0, turn), "vr": (speed, sway, turn),
+            "small v": (speed, _SMALL * speed, 0.0), "small r": (speed, 0.0, _SMALL * speed / length)}  # fmt: skip
+    states = np.zeros((2 * len(rows), len(model.states)))
+    places = [model.states.index(s) for s in ("u", "v", "r")]
+    states[: len(rows), places] = list(rows.values())
+    states[len(rows) :, places] = [(u, -v, -r) for u, v, r in rows.values()]
+    inputs = np.repeat(inputs_of(model, records[0])[:1], len(states), axis=0)
+    bindings = model.forces(states, inputs)
+    added = _added_masses(file, rigid, bindings)
+    forces = _required_forces(model, structure, rigid, added, states, inputs, bindings)
+    index = {key: k for k, key in enumerate(rows)}
+
+    def part(force: str, key: str, parity: float) -> float:
+        """The part of a force that is odd (-1) or even (1) in sway and yaw."""
+        values, k = forces[force], index[key]
+        return 0.5 * float(values[k] + parity * values[k + len(rows)])
+
+    added_masses = dict(zip(ADDED, (structure.added_mass_sign * a for a in added), strict=True))
+    ahead = part("X", "", 1.0)
+    for term in structure.terms:
+        kind = f"{term.first}{term.second}"
+        force = term.force
+        linear = {"v": part(force, "small v", -1.0) / (_SMALL * speed),
+                  "r": part(force, "small r", -1.0) / (_SMALL * speed / length)}  # fmt: skip
+        value = {
+            "u|u|": ahead / speed**2, "vv": (part(force, "v", 1.0) - ahead) / sway**2,
+            "rr": (part(force, "r", 1.0) - ahead) / turn**2,
+            "vr": (part(force, "vr", 1.0) - part(force, "v", 1.0) - part(force, "r", 1.0) + ahead) / (sway * turn),
+            "v": linear["v"], "r": linear["r"],
+            "v|v|": (part(force, "v", -1.0) - linear["v"] * sway) / sway**2,
+            "r|r|": (part(force, "r", -1.0) - linear["r"] * turn) / turn**2,
+        }.get(kind, 0.0)  # fmt: skip
+        added_masses[term.tag] = term.sign * value
+    return added_masses
+
+
+def _added_masses(file: ModelFile, rigid: RigidBody, forces: Mapping[str, Array]) -> list[float]:
+    """m_x, m_y, J_z of the model; from its sums with the rigid body where it has these."""
+    parameters = file.model.parameters
+    if "m_x" in parameters:
+        return [parameters[n].value for n in ("m_x", "m_y", "J_z")]
+    sums = [float(forces[n][0]) if n in forces else parameters[n].value for n in ("M_u", "M_v", "M_r")]
+    return [total - body for total, body in zip(sums, (rigid.mass, rigid.mass, rigid.inertia_at_origin), strict=True)]
+
+
+def _required_forces(
+    model: Model, structure: TargetStructure, rigid: RigidBody, added: list[float], states: Array,
+    inputs: Array, bindings: Mapping[str, Array],
+) -> dict[str, Array]:  # fmt: skip
+    """Return the damping forces X, Y, N with which the target would accelerate as the model does, (n,) each."""
+    rates = np.empty_like(states)
+    evaluate(model.compiled.rates, states, inputs, model.parameters.values, 0.0, rates)
+    u, v, r = (states[:, model.states.index(s)] for s in ("u", "v", "r"))
+    u_dot, v_dot, r_dot = (rates[:, model.states.index(s)] for s in ("u", "v", "r"))
+    m, x_G = rigid.mass, rigid.x_G
+    A_x, A_y, A_r = added
+    in_space = 1.0 if structure.is_inertial else 0.0
+    X, Y, N = (bindings[f"{axis}_sum"] - bindings[f"{axis}_H"] for axis in "XYN")
+    across = v_dot + u * r
+    return {
+        "X": (m + A_x) * u_dot - (m + in_space * A_x) * v * r - m * x_G * r**2 - X,
+        "Y": m * across + A_y * (v_dot + in_space * u * r) + m * x_G * r_dot - Y,
+        "N": (rigid.inertia_at_origin + A_r) * r_dot + m * x_G * across - N,
+    }
+
+
+# A craft's hull forces projected onto the structure that another simulator computes, refitted over manoeuvres.
 
 MOTION = ("u", "v", "r", "psi")
 _MASS, _INERTIA, _X_G = "rigid_mass", "rigid_inertia", "rigid_x_G"

@@ -14,20 +14,21 @@ from seatrial.core.equations.generate import (
     live_assignments,
 )
 from seatrial.data.folder.gains_file import HEADER
-from seatrial.exporting.identified_range import range_text
 from seatrial.exporting.source import (
+    Export,
     ExportSource,
     input_variables,
     output_variables,
     parameter_variables,
     plain,
     provenance_lines,
+    range_text,
+    rendered,
     require_identifiers,
     require_values,
     state_variables,
+    stored_text,
 )
-from seatrial.exporting.target import Export
-from seatrial.exporting.templating import rendered, stored_text
 
 
 def export_matlab(source: ExportSource, name: str) -> Export:

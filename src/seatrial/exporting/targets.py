@@ -6,8 +6,7 @@ from seatrial.exporting.c_source import export_c
 from seatrial.exporting.fmu import export_fmu
 from seatrial.exporting.gazebo import export_gazebo, export_vrx, unsuitable_craft
 from seatrial.exporting.scripts import export_casadi, export_matlab
-from seatrial.exporting.source import ExportSource
-from seatrial.exporting.target import Target
+from seatrial.exporting.source import ExportSource, Target
 
 
 def _suits_every_model(source: ExportSource) -> str:  # noqa: ARG001

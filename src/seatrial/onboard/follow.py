@@ -19,15 +19,18 @@ from seatrial.data.trial.runs import require_stream
 from seatrial.data.trial.settings import Stream, StreamSource
 from seatrial.estimation.identify import identify
 from seatrial.estimation.identify.online import OnlineEstimator, SearchFollower, own_trial
-from seatrial.estimation.identify.strategies.published import own_estimate_progress, published_fit
+from seatrial.estimation.identify.search import own_estimate_progress, published_fit
 from seatrial.onboard.advice import ManoeuvreAdviser
 from seatrial.onboard.journal import Journal, journal_identity
-from seatrial.onboard.proposer import GainProposer
-from seatrial.onboard.required_channels import check_required_channels
-from seatrial.onboard.run_buffer import RunBuffer, with_training_records
-from seatrial.onboard.sample_order import StreamEvent
+from seatrial.onboard.proposer import GainProposer, check_required_channels
 from seatrial.onboard.sources import SampleSource, open_source
-from seatrial.onboard.stream_session import StreamEstimator, StreamSession
+from seatrial.onboard.stream_session import (
+    RunBuffer,
+    StreamEstimator,
+    StreamEvent,
+    StreamSession,
+    with_training_records,
+)
 
 # s: longest wait for samples, longest computation between two polls, shortest time between two displays; chosen: no
 # user sees a delay, and they cost nothing

@@ -10,10 +10,18 @@ from seatrial.core.results.online import SampleCounts, Snapshot
 from seatrial.core.text.numbers import DASH
 from seatrial.core.text.plain import ascii_text
 from seatrial.core.text.words import counted, enumeration, printable
-from seatrial.onboard.history import History, RecentHistory
-from seatrial.onboard.proposal_text import gains_text
-from seatrial.onboard.snapshot_text import change_sentence, estimate_rows, faults_text, time_text
-from seatrial.onboard.table import MAX_NAMES, TableContent, render_table
+from seatrial.onboard.table import (
+    MAX_NAMES,
+    History,
+    RecentHistory,
+    TableContent,
+    change_sentence,
+    estimate_rows,
+    faults_text,
+    gains_text,
+    render_table,
+    time_text,
+)
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -7,14 +7,10 @@ from seatrial.core.results.online import Sample, SampleCounts
 from seatrial.core.values import InputError
 from seatrial.data.trial.settings import Stream, StreamSource
 from seatrial.onboard.columns import ColumnReader
-from seatrial.onboard.lines import LineBatch, LineSource
-from seatrial.onboard.message_decoders import BusDecoder, MavlinkDecoder
-from seatrial.onboard.messages import MessageReader
+from seatrial.onboard.lines import LineBatch, LineSource, PipeLines, TailLines, UdpLines
+from seatrial.onboard.messages import BusDecoder, MavlinkDecoder, MessageReader
 from seatrial.onboard.nmea import NmeaReader
-from seatrial.onboard.sample_order import combined_counts
-from seatrial.onboard.stdin import PipeLines
-from seatrial.onboard.tail import TailLines
-from seatrial.onboard.udp import UdpLines
+from seatrial.onboard.stream_session import combined_counts
 
 # sentences that a talker sends with each sample, at most; chosen: an integrated bridge repeats about ten
 _SENTENCES_PER_SAMPLE = 20

@@ -1,19 +1,255 @@
-"""One stream on its way to an estimate: ordered, journalled, kept where a fit is made of it at the end."""
+"""One stream on its way to an estimate: ordered, kept as raw records, shown as a recent run."""
 
+import math
+from array import array
 from collections.abc import Iterable, Iterator
-from typing import Protocol
+from dataclasses import dataclass, fields, replace
+from statistics import median
+from typing import Literal, Protocol
 
 import numpy as np
 
 from seatrial.core.results.online import Proposal, Sample, SampleCounts, Snapshot
 from seatrial.core.text.words import counted
-from seatrial.core.values import InputError
+from seatrial.core.values import InputError, Record
+from seatrial.data.check import canonical_record
+from seatrial.data.read import Layout
+from seatrial.data.read.assemble import record_from_values
+from seatrial.data.trial import Role, Trial
+from seatrial.data.trial.runs import require_stream
 from seatrial.data.trial.settings import Stream
+from seatrial.data.trial.trial import TrialRun
 from seatrial.onboard.journal import Journal, RunEntry
 from seatrial.onboard.proposer import GainProposer
-from seatrial.onboard.recent_run import RecentRun
-from seatrial.onboard.run_buffer import RunBuffer
-from seatrial.onboard.sample_order import RunStart, SampleOrder, StreamEvent, combined_counts
+
+# Which samples of a stream are used: in order of time, each once; a break of the clock begins a new run.
+
+# steps whose median is the nominal step where none is given; chosen: a few pauses among them do not move it
+_FIRST_STEPS = 20
+# share of a step within which two times are the same; chosen: above the rounding of a logger that writes four digits
+_SAME_TIME = 1e-3
+
+
+@dataclass(frozen=True)
+class RunStart:
+    """A new run begins with the next sample, whose time [s] this is."""
+
+    time: float
+    reason: str
+
+
+StreamEvent = Sample | RunStart
+
+
+class SampleOrder:
+    """Puts a stream in order, in constant memory.
+
+    A sample up to `late_s` older than the newest is late, one of the same time repeated; both are dropped. One older
+    still, or more than `longest_gap_s` ahead, is suspect until the next arrives: if that continues from it, the clock
+    has jumped and a new run begins with it; if that continues from before, the time stamp was wrong and the sample is
+    dropped, as late or, if ahead, as garbled. Missing steps are counted from `dt`, or from the median of the first
+    twenty steps. Values that are not finite become NaN.
+
+    Args:
+        dt: s, nominal step; None: from the stream.
+        longest_gap_s: s; late_s: s by which a stamp may be behind and still belong to the same clock.
+    """
+
+    def __init__(self, dt: float | None, longest_gap_s: float, *, late_s: float = 5.0) -> None:  # seconds, chosen
+        self._dt = dt
+        self._longest_gap, self._late_s = longest_gap_s, late_s
+        self._newest_time = -math.inf
+        self._suspect: Sample | None = None
+        self._steps: list[float] = []
+        self._accepted = self._not_finite = self._missing = 0
+        self._fault_counts = SampleCounts()
+
+    @property
+    def dt(self) -> float | None:
+        """Nominal step [s]; None before it is known."""
+        return self._dt
+
+    @property
+    def counts(self) -> SampleCounts:
+        """Counts of the samples; a suspect one is not yet counted."""
+        return replace(self._fault_counts, accepted=self._accepted, not_finite=self._not_finite, missing=self._missing)
+
+    def admit(self, sample: Sample) -> list[StreamEvent]:
+        """Return what follows from a sample: nothing, the sample, or a new run that begins with it or a suspect one."""
+        time, suspect = sample.time, self._suspect
+        if not math.isfinite(time):
+            return self._dropped("garbled", "a sample without a time")
+        step = time - self._newest_time
+        if step == math.inf:
+            return self._start_run(sample, "the stream begins")
+        if suspect is not None and abs(time - suspect.time) < abs(step):
+            return self._resolve_suspect(suspect, sample)
+        if abs(step) <= _SAME_TIME * (self._dt or 0.0):
+            return self._dropped("repeated", f"t = {time:g} s twice")
+        if 0.0 < step <= self._longest_gap:
+            self.drop_suspect()
+            return self._continue_run(sample, step)
+        if -self._late_s <= step < 0.0:
+            return self._dropped("late", f"t = {time:g} s arrived after {self._newest_time:g} s")
+        self.drop_suspect()
+        self._suspect = sample
+        return []
+
+    def _resolve_suspect(self, suspect: Sample, sample: Sample) -> list[StreamEvent]:
+        step = sample.time - suspect.time
+        if abs(step) <= _SAME_TIME * (self._dt or 0.0):
+            return self._dropped("repeated", f"t = {sample.time:g} s twice")
+        if -self._late_s <= step < 0.0:
+            return self._dropped("late", f"t = {sample.time:g} s arrived after {suspect.time:g} s")
+        if not 0.0 < step <= self._longest_gap:
+            self.drop_suspect()
+            self._suspect = sample
+            return []
+        reason = f"the clock jumped from {self._newest_time:g} s to {suspect.time:g} s"
+        self._fault_counts = replace(self._fault_counts, jumps=self._fault_counts.jumps + 1, last_problem=reason)
+        self._suspect = None
+        return [*self._start_run(suspect, reason), *self._continue_run(sample, step)]
+
+    def _start_run(self, sample: Sample, reason: str) -> list[StreamEvent]:
+        return [RunStart(sample.time, reason), *self._accept(sample)]
+
+    def _continue_run(self, sample: Sample, step: float) -> list[StreamEvent]:
+        if self._dt is not None:
+            self._missing += _missing_steps(step, self._dt)
+        else:
+            self._steps.append(step)
+            if len(self._steps) == _FIRST_STEPS:
+                self._dt = median(self._steps)
+                self._missing += sum(_missing_steps(one, self._dt) for one in self._steps)
+                self._steps.clear()
+        return self._accept(sample)
+
+    def _accept(self, sample: Sample) -> list[StreamEvent]:
+        self._newest_time = sample.time
+        self._accepted += 1
+        if np.isfinite(sample.values).all():
+            return [sample]
+        self._not_finite += 1
+        if not np.isinf(sample.values).any():
+            return [sample]
+        return [Sample(sample.time, np.where(np.isfinite(sample.values), sample.values, np.nan))]
+
+    def drop_suspect(self) -> None:
+        """Drop and count a sample that is still suspect, as at the end of the stream."""
+        if self._suspect is None:
+            return
+        time, self._suspect = self._suspect.time, None
+        if time < self._newest_time:
+            self._dropped("late", f"t = {time:g} s arrived after {self._newest_time:g} s")
+        else:
+            self._dropped("garbled", f"no sample followed t = {time:g} s, far ahead of {self._newest_time:g} s")
+
+    def _dropped(self, fault: Literal["late", "repeated", "garbled"], message: str) -> list[StreamEvent]:
+        """Count a sample that is not used; nothing follows from it."""
+        count = {fault: getattr(self._fault_counts, fault) + 1}
+        self._fault_counts = replace(self._fault_counts, last_problem=message, **count)
+        return []
+
+
+def combined_counts(*parts: SampleCounts) -> SampleCounts:
+    """Return the counts of a source and of the orderings behind it as one."""
+    names = [field.name for field in fields(SampleCounts) if field.name != "last_problem"]
+    sums = {name: sum(getattr(part, name) for part in parts) for name in names}
+    return SampleCounts(**sums, last_problem="; ".join(part.last_problem for part in parts if part.last_problem))
+
+
+def _missing_steps(step: float, dt: float) -> int:
+    return max(round(step / dt) - 1, 0)
+
+
+# Samples as raw records, as a file of the same lines would have given them.
+
+# a record needs a time step
+_MIN_SAMPLES = 2
+
+
+class RunBuffer:
+    """Keeps every sample accepted, run by run, at eight bytes a number."""
+
+    def __init__(self, layout: Layout) -> None:
+        self._layout = layout
+        self._runs: list[tuple[str, array[float]]] = []
+
+    def start_run(self, name: str) -> None:
+        """Begin a run."""
+        self._runs.append((name, array("d")))
+
+    def add(self, sample: Sample) -> None:
+        """Append a sample to the run begun last."""
+        rows = self._runs[-1][1]
+        rows.append(sample.time)
+        rows.frombytes(sample.values.tobytes())
+
+    def records(self) -> tuple[Record, ...]:
+        """Return the runs of two samples and more as records, in order."""
+        width = 1 + len(self._layout.columns)
+        tables = [(name, np.frombuffer(rows, dtype=np.float64).reshape(-1, width)) for name, rows in self._runs]
+        return tuple(
+            record_from_values(name, self._layout, table[:, 0], table[:, 1:])
+            for name, table in tables
+            if len(table) >= _MIN_SAMPLES
+        )
+
+
+def with_training_records(trial: Trial, records: tuple[Record, ...]) -> Trial:
+    """Return the trial with these records as training runs, behind its own and before all other runs."""
+    waves = require_stream(trial).waves
+    came = tuple(TrialRun(record, waves=waves) for record in records)
+    others = tuple(run for run in trial.runs if run.role is not Role.TRAIN)
+    return replace(trial, runs=(*trial.runs_with_role(Role.TRAIN), *came, *others))
+
+
+# The run so far as a record for people: thinned, so that a day of samples fits a screen.
+
+# samples kept at most; chosen: more than a plot on a screen has columns
+MAX_SAMPLES = 600
+
+
+class RecentRun:
+    """Every `stride`-th sample of a run and the newest; the stride doubles when there are too many."""
+
+    def __init__(self, layout: Layout, limit: int = MAX_SAMPLES) -> None:
+        self._layout, self._limit = layout, limit
+        self.start_run()
+
+    def start_run(self) -> None:
+        """Forget the run before."""
+        self._kept: list[Sample] = []
+        self._newest: Sample | None = None
+        self._count, self._stride = 0, 1
+
+    def add(self, sample: Sample) -> None:
+        """Append a sample."""
+        self._newest = sample
+        if self._count % self._stride == 0:
+            self._kept.append(sample)
+        self._count += 1
+        if len(self._kept) > self._limit:
+            self._kept, self._stride = self._kept[::2], 2 * self._stride
+
+    def records(self) -> tuple[Record, ...]:
+        """Return the run, in canonical frames and signs where the channels allow it; empty for too few samples."""
+        newest = [] if self._newest is None or self._kept[-1] is self._newest else [self._newest]
+        samples = [*self._kept, *newest]
+        if len(samples) < _MIN_SAMPLES:
+            return ()
+        time = np.array([sample.time for sample in samples])
+        try:
+            record = record_from_values("run", self._layout, time, np.array([sample.values for sample in samples]))
+        except InputError:
+            return ()
+        try:
+            return (canonical_record(record),)
+        except InputError:
+            return (record,)
+
+
+# One stream on its way to an estimate: ordered, journalled, kept where a fit is made of it at the end.
 
 # messages kept; chosen: more would only repeat the same trouble
 _MAX_MESSAGES = 20

@@ -6,11 +6,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.values import Array, InputError
-from seatrial.problems.ask_tell import MethodError
-from seatrial.problems.estimate import Estimate
-from seatrial.problems.method import EnteredMethod
-from seatrial.problems.posed import BudgetSpent, EvaluationMeter, PosedProblem, posed
-from seatrial.problems.problem import BenchmarkProblem, Placement, ProblemDraw
+from seatrial.problems.method import EnteredMethod, MethodError
+from seatrial.problems.problem import (
+    BenchmarkProblem,
+    BudgetSpent,
+    Estimate,
+    EvaluationMeter,
+    Placement,
+    PosedProblem,
+    ProblemDraw,
+    posed,
+)
 
 _METHOD_STREAM = 21
 """First number of the seed of every method's generator: chosen, different from that of draws."""

@@ -1,21 +1,29 @@
-"""Craft in gusts and waves, steered by a programme or by a controller: records whose truth is known.
-
-All runs of a cell at once, in equal steps by the compiled model; disturbances are accelerations of the driven states.
-`independent_nomoto` makes the same of the steering model of first order without any of the package's numerics.
-"""
+"""Craft in gusts and waves, steered by a programme or a controller: records whose truth is known, and their bound."""
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatrial.core.equations import Model
-from seatrial.core.values import Record
+from seatrial.core.equations.augment import gust_name, with_gusts
+from seatrial.core.values import Array, Record, Ship
+from seatrial.data.trial import EstimateSettings
+from seatrial.estimation.estimate.assemble import Runs, output_error_problem
+from seatrial.estimation.estimate.newton_refinement import newton_step
+from seatrial.estimation.estimate.plausibility import with_input_offsets
+from seatrial.estimation.estimate.point_estimate import PointEstimate
+from seatrial.estimation.estimate.process_noise import ProcessNoise, initial_problem
+from seatrial.numerics.optimise import Optimum, Solution, Status
+from seatrial.physics.models import nomoto
 from seatrial.physics.simulate.batch import SegmentBatch
+from seatrial.problems.problem import BenchmarkProblem, Placement, ProblemDraw
+from seatrial.problems.trial_problem import KnownCraft, craft_draw, off_centre_box, scaled_values
 
-Array = NDArray[np.float64]
+# Craft in gusts and waves, steered by a programme or by a controller: records whose truth is known.
+
 # s: sample and length of a record, step of the independent simulation; chosen
 SAMPLE_S, SECONDS = 0.1, 600.0
 FINE_S = 0.02  # s, as above
@@ -231,3 +239,107 @@ def independent_nomoto(
 
 
 Generator = Callable[..., list[Record]]
+
+
+# What the likelihood of the true disturbance admits on a record: Cramer-Rao bound, and an efficient estimate.
+
+NONE = np.zeros((0, 0))
+
+
+@dataclass(frozen=True, eq=False)
+class DisturbanceLimit:
+    """Standard errors that a likelihood admits on a record, and the errors of an efficient estimate, both (k,)."""
+
+    standard_error: Array
+    efficient: Array
+
+
+def limit_of(craft: DisturbedCraft, disturbance: Disturbance, record: Record) -> DisturbanceLimit:
+    """Return what the likelihood of the true disturbance admits on this record."""
+    model = craft.model
+    settings = EstimateSettings().with_known_timing(model.input_names)  # the records were simulated sample by sample
+    problem = output_error_problem(model, Runs.one_session_each([record], craft.length), np.inf, settings, 1)
+    problem = replace(problem, noise=np.array([craft.sensors[o] for o in problem.data.outputs]))
+    local = np.array([[craft.start.get(s, 0.0) for s in problem.starts]])
+    optimum = Optimum(
+        Solution(problem.start(), 0.0, Status.CONVERGED, 1), local, problem.normal(problem.start(), local)
+    )
+    estimate = PointEstimate(problem, optimum)
+    if disturbance.size or disturbance.offset:
+        estimate = with_input_offsets(estimate)
+    driven = tuple(craft.driven) if disturbance.size else ()
+    white = initial_problem(estimate, {}, tuple(craft.driven))
+    white = replace(white, process=driven)
+    squared = np.array([(disturbance.size * craft.driven[s]) ** 2 for s in driven])
+    constants: list[float] = []
+    if disturbance.memory > 0.0 and driven:
+        augmented = with_gusts(model, dict.fromkeys(driven, disturbance.memory))
+        spread = np.tile(squared, (1, 1))
+        white = replace(white, runs=replace(white.runs, model=augmented), process=tuple(map(gust_name, driven)),
+                        start=np.column_stack([white.start, np.zeros((1, len(driven)))]),
+                        start_variance=np.hstack([white.start_variance, spread]))  # fmt: skip
+        squared, constants = 2.0 * squared / disturbance.memory, [disturbance.memory] * len(driven)
+    else:
+        squared = squared * SAMPLE_S
+    common, free = estimate.common_parameters, len(problem.free)
+    session_values = common[free:].copy()
+    session_values[-1:] = disturbance.offset
+    variances = [craft.sensors[o] ** 2 for o in problem.data.outputs]
+    point = np.concatenate([common[:free], constants, session_values, squared, variances])
+    normal = white.normal(point, NONE)
+    exact = replace(white, steps=white.difference_steps(point, normal.hessian))
+    at = Optimum(Solution(point, 0.0, Status.CONVERGED, 1), NONE, exact.normal(point, NONE))
+    noise = ProcessNoise(exact, at, 0.0, None, estimate.problem)  # type: ignore[arg-type]
+    return DisturbanceLimit(noise.interval.standard_error[:free], (newton_step(exact, point) - point)[:free])
+
+
+# Nomoto's steering model under gusts with a memory: a random rudder, and a controller on courses.
+
+# 1/s and s of a ship of 50 m; chosen
+_K, _T = 0.15, 8.0
+NOMOTO = DisturbedCraft(
+    "nomoto",
+    nomoto().with_values({"K": _K, "T": _T}),
+    {"r": AMPLITUDE * _K / _T},
+    {"psi": math.radians(0.05), "r": math.radians(0.02)},  # rad and rad/s of a good compass and gyro, chosen
+    50.0,  # m, length of the ship, chosen
+    {"K": 0.1, "T": 10.0},  # 1/s and s where a search starts, chosen
+    constant={"u": 5.0},  # m/s, recorded speed, chosen
+)
+"""The steering model of first order; a gust of size 1 is what the rudder of a programme does."""
+# standard deviation over that of the rudder's effect, and memory [s], of the gusts; chosen
+_GUSTS = Disturbance(0.3, 5.0)
+# half range of the factor by which a draw scales the true coefficients, and half width of their box, 1; chosen
+_SCALE, _HALF_WIDTH = 0.2, 0.5
+# evaluations of two unknowns; chosen
+_BUDGET = 1000
+_SOURCE = "ours; the model is that of Nomoto et al. 1957, Int. Shipbuilding Progress 4(35), 354-370"
+
+
+def problems() -> tuple[BenchmarkProblem, ...]:
+    """Return the problem with a random rudder, and with a controller that answers to the gusts."""
+    words = {"open": "a random binary rudder", "closed": "a controller on courses of ±10°"}
+    noise = "gusts of 0.3 times the rudder's effect with a memory of 5 s; psi 0.05 deg, r 0.02 deg/s, white"
+    return tuple(
+        BenchmarkProblem(
+            f"nomoto-gusts-{name}", 2, f"K and T of a steering model under gusts, {text}, 600 s", _SOURCE, noise,
+            _BUDGET, partial(_draw, is_closed=name == "closed"),
+        )
+        for name, text in words.items()
+    )  # fmt: skip
+
+
+def _draw(rng: np.random.Generator, placement: Placement, *, is_closed: bool) -> ProblemDraw:
+    truth = np.array([_K, _T])
+    if placement is Placement.SHIFTED:
+        truth = scaled_values(truth, _SCALE, rng)
+    model = nomoto().with_values({"K": float(truth[0]), "T": float(truth[1])})
+    craft = replace(NOMOTO, model=model, driven={"r": float(AMPLITUDE * truth[0] / truth[1])})
+    (record,) = independent_nomoto(craft, _GUSTS, 1, rng, is_closed=is_closed)
+    bound = limit_of(craft, _GUSTS, record).standard_error
+    box = off_centre_box(truth, _HALF_WIDTH, rng)
+    known = KnownCraft(
+        Ship("steering model", {"L": NOMOTO.length}), model, [record], NOMOTO.sensors, dict.fromkeys(model.states, 0.0),
+        disturbance_bound=bound,
+    )  # fmt: skip
+    return craft_draw(known, box, 0.5 * (box.lower + box.upper))

@@ -1,25 +1,348 @@
-"""Methods that are entered against the problems: built-in, installed, or of a user's file or module."""
+"""Methods that are entered against the problems: built-in, installed, or of a user's file; those of other packages."""
 
 import hashlib
-import importlib
-import importlib.util
+import importlib.util as importlib
 import inspect
 import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
+from importlib import import_module
+from importlib.metadata import PackageNotFoundError, version
+from math import ceil
 from pathlib import Path
 from types import MappingProxyType, ModuleType
-from typing import Any
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
 from seatrial._plugins import installed, load_plugin
-from seatrial.core.values import InputError, spelling_hint
+from seatrial.core.values import Array, InputError, spelling_hint
 from seatrial.core.values.files import is_file
-from seatrial.problems import built_in
-from seatrial.problems.ask_tell import Asking, searched
-from seatrial.problems.posed import PosedProblem
+from seatrial.data.trial import EstimateMethod
+from seatrial.estimation.search import SearchBudget, search_method
+from seatrial.numerics.optimise import FitnessMemory, levenberg_marquardt
+from seatrial.problems.problem import BudgetSpent, Estimate, PosedProblem
+
+# Optimisers that ask and tell, run within a budget and held to their box.
+
+
+class MethodError(InputError):
+    """States what a method does that it may not, in one sentence."""
+
+
+@runtime_checkable
+class Asking(Protocol):
+    """What makes a class an optimiser."""
+
+    def ask(self) -> Array:
+        """Return points to evaluate next, (n, d), inside the box."""
+        ...
+
+    def tell(self, fitness: Array) -> None:
+        """Take their fitness (n,)."""
+        ...
+
+
+class AskTell(Asking, Protocol):
+    """What a run asks of an optimiser; `done` may be absent, its budget then ends it."""
+
+    @property
+    def best(self) -> tuple[Array, float]:
+        """Return the point it would answer now (d,), and its fitness."""
+        ...
+
+
+def searched(optimiser: AskTell, problem: PosedProblem) -> Estimate:
+    """Return the best point of an optimiser that has run to its end, or to that of the budget.
+
+    Raises:
+        MethodError: points of another shape, not finite, or outside the box.
+    """
+    try:
+        while not getattr(optimiser, "done", False):
+            points = np.asarray(optimiser.ask(), dtype=np.float64)
+            if not _is_inside(points, problem):
+                raise _misplaced(points, problem)
+            optimiser.tell(problem.fitness_inside(points))
+            if problem.is_changing:
+                problem.declare_best(optimiser.best[0])
+    except BudgetSpent:
+        pass  # the meter keeps that
+    return Estimate(np.array(optimiser.best[0], dtype=np.float64))
+
+
+def _is_inside(points: Array, problem: PosedProblem) -> bool:
+    """Whether the points of an ask have their shape and lie in the box; those that are not finite do not."""
+    box = problem.box
+    has_shape = points.ndim == 2 and points.shape[1] == box.size and len(points) > 0
+    # counted, as `all` costs three times what the comparison does
+    return (
+        has_shape
+        and np.count_nonzero(points >= box.lower) == points.size
+        and np.count_nonzero(points <= box.upper) == points.size
+    )
+
+
+def _misplaced(points: Array, problem: PosedProblem) -> MethodError:
+    """What is wrong with the points of an ask."""
+    size, box = problem.box.size, problem.box
+    if points.ndim != 2 or points.shape[1] != size or not len(points):
+        return MethodError(f"ask() returns the shape {points.shape}, not (n, {size})")
+    if not np.all(np.isfinite(points)):
+        return MethodError("ask() returns a point that is not finite")
+    row, column = np.argwhere((points < box.lower) | (points > box.upper))[0]
+    return MethodError(
+        f"ask() leaves the box: {problem.unknowns[column]} = {points[row, column]:g}, allowed are "
+        f"{box.lower[column]:g} to {box.upper[column]:g}; clip it"
+    )
+
+
+# Optimisers of other packages as methods; each package is imported when it is used.
+
+_WIDTH = 0.3
+"""First standard deviation of a search in the unit box: a third, as Hansen 2016 (arXiv:1604.00772, C) advises."""
+_LARGEST_SEED = 2**31
+"""Seeds of other packages lie below this."""
+_LARGEST = 1e300  # what stands for an infinite fitness where a package adds or averages values; chosen
+
+
+def scipy_evolution(problem: PosedProblem, rng: np.random.Generator) -> Estimate:
+    """Run `scipy.optimize.differential_evolution` in the box, without polishing, until the budget ends it."""
+    optimize = _imported("scipy.optimize", "scipy")
+    result = optimize.differential_evolution(
+        lambda columns: problem.fitness(columns.T), _bounds(problem), rng=rng, maxiter=problem.budget, polish=False,
+        updating="deferred", vectorized=True,
+    )  # fmt: skip
+    return Estimate(result.x)
+
+
+def scipy_annealing(problem: PosedProblem, rng: np.random.Generator) -> Estimate:
+    """Run `scipy.optimize.dual_annealing` in the box until the budget ends it."""
+    optimize = _imported("scipy.optimize", "scipy")
+    result = optimize.dual_annealing(_single(problem), _bounds(problem), rng=rng, maxfun=problem.budget)
+    return Estimate(result.x)
+
+
+def scipy_simplex(problem: PosedProblem, rng: np.random.Generator) -> Estimate:  # noqa: ARG001  # draws nothing
+    """Run the simplex of Nelder and Mead in the unit box from the start, then again from where it ends."""
+    optimize = _imported("scipy.optimize", "scipy")
+    box, best = problem.box, (problem.start - problem.box.lower) / problem.box.width
+    judged, least = _single(problem), np.inf
+    while True:
+        result = optimize.minimize(
+            lambda unit: judged(box.scaled(unit)), best, method="Nelder-Mead", bounds=[(0.0, 1.0)] * box.size
+        )
+        if not result.fun < least:
+            return Estimate(box.scaled(best))
+        best, least = result.x, result.fun
+
+
+def cmaes_search(problem: PosedProblem, rng: np.random.Generator) -> Estimate:
+    """Run the CMA-ES of the package cmaes in the unit box."""
+    return searched(_CmaesSearch(problem, rng), problem)
+
+
+def pymoo_evolution(problem: PosedProblem, rng: np.random.Generator) -> Estimate:
+    """Run the differential evolution of pymoo."""
+    return searched(_PymooSearch(problem, rng, _imported("pymoo.algorithms.soo.nonconvex.de", "pymoo").DE()), problem)
+
+
+def pymoo_swarm(problem: PosedProblem, rng: np.random.Generator) -> Estimate:
+    """Run the particle swarm of pymoo."""
+    return searched(_PymooSearch(problem, rng, _imported("pymoo.algorithms.soo.nonconvex.pso", "pymoo").PSO()), problem)
+
+
+class _CmaesSearch:
+    """The package gives one point at a time and takes the fitness of a whole generation."""
+
+    def __init__(self, problem: PosedProblem, rng: np.random.Generator) -> None:
+        unit = np.repeat([[0.0, 1.0]], problem.box.size, axis=0)
+        self._box = problem.box
+        self._search = _imported("cmaes", "cmaes").CMA(
+            np.full(problem.box.size, 0.5), _WIDTH, bounds=unit, seed=int(rng.integers(_LARGEST_SEED))
+        )
+        self.best: tuple[Array, float] = (0.5 * (self._box.lower + self._box.upper), np.inf)
+
+    @property
+    def done(self) -> bool:
+        """Whether nothing is left to improve."""
+        return self._search.should_stop()
+
+    def ask(self) -> Array:
+        """Return a generation, (n, d)."""
+        self._units = [self._search.ask() for _ in range(self._search.population_size)]
+        return self._box.scaled(np.array(self._units))
+
+    def tell(self, fitness: Array) -> None:
+        """Take its fitness (n,)."""
+        self.best = _better(self.best, self._box.scaled(np.array(self._units)), fitness)
+        self._search.tell([(u, float(min(f, _LARGEST))) for u, f in zip(self._units, fitness, strict=True)])
+
+
+class _PymooSearch:
+    """An algorithm of pymoo, population by population."""
+
+    def __init__(self, problem: PosedProblem, rng: np.random.Generator, algorithm: Any) -> None:
+        from pymoo.core.problem import Problem
+        from pymoo.core.termination import NoTermination
+
+        box = problem.box
+        space = Problem(n_var=box.size, n_obj=1, xl=box.lower.copy(), xu=box.upper.copy())
+        algorithm.setup(space, termination=NoTermination(), seed=int(rng.integers(_LARGEST_SEED)), verbose=False)
+        self._box, self._algorithm = box, algorithm
+        self.best: tuple[Array, float] = (0.5 * (box.lower + box.upper), np.inf)
+
+    def ask(self) -> Array:
+        """Return a population, (n, d)."""
+        self._population = self._algorithm.ask()
+        return np.clip(self._population.get("X"), self._box.lower, self._box.upper)
+
+    def tell(self, fitness: Array) -> None:
+        """Take its fitness (n,)."""
+        from pymoo.core.evaluator import Evaluator
+        from pymoo.problems.static import StaticProblem
+
+        self.best = _better(self.best, self._population.get("X"), fitness)
+        judged = StaticProblem(self._algorithm.problem, F=np.minimum(fitness, _LARGEST)[:, None])
+        Evaluator().eval(judged, self._population)
+        self._algorithm.tell(infills=self._population)
+
+
+def _better(best: tuple[Array, float], points: Array, fitness: Array) -> tuple[Array, float]:
+    least = int(np.argmin(fitness))
+    return (points[least].copy(), float(fitness[least])) if fitness[least] < best[1] else best
+
+
+def _single(problem: PosedProblem) -> Any:
+    """The fitness of one point, finite, clipped to the box."""
+    box = problem.box
+
+    def judged(point: Array) -> float:
+        return float(min(problem.fitness(np.clip(point, box.lower, box.upper)[None])[0], _LARGEST))
+
+    return judged
+
+
+def _bounds(problem: PosedProblem) -> list[tuple[float, float]]:
+    return list(zip(problem.box.lower.tolist(), problem.box.upper.tolist(), strict=True))
+
+
+def _imported(module: str, package: str) -> Any:
+    try:
+        return import_module(module)
+    except ImportError:
+        raise InputError(f"the package {package} is not installed; run: pip install {package}") from None
+
+
+# The methods that come with seatrial: its searches and estimators, and those of packages that it depends on.
+
+RANDOM, OUTPUT_ERROR, IDENTIFY = "random", "output-error", "identify"
+"""Names of the trivial baseline and of the package's own estimators."""
+_SEARCHES = (
+    EstimateMethod.PSO, EstimateMethod.WHO, EstimateMethod.IWHO, EstimateMethod.ICPSO, EstimateMethod.DE,
+    EstimateMethod.CMA_ES,
+)  # fmt: skip
+_RANDOM_POINTS = 40  # points of one call of the random search, as the populations have them
+_NO_LOCAL = np.zeros((0, 0))
+_NEGLIGIBLE = 1e-8  # relative step of the cost at which the own estimator ends; ours, far below any bound
+
+
+@dataclass(frozen=True)
+class BuiltIn:
+    """One method: its name, its source, the package whose version it depends on, and what it does."""
+
+    name: str
+    source: str
+    package: str
+    estimate: Callable[[PosedProblem, np.random.Generator], Estimate]
+    suits: Callable[[PosedProblem], bool]
+
+    def digest(self) -> str:
+        """Return package and version, on which its answers depend."""
+        try:
+            return f"{self.package} {version(self.package)}" if self.package else ""
+        except PackageNotFoundError:
+            return f"{self.package} not installed"
+
+
+def _is_any(_: PosedProblem) -> bool:
+    return True
+
+
+def _is_constant(problem: PosedProblem) -> bool:
+    """Methods that remember points without judging them again need a fitness that does not change."""
+    return not problem.is_changing
+
+
+def _has_residuals(problem: PosedProblem) -> bool:
+    return problem.least_squares is not None
+
+
+def _has_trial(problem: PosedProblem) -> bool:
+    return problem.trial is not None
+
+
+def _random_search(problem: PosedProblem, rng: np.random.Generator) -> Estimate:
+    """Uniform random points of the box; the budget ends it."""
+    while True:
+        points = problem.box.random_points(rng, _RANDOM_POINTS)
+        values = problem.fitness(points)
+        if problem.is_changing:
+            problem.declare_best(points[int(np.argmin(values))])
+
+
+def _published_search(name: EstimateMethod, problem: PosedProblem, rng: np.random.Generator) -> Estimate:
+    """A published search, its length fitted to the budget, points judged again where the fitness changes."""
+    method = search_method(name)
+    population = method.population(problem.box.size)
+    memory = FitnessMemory.RE_EVALUATE if problem.is_changing else FitnessMemory.KEEP
+    create = method.within(SearchBudget(population, ceil(problem.budget / population), memory))
+    return searched(create(problem.box, rng), problem)
+
+
+def _output_error(problem: PosedProblem, _: np.random.Generator) -> Estimate:
+    """Levenberg-Marquardt from the start; covariance by the information matrix."""
+    assert problem.least_squares is not None
+    optimum = levenberg_marquardt(problem.least_squares, problem.start, _NO_LOCAL, negligible=_NEGLIGIBLE)
+    covariance = np.asarray(np.linalg.pinv(optimum.normal.hessian), dtype=np.float64)
+    return Estimate(optimum.solution.point, covariance)
+
+
+def _identify(problem: PosedProblem, rng: np.random.Generator) -> Estimate:
+    """What `seatrial identify` answers by default."""
+    from seatrial.estimation.identify import identify
+
+    assert problem.trial is not None
+    fit = identify(problem.trial, int(rng.integers(2**31)))
+    by_name = {c.name: c for c in fit.coefficients}
+    values = np.array([by_name[name].estimate for name in problem.unknowns])
+    errors = [by_name[name].standard_error for name in problem.unknowns]
+    has_errors = all(error is not None and np.isfinite(error) and error > 0.0 for error in errors)
+    return Estimate(values, np.diag(np.square(np.array(errors, dtype=np.float64))) if has_errors else None)
+
+
+ENTRIES: tuple[BuiltIn, ...] = (
+    BuiltIn(RANDOM, "uniform random points; the trivial baseline", "", _random_search, _is_any),
+    *(
+        BuiltIn(
+            name.value, search_method(name).source, "", partial(_published_search, name),
+            _is_any if name in (EstimateMethod.PSO, EstimateMethod.WHO, EstimateMethod.IWHO) else _is_constant,
+        )
+        for name in _SEARCHES
+    ),
+    BuiltIn("scipy-de", "SciPy, differential_evolution", "scipy", scipy_evolution, _is_constant),
+    BuiltIn("scipy-annealing", "SciPy, dual_annealing", "scipy", scipy_annealing, _is_constant),
+    BuiltIn("scipy-nelder-mead", "SciPy, minimize, from the start", "scipy", scipy_simplex, _is_constant),
+    BuiltIn("cmaes", "cmaes, CMA", "cmaes", cmaes_search, _is_constant),
+    BuiltIn("pymoo-de", "pymoo, DE", "pymoo", pymoo_evolution, _is_constant),
+    BuiltIn("pymoo-pso", "pymoo, PSO", "pymoo", pymoo_swarm, _is_constant),
+    BuiltIn(OUTPUT_ERROR, "output error by Levenberg-Marquardt from the start", "", _output_error, _has_residuals),
+    BuiltIn(IDENTIFY, "seatrial identify, defaults", "", _identify, _has_trial),
+)  # fmt: skip
+
+
+# Methods that are entered against the problems: built-in, installed, or of a user's file or module.
 
 OPTIMISER_GROUP = "seatrial.optimisers"
 Estimator = Callable[[PosedProblem, np.random.Generator], Any]
@@ -48,7 +371,7 @@ class EnteredMethod:
 
 def built_in_methods() -> Mapping[str, EnteredMethod]:
     """Return the methods that come with seatrial, by name; nothing of other packages is imported."""
-    entries = built_in.ENTRIES
+    entries = ENTRIES
     methods = (EnteredMethod(e.name, e.source, e.digest(), True, e.estimate, e.suits) for e in entries)
     return MappingProxyType({method.name: method for method in methods})
 

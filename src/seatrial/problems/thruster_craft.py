@@ -22,9 +22,8 @@ from seatrial.physics.models.thruster_layout import (
 from seatrial.physics.models.thrusters import thrusters
 from seatrial.physics.simulate.replay import replay
 from seatrial.physics.simulate.states import actuator_motion
-from seatrial.problems.boxes import off_centre_box, scaled_values
 from seatrial.problems.problem import BenchmarkProblem, Placement, ProblemDraw
-from seatrial.problems.trial_problem import KnownCraft, craft_draw
+from seatrial.problems.trial_problem import KnownCraft, craft_draw, off_centre_box, scaled_values
 
 # m/s, m/s, rad/s, rad, m, m: standard deviations of a small craft's receiver and compass; chosen
 NOISE = {"u": 0.03, "v": 0.03, "r": 0.01, "psi": 0.01, "x0": 0.1, "y0": 0.1}

@@ -4,9 +4,8 @@ import numpy as np
 
 from seatrial.core.values import Ship
 from seatrial.data.example_series import SENSOR_NOISE, simulate_run, true_model, with_sensor_noise
-from seatrial.problems.boxes import off_centre_box, scaled_values
 from seatrial.problems.problem import BenchmarkProblem, Placement, ProblemDraw
-from seatrial.problems.trial_problem import KnownCraft, craft_draw
+from seatrial.problems.trial_problem import KnownCraft, craft_draw, off_centre_box, scaled_values
 
 _SOURCE = (
     "Song et al. 2025, Chinese Journal of Ship Research 20(1), 65-75, table 2 (CFD) and figure 4; sensors and records "

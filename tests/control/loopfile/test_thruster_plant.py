@@ -7,7 +7,7 @@ import pytest
 from tests.control.loop_files import model_file, write_loop_file
 
 from seatrial.control.loopfile.load import tuning_task
-from seatrial.control.ship.trim import steering_input
+from seatrial.control.ship import steering_input
 from seatrial.core.equations import Model
 from seatrial.physics.models import model_named
 from seatrial.physics.models.thrust_orders import AHEAD, YAW

@@ -8,7 +8,7 @@ import pytest
 from benchmarks.proposals import Look, lines, voyage
 from tests.control.proposals.fin_stretches import QUARTERING, SHIP, TASK, fin_schedule, fin_stretch
 
-from seatrial.control.proposals.look import likeliest_headings, look
+from seatrial.control.proposals import likeliest_headings, look
 from seatrial.core.results.online import Proposal
 
 SCHEDULE = fin_schedule()

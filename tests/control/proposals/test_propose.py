@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from tests.control.proposals.fin_stretches import QUARTERING, TASK, fin_schedule
 
-from seatrial.control.proposals.propose import ChosenGains, Refusal, estimated, propose_gains
+from seatrial.control.proposals import ChosenGains, Refusal, estimated, propose_gains
 from seatrial.core.values import Array
 from seatrial.estimation.sea import ShipInSea
 

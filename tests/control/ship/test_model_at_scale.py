@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tests.control.loop_files import heave_and_pitch
 
-from seatrial.control.ship.model_at_scale import model_at_scale
+from seatrial.control.ship import model_at_scale
 from seatrial.core.values import InputError, Ship
 from seatrial.data.folder.model_file import ModelFile
 from seatrial.physics.models.published import kvlcc2, kvlcc2_full

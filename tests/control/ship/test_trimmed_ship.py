@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from seatrial.control.ship.trimmed_ship import (
+from seatrial.control.ship import (
     linearise,
     one_sided_plants,
     plant_and_disturbance,

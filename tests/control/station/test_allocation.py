@@ -7,15 +7,16 @@ import pytest
 from scipy.optimize import minimize
 from tests.control.station.station_cases import azimuths, craft, cross_drive
 
-from seatrial.control.station.allocation import (
+from seatrial.control.station.craft import (
+    capability,
+    current_force,
     generalised_inverse,
     inverse_rows,
     largest_force,
+    refuse_under_actuated,
     share_given,
     weights,
 )
-from seatrial.control.station.capability import capability, current_force
-from seatrial.control.station.craft import refuse_under_actuated
 from seatrial.core.values import InputError
 from seatrial.physics.models import model_named
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from tests.control.station.station_cases import craft, cross_drive
 
-from seatrial.control.station.allocation import generalised_inverse
+from seatrial.control.station.craft import generalised_inverse
 from seatrial.control.station.station_loop import StationLoop, place_poles, station_point
 from seatrial.core.equations import Model
 from seatrial.core.values import Array

@@ -8,25 +8,31 @@ import numpy as np
 import pytest
 from tests.control.station.station_cases import azimuths, craft, cross_drive, station_task
 
-from seatrial.control.station.allocation import generalised_inverse
-from seatrial.control.station.choose_bandwidth import (
+from seatrial.control.station.craft import generalised_inverse
+from seatrial.control.station.station_loop import station_point
+from seatrial.control.station.trial import (
+    SlowPush,
+    StationSetting,
+    StationSimulator,
+    WavePush,
+    draw_craft,
+    joined,
+    sampled_controller,
+    summed,
+    thrust_slopes,
+)
+from seatrial.control.station.tune_station import (
     StationDesign,
     StationLimits,
     choose_bandwidth,
+    gain_units,
     hull_error,
     largest_bandwidth,
     margin_frequencies,
+    station_craft,
+    station_disturbances,
+    tune_station,
 )
-from seatrial.control.station.disturbances import SlowPush, WavePush, joined, summed
-from seatrial.control.station.station_loop import station_point
-from seatrial.control.station.trial import (
-    StationSetting,
-    StationSimulator,
-    draw_craft,
-    sampled_controller,
-    thrust_slopes,
-)
-from seatrial.control.station.tune_station import gain_units, station_craft, station_disturbances, tune_station
 from seatrial.control.task import Seaway, StationDemand, TuningTask
 from seatrial.core.results.station import StationKeeping
 from seatrial.core.values import InputError

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 from tests.control.track.track_cases import track_task_of
 
-from seatrial.control.ship.trimmed_ship import linearise
-from seatrial.control.track.linear_ship import DISTURBANCE, linear_ship
+from seatrial.control.ship import linearise
 from seatrial.control.track.paths import CURRENT, EAST, HeadingLoop, Reach
-from seatrial.control.track.track_task import heading_loop_of
+from seatrial.control.track.tune_track import DISTURBANCE, heading_loop_of, linear_ship
 from seatrial.core.values import Array
 
 OMEGA = np.geomspace(1e-3, 10.0, 60)

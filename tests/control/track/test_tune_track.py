@@ -11,10 +11,15 @@ from tests.control.track.track_cases import track_task_of
 
 from seatrial.control.gain_evaluation import gain_evaluator
 from seatrial.control.task import TrackDemand, TuningTask
-from seatrial.control.track.corner import CornerTrial
-from seatrial.control.track.simulate_track import TrackTrial
-from seatrial.control.track.track_task import heading_loop_of, line_of_sight, track_disturbances, track_task
-from seatrial.control.track.tune_track import tune_track
+from seatrial.control.track.paths import CornerTrial
+from seatrial.control.track.tune_track import (
+    TrackTrial,
+    heading_loop_of,
+    line_of_sight,
+    track_disturbances,
+    track_task,
+    tune_track,
+)
 from seatrial.core.results.tuning import TrackKeeping
 from seatrial.core.values import InputError
 from seatrial.physics.loops import discrete as python_control

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from seatrial.control.demand import reference_model, reference_rate
-from seatrial.control.ship.trimmed_ship import plant_and_disturbance, trim_ship
+from seatrial.control.controller import reference_model, reference_rate
+from seatrial.control.ship import plant_and_disturbance, trim_ship
 from seatrial.control.task import Demand, SlowDisturbance, TrimmedShip, TuningTask
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import Array, Record

@@ -7,11 +7,8 @@ import numpy as np
 import pytest
 from tests.control.verification.autopilot_logs import DEMAND, GAINS, K, T, autopilot_task, course_log, ship
 
-from seatrial.control.verification.course_changes import verify_changes
-from seatrial.control.verification.followed_gains import followed_gains
-from seatrial.control.verification.logged_changes import logged_changes
-from seatrial.control.verification.refitted_model import refitted_coefficients
-from seatrial.control.verification.verify import verify
+from seatrial.control.verification.course_changes import followed_gains, logged_changes, verify_changes
+from seatrial.control.verification.verify import refitted_coefficients, verify
 from seatrial.core.values import InputError, Record
 from seatrial.physics.loops import Sampling
 from seatrial.physics.loops.structures import notch, with_filters

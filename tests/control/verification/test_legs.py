@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from seatrial.control.verification.legs import legs_on_and_off, natural_period
+from seatrial.control.verification.stabiliser import legs_on_and_off, natural_period
 from seatrial.core.values import Array, Channel, InputError, Record, RecordKind, frozen
 from seatrial.physics.loops import Block
 from seatrial.physics.loops.structures import fin_loop

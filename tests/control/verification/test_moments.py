@@ -5,14 +5,15 @@ import math
 import numpy as np
 import pytest
 
-from seatrial.control.verification.moments import (
+from seatrial.control.verification.stabiliser import (
+    jackknife_deviation,
     logged_moments,
     mean_moments,
     plain_reduction,
     predicted_moments,
+    products,
     reduction_by_waves,
 )
-from seatrial.control.verification.spread import jackknife_deviation, products
 from seatrial.estimation.sea import encountered_sea, sea_spectrum, stretch_spectra
 from seatrial.physics.loops import HullFactor, LoopSignal, Performance, sea_disturbance, variance
 from seatrial.physics.loops.structures import fin_loop

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from seatrial.control.verification.refitted_model import moved_places
+from seatrial.control.verification.verify import moved_places
 
 COVARIANCE = np.array([[1.0, 0.8], [0.8, 1.0]])
 

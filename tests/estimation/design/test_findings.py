@@ -9,7 +9,7 @@ import pytest
 from seatrial.core.results import Confirmation, ManoeuvrePrecision
 from seatrial.core.values import InputError, Record, Ship
 from seatrial.data.trial.design_request import DesignRequest, InputRange
-from seatrial.estimation.design.findings import findings, refuse_violated_limits
+from seatrial.estimation.design.design import findings, refuse_violated_limits
 from seatrial.estimation.design.task import DesignTask
 from seatrial.physics.models.waterjet import WATERJET_COEFFICIENTS as COEFFICIENTS
 from seatrial.physics.models.waterjet import waterjet

@@ -7,7 +7,7 @@ import pytest
 
 from seatrial.core.values import InputError, Record, Ship
 from seatrial.data.trial import Role, Trial, TrialRun
-from seatrial.estimation.design.from_records import recorded_request
+from seatrial.estimation.design.task import recorded_request
 from seatrial.physics.models import model_named
 
 TIME = 0.5 * np.arange(600)

@@ -11,13 +11,14 @@ from seatrial.core.values import Array
 from seatrial.core.values.parameters import Prior
 from seatrial.estimation.design.manoeuvre_information import (
     ManoeuvreEvaluator,
+    input_series,
     leaves_limits,
     limit_excess,
+    order_counts,
+    planned_record,
     simulate_plan,
 )
-from seatrial.estimation.design.orders import input_series, order_counts, planned_record
-from seatrial.estimation.design.ships import PriorShips, draw_ships, relative_spread
-from seatrial.estimation.design.task import DesignTask
+from seatrial.estimation.design.task import DesignTask, PriorShips, draw_ships, relative_spread
 from seatrial.estimation.information.covariance import from_information
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import cut_segments

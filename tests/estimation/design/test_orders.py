@@ -10,8 +10,7 @@ from hypothesis import strategies as st
 from tests.estimation.design.conftest import BOTH, NOZZLE, with_inputs
 
 from seatrial.core.values import RecordKind
-from seatrial.estimation.design.manoeuvre_information import simulate_plan
-from seatrial.estimation.design.orders import (
+from seatrial.estimation.design.manoeuvre_information import (
     actuator_response,
     input_series,
     order_counts,
@@ -19,6 +18,7 @@ from seatrial.estimation.design.orders import (
     orders_at,
     planned_record,
     sample_count,
+    simulate_plan,
 )
 from seatrial.estimation.design.task import DesignTask
 from seatrial.physics.simulate.replay import inputs_of

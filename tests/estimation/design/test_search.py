@@ -10,13 +10,21 @@ from tests.estimation.design.conftest import BOTH, NOZZLE_RANGE, with_inputs, wi
 from seatrial.core.results import Design, TrialLimits
 from seatrial.data.trial.design_request import DesignCriterion
 from seatrial.estimation.design.design import design
-from seatrial.estimation.design.manoeuvre_information import ManoeuvreEvaluator, ManoeuvreInformation, leaves_limits
-from seatrial.estimation.design.orders import input_series, orders_at
-from seatrial.estimation.design.search import DesignObjective, criterion_errors, search_orders
-from seatrial.estimation.design.search_step import search_step
-from seatrial.estimation.design.ships import draw_ships
-from seatrial.estimation.design.standard_manoeuvres import standard_manoeuvres
-from seatrial.estimation.design.task import DesignTask
+from seatrial.estimation.design.manoeuvre_information import (
+    ManoeuvreEvaluator,
+    ManoeuvreInformation,
+    input_series,
+    leaves_limits,
+    orders_at,
+)
+from seatrial.estimation.design.search import (
+    DesignObjective,
+    criterion_errors,
+    search_orders,
+    search_step,
+    standard_manoeuvres,
+)
+from seatrial.estimation.design.task import DesignTask, draw_ships
 from seatrial.physics.simulate.replay import inputs_of
 
 GENERATIONS = 12

@@ -6,10 +6,8 @@ from tests.estimation.design.conftest import BOTH, with_inputs
 from tests.estimation.design.test_thruster_craft import task as thruster_task
 
 from seatrial.estimation.design.manoeuvre_information import ManoeuvreEvaluator
-from seatrial.estimation.design.search_step import search_step
-from seatrial.estimation.design.ships import draw_ships
-from seatrial.estimation.design.standard_manoeuvres import binary_sequence_inputs
-from seatrial.estimation.design.task import DesignTask
+from seatrial.estimation.design.search import binary_sequence_inputs, search_step
+from seatrial.estimation.design.task import DesignTask, draw_ships
 
 
 def worst_errors(task: DesignTask, dt: float) -> np.ndarray:

@@ -9,8 +9,7 @@ from tests.estimation.design.conftest import BOTH, NOZZLE_RANGE, with_inputs, wi
 from seatrial.core.results import TrialLimits
 from seatrial.core.values import InputError
 from seatrial.estimation.design.design import design
-from seatrial.estimation.design.manoeuvre_information import simulate_plan
-from seatrial.estimation.design.orders import planned_record, sample_count
+from seatrial.estimation.design.manoeuvre_information import planned_record, sample_count, simulate_plan
 from seatrial.estimation.design.task import DesignTask
 
 

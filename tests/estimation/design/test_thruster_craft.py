@@ -9,9 +9,8 @@ from seatrial.core.values import InputError, Ship
 from seatrial.data.trial.design_request import DesignRequest, InputRange
 from seatrial.estimation.design.design import design
 from seatrial.estimation.design.manoeuvre_information import ManoeuvreEvaluator
-from seatrial.estimation.design.ships import draw_ships
-from seatrial.estimation.design.standard_manoeuvres import standard_manoeuvres
-from seatrial.estimation.design.task import DesignTask
+from seatrial.estimation.design.search import standard_manoeuvres
+from seatrial.estimation.design.task import DesignTask, draw_ships
 from seatrial.physics.models.thrusters import thrusters
 
 NOISE = {"u": 0.03, "v": 0.03, "r": 0.01, "psi": 0.01, "x0": 0.1, "y0": 0.1}

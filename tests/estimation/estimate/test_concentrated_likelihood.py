@@ -10,8 +10,8 @@ from seatrial.core.values import Array, Record
 from seatrial.data.trial import EstimateSettings, FitCriterion
 from seatrial.estimation.estimate import Runs
 from seatrial.estimation.estimate.assemble import output_error_problem
-from seatrial.estimation.estimate.concentrated_likelihood import ConcentratedLikelihood
 from seatrial.estimation.estimate.point_estimate import fit_output_error
+from seatrial.estimation.estimate.start import ConcentratedLikelihood
 from seatrial.numerics.optimise import levenberg_marquardt
 from seatrial.physics.models import model_named
 from seatrial.physics.simulate.replay import replay

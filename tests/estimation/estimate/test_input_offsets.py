@@ -7,10 +7,9 @@ import pytest
 
 from seatrial.core.values import InputError, Record
 from seatrial.data.trial import EstimateSettings, load_trial
-from seatrial.estimation.estimate.assemble import output_error_problem
-from seatrial.estimation.estimate.input_offsets import with_input_offsets
+from seatrial.estimation.estimate.assemble import Runs, output_error_problem
+from seatrial.estimation.estimate.plausibility import with_input_offsets
 from seatrial.estimation.estimate.point_estimate import PointEstimate
-from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.identify import estimate_model
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import cut_segments

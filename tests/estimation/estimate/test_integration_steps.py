@@ -6,7 +6,7 @@ from benchmarks.sample_rates import CRAFTS, NOMOTO, estimated, nomoto_runs, stan
 
 from seatrial.data.trial import EstimateMethod, EstimateSettings
 from seatrial.estimation.estimate import Runs, estimate_model
-from seatrial.estimation.estimate.integration_steps import filter_with_steps, sufficient_steps_of_filter
+from seatrial.estimation.estimate.point_estimate import filter_with_steps, sufficient_steps_of_filter
 from seatrial.physics.models import model_named
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Record
+from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.fit import estimate_model
 from seatrial.estimation.estimate.left_out_parts import (
     Parts,
@@ -17,7 +18,6 @@ from seatrial.estimation.estimate.left_out_parts import (
 )
 from seatrial.estimation.estimate.point_estimate import PointEstimate, fit_output_error
 from seatrial.estimation.estimate.process_noise import fit_prediction_error
-from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import cut_segments

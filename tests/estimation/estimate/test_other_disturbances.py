@@ -7,8 +7,8 @@ import pytest
 from numpy.typing import NDArray
 from standard_craft import NOMOTO
 
+from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
-from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions
 from seatrial.problems import disturbed_craft
 

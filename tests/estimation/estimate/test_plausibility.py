@@ -8,15 +8,10 @@ from standard_craft import NOMOTO
 
 from seatrial.core.values import InputError, Prior, Record
 from seatrial.data.trial import EstimateMethod, EstimateSettings
-from seatrial.estimation.estimate.assemble import output_error_problem
+from seatrial.estimation.estimate.assemble import Runs, output_error_problem
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
-from seatrial.estimation.estimate.plausibility import (
-    implausible_coefficients,
-    refuse_implausible,
-    with_plausible_start,
-)
+from seatrial.estimation.estimate.plausibility import implausible_coefficients, refuse_implausible, with_plausible_start
 from seatrial.estimation.estimate.point_estimate import PointEstimate
-from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions
 from seatrial.numerics.optimise import Optimum, Solution, Status
 from seatrial.physics.models.abkowitz import abkowitz

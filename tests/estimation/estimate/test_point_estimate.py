@@ -7,7 +7,6 @@ import pytest
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Prior, Record
-from seatrial.estimation.estimate.concentrated_likelihood import ConcentratedLikelihood
 from seatrial.estimation.estimate.point_estimate import (
     COLOUR_ROUNDS,
     PointEstimate,
@@ -16,6 +15,7 @@ from seatrial.estimation.estimate.point_estimate import (
     residual_spread,
     rounding_level,
 )
+from seatrial.estimation.estimate.start import ConcentratedLikelihood
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import cut_segments
 from seatrial.physics.manoeuvres.programme import programme

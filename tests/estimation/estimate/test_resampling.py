@@ -9,7 +9,7 @@ from tests.estimation.estimate.test_intervals import made
 from seatrial.core.values import InputError
 from seatrial.estimation.estimate.intervals import estimate_uncertainty
 from seatrial.estimation.estimate.point_estimate import PointEstimate
-from seatrial.estimation.estimate.resampling import (
+from seatrial.estimation.estimate.process_noise_interval import (
     bootstrap_fits,
     fits_without,
     full_jackknife,

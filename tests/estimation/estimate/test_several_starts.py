@@ -9,8 +9,7 @@ from seatrial.core.values import Record
 from seatrial.data.trial import EstimateSettings, FitCriterion
 from seatrial.estimation.estimate import EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.estimate.assemble import output_error_problem
-from seatrial.estimation.estimate.several_starts import number_of_starts, search_from_several
-from seatrial.estimation.estimate.start import find_start
+from seatrial.estimation.estimate.start import find_start, number_of_starts, search_from_several
 from seatrial.physics.models import model_named
 from seatrial.physics.simulate.replay import replay
 

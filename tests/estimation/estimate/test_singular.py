@@ -8,7 +8,7 @@ import pytest
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Record
 from seatrial.data.example_series.series import SENSOR_NOISE, with_sensor_noise
-from seatrial.estimation.estimate.singular import refuse_singular, weakest_direction
+from seatrial.estimation.estimate.plausibility import refuse_singular, weakest_direction
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import cut_segments
 from seatrial.physics.manoeuvres.programme import programme

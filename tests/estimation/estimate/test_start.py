@@ -7,7 +7,7 @@ import pytest
 from tests.estimation.identify.conftest import TRUTH, square, steered
 
 from seatrial.core.values import InputError, Record
-from seatrial.estimation.estimate.runs import Runs
+from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.start import weak_form_start
 from seatrial.estimation.identify import estimate_model
 from seatrial.physics.manoeuvres.programme import programme

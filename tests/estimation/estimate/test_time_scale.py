@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import InputError, Record
-from seatrial.estimation.estimate.time_scale import characteristic_time, yaw_time
+from seatrial.estimation.estimate.settings import characteristic_time, yaw_time
 from seatrial.physics.models.nomoto import nomoto
 
 TIME = np.arange(0.0, 600.0, 0.5)

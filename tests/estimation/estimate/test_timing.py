@@ -7,10 +7,14 @@ import pytest
 
 from seatrial.core.values import Record
 from seatrial.data.trial import EstimateMethod, EstimateSettings
-from seatrial.estimation.estimate.assemble import output_error_problem
+from seatrial.estimation.estimate.assemble import (
+    Runs,
+    output_error_problem,
+    set_inputs,
+    timing_nuisances,
+    with_held_inputs,
+)
 from seatrial.estimation.estimate.fit import estimate_model
-from seatrial.estimation.estimate.runs import Runs
-from seatrial.estimation.estimate.timing import set_inputs, timing_nuisances, with_held_inputs
 from seatrial.physics.models import heave_pitch, mmg, model_named, nomoto, waterjet
 
 K, T = 0.12, 9.0

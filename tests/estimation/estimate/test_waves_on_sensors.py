@@ -6,8 +6,8 @@ from numpy.typing import NDArray
 from scipy.linalg import expm
 
 from seatrial.core.values import Record
+from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
-from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions
 from seatrial.physics.models.nomoto import nomoto
 

@@ -7,9 +7,9 @@ import numpy as np
 from seatrial.core.values import Record, Ship
 from seatrial.data.trial import Trial, TrialRun, load_records
 from seatrial.estimation.estimate import EstimatorOptions
+from seatrial.estimation.estimate.assemble import training_runs
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
-from seatrial.estimation.estimate.runs import training_runs
-from seatrial.estimation.identify.abandoned_criterion import abandoned_criterion_finding
+from seatrial.estimation.identify.warnings import abandoned_criterion_finding
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.simulate import manoeuvre

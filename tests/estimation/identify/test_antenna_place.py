@@ -7,7 +7,7 @@ import pytest
 from tests.reporting.fabricated import zigzag
 
 from seatrial.core.results import Prediction
-from seatrial.estimation.identify.antenna_place import antenna_findings
+from seatrial.estimation.identify.instruments import antenna_findings
 
 LENGTH = 9.8
 RUN = zigzag("run", 20.0)

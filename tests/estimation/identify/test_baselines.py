@@ -26,8 +26,8 @@ from seatrial.estimation.identify.baselines import (
 )
 from seatrial.estimation.regress.estimators import LinearRegression, RegressionEstimate
 from seatrial.estimation.regress.operators import Weak
+from seatrial.estimation.regress.pipeline import standard_estimators
 from seatrial.estimation.regress.solvers import OrdinaryLeastSquares
-from seatrial.estimation.regress.standard_estimators import standard_estimators
 from seatrial.physics.simulate.replay import replay
 
 

@@ -8,8 +8,7 @@ from seatrial.core.values import Record
 from seatrial.data.trial import EstimateMethod, EstimateSettings
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.identify import EstimatorOptions, Runs, estimate_model
-from seatrial.estimation.identify.box_scale import box_scale
-from seatrial.estimation.identify.identifiability import consequences
+from seatrial.estimation.identify.identifiability import box_scale, consequences
 from seatrial.physics.models.heave_pitch import heave_pitch
 from seatrial.physics.models.published import HEAVE_PITCH_STIFFNESSES, theoretical_coefficients
 from seatrial.physics.simulate import replay

@@ -11,7 +11,7 @@ from standard_craft import NOMOTO
 import seatrial as st
 from seatrial.core.results.coefficients import FeedbackEvidence
 from seatrial.data.trial import ControllerGains, EstimateMethod, Feedback
-from seatrial.estimation.identify.closed_loop_findings import closed_loop_findings
+from seatrial.estimation.identify.warnings import closed_loop_findings
 from seatrial.problems.disturbed_craft import GAIN, RATE_GAIN, SAMPLE_S, Disturbance, course_at, independent_nomoto
 
 LOOP = FeedbackEvidence(

@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 
 from seatrial.core.results import Stability
 from seatrial.core.text.numbers import significant
-from seatrial.estimation.identify.course_stability import course_finding, course_stability
+from seatrial.estimation.identify.identifiability import course_finding, course_stability
 from seatrial.physics.models import model_named
 from seatrial.physics.simulate.thrust import settled_yaw_rate, straight_by_thrusters
 

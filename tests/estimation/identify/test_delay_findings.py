@@ -8,10 +8,10 @@ from tests.estimation.identify.conftest import NOISE, TRUTH, square, steered
 
 from seatrial.core.values import Record
 from seatrial.data.trial import EstimateMethod, EstimateSettings
+from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
-from seatrial.estimation.estimate.runs import Runs
-from seatrial.estimation.identify.delay_findings import delay_findings, lagged_values
 from seatrial.estimation.identify.fit_result import bounds_hit
+from seatrial.estimation.identify.instruments import delay_findings, lagged_values
 from seatrial.physics.models.nomoto import nomoto
 
 

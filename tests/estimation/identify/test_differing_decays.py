@@ -7,11 +7,10 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from seatrial.core.values import Record
+from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
-from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions
-from seatrial.estimation.identify.differing_decays import differing_decays
-from seatrial.estimation.identify.estimated_values_effect import with_estimated_values
+from seatrial.estimation.identify.assumed_values import differing_decays, with_estimated_values
 from seatrial.physics.models.roll import roll
 
 FREE = ("b_1", "b_2", "c_1", "phi_0")

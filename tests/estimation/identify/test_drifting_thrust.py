@@ -8,8 +8,7 @@ import pytest
 from seatrial.core.values import Array, Record
 from seatrial.data.trial import EstimateMethod, EstimateSettings
 from seatrial.estimation.estimate import Estimation, Runs, estimate_model
-from seatrial.estimation.identify.drifting_thrust import drifting_thrust_finding
-from seatrial.estimation.identify.held_couplings import held_couplings
+from seatrial.estimation.identify.terms import drifting_thrust_finding, held_couplings
 from seatrial.physics.models.thruster_layout import CATAMARAN, Damping, ThrustCurve, ThrusterLayout
 from seatrial.physics.models.thrusters import thrusters
 

@@ -15,7 +15,7 @@ from seatrial.data.trial.plausibility import ESTIMATED_VALUES
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import fit_output_error
 from seatrial.estimation.identify import EstimatorOptions, Runs, estimate_model, identify
-from seatrial.estimation.identify.estimated_values_effect import (
+from seatrial.estimation.identify.assumed_values import (
     EstimatedValueEffect,
     _wrong_together,
     estimated_value_effects,

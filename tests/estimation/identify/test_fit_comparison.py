@@ -6,7 +6,7 @@ from tests.reporting.fabricated import fabricated_fit
 
 from seatrial.core.results import Fit
 from seatrial.core.values import Ship
-from seatrial.estimation.identify.fit_comparison import changes, coefficient_differences, compared_fit, findings
+from seatrial.estimation.identify.fit_result import changes, coefficient_differences, compared_fit, findings
 
 
 def other_day(fit: Fit) -> Fit:

@@ -10,7 +10,7 @@ from seatrial.core.values import Record, Ship
 from seatrial.data.trial import EstimateMethod, EstimateSettings, Role, Trial, TrialRun
 from seatrial.estimation.estimate import Estimation, Runs, estimate_model
 from seatrial.estimation.identify import identify
-from seatrial.estimation.identify.held_couplings import held_couplings
+from seatrial.estimation.identify.terms import held_couplings
 from seatrial.physics.models.thruster_layout import CATAMARAN, Damping, ThrustCurve, ThrusterLayout
 from seatrial.physics.models.thrusters import thrusters
 from seatrial.physics.simulate.replay import replay

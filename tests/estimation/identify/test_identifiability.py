@@ -14,8 +14,7 @@ from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.identify import EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.identify.identifiability import consequences, identifiability, sensitivities
 from seatrial.estimation.identify.profile import CHI_SQUARED_LIMIT, profiles
-from seatrial.estimation.information.covariance import inverse
-from seatrial.estimation.information.directions import directions
+from seatrial.estimation.information.covariance import directions, inverse
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import cut_segments
 from seatrial.estimation.problem.static_forces import StaticForces

@@ -10,8 +10,8 @@ import seatrial
 from seatrial.core.values import Record
 from seatrial.data.folder.result_folder import model_of_fit
 from seatrial.data.trial import FitCriterion, load_trial
+from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.fit import with_segment_seconds
-from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.identify import identify
 
 ZEROS = {"a": 0.02, "b": -0.03, "c": 0.0, "v_1": 0.05}

@@ -7,7 +7,7 @@ import pytest
 
 from seatrial.core.results import Prediction
 from seatrial.core.values import Record
-from seatrial.estimation.identify.misfit_disturbance import EXCEEDS_MOTION, misfit_disturbance
+from seatrial.estimation.identify.warnings import EXCEEDS_MOTION, misfit_disturbance
 
 TIME = np.arange(0.0, 100.0, 0.2)
 RUN = Record.from_arrays("run", TIME, {"u": 4.0 + 0.3 * np.sin(TIME), "r": 0.2 * np.sin(0.5 * TIME)})

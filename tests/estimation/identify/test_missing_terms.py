@@ -8,11 +8,11 @@ from scipy.integrate import solve_ivp
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Record
+from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
-from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions
-from seatrial.estimation.identify.held_couplings import held_couplings
 from seatrial.estimation.identify.model_selection import apply_variant, variants
+from seatrial.estimation.identify.terms import held_couplings
 from seatrial.physics.models import model_named
 from seatrial.physics.models.roll import roll
 from seatrial.physics.models.waterjet import TABLE_2, waterjet

@@ -9,8 +9,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Prior, Record, Severity
 from seatrial.data.trial import EstimateMethod, EstimateSettings, ModelFamily
 from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, estimate_model
-from seatrial.estimation.estimate.resampling import fits_without, one_step_jackknife
-from seatrial.estimation.identify.left_out_scores import groups_of, holdout_scores
+from seatrial.estimation.estimate.process_noise_interval import fits_without, one_step_jackknife
 from seatrial.estimation.identify.model_selection import (
     FittedVariant,
     ModelVariant,
@@ -25,6 +24,7 @@ from seatrial.estimation.identify.model_selection import (
     variants,
     with_model_spread,
 )
+from seatrial.estimation.identify.score_test import groups_of, holdout_scores
 from seatrial.estimation.predict.predict_runs import TiedModel
 from seatrial.physics.models.abkowitz import abkowitz
 from seatrial.physics.models.nomoto import nomoto

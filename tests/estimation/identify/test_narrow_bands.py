@@ -6,7 +6,7 @@ import pytest
 from seatrial.core.results import Prediction, WindowScore
 from seatrial.core.results.prediction import ChannelScore
 from seatrial.core.values import Record
-from seatrial.estimation.identify.narrow_bands import narrow_band_findings
+from seatrial.estimation.identify.warnings import narrow_band_findings
 
 
 def prediction(role: str, inside: float | None) -> Prediction:

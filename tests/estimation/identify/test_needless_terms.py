@@ -13,7 +13,7 @@ from seatrial.core.values import Record, Ship
 from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRun
 from seatrial.estimation.estimate import Estimation
 from seatrial.estimation.identify import assembled_fit, identify
-from seatrial.estimation.identify.needless_terms import needless_term_findings
+from seatrial.estimation.identify.terms import needless_term_findings
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.simulate import manoeuvre

@@ -8,7 +8,7 @@ from tests.estimation.identify.conftest import WriteTrial
 from seatrial.core.results import SearchAttempt
 from seatrial.data.trial import checked_records, load_trial
 from seatrial.estimation.estimate import Estimation, Runs, estimate_model
-from seatrial.estimation.identify.other_optima import other_optima
+from seatrial.estimation.identify.warnings import other_optima
 
 
 @pytest.fixture

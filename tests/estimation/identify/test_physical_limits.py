@@ -3,8 +3,7 @@
 import numpy as np
 
 from seatrial.core.values import Prior, Record, Severity, Ship
-from seatrial.estimation.identify.physical_limits import objections, unphysical_finding
-from seatrial.estimation.identify.roll_characteristics import roll_characteristics
+from seatrial.estimation.identify.roll_characteristics import objections, roll_characteristics, unphysical_finding
 from seatrial.estimation.information.covariance import Interval
 from seatrial.physics.models import model_named
 from seatrial.physics.models.published import kvlcc2

@@ -16,8 +16,8 @@ from seatrial.data.folder.result_folder import load_fit, model_of_fit, save_resu
 from seatrial.data.trial import EstimateSettings, load_trial
 from seatrial.data.trial.priors import EarlierResult
 from seatrial.estimation.estimate import IntervalMethod
+from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
-from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions
 from seatrial.estimation.identify import identify
 from seatrial.estimation.identify.posterior import sample_posterior, sampling_findings

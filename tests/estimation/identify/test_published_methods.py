@@ -23,8 +23,9 @@ from seatrial.data.trial import (
     Trial,
     load_trial,
 )
-from seatrial.estimation.identify import baselines, identify, search_problem
-from seatrial.estimation.identify.strategies import search as search_strategy
+from seatrial.estimation.identify import baselines, identify
+from seatrial.estimation.identify import search as search_problem
+from seatrial.estimation.identify import search as search_strategy
 from seatrial.estimation.regress import estimator_named
 
 FEW = SearchSettings(population=12, iterations=6, restarts=2)

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from seatrial.core.values import Prior
-from seatrial.estimation.identify.refuted_priors import refuted_prior_findings
+from seatrial.estimation.identify.warnings import refuted_prior_findings
 from seatrial.physics.models.nomoto import nomoto
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from tests.reporting.fabricated import fabricated_fit
 
-from seatrial.estimation.identify.response_findings import response_findings
+from seatrial.estimation.identify.warnings import response_findings
 from seatrial.estimation.information.frequency_response import frequency_responses
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from seatrial.core.results.ship_motions import IntervalEstimate
 from seatrial.core.values import Ship
-from seatrial.estimation.identify.roll_inertia import gyradius_findings, roll_inertia
+from seatrial.estimation.identify.roll_characteristics import gyradius_findings, roll_inertia
 from seatrial.physics.hydro.free_roll import metacentric_height
 
 C_1 = IntervalEstimate(1.0, 0.9, 1.1)

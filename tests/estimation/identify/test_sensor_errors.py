@@ -13,9 +13,8 @@ from seatrial.core.values import Record
 from seatrial.data.trial import EstimateMethod, EstimateSettings
 from seatrial.estimation.estimate import Estimation, Runs, estimate_model
 from seatrial.estimation.identify import identify
-from seatrial.estimation.identify.assumed_information import output_error_estimate
-from seatrial.estimation.identify.score_test import own_criterion
-from seatrial.estimation.identify.sensor_errors import instrument_errors, with_undetected_sensor_errors
+from seatrial.estimation.identify.instruments import instrument_errors, with_undetected_sensor_errors
+from seatrial.estimation.identify.score_test import output_error_estimate, own_criterion
 
 BOAT = CRAFTS["Nomoto boat"]
 

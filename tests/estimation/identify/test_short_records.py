@@ -9,11 +9,11 @@ from standard_craft import NOMOTO
 
 from seatrial.core.results import Profile
 from seatrial.core.results.coefficients import FeedbackEvidence
+from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.fit import estimate_model
-from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions
-from seatrial.estimation.identify import short_records
-from seatrial.estimation.identify.short_records import default_profiles, short_record_findings
+from seatrial.estimation.identify import profile as short_records
+from seatrial.estimation.identify.profile import default_profiles, short_record_findings
 from seatrial.problems.disturbed_craft import Disturbance, independent_nomoto
 
 PROFILE = Profile("K", (0.1, 0.2), (0.0, 4.0), None, 0.19)

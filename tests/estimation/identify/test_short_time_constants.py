@@ -4,7 +4,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from seatrial.core.equations import Model
-from seatrial.estimation.identify.short_time_constants import short_time_constant_findings
+from seatrial.estimation.identify.warnings import short_time_constant_findings
 from seatrial.physics.models import model_named
 
 

@@ -8,8 +8,8 @@ import pytest
 from seatrial.core.equations import Model
 from seatrial.core.values import Record
 from seatrial.data.trial import Role, TrialRecord
+from seatrial.estimation.identify.identification import Situation, situation_of
 from seatrial.estimation.identify.identify import STRATEGIES
-from seatrial.estimation.identify.situation import Situation, situation_of
 from seatrial.physics.hydro.excitation import BoxHull
 from seatrial.physics.models import model_named
 from seatrial.physics.sea.spectrum import Spectrum, WaveEncounter, ittc

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.core.values import Channel, Prior, Record
-from seatrial.estimation.identify.unexcited_thrust import single_order_findings, with_unexcited_thrust_held
+from seatrial.estimation.identify.warnings import single_order_findings, with_unexcited_thrust_held
 from seatrial.physics.models import model_named
 from seatrial.physics.models.thruster_layout import CATAMARAN, ThrusterLayout
 from seatrial.physics.models.thrusters import thrusters

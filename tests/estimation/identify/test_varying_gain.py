@@ -6,10 +6,10 @@ import pytest
 from seatrial.core.values import Finding, Record, Ship
 from seatrial.data.trial import Trial, TrialRun, load_records
 from seatrial.estimation.estimate import EstimatorOptions
+from seatrial.estimation.estimate.assemble import training_runs
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
-from seatrial.estimation.estimate.resampling import one_step_by_run
-from seatrial.estimation.estimate.runs import training_runs
-from seatrial.estimation.identify.varying_gain import varying_gain_finding
+from seatrial.estimation.estimate.process_noise_interval import one_step_by_run
+from seatrial.estimation.identify.terms import varying_gain_finding
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.simulate import manoeuvre

@@ -5,7 +5,7 @@ import pytest
 from scipy import stats
 from scipy.signal import lfilter
 
-from seatrial.estimation.information.autocorrelation import autocorrelation, variance_inflation, whiteness_p
+from seatrial.estimation.information.whiteness import autocorrelation, variance_inflation, whiteness_p
 
 
 def ar1(rng: np.random.Generator, phi: float, size: int) -> np.ndarray:

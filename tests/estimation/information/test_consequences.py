@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from seatrial.estimation.information.consequences import consequence_text, estimate_shifts
+from seatrial.estimation.information.covariance import consequence_text, estimate_shifts
 
 
 @given(seed=st.integers(0, 1000), step=st.floats(-3.0, 3.0))

@@ -5,7 +5,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy import signal
 
-from seatrial.estimation.information.cross_spectra import CrossSpectra, cross_spectra
+from seatrial.estimation.information.frequency_response import CrossSpectra, cross_spectra
 
 Array = NDArray[np.float64]
 DT, LENGTH, POLE = 0.1, 256, 0.7

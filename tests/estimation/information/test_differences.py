@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import chi2, norm
 
-from seatrial.estimation.information.differences import QuantityInterval, differences, joint_test
+from seatrial.estimation.information.covariance import QuantityInterval, differences, joint_test
 
 
 def quantity(value: float | None, below: float = 0.0, above: float = 0.0) -> QuantityInterval:

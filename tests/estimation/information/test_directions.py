@@ -6,8 +6,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from seatrial.estimation.information.collinearity import collinearity, condition_number
-from seatrial.estimation.information.directions import directions, effective_parameters, relative_information
+from seatrial.estimation.information.covariance import (
+    collinearity,
+    condition_number,
+    directions,
+    effective_parameters,
+    relative_information,
+)
 
 NAMES = ("a", "b", "c")
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Channel, Record, RecordKind, frozen
-from seatrial.estimation.information.frequency_range import frequency_range, frequency_range_finding
+from seatrial.estimation.information.frequency_response import frequency_range, frequency_range_finding
 
 
 def recorded(values: np.ndarray, dt: float = 0.1) -> Record:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from seatrial.estimation.information.paired_errors import is_no_worse, standard_error
+from seatrial.estimation.information.whiteness import is_no_worse, standard_error
 
 
 def test_standard_error_is_that_of_the_mean(rng: np.random.Generator) -> None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Array
-from seatrial.estimation.information.spectral_peaks import spectral_peaks
+from seatrial.estimation.information.frequency_response import spectral_peaks
 
 DT, ROWS, OMEGA = 0.5, 4096, 0.9
 

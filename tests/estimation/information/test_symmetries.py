@@ -24,9 +24,12 @@ from tests.estimation.information.symmetry_models import (
 )
 
 from seatrial.core.equations import Model
-from seatrial.estimation.information.generator import Generator
-from seatrial.estimation.information.generators import generators
-from seatrial.estimation.information.symmetries import refuse_unidentifiable, structural_symmetries
+from seatrial.estimation.information.symmetries import (
+    Generator,
+    generators,
+    refuse_unidentifiable,
+    structural_symmetries,
+)
 from seatrial.physics.models.mmg import mmg
 from seatrial.physics.models.published import esso_osaka, kvlcc2
 from seatrial.physics.models.waterjet import waterjet

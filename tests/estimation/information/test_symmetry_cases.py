@@ -17,8 +17,12 @@ from tests.estimation.information.symmetry_models import (
 
 from seatrial.core.equations import Model, Sheet
 from seatrial.core.values import InputError, Prior
-from seatrial.estimation.information.generators import generators, search_symmetries
-from seatrial.estimation.information.symmetries import refuse_unidentifiable, structural_symmetries
+from seatrial.estimation.information.symmetries import (
+    generators,
+    refuse_unidentifiable,
+    search_symmetries,
+    structural_symmetries,
+)
 from seatrial.physics.models.abkowitz import abkowitz
 from seatrial.physics.models.mmg import mmg
 from seatrial.physics.models.nomoto import nomoto

@@ -4,8 +4,12 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Record
-from seatrial.estimation.information.extrapolation import extrapolation, extrapolation_index, motion_envelope
-from seatrial.estimation.information.thruster_conditions import thruster_conditions
+from seatrial.estimation.information.extrapolation import (
+    extrapolation,
+    extrapolation_index,
+    motion_envelope,
+    thruster_conditions,
+)
 from seatrial.physics.models.thruster_layout import AngleInput, CommandInput, Thruster, ThrusterLayout
 
 LAYOUT = ThrusterLayout((

@@ -4,12 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Record
-from seatrial.estimation.predict.auto_regression import (
-    Features,
-    fit_auto_regression,
-    linear_features,
-    quadratic_features,
-)
+from seatrial.estimation.predict.window_scores import Features, fit_auto_regression, linear_features, quadratic_features
 from seatrial.estimation.predict.windows import Windows
 from seatrial.physics.models import model_named
 from seatrial.physics.models.nomoto import nomoto

@@ -13,7 +13,7 @@ from seatrial.core.values import Record, Ship
 from seatrial.data.folder.result_folder import load_fit, save_result
 from seatrial.data.trial import Role, Trial, TrialRun
 from seatrial.estimation.identify import identify
-from seatrial.estimation.predict.divergence import divergence_of
+from seatrial.estimation.predict.open_loop import divergence_of
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.simulate.replay import first_row_outside, inputs_of, trajectory
 from seatrial.reporting.verdict import verdict

@@ -9,13 +9,8 @@ from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Record
 from seatrial.data.trial import EstimateSettings
 from seatrial.estimation.estimate import EstimatorOptions, Runs
-from seatrial.estimation.predict.holdout_windows import (
-    HoldoutProtocol,
-    WindowError,
-    split_windows,
-    window_errors,
-)
 from seatrial.estimation.predict.session_offsets import session_offsets
+from seatrial.estimation.predict.windows import HoldoutProtocol, WindowError, split_windows, window_errors
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.simulate.steer import manoeuvre

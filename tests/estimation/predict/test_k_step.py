@@ -9,7 +9,7 @@ from tests.estimation.estimate.test_large_records import steered
 from seatrial.core.values import InputError, Record, Ship
 from seatrial.data.trial import Role, Trial, TrialRun
 from seatrial.estimation.identify import identify
-from seatrial.estimation.predict.k_step import Horizon, horizon_list
+from seatrial.estimation.predict.session_offsets import Horizon, horizon_list
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.prediction_error import PredictionError
 from seatrial.estimation.problem.segments import cut_segments

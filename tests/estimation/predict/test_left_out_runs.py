@@ -11,8 +11,7 @@ from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRun
 from seatrial.estimation.identify import identify
 from seatrial.estimation.information.discrepancy import NO_DISCREPANCY, HoldoutError
 from seatrial.estimation.predict.draws import PredictionUncertainty
-from seatrial.estimation.predict.left_out_runs import HoldoutRun, HoldoutRuns, RunErrors
-from seatrial.estimation.predict.prediction_intervals import HoldoutModel
+from seatrial.estimation.predict.prediction_intervals import HoldoutModel, HoldoutRun, HoldoutRuns, RunErrors
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.physics.models.nomoto import nomoto
 

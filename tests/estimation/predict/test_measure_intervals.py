@@ -9,7 +9,7 @@ import pytest
 from seatrial.core.equations import Model
 from seatrial.core.results import IntervalBasis
 from seatrial.core.values import InputError, Record
-from seatrial.estimation.predict.measure_intervals import measure_intervals
+from seatrial.estimation.predict.draws import measure_intervals
 from seatrial.physics.manoeuvres import measures
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto

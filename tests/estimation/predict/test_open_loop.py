@@ -6,8 +6,8 @@ import pytest
 from seatrial.core.equations import Sheet
 from seatrial.core.values import InputError, Record
 from seatrial.data.trial import EstimateSettings
-from seatrial.estimation.estimate.runs import Runs
-from seatrial.estimation.estimate.time_scale import ship_length_seconds
+from seatrial.estimation.estimate.assemble import Runs
+from seatrial.estimation.estimate.settings import ship_length_seconds
 from seatrial.estimation.identify import estimate_model
 from seatrial.estimation.predict.open_loop import predict_run, simulate_open_loop
 from seatrial.physics.simulate import replay

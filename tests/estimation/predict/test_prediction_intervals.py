@@ -7,9 +7,9 @@ from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Record
 from seatrial.data.trial import EstimateSettings, Role, TrialRecord
 from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, estimate_model
-from seatrial.estimation.predict.holdout_windows import HoldoutProtocol
 from seatrial.estimation.predict.predict_runs import RunPredictions, predict_runs
 from seatrial.estimation.predict.prediction_intervals import holdout_draws
+from seatrial.estimation.predict.windows import HoldoutProtocol
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.simulate import replay

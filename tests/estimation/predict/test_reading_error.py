@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Record
-from seatrial.estimation.predict.reading_error import reading_errors
+from seatrial.estimation.predict.prediction_intervals import reading_errors
 from seatrial.physics.manoeuvres import measures
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.manoeuvres.recognition import ObservedManoeuvre

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Prior, Record
-from seatrial.estimation.predict.start_states import start_states
-from seatrial.estimation.predict.windows import Windows
+from seatrial.estimation.predict.windows import Windows, start_states
 from seatrial.estimation.problem.output_error import Nuisance, OutputError
 from seatrial.estimation.problem.segments import cut_segments
 from seatrial.physics.models import model_named

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Parameters, Prior
-from seatrial.estimation.predict.window_baselines import prior_means
+from seatrial.estimation.predict.window_scores import prior_means
 from seatrial.physics.models.thrusters import thrusters
 from seatrial.physics.sensors import Compass, Sensors, with_sensors
 

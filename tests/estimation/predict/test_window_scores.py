@@ -10,16 +10,16 @@ from seatrial.core.values import InputError, Record, Ship
 from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRun
 from seatrial.data.trial.settings import WindowLength, window_lengths
 from seatrial.estimation.identify import identify
-from seatrial.estimation.predict.window_baselines import (
+from seatrial.estimation.predict.window_scores import (
     ARX,
     CONSTANT_COURSE,
     NARX,
     STAYS,
     at_rest,
     constant_course,
+    pooled_rms,
     stays,
 )
-from seatrial.estimation.predict.window_scores import pooled_rms
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.roll import roll
 from seatrial.physics.simulate.replay import trajectory

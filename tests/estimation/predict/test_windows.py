@@ -8,8 +8,7 @@ from seatrial.data.trial import EstimateSettings
 from seatrial.estimation.estimate import Runs
 from seatrial.estimation.estimate.assemble import output_error_problem
 from seatrial.estimation.predict.open_loop import open_loop_runs
-from seatrial.estimation.predict.start_states import start_states
-from seatrial.estimation.predict.windows import MIN_STEPS, Windows, simulate_windows
+from seatrial.estimation.predict.windows import MIN_STEPS, Windows, simulate_windows, start_states
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.physics.models import model_named
 from seatrial.physics.simulate.replay import replay

@@ -7,9 +7,9 @@ import pytest
 from tests.estimation.identify.conftest import NOISE, TRUTH, square, steered
 
 from seatrial.data.trial import EstimateSettings
+from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.fit import estimate_model
-from seatrial.estimation.estimate.runs import Runs
-from seatrial.estimation.problem.eliminated_states import EliminatedStates
+from seatrial.estimation.problem.output_error import EliminatedStates
 from seatrial.numerics.optimise import levenberg_marquardt
 from seatrial.physics.models.nomoto import nomoto
 

@@ -4,8 +4,12 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Record
-from seatrial.estimation.problem.initial_states import initial_state_weights, measured_initial_states, start_velocity
-from seatrial.estimation.problem.segments import cut_segments
+from seatrial.estimation.problem.segments import (
+    cut_segments,
+    initial_state_weights,
+    measured_initial_states,
+    start_velocity,
+)
 from seatrial.physics.models import model_named
 
 DT = 0.1

@@ -6,7 +6,7 @@ import numpy as np
 
 from seatrial.core.values import Record
 from seatrial.data.example_series.series import simulate_run, true_model
-from seatrial.estimation.regress.system import RegressionSystem
+from seatrial.estimation.regress.solvers import RegressionSystem
 
 COEFFICIENTS = np.array([2.0, -0.5, 1500.0])
 

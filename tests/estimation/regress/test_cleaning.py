@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from seatrial.core.values import Array, Channel, InputError, Record, RecordKind
-from seatrial.estimation.regress.cleaning import (
+from seatrial.estimation.regress.samples import (
     first_occurrences,
     standard_scores,
     without_duplicates,

@@ -5,7 +5,7 @@ import pytest
 from tests.estimation.regress.linear import zigzags
 
 from seatrial.core.values import InputError, Record
-from seatrial.estimation.regress.features import RegressionMotion, features
+from seatrial.estimation.regress.operators import RegressionMotion, features
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.waterjet import DRAUGHT, LENGTH, MASS, RHO, TABLE_2, waterjet
 

@@ -4,8 +4,12 @@ import pytest
 
 from seatrial.core.values import InputError
 from seatrial.data.trial import EstimateMethod
-from seatrial.estimation.regress.named import available_estimators, estimator_named, estimator_of_method
-from seatrial.estimation.regress.standard_estimators import standard_estimators
+from seatrial.estimation.regress.pipeline import (
+    available_estimators,
+    estimator_named,
+    estimator_of_method,
+    standard_estimators,
+)
 
 
 def test_names_are_unique_and_lead_to_their_estimator() -> None:

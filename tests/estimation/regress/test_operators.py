@@ -4,16 +4,17 @@ import numpy as np
 import pytest
 from tests.estimation.regress.linear import zigzags
 
-from seatrial.estimation.regress.features import RegressionMotion, features
 from seatrial.estimation.regress.operators import (
     Central,
     Centred,
     DerivativeOperator,
     Differenced,
     Euler,
+    RegressionMotion,
     RegressionRows,
     Smoothed,
     Weak,
+    features,
 )
 from seatrial.physics.models.waterjet import waterjet
 

@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 
 from seatrial.core.values import Array, Channel, InputError, Record, RecordKind
 from seatrial.data.example_series.series import simulate_run, true_model
-from seatrial.estimation.regress.cleaning import without_small
-from seatrial.estimation.regress.split import (
+from seatrial.estimation.regress.samples import (
     blocks,
     folds,
     manoeuvre_seconds,
@@ -20,6 +19,7 @@ from seatrial.estimation.regress.split import (
     reversals,
     shuffled_split,
     training_rows,
+    without_small,
 )
 
 shares = st.floats(0.01, 0.99)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from seatrial.core.equations import Model, Sheet
 from seatrial.core.values import Prior
-from seatrial.estimation.regress.weak import WeakForm, window_bounds, window_function
+from seatrial.estimation.regress.operators import WeakForm, window_bounds, window_function
 from seatrial.numerics.optimise import Status, levenberg_marquardt
 
 Array = NDArray[np.float64]

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from seatrial.estimation.sea import ObservedLeg, StretchSpectra, WaveLeg, altered_loop, encountered_sea
-from seatrial.estimation.sea.plant_factors import altered_responses
-from seatrial.estimation.sea.wave_leg import STEP
+from seatrial.estimation.sea.wave_leg import STEP, altered_responses
 from seatrial.physics.loops import HullFactor
 from seatrial.physics.loops.structures import fin_loop
 

@@ -12,20 +12,29 @@ import seatrial as st
 from seatrial.core.values import Array, InputError
 from seatrial.data.folder.model_file import ModelFile
 from seatrial.exporting import ExportSource
-from seatrial.exporting.ardupilot.choice import LARGEST_MS, tune_ardupilot
-from seatrial.exporting.ardupilot.controller import ArduPilotGains, simulate_controlled
-from seatrial.exporting.ardupilot.craft import SteeredCraft, steered_craft, turning_rates
-from seatrial.exporting.ardupilot.gains import CascadeGains, PidGains, cascade_from_pid, filter_share
-from seatrial.exporting.ardupilot.parameters import unsuitable_boat
-from seatrial.exporting.ardupilot.sampled_loop import (
+from seatrial.exporting.ardupilot.choice import (
+    LARGEST_MS,
     SampledPlant,
     closed_loop_matrix,
+    heading_step,
     is_stable,
     open_loop,
     sampled_heading,
     sampled_margins,
+    tune_ardupilot,
 )
-from seatrial.exporting.ardupilot.steps import heading_step
+from seatrial.exporting.ardupilot.controller import (
+    ArduPilotGains,
+    CascadeGains,
+    PidGains,
+    SteeredCraft,
+    cascade_from_pid,
+    filter_share,
+    simulate_controlled,
+    steered_craft,
+    turning_rates,
+)
+from seatrial.exporting.ardupilot.parameters import unsuitable_boat
 from seatrial.physics.loops import Block
 from seatrial.physics.models.thruster_layout import CATAMARAN, CommandInput, Thruster
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import InputError, Record
-from seatrial.estimation.estimate.runs import Runs
-from seatrial.estimation.estimate.time_scale import dominant_period, is_pure_roll
+from seatrial.estimation.estimate.assemble import Runs
+from seatrial.estimation.estimate.settings import dominant_period, is_pure_roll
 from seatrial.estimation.identify import estimate_model
 from seatrial.physics.models.heave_pitch import heave_pitch
 from seatrial.physics.models.nomoto import nomoto

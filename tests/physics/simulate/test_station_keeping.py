@@ -4,9 +4,7 @@ import numpy as np
 import pytest
 from tests.control.station.station_cases import craft, cross_drive
 
-from seatrial.control.station.allocation import generalised_inverse
-from seatrial.control.station.capability import current_force
-from seatrial.control.station.craft import StationCraft
+from seatrial.control.station.craft import StationCraft, current_force, generalised_inverse
 from seatrial.control.station.station_loop import StationLoop, place_poles, station_point
 from seatrial.control.station.trial import sampled_controller
 from seatrial.physics.loops.loop import Sampling

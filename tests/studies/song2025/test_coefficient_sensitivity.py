@@ -7,7 +7,7 @@ import pytest
 
 from seatrial.core.equations import Model, Sheet
 from seatrial.core.values import InputError, Record
-from seatrial.estimation.information.collinearity import collinearity
+from seatrial.estimation.information.covariance import collinearity
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.heave_pitch import heave_pitch
 from seatrial.physics.models.nomoto import nomoto

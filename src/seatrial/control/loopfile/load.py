@@ -8,13 +8,17 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from seatrial.control.loopfile.disturbances import loop_disturbances, refuse_calm, schedule_grid
-from seatrial.control.loopfile.extended_structures import extended_structure
-from seatrial.control.loopfile.loop import loop_from_tables
-from seatrial.control.loopfile.objectives import objective, objective_places
-from seatrial.control.loopfile.plant import LoopPlant, hull_factor, plant_at_speed, plant_from_table
-from seatrial.control.loopfile.plausibility import refuse_reversed_plant, refuse_reversed_servo, refuse_wild_motion
-from seatrial.control.loopfile.quantities import angle_value, positive_value, rate_value, si_value, symbol_unit
+from seatrial.control.loopfile.disturbances import loop_disturbances, point_motions, refuse_calm, schedule_grid
+from seatrial.control.loopfile.loop import extended_structure, loop_from_tables, objective, objective_places
+from seatrial.control.loopfile.plant import (
+    LoopPlant,
+    hull_factor,
+    plant_at_speed,
+    plant_from_table,
+    refuse_reversed_plant,
+    refuse_reversed_servo,
+    refuse_wild_motion,
+)
 from seatrial.control.loopfile.schema import (
     ActuatorTable,
     DemandTable,
@@ -24,8 +28,12 @@ from seatrial.control.loopfile.schema import (
     SimulationTable,
     StationTable,
     TrackTable,
+    angle_value,
+    positive_value,
+    rate_value,
+    si_value,
+    symbol_unit,
 )
-from seatrial.control.loopfile.wave_paths import point_motions
 from seatrial.control.station.tune_station import refuse_impossible_station
 from seatrial.control.task import (
     Demand,
@@ -38,7 +46,7 @@ from seatrial.control.task import (
     TuningTask,
     refuse_unstable,
 )
-from seatrial.control.track.track_task import refuse_impossible_track
+from seatrial.control.track.tune_track import refuse_impossible_track
 from seatrial.core.equations import Model
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import InputError, spelling_hint

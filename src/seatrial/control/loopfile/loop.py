@@ -1,16 +1,146 @@
-"""The tables `[controller]` and `[actuator]` of a loop file into a loop on its plant; sentences begin with the key."""
+"""The tables `[controller]`, `[actuator]` and of objectives of a loop file into a loop on its plant."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from seatrial.control.loopfile.blocks import block, blocks
-from seatrial.control.loopfile.plant import LoopPlant
-from seatrial.control.loopfile.quantities import positive_value
-from seatrial.control.loopfile.schema import BlockTable, ControllerTable, GainTable
-from seatrial.core.values import InputError, Parameter, Parameters, spelling_hint
-from seatrial.physics.loops import Block, Term, TransferLoop
+import numpy as np
+
+from seatrial.control.loopfile.plant import LoopPlant, block, blocks
+from seatrial.control.loopfile.schema import (
+    BlockTable,
+    ControllerTable,
+    ExtendedStructureTable,
+    GainTable,
+    ObjectiveTable,
+    PassTable,
+    positive_value,
+    si_value,
+    symbol_unit,
+)
+from seatrial.core.results.tuning import ControllerConstraints
+from seatrial.core.values import NOTATION, InputError, Parameter, Parameters, spelling_hint
+from seatrial.data.trial.amounts import Amount
+from seatrial.physics.loops import Block, LoopSignal, Objective, Term, TransferLoop
 from seatrial.physics.loops.autopilot import heading_loop, pitch_loop, speed_loop
-from seatrial.physics.loops.structures import SERVO, Preamplifier, fin_loop
+from seatrial.physics.loops.objective import (
+    motion_interruptions,
+    motion_sickness,
+    motion_sickness_at,
+    motion_sickness_dose,
+    squared_deviation,
+    variance,
+    vertical_acceleration,
+)
+from seatrial.physics.loops.structures import (
+    ADDED_GAINS,
+    FREQUENCIES_AND_DAMPINGS,
+    PUBLISHED_GAINS,
+    ROLL,
+    SERVO,
+    Preamplifier,
+    band_pass,
+    fin_loop,
+    five_gain_loop,
+    low_pass,
+    notch,
+    with_filters,
+    with_terms,
+)
+
+# Controllers with more structure on the same plant: a loop with band-pass and low-pass terms or a notch added.
+
+_STRUCTURE_KINDS = ("band-pass", "low-pass")
+_NOTCH_DEFAULTS = 0.5, 0.1  # damping ratio and depth of a notch, as in `NotchTable`; chosen
+_ROUNDING = 1e-9  # imaginary part over size of a pole, below which it does not swing
+
+
+def extended_structure(
+    loop: TransferLoop, table: ExtendedStructureTable, where: str, wave_frequency: float | None = None
+) -> TransferLoop:
+    """Return the loop with the filters of the table; band-pass and low-pass have gains of their own, KB and KL.
+
+    Where the file does not set them they stand at the multiples of the plant's own frequency that were found for the
+    published fins; a notch at the frequency [rad/s] at which waves move a ship that does not swing by itself. Without
+    bounds the new gains may lie within the largest bound of the loop's own, to either side.
+    """
+    made = _with_terms(loop, table, where)
+    if "notch" in table.add:
+        made = with_filters(made, _notch(loop, table, where, wave_frequency))
+    return replace(made, name=table.name or f"{loop.name} with {' and '.join(table.add)}")
+
+
+def _with_terms(loop: TransferLoop, table: ExtendedStructureTable, where: str) -> TransferLoop:
+    shapes = zip(
+        ADDED_GAINS, _STRUCTURE_KINDS, (table.band_pass, table.low_pass), FREQUENCIES_AND_DAMPINGS, strict=True
+    )
+    made = {
+        gain: _part(loop, kind, shape, default, where) for gain, kind, shape, default in shapes if kind in table.add
+    }
+    if not made:
+        return loop
+    lower, upper = _bounds(loop, table, where)
+    is_published = loop.gains.names == tuple(PUBLISHED_GAINS) and len(made) == len(ADDED_GAINS)
+    try:
+        if is_published:
+            full = five_gain_loop(loop, *made.values())
+        else:
+            gains = tuple(
+                Parameter(name, 0.0, "1", -1.0, 1.0, free=True, source="loop file", meaning=f"gain of the {block.name}")
+                for name, block in made.items()
+            )
+            full = with_terms(loop, *(Term(name, block) for name, block in made.items()), gains=gains)
+    except InputError as error:
+        raise InputError(f"{where}.add: {error}") from None
+    gains = full.gains
+    for name in made:
+        gains = gains.bounded(name, lower, upper)
+    return replace(
+        full, gains=_clipped_to_bounds(gains.with_values({p.name: p.value for p in loop.gains if not p.free}))
+    )
+
+
+def _part(loop: TransferLoop, kind: str, shape: PassTable | None, default: tuple[float, float], where: str) -> Block:
+    make = {"band-pass": band_pass, "low-pass": low_pass}[kind]
+    if shape is None:
+        own = abs(ROLL.poles[0])
+        return make(default[0] / own * _natural_frequency(loop, f"{where}.{kind.replace('-', '_')}"), default[1])
+    return make(positive_value(shape.omega, "rad/s", f"{where}.{kind.replace('-', '_')}.omega"), shape.damping)
+
+
+def _notch(loop: TransferLoop, table: ExtendedStructureTable, where: str, wave_frequency: float | None) -> Block:
+    if table.notch is None and wave_frequency is not None:
+        return notch(wave_frequency, *_NOTCH_DEFAULTS)
+    if table.notch is None:
+        return notch(_natural_frequency(loop, f"{where}.notch"), *_NOTCH_DEFAULTS)
+    omega = positive_value(table.notch.omega, "rad/s", f"{where}.notch.omega")
+    return notch(omega, table.notch.damping, table.notch.depth)
+
+
+def _clipped_to_bounds(gains: Parameters) -> Parameters:
+    """Return values moved into their bounds."""
+    return gains.with_values({p.name: min(max(p.value, p.lower), p.upper) for p in gains.free})
+
+
+def _bounds(loop: TransferLoop, table: ExtendedStructureTable, where: str) -> tuple[float, float]:
+    reach = max(max(abs(p.lower), abs(p.upper)) for p in loop.gains.free)
+    lower = -reach if table.lower is None else table.lower
+    upper = reach if table.upper is None else table.upper
+    if not lower < upper:
+        raise InputError(f"{where}: lower = {lower:g} is not below upper = {upper:g}; give the smaller first")
+    return lower, upper
+
+
+def _natural_frequency(loop: TransferLoop, where: str) -> float:
+    """Return the frequency of the least damped pair of poles of the disturbance's block [rad/s]."""
+    poles = loop.disturbance.poles
+    swinging = poles[poles.imag > _ROUNDING * np.abs(poles)]
+    if not swinging.size:
+        raise InputError(f"{where}: nothing swings by itself that could set its frequency; give omega and damping")
+    return float(np.abs(swinging[np.argmin(-swinging.real / np.abs(swinging))]))
+
+
+# The tables `[controller]` and `[actuator]` of a loop file into a loop on its plant; sentences begin with the key.
 
 PID = ("KP", "KI", "KD")
 MEANINGS = {"KP": "proportional gain", "KI": "gain of the integral", "KD": "gain of the filtered derivative"}
@@ -86,7 +216,7 @@ def _pid_loop(table: ControllerTable, plant: LoopPlant, dead_time: float) -> Tra
     except InputError as error:
         if "KD" in parts and given is None:
             raise InputError(f"controller: {error}; give 'derivative_filter' and bounds of the gains") from None
-    return _parallel_loop(plant, tuple(Term(part, _part(part, given)) for part in parts), table.gains, ())
+    return _parallel_loop(plant, tuple(Term(part, _term_block(part, given)) for part in parts), table.gains, ())
 
 
 def _shortest(table: ControllerTable) -> float:
@@ -94,7 +224,7 @@ def _shortest(table: ControllerTable) -> float:
     return 0.0 if table.sample_s is None else 0.5 * positive_value(table.sample_s, "s", "controller.sample_s")
 
 
-def _part(name: str, tau: float | None) -> Block:
+def _term_block(name: str, tau: float | None) -> Block:
     match name:
         case "KP":
             return Block("proportional")
@@ -146,3 +276,89 @@ def _gain(known_gain: Parameter, table: GainTable) -> Parameter:
     value = start if table.value is None else table.value
     source = known_gain.source if is_known and value == known_gain.value else "loop file"
     return replace(known_gain, value=value, lower=lower, upper=upper, free=True, source=source)
+
+
+# What is to be made small, by the names a loop file uses, as objectives.
+
+# name -> where the variance is taken, power of the frequency
+_VARIANCES = {
+    "output": (LoopSignal.OUTPUT, 0),
+    "output_rate": (LoopSignal.OUTPUT, 1),
+    "output_acceleration": (LoopSignal.OUTPUT, 2),
+    "actuator": (LoopSignal.ACTUATOR, 0),
+    "actuator_rate": (LoopSignal.ACTUATOR, 1),
+}
+_DERIVATIVES = ("", "rate of the ", "acceleration of the ")
+
+
+def objective(table: ObjectiveTable, plant: LoopPlant, constraints: ControllerConstraints, where: str) -> Objective:
+    """Return the objective of that name."""
+    if table.x is not None:
+        return _objective_at_point(table, _in_metres(table.x, f"{where}.x"), where)
+    what = _generic_name(table.name, plant, where)
+    if what == "motion_interruptions":
+        return motion_interruptions(_in_metres(table.height, f"{where}.height"), table.friction)
+    if what == "motion_sickness":
+        return motion_sickness(_in_metres(table.lever, f"{where}.lever"))
+    if what == "actuator_off_target":
+        name = f"{_meaning(plant.actuator)} off its target"
+        return squared_deviation(
+            name, LoopSignal.ACTUATOR, _target_rms(table, plant, constraints, where) ** 2, one_sided=table.one_sided
+        )
+    seen, power = _VARIANCES[what]
+    symbol = plant.output if seen is LoopSignal.OUTPUT else plant.actuator
+    return variance(f"variance of the {_DERIVATIVES[power]}{_meaning(symbol)}", _unit(symbol, power), seen, power)
+
+
+def objective_places(tables: Sequence[ObjectiveTable]) -> tuple[float, ...]:
+    """Return the places [m forward of the origin] that objectives name, each once."""
+    named = enumerate(tables, start=1)
+    return tuple(dict.fromkeys(_in_metres(t.x, f"minimise[{i}].x") for i, t in named if t.x is not None))
+
+
+def _objective_at_point(table: ObjectiveTable, x: float, where: str) -> Objective:
+    match table.name:
+        case "vertical_acceleration":
+            return vertical_acceleration(x)
+        case "motion_sickness":
+            return motion_sickness_at(x)
+        case _:
+            return motion_sickness_dose(x, positive_value(table.duration, "s", f"{where}.duration"))
+
+
+def _generic_name(name: str, plant: LoopPlant, where: str) -> str:
+    """Return the name for any loop: `roll` is the output of a fin stabiliser, `fin` its actuator."""
+    on_roll = name.startswith("roll") or name in ("motion_interruptions", "motion_sickness")
+    if (on_roll and plant.output != "phi") or (name.startswith("fin") and plant.actuator != "alpha_f"):
+        raise InputError(
+            f"{where}: '{name}' is a word of roll stabilisers, the loop moves '{plant.output}' by '{plant.actuator}'; "
+            "write output or actuator"
+        )
+    return name.replace("roll", "output", 1) if name.startswith("roll") else name.replace("fin", "actuator", 1)
+
+
+def _target_rms(table: ObjectiveTable, plant: LoopPlant, constraints: ControllerConstraints, where: str) -> float:
+    """Return root mean square aimed at: as given, or that at which the allowed share of amplitudes exceeds the limit.
+
+    exp(-limit^2 / (2 variance)) = share (Rayleigh; Yu et al. 2014, eq. (2), 150.31 deg^2 for 22 deg and 20 %).
+    """
+    if table.target is not None:
+        return positive_value(table.target, symbol_unit(plant.actuator), f"{where}.target")
+    if not math.isfinite(constraints.limit):
+        raise InputError(f"{where}: there is neither a target nor an [actuator] limit to take it from; add one")
+    return constraints.limit / math.sqrt(2.0 * math.log(1.0 / constraints.saturation))
+
+
+def _in_metres(quantity: Amount | None, where: str) -> float:
+    assert quantity is not None
+    return si_value(quantity, "m", where)
+
+
+def _meaning(symbol: str) -> str:
+    return NOTATION[symbol].meaning if symbol in NOTATION else symbol
+
+
+def _unit(symbol: str, power: int) -> str:
+    unit = symbol_unit(symbol)
+    base = f"{unit}^2" if unit.isalpha() else f"({unit})^2"
+    return base + ("" if power == 0 else f"/s^{2 * power}")

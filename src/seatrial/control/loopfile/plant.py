@@ -1,29 +1,93 @@
 """The table `[plant]` of a loop file: transfer functions as given, or those of an identified model."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from seatrial.control.loopfile.blocks import block, block_text
-from seatrial.control.loopfile.quantities import angle_value, positive_value, si_value, symbol_unit
-from seatrial.control.loopfile.schema import BlockTable, FinTable, HullTable, PlantTable
-from seatrial.control.ship.model_at_scale import model_at_scale
-from seatrial.control.ship.trim import steering_input
-from seatrial.control.ship.trimmed_ship import plant_and_disturbance, plant_text, rate_response, trim_ship
-from seatrial.control.task import Effectiveness, TrimmedShip
+from seatrial.control.loopfile.schema import (
+    BlockTable,
+    FinTable,
+    HullTable,
+    PassTable,
+    PlantTable,
+    angle_value,
+    positive_value,
+    si_value,
+    symbol_unit,
+)
+from seatrial.control.ship import (
+    model_at_scale,
+    plant_and_disturbance,
+    plant_text,
+    rate_response,
+    steering_input,
+    trim_ship,
+)
+from seatrial.control.task import Effectiveness, Seaway, SlowDisturbance, TrimmedShip
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Ship, spelling_hint
 from seatrial.data.folder.model_file import ModelFile, read_model_file
 from seatrial.data.trial.amounts import Amount
 from seatrial.data.trial.runs import expand_variables
-from seatrial.physics.loops import Block, HullFactor
-from seatrial.physics.loops.structures import K_alpha_at
+from seatrial.physics.loops import Block, HullFactor, TransferLoop
+from seatrial.physics.loops.structures import K_alpha_at, band_pass, high_pass, low_pass, notch
 from seatrial.physics.models.thrust_orders import AHEAD, YAW, with_orders
 from seatrial.physics.models.thruster_layout import ORDER, ThrusterLayout, order_text
 from seatrial.physics.simulate.thrust import DEFAULT_AHEAD
+
+# Tables of a loop file into blocks: transfer functions as given, filters by their kind.
+
+
+def block(table: BlockTable, name: str, where: str) -> Block:
+    """Return the block of one table."""
+    made = _filter(table, where)
+    if made is not None:
+        return replace(made, name=name, source=table.source)
+    try:
+        return Block(name, table.num or (), table.den or (), table.source)
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
+
+
+def blocks(tables: Sequence[BlockTable], where: str) -> tuple[Block, ...]:
+    """Return the blocks of a list, numbered where there are several."""
+    kind = where.rsplit(".", maxsplit=1)[-1].removesuffix("s")
+    return tuple(
+        block(table, table.name or (kind if len(tables) == 1 else f"{kind} {i}"), f"{where}[{i}]")
+        for i, table in enumerate(tables, start=1)
+    )
+
+
+def block_text(block: Block) -> str:
+    """Return a transfer function on one line."""
+    return f"({_polynomial_text(block.num)}) / ({_polynomial_text(block.den)})"
+
+
+def _filter(table: BlockTable, where: str) -> Block | None:
+    if table.lag is not None:
+        return Block("lag", (1.0,), (positive_value(table.lag, "s", f"{where}.lag"), 1.0))
+    for kind, create in (("low_pass", low_pass), ("band_pass", band_pass), ("high_pass", high_pass)):
+        shape: PassTable | None = getattr(table, kind)
+        if shape is not None:
+            return create(positive_value(shape.omega, "rad/s", f"{where}.{kind}.omega"), shape.damping)
+    if table.notch is not None:
+        omega = positive_value(table.notch.omega, "rad/s", f"{where}.notch.omega")
+        return notch(omega, table.notch.damping, table.notch.depth)
+    return None
+
+
+def _polynomial_text(coefficients: tuple[float, ...]) -> str:
+    parts = []
+    for power, c in zip(range(len(coefficients) - 1, -1, -1), coefficients, strict=True):
+        if c:
+            parts.append(f"{c:.4g}" + ("" if power == 0 else " s" if power == 1 else f" s^{power}"))
+    return " + ".join(parts).replace("+ -", "- ")
+
+
+# The table `[plant]` of a loop file: transfer functions as given, or those of an identified model.
 
 FINS = ("phi", "alpha_f", "alpha_w")
 STEERING = ("psi", "delta", "")
@@ -292,3 +356,62 @@ def _trim_speed(ship: TrimmedShip, file: ModelFile) -> float:
     if file.approach.get("u", 0.0) > 0.0:
         return float(file.approach["u"])
     raise InputError("key 'plant.speed' is missing, and the model file does not state the ship's speed; add it")
+
+
+# Loop files whose numbers are valid but cannot be meant: motions no ship makes, actuators that push the wrong way.
+
+_WILDEST_RMS = math.radians(30.0)  # rad: the highest third of such amplitudes is 60 degrees and more; chosen
+# actuator -> output and what a positive one does to it by the conventions of the notation
+_POSITIVE_EFFECTS = {
+    ("delta", "psi"): "turns the ship to starboard",
+    ("alpha_f", "phi"): "rolls the ship to starboard",
+}
+
+
+def refuse_reversed_plant(plant: LoopPlant, where: str) -> None:
+    """Refuse a plant whose actuator first moves the output against the convention of its sign.
+
+    The first motion after a step has the sign of the leading coefficients, also where the plant is unstable.
+    """
+    effect = _POSITIVE_EFFECTS.get((plant.actuator, plant.output))
+    first = plant.response.num[0] / plant.response.den[0]
+    if effect is None or first > 0.0:
+        return
+    remedy = (
+        f"reverse the signs of {where}.num"
+        if plant.trimmed_ship is None
+        else f"give {plant.actuator} its sign in [records.channels] of the trial (positive = ...) and identify again"
+    )
+    raise InputError(
+        f"{where}: a positive {plant.actuator} {effect} by convention, here it first does the opposite; {remedy}"
+    )
+
+
+def refuse_reversed_servo(servo: Sequence[Block]) -> None:
+    """Refuse a servo that moves the actuator against its order."""
+    for i, block in enumerate(servo, start=1):
+        if block.gain < 0.0:
+            raise InputError(
+                f"actuator.servo[{i}] answers an order of 1 with {block.gain:.3g}: the actuator would move against its "
+                "order; reverse the signs of its num"
+            )
+
+
+def refuse_wild_motion(disturbances: Sequence[Seaway | SlowDisturbance], loop: TransferLoop, plant: LoopPlant) -> None:
+    """Refuse what would move an angle further without control than linear theory, or a ship, allows."""
+    if symbol_unit(plant.output) != "rad" or not math.isfinite(loop.disturbance.gain):
+        return
+    for one in disturbances:
+        rms = math.sqrt(one.exposure(loop).response_variance(one.disturbed(loop).disturbance))
+        if rms > _WILDEST_RMS:
+            raise InputError(
+                f"without control {plant.output} would reach {math.degrees(rms):.3g} deg rms ({one.description}), more "
+                f"than any ship survives; check height and period of the sea, and the plant: damping ratio "
+                f"{_least_damping(loop.disturbance):.2g}, {loop.disturbance.gain:.3g} of the output for a constant 1 "
+                "of the disturbance"
+            )
+
+
+def _least_damping(block: Block) -> float:
+    poles = block.poles
+    return float(np.min(-poles.real / np.abs(poles), initial=1.0))

@@ -1,4 +1,4 @@
-"""A craft with thrusters at rest, as station keeping needs it: matrices, thrusters with their limits, lags."""
+"""A craft that keeps its station: thrusters, allocation of forces to them, and what they can hold."""
 
 import math
 from collections.abc import Sequence
@@ -7,8 +7,9 @@ from functools import cached_property
 
 import numpy as np
 
-from seatrial.control.ship.trim import jacobian_at
+from seatrial.control.ship import jacobian_at
 from seatrial.core.equations import Model
+from seatrial.core.results.station import StationCapability
 from seatrial.core.values import Array, InputError
 from seatrial.physics.models.thrust_orders import (
     coefficient_or_zero,
@@ -17,6 +18,8 @@ from seatrial.physics.models.thrust_orders import (
     with_outside_forces,
 )
 from seatrial.physics.models.thruster_layout import AngleInput, Thruster, ThrusterLayout
+
+# A craft with thrusters at rest, as station keeping needs it: matrices, thrusters with their limits, lags.
 
 _SHARES = 201  # of full command at which thrust is tabled; chosen
 _ACROSS = 0.5 * np.pi  # rad: direction of the second component of an azimuth thruster's thrust
@@ -221,3 +224,141 @@ def refuse_under_actuated(craft: StationCraft) -> None:
         "and to the side and a moment, each alone; such a craft can keep a heading, a speed and a track; leave "
         "[station] out, or add a thruster that pushes sideways (tunnel, azimuth, or one set at an angle)"
     )
+
+
+# Forces shared out over thrusters: by a weighted generalised inverse in the loop; what is possible by programming.
+
+_SIDES = 32  # of the polygon inside the circle of an azimuth thruster's thrust: 0.5 % short of it; chosen
+_AT_LIMIT = 1e-6  # share of a thruster's range within which it counts as at its limit: of the linear programme
+
+
+def weights(craft: StationCraft) -> Array:
+    """Return the largest thrust of each column of B, (m,): ahead or astern, whichever is larger."""
+    return np.array([max(t.most, -t.least) for t in craft.tables])[list(craft.owner)]
+
+
+def generalised_inverse(craft: StationCraft) -> Array:
+    """Return the matrix (m, 3) that shares out a force with the least sum of (T_i / T_max,i)^2."""
+    B, spread = craft.configuration, weights(craft) ** 2
+    return spread[:, None] * B.T @ np.linalg.inv(B @ (spread[:, None] * B.T))
+
+
+def inverse_rows(craft: StationCraft, inverse: Array) -> Array:
+    """Return an inverse (m, 3) with two rows for each thruster, (n, 6): zeros in the second of a fixed one."""
+    rows = np.zeros((len(craft.thrusters), 2, 3))
+    for i in range(len(craft.thrusters)):
+        own = [k for k, owner in enumerate(craft.owner) if owner == i]
+        rows[i, : len(own)] = inverse[own]
+    return rows.reshape(len(craft.thrusters), -1)
+
+
+def share_given(craft: StationCraft, inverse: Array, forces: Array) -> Array:
+    """Return the share of each force (n, 3) that the generalised inverse gives within the limits, (n,)."""
+    T = forces @ inverse.T
+    share = np.full(len(forces), np.inf)
+    for i, table in enumerate(craft.tables):
+        own = [k for k, owner in enumerate(craft.owner) if owner == i]
+        with np.errstate(divide="ignore"):
+            if craft.is_azimuth[i]:
+                given = table.most / np.linalg.norm(T[:, own], axis=1)
+            else:
+                given = np.where(T[:, own[0]] > 0.0, table.most, -table.least) / np.abs(T[:, own[0]])
+        share = np.minimum(share, given)
+    return share
+
+
+@dataclass(frozen=True)
+class LargestForce:
+    """The largest force of a direction: a factor of the force given, and the thrusters that are at their limits."""
+
+    factor: float
+    at_limit: tuple[str, ...]
+
+
+def largest_force(craft: StationCraft, force: Array) -> LargestForce:
+    """Return how many times a force (3,) the thrusters give at most, by linear programming; exact for fixed thrusters.
+
+    The circle of an azimuth thruster's thrust is a polygon inside it.
+    """
+    from scipy.optimize import linprog
+
+    m, owner = len(craft.owner), craft.owner
+    limits, bounds = [], []
+    for i, table in enumerate(craft.tables):
+        own = [k for k, one in enumerate(owner) if one == i]
+        if not craft.is_azimuth[i]:
+            bounds.append((table.least, table.most))
+            continue
+        bounds += [(None, None)] * 2
+        for angle in 2.0 * np.pi * (np.arange(_SIDES) + 0.5) / _SIDES:
+            row = np.zeros(m + 1)
+            row[own] = np.cos(angle), np.sin(angle)
+            limits.append((row, table.most * np.cos(np.pi / _SIDES)))
+    cost = np.zeros(m + 1)
+    cost[m] = -1.0
+    scale = np.array([1.0, 1.0, 1.0 / craft.lever])
+    equal = scale[:, None] * np.column_stack([craft.configuration, -force])
+    found = linprog(
+        cost, A_ub=np.array([row for row, _ in limits]) if limits else None,
+        b_ub=np.array([most for _, most in limits]) if limits else None,
+        A_eq=equal, b_eq=np.zeros(3), bounds=[*bounds, (0.0, None)], method="highs",
+    )  # fmt: skip
+    if found.x is None:
+        return LargestForce(0.0, ())
+    return LargestForce(float(found.x[m]), _at_limit(craft, found.x[:m]))
+
+
+def _at_limit(craft: StationCraft, T: Array) -> tuple[str, ...]:
+    names = []
+    for i, (thruster, table) in enumerate(zip(craft.thrusters, craft.tables, strict=True)):
+        own = T[[k for k, owner in enumerate(craft.owner) if owner == i]]
+        slack = _AT_LIMIT * (table.most - table.least)
+        size = float(np.linalg.norm(own)) if craft.is_azimuth[i] else float(own[0])
+        most = table.most * np.cos(np.pi / _SIDES) if craft.is_azimuth[i] else table.most
+        if size >= most - slack or (not craft.is_azimuth[i] and size <= table.least + slack):
+            names.append(thruster.name)
+    return tuple(names)
+
+
+# What thrusters hold at most, by direction off the bow: a steady current, a force; static, as capability plots are.
+
+_DIRECTIONS = 24  # every 15 degrees; chosen
+_FIRST, _FASTEST = 0.5, 30.0  # m/s: where a search starts, and beyond any current; chosen
+_ROUNDS, _ACCURACY = 30, 1e-4  # of a search, and relative change of speed that ends it; chosen
+_POWER = 0.5  # of the force's factor that the speed takes: drag grows with its square at most
+
+
+def current_force(craft: StationCraft, speed: float, direction: float) -> Array:
+    """Return the force (3,) of a current from a direction off the bow [rad] on the craft, thrusters at rest."""
+    model = craft.model
+    rates = np.empty(len(model.states))
+    model.compiled.rates(0.0, craft.in_current(speed, direction), craft.resting_inputs, model.parameters.values, rates)
+    return craft.inertia @ rates[[model.states.index(name) for name in ("u", "v", "r")]]
+
+
+def capability(craft: StationCraft, inverse: Array) -> StationCapability:
+    """Return the current and the force that are held from all directions; inverse: of the loop (m, 3)."""
+    directions = 2.0 * math.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
+    currents = np.array([_largest_current(craft, direction, None) for direction in directions])
+    shared_out = np.array([_largest_current(craft, direction, inverse) for direction in directions])
+    limiting = tuple(
+        largest_force(craft, -current_force(craft, speed, direction)).at_limit
+        for speed, direction in zip(currents, directions, strict=True)
+    )
+    forces = [largest_force(craft, np.array([math.cos(a), math.sin(a), 0.0])).factor for a in directions]
+    return StationCapability(directions, currents, shared_out, np.array(forces), limiting)
+
+
+def _largest_current(craft: StationCraft, direction: float, inverse: Array | None) -> float:
+    """Return the fastest current [m/s] that is held: by any sharing out, or by that of an inverse (m, 3)."""
+    speed = _FIRST
+    for _ in range(_ROUNDS):
+        force = -current_force(craft, speed, direction)
+        if inverse is None:
+            factor = largest_force(craft, force).factor
+        else:
+            factor = float(share_given(craft, inverse, force[None])[0])
+        before, speed = speed, min(speed * factor**_POWER, _FASTEST)
+        if abs(speed - before) <= _ACCURACY * before or speed == 0.0:
+            break
+    return speed

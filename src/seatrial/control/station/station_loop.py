@@ -15,7 +15,7 @@ from functools import cached_property
 
 import numpy as np
 
-from seatrial.control.ship.trim import jacobian_at
+from seatrial.control.ship import jacobian_at
 from seatrial.control.station.craft import StationCraft
 from seatrial.core.values import Array
 from seatrial.physics.hydro.excitation import Complex

@@ -1,21 +1,22 @@
-"""How rudder, heading order, waves and current reach heading and track of a craft with a heading loop, linearised.
+"""Tracks to be kept: legs, corners, and the distance that a craft leaves them by."""
 
-The position across a track follows from heading and sway, y' = U psi + v (Fossen 2011, Handbook of Marine Craft
-Hydrodynamics and Motion Control, section 10.3), so that both transfer functions share their denominator but for an
-integrator: P_psi = a / d, P_y = b / (d s).
-"""
-
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from seatrial.control.ship.trimmed_ship import plant_and_disturbance, rate_response
-from seatrial.control.task import TrimmedShip
-from seatrial.core.values import Array, InputError
+from seatrial.control.ship import draw_parameters, plant_and_disturbance, rate_response
+from seatrial.control.task import TrackDemand, TrimmedShip
+from seatrial.core.results.tuning import CornerResponse
+from seatrial.core.values import Array, Channel, DivergedError, InputError, Provenance, Record, RecordKind, frozen
 from seatrial.physics.hydro.excitation import Complex
 from seatrial.physics.loops import Block, TransferLoop
+from seatrial.physics.simulate.closed_loop import ActuatorLimits, ClosedLoop, simulation_step
+from seatrial.physics.simulate.craft_control import LineOfSight, PlannedTrack, TrackRun, follow_track
+
+# How rudder, heading order, waves and current reach heading and track of a craft with a heading loop, linearised.
 
 EAST = "y0"
 """State that is the distance to starboard of a track to the north."""
@@ -120,3 +121,114 @@ def _block(name: str, num: ArrayLike, den: ArrayLike) -> Block:
     """Return num / den with a leading 1 below."""
     above, below = np.asarray(num, dtype=np.float64), np.asarray(den, dtype=np.float64)
     return Block(name, tuple((above / below[0]).tolist()), tuple((below / below[0]).tolist()))
+
+
+# A corner of a track, taken by the nonlinear model within its limits in a steady current, and by ships of the fit.
+
+# time constants Delta / U of the track before and after the corner; chosen
+_BEFORE, _AFTER = 8.0, 20.0
+_STEP_SHARE, _MOST_STEPS = 0.1, 40_000  # of the fastest pole's time constant, of a step; steps at most; chosen
+_LAST_PART = 0.25  # of a run, in which a track that is kept stays within the acceptance; chosen
+_SAMPLES = 1000  # of the record that is kept; chosen
+ERROR, CURRENT_NORTH, CURRENT_EAST = "cross_track_error", "current_north", "current_east"
+
+
+@dataclass(frozen=True, eq=False)
+class CornerTrial:
+    """How a corner is taken: the heading loop, guidance, limits, the demand, and the craft's speed U [m/s]."""
+
+    heading: HeadingLoop
+    guidance: LineOfSight
+    limits: ActuatorLimits
+    demand: TrackDemand
+    U: float
+
+    def respond(self, outer: TransferLoop, draws: int, seed: int) -> CornerResponse:
+        """Return the corner by the identified craft and the worst of those drawn.
+
+        A craft drawn keeps the track where its linear loop is stable and it settles on the new leg in simulation; one
+        without a trim does not.
+        """
+        track = self._track
+        own = self._run(self.heading.ship, track)
+        drawn = draw_parameters(self.heading.ship, draws, seed)
+        runs = [self._run_of(ship, track) for ship in drawn.ships if self._is_stable(ship, outer)]
+        kept = [run is not None and self.is_kept(run) for run in runs]
+        worst = [math.inf if run is None else self._overshoot(run) for run in runs]
+        return CornerResponse(
+            turn=self.demand.turn,
+            acceptance=self.demand.acceptance,
+            current=self.demand.current,
+            record=self._record(own, track),
+            overshoot=self._overshoot(own),
+            worst_overshoot=max(worst, default=math.nan),
+            stable_draws=sum(kept),
+            draws=drawn.draws,
+            is_kept=self.is_kept(own),
+        )
+
+    @property
+    def _track(self) -> PlannedTrack:
+        return PlannedTrack(_BEFORE * self._time * self.U, self.demand.turn, self.demand.acceptance)
+
+    def settles(self) -> bool:
+        """Return whether the identified craft settles on the new leg."""
+        return self.is_kept(self._run(self.heading.ship, self._track))
+
+    def is_kept(self, run: TrackRun) -> bool:
+        """Return whether a craft stays within the circle of acceptance in the last part of a run, on the new leg."""
+        last = run.error[round((1.0 - _LAST_PART) * len(run.error)) :]
+        return run.new_leg < len(run.error) - len(last) and bool(np.max(np.abs(last)) <= self.demand.acceptance)
+
+    @property
+    def _time(self) -> float:
+        return self.guidance.lookahead / self.U
+
+    @property
+    def _step(self) -> float:
+        loop = self.heading.loop
+        moving = loop.closed_loop_poles if loop.sampling is None else loop.plant.poles
+        longest = max(_STEP_SHARE / float(np.abs(moving).max()), (_BEFORE + _AFTER) * self._time / _MOST_STEPS)
+        return simulation_step(loop.sampling, longest)
+
+    def _run(self, ship: TrimmedShip, track: PlannedTrack) -> TrackRun:
+        """Return the run of a craft that a steady current sets towards the outside of the turn."""
+        outward = -math.copysign(self.demand.current, track.turn)
+        set_to = {CURRENT_NORTH: -outward * math.sin(track.turn), CURRENT_EAST: outward * math.cos(track.turn)}
+        model = ship.model.with_values({name: v for name, v in set_to.items() if name in ship.model.parameters})
+        loop, dt = self.heading.loop, self._step
+        closed = ClosedLoop(model, loop, loop.gain_values, dt, ship.actuator, "", ship.output, ship.state, ship.inputs)
+        count = math.ceil((_BEFORE + _AFTER) * self._time / dt)
+        return follow_track(closed, self.guidance, np.zeros(count), track, self.limits)
+
+    def _overshoot(self, run: TrackRun) -> float:
+        """Return how far [m] the craft goes beyond the new leg, to the outside."""
+        return max(0.0, float(np.max(-math.copysign(1.0, self.demand.turn) * run.error[run.new_leg :])))
+
+    def _run_of(self, ship: TrimmedShip, track: PlannedTrack) -> TrackRun | None:
+        """Return the run of a craft; None where it diverges."""
+        try:
+            return self._run(ship, track)
+        except (DivergedError, InputError):
+            return None
+
+    def _is_stable(self, ship: TrimmedShip, outer: TransferLoop) -> bool:
+        """Return whether heading and track are stable with that craft."""
+        there = HeadingLoop(ship, replace(self.heading.loop, plant=plant_and_disturbance(ship)[0]))
+        try:
+            poles = replace(outer, plant=there.order_to_track()).closed_loop_poles
+        except InputError:
+            return False
+        return bool(poles.real.max() < 0.0)
+
+    def _record(self, run: TrackRun, track: PlannedTrack) -> Record:
+        """Return position, heading, rudder and distance, the corner at the origin."""
+        names, every = self.heading.ship.model.states, max(1, len(run.error) // _SAMPLES)
+        series: dict[str, Array] = {name: run.states[:, names.index(name)] for name in ("x0", "y0", "psi")}
+        series["x0"] = series["x0"] - track.corner
+        series[self.heading.ship.actuator] = run.actuator
+        channels = {n: Channel.from_notation(n, frozen(np.ascontiguousarray(v[::every]))) for n, v in series.items()}
+        channels[ERROR] = Channel(frozen(np.ascontiguousarray(run.error[::every])), "m", "body", "starboard")
+        time = frozen(self._step * every * np.arange(len(run.error[::every])))
+        said = Provenance(f"line of sight around loop '{self.heading.loop.name}' at a corner")
+        return Record("corner", time, channels, RecordKind.SIMULATED, provenance=said)

@@ -1,29 +1,249 @@
-"""Line of sight tuned around a heading loop, tried in what disturbs it and at a corner, by ships of the fit, too."""
+"""Line of sight tuned around a heading loop, tried in what disturbs it and at a corner, by ships of the fit."""
 
 import contextlib
 import math
 from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
-from seatrial.control.demand import reference_rate
+from seatrial.control.controller import reference_rate
 from seatrial.control.front import refuse_infeasible
 from seatrial.control.gain_evaluation import GainEvaluator, gain_evaluator
-from seatrial.control.ship.parameter_draws import DRAWS
-from seatrial.control.task import TrackDemand, TuningTask
-from seatrial.control.track.corner import CornerTrial
-from seatrial.control.track.simulate_track import TrackTrial
-from seatrial.control.track.track_task import (
-    heading_loop_of,
-    largest_integral_gain,
-    line_of_sight,
-    refuse_impossible_track,
-    track_task,
+from seatrial.control.ship import DRAWS, linearise
+from seatrial.control.simulation import (
+    LEAST_FREQUENCY,
+    SEEDS,
+    DisturbanceClock,
+    actuator_rate,
+    disturbance_clock,
+    disturbance_realisation,
+    named_signals,
 )
-from seatrial.core.results.tuning import TrackKeeping
-from seatrial.core.values import Array, DivergedError
-from seatrial.physics.loops import TransferLoop, margins
-from seatrial.physics.simulate.closed_loop import ActuatorLimits
+from seatrial.control.task import OUTPUT, Seaway, SlowDisturbance, TrackDemand, TrimmedShip, TuningTask
+from seatrial.control.track.paths import CURRENT, EAST, CornerTrial, HeadingLoop, Reach
+from seatrial.core.equations import Model
+from seatrial.core.equations.model import stored_model
+from seatrial.core.results.tuning import ControllerConstraints, DisturbanceSimulation, TrackKeeping
+from seatrial.core.values import Array, DivergedError, InputError, Parameter, Parameters
+from seatrial.numerics.workers import map_in_threads
+from seatrial.physics.hydro.excitation import Complex
+from seatrial.physics.loops import Block, Term, TransferLoop, margins
+from seatrial.physics.loops.autopilot import lag_frequency
+from seatrial.physics.simulate.closed_loop import UNLIMITED, ActuatorLimits, ClosedLoop
+from seatrial.physics.simulate.craft_control import LineOfSight, follow_track
+
+# The linear ship behind heading and track as a model: the plant of linear theory, so that only limits are new.
+
+DISTURBANCE = "disturbance"
+_LEFT_OUT = ("x0",)  # along the track: nothing follows from it
+
+
+def linear_ship(ship: TrimmedShip, disturbed: str) -> Model:
+    """Return x' = A x + b u + e w about the trim, without the position along the track; u, w in the notation's signs.
+
+    Inputs are the actuator and ``disturbance``, which acts on the rate of the state `disturbed`, or like the actuator
+    where it has the actuator's name. Matrices are fixed parameters, so that ships share their machine code.
+    """
+    linear, names = linearise(ship), ship.model.states
+    kept = [i for i, name in enumerate(names) if name not in _LEFT_OUT]
+    A, column = linear.A[np.ix_(kept, kept)], ship.model.input_names.index(ship.actuator)
+    sign = -1.0 if ship.model.inputs[column].is_reversed else 1.0
+    b = sign * linear.B[kept, column]
+    e = b if disturbed == ship.actuator else np.array([1.0 if names[i] == disturbed else 0.0 for i in kept])
+    states = tuple(names[i] for i in kept)
+    model = stored_model(
+        ("linear ship", *states, ship.actuator), lambda: _model(states, ship.actuator), (Path(__file__),)
+    )
+    return model.with_values(_values(A, b, e))
+
+
+def _values(A: Array, b: Array, e: Array) -> dict[str, float]:
+    n = len(b)
+    values = {f"A_{i}_{j}": float(A[i, j]) for i in range(n) for j in range(n)}
+    return values | {f"{name}_{i}": float(row[i]) for name, row in (("b", b), ("e", e)) for i in range(n)}
+
+
+def _model(states: tuple[str, ...], actuator: str) -> Model:
+    """Return the model with all entries zero."""
+    from seatrial.core.equations import Sheet
+
+    n = len(states)
+    sheet = Sheet(f"linear_ship_{n}", "linearised about a trim", "a ship about its straight run")
+    x, u, w = sheet.states(" ".join(states)), sheet.input(actuator), sheet.input(DISTURBANCE)
+    A = [[sheet.parameter(f"A_{i}_{j}", 0.0, "", "state to rate") for j in range(n)] for i in range(n)]
+    b = [sheet.parameter(f"b_{i}", 0.0, "", "actuator to rate") for i in range(n)]
+    e = [sheet.parameter(f"e_{i}", 0.0, "", "disturbance to rate") for i in range(n)]
+    for i, state in enumerate(x):
+        sheet.rate(state, sum(A[i][j] * x[j] for j in range(n)) + b[i] * u + e[i] * w, "linearised about the trim")
+    return sheet.model()
+
+
+# A straight track kept in each disturbance: linear theory, simulated without limits and with those of the rudder.
+
+_YAW_RATE = "r"  # state whose rate the waves' yaw acceleration is
+
+
+@dataclass(frozen=True, eq=False)
+class TrackTrial:
+    """What a track is tried with: the heading loop, the outer loop at its gains, guidance and limits."""
+
+    heading: HeadingLoop
+    outer: TransferLoop
+    guidance: LineOfSight
+    limits: ActuatorLimits
+
+    def simulate(self, met: Seaway | SlowDisturbance, seed: int) -> DisturbanceSimulation:
+        """Return rms of distance, rudder and its rate in one disturbance of the outer loop."""
+        loop = met.disturbed(self.outer)
+        clock, disturbed = disturbance_clock(met, loop, self.heading.loop), self._disturbed_state(met)
+        ship = self.heading.ship
+        run = ClosedLoop(
+            linear_ship(ship, disturbed), self.heading.loop, self.heading.loop.gain_values, clock.dt, ship.actuator,
+            DISTURBANCE, ship.output,
+        )  # fmt: skip
+
+        expected = self.predicted(met)
+
+        def counted(omega: Array) -> Array:
+            return np.hypot(
+                *(np.abs(one) / rms for one, rms in zip(self._responses(met, omega), expected, strict=False))
+            )
+
+        def of_one(number: int) -> Array:
+            series = disturbance_realisation(met, loop, clock, number, counted)
+            return np.stack([self._mean_squares(run, series, clock, each) for each in (UNLIMITED, self.limits)])
+
+        free, held = np.stack(map_in_threads(of_one, [seed + k for k in range(SEEDS)]), axis=1)
+        rms = np.sqrt(free.mean(axis=0))
+        error = free.std(axis=0, ddof=1) / math.sqrt(SEEDS) / (2.0 * rms)
+        columns = (expected, rms, np.sqrt(held.mean(axis=0)), error)
+        return DisturbanceSimulation(met.description, SEEDS, *(named_signals(column) for column in columns))
+
+    def predicted(self, met: Seaway | SlowDisturbance) -> Array:
+        """Return the rms of distance, rudder and its rate by linear theory, (3,)."""
+        spectrum = met.exposure(met.disturbed(self.outer))
+        w = spectrum.omega_e
+        distance, rudder = (np.abs(one) ** 2 * spectrum.energy for one in self._responses(met, w))
+        return np.sqrt([distance.sum(), rudder.sum(), (w**2 * rudder).sum()])
+
+    def _responses(self, met: Seaway | SlowDisturbance, omega: Array) -> tuple[Complex, Complex]:
+        """Return distance and rudder for a unit of the disturbance, each (n,), at omega (n,) [rad/s]."""
+        loop, w = met.disturbed(self.outer), np.maximum(omega, LEAST_FREQUENCY)
+        guidance = loop.gain_values @ loop.controller_terms(w)
+        distance = loop.disturbance.frequency_response(w) / (1.0 + loop.open_loop(w))
+        return distance, self.heading.rudder_response(self._reach(met), guidance, w)
+
+    def _reach(self, met: Seaway | SlowDisturbance) -> Reach:
+        if isinstance(met, Seaway):
+            return self.heading.waves
+        return CURRENT if met.path == CURRENT.track else self.heading.rudder
+
+    def _disturbed_state(self, met: Seaway | SlowDisturbance) -> str:
+        if isinstance(met, Seaway):
+            return _YAW_RATE
+        return EAST if met.path == CURRENT.track else self.heading.ship.actuator
+
+    def _mean_squares(self, run: ClosedLoop, series: Array, clock: DisturbanceClock, limits: ActuatorLimits) -> Array:
+        """Return mean squares of distance, rudder and its rate, (3,); infinite where the limits let the craft go."""
+        try:
+            made = follow_track(run, self.guidance, series, limits=limits)
+        except DivergedError:
+            return np.full(3, np.inf)
+        rate = actuator_rate(run, made.actuator[clock.first :])
+        return np.array([float(np.mean(x**2)) for x in (made.error[clock.first :], made.actuator[clock.first :], rate)])
+
+
+# The outer loop of track keeping as a tuning of its own: from the distance to the heading order.
+
+# crossover U KP of the outer loop over the lag frequency of the heading loop: least, first, largest; chosen
+_SLOWEST, _START, _FASTEST = 0.003, 0.1, 1.0
+_INTEGRAL_SHARE = 0.2  # of the crossover, the largest KI / KP; chosen
+_STRONGEST = 2.0  # the strongest current in its rms: 95 % of a Gaussian's are weaker
+_SOURCE = "bandwidth of the heading loop"
+
+
+def refuse_impossible_track(task: TuningTask, track: TrackDemand) -> None:
+    """Refuse a track without an identified model of heading and position, or in a current as fast as the craft."""
+    ship = task.trimmed_ship
+    if ship is None or task.loop.output != "psi" or EAST not in ship.model.states:
+        raise InputError(
+            "track: a track is kept by a heading loop on an identified model with heading and position; give "
+            "plant.model of such a model, or leave [track] out"
+        )
+    if not largest_integral_gain(task, track) > 0.0:
+        raise InputError(
+            f"track.current = {track.current:.3g} m/s is at times {_STRONGEST * track.current:.3g} m/s, no less than "
+            f"the craft's {task.U:.3g} m/s: no track can be kept in it; give a slower one"
+        )
+
+
+def largest_integral_gain(task: TuningTask, track: TrackDemand) -> float:
+    """Return the speed of the craft less that of the strongest current [m/s].
+
+    Up to it sigma keeps the track stable from any distance (Caharija et al. 2016, IEEE Trans. Control Syst. Technol.
+    24, 1623-1642).
+    """
+    return task.U - _STRONGEST * track.current
+
+
+def heading_loop_of(task: TuningTask, loop: TransferLoop) -> HeadingLoop:
+    """Return the heading loop that a track is kept with, of a task that `refuse_impossible_track` accepts."""
+    assert task.trimmed_ship is not None
+    return HeadingLoop(task.trimmed_ship, loop)
+
+
+def track_disturbances(
+    task: TuningTask, heading: HeadingLoop, track: TrackDemand
+) -> tuple[Seaway | SlowDisturbance, ...]:
+    """Return what disturbs the heading loop, carried to the track, and the current across it."""
+    current = SlowDisturbance(
+        track.current, track.bandwidth, task.U, "m/s", "of current across the track", CURRENT.track
+    )
+    carried = (
+        replace(met, path=heading.disturbance_to_track(heading.waves if isinstance(met, Seaway) else heading.rudder))
+        for met in task.disturbances
+    )
+    return (current, *carried)
+
+
+def track_task(task: TuningTask, heading: HeadingLoop, track: TrackDemand) -> TuningTask:
+    """Return the tuning of the distance from a track by the heading order, KP = 1 / Delta and KI = sigma / Delta^2.
+
+    That is what line of sight with an integral is for small distances (Borhaug, Pavlov & Pettersen 2008, Proc. 47th
+    IEEE CDC, 4984-4991, linearised).
+    """
+    plant = heading.order_to_track()
+    scale = lag_frequency(plant) / task.U
+    most = _FASTEST * scale
+    gains = (
+        Parameter("KP", _START * scale, "rad/m", _SLOWEST * scale, most, free=True, source=_SOURCE,
+                  meaning="1 / lookahead distance"),
+        Parameter("KI", 0.0, "rad/(m s)", 0.0, _INTEGRAL_SHARE * most**2 * task.U, free=True, source=_SOURCE,
+                  meaning="integral gain over the square of the lookahead distance"),
+    )  # fmt: skip
+    terms = (Term("KP", Block("proportional")), Term("KI", Block("integral", (1.0,), (1.0, 0.0))))
+    loop = TransferLoop("track", (), terms, (), (), plant, CURRENT.track, Parameters(gains), EAST, "psi", "disturbance")
+    return TuningTask(
+        question="",
+        name="track",
+        plant="",
+        loop=loop,
+        disturbances=track_disturbances(task, heading, track),
+        objectives=(OUTPUT,),
+        constraints=ControllerConstraints(Ms=task.constraints.Ms),
+        U=task.U,
+    )
+
+
+def line_of_sight(gains: tuple[float, float], rate: float) -> LineOfSight:
+    """Return the guidance whose linear part has gains KP [rad/m] and KI [rad/(m s)]."""
+    KP, KI = gains
+    return LineOfSight(1.0 / KP, KI / KP**2, rate)
+
+
+# Line of sight tuned around a heading loop, tried in what disturbs it and at a corner, by ships of the fit, too.
 
 _SLOWER = (1.0, 0.7, 0.5, 0.35, 0.25)  # of KP, tried until a corner is settled; chosen
 _POINTS, _ROUNDS = 31, 4  # of a grid, and grids one after the other; chosen

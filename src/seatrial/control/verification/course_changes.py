@@ -1,17 +1,14 @@
-"""Changes of an ordered output verified: overshoot, settling and work of the actuator against ships the fit allows.
-
-What weather makes of a change is taken from the log itself: the motion while the order stood still is laid, from random
-moments on, over what the model does. The prediction is the median of such changes on ships drawn from the fit, its
-interval holds 95 % of them; what was achieved lies inside or outside.
-"""
+"""Changes of an ordered output verified: in a log, by the gains or not, against ships of the fit."""
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.signal import lfilter
+from scipy.special import stdtrit
 
-from seatrial.control.demand import (
+from seatrial.control.controller import (
     feed_forward,
     reference_model,
     reference_rate,
@@ -19,16 +16,225 @@ from seatrial.control.demand import (
     settling_time,
     simulate_tracking,
 )
-from seatrial.control.ship.parameter_draws import draw_parameters
-from seatrial.control.ship.plant_as_model import plant_as_model
+from seatrial.control.ship import draw_parameters, plant_as_model
 from seatrial.control.task import Demand, TrimmedShip, TuningTask
-from seatrial.control.verification.followed_gains import FollowedGains, GainTest, followed_gains
-from seatrial.control.verification.logged_changes import LoggedChange, logged_changes
 from seatrial.core.results.verification import VerifiedChange, VerifiedQuantity
 from seatrial.core.values import Array, InputError, Record, frozen
 from seatrial.core.values.notation import channel_unit
-from seatrial.physics.loops import TransferLoop
+from seatrial.physics.loops import TransferLoop, in_series
+from seatrial.physics.loops.discrete import difference_equation
 from seatrial.physics.simulate.closed_loop import ActuatorLimits, simulation_step, steps_a_sample
+
+# Changes of an ordered output in a log, and what weather did to the ship while the order stood still.
+
+_SMALLEST = 0.1  # of the demand's change, below which an order is no change but a correction; chosen
+_SHORTEST = 6.0  # time constants that a change must last; chosen
+_STILL = 1e-6  # of the demand's change from one sample to the next: rounding of a logger
+
+
+@dataclass(frozen=True, eq=False)
+class LoggedChange:
+    """One change, from the last sample before it to the last before the next one.
+
+    Order and output are counted from the order before, the actuator from its mean over the second halves of a record.
+
+    Attributes:
+        start: s on the record's clock; order, output, actuator: (n,), SI.
+        trim: of the actuator, taken off.
+        is_step: whether the order jumped; else the log holds what a filter made of it.
+    """
+
+    record: str
+    start: float
+    dt: float
+    order: Array
+    output: Array
+    actuator: Array
+    trim: float
+    is_step: bool
+
+    @property
+    def change(self) -> float:
+        """Return by how much the order changed, SI."""
+        return float(self.order[-1])
+
+    @property
+    def demand(self) -> Array:
+        """Return the change as a step at the second sample, (n,)."""
+        return np.concatenate([[0.0], np.full(len(self.order) - 1, self.change)])
+
+    def background(self, settled_s: float) -> Array:
+        """Return the output about its order and the actuator from so many seconds after the order on, (m, 2)."""
+        return np.stack([self.output - self.change, self.actuator], axis=1)[round(settled_s / self.dt) :]
+
+
+def logged_changes(records: Sequence[Record], loop: TransferLoop, demand: Demand) -> tuple[LoggedChange, ...]:
+    """Return the changes of the ordered output that are large and long enough.
+
+    Raises:
+        InputError: a channel is missing or has gaps, or there is no such change.
+    """
+    ordered = f"{loop.output}_ref"
+    channels = (loop.output, loop.actuator, ordered)
+    changes = []
+    for record in records:
+        if missing := [name for name in channels if name not in record]:
+            raise InputError(
+                f"record '{record.name}' has no channel '{missing[0]}'; changes of '{loop.output}' are verified by "
+                f"{', '.join(channels)}: name their columns in [records.channels]"
+            )
+        if not np.all(np.isfinite(record.matrix(channels))):
+            raise InputError(f"record '{record.name}' has gaps in {', '.join(channels)}; repair them, or cut it there")
+        changes += _changes_of_record(record, channels, demand)
+    if not changes:
+        raise InputError(
+            f"the log holds no change of '{ordered}' by {_SMALLEST:g} of that of [demand] or more that lasts "
+            f"{_SHORTEST * demand.time_constant:.0f} s, {_SHORTEST:g} time constants; log course changes one by one"
+        )
+    return tuple(changes)
+
+
+def _changes_of_record(record: Record, channels: tuple[str, str, str], demand: Demand) -> list[LoggedChange]:
+    output, actuator, order = (record[name] for name in channels)
+    if channel_unit(channels[0]) == "rad":
+        output, order = np.unwrap(output), np.unwrap(order)
+    moves = np.flatnonzero(np.abs(np.diff(order)) > _STILL * abs(demand.change))
+    if not moves.size:
+        return []
+    apart = np.flatnonzero(np.diff(moves) * record.dt > demand.time_constant)
+    firsts = moves[np.concatenate([[0], apart + 1])].tolist()
+    lasts = moves[np.concatenate([apart, [len(moves) - 1]])].tolist()
+    spans = [
+        (first, stop, moved == first)
+        for first, moved, stop in zip(firsts, lasts, [*firsts[1:], len(order) - 1], strict=True)
+        if abs(order[stop] - order[first]) >= _SMALLEST * abs(demand.change)
+        and (stop - first) * record.dt >= _SHORTEST * demand.time_constant
+    ]
+    if not spans:
+        return []
+    trim = float(np.mean(np.concatenate([actuator[(first + stop) // 2 : stop + 1] for first, stop, _ in spans])))
+    return [
+        LoggedChange(
+            record.name, float(record.time[first]), record.dt, order[first : stop + 1] - order[first],
+            output[first : stop + 1] - order[first], actuator[first : stop + 1] - trim, trim, is_step,
+        )
+        for first, stop, is_step in spans
+    ]  # fmt: skip
+
+
+# Whether an actuator did in a log what the gains order: the controller run on what was measured.
+
+# time constants of the demand over which means run: one that is compared, as a logger's noise is not the controller's,
+# and one that is taken off, trim and integral; chosen
+_FAST, _SLOW = 0.5, 3.0
+
+
+_CHANCE = 0.005  # of each of two statistics: together one log in a hundred is blamed by chance; chosen
+
+
+@dataclass(frozen=True)
+class FollowedGains:
+    """What the actuator did over what the gains order: factor of its motion, and the coherence of both, 0 to 1."""
+
+    ratio: float
+    coherence: float
+
+    @property
+    def statistics(self) -> Array:
+        """Return ratio and logarithm of the share of the motion that does not follow, (2,): nearly normal both."""
+        return np.array([self.ratio, math.log(max(1.0 - self.coherence**2, np.finfo(float).tiny))])
+
+
+@dataclass(frozen=True)
+class GainTest:
+    """How the actuator followed in a log, and in simulated logs of ships with these very gains: statistics (m, 2).
+
+    stops: between which the actuator stayed, where they explain the log; None elsewhere.
+    """
+
+    followed: FollowedGains
+    simulated: Array
+    stops: tuple[float, float] | None = None
+
+    @property
+    def _off(self) -> Array:
+        """Return by how much of what chance explains the statistics differ from the simulated ones, (2,).
+
+        A further one of a sample lies as far from its mean as Student's distribution says (Hahn & Meeker 1991,
+        Statistical Intervals, section 4.7).
+        """
+        m = len(self.simulated)
+        sure = float(stdtrit(m - 1, 1.0 - 0.5 * _CHANCE)) * math.sqrt(1.0 + 1.0 / m)
+        return (self.followed.statistics - self.simulated.mean(axis=0)) / (sure * self.simulated.std(axis=0, ddof=1))
+
+    @property
+    def is_alike(self) -> bool:
+        """Whether the actuator's motion has the shape that the gains order, but for what chance explains."""
+        return bool(self._off[1] <= 1.0)
+
+    @property
+    def is_followed(self) -> bool:
+        """Whether it has its size, too."""
+        return self.is_alike and bool(abs(self._off[0]) <= 1.0)
+
+
+def followed_gains(
+    task: TuningTask,
+    loop: TransferLoop,
+    changes: Sequence[LoggedChange],
+    stops: tuple[float, float] = (-math.inf, math.inf),
+) -> FollowedGains:
+    """Return how the actuator of a log follows a loop at its own gains, over all its changes.
+
+    The order is that of the logged output and reference, by the loop's blocks at the log's samples, its servo and dead
+    time behind it, within the actuator's limits and stops; both are compared smoothed, slow means taken
+    off.
+    """
+    pairs = [_order_and_motion(task, loop, change, stops) for change in changes]
+    ordered, moved = (np.concatenate(rows) for rows in zip(*pairs, strict=True))
+    both, own, theirs = (float(np.sum(a * b)) for a, b in ((ordered, moved), (ordered, ordered), (moved, moved)))
+    if not own * theirs:
+        return FollowedGains(0.0, 0.0)
+    return FollowedGains(both / own, abs(both) / float(np.sqrt(own * theirs)))
+
+
+def _order_and_motion(
+    task: TuningTask, loop: TransferLoop, change: LoggedChange, stops: tuple[float, float]
+) -> tuple[Array, Array]:
+    demand, T = task.required_demand, change.dt
+    level, fed = change.order, np.zeros(len(change.order))
+    if change.is_step:
+        motion = reference_model(change.order, T, demand.time_constant, reference_rate(task, loop, demand))
+        level, fed = motion.level, motion.fed_forward(feed_forward(loop, demand))
+    fast, slow = (max(1, round(share * demand.time_constant / T)) for share in (_FAST, _SLOW))
+    error, order = _mean(level - change.output, fast), _mean(fed, fast)
+    for gain, term in zip(loop.gain_values, loop.terms, strict=True):
+        block = difference_equation(in_series("term", (term.block, *loop.filters)), T)
+        order = order + gain * lfilter(block.b, block.a, error)
+    served = difference_equation(in_series("servo", loop.servo), T)
+    order = lfilter(served.b, served.a, order)
+    late = 0 if loop.sampling is None else round(loop.sampling.dead_time / T)
+    order = np.concatenate([np.zeros(late), order[: len(order) - late]])
+    achieved = _within(np.clip(order, *stops), task.constraints.limit, task.constraints.rate * T)
+    moved = _mean(change.actuator, fast)
+    return achieved - _mean(achieved, slow), moved - _mean(moved, slow)
+
+
+def _within(order: Array, limit: float, step: float) -> Array:
+    """Return an order as an actuator follows it from rest within its limits."""
+    made, now = np.empty(len(order)), float(order[0])
+    for k, wanted in enumerate(np.clip(order, -limit, limit).tolist()):
+        now += min(max(wanted - now, -step), step)
+        made[k] = now
+    return made
+
+
+def _mean(values: Array, width: int) -> Array:
+    padded = np.pad(values, (width // 2, width - 1 - width // 2), mode="edge")
+    return np.convolve(padded, np.full(width, 1.0 / width), mode="valid")
+
+
+# Changes of an ordered output verified: overshoot, settling and work of the actuator against ships the fit allows.
 
 SHIPS, WEATHERS = 40, 10  # ships drawn from the fit, and moments of the log's weather for each; chosen
 _STEP_SHARE = 0.2  # step of a simulation as a share of the fastest pole's time constant; chosen

@@ -5,18 +5,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from seatrial.control.task import Seaway, TuningTask
-from seatrial.control.verification.legs import LoggedLeg, legs_on_and_off, natural_period
-from seatrial.control.verification.moments import (
-    LoopMoments,
-    logged_moments,
-    mean_moments,
-    plain_reduction,
-    predicted_moments,
-    reduction_by_waves,
-)
-from seatrial.control.verification.spread import jackknife_deviation, products
 from seatrial.core.results.verification import (
     ReductionEstimate,
     VerifiedLeg,
@@ -27,6 +18,7 @@ from seatrial.core.results.verification import (
 from seatrial.core.values import Array, InputError, Record
 from seatrial.core.values.notation import channel_unit
 from seatrial.estimation.sea import (
+    EncounteredSea,
     LegFit,
     LegPriors,
     ObservedLeg,
@@ -38,7 +30,219 @@ from seatrial.estimation.sea import (
     stretch_spectra,
 )
 from seatrial.physics.hydro.excitation import Complex
-from seatrial.physics.loops import TransferLoop
+from seatrial.physics.loops import TransferLoop, reversals_per_hour
+
+# Stretches of a log with the controller on and off, by whether the actuator moves.
+
+_WINDOW_PERIODS = 3.0  # natural periods over which an actuator that is on surely moves; chosen
+_STILL_SHARE = 0.03  # of the liveliest window's rms, below which the actuator counts as still; chosen
+_STILL_ANGLE = 1e-4  # rad, rms below which an actuator never moved: a resolver's last digit; chosen
+_RUN_IN_PERIODS = 2.0  # natural periods after a change of control that belong to neither state; chosen
+_SHORTEST_PERIODS = 36.0  # natural periods that a leg must hold: five segments of its spectrum; chosen
+_WAVES = "zeta"
+_RATE = 24.0  # samples a natural period that the spectra need; chosen
+
+
+@dataclass(frozen=True, eq=False)
+class LoggedLeg:
+    """A stretch of one record, every dt [s] from `start` [s]; U: m/s, mean speed.
+
+    values: (n, 2) or (n, 3): output, actuator, and the elevation of the waves where all records hold it; SI.
+    """
+
+    record: str
+    start: float
+    dt: float
+    values: Array
+    is_controlled: bool
+    U: float
+
+    @property
+    def stop(self) -> float:
+        """Return the time of the last sample [s]."""
+        return self.start + self.dt * (len(self.values) - 1)
+
+
+def natural_period(loop: TransferLoop) -> float:
+    """Return the period [s] of the plant's least damped swing.
+
+    Raises:
+        InputError: it does not swing.
+    """
+    poles = loop.plant.poles[loop.plant.poles.imag > 0.0]
+    if not poles.size:
+        raise InputError(f"the plant of loop '{loop.name}' does not swing; legs in waves need a motion that does")
+    return float(2.0 * np.pi / np.abs(poles[np.argmin(-poles.real / np.abs(poles))]))
+
+
+def legs_on_and_off(records: Sequence[Record], loop: TransferLoop, U: float) -> tuple[LoggedLeg, ...]:
+    """Return the legs of all records that are long enough for a spectrum, in order.
+
+    U: m/s, where a record has no channel 'u'.
+
+    Raises:
+        InputError: a channel is missing, no leg is long enough, or none has the controller on.
+    """
+    period = natural_period(loop)
+    for record in records:
+        if missing := [name for name in (loop.output, loop.actuator) if name not in record]:
+            raise InputError(
+                f"record '{record.name}' has no channel '{missing[0]}'; a loop from '{loop.actuator}' on "
+                f"'{loop.output}' is verified by both: name their columns in [records.channels]"
+            )
+    waves = (_WAVES,) if all(_WAVES in record for record in records) else ()
+    channels = (loop.output, loop.actuator, *waves)
+    records = [record.resampled(_RATE / period) for record in records]
+    activities = [_activity(record[loop.actuator], round(_WINDOW_PERIODS * period / record.dt)) for record in records]
+    liveliest = max((float(np.nanmax(activity, initial=0.0)) for activity in activities), default=0.0)
+    if liveliest < _STILL_ANGLE:
+        raise InputError(f"'{loop.actuator}' never moves in the log: there is no leg with the controller on")
+    legs = [
+        leg
+        for record, activity in zip(records, activities, strict=True)
+        for leg in _legs_of_record(record, channels, activity >= _STILL_SHARE * liveliest, period, U)
+    ]
+    needed = _SHORTEST_PERIODS * period
+    long_enough = tuple(leg for leg in legs if leg.stop - leg.start >= needed)
+    if not any(leg.is_controlled for leg in long_enough):
+        longest = max((leg.stop - leg.start for leg in legs if leg.is_controlled), default=0.0)
+        raise InputError(
+            f"the longest leg with the controller on takes {longest:.0f} s; {needed:.0f} s are needed, "
+            f"{_SHORTEST_PERIODS:g} natural periods, for a spectrum; log longer legs"
+        )
+    return long_enough
+
+
+def _activity(values: Array, window: int) -> Array:
+    """Return the rms of the actuator about its mean in a window about each sample, (n,); NaN across gaps."""
+    half = max(1, window // 2)
+    padded = np.pad(values, half, mode="edge")
+    sums, squares = (np.concatenate([[0.0], np.cumsum(np.nan_to_num(v))]) for v in (padded, padded**2))
+    width = 2 * half
+    mean, square = ((s[width:] - s[:-width])[: len(values)] / width for s in (sums, squares))
+    return np.where(np.isfinite(values), np.sqrt(np.maximum(square - mean**2, 0.0)), np.nan)
+
+
+def _legs_of_record(
+    record: Record, channels: tuple[str, ...], is_moving: NDArray[np.bool_], period: float, U: float
+) -> list[LoggedLeg]:
+    """Return the stretches of one state without gaps, less the run-in and the window's half at inner ends."""
+    values = record.matrix(channels)
+    state = np.where(np.all(np.isfinite(values), axis=1), is_moving.astype(int), -1)
+    edges = np.concatenate([[0], np.flatnonzero(np.diff(state)) + 1, [len(state)]])
+    lead, tail = (round(share * period / record.dt) for share in (_RUN_IN_PERIODS, 0.5 * _WINDOW_PERIODS))
+    legs = []
+    for first, last in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
+        begin, end = first + (lead if first else 0), last - (tail if last < len(state) else 0)
+        if state[first] < 0 or end - begin < 2:
+            continue
+        speed = float(np.nanmean(record["u"][begin:end])) if "u" in record else U
+        legs.append(LoggedLeg(
+            record.name, float(record.time[begin]), record.dt, values[begin:end], bool(state[first]), speed,
+        ))  # fmt: skip
+    return legs
+
+
+# Mean squares of a loop in waves: as linear theory has them in a sea, and as the spectra of legs show them.
+
+_LEAST_WAVES = 0.01  # of the largest density of the elevation, below which there are no waves; chosen
+
+
+@dataclass(frozen=True)
+class LoopMoments:
+    """Mean squares, SI: of the output without control and with it, of the actuator, its rate and its acceleration."""
+
+    free: float
+    output: float
+    actuator: float
+    rate: float
+    acceleration: float
+
+    @property
+    def reduction(self) -> float:
+        """Return the share of the output's rms that control takes off."""
+        return 1.0 - math.sqrt(self.output / self.free)
+
+    @property
+    def reversals(self) -> float:
+        """Return how often the actuator turns back in an hour."""
+        return reversals_per_hour(math.sqrt(self.rate), math.sqrt(self.acceleration))
+
+
+def mean_moments(moments: Sequence[LoopMoments]) -> LoopMoments:
+    """Return the mean of legs of equal weight."""
+    rows = [(one.free, one.output, one.actuator, one.rate, one.acceleration) for one in moments]
+    return LoopMoments(*np.mean(rows, axis=0).tolist())
+
+
+def predicted_moments(loop: TransferLoop, sea: EncounteredSea, unknowns: Array) -> LoopMoments:
+    """Return the moments of a loop at its gains in a sea of these unknowns (3,)."""
+    omega = sea.omega_e
+    free = np.abs(loop.disturbance.frequency_response(omega)) ** 2 * sea.disturbance_energy(unknowns)
+    controller = loop.gain_values @ loop.controller_terms(omega)
+    output = free / np.abs(1.0 + controller * loop.plant.frequency_response(omega)) ** 2
+    actuator = np.abs(controller) ** 2 * output
+    sums = (free, output, actuator, omega**2 * actuator, omega**4 * actuator)
+    return LoopMoments(*(float(np.sum(part)) for part in sums))
+
+
+def logged_moments(products: Complex, omega: Array, plant: Complex) -> LoopMoments:
+    """Return the moments of a leg, its output without control as y - P a.
+
+    products: (k, c, c), means over segments of transforms times conjugate transforms, output and actuator first;
+    omega: (k,), rad/s; plant: P, (k,).
+    """
+    outputs, actuators = (np.real(products[:, place, place]) for place in (0, 1))
+    free = outputs - 2.0 * np.real(plant * products[:, 1, 0]) + np.abs(plant) ** 2 * actuators
+    step = float(omega[1] - omega[0])
+    sums = (free, outputs, actuators, omega**2 * actuators, omega**4 * actuators)
+    return LoopMoments(*(float(np.sum(part)) * step for part in sums))
+
+
+def plain_reduction(on: Complex, off: Complex) -> float:
+    """Return the reduction of the rms between mean products (k, c, c) with and without control."""
+    controlled, free = (float(np.sum(np.real(part[:, 0, 0]))) for part in (on, off))
+    return 1.0 - math.sqrt(controlled / free)
+
+
+def reduction_by_waves(on: Complex, off: Complex) -> float:
+    """Return the reduction with the motion without control carried to the waves met with it, frequency by frequency.
+
+    on, off: mean products (k, 3, 3), the recorded elevation last. Frequencies at which there are no waves are left out.
+    """
+    waves_on, waves_off = (np.real(part[:, 2, 2]) for part in (on, off))
+    strong = waves_off > _LEAST_WAVES * np.max(waves_off)
+    carried = np.sum((np.real(off[:, 0, 0]) * waves_on)[strong] / waves_off[strong])
+    return 1.0 - math.sqrt(float(np.sum(np.real(on[strong, 0, 0])) / carried))
+
+
+# What chance makes of a value of spectra: segments of each leg left out in turn.
+
+_TOGETHER = 2  # segments left out together, as neighbours overlap
+
+
+def products(spectra: StretchSpectra) -> Complex:
+    """Return transforms times conjugate transforms of each segment, (m, k, c, c)."""
+    return np.einsum("mkc,mkd->mkcd", spectra.transforms, spectra.transforms.conj())
+
+
+def jackknife_deviation(legs: Sequence[Complex], value: Callable[[Sequence[Complex]], float]) -> float:
+    """Return the standard deviation of a value of the legs' mean products, (k, c, c) each.
+
+    legs: products of each leg's segments, (m, k, c, c). Pairs of segments are left out in turn (delete-group jackknife:
+    Kott 2001, Journal of Official Statistics 17, 521-526); legs are independent.
+    """
+    means = [leg.mean(axis=0) for leg in legs]
+    total = 0.0
+    for k, leg in enumerate(legs):
+        groups = np.array_split(np.arange(len(leg)), max(2, len(leg) // _TOGETHER))
+        values = [value([*means[:k], np.delete(leg, g, axis=0).mean(axis=0), *means[k + 1 :]]) for g in groups]
+        count = len(groups)
+        total += (count - 1) / count * float(np.sum((np.array(values) - np.mean(values)) ** 2))
+    return float(np.sqrt(total))
+
+
+# A stabiliser verified: legs on and off, the sea of each, what was predicted in it and what was achieved.
 
 SEGMENT_PERIODS = 12.0  # natural periods in a segment of a spectrum: a damping ratio of 0.1 spans some bins; chosen
 _LOWEST, _HIGHEST = 0.15, 5.0  # frequencies over the natural one that are looked at; chosen

@@ -1,25 +1,254 @@
-"""A task in, a design out: standard manoeuvres measured, orders searched, both scored finely, the best confirmed."""
+"""A task in, a design out: standard manoeuvres measured, orders searched, the best confirmed and warned of."""
 
 import math
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from operator import attrgetter
 
 import numpy as np
 
-from seatrial.core.results import Design, ManoeuvrePrecision
-from seatrial.core.values import InputError
+from seatrial.core.equations import Model
+from seatrial.core.results import Confirmation, Design, ManoeuvrePrecision
+from seatrial.core.results.design import count_outside_limits, is_within_limits
+from seatrial.core.values import Array, Finding, InputError, Record, Severity
 from seatrial.core.values.versions import versions
-from seatrial.estimation.design.confirm import confirm_design
-from seatrial.estimation.design.findings import findings, refuse_violated_limits
-from seatrial.estimation.design.manoeuvre_information import ManoeuvreEvaluator, assess_manoeuvre, simulate_plan
-from seatrial.estimation.design.orders import input_series, order_table, orders_at, planned_record, sample_count
-from seatrial.estimation.design.search import GENERATIONS, DesignObjective, at_sensor_rate, search_orders
-from seatrial.estimation.design.search_step import search_step
-from seatrial.estimation.design.ships import draw_ships, relative_spread
-from seatrial.estimation.design.standard_manoeuvres import StandardManoeuvre, standard_manoeuvres
-from seatrial.estimation.design.task import DesignTask
+from seatrial.estimation.design.manoeuvre_information import (
+    ManoeuvreEvaluator,
+    assess_manoeuvre,
+    input_series,
+    order_table,
+    orders_at,
+    planned_record,
+    sample_count,
+    simulate_plan,
+)
+from seatrial.estimation.design.search import (
+    GENERATIONS,
+    DesignObjective,
+    StandardManoeuvre,
+    at_sensor_rate,
+    search_orders,
+    search_step,
+    standard_manoeuvres,
+)
+from seatrial.estimation.design.task import DesignTask, PriorShips, draw_ships, relative_spread
+from seatrial.estimation.estimate.start import find_start
 from seatrial.estimation.information.symmetries import refuse_unidentifiable
+from seatrial.estimation.problem.output_error import OutputError
+from seatrial.estimation.problem.segments import cut_segments
+from seatrial.numerics.optimise import Solution, levenberg_marquardt
+from seatrial.numerics.workers import map_in_threads
+from seatrial.physics.simulate.replay import replay
+
+# Warnings on a design: limits, ships that leave them, unidentified coefficients, trials that do not confirm it.
+
+# drift angle [rad] beyond which hull models are extrapolated, ours
+_FAR_DRIFT = math.radians(45.0)
+# share of drawn ships that leave the limits, and of fits that must converge, ours
+_MANY_LEAVING, _ENOUGH_CONVERGED = 0.2, 0.8
+
+
+def refuse_violated_limits(task: DesignTask, designed: ManoeuvrePrecision) -> None:
+    """Refuse limits that no orders found keep."""
+    if is_within_limits(designed, task.request.limits):
+        return
+    every = task.request.limits.for_every_ship
+    drift = float(np.max([designed.drift, *(designed.sampled_drift if every else ())]))
+    room = float(np.max([designed.distance, *(designed.sampled_distance if every else ())]))
+    limits = task.request.limits
+    if drift > limits.drift:
+        excess = f"a drift angle of {math.degrees(drift):.3g} deg, {math.degrees(limits.drift):.3g} deg are allowed"
+    else:
+        excess = f"{room:.3g} m from the start, {limits.sea_room:.3g} m are allowed"
+    whom = "some ship of the prior reaches" if every else "the ship reaches"
+    raise InputError(
+        f"[design] cannot be kept: under the best of all orders tried {whom} {excess}; widen that limit, shorten the "
+        "trial, or narrow the inputs' ranges"
+    )
+
+
+def findings(
+    task: DesignTask, designed: ManoeuvrePrecision, confirmation: Confirmation | None, *, is_interrupted: bool
+) -> tuple[Finding, ...]:
+    """Return everything worth a warning, the gravest first."""
+    findings = list[Finding]()
+    if is_interrupted:
+        findings.append(_warning("interrupted", "the work was interrupted; this is the best so far",
+                              "let it finish for a better manoeuvre"))  # fmt: skip
+        if not is_within_limits(designed, task.request.limits):
+            findings.append(_warning("leaves-limits", "these orders leave the limits", "let the search finish"))
+    return (
+        *findings,
+        *_unidentifiable(task, designed),
+        *_limit_violations(task, designed),
+        *_confirmation_findings(designed, confirmation),
+    )
+
+
+def _warning(code: str, text: str, advice: str) -> Finding:
+    return Finding(Severity.WARNING, code, text, "", advice)
+
+
+def _unidentifiable(task: DesignTask, designed: ManoeuvrePrecision) -> list[Finding]:
+    names = task.model.parameters.free_names
+    by_model = designed.relative_error > 1.0
+    some = (
+        np.any(np.nan_to_num(designed.sampled_relative_error) > 1.0, axis=0) & ~by_model
+        if len(designed.sampled_relative_error)
+        else np.zeros_like(by_model)
+    )
+    findings = []
+    if by_model.any():
+        listed = ", ".join(n for n, bad in zip(names, by_model, strict=True) if bad)
+        findings.append(_warning("not-identifiable",
+                              f"even this manoeuvre does not identify {listed}: the standard error exceeds the value",
+                              "better sensors, a longer trial, wider limits, or give a prior for them"))  # fmt: skip
+    if some.any():
+        listed = ", ".join(n for n, bad in zip(names, some, strict=True) if bad)
+        findings.append(_warning("not-identifiable-drawn",
+                              f"for some ship of the prior this manoeuvre does not identify {listed}",
+                              "design again after a first trial, with --from and its model file"))  # fmt: skip
+    return findings
+
+
+def _limit_violations(task: DesignTask, designed: ManoeuvrePrecision) -> list[Finding]:
+    findings, count = [], len(designed.sampled_relative_error)
+    farthest = max([designed.drift, *designed.sampled_drift.tolist()])
+    if straying := count_outside_limits(designed, task.request.limits):
+        severity = Severity.WARNING if straying > _MANY_LEAVING * count else Severity.INFO
+        findings.append(Finding(severity, "straying", f"{straying} of {count} ships drawn from the prior leave the "
+                             f"limits under these orders, with up to {_drift_text(farthest)}"
+                             f"{max(designed.sampled_distance.tolist()):.0f} m from the start", "",
+                             "watch both and abort there; design.every_ship = true binds them, too"))  # fmt: skip
+    elif farthest > _FAR_DRIFT:
+        findings.append(_warning("drift", f"the manoeuvre reaches a drift angle of {math.degrees(farthest):.0f} deg "
+                              "for some ship of the prior", "few models hold so far; give a smaller design.drift, or "
+                              "abort there"))  # fmt: skip
+    return findings
+
+
+def _drift_text(farthest: float) -> str:
+    return f"{math.degrees(farthest):.0f} deg of drift and " if math.isfinite(farthest) else ""
+
+
+def _confirmation_findings(designed: ManoeuvrePrecision, confirmation: Confirmation | None) -> list[Finding]:
+    findings = []
+    if lost := designed.diverged:
+        findings.append(
+            _warning(
+                "lost",
+                f"{lost} of {len(designed.sampled_relative_error)} ships drawn from the prior cannot be simulated "
+                "under these orders",
+                "narrow the prior or the inputs' ranges",
+            )
+        )
+    if confirmation is not None and confirmation.converged_runs < _ENOUGH_CONVERGED * confirmation.runs:
+        findings.append(
+            _warning(
+                "unconfirmed",
+                f"only {confirmation.converged_runs} of {confirmation.runs} simulated trials "
+                "could be fitted, so that the errors predicted are not confirmed",
+                "narrow the prior, measure more channels, or lengthen the trial",
+            )
+        )
+    return findings
+
+
+# A design tried on simulated trials: noisy records of ships the prior allows, fitted by output error.
+
+# half width of the windows of the weak form over the shortest hold, ours
+WINDOW_PER_HOLD = 1.5
+# of the criterion: a move of some 1e-4 standard errors
+NEGLIGIBLE_DECREASE = 1e-8
+# standard deviations above the mean of chi squared, beyond which a fit is taken to be a wrong one; chosen
+NOISE_DEVIATIONS = 5.0
+
+
+def confirm_design(
+    task: DesignTask,
+    model_inputs: Array,
+    planned: Record,
+    ships: PriorShips,
+    seed: int,
+    report_progress: Callable[[str], None],
+) -> Confirmation:
+    """Return one noisy record and one fit for every ship; `model_inputs` are the plan's inputs at the sensors' rate."""
+    predicted = ManoeuvreEvaluator(task, ships, 1.0 / task.request.rate).evaluate(model_inputs).relative_errors
+    streams = np.random.SeedSequence(seed).spawn(ships.count)
+
+    def fitted(number: int) -> Solution | None:
+        ship = _model_with_values(task.model, ships.parameters[number])
+        record = _simulate_trial(task, ship, planned, np.random.default_rng(streams[number]))
+        return None if record is None else _fit_record(task, record)
+
+    report_progress(f"confirming: {ships.count} simulated trials")
+    results = map_in_threads(fitted, list(range(ships.count)))
+    places = [task.model.parameters.index(n) for n in task.model.parameters.free_names]
+    scale = np.array([p.characteristic_scale for p in task.model.parameters.free])
+    errors, bounds = [], []
+    for number, result in enumerate(results):
+        if result is not None and result.status.is_success:
+            true = ships.parameters[number, places]
+            # smaller values count by their scale; chosen
+            errors.append((result.point - true) / np.where(np.abs(true) > 1e-3 * scale, np.abs(true), scale))
+            bounds.append(predicted[number])
+    none = np.full((1, len(places)), np.nan)
+    return Confirmation(ships.count, len(errors), _rms(errors or none), _rms(bounds or none))
+
+
+def _fit_record(task: DesignTask, record: Record) -> Solution:
+    """Return the fit from the weak form's start; where it leaves more than noise, the better of it and another start.
+
+    The other start is the model's own values.
+    """
+    outputs = tuple(task.sensors)
+    problem = OutputError(
+        task.model, cut_segments(task.model, [record], outputs, None), np.array(list(task.sensors.values())), workers=1
+    )
+    local = np.array([[task.initial_state[task.model.states.index(s)] for s in problem.starts]])
+    count = len(record) * len(outputs)
+    # half of chi squared, whose mean is its degrees of freedom, and its variance twice these
+    noise = 0.5 * (count + NOISE_DEVIATIONS * math.sqrt(2.0 * count))
+    solutions: list[Solution] = []
+    for shared in (*_weak_form_start(task, problem, record), problem.start()):
+        solutions.append(levenberg_marquardt(problem, shared, local, negligible=NEGLIGIBLE_DECREASE).solution)
+        if solutions[-1].status.is_success and solutions[-1].value <= noise:
+            break
+    return min(solutions, key=lambda solution: solution.value)
+
+
+def _weak_form_start(task: DesignTask, problem: OutputError, record: Record) -> list[Array]:
+    """Return the weak form's start; none where the sensors do not show every state."""
+    try:
+        return [find_start(problem, [record], WINDOW_PER_HOLD * task.shortest_hold).common_parameters]
+    except InputError:
+        return []
+
+
+def _model_with_values(model: Model, values: Array) -> Model:
+    return model.with_values(dict(zip(model.parameters.names, values.tolist(), strict=True)))
+
+
+def _simulate_trial(task: DesignTask, ship: Model, planned: Record, generator: np.random.Generator) -> Record | None:
+    """Return sensors and inputs of a ship that follows the plan; None where the simulation diverges."""
+    start = dict(zip(ship.states, task.initial_state.tolist(), strict=True))
+    try:
+        simulated = replay(ship, planned, start)
+    except InputError:
+        return None
+    channels = {name: simulated.channel(name) for name in ship.input_names}
+    for name, deviation in task.sensors.items():
+        channel = simulated.channel(name)
+        channels[name] = channel.with_values(channel.values + deviation * generator.standard_normal(len(simulated)))
+    return replace(simulated, channels=channels)
+
+
+def _rms(values: "list[Array] | Array") -> Array:
+    return np.sqrt(np.mean(np.square(values), axis=0))
+
+
+# A task in, a design out: standard manoeuvres measured, orders searched, both scored finely, the best confirmed.
 
 # simulated trials that confirm a design, ours
 CONFIRMATION_RUNS = 20

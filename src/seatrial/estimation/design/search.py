@@ -1,25 +1,252 @@
-"""The search: orders whose worst ship, measured against standard sequences, is identified best."""
+"""The search for a manoeuvre: orders whose worst ship, measured against standard manoeuvres, is identified best."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from operator import itemgetter
 
 import numpy as np
 
-from seatrial.core.values import Array
+from seatrial.core.results import Actuator
+from seatrial.core.values import Array, InputError
 from seatrial.data.trial.design_request import DesignCriterion
-from seatrial.estimation.design.exchange import ExchangedOrders, coordinate_exchange
 from seatrial.estimation.design.manoeuvre_information import (
     ManoeuvreEvaluator,
     ManoeuvreInformation,
+    actuator_response,
+    input_series,
     leaves_limits,
     limit_excess,
+    order_counts,
+    orders_at,
+    sample_count,
 )
-from seatrial.estimation.design.orders import input_series, order_counts, orders_at
-from seatrial.estimation.design.standard_manoeuvres import StandardManoeuvre
-from seatrial.estimation.design.task import DesignTask
+from seatrial.estimation.design.task import FEWEST_ORDERS, DesignTask, PriorShips
 from seatrial.numerics.optimise import AdaptationSettings, Box, CovarianceAdaptation, Solution, Status
 from seatrial.numerics.workers import map_in_threads
+from seatrial.physics.manoeuvres.programme import binary_sequence, programme
+from seatrial.physics.simulate.replay import inputs_of
+from seatrial.physics.simulate.states import RUDDER
+from seatrial.physics.simulate.steer import SOLAS_SLEW_RATE, manoeuvre
+
+# Exchange of single orders: one after another takes the value that lowers the cost most (Meyer & Nachtsheim 1995).
+
+# as shares of the range; what lies beyond an end means that end
+MOVES = np.array([-1.0, -0.5, -0.2, 0.2, 0.5, 1.0])
+# decrease of the cost in a whole round below which the exchange ends, ours
+NO_GAIN = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class ExchangedOrders:
+    """A point of the unit box, its cost, and the evaluations that the exchange spent on it so far."""
+
+    point: Array
+    cost: float
+    evaluations: int = 0
+
+
+def coordinate_exchange(
+    cost: Callable[[Array], float], start: ExchangedOrders, generator: np.random.Generator, evaluations: int
+) -> Iterator[ExchangedOrders]:
+    """Return the best point after each coordinate.
+
+    Coordinates come in random order, all of them before any comes again; it ends when a whole round lowers the cost by
+    less than `NO_GAIN`, or when the evaluations are spent.
+    """
+    point, value, spent, before = start.point, start.cost, 0, np.inf
+    while before - value > NO_GAIN:
+        before = value
+        for place in generator.permutation(len(point)):
+            candidates = _exchange_candidates(point, int(place))
+            costs = map_in_threads(cost, candidates)
+            spent += len(costs)
+            least = int(np.argmin(costs))
+            if costs[least] < value:
+                point, value = candidates[least], costs[least]
+            yield ExchangedOrders(point, value, spent)
+            if spent >= evaluations:
+                return
+
+
+def _exchange_candidates(point: Array, coordinate: int) -> list[Array]:
+    candidates = []
+    for to in np.unique(np.clip(point[coordinate] + MOVES, 0.0, 1.0)):
+        if to != point[coordinate]:
+            candidates.append(point.copy())
+            candidates[-1][coordinate] = to
+    return candidates
+
+
+# The standard manoeuvres a design is measured by: equal duration, the same inputs, ranges, rates and ships.
+
+# switching times as shares of the designed one's hold; amplitudes as shares of the range, the first that keeps within
+SWITCHING_SHARES = (1.0 / 3.0, 2.0 / 3.0, 1.0, 4.0 / 3.0)
+# shares of the actuators' range that binary sequences are tried with, largest first, ours
+AMPLITUDES = (1.0, 0.85, 0.7, 0.55, 0.4, 0.25, 0.1)
+# of the binary sequences
+SEQUENCE_SEEDS = (0, 1)
+# deg; 10/10 and 20/20 by IMO MSC.137(76), 30/30 ours
+_ZIGZAG_ANGLES = (10.0, 20.0, 30.0)
+# of angles and of counts of holds
+_ROUNDING = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class StandardManoeuvre:
+    """A standard manoeuvre; `inputs_for` gives its inputs for ships and step of an evaluator, in the model's signs.
+
+    One course (rows, nu) for all ships, or one each (ships, rows, nu) where a helmsman steers them.
+    """
+
+    name: str
+    inputs_for: Callable[[ManoeuvreEvaluator], Array]
+    is_random: bool = False
+
+
+def standard_manoeuvres(evaluator: ManoeuvreEvaluator) -> list[StandardManoeuvre]:
+    """Return random binary sequences and, by the model, zigzags and turning circles, steps, or steps and a sweep."""
+    task = evaluator.task
+    drawn = (_largest_within_limits(evaluator, share, seed) for share in SWITCHING_SHARES for seed in SEQUENCE_SEEDS)
+    sequences = list({one.name: one for one in drawn}.values())  # a short trial shortens all holds to one
+    if task.model.equations.layout:
+        return [*sequences, StandardManoeuvre("steps one by one", _single_step_inputs)]
+    if not _is_steered(task):
+        return [*sequences, StandardManoeuvre("sine sweep", _sweep_inputs), StandardManoeuvre("steps", _step_inputs)]
+    steered = [StandardManoeuvre(text, partial(_steered_inputs, text)) for text in _programmes(task)]
+    return [*sequences, *(r for r in steered if _can_be_steered(evaluator, r))]
+
+
+def binary_sequence_inputs(hold: float, amplitude: float, seed: int, evaluator: ManoeuvreEvaluator) -> Array:
+    """Every actuator between its ends, or `amplitude` of the way to them, by maximum length sequences of their own."""
+    task, orders = evaluator.task, list[Array]()
+    switched = replace(task, request=task.request.with_hold(hold))
+    for j, actuator in enumerate(task.request.actuators):
+        count = int(np.ceil(task.request.duration / hold - _ROUNDING))
+        signs = np.sign(np.resize(binary_sequence(1.0, seed + 10 * j), count))
+        orders.append(_mid_range(actuator) + signs * amplitude * 0.5 * (actuator.upper - actuator.lower))
+    return input_series(switched, orders, evaluator.dt)
+
+
+def _largest_within_limits(evaluator: ManoeuvreEvaluator, switching: float, seed: int) -> StandardManoeuvre:
+    """Return the largest amplitude whose drift and distance keep within the limits; else the smallest tried."""
+    task = evaluator.task
+    hold = max(switching * task.shortest_hold, 2.0 / task.request.rate)
+    hold = min(hold, task.request.duration / FEWEST_ORDERS)
+    standard = StandardManoeuvre("", _step_inputs)
+    for share in AMPLITUDES:
+        standard = StandardManoeuvre(
+            f"prbs:{100 * share:.0f}%:{hold:.3g} s:{seed}",
+            partial(binary_sequence_inputs, hold, share, seed),
+            is_random=True,
+        )
+        precision = evaluator.evaluate(standard.inputs_for(evaluator))
+        if not leaves_limits(task, precision) and np.isfinite(precision.relative_errors).all():
+            break
+    return standard
+
+
+def _mid_range(actuator: Actuator) -> float:
+    return 0.5 * (actuator.lower + actuator.upper)
+
+
+def _is_steered(task: DesignTask) -> bool:
+    return "psi" in task.model.states and any(a.name == RUDDER for a in task.request.actuators)
+
+
+def _programmes(task: DesignTask) -> list[str]:
+    """Return zigzags that the rudder's range allows, compressed ones as long as fits, the hardest turning circle."""
+    (rudder,) = [a for a in task.request.actuators if a.name == RUDDER]
+    most = float(np.degrees(min(rudder.upper, -rudder.lower)))
+    angles = [a for a in _ZIGZAG_ANGLES if a <= most + _ROUNDING]
+    texts = [f"zigzag:{a:g}/{a:g}" for a in angles]
+    if most >= _ZIGZAG_ANGLES[-1] - _ROUNDING:
+        texts += ["consecutive-zigzags:1", "consecutive-zigzags:2"]
+    return [*texts, f"turning-circle:{most:.4g}"] if most > 0.0 else texts
+
+
+def _can_be_steered(evaluator: ManoeuvreEvaluator, standard: StandardManoeuvre) -> bool:
+    """Return whether no ship is lost under the helmsman."""
+    try:
+        standard.inputs_for(evaluator)
+    except InputError:
+        return False
+    return True
+
+
+def _steered_inputs(text: str, evaluator: ManoeuvreEvaluator) -> Array:
+    """Return each ship under the helmsman; after the last execute the rudder stays."""
+    return np.stack([_simulate_steered(evaluator, row, text) for row in evaluator.ships.parameters])
+
+
+def _simulate_steered(evaluator: ManoeuvreEvaluator, parameters: Array, text: str) -> Array:
+    task, model = evaluator.task, evaluator.task.model
+    ship = model.with_parameters(
+        model.parameters.with_values(dict(zip(model.parameters.names, parameters, strict=True)))
+    )
+    (rudder,) = [a for a in task.request.actuators if a.name == RUDDER]
+    step = 1.0 / task.request.rate
+    other_inputs = {a.name: task.neutral_positions[a.name] for a in task.request.actuators if a.name != RUDDER}
+    record = manoeuvre(
+        ship,
+        programme(text),
+        dt=step,
+        duration=task.request.duration,
+        speed=float(task.initial_state[model.states.index("u")]) if "u" in model.states else task.request.speed,
+        inputs={**task.request.held, **other_inputs},
+        slew_rate=rudder.rate if np.isfinite(rudder.rate) else SOLAS_SLEW_RATE,
+    )
+    held = inputs_of(model, record)[:: round(evaluator.dt / step)]
+    count = sample_count(task, evaluator.dt)
+    return np.concatenate([held, np.repeat(held[-1:], max(0, count - len(held)), axis=0)])[:count]
+
+
+def _sweep_inputs(evaluator: ManoeuvreEvaluator) -> Array:
+    """All actuators swing between their ends, from one swing in the trial to one in four holds, evenly faster."""
+    task, time = evaluator.task, evaluator.dt * np.arange(sample_count(evaluator.task, evaluator.dt))
+    first, last = 1.0 / task.request.duration, 0.25 / task.shortest_hold
+    return _drive_all(
+        evaluator, np.sin(2.0 * np.pi * (first * time + 0.5 * (last - first) * time**2 / task.request.duration))
+    )
+
+
+def _step_inputs(evaluator: ManoeuvreEvaluator) -> Array:
+    """Return steps from end to end, eight times."""
+    time = evaluator.dt * np.arange(sample_count(evaluator.task, evaluator.dt))
+    # eight steps, as said above
+    return _drive_all(evaluator, np.where((8.0 * time / evaluator.task.request.duration).astype(int) % 2, 1.0, -1.0))
+
+
+def _single_step_inputs(evaluator: ManoeuvreEvaluator) -> Array:
+    """Return each actuator to its upper, then each to its lower end for a part of the trial, the rest in the middle."""
+    count = len(evaluator.task.request.actuators)
+    rows = sample_count(evaluator.task, evaluator.dt)
+    step = (2 * count * np.arange(rows)) // rows
+    return _drive(
+        evaluator, np.where(step[:, None] % count == np.arange(count), np.where(step < count, 1.0, -1.0)[:, None], 0.0)
+    )
+
+
+def _drive_all(evaluator: ManoeuvreEvaluator, course: Array) -> Array:
+    """Return every actuator along a course (rows,) between -1 and 1, at its own rate."""
+    return _drive(evaluator, np.tile(course[:, None], (1, len(evaluator.task.request.actuators))))
+
+
+def _drive(evaluator: ManoeuvreEvaluator, courses: Array) -> Array:
+    """Return each actuator along its course between -1 and 1, (rows, actuators), at its own rate."""
+    task, dt = evaluator.task, evaluator.dt
+    inputs = np.tile(task.neutral_inputs, (len(courses), 1))
+    for a, course in zip(task.request.actuators, courses.T, strict=True):
+        j = task.model.input_names.index(a.name)
+        free = replace(a, hold=dt)
+        wanted = actuator_response(
+            free, _mid_range(a) + 0.5 * (a.upper - a.lower) * course, task.neutral_positions[a.name], dt, len(course)
+        )
+        inputs[:, j] = -wanted if task.model.inputs[j].is_reversed else wanted
+    return inputs
+
+
+# The search: orders whose worst ship, measured against standard sequences, is identified best.
 
 # the mean over ships of (error / error of the best standard sequence)^4: near the worst ship's, and smooth
 MEAN_POWER = 4.0
@@ -162,3 +389,46 @@ def _random_sequences(task: DesignTask, generator: np.random.Generator) -> list[
 def at_sensor_rate(evaluator: ManoeuvreEvaluator) -> ManoeuvreEvaluator:
     """Return the same ships at the sensors' rate."""
     return replace(evaluator, dt=1.0 / evaluator.task.request.rate)
+
+
+# The step of the search: as coarse as leaves the errors of a random binary sequence what they are.
+
+# steps in the shortest hold at least; chosen
+_STEPS_PER_HOLD = 4
+# largest relative change of a ship's worst error that a coarser step may make; chosen
+_TOLERANCE = 0.05
+# ships that this is tried on, the model itself first; chosen
+_SHIPS_TRIED = 7
+# share of its range that the sequence moves each actuator by: all, where motions are quickest
+_AMPLITUDE = 1.0
+
+
+def search_step(task: DesignTask, ships: PriorShips) -> float:
+    """Return the step [s], a whole number of samples that divides every hold; the sensors' own where none is good.
+
+    Steps that divide no hold are none: orders that change between steps put the errors off.
+    """
+    few = PriorShips(ships.parameters[:_SHIPS_TRIED], ships.precision)
+    fine = ManoeuvreEvaluator(task, few, 1.0 / task.request.rate)
+    right = _worst_errors(fine)
+    kept = np.isfinite(right)
+    for samples in _dividing_counts(task):
+        coarse = replace(fine, dt=samples / task.request.rate)
+        if np.all(np.abs(_worst_errors(coarse) - right)[kept] <= _TOLERANCE * right[kept]):
+            return coarse.dt
+    return fine.dt
+
+
+def _dividing_counts(task: DesignTask) -> Iterator[int]:
+    """Yield the counts of samples that divide the trial and every hold, largest first."""
+    request = task.request
+    spans = [request.rate * s for s in (request.duration, *(a.hold for a in request.actuators))]
+    for count in range(int(request.rate * task.shortest_hold / _STEPS_PER_HOLD + _ROUNDING), 1, -1):
+        if all(abs(span - count * round(span / count)) < _ROUNDING for span in spans):
+            yield count
+
+
+def _worst_errors(evaluator: ManoeuvreEvaluator) -> Array:
+    """Return the worst coefficient's relative standard error of each ship; NaN for a lost one."""
+    inputs = binary_sequence_inputs(evaluator.task.shortest_hold, _AMPLITUDE, 0, evaluator)
+    return evaluator.evaluate(inputs).relative_errors.max(axis=1)

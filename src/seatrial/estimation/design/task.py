@@ -1,17 +1,75 @@
-"""What a search for a manoeuvre is given: model, sensors, time, what may be moved and how far; tested first."""
+"""What a search for a manoeuvre is given: model, sensors, time, what may be moved and how far; ships of the prior."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+
+import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.results import Actuator
-from seatrial.core.values import Array, InputError, Ship, spelling_hint
+from seatrial.core.values import Array, InputError, Record, Ship, spelling_hint
+from seatrial.data.check.motion import sample_noise
 from seatrial.data.folder.model_file import ModelFile
-from seatrial.data.trial import Trial
-from seatrial.data.trial.design_request import DesignRequest
-from seatrial.estimation.design.from_records import recorded_request
+from seatrial.data.trial import Trial, load_records
+from seatrial.data.trial.design_request import DesignRequest, InputRange
+from seatrial.data.trial.trial import Role
 from seatrial.physics.simulate.states import approach_speed, held_inputs, settled_actuators
+
+# A manoeuvre designed like the recorded ones: as long, with orders as large and as quick, by the same sensors.
+
+# percentiles of an input that are its range and of its steps that are its rate; fewest orders of a run; chosen
+_REACH, _FASTEST, _ORDERS = 99.0, 99.0, 20
+_SLOWEST_RATE = 1.0  # Hz at which a design is sampled at most: standard errors go with the square root; chosen
+
+
+def recorded_request(trial: Trial) -> tuple[DesignRequest, dict[str, float]]:
+    """Return the request for a manoeuvre like the training runs, and the noise of their sensors [SI] by observable.
+
+    As long as the longest run; an input that moves may be ordered as far and as fast as it was, a twentieth of the run
+    apart; the others are held at their median.
+
+    Raises:
+        InputError: the trial has no training run, or no input moves in one.
+    """
+    records = [one.record for one in load_records(trial)[0] if one.role is Role.TRAIN] if trial.runs else []
+    if not records:
+        raise InputError("there is no table [design]; add it with duration, rate and [design.inputs]")
+    longest = max(records, key=lambda record: record.duration)
+    names = [name for name in trial.model.input_names if all(name in record for record in records)]
+    hold = longest.duration / _ORDERS
+    ranges = {name: _range(records, name, hold) for name in names}
+    moved = {name: one for name, one in ranges.items() if one is not None}
+    if not moved:
+        raise InputError("no input moves in the training runs; add a table [design] with [design.inputs]")
+    held = {name: float(np.median(longest[name])) for name in names if name not in moved}
+    request = DesignRequest(
+        duration=longest.duration, rate=min(_SLOWEST_RATE, 1.0 / longest.dt), inputs=moved, held=held
+    )
+    return request, _sensors(trial.model, records)
+
+
+def _range(records: Sequence[Record], name: str, hold: float) -> InputRange | None:
+    """How far an input went to both sides, SI; None where it hardly moves."""
+    values = np.concatenate([record[name] for record in records])
+    low, high = (float(one) for one in np.percentile(values, [100.0 - _REACH, _REACH]))
+    if high - low <= 0.1 * max(abs(low), abs(high)):  # of its size: it is steady; chosen
+        return None
+    steps = np.concatenate([np.abs(np.diff(record[name])) / record.dt for record in records])
+    rate = float(np.percentile(steps, _FASTEST))
+    unit = records[0].channel(name).unit
+    return InputRange(lower=low, upper=high, unit=unit, rate=rate or None, hold=hold)
+
+
+def _sensors(model: Model, records: Sequence[Record]) -> dict[str, float]:
+    levels: Mapping[str, Array] = {
+        name: np.array([sample_noise(record[name]) for record in records if name in record])
+        for name in model.observables
+    }
+    return {name: float(np.median(one)) for name, one in levels.items() if one.size and np.median(one) > 0.0}
+
+
+# What a search for a manoeuvre is given: model, sensors, time, what may be moved and how far; tested first.
 
 # orders of an actuator that a trial must have room for, ours
 FEWEST_ORDERS = 4
@@ -150,3 +208,81 @@ def _demand_sizes(model: Model) -> None:
                 f"coefficient '{p.name}' is zero, so that nothing can be relative to it; "
                 "give it a likely value under [model.start], or leave it out of model.free"
             )
+
+
+# Ships that the prior allows: the model itself first, then draws that cover what it may be wrong by.
+
+# ships drawn lie within so many standard deviations, ours
+_MAX_DEVIATES = 2.0
+
+
+@dataclass(frozen=True, eq=False)
+class PriorShips:
+    """Parameters (n, np) of every ship, the model's own first; precision (k,) of the free coefficients' priors."""
+
+    parameters: Array
+    precision: Array
+
+    @property
+    def count(self) -> int:
+        """How many ships there are."""
+        return len(self.parameters)
+
+
+def draw_ships(task: DesignTask, seed: int, draws: int | None = None) -> PriorShips:
+    """The model and `draws` ships about it (default: the task's), spread evenly (Latin hypercube; McKay et al. 1979).
+
+    A coefficient without a prior differs by up to the task's spread of its characteristic scale, evenly; one with a
+    Gaussian prior, or all where a fit gives their covariance, by normal deviates of up to two standard deviations.
+    Bounds are kept.
+    """
+    parameters = task.model.parameters
+    free = parameters.free
+    count = task.request.draws if draws is None else draws
+    unit = _latin_hypercube(count, len(free), np.random.default_rng(seed))
+    drawn = np.tile(parameters.values, (count + 1, 1))
+    if count:
+        values = np.clip(_prior_values(task, unit), [p.lower for p in free], [p.upper for p in free])
+        drawn[1:, [parameters.index(p.name) for p in free]] = values
+    precision = np.array([0.0 if p.prior is None else p.prior.standard_deviation**-2 for p in free])
+    return PriorShips(drawn, precision)
+
+
+def relative_spread(task: DesignTask) -> Array:
+    """Return how far ships differ in each free coefficient, as a share of its magnitude, shape (k,)."""
+    free = task.model.parameters.free
+    if task.covariance is not None:
+        deviations = np.sqrt(np.diag(task.covariance))
+        return np.array([d / p.characteristic_scale for d, p in zip(deviations, free, strict=True)])
+    return np.array(
+        [
+            task.request.relative_spread if p.prior is None else p.prior.standard_deviation / p.characteristic_scale
+            for p in free
+        ]
+    )
+
+
+def _latin_hypercube(count: int, size: int, generator: np.random.Generator) -> Array:
+    """Return one point in every `count`-th part of each side of the unit cube, (count, size)."""
+    parts = np.array([generator.permutation(count) for _ in range(size)]).T
+    return (parts + generator.random((count, size))) / max(count, 1)
+
+
+def _prior_values(task: DesignTask, unit: Array) -> Array:
+    free = task.model.parameters.free
+    values = np.array([p.value for p in free])
+    normal = np.clip(_normal_deviates(unit), -_MAX_DEVIATES, _MAX_DEVIATES)
+    if task.covariance is not None:
+        roots, vectors = np.linalg.eigh(task.covariance)
+        return values + normal @ (vectors * np.sqrt(np.maximum(roots, 0.0))).T
+    even = (2.0 * unit - 1.0) * task.request.relative_spread
+    scale = np.array([p.characteristic_scale for p in free])
+    own = [p.prior is not None for p in free]
+    deviation = np.array([0.0 if p.prior is None else p.prior.standard_deviation for p in free])
+    return values + np.where(own, normal * deviation, even * scale)
+
+
+def _normal_deviates(unit: Array) -> Array:
+    from scipy.special import ndtri
+
+    return ndtri(np.clip(unit, 1e-9, 1.0 - 1e-9))  # within 6 standard deviations; chosen

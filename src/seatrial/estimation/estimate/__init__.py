@@ -1,9 +1,13 @@
 """Start, search, criterion, intervals: from runs to an estimate (the decision table of docs/estimation.md)."""
 
+from seatrial.estimation.estimate.assemble import Runs, training_runs
 from seatrial.estimation.estimate.fit import Estimation, estimate_model, with_segment_seconds
-from seatrial.estimation.estimate.runs import Runs, training_runs
-from seatrial.estimation.estimate.settings import INITIAL_STATE_SHIP_LENGTHS, EstimatorOptions, IntervalMethod
-from seatrial.estimation.estimate.time_scale import ship_length_seconds
+from seatrial.estimation.estimate.settings import (
+    INITIAL_STATE_SHIP_LENGTHS,
+    EstimatorOptions,
+    IntervalMethod,
+    ship_length_seconds,
+)
 
 __all__ = [
     "INITIAL_STATE_SHIP_LENGTHS", "Estimation", "EstimatorOptions", "IntervalMethod", "Runs", "estimate_model",

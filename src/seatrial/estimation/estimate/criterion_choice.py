@@ -8,10 +8,9 @@ import numpy as np
 
 from seatrial.core.values import Array, ProgressReporter
 from seatrial.data.trial import EstimateSettings, FitCriterion
+from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.disturbance_choice import ALIKE, DisturbanceChoice, choose_disturbance, likeliest
 from seatrial.estimation.estimate.disturbance_screen import HINT, spectral_hint
-from seatrial.estimation.estimate.input_offsets import with_input_offsets
-from seatrial.estimation.estimate.integration_steps import filter_with_steps, sufficient_steps_of_filter
 from seatrial.estimation.estimate.intervals import RUNS_FOR_JACKKNIFE
 from seatrial.estimation.estimate.left_out_parts import (
     Parts,
@@ -21,13 +20,15 @@ from seatrial.estimation.estimate.left_out_parts import (
     output_error_points,
 )
 from seatrial.estimation.estimate.newton_refinement import refine_by_newton
-from seatrial.estimation.estimate.plausibility import is_lost, with_plausible_start
+from seatrial.estimation.estimate.plausibility import is_lost, with_input_offsets, with_plausible_start
 from seatrial.estimation.estimate.point_estimate import (
     PointEstimate,
+    filter_with_steps,
     fit_output_error,
     residual_correlation,
     residual_spread,
     rounding_level,
+    sufficient_steps_of_filter,
 )
 from seatrial.estimation.estimate.process_noise import (
     ProcessNoise,
@@ -36,11 +37,9 @@ from seatrial.estimation.estimate.process_noise import (
     implied_intensities,
     implied_process_noise,
 )
-from seatrial.estimation.estimate.runs import Runs
+from seatrial.estimation.estimate.process_noise_interval import with_whole_run_intensity
 from seatrial.estimation.estimate.settings import WHITE_INFLATION
-from seatrial.estimation.estimate.whole_run_intensity import with_whole_run_intensity
-from seatrial.estimation.information.paired_errors import is_no_worse
-from seatrial.estimation.information.whiteness import WhitenessTest, whiteness_test
+from seatrial.estimation.information.whiteness import WhitenessTest, is_no_worse, whiteness_test
 from seatrial.estimation.problem.output_error import OutputError
 
 PREDICTION_ERROR, WHOLE_RUNS = "prediction error", "output error over whole runs"

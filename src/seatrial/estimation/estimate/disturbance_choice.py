@@ -30,7 +30,7 @@ from seatrial.estimation.estimate.newton_refinement import refine_by_newton
 from seatrial.estimation.estimate.plausibility import is_lost
 from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.estimate.process_noise import ProcessNoise, approach_optimum
-from seatrial.estimation.information.spectral_peaks import SpectralPeak, spectral_peaks
+from seatrial.estimation.information.frequency_response import SpectralPeak, spectral_peaks
 from seatrial.estimation.problem.prediction_error import PredictionError
 from seatrial.numerics.optimise import Optimum, levenberg_marquardt
 

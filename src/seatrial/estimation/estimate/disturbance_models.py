@@ -25,7 +25,7 @@ from seatrial.core.equations.augment import (
 from seatrial.core.equations.model import channel_of
 from seatrial.core.values import Array, InputError, Record
 from seatrial.estimation.estimate.process_noise import ProcessNoise
-from seatrial.estimation.information.spectral_peaks import SpectralPeak
+from seatrial.estimation.information.frequency_response import SpectralPeak
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.prediction_error import PredictionError
 from seatrial.physics.sensors.wave_motion import RATES, WaveMotion, motion_of

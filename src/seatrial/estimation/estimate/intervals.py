@@ -9,7 +9,7 @@ from seatrial.core.values import Array, InputError
 from seatrial.estimation.estimate.disturbance_choice import DisturbanceChoice
 from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.estimate.process_noise import ProcessNoise
-from seatrial.estimation.estimate.resampling import ReportCount, bootstrap_fits, full_jackknife, run_scores
+from seatrial.estimation.estimate.process_noise_interval import ReportCount, bootstrap_fits, full_jackknife, run_scores
 from seatrial.estimation.estimate.settings import WHITE_INFLATION, IntervalMethod
 from seatrial.estimation.information.covariance import (
     Interval,

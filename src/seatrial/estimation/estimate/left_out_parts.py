@@ -11,11 +11,11 @@ from itertools import pairwise
 import numpy as np
 
 from seatrial.core.values import Array, Index
+from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.intervals import RUNS_FOR_JACKKNIFE
 from seatrial.estimation.estimate.newton_refinement import step_within
 from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.estimate.process_noise import ProcessNoise
-from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import Segments, segments_between
 from seatrial.numerics.optimise import levenberg_marquardt

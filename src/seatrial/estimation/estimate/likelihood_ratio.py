@@ -9,8 +9,7 @@ from scipy.special import chdtrc
 
 from seatrial.core.values import Array
 from seatrial.estimation.estimate.settings import WHITE_INFLATION
-from seatrial.estimation.information.autocorrelation import autocorrelation, variance_inflation
-from seatrial.estimation.information.whiteness import WhitenessTest, whiteness_test
+from seatrial.estimation.information.whiteness import WhitenessTest, autocorrelation, variance_inflation, whiteness_test
 from seatrial.estimation.problem.prediction_error import PredictionError
 from seatrial.estimation.problem.segments import Segments
 

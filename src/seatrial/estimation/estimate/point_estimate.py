@@ -1,6 +1,6 @@
-"""Output error with the noise re-estimated: the estimator behind `fit`."""
+"""Output error with the noise re-estimated: the estimator behind `fit`, and the steps by which it integrates."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -8,14 +8,121 @@ from itertools import pairwise
 import numpy as np
 
 from seatrial.core.text.words import counted
-from seatrial.core.values import Array, InputError, ProgressReporter
-from seatrial.estimation.estimate.integration_steps import sufficient_steps_of_optimum
+from seatrial.core.values import Array, Finding, InputError, ProgressReporter, Severity
 from seatrial.estimation.estimate.settings import WHITE_INFLATION
-from seatrial.estimation.information.autocorrelation import autocorrelation, variance_inflation
 from seatrial.estimation.information.covariance import inverse
+from seatrial.estimation.information.whiteness import autocorrelation, variance_inflation
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.population import SessionPopulation
-from seatrial.numerics.optimise import Optimum, Status, levenberg_marquardt
+from seatrial.estimation.problem.prediction_error import PredictionError
+from seatrial.estimation.problem.static_forces import StaticForces
+from seatrial.numerics.optimise import NormalEquations, Optimum, Status, bounded_step, levenberg_marquardt
+from seatrial.physics.simulate.batch import MOST_SUBSTEPS, SIMULATION_ERROR, is_within_range, sufficient_substeps
+
+# Runge-Kutta steps in a sample of an output-error problem: none so long that its error shows beside the noise.
+
+_START_ERROR = 0.1
+"""Error of the outputs with which a search may begin (rms, share of the noise); chosen."""
+
+_OPTIMUM_ERROR = 0.1
+"""What halving the step may move a coefficient at the optimum (share of its standard error); chosen."""
+
+
+def with_steps_of_start(problem: OutputError, shared: Array, local: Array) -> OutputError:
+    """Return the problem with enough steps in a sample for a search that begins at a point."""
+    if problem.model.is_affine:
+        return problem
+
+    def is_close(coarse: Array, fine: Array) -> bool:
+        error = np.sqrt(np.mean((fine - coarse) ** 2, axis=0)) if len(fine) else np.zeros(1)
+        return bool(np.all(error <= _START_ERROR * problem.noise))
+
+    simulate = _simulation(problem, shared, local)
+    return replace(problem, substeps=sufficient_substeps(simulate, is_close, problem.substeps))
+
+
+def _simulation(problem: OutputError, shared: Array, local: Array) -> Callable[[int], Array]:
+    """Return the outputs at a point, (rows, ny), by the number of steps in a sample."""
+
+    def simulate(count: int) -> Array:
+        with np.errstate(all="ignore"):
+            return replace(problem, substeps=count).simulated_outputs(shared, local)
+
+    return simulate
+
+
+def sufficient_steps_of_optimum(problem: OutputError, optimum: Optimum, least: int) -> int:
+    """Return so many steps in a sample, `least` or more, that halving them leaves a problem's optimum where it is.
+
+    Records of less noise than a simulation errs by, which a simulation wrote, are followed as closely as that.
+    """
+    shared, count = optimum.solution.point, least
+    if problem.model.is_affine or not np.isfinite(optimum.normal.cost):
+        return problem.substeps
+
+    def normal(substeps: int) -> NormalEquations:
+        with np.errstate(all="ignore"):
+            return replace(problem, substeps=substeps).normal(shared, optimum.local)
+
+    if np.all(problem.noise <= SIMULATION_ERROR * np.nanstd(problem.data.measured, axis=0)):
+        return sufficient_substeps(_simulation(problem, shared, optimum.local), is_within_range, least)
+    before = optimum.normal if count == problem.substeps else normal(count)
+    while 2 * count <= MOST_SUBSTEPS:
+        after = normal(2 * count)
+        is_finite = np.isfinite(before.cost) and np.isfinite(after.cost)
+        if is_finite and _is_same_optimum(problem, shared, before, after, len(problem.free)):
+            return count
+        count, before = 2 * count, after
+    return count if np.isfinite(before.cost) else problem.substeps
+
+
+def sufficient_steps_of_filter(problem: PredictionError, optimum: Optimum) -> int:
+    """Return so many steps in a sample, the problem's own or more, that halving them leaves its optimum where it is."""
+    shared, count = optimum.solution.point, problem.runs.substeps
+    if problem.runs.model.is_affine or not np.isfinite(optimum.normal.cost):
+        return count
+
+    def normal(substeps: int) -> NormalEquations:
+        with np.errstate(all="ignore"):
+            return filter_with_steps(problem, substeps).normal(shared, optimum.local)
+
+    before = normal(count)
+    while 2 * count <= MOST_SUBSTEPS:
+        after = normal(2 * count)
+        if not np.isfinite(after.cost) or _is_same_optimum(problem, shared, before, after, len(problem.runs.free)):
+            break
+        count, before = 2 * count, after
+    return count
+
+
+def filter_with_steps(problem: PredictionError, substeps: int) -> PredictionError:
+    """Return the problem with so many steps in a sample."""
+    return replace(problem, runs=replace(problem.runs, substeps=substeps), steps=None)
+
+
+def _is_same_optimum(
+    problem: OutputError | PredictionError, shared: Array, before: NormalEquations, after: NormalEquations, count: int
+) -> bool:  # fmt: skip
+    """Whether a Gauss-Newton step for the change of the gradient moves none of `count` coefficients by too much."""
+    gradient, hessian = after.without_local()
+    reduced = replace(after, gradient=gradient - before.without_local()[0], hessian=hessian)
+    step = bounded_step(reduced, problem.lower - shared, problem.upper - shared)[:count]
+    error = np.sqrt(np.maximum(np.diagonal(inverse(hessian)), 0.0))[: len(step)]
+    return bool(np.all(np.abs(step) <= _OPTIMUM_ERROR * error))
+
+
+def integration_text(problem: OutputError) -> str:
+    """Return how many steps a sample takes and what they cost; empty of one."""
+    count = problem.substeps
+    if count == 1:
+        return ""
+    return (
+        f"the craft moves within a sample of {problem.data.dt:.3g} s: {count} Runge-Kutta steps in each, which take up "
+        f"to {count} times as long as one"
+    )
+
+
+# Output error with the noise re-estimated: the estimator behind `fit`.
 
 # promised decrease of the cost at which a search ends, ours
 _NEGLIGIBLE = 1e-8
@@ -246,3 +353,36 @@ def residual_correlation(problem: OutputError, residuals: Array) -> tuple[list[A
     rho = [autocorrelation(split_segments(problem, residuals[:, i]), lags) for i in range(residuals.shape[1])]
     silent = problem.noise <= rounding_level(problem)
     return rho, np.where(silent, 1.0, [variance_inflation(r) for r in rho])
+
+
+# Whether static force points and records describe the same ship.
+
+# rms residual in standard deviations beyond which points disagree, ours
+_MAX_RMS = 2.0
+
+
+def force_consistency(estimate: PointEstimate) -> tuple[Finding, ...]:
+    """For each table of points the rms of its residuals at the estimate, in the stated standard deviations.
+
+    About 1 where the points, their stated noise and the records go together; above 2 a warning `force-misfit`.
+    """
+    problem = estimate.problem
+    values = problem.model.parameters.values
+    values[[problem.model.parameters.index(n) for n in problem.free]] = estimate.common_parameters[: len(problem.free)]
+    findings = []
+    for table in problem.extra_terms:
+        if isinstance(table, StaticForces):
+            rms = {f: float(np.sqrt(np.nanmean(gap**2))) for f, gap in table.residuals(values).items()}
+            findings.append(_force_finding(table, rms))
+    return tuple(findings)
+
+
+def _force_finding(table: StaticForces, rms: dict[str, float]) -> Finding:
+    points = table.points
+    evidence = "rms residual in standard deviations: " + ", ".join(f"{f} {value:.2g}" for f, value in rms.items())
+    if max(rms.values()) <= _MAX_RMS:
+        what = f"{points.count} forces of '{points.name}' are fitted with the records"
+        return Finding(Severity.INFO, "force-points", what, evidence)
+    what = f"the forces of '{points.name}' disagree with the model or the records by more than their stated noise"
+    advice = "check their signs, origin, scale and what they include; state a larger sd, or free more coefficients"
+    return Finding(Severity.WARNING, "force-misfit", what, evidence, advice)

@@ -1,21 +1,30 @@
-"""Where a search begins: without a guess, by the weak form of the equations; else at the model's own values."""
+"""Where a search begins: by the weak form of the equations, at the model's own values, or from several points."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.values import Array, Record
-from seatrial.estimation.estimate.integration_steps import with_steps_of_start
-from seatrial.estimation.estimate.point_estimate import residual_spread
-from seatrial.estimation.estimate.time_scale import dominant_period, is_pure_roll
+from seatrial.core.results import SearchAttempt
+from seatrial.core.values import Array, Parameter, ProgressReporter, Record
+from seatrial.estimation.estimate.point_estimate import (
+    degrees_of_freedom_share,
+    effective_inflation,
+    residual_correlation,
+    residual_spread,
+    with_steps_of_start,
+)
+from seatrial.estimation.estimate.settings import dominant_period, is_pure_roll
 from seatrial.estimation.problem.output_error import OutputError
-from seatrial.estimation.regress.weak import WeakForm
-from seatrial.numerics.optimise import levenberg_marquardt
+from seatrial.estimation.regress.operators import WeakForm
+from seatrial.numerics.optimise import NormalEquations, levenberg_marquardt
 from seatrial.physics.models.candidate_structures import course_unstable
 from seatrial.physics.simulate.replay import inputs_of
 from seatrial.physics.simulate.states import hidden_states, measured_states
+
+# Where a search begins: without a guess, by the weak form of the equations; else at the model's own values.
 
 RESTORING = "c_1"
 """Of a model of roll: the square of its natural frequency at small angles."""
@@ -109,3 +118,224 @@ def _solved(problem: WeakForm, point: Array, rounds: int) -> tuple[Array, float]
         # of the weak form, at most; chosen
         point = levenberg_marquardt(problem, point, np.zeros((0, 0)), evaluations=30).solution.point
     return point, float(np.sum(np.log(spread(point)[is_varying])))
+
+
+# Output error with the noise of each channel at what its residuals show, at every point of a search.
+
+
+@dataclass(frozen=True, eq=False)
+class ConcentratedLikelihood:
+    """Negative log-likelihood with the noise levels concentrated out (Seber & Wild 1989, section 2.2.3).
+
+    Sum of nu log(s) over channels: s the residuals' spread, nu their effective degrees of freedom. One search of it
+    does what searches for given noise and estimates of the noise do in turn. With a robust loss the spread is that of
+    the bulk, and the gradient that for a noise held there.
+
+    Attributes:
+        problem: whose `inflation` says how many samples count; its `noise` is not used.
+        known_noise: channel -> stated noise, which stays.
+    """
+
+    problem: OutputError
+    known_noise: Mapping[str, float]
+
+    @property
+    def lower(self) -> Array:
+        """Lower bounds of the shared unknowns."""
+        return self.problem.lower
+
+    @property
+    def upper(self) -> Array:
+        """Upper bounds of the shared unknowns."""
+        return self.problem.upper
+
+    @cached_property
+    def _stated(self) -> Array:
+        return np.array([self.known_noise.get(o, np.nan) for o in self.problem.data.outputs])
+
+    @cached_property
+    def _degrees_of_freedom(self) -> Array:
+        samples = np.isfinite(self.problem.data.measured).sum(axis=0) * degrees_of_freedom_share(self.problem)
+        return samples if self.problem.inflation is None else samples / self.problem.inflation
+
+    def cost(self, shared: Array, local: Array) -> float:
+        """Return the negative log-likelihood with priors and other data; infinite where the model diverges."""
+        residuals = self.residuals(shared, local)
+        return np.inf if residuals is None else self._cost(self._spread(residuals), shared)
+
+    def normal(self, shared: Array, local: Array) -> NormalEquations:
+        """Return the Gauss-Newton model at a point: that of the problem with the noise there."""
+        residuals = self.residuals(shared, local)
+        if residuals is None:
+            return replace(self.problem.normal(shared, local), cost=np.inf)
+        spread = self._spread(residuals)
+        return replace(self._with_noise(spread).normal(shared, local), cost=self._cost(spread, shared))
+
+    def residuals(self, shared: Array, local: Array) -> Array | None:
+        """Return simulated minus measured, SI, (rows, ny), NaN where nothing was measured; None after a divergence."""
+        simulated = self.problem.simulated_outputs(shared, local)
+        return simulated - self.problem.data.measured if np.all(np.isfinite(simulated)) else None
+
+    def settled_at(self, shared: Array, local: Array) -> OutputError:
+        """Return the problem with the noise of a point, and with samples counted as its residuals are correlated."""
+        residuals = self.residuals(shared, local)
+        if residuals is None:
+            return self.problem
+        problem = self._with_noise(self._spread(residuals))
+        return replace(problem, inflation=effective_inflation(residual_correlation(problem, residuals)[1]))
+
+    def _spread(self, residuals: Array) -> Array:
+        return residual_spread(self.problem, residuals)
+
+    def _with_noise(self, spread: Array) -> OutputError:
+        return replace(self.problem, noise=np.where(np.isfinite(self._stated), self._stated, spread))
+
+    def _cost(self, spread: Array, shared: Array) -> float:
+        of_channels = np.where(np.isfinite(self._stated), 0.5 * (spread / self._stated) ** 2, np.log(spread))
+        return float(self._degrees_of_freedom @ of_channels) + self.problem.prior_cost(shared)
+
+
+# Searches from several starting points: what a likelihood with more than one optimum needs.
+
+MANY_STARTS = 6
+"""Starting points for a craft with thrusters, whose curves and lags give the likelihood several optima; chosen."""
+_NEGLIGIBLE = 1e-3
+"""Promised decrease of the negative log-likelihood at which a search ends; chosen."""
+_DAMPING = 0.1
+"""Of the first step, over the Hessian's diagonal: starts lie far from the optimum; chosen."""
+_CANDIDATES = 6
+"""Points drawn for each start, of which the one with the lowest cost is searched from; chosen."""
+_SPREAD = 0.7
+"""Standard deviation of the logarithm of a drawn coefficient that keeps its sign: a factor of two; chosen."""
+
+
+@dataclass(frozen=True)
+class _Round:
+    """How many searches go on, the best ones, and for how many evaluations each."""
+
+    searches: int
+    evaluations: int
+
+
+_FIRST_EVALUATIONS = 20
+"""Of each start before any is given up: most stand then nearer to their own optimum than optima lie apart; chosen."""
+_ROUNDS = (_Round(3, 20), _Round(1, 40))
+"""What follows; chosen so that, of simulated craft, all searches end in the optimum next to the truth
+(benchmarks/thrusters_truth.py)."""
+
+
+@dataclass(frozen=True, eq=False)
+class SeveralStarts:
+    """Where the estimate goes on, and all short searches, the lowest loss first."""
+
+    start: SearchStart
+    attempts: tuple[SearchAttempt, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class _Attempt:
+    """A search so far: where it came from, where it stands, its losses there."""
+
+    origin: str
+    start: Array
+    shared: Array
+    local: Array
+    evaluations: int = 0
+    start_loss: float = np.inf
+    loss: float = np.inf
+
+    def scored(self, likelihood: ConcentratedLikelihood, local: Array) -> "_Attempt":
+        """Return it with its losses; local: initial states at its start."""
+        return replace(
+            self, start_loss=likelihood.cost(self.start, local), loss=likelihood.cost(self.shared, self.local)
+        )
+
+    def continued(self, likelihood: ConcentratedLikelihood, evaluations: int) -> "_Attempt":
+        """Return it after a further search."""
+        optimum = levenberg_marquardt(
+            likelihood, self.shared, self.local, negligible=_NEGLIGIBLE, evaluations=evaluations, damping=_DAMPING
+        )
+        solution = optimum.solution
+        return replace(
+            self, shared=solution.point, local=optimum.local, loss=solution.value,
+            evaluations=self.evaluations + solution.evaluations,
+        )  # fmt: skip
+
+
+def number_of_starts(model: Model, required: int | None) -> int:
+    """Return how many points to search from: what the trial requires, else one unless thrusters drive the craft."""
+    return required or (MANY_STARTS if model.equations.layout else 1)
+
+
+def search_from_several(
+    start: SearchStart, known_noise: Mapping[str, float], count: int, seed: int,
+    report_progress: ProgressReporter | None = None,
+) -> SeveralStarts:  # fmt: skip
+    """Return the start with the point at which the best of `count` short searches ended.
+
+    known_noise: channel -> stated noise; seed: of the drawn points.
+    """
+    local, attempts = start.initial_states, list[_Attempt]()
+    likelihood = ConcentratedLikelihood(start.problem, known_noise)
+    for origin, point in _points(likelihood, start, count, np.random.default_rng(seed)):
+        if report_progress:
+            report_progress(f"starting points: {len(attempts) + 1} of {count}, {origin}")
+        attempts.append(_Attempt(origin, point, point, local).continued(likelihood, _FIRST_EVALUATIONS))
+    for following in _ROUNDS:  # the best one shows how correlated residuals are, so that samples count as they should
+        best = min(attempts, key=lambda a: a.loss)
+        likelihood = replace(likelihood, problem=likelihood.settled_at(best.shared, best.local))
+        attempts = sorted((a.scored(likelihood, local) for a in attempts), key=lambda a: a.loss)
+        attempts[: following.searches] = [
+            a.continued(likelihood, following.evaluations) for a in attempts[: following.searches]
+        ]
+    attempts.sort(key=lambda a: a.loss)
+    best = attempts[0]
+    again = SearchStart(
+        likelihood.settled_at(best.shared, best.local), best.shared, best.local,
+        f"the best of {count} starts: {best.origin}",
+    )  # fmt: skip
+    return SeveralStarts(again, tuple(_reported(a, best, start.problem) for a in attempts))
+
+
+def _points(
+    likelihood: ConcentratedLikelihood, start: SearchStart, count: int, rng: np.random.Generator
+) -> Iterator[tuple[str, Array]]:
+    """Origin and shared unknowns of each starting point."""
+    values = start.problem.start()
+    yield start.origin, start.common_parameters
+    if count > 1:
+        yield "the model's own values", values
+    for k in range(count - 2):
+        yield f"drawn point {k + 1}", _best_drawn_point(likelihood, values, start.initial_states, rng)
+
+
+def _best_drawn_point(
+    likelihood: ConcentratedLikelihood, values: Array, local: Array, rng: np.random.Generator
+) -> Array:
+    """The point with the lowest cost of some that are drawn about the model's own values."""
+    problem = likelihood.problem
+    parameters = [problem.model.parameters[name] for name in problem.free]
+    points = []
+    for _ in range(_CANDIDATES):
+        point = values.copy()
+        point[: len(parameters)] = [_drawn_value(p, rng) for p in parameters]
+        points.append(np.clip(point, problem.lower, problem.upper))
+    return min(points, key=lambda point: likelihood.cost(point, local))
+
+
+def _drawn_value(parameter: Parameter, rng: np.random.Generator) -> float:
+    """By its prior; else by a factor of about two where zero is out of its bounds, by its size otherwise."""
+    step, prior = rng.standard_normal(), parameter.prior
+    if prior is not None and np.isfinite(prior.standard_deviation):
+        return prior.mean + prior.standard_deviation * step
+    if parameter.lower > 0.0:
+        return parameter.value * float(np.exp(_SPREAD * step))
+    return parameter.value + max(parameter.scale, abs(parameter.value)) * step
+
+
+def _reported(attempt: _Attempt, best: _Attempt, problem: OutputError) -> SearchAttempt:
+    values = dict(zip(problem.free, map(float, attempt.shared), strict=False))
+    return SearchAttempt(
+        attempt.origin, attempt.start_loss - best.loss, attempt.loss - best.loss, attempt.evaluations, values,
+        attempt is best,
+    )  # fmt: skip

@@ -13,52 +13,56 @@ from seatrial.data.trial.records import approach_condition
 from seatrial.data.trial.settings import window_lengths
 from seatrial.estimation.estimate import Estimation, IntervalMethod
 from seatrial.estimation.identify import fit_result
-from seatrial.estimation.identify.abandoned_criterion import abandoned_criterion_finding
-from seatrial.estimation.identify.antenna_place import antenna_findings
-from seatrial.estimation.identify.assumed_information import output_error_estimate
-from seatrial.estimation.identify.box_forces_effect import box_force_findings, box_force_shifts
-from seatrial.estimation.identify.box_scale import stands_on_box
-from seatrial.estimation.identify.closed_loop_findings import closed_loop_findings
-from seatrial.estimation.identify.course_stability import course_finding
-from seatrial.estimation.identify.delay_findings import delay_findings
-from seatrial.estimation.identify.differing_decays import differing_decays
-from seatrial.estimation.identify.drifting_thrust import drifting_thrust_finding
-from seatrial.estimation.identify.estimated_values_effect import (
+from seatrial.estimation.identify.assumed_values import (
+    box_force_findings,
+    box_force_shifts,
+    differing_decays,
     errors_of,
     estimated_value_shifts,
     with_effects,
     with_estimated_values,
 )
-from seatrial.estimation.identify.held_couplings import held_couplings
-from seatrial.estimation.identify.identifiability import identifiability
+from seatrial.estimation.identify.identifiability import course_finding, identifiability, stands_on_box
 from seatrial.estimation.identify.identification import Identification
-from seatrial.estimation.identify.misfit_disturbance import misfit_disturbance
-from seatrial.estimation.identify.model_selection import HOLDOUT_WINDOW_SHIP_LENGTHS, SelectedModel, with_model_spread
-from seatrial.estimation.identify.narrow_bands import narrow_band_findings
-from seatrial.estimation.identify.needless_terms import needless_term_findings
-from seatrial.estimation.identify.other_optima import other_optima
-from seatrial.estimation.identify.physical_limits import unphysical_finding
-from seatrial.estimation.identify.posterior import sample_posterior, sampling_findings
-from seatrial.estimation.identify.profile import innovation_profiles, profiles
-from seatrial.estimation.identify.refuted_priors import refuted_prior_findings
-from seatrial.estimation.identify.response_findings import response_findings
-from seatrial.estimation.identify.roll_characteristics import one_speed_finding, roll_characteristics
-from seatrial.estimation.identify.roll_inertia import gyradius_findings
-from seatrial.estimation.identify.score_test import own_criterion
-from seatrial.estimation.identify.seakeeping import seakeeping
-from seatrial.estimation.identify.sensor_errors import (
+from seatrial.estimation.identify.instruments import (
     ErrorInformation,
+    antenna_findings,
+    delay_findings,
     instrument_errors,
     with_undetected_sensor_errors,
 )
-from seatrial.estimation.identify.short_records import default_profiles, short_record_findings
-from seatrial.estimation.identify.short_time_constants import short_time_constant_findings
+from seatrial.estimation.identify.model_selection import HOLDOUT_WINDOW_SHIP_LENGTHS, SelectedModel, with_model_spread
+from seatrial.estimation.identify.posterior import sample_posterior, sampling_findings
+from seatrial.estimation.identify.profile import default_profiles, innovation_profiles, profiles, short_record_findings
+from seatrial.estimation.identify.roll_characteristics import (
+    gyradius_findings,
+    one_speed_finding,
+    roll_characteristics,
+    unphysical_finding,
+)
+from seatrial.estimation.identify.score_test import output_error_estimate, own_criterion
+from seatrial.estimation.identify.terms import (
+    drifting_thrust_finding,
+    held_couplings,
+    needless_term_findings,
+    varying_gain_finding,
+)
 from seatrial.estimation.identify.thruster_craft import thruster_craft
-from seatrial.estimation.identify.untrained_manoeuvres import untrained_manoeuvre_findings
-from seatrial.estimation.identify.varying_gain import varying_gain_finding
+from seatrial.estimation.identify.unrecorded_waves import seakeeping
+from seatrial.estimation.identify.warnings import (
+    abandoned_criterion_finding,
+    closed_loop_findings,
+    misfit_disturbance,
+    narrow_band_findings,
+    other_optima,
+    refuted_prior_findings,
+    response_findings,
+    short_time_constant_findings,
+    untrained_manoeuvre_findings,
+)
 from seatrial.estimation.information.frequency_response import frequency_responses
-from seatrial.estimation.predict.k_step import horizon_list, k_step_errors
 from seatrial.estimation.predict.predict_runs import RunPredictions, predict_runs
+from seatrial.estimation.predict.session_offsets import horizon_list, k_step_errors
 
 
 def assembled_fit(task: Identification, selected: SelectedModel, findings: Sequence[Finding] = ()) -> Fit:

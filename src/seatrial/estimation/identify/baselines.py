@@ -15,11 +15,11 @@ from seatrial.core.results.prediction import NO_COMPARISON
 from seatrial.core.values import Finding, InputError, ProgressReporter, Record, Severity
 from seatrial.data.trial import SEARCHES, SearchFitness, SearchSettings, Trial
 from seatrial.data.trial.settings import SupportVectorSettings
-from seatrial.estimation.identify.strategies.search import estimate_by_search
+from seatrial.estimation.identify.search import estimate_by_search
 from seatrial.estimation.predict.open_loop import rms_errors
 from seatrial.estimation.regress.estimators import RegressionEstimator
-from seatrial.estimation.regress.features import RegressionMotion, features
-from seatrial.estimation.regress.named import available_estimators
+from seatrial.estimation.regress.operators import RegressionMotion, features
+from seatrial.estimation.regress.pipeline import available_estimators
 from seatrial.estimation.search import search_method
 from seatrial.physics.simulate.replay import replay
 

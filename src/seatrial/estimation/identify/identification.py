@@ -1,22 +1,89 @@
-"""One identification: the trial's records, the choices of the user, and the estimate that strategies share."""
+"""One identification: records, choices of the user, the estimate, and the errors of instruments that it confirms."""
 
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
 from functools import cached_property
 
+import numpy as np
+
+from seatrial.core.equations import Model
 from seatrial.core.results import Symmetry
-from seatrial.core.values import Finding, ProgressReporter
+from seatrial.core.text.numbers import significant
+from seatrial.core.text.words import enumeration
+from seatrial.core.values import Finding, InputError, Parameters, ProgressReporter, Record, Severity
+from seatrial.data.check.phases import is_free_decay
 from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRecord
 from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, estimate_model
-from seatrial.estimation.estimate.fit import with_segment_seconds
-from seatrial.estimation.estimate.runs import training_runs
-from seatrial.estimation.estimate.settings import INITIAL_STATE_SHIP_LENGTHS
-from seatrial.estimation.estimate.time_scale import characteristic_time
-from seatrial.estimation.identify.assumed_information import output_error_estimate
-from seatrial.estimation.identify.box_scale import box_scale, stands_on_box
-from seatrial.estimation.identify.sensor_errors import ErrorInformation, instrument_errors
+from seatrial.estimation.estimate.assemble import training_runs
+from seatrial.estimation.estimate.criterion_choice import WAVE_FORCES
+from seatrial.estimation.estimate.fit import moving_inputs, with_segment_seconds
+from seatrial.estimation.estimate.settings import INITIAL_STATE_SHIP_LENGTHS, characteristic_time, is_pure_roll
+from seatrial.estimation.identify.identifiability import box_scale, stands_on_box
+from seatrial.estimation.identify.instruments import ErrorInformation, Suspect, detected_errors, instrument_errors
+from seatrial.estimation.identify.score_test import output_error_estimate
+from seatrial.estimation.identify.terms import standard_error_ratio
 from seatrial.estimation.information.symmetries import refuse_unidentifiable, structural_symmetries
 from seatrial.estimation.problem.segments import compared_outputs
 from seatrial.estimation.problem.static_forces import StaticForces
+from seatrial.physics.sensors import Sensors, with_sensors
+from seatrial.physics.sensors.measured_outputs import without_sensors
+
+# What the records of a trial are: by it `identify` picks its strategy.
+
+WAVE_SLOPE = "alpha_w"
+"""The input by which waves drive roll."""
+
+
+class Situation(StrEnum):
+    """What moves the ship in the records, and how that is known."""
+
+    STEERED = "steered"
+    STATIC_FORCES = "steered, with static force points"
+    RECORDED_WAVES = "in waves, forces or elevation recorded"
+    WAVE_SPECTRUM = "in waves of which only the spectrum is known"
+    UNKNOWN_WAVES = "rolling in waves of which nothing is known"
+    FREE_DECAY = "rolling out from a release"
+    DRIVEN_ROLL = "rolling by recorded inputs"
+
+
+def situation_of(
+    model: Model,
+    runs: Sequence[TrialRecord],
+    *,
+    has_force_points: bool,
+    is_criterion_free: bool,
+    is_explained: Callable[[], bool],
+) -> Situation:
+    """Return the situation of training runs.
+
+    Args:
+        has_force_points: whether static force points are fitted with the runs.
+        is_criterion_free: whether the criterion is left to the decision table.
+        is_explained: whether the initial states explain the motion; called for roll without any input only. Roll
+            that dies out from a release is a decay even so: one that was held, or several that no one model has.
+    """
+    if any(run.waves is not None and run.waves.spectrum is not None for run in runs):
+        return Situation.WAVE_SPECTRUM
+    if model.is_affine or set(WAVE_FORCES) & set(model.input_names):
+        return Situation.RECORDED_WAVES
+    if not is_pure_roll(model):
+        return Situation.STATIC_FORCES if has_force_points else Situation.STEERED
+    if not is_unforced_roll(model, [run.record for run in runs]):
+        return Situation.DRIVEN_ROLL
+    if is_explained() or all(is_free_decay(run.record) for run in runs):
+        return Situation.FREE_DECAY
+    return Situation.UNKNOWN_WAVES if is_criterion_free else Situation.DRIVEN_ROLL
+
+
+def is_unforced_roll(model: Model, records: Sequence[Record]) -> bool:
+    """Return whether all records hold the roll of a model that waves can drive, and no input of it moves."""
+    if not is_pure_roll(model) or WAVE_SLOPE not in model.input_names or not all("phi" in r for r in records):
+        return False
+    return not moving_inputs(model, records)
+
+
+# One identification: the trial's records, the choices of the user, and the estimate that strategies share.
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,3 +165,57 @@ class Identification:
     def _force_names(self) -> tuple[str, ...]:
         model = self.trial.model
         return tuple(name for points in self.trial.forces for name in StaticForces(model, points).force_names)
+
+
+# A task whose model has the errors of instruments that its records show, which the estimate with them confirms.
+
+
+def with_detected_sensor_errors(task: Identification) -> Identification:
+    """Return the task with the errors of instruments that its records show as coefficients of its model.
+
+    The task itself where they show none, or none that the estimate with it confirms.
+    """
+    try:
+        information = task.instrument_errors
+        detected = detected_errors(information, standard_error_ratio(task.estimation)) if information else []
+    except (ArithmeticError, np.linalg.LinAlgError):  # of the intervals that is a finding of its own
+        return task
+    if not detected:
+        return task
+    stated = Sensors.from_text(task.trial.model.equations.sensors)
+    for one in detected:
+        stated = one.stated(stated)
+    tried = replace(task, trial=replace(task.trial, model=_with_stated(task.trial.model, stated)))
+    try:
+        finding = _confirmed(tried.estimation, detected)
+    except InputError:  # the records do not determine the coefficients beside these errors
+        return task
+    return task if finding is None else replace(tried, findings=(*tried.findings, finding))
+
+
+def _with_stated(model: Model, stated: Sensors) -> Model:
+    """The model with these sensors; coefficients that it has already keep their values, bounds and priors."""
+    wider = with_sensors(without_sensors(model), stated)
+    present = {p.name: p for p in model.parameters}
+    return wider.with_parameters(Parameters(tuple(present.get(p.name, p) for p in wider.parameters)))
+
+
+def _confirmed(estimation: Estimation, detected: Sequence[Suspect]) -> Finding | None:
+    """The finding on these errors; None where that of one instrument may be negligible."""
+    problem = estimation.estimate.problem
+    values = dict(zip(problem.free, estimation.estimate.common_parameters.tolist(), strict=False))
+    spread = dict(zip(problem.free, estimation.interval.standard_error.tolist(), strict=False))
+    if not all(one.matters(values, spread) for one in detected):
+        return None
+    sizes = [
+        f"{e.name} {significant(values[e.name], 3)} {e.unit} (standard error {significant(spread[e.name], 2)})"
+        for one in detected for e in one.errors
+    ]  # fmt: skip
+    lines, names = "; ".join(one.line for one in detected), enumeration([one.text(values) for one in detected])
+    return Finding(
+        Severity.WARNING, "sensor-error",
+        f"the records show errors of instruments, which are estimated: {names}",
+        "; ".join(sizes).replace(" 1 (", " ("),
+        f"state what is so under [sensors] ({lines}), and correct in the log what is not",
+        "held at none they go into the coefficients",
+    )  # fmt: skip

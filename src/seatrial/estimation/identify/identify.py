@@ -6,28 +6,111 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from seatrial.core.results import Fit
+from seatrial.core.text.words import enumeration
 from seatrial.core.values import InputError, ProgressReporter
+from seatrial.data.check.phases import begins_before_release
 from seatrial.data.trial import EstimateMethod, FitCriterion, Role, Trial, checked_records
+from seatrial.data.trial.records import require_decay
 from seatrial.data.trial.settings import window_lengths
 from seatrial.estimation.estimate import EstimatorOptions, IntervalMethod
 from seatrial.estimation.estimate.criterion_choice import is_explained
+from seatrial.estimation.estimate.fit import refuse_unmeasured_waves
 from seatrial.estimation.estimate.plausibility import OutsidePhysicsError
+from seatrial.estimation.estimate.point_estimate import force_consistency
 from seatrial.estimation.estimate.settings import WEAK_FORM_SHIP_LENGTHS
+from seatrial.estimation.identify.assembled_fit import assembled_fit
 from seatrial.estimation.identify.baselines import with_baselines, with_search_baselines
-from seatrial.estimation.identify.detected_sensor_errors import with_detected_sensor_errors
-from seatrial.estimation.identify.identification import Identification
-from seatrial.estimation.identify.search_problem import check_search_settings
-from seatrial.estimation.identify.situation import Situation, situation_of
-from seatrial.estimation.identify.strategies.published import own_estimate_progress, published_fit, refuse_options
-from seatrial.estimation.identify.strategies.recorded_waves import identify_in_recorded_waves
-from seatrial.estimation.identify.strategies.regression import estimate_by_regression
-from seatrial.estimation.identify.strategies.roll import identify_driven_roll, identify_free_decay
-from seatrial.estimation.identify.strategies.search import estimate_by_search
-from seatrial.estimation.identify.strategies.steered import identify_steered, identify_with_static_forces
-from seatrial.estimation.identify.strategies.unknown_waves import identify_in_unknown_waves
-from seatrial.estimation.identify.strategies.wave_spectrum import identify_by_wave_spectrum
-from seatrial.estimation.identify.unexcited_thrust import single_order_findings, with_unexcited_thrust_held
-from seatrial.estimation.predict.k_step import horizon_list
+from seatrial.estimation.identify.identification import (
+    Identification,
+    Situation,
+    situation_of,
+    with_detected_sensor_errors,
+)
+from seatrial.estimation.identify.search import (
+    check_search_settings,
+    estimate_by_regression,
+    estimate_by_search,
+    own_estimate_progress,
+    published_fit,
+    refuse_options,
+)
+from seatrial.estimation.identify.selection import selected_model
+from seatrial.estimation.identify.unrecorded_waves import identify_by_wave_spectrum, identify_in_unknown_waves
+from seatrial.estimation.identify.warnings import single_order_findings, with_unexcited_thrust_held
+from seatrial.estimation.information.frequency_response import frequency_range, frequency_range_finding
+from seatrial.estimation.predict.session_offsets import horizon_list
+
+# A ship in waves whose forces, or whose elevation, were recorded.
+
+
+def identify_in_recorded_waves(task: Identification) -> Fit:
+    """Return the fit of a ship in recorded waves: output error over whole runs, with the range of frequencies covered.
+
+    Raises:
+        InputError: the ship moves although no wave is recorded, or the records do not determine the coefficients.
+    """
+    refuse_unmeasured_waves(task.estimation, task.runs.records)
+    selected = selected_model(task)
+    fit = assembled_fit(task, selected, force_consistency(selected.estimation.estimate))
+    if not task.trial.model.is_affine:
+        return fit
+    covered = frequency_range(task.runs.records, task.outputs)
+    return replace(fit, findings=(*fit.findings, frequency_range_finding(covered))) if covered else fit
+
+
+# A ship that rolls about its rest: out from a release, or by recorded inputs.
+
+
+def identify_free_decay(task: Identification) -> Fit:
+    """Return the fit of roll decays, which their initial states explain.
+
+    Raises:
+        InputError: a roll that does not decay, one that begins before its release and that no initial state explains,
+            or records that do not determine the coefficients.
+    """
+    for record in task.runs.records:
+        require_decay(record)
+    late = [record.name for record in task.runs.records if begins_before_release(record)]
+    if late and not is_explained(task.estimation.shooting):
+        raise InputError(
+            f"no initial state explains the roll of {enumeration(late)}, which begins before the release of the ship; "
+            "set from_release = true under [[records]], which drops what lies before it"
+        )
+    return assembled_fit(task, selected_model(task))
+
+
+def identify_driven_roll(task: Identification) -> Fit:
+    """Return the fit of roll that recorded inputs drive.
+
+    Raises:
+        InputError: the records do not determine the coefficients, or lead to no model that can be simulated.
+    """
+    return assembled_fit(task, selected_model(task))
+
+
+# A ship that is steered, with or without static force points.
+
+
+def identify_steered(task: Identification) -> Fit:
+    """Return the fit of a steered ship: multiple shooting, then output or prediction error by the decision table.
+
+    Raises:
+        InputError: the records do not determine the coefficients, or lead to no model that can be simulated.
+    """
+    return assembled_fit(task, selected_model(task))
+
+
+def identify_with_static_forces(task: Identification) -> Fit:
+    """Return the fit of a steered ship to runs and static force points, with their consistency as findings.
+
+    Raises:
+        InputError: as `identify_steered`.
+    """
+    selected = selected_model(task)
+    return assembled_fit(task, selected, force_consistency(selected.estimation.estimate))
+
+
+# A trial in, a fit out: records read and checked, their situation recognised, its strategy followed.
 
 STRATEGIES: Mapping[Situation, Callable[[Identification], Fit]] = MappingProxyType({
     Situation.STEERED: identify_steered,

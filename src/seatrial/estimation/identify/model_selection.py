@@ -17,15 +17,14 @@ from seatrial.core.equations import Model
 from seatrial.core.results import CandidateModel
 from seatrial.core.values import Array, Finding, InputError, Prior, ProgressReporter, Severity
 from seatrial.data.trial import EstimateSettings, ModelFamily
-from seatrial.estimation.estimate.assemble import output_error_problem
+from seatrial.estimation.estimate.assemble import Runs, output_error_problem
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
 from seatrial.estimation.estimate.intervals import RUNS_FOR_JACKKNIFE
 from seatrial.estimation.estimate.point_estimate import COLOUR_ROUNDS, PointEstimate, fit_output_error
-from seatrial.estimation.estimate.runs import Runs
 from seatrial.estimation.estimate.settings import EstimatorOptions
-from seatrial.estimation.identify.left_out_scores import holdout_scores
-from seatrial.estimation.identify.physical_limits import objections
-from seatrial.estimation.information.paired_errors import is_no_worse, standard_error
+from seatrial.estimation.identify.roll_characteristics import objections
+from seatrial.estimation.identify.score_test import holdout_scores
+from seatrial.estimation.information.whiteness import is_no_worse, standard_error
 from seatrial.estimation.predict.predict_runs import TiedModel
 from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.models.candidate_structures import FREED_PARAMETERS, PRIOR_FACTORS, SEGMENT_FACTORS, with_terms

@@ -13,7 +13,7 @@ from seatrial.core.results.fit import CredibleInterval, Posterior
 from seatrial.core.values import Array, Finding, Index, InputError, ProgressReporter, Severity
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.information.covariance import Interval, inverse
-from seatrial.estimation.problem.eliminated_states import EliminatedStates
+from seatrial.estimation.problem.output_error import EliminatedStates
 from seatrial.numerics.sampling import Chains, ChainSettings, sample_chains
 from seatrial.numerics.workers import map_in_threads
 

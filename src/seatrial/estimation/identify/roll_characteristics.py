@@ -1,16 +1,116 @@
-"""The identified roll model in the field's terms, with what was assumed of its inertia."""
+"""The identified roll model in the field's terms: inertia, stiffness, damping, and limits of physics."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
 from seatrial.core.results.ship_motions import IntervalEstimate, RollCharacteristics
+from seatrial.core.text.numbers import significant
 from seatrial.core.values import Array, Finding, Record, Severity, Ship
-from seatrial.estimation.identify.roll_inertia import roll_inertia
+from seatrial.estimation.estimate.settings import is_pure_roll
 from seatrial.estimation.information.covariance import Interval
-from seatrial.physics.hydro.free_roll import equivalent_damping, observed_swings, swing_period
+from seatrial.physics.hydro.free_roll import (
+    equivalent_damping,
+    gyradius_of,
+    metacentric_height,
+    observed_swings,
+    swing_period,
+)
+from seatrial.physics.models.candidate_structures import PHYSICAL_SIGNS
+
+# Radius of gyration in roll and metacentric height: one is given or assumed, the natural period gives the other.
+
+GYRADIUS_WITH_ADDED_INERTIA, DRY_GYRADIUS, METACENTRIC_HEIGHT = "k_xx_prime", "k_xx", "GM"
+
+# share of the moment of inertia that the water adds in roll, and radius of gyration with it over the breadth; chosen
+ADDED_INERTIA_SHARE, GYRADIUS_OVER_BREADTH = (0.05, 0.18, 0.30), (0.35, 0.40, 0.45)
+
+
+@dataclass(frozen=True)
+class RollInertia:
+    """Radius of gyration with added inertia [m], metacentric height [m], and what was given or assumed of them."""
+
+    gyradius: IntervalEstimate | None
+    metacentric_height: IntervalEstimate | None
+    source: str
+
+
+def roll_inertia(ship: Ship, c_1: IntervalEstimate) -> RollInertia:
+    """Return GM by the ship's `k_xx_prime`, else by `k_xx`; the radius by its `GM`; else GM by the breadth.
+
+    c_1: square of the natural frequency [1/s^2] with its 95 % interval.
+    """
+    particulars = ship.particulars
+    if GYRADIUS_WITH_ADDED_INERTIA in particulars:
+        k = particulars[GYRADIUS_WITH_ADDED_INERTIA]
+        return _by_gyradius(c_1, (k, k, k), f"{GYRADIUS_WITH_ADDED_INERTIA} of the ship, {k:.4g} m, taken as exact")
+    if DRY_GYRADIUS in particulars:
+        dry = particulars[DRY_GYRADIUS]
+        low, middle, high = (dry * math.sqrt(1.0 + share) for share in ADDED_INERTIA_SHARE)
+        share = _range_text(ADDED_INERTIA_SHARE, 100.0)
+        source = f"{DRY_GYRADIUS} of the ship, {dry:.4g} m, and an added inertia of {share} % of it, chosen"
+        return _by_gyradius(c_1, (low, middle, high), f"{source}; {GYRADIUS_WITH_ADDED_INERTIA} would replace this")
+    if METACENTRIC_HEIGHT in particulars:
+        return _by_height(c_1, particulars[METACENTRIC_HEIGHT])
+    if "B" in particulars:
+        low, middle, high = (share * particulars["B"] for share in GYRADIUS_OVER_BREADTH)
+        source = f"a radius of gyration of {_range_text(GYRADIUS_OVER_BREADTH, 1.0)} of the breadth, chosen"
+        keys = f"{METACENTRIC_HEIGHT}, {GYRADIUS_WITH_ADDED_INERTIA} or {DRY_GYRADIUS}"
+        return _by_gyradius(c_1, (low, middle, high), f"{source}; {keys} under [ship] would replace this")
+    keys = f"{METACENTRIC_HEIGHT}, {GYRADIUS_WITH_ADDED_INERTIA}, {DRY_GYRADIUS} or B"
+    return RollInertia(None, None, f"the inertia is not known; give {keys} under [ship]")
+
+
+def gyradius_findings(ship: Ship, gyradius: IntervalEstimate | None) -> tuple[Finding, ...]:
+    """Return a warning `roll-gyradius` where GM and the period give a radius that is unusual for the stated breadth."""
+    values = ship.particulars
+    if gyradius is None or METACENTRIC_HEIGHT not in values or not values.get("B", 0.0) > 0.0:
+        return ()
+    low, usual, high = (share * values["B"] for share in GYRADIUS_OVER_BREADTH)
+    if low <= gyradius.value <= high:
+        return ()
+    share, height = gyradius.value / values["B"], values[METACENTRIC_HEIGHT]
+    return (Finding(
+        Severity.WARNING, "roll-gyradius", f"GM = {height:g} m and the period give a radius of gyration of "
+        f"{significant(share, 2)} of the breadth, ships have {_range_text(GYRADIUS_OVER_BREADTH, 1.0)}", "",
+        f"check GM, B and the loading of the tests: with {GYRADIUS_OVER_BREADTH[1]:g} of the breadth GM would be "
+        f"{significant(height * (usual / gyradius.value) ** 2, 2)} m",
+        "the radius, and moments in newton metres, follow the stated GM",
+    ),)  # fmt: skip
+
+
+def _by_gyradius(c_1: IntervalEstimate, radii: tuple[float, float, float], source: str) -> RollInertia:
+    """radii: least, most likely and largest [m]; GM has the whole of their range in its own."""
+    low, middle, high = radii
+    height = IntervalEstimate(
+        metacentric_height(c_1.value, middle), metacentric_height(c_1.lower, low), metacentric_height(c_1.upper, high)
+    )
+    return RollInertia(IntervalEstimate(middle, low, high), height, source)
+
+
+def _by_height(c_1: IntervalEstimate, height: float) -> RollInertia:
+    radius = IntervalEstimate(
+        gyradius_of(c_1.value, height), gyradius_of(c_1.upper, height),
+        gyradius_of(c_1.lower, height) if c_1.lower > 0.0 else math.inf,
+    )  # fmt: skip
+    source = (
+        f"{METACENTRIC_HEIGHT} of the ship, {height:.4g} m, taken as exact (the radius goes with its root: half its "
+        "error in per cent)"
+    )
+    return RollInertia(radius, IntervalEstimate(height, height, height), source)
+
+
+def _range_text(values: tuple[float, float, float], factor: float) -> str:
+    low, middle, high = (f"{factor * value:.3g}" for value in values)
+    return f"{middle} ({low} to {high})"
+
+
+# The identified roll model in the field's terms, with what was assumed of its inertia.
 
 DAMPING_NAMES, RESTORING_NAMES = ("b_1", "b_2", "b_3"), ("c_1", "c_3", "c_5")
 
@@ -125,3 +225,92 @@ def _swings(records: Sequence[Record], rest: float, reach: float) -> tuple[tuple
 
 def _floats(values: Array) -> tuple[float, ...]:
     return tuple(float(v) for v in values)
+
+
+# What no estimate of a craft should be: masses or damping of the wrong sign, values far off their priors.
+
+MOST_PRIOR_DEVIATIONS = 4.0
+"""Standard deviations of its prior that a value may be away from the mean: beyond, prior and records contradict."""
+
+_AMPLITUDES = 20
+"""Amplitudes up to the largest measured at which the damping of roll is looked at; chosen."""
+
+
+def objections(
+    model: Model, records: Sequence[Record], errors: Mapping[str, float] = MappingProxyType({})
+) -> tuple[str, ...]:
+    """Return why the values of a model cannot be a craft's, in phrases; empty where nothing speaks against them.
+
+    records: those that were fitted; the damping of roll is judged over the amplitudes that they show. errors: standard
+    deviation that estimated values of the craft put into a coefficient; 0 where it is not named.
+    """
+    signs, parameters = PHYSICAL_SIGNS.get(model.name, {}), model.parameters
+    turned = [
+        f"{name} {parameters[name].value:.2g} is {'negative' if sign > 0 else 'positive'}"
+        for name, sign in signs.items()
+        if name in parameters and parameters[name].free and sign * parameters[name].value < 0.0
+    ]
+    far = _far_off_priors(model, errors).values()
+    return (*turned, *far, *(_roll_objections(model, records) if is_pure_roll(model) else ()))
+
+
+def _far_off_priors(model: Model, errors: Mapping[str, float]) -> dict[str, str]:
+    """The free coefficients that are far off their priors, with how far."""
+    far = dict[str, str]()
+    for p in model.parameters.free:
+        if p.prior is not None and np.isfinite(p.prior.standard_deviation):
+            away = abs(p.value - p.prior.mean) / math.hypot(p.prior.standard_deviation, errors.get(p.name, 0.0))
+            if away > MOST_PRIOR_DEVIATIONS:
+                far[p.name] = f"{p.name} is {away:.1f} standard deviations off its prior"
+    return far
+
+
+def unphysical_finding(
+    model: Model,
+    records: Sequence[Record],
+    errors: Mapping[str, float] = MappingProxyType({}),
+    roll: RollCharacteristics | None = None,
+) -> tuple[Finding, ...]:
+    """Return a warning where an estimated model has values that no craft has; `records`, `errors`: as in `objections`.
+
+    A note where a value is only far off a prior of which nobody knows how far it may be wrong. roll: of the estimate;
+    where a ship's damping lies within its intervals, chance alone may have made it implausible, and nothing is said.
+    """
+    against = objections(model, records, errors)
+    if roll is not None and _has_plausible_damping(roll):
+        against = tuple(one for one in against if one not in _roll_objections(model, records))
+    priors = {p.name: p.prior for p in model.parameters.free if p.prior is not None}
+    doubtful = [text for n, text in _far_off_priors(model, errors).items() if priors[n].is_spread_assumed]
+    if not against:
+        return ()
+    if set(against) == set(doubtful):
+        advice = "how far the prior may be wrong is assumed (prior_sd_percent): read these values with care"
+        return (Finding(Severity.INFO, "unphysical-values", f"unusual: {', '.join(against)}", "", advice),)
+    advice = "record a decay from a larger angle, or fix b_2 and b_3 at 0 under [model.fixed]; --choose tries that"
+    if "phi" not in model.states or not is_pure_roll(model):
+        advice = "fix these under [model.fixed], or look for what the model lacks; --choose takes no such model"
+    what = f"the estimate is implausible: {', '.join(against)}"
+    return (Finding(Severity.WARNING, "unphysical-values", what, "", advice),)
+
+
+def _has_plausible_damping(roll: RollCharacteristics) -> bool:
+    """Whether damping that is nowhere negative and never decreases lies within the intervals at all amplitudes."""
+    if not roll.amplitude:
+        return False
+    least = np.maximum.accumulate(np.maximum(roll.damping_lower, 0.0))
+    return bool(np.all(least <= np.asarray(roll.damping_upper)))
+
+
+def _roll_objections(model: Model, records: Sequence[Record]) -> tuple[str, ...]:
+    """Damping that is negative, or that decreases with amplitude, between rest and the largest angle measured."""
+    names, known = (*DAMPING_NAMES, *RESTORING_NAMES, "phi_0"), model.parameters
+    if not set(names) <= set(known.names) or not all("phi" in r for r in records):
+        return ()
+    b, c = (np.array([known[n].value for n in group]) for group in (DAMPING_NAMES, RESTORING_NAMES))
+    largest = max(float(np.nanmax(np.abs(r["phi"] - known["phi_0"].value))) for r in records)
+    damping = equivalent_damping(b, c, largest * np.arange(1, _AMPLITUDES + 1) / _AMPLITUDES)[0]
+    damping = np.concatenate([b[:1], damping[np.isfinite(damping)]])
+    if np.any(damping < 0.0):
+        return ("its damping is negative at amplitudes that were measured",)
+    slack = 1e-9 * float(np.max(damping))  # rounding of constant damping; chosen
+    return ("its damping decreases with amplitude",) if np.any(np.diff(damping) < -slack) else ()

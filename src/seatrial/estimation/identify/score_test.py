@@ -1,24 +1,84 @@
-"""What records say of parameters that a fit does not have: terms held, inputs that drift, errors of instruments.
+"""What records say of parameters that a fit does not have, and of values that it takes for known."""
 
-One Gauss-Newton step from the optimum with one more parameter says how large it would be, over which standard error,
-and what it would move (Rao 1948, Proc. Cambridge Phil. Soc. 44, 50-57: the score statistic is the square of size over
-standard error). Residuals are the fit's own: simulated minus measured, or innovations with their variances.
-"""
-
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
-from seatrial.core.values import Array
+from seatrial.core.equations import Model
+from seatrial.core.values import Array, Index, InputError, Prior, Record
 from seatrial.estimation.estimate.fit import Estimation
+from seatrial.estimation.estimate.intervals import RUNS_FOR_JACKKNIFE
 from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.estimate.process_noise import ProcessNoise
-from seatrial.estimation.estimate.process_noise_interval import inverse_variances
-from seatrial.estimation.information.covariance import inverse
+from seatrial.estimation.estimate.process_noise_interval import fits_without, inverse_variances, one_step_jackknife
+from seatrial.estimation.information.covariance import estimate_shifts, inverse
+from seatrial.estimation.predict.prediction_intervals import holdout_model
+from seatrial.estimation.predict.windows import HoldoutProtocol, split_windows, window_errors
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.numerics.optimise import NormalEquations
+from seatrial.physics.manoeuvres.recognition import recognise_manoeuvre
+
+# How estimates move where an assumed value is off: the records' information on both together.
+
+
+@dataclass(frozen=True, eq=False)
+class AssumedInformation:
+    """Information of the records with the assumed values free, too, at the estimate.
+
+    Attributes:
+        place: parameter, assumed or free -> its position.
+        point: values of all these and of what else the runs share, (n,), SI.
+        information: of all of them, (n, n), initial states eliminated.
+        moving: positions of what the fit estimates; the first `count` are its free coefficients.
+        chi_squared: sum of squares over the noise at the estimate.
+    """
+
+    place: Mapping[str, int]
+    point: Array
+    information: Array
+    moving: Index
+    count: int
+    chi_squared: float
+
+    def shifts(self, change: Array) -> tuple[Array, float]:
+        """Return changes of the free coefficients, (count,), SI, and the growth of chi squared; change: (n,), SI."""
+        moves, growth = estimate_shifts(self.information, self.moving, change)
+        return moves[: self.count], growth
+
+    def unit(self, name: str) -> Array:
+        """Return a change by one of an assumed value alone, (n,)."""
+        return np.eye(1, len(self.point), self.place[name])[0]
+
+
+def assumed_information(estimation: Estimation, names: Sequence[str], held: Sequence[str] = ()) -> AssumedInformation:
+    """Return the information with fixed parameters of these names free, their priors put aside.
+
+    held: further parameters whose priors are put aside, free or fixed.
+    """
+    estimate, model = output_error_estimate(estimation), estimation.model
+    loose = {n: Prior(0.0, np.inf) for n in {*names, *held}}
+    freed = model.parameters.freed(*names, *(n for n in held if n not in names)).with_priors(loose)
+    problem: OutputError = replace(estimate.problem, model=model.with_parameters(freed))
+    free, size = estimate.problem.free, len(problem.free)
+    place = {n: i for i, n in enumerate(problem.free)}
+    fitted = [place[n] for n in free]
+    point = np.concatenate([problem.start()[:size], estimate.common_parameters[len(free) :]])
+    point[fitted] = estimate.common_parameters[: len(free)]
+    return AssumedInformation(
+        place, point, problem.normal(point, estimate.optimum.local).without_local()[1],
+        np.array([*fitted, *range(size, len(point))]), len(free),
+        2.0 * problem.cost(point, estimate.optimum.local),
+    )  # fmt: skip
+
+
+def output_error_estimate(estimation: Estimation) -> PointEstimate:
+    """Return the estimate with outputs simulated from initial states: under prediction error that over segments."""
+    return estimation.shooting if estimation.has_process_noise else estimation.estimate
+
+
+# What records say of parameters that a fit does not have: terms held, inputs that drift, errors of instruments.
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,3 +242,55 @@ def _widened(
     cross = np.concatenate([normal.cross, np.swapaxes(by_local, 1, 2)], axis=1) if has_local else normal.cross
     hessian = np.block([[normal.hessian, by_shared], [by_shared.T, curvature]])
     return replace(normal, gradient=np.concatenate([normal.gradient, gradient]), hessian=hessian, cross=cross)
+
+
+# Runs predicted in windows by estimates without them: without their session, and without their kind of manoeuvre.
+
+
+def holdout_scores(estimate: PointEstimate, model: Model, records: Sequence[Record], window_s: float) -> Array:
+    """Mean window error of each run by estimates without it, (runs, 2): heading [deg], position [m].
+
+    Left out is each session, or each run where sessions are fewer than a jackknife needs (one step), and each kind of
+    manoeuvre where there are several (fitted again); a run's errors are averaged over the two. Runs shorter than a
+    window are not judged, unless all are.
+
+    Raises:
+        InputError: a window diverges, or a run lacks position or heading in all of its windows.
+    """
+    data, protocol, scores = estimate.problem.data, HoldoutProtocol(window_s=window_s), []
+    template = replace(estimate.problem, model=model)
+    of_run = [data.sessions[data.session[data.run_segments(r)[0]]] for r in range(len(records))]
+    sessions = groups_of(of_run) if len(set(of_run)) >= RUNS_FOR_JACKKNIFE else [[r] for r in range(len(records))]
+    kinds = groups_of([_kind(record) for record in records])
+    points = [dict(_by_run(sessions, one_step_jackknife(estimate, sessions)))]
+    if len(kinds) > 1:
+        points.append(dict(_by_run(kinds, fits_without(estimate, kinds, workers=1))))
+    judged = [r for r, record in enumerate(records) if split_windows(record, protocol)] or range(len(records))
+    for r in judged:
+        errors = []
+        for point in (one[r] for one in points):
+            by = holdout_model(template, point, of_run[r], records[r])
+            errors += window_errors(template, by.model, [records[r]], [by.nuisances], ["run"], protocol)
+        if not errors:
+            raise InputError(f"run '{records[r].name}' has no window in which both position and heading are measured")
+        scores.append((np.mean([e.heading_deg for e in errors]), np.mean([e.position_m for e in errors])))
+    return np.array(scores)
+
+
+def groups_of(names: Sequence[str]) -> list[list[int]]:
+    """Return the positions of each name, in the order in which the names occur."""
+    return [[i for i, name in enumerate(names) if name == one] for one in dict.fromkeys(names)]
+
+
+def _by_run(groups: Sequence[Sequence[int]], points: Array) -> Iterator[tuple[int, Array]]:
+    """Yield each run of the groups with the estimate without its group."""
+    for group, point in zip(groups, points, strict=True):
+        yield from ((run, point) for run in group)
+
+
+def _kind(record: Record) -> str:
+    """Manoeuvre that a record shows; one word for all in which none can be recognised."""
+    try:
+        return str(recognise_manoeuvre(record))
+    except InputError:
+        return "other"

@@ -18,9 +18,8 @@ from seatrial.core.results.ship_motions import (
     ThrusterCraft,
 )
 from seatrial.core.values import Array, InputError, Record
-from seatrial.estimation.information.extrapolation import extrapolation
-from seatrial.estimation.information.thruster_conditions import thruster_conditions
-from seatrial.estimation.predict.measure_intervals import measure_intervals, perturbed_models
+from seatrial.estimation.information.extrapolation import extrapolation, thruster_conditions
+from seatrial.estimation.predict.draws import measure_intervals, perturbed_models
 from seatrial.physics.manoeuvres import measures
 from seatrial.physics.models.thrust_orders import coefficient_or_zero, inertia_matrix, thrust_configuration
 from seatrial.physics.models.thruster_layout import AngleInput, Thruster, ThrusterLayout

@@ -5,7 +5,7 @@ from seatrial.estimation.information.covariance import (
     jackknife as jackknife,
     sandwich as sandwich,
 )
-from seatrial.estimation.information.directions import (
+from seatrial.estimation.information.covariance import (
     directions as directions,
     relative_information as relative_information,
 )

@@ -20,11 +20,11 @@ from seatrial.estimation.information.extrapolation import (
     motion_envelope,
     with_recorded_speed,
 )
-from seatrial.estimation.predict.divergence import divergence_finding, not_predicted_finding
 from seatrial.estimation.predict.draws import PredictionUncertainty
-from seatrial.estimation.predict.left_out_runs import HoldoutRun, HoldoutRuns, manoeuvre_kind
 from seatrial.estimation.predict.open_loop import (
     compare_measures,
+    divergence_finding,
+    not_predicted_finding,
     predict_run,
     rms_errors,
     simulate_open_loop,
@@ -32,9 +32,12 @@ from seatrial.estimation.predict.open_loop import (
 )
 from seatrial.estimation.predict.prediction_intervals import (
     DRAWS,
+    HoldoutRun,
+    HoldoutRuns,
     holdout_draws,
     holdout_error,
     holdout_model,
+    manoeuvre_kind,
     prediction_spread,
     with_intervals,
 )
@@ -44,8 +47,7 @@ from seatrial.estimation.predict.session_offsets import (
     session_offsets,
     updated_by_start,
 )
-from seatrial.estimation.predict.window_baselines import window_baselines
-from seatrial.estimation.predict.window_scores import WindowPredictor, window_scores
+from seatrial.estimation.predict.window_scores import WindowPredictor, window_baselines, window_scores
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.simulate.filtering import FilterPoint, KalmanFilter

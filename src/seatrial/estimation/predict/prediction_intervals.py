@@ -1,7 +1,7 @@
 """Intervals of predictions: what is foreseen by draws, and what runs left out missed beyond it."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -10,22 +10,60 @@ from seatrial.core.results import Measure, Prediction
 from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.check.motion import sample_noise
-from seatrial.estimation.information.discrepancy import BAND_CHANNELS, Discrepancy, HoldoutError
+from seatrial.estimation.information.discrepancy import BAND_CHANNELS, Discrepancy, HoldoutError, discrepancy
 from seatrial.estimation.predict.draws import PredictionUncertainty, StartStates, draw_runs
 from seatrial.estimation.predict.open_loop import (
     OpenLoopRun,
     compare_measures,
     is_steered,
     observables_record,
+    open_loop_runs,
     simulate_open_loop,
 )
-from seatrial.estimation.predict.reading_error import MEASURE_CHANNELS
 from seatrial.estimation.predict.session_offsets import offsets_without
 from seatrial.estimation.predict.windows import Windows
 from seatrial.estimation.problem.output_error import OutputError
+from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.manoeuvres import bounded_interval, measures
-from seatrial.physics.manoeuvres.recognition import ObservedManoeuvre
+from seatrial.physics.manoeuvres.recognition import ManoeuvreKind, ObservedManoeuvre, recognise_manoeuvre
 from seatrial.physics.simulate.replay import inputs_of
+
+# How exactly a measure is read from a run: what the noise of its sensors leaves open.
+
+MEASURE_CHANNELS = ("psi", "x0", "y0", "u", "v", "r")
+"""Channels that measures are read from."""
+READINGS = 60
+"""Readings drawn; chosen: their scatter is then known to a tenth."""
+
+
+def reading_errors(record: Record, length: float, rng: np.random.Generator) -> dict[str, float]:
+    """Return the standard deviation of each measure of a run that white noise of its sensors leaves, in its unit.
+
+    The noise of each channel is that of its third differences; the run is read again with as much added, which to first
+    order scatters as the reading itself does. What a second run would do differently is not in it.
+
+    Args:
+        length: of the ship [m].
+
+    Raises:
+        InputError: the record is no manoeuvre.
+    """
+    reference = ObservedManoeuvre.from_record(record)
+    centre = measures(record, length, reference=reference)
+    noise = {c: sample_noise(record.channel(c).readings) for c in MEASURE_CHANNELS if c in record}
+    values: dict[str, list[float]] = {name: [] for name in centre}
+    for _ in range(READINGS):
+        again = record
+        for channel, size in noise.items():
+            read = record[channel] + size * rng.standard_normal(len(record[channel]))
+            again = again.with_channel(channel, record.channel(channel).with_values(read))
+        for name, value in measures(again, length, reference=reference).items():
+            if name in values:
+                values[name].append(value - centre[name])
+    return {name: float(np.sqrt(np.mean(np.square(v)))) for name, v in values.items() if 2 * len(v) > READINGS}
+
+
+# Intervals of predictions: what is foreseen by draws, and what runs left out missed beyond it.
 
 # ships drawn for the interval of a prediction, and for that of a run left out, ours
 DRAWS, HOLDOUT_DRAWS = 100, 32
@@ -232,3 +270,118 @@ def with_intervals(
 
     bands = {c: t * discrepancy.channel_sd(c, s, prediction.measured.dt, index) for c, s in spread.channels.items()}
     return replace(prediction, measures={n: bounded(n, m) for n, m in prediction.measures.items()}, half_width=bands)
+
+
+# Training runs, each left out of the estimate in turn: what bands of predictions are calibrated by.
+
+_WINDOWS = 20  # of each run left out, evenly spread; chosen: neighbours err alike
+
+
+@dataclass(frozen=True, eq=False)
+class HoldoutRun:
+    """A training run, and what is known of it without it.
+
+    Attributes:
+        holdout: model and offsets by the other runs; uncertainty: what they leave open.
+        index: extrapolation index of the run against the others.
+    """
+
+    record: Record
+    holdout: HoldoutModel
+    uncertainty: PredictionUncertainty
+    index: float
+
+
+@dataclass(frozen=True, eq=False)
+class RunErrors:
+    """How the windows of a run of some kind of manoeuvre are missed."""
+
+    kind: str
+    errors: tuple[HoldoutError, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class HoldoutRuns:
+    """Runs left out that calibrate windows of any length, each length once.
+
+    Attributes:
+        template: the problem whose outputs, noise and nuisances are used; seed: of what is drawn.
+        seconds: of a window's beginning, for its initial state, at most.
+        whole_runs: their discrepancy, for windows that fewer runs hold than a discrepancy needs.
+        of_length: what is known so far, by number of steps.
+    """
+
+    template: OutputError
+    runs: tuple[HoldoutRun, ...]
+    seconds: float
+    whole_runs: Discrepancy
+    seed: int
+    workers: int | None = None
+    of_length: dict[int, list[RunErrors]] = field(default_factory=dict)
+
+    def discrepancy(self, seconds: float, kind: str = "") -> Discrepancy:
+        """Return what windows of this length [s] of runs left out miss beyond what is foreseen and sensors add.
+
+        kind: of manoeuvre (`manoeuvre_kind`), by whose runs alone it is found where there are enough of them.
+        """
+        if not self.runs:
+            return self.whole_runs
+        runs = self.errors_of_length(seconds)
+        pooled = discrepancy([error for run in runs for error in run.errors], self.whole_runs)
+        return discrepancy([error for run in runs if kind and run.kind == kind for error in run.errors], pooled)
+
+    def errors_of_length(self, seconds: float) -> list[RunErrors]:
+        """Return how windows of this length [s] of each run are missed."""
+        steps = Windows.steps_of(seconds, self.runs[0].record.dt)
+        if steps not in self.of_length:
+            self.of_length[steps] = map_in_threads(
+                lambda i: RunErrors(manoeuvre_kind(self.runs[i].record), tuple(self._errors(i, seconds))),
+                range(len(self.runs)), workers=self.workers,
+            )  # fmt: skip
+        return self.of_length[steps]
+
+    def _errors(self, number: int, seconds: float) -> Iterator[HoldoutError]:
+        run = self.runs[number]
+        windows = Windows.cut([run.record], seconds).evenly_spread(_WINDOWS)
+        rng = np.random.default_rng((self.seed, number, windows.steps))
+        initial = windows.initial_seconds(self.seconds)
+        found = band_errors(self.template, run.holdout, windows, initial, run.uncertainty, rng)
+        yield from (replace(error, index=run.index) for error in found)
+
+
+def manoeuvre_kind(record: Record) -> str:
+    """Return the kind of manoeuvre that a run shows; empty where it is none of those with a name, or has no rudder."""
+    if not {"psi", "delta"} <= set(record.channels):
+        return ""
+    try:
+        kind = recognise_manoeuvre(record)
+    except InputError:  # nothing but gaps
+        return ""
+    return "" if kind is ManoeuvreKind.OTHER else kind.value
+
+
+def band_errors(
+    template: OutputError, holdout: HoldoutModel, windows: Windows, seconds: float, uncertainty: PredictionUncertainty,
+    rng: np.random.Generator,
+) -> Iterator[HoldoutError]:  # fmt: skip
+    """Yield how each window of a run is missed by a model fitted without it, those left out that diverge.
+
+    The sensors' noise counts as foreseen: a measured sample lies about the true one by as much.
+
+    seconds: of a window's beginning, for its initial state.
+    """
+    if not len(windows):
+        return
+    own = holdout.nuisances[None]
+    runs = open_loop_runs(template, holdout.model, windows, own, seconds)
+    simulated, starts = [run.record for run in runs], StartStates.joined([run.start for run in runs])
+    spreads = window_spreads(template, holdout.model, windows, simulated, starts, own, uncertainty, rng)
+    for piece, run, spread in zip(windows.pieces, runs, spreads, strict=True):
+        sds = with_sensor_noise(piece, spread)
+        if run.divergence is None and sds:
+            yield HoldoutError(piece.name, piece.dt, {c: run.record[c] - piece.measured(c) for c in sds}, sds)
+
+
+def with_sensor_noise(measured: Record, spread: dict[str, Array]) -> dict[str, Array]:
+    """Return standard deviations of what is measured, of the channels that are, from those of what is simulated."""
+    return {c: np.hypot(sd, sample_noise(measured.channel(c).readings)) for c, sd in spread.items() if c in measured}

@@ -1,10 +1,10 @@
 """Names of this package, imported when first used."""
 
-from seatrial.estimation.information.collinearity import (
+from seatrial.estimation.information.covariance import (
     collinearity as collinearity,
     condition_number as condition_number,
 )
-from seatrial.estimation.regress.cleaning import (
+from seatrial.estimation.regress.samples import (
     without_duplicates as without_duplicates,
     without_missing as without_missing,
     without_outliers as without_outliers,
@@ -16,11 +16,8 @@ from seatrial.estimation.regress.estimators import (
     RegressionEstimate as RegressionEstimate,
     RegressionEstimator as RegressionEstimator,
 )
-from seatrial.estimation.regress.features import (
-    RegressionMotion as RegressionMotion,
-    features as features,
-)
-from seatrial.estimation.regress.named import (
+from seatrial.estimation.regress.operators import RegressionMotion as RegressionMotion, features as features
+from seatrial.estimation.regress.pipeline import (
     available_estimators as available_estimators,
     estimator_named as estimator_named,
     estimator_of_method as estimator_of_method,
@@ -50,15 +47,15 @@ from seatrial.estimation.regress.solvers import (
     Ridge as Ridge,
     TruncatedSvd as TruncatedSvd,
 )
-from seatrial.estimation.regress.split import (
+from seatrial.estimation.regress.samples import (
     blocks as blocks,
     folds as folds,
     record_folds as record_folds,
     shuffled_split as shuffled_split,
 )
-from seatrial.estimation.regress.standard_estimators import standard_estimators as standard_estimators
-from seatrial.estimation.regress.support_vectors import SupportVectors as SupportVectors
-from seatrial.estimation.regress.system import (
+from seatrial.estimation.regress.pipeline import standard_estimators as standard_estimators
+from seatrial.estimation.regress.estimators import SupportVectors as SupportVectors
+from seatrial.estimation.regress.solvers import (
     RegressionSystem as RegressionSystem,
     assemble_systems as assemble_systems,
     build_systems as build_systems,

@@ -1,20 +1,228 @@
-"""What stands for the derivative in a regression: differences, a smoothed slope, the weak form; and what follows it.
+"""What stands for the derivative in a regression: differences, a smoothed slope, the weak form."""
 
-Every operator turns the motion into rows y = Phi theta, one block a rate: y what stands for dx/dt less the known terms.
-They nest: ``Centred(Differenced(Euler()))`` is the published improvement of Song et al. 2025.
-"""
-
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Protocol
+from functools import cached_property
+from itertools import pairwise
+from typing import Protocol, Self
 
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.values import Array, InputError
-from seatrial.estimation.regress.features import Features, RegressionMotion, demand_positive, features
-from seatrial.estimation.regress.weak import window_bounds, window_function
+from seatrial.core.values import Array, InputError, Record
+from seatrial.numerics.kernels.integrate import DIVERGED
+from seatrial.numerics.kernels.sensitivity import evaluate_tangent
 from seatrial.numerics.local_polynomials import smoothed_locally
+from seatrial.numerics.optimise import NormalEquations
+from seatrial.physics.simulate.replay import inputs_of
+from seatrial.physics.simulate.states import hidden_states, measured_states
+
+# The equations along a record: each rate as known terms plus features times coefficients, from the model itself.
+
+_PROBE_FACTOR = 1.37  # no round number, so that no term vanishes at the probe; chosen
+_TIME_TOLERANCE = 1e-3  # of a sampling step, beyond which it is a gap
+
+
+def demand_positive(name: str, value: float) -> None:
+    """Refuse a setting that is not a positive number.
+
+    Raises:
+        InputError: naming it.
+    """
+    if not 0.0 < value < np.inf:
+        raise InputError(f"{name} is {value:g}; give a positive number")
+
+
+@dataclass(frozen=True, eq=False)
+class RegressionMotion:
+    """What a record says of a model: times (n,) [s], states (n, nx), inputs (n, nu) in the model's signs.
+
+    Times may have gaps, where cleaning took samples away.
+    """
+
+    time: Array
+    states: Array
+    inputs: Array
+
+    @classmethod
+    def from_record(cls, model: Model, record: Record) -> Self:
+        """The motion of a record; velocities that were not measured are derived where that can be done.
+
+        Raises:
+            InputError: a state is hidden, not derivable or without a value; an input is missing; too few samples.
+        """
+        if hidden := hidden_states(model, [record]):
+            raise InputError(
+                f"record '{record.name}' does not show {', '.join(hidden)}, states of model '{model.name}': "
+                "regression needs every state; use output error (seatrial identify)"
+            )
+        if len(record) < 3:
+            raise InputError(f"record '{record.name}' has {len(record)} samples; regression needs at least three")
+        for state in model.states:
+            if state in record and not np.isfinite(record[state]).all():
+                raise InputError(
+                    f"record '{record.name}': channel '{state}' has no value at sample "
+                    f"{int(np.argmin(np.isfinite(record[state]))) + 1}; use regress.cleaning.without_missing first"
+                )
+        return cls(record.time, measured_states(model, record), inputs_of(model, record))
+
+    @property
+    def dt(self) -> float:
+        """The usual time step [s]."""
+        return float(np.median(np.diff(self.time)))
+
+    def gapless_slices(self) -> list[slice]:
+        """The stretches without a gap."""
+        gaps = np.flatnonzero(np.abs(np.diff(self.time) - self.dt) > _TIME_TOLERANCE * self.dt) + 1
+        return [slice(int(a), int(b)) for a, b in pairwise([0, *gaps, len(self.time)])]
+
+    def rows(self, index: slice) -> Self:
+        """The samples of a slice."""
+        return type(self)(self.time[index], self.states[index], self.inputs[index])
+
+
+@dataclass(frozen=True, eq=False)
+class Features:
+    """dx/dt = known_rates + slope theta: (n, nx), slope (n, nx, k), k the free coefficients of the model."""
+
+    known_rates: Array
+    slope: Array
+
+
+def features(model: Model, motion: RegressionMotion) -> Features:
+    """The features of every rate at every sample, from the generated Jacobian.
+
+    Raises:
+        InputError: the rates are not linear in the free coefficients.
+    """
+    values = model.parameters.values
+    free = [model.parameters.index(n) for n in model.parameters.free_names]
+    rates, slope = _tangent(model, motion, values)
+    probe = values.copy()
+    probe[free] = _PROBE_FACTOR * values[free] + np.where(values[free] == 0.0, 1.0, 0.0)
+    moved = np.abs(_tangent(model, motion, probe)[1] - slope).max(axis=(0, 1))
+    curved = np.flatnonzero(moved > 1e-9 * np.abs(slope).max(axis=(0, 1)))  # rounding; chosen
+    if curved.size:
+        named = ", ".join(model.parameters.free_names[i] for i in curved)
+        raise InputError(
+            f"model '{model.name}' is not linear in {named}, as regression needs: fix under [model] what multiplies or "
+            "divides the others, or use output error"
+        )
+    return Features(rates - slope @ values[free], slope)
+
+
+def _tangent(model: Model, motion: RegressionMotion, values: Array) -> tuple[Array, Array]:
+    nx, nu, n = len(model.states), len(model.inputs), len(motion.time)
+    rates, jacobian = np.empty((n, nx)), np.zeros((n, nx, nx + nu + len(values)))
+    x, u = np.ascontiguousarray(motion.states), np.ascontiguousarray(motion.inputs)
+    evaluate_tangent(model.compiled.rates_tangent, x, u, np.tile(values, (n, 1)), motion.dt, rates, jacobian)
+    return rates, jacobian[:, :, [nx + nu + model.parameters.index(name) for name in model.parameters.free_names]]
+
+
+# The weak form: equations integrated against smooth windows, so that no derivative of data is ever taken.
+
+_POWER = 4
+
+
+def window_bounds(rows: int, half: int) -> list[tuple[int, int]]:
+    """First and last row of each window, half-overlapping; the whole record where it is short."""
+    half = min(half, (rows - 1) // 2)
+    return [(start, start + 2 * half) for start in range(0, rows - 2 * half, max(1, half // 2))]
+
+
+def window_function(half: int, dt: float) -> tuple[Array, Array]:
+    """The window (1 - s^2)^4 and its time derivative on 2 half + 1 samples."""
+    s = np.linspace(-1.0, 1.0, 2 * half + 1)
+    return (1 - s**2) ** _POWER, -2 * _POWER * s * (1 - s**2) ** (_POWER - 1) / (half * dt)
+
+
+@dataclass(frozen=True, eq=False)
+class WeakForm:
+    """Least squares over all windows of all runs; states are taken as measured.
+
+    Attributes:
+        states, inputs: one array a run, (rows, nx) and (rows, nu), model's signs.
+        half_width: of the windows, s.
+        residual_sd: standard deviation of each rate's windowed residual, shape (nx,).
+    """
+
+    model: Model
+    states: tuple[Array, ...]
+    inputs: tuple[Array, ...]
+    dt: float
+    half_width: float
+    residual_sd: Array
+
+    @property
+    def _free(self) -> Sequence[int]:
+        return [self.model.parameters.index(n) for n in self.model.parameters.free_names]
+
+    @property
+    def lower(self) -> Array:
+        """Lower bounds of the free parameters."""
+        return np.array([p.lower for p in self.model.parameters.free])
+
+    @property
+    def upper(self) -> Array:
+        """Upper bounds of the free parameters."""
+        return np.array([p.upper for p in self.model.parameters.free])
+
+    @cached_property
+    def _half(self) -> int:
+        return max(2, round(self.half_width / self.dt))
+
+    @cached_property
+    def _mean_inputs(self) -> list[Array]:
+        """Inputs by which the trapezoidal rule is exact: where one is held, the mean of its values on both sides."""
+        is_held = np.array([i.is_held for i in self.model.inputs])
+        before = [np.concatenate([u[:1], u[:-1]]) for u in self.inputs]
+        return [np.where(is_held, 0.5 * (u + b), u) for u, b in zip(self.inputs, before, strict=True)]
+
+    def linearised(self, point: Array) -> tuple[Array, Array]:
+        """Windowed residuals (windows, nx) and their derivatives (windows, nx, free)."""
+        values = self.model.parameters.with_free_values(point).values
+        nx, nu = len(self.model.states), len(self.model.inputs)
+        residuals, jacobians = [], []
+        for x, u in zip(self.states, self._mean_inputs, strict=True):
+            out, jac = np.empty((len(x), nx)), np.zeros((len(x), nx, nx + nu + len(values)))
+            evaluate_tangent(self.model.compiled.rates_tangent, x, u, np.tile(values, (len(x), 1)), self.dt, out, jac)
+            jac = jac[:, :, [nx + nu + i for i in self._free]]
+            bounds = window_bounds(len(x), self._half)
+            w, w_dot = window_function((bounds[0][1] - bounds[0][0]) // 2, self.dt)
+            for first, last in bounds:
+                piece = slice(first, last + 1)
+                middle = x[(first + last) // 2]
+                residuals.append(self.dt * (w_dot @ (x[piece] - middle) + w @ out[piece]))
+                jacobians.append(self.dt * np.einsum("t,tip->ip", w, jac[piece]))
+        return np.array(residuals), np.array(jacobians)
+
+    def _prior(self, point: Array) -> tuple[float, Array, Array]:
+        mean, weight = point.copy(), np.zeros(len(point))
+        for i, p in enumerate(self.model.parameters.free):
+            if p.prior is not None:
+                mean[i], weight[i] = p.prior.mean, p.prior.standard_deviation**-2
+        gap = point - mean
+        return 0.5 * float(weight @ gap**2), weight * gap, np.diag(weight)
+
+    def cost(self, shared: Array, local: Array) -> float:
+        """Half the weighted sum of squares with the prior's."""
+        del local
+        scaled = self.linearised(shared)[0] / self.residual_sd
+        value = 0.5 * float(np.sum(scaled**2)) + self._prior(shared)[0]
+        return value if value < DIVERGED**2 else np.inf
+
+    def normal(self, shared: Array, local: Array) -> NormalEquations:
+        """The Gauss-Newton model at a point."""
+        residual, jacobian = self.linearised(shared)
+        scaled = (residual / self.residual_sd).ravel()
+        j = (jacobian / self.residual_sd[:, None]).reshape(len(scaled), -1)
+        cost, gradient, hessian = self._prior(shared)
+        empty = np.zeros((0, len(shared), 0))
+        return NormalEquations(0.5 * float(scaled @ scaled) + cost, j.T @ scaled + gradient, j.T @ j + hessian,
+                      local, np.zeros((len(local), 0, 0)), empty)  # fmt: skip
+
+
+# What stands for the derivative in a regression: differences, a smoothed slope, the weak form; and what follows it.
 
 _ROUNDING = 1e-12  # of the mean, below which a deviation from it is rounding
 

@@ -1,26 +1,56 @@
-"""The pipeline of Song et al. 2025 as one estimator: clean, split, select among candidates, regress, score the test.
+"""The pipeline of Song et al. 2025 as one estimator, and the standard regressions by name, those of others too."""
 
-Thresholds, C and epsilon are not printed there; those here are ours, and said on the study's page.
-"""
-
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 
 import numpy as np
 
+from seatrial._plugins import failure_text, installed, load_plugin
 from seatrial.core.equations import Model
 from seatrial.core.results.prediction import RowScore
-from seatrial.core.values import Array, Finding, Record, Severity
-from seatrial.data.trial.settings import SupportVectorSettings
-from seatrial.estimation.regress.cleaning import without_duplicates, without_missing, without_outliers, without_small
-from seatrial.estimation.regress.estimators import RegressionEstimate, solve_systems
-from seatrial.estimation.regress.features import RegressionMotion
-from seatrial.estimation.regress.operators import Centred, DerivativeOperator, Differenced, Euler
-from seatrial.estimation.regress.solvers import Lasso, LinearSolver, RegressionSolution
-from seatrial.estimation.regress.split import blocks
-from seatrial.estimation.regress.support_vectors import SupportVectors
-from seatrial.estimation.regress.system import RegressionSystem, assemble_systems, build_systems
+from seatrial.core.values import Array, Finding, InputError, Record, Severity, spelling_hint
+from seatrial.data.trial.settings import EstimateMethod, SupportVectorSettings
+from seatrial.estimation.regress.estimators import (
+    InstrumentalVariables,
+    LinearRegression,
+    RegressionEstimate,
+    RegressionEstimator,
+    SupportVectors,
+    solve_systems,
+)
+from seatrial.estimation.regress.operators import (
+    Central,
+    Centred,
+    DerivativeOperator,
+    Differenced,
+    Euler,
+    RegressionMotion,
+    Smoothed,
+    Weak,
+)
+from seatrial.estimation.regress.samples import (
+    blocks,
+    without_duplicates,
+    without_missing,
+    without_outliers,
+    without_small,
+)
+from seatrial.estimation.regress.solvers import (
+    Lasso,
+    LeastSquaresSvm,
+    LinearSolver,
+    OrdinaryLeastSquares,
+    RegressionSolution,
+    RegressionSystem,
+    Ridge,
+    TruncatedSvd,
+    assemble_systems,
+    build_systems,
+)
 from seatrial.physics.models.candidate_structures import with_candidate_terms
+
+# The pipeline of Song et al. 2025 as one estimator: clean, split, select among candidates, regress, score the test.
 
 # section 1.4: differenced and centred
 DIFFERENCED_AND_CENTRED = Centred(Differenced(Euler()))
@@ -181,3 +211,103 @@ def _velocities(model: Model) -> list[str]:
     free = {first + model.parameters.index(n) for n in model.parameters.free_names}
     holding = {int(state) for state, column in model.compiled.rates_pattern if int(column) in free}
     return [model.states[i] for i in sorted(holding)]
+
+
+# The regressions that a comparison shows, by name.
+
+
+def standard_estimators(half_width: float, svr: SupportVectorSettings | None = None) -> tuple[RegressionEstimator, ...]:
+    """The estimators of a comparison; windows of that half width [s], the published pipeline with its settings."""
+    settings = svr or SupportVectorSettings()
+    support_vectors = SupportVectors(
+        settings.C, settings.epsilon, settings.scaled, max_iterations=settings.max_iterations
+    )
+    least_squares = OrdinaryLeastSquares()
+    return (
+        LinearRegression("Euler differences, least squares", Euler(), least_squares),
+        LinearRegression("Euler, differenced", Differenced(Euler()), least_squares),
+        LinearRegression("Euler, differenced and centred", Centred(Differenced(Euler())), least_squares),
+        LinearRegression("central differences, least squares", Central(), least_squares),
+        LinearRegression("central differences, ridge", Central(), Ridge()),
+        LinearRegression("central differences, truncated SVD", Central(), TruncatedSvd()),
+        LinearRegression("central differences, Lasso", Central(), Lasso()),
+        LinearRegression("central differences, least-squares SVM", Central(), LeastSquaresSvm()),
+        LinearRegression("central differences, support vectors", Central(), support_vectors),
+        LinearRegression("smoothed derivative, least squares", Smoothed(0.5 * half_width), least_squares),
+        LinearRegression("weak form, least squares", Weak(half_width), least_squares),
+        LinearRegression("weak form, ridge", Weak(half_width), Ridge()),
+        *pipelines(settings),
+        InstrumentalVariables("weak form, instrumental variables", Weak(half_width)),
+    )
+
+
+# Estimators by name: the standard regressions, and those that other packages install under ``seatrial.estimators``.
+
+ENTRY_POINT_GROUP = "seatrial.estimators"
+# what an entry point names: from the half width of a window [s] to an estimator
+EstimatorFactory = Callable[[float], RegressionEstimator]
+_NAMES: Mapping[EstimateMethod, str] = MappingProxyType({
+    EstimateMethod.EULER: "Euler differences, least squares",
+    EstimateMethod.EULER_DIFFERENCED: "Euler, differenced",
+    EstimateMethod.EULER_CENTRED: "Euler, differenced and centred",
+    EstimateMethod.OLS: "central differences, least squares",
+    EstimateMethod.RIDGE: "central differences, ridge",
+    EstimateMethod.TSVD: "central differences, truncated SVD",
+    EstimateMethod.LASSO: "central differences, Lasso",
+    EstimateMethod.LS_SVM: "central differences, least-squares SVM",
+    EstimateMethod.SVR: "central differences, support vectors",
+    EstimateMethod.SMOOTHED: "smoothed derivative, least squares",
+    EstimateMethod.WEAK_FORM: "weak form, least squares",
+    EstimateMethod.WEAK_FORM_RIDGE: "weak form, ridge",
+    EstimateMethod.SONG2025: "published pipeline (Song et al. 2025)",
+    EstimateMethod.SONG2025_IMPROVED: "published pipeline, improved (Song et al. 2025)",
+    EstimateMethod.INSTRUMENTAL_VARIABLES: "weak form, instrumental variables",
+})  # fmt: skip
+"""Name in tables of each regression that `[estimate] method` can name."""
+
+
+def available_estimators(
+    half_width: float, svr: SupportVectorSettings | None = None
+) -> tuple[RegressionEstimator, ...]:
+    """Return the standard estimators, then the installed ones; windows of that half width [s].
+
+    Raises:
+        InputError: an installed estimator cannot be made; the sentence says which.
+    """
+    return (
+        *standard_estimators(half_width, svr),
+        *(_plugin(name, half_width) for name in installed(ENTRY_POINT_GROUP)),
+    )
+
+
+def estimator_named(name: str, half_width: float, svr: SupportVectorSettings | None = None) -> RegressionEstimator:
+    """Return the estimator that tables list under a name; windows of that half width [s].
+
+    Raises:
+        InputError: there is no such estimator (the nearest is named), or an installed one cannot be made.
+    """
+    estimators = {estimator.name: estimator for estimator in available_estimators(half_width, svr)}
+    if name not in estimators:
+        raise InputError(f"unknown estimator '{name}'{spelling_hint(name, list(estimators))}")
+    return estimators[name]
+
+
+def estimator_of_method(
+    method: EstimateMethod, half_width: float, svr: SupportVectorSettings | None = None
+) -> RegressionEstimator:
+    """Return the regression that `[estimate] method` names; windows of that half width [s].
+
+    Raises:
+        InputError: the method is no regression.
+    """
+    if method not in _NAMES:
+        raise InputError(f"method '{method}' is no regression; these are {', '.join(_NAMES)}")
+    return estimator_named(_NAMES[method], half_width, svr)
+
+
+def _plugin(name: str, half_width: float) -> RegressionEstimator:
+    create: EstimatorFactory = load_plugin(ENTRY_POINT_GROUP, name, InputError)
+    try:
+        return create(half_width)
+    except Exception as error:
+        raise InputError(failure_text(installed(ENTRY_POINT_GROUP)[name], error)) from error

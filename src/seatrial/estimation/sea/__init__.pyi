@@ -1,16 +1,16 @@
 """Names of this package, imported when first used."""
 
-from seatrial.estimation.sea.encountered_sea import EncounteredSea as EncounteredSea, encountered_sea as encountered_sea
-from seatrial.estimation.sea.encountered_sea import sea_spectrum as sea_spectrum
+from seatrial.estimation.sea.wave_leg import EncounteredSea as EncounteredSea, encountered_sea as encountered_sea
+from seatrial.estimation.sea.wave_leg import sea_spectrum as sea_spectrum
 from seatrial.estimation.sea.legs_in_waves import LegFit as LegFit, LegPriors as LegPriors
 from seatrial.estimation.sea.legs_in_waves import LegsInWaves as LegsInWaves, fit_legs as fit_legs
-from seatrial.estimation.sea.plant_factors import PLANT_FACTORS as PLANT_FACTORS, altered_loop as altered_loop
-from seatrial.estimation.sea.stretch_spectra import StretchSpectra as StretchSpectra
-from seatrial.estimation.sea.stretch_spectra import stretch_spectra as stretch_spectra
+from seatrial.estimation.sea.wave_leg import PLANT_FACTORS as PLANT_FACTORS, altered_loop as altered_loop
+from seatrial.estimation.sea.wave_leg import StretchSpectra as StretchSpectra
+from seatrial.estimation.sea.wave_leg import stretch_spectra as stretch_spectra
 from seatrial.estimation.sea.wave_leg import LegLikelihood as LegLikelihood, ObservedLeg as ObservedLeg
 from seatrial.estimation.sea.wave_leg import WaveLeg as WaveLeg
-from seatrial.estimation.sea.sea_posterior import ShipInSea as ShipInSea, draw_ship_in_sea as draw_ship_in_sea
-from seatrial.estimation.sea.encounter_matrix import TransformBins as TransformBins, band_edges as band_edges
-from seatrial.estimation.sea.encounter_matrix import encounter_matrix as encounter_matrix
+from seatrial.estimation.sea.sea_likelihood import ShipInSea as ShipInSea, draw_ship_in_sea as draw_ship_in_sea
+from seatrial.estimation.sea.sea_likelihood import TransformBins as TransformBins, band_edges as band_edges
+from seatrial.estimation.sea.sea_likelihood import encounter_matrix as encounter_matrix
 from seatrial.estimation.sea.sea_likelihood import BIN_STRIDE as BIN_STRIDE, HEADING_CELL as HEADING_CELL
 from seatrial.estimation.sea.sea_likelihood import MotionSpectrum as MotionSpectrum, SeaLikelihood as SeaLikelihood

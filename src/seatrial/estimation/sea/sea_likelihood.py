@@ -1,29 +1,112 @@
-"""The likelihood of a whole stretch's motion in a sea of unknown heading, for many ships and seas at once (Whittle).
-
-The output is S (D w + P e + n), S = 1 / (1 + P K): waves w through the ship's response D, what the actuator does
-besides following the output, a = -K y + e, through the plant P, and the sensor's noise n, which the controller follows,
-too (identification in closed loop: Ljung 1999, System Identification, section 13.4). One transform is taken of the
-whole stretch: in following seas waves of many frequencies gather at the largest frequency of encounter, and short
-segments would smear that over bins that then count as independent, though they show the same waves.
-"""
+"""The likelihood of a whole stretch's motion in a sea of unknown heading, and draws of ship and sea by it."""
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from seatrial.core.values import Array
-from seatrial.estimation.sea.encounter_matrix import BAND, TransformBins, band_edges, encounter_matrix
-from seatrial.estimation.sea.encountered_sea import sea_spectrum
+from seatrial.core.values import Array, Index
+from seatrial.estimation.problem.spectral_likelihood import hann_leakage
 from seatrial.estimation.sea.legs_in_waves import PEAK_DEVIATION, PEAK_MEAN
-from seatrial.estimation.sea.plant_factors import altered_responses
-from seatrial.physics.hydro.excitation import Complex, G
+from seatrial.estimation.sea.wave_leg import altered_responses, sea_spectrum
+from seatrial.physics.hydro.excitation import Complex, G, encounter_frequency
 from seatrial.physics.loops import TransferLoop, WaveEffect
+from seatrial.physics.sea.spectrum import speed_factor
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
+
+
+# What the transform of a whole stretch shows of waves: a matrix from bands of wave frequency, for each heading.
+
+BAND = 0.01  # relative width of a band: a seventh of the width of JONSWAP's peak, 0.07 (Hasselmann et al. 1973); chosen
+_LONGEST, _SHORTEST = 0.5, 4.0  # wave frequencies over the ends of the transform's that are looked at; chosen
+_NODES_A_BIN = 3.0  # nodes for each bin of the transform that a band covers, at least; chosen
+_WINDOW_POWER = 1.5  # mean of a Hann window's square over the square of its mean: the area under its leakage, in bins
+_PLACES_A_BIN = 256  # at which leakage is tabulated: within 1 % of a node's own down to a tenth of the largest; chosen
+_LEAKAGE_BINS = 6  # bins either way in which a node shows: beyond them less than 3e-6 of its energy; chosen
+
+
+@dataclass(frozen=True, eq=False)
+class _Nodes:
+    """Each node's band, its frequency and width [rad/s], (p,)."""
+
+    band: Index
+    omega: Array
+    width: Array
+
+
+@dataclass(frozen=True, eq=False)
+class TransformBins:
+    """Bins of a stretch's transform: omega (k,) [rad/s], `stride` of the transform's steps [rad/s] apart."""
+
+    omega: Array
+    step: float
+    stride: int
+
+
+def band_edges(omega: Array, effect: WaveEffect) -> Array:
+    """Return edges of the bands of wave frequency (n + 1,) [rad/s], evenly spaced in logarithm.
+
+    omega: (k,), rad/s, of the transform; effect: of the waves, whose range bounds the bands.
+    """
+    longest, shortest = effect.frequency_range
+    low, high = max(_LONGEST * float(omega[0]), longest), min(_SHORTEST * float(omega[-1]), shortest)
+    return np.exp(math.log(low) + BAND * np.arange(math.ceil(math.log(high / low) / BAND) + 1))
+
+
+def encounter_matrix(bins: TransformBins, edges: Array, U: float, headings: Array, effect: WaveEffect) -> "csr_array":
+    """Return the density at k bins of the disturbance for unit density of waves in each band, (k, n), sparse.
+
+    edges: (n + 1,), rad/s; U: m/s; headings: (h,), rad, 0 following; the mean over them is returned.
+
+    Raises:
+        InputError: speed or heading out of sense.
+    """
+    from scipy.sparse import csr_array
+
+    step, leakage = bins.step, _leakage()
+    last = bins.stride * (len(bins.omega) - 1)
+    rows, columns, values = [], [], []
+    for beta in headings.tolist():
+        speed_factor(U, beta)  # refuses what is out of sense
+        nodes = _nodes(edges, U, beta, step)
+        places = (np.abs(encounter_frequency(nodes.omega, U, beta)) - bins.omega[0]) / step
+        share = nodes.width / (_WINDOW_POWER * step * len(headings))
+        energy = np.abs(effect.amplitude(nodes.omega, U, beta)) ** 2 * share
+        near = np.rint(places).astype(int)
+        shows = (near > -_LEAKAGE_BINS) & (near < last + _LEAKAGE_BINS)
+        row = near[shows, None] + np.arange(-_LEAKAGE_BINS, _LEAKAGE_BINS + 1)
+        part = np.rint((places - near + 0.5)[shows] * _PLACES_A_BIN).astype(int)
+        value = leakage[part] * energy[shows, None]
+        inside = (row >= 0) & (row <= last) & (row % bins.stride == 0)
+        rows.append(row[inside] // bins.stride)
+        columns.append(np.broadcast_to(nodes.band[shows, None], row.shape)[inside])
+        values.append(value[inside])
+    cells = np.concatenate(rows), np.concatenate(columns)
+    return csr_array((np.concatenate(values), cells), shape=(len(bins.omega), len(edges) - 1))
+
+
+@cache
+def _leakage() -> Array:
+    """Return what the bins about the nearest one show of a node, half a bin below that to half a bin above, (p, 13)."""
+    places = np.arange(_PLACES_A_BIN + 1) / _PLACES_A_BIN - 0.5
+    return hann_leakage(np.arange(-_LEAKAGE_BINS, _LEAKAGE_BINS + 1) - places[:, None])
+
+
+def _nodes(edges: Array, U: float, beta: float, step: float) -> _Nodes:
+    """Return nodes so close that they are met at most a third of a bin apart."""
+    met = encounter_frequency(edges, U, beta)
+    counts = np.maximum(np.ceil(_NODES_A_BIN * np.abs(np.diff(met)) / step), 1.0).astype(int)
+    band = np.repeat(np.arange(len(counts)), counts)
+    first = np.repeat(np.cumsum(counts) - counts, counts)
+    width = (np.diff(edges) / counts)[band]
+    return _Nodes(band, edges[band] + (np.arange(len(band)) - first + 0.5) * width, width)
+
+
+# The likelihood of a whole stretch's motion in a sea of unknown heading, for many ships and seas at once (Whittle).
 
 # logarithm of the steepness 2 pi H / (g T^2), H significant height, T peak period, before the stretch: 0.02 lies
 # between swell and the Pierson-Moskowitz sea's 0.026, 95 % from 0.0075 to 0.053, short of the 1/15 at which seas
@@ -32,7 +115,7 @@ _STEEPNESS_MEAN, _STEEPNESS_DEVIATION = math.log(0.02), 0.5
 # logarithm of a density that neither sea nor sensor explains (gusts, a motion that is not linear) over the largest,
 # before the stretch: 95 % from 1e-8 to 1e-2; chosen
 _REST_MEAN, _REST_DEVIATION = math.log(1e-5), 1.5 * math.log(10.0)
-_SHORTEST, _LONGEST = 0.3, 3.0  # peak periods over the one expected that are looked at; chosen
+_LEAST_PERIOD, _GREATEST_PERIOD = 0.3, 3.0  # peak periods over the one expected that are looked at; chosen
 HEADING_CELL = math.pi / 180.0  # rad, within which headings are not distinguished: what a helmsman keeps; chosen
 _HEADINGS_A_CELL = 3  # from edge to edge, whose mean a cell shows: no craft keeps its heading to a tenth; chosen
 _SEARCH_STEPS = 6  # of the height's optimum, from the energy of the motion; chosen
@@ -102,7 +185,7 @@ class SeaLikelihood:
     @property
     def periods(self) -> tuple[float, float]:
         """Return the ends of the logarithms of the peak period that are looked at."""
-        return math.log(_SHORTEST * self.expected_period), math.log(_LONGEST * self.expected_period)
+        return math.log(_LEAST_PERIOD * self.expected_period), math.log(_GREATEST_PERIOD * self.expected_period)
 
     def heights(self, points: Array) -> Heights:
         """Return what each point (m, 7) makes of the stretch; evidence is minus infinity outside what is looked at."""
@@ -198,3 +281,133 @@ class SeaLikelihood:
 
 def _energy(response: Complex) -> Array:
     return np.asarray(response.real**2 + response.imag**2, dtype=np.float64)
+
+
+# Ship and sea of one stretch when the heading to the waves is not known either: draws of all that the motion allows.
+
+_FIRST = 4096  # points that the population is drawn from: more than 20 for each degree of heading; chosen
+_GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # step of the periods: multiples spread evenly over 0 to 1 (Kronecker)
+_MEMBERS = 384  # of the population, even; chosen: many times its unknowns, so that none of several headings is lost
+_KEPT_WEIGHT = 0.5  # share of the members that a rise of the power leaves; Jasra et al. 2011
+_MOVES = 2  # generations at each power; chosen
+# generations at one, every so many of which are kept after the first: from seed to seed means then differ by some 0.15
+# of their deviations; chosen
+_SETTLING, _GENERATIONS, _EVERY = 12, 60, 4
+_DIFFERENCE = 2.38  # times the difference of two members, over the root of twice the unknowns; ter Braak 2006, eq. (2)
+_STRETCHED = 0.5  # deviation of the logarithm of a factor on it: modes differ in width; chosen
+_JUMPS, _JITTER = 0.1, 1e-4  # share of steps of a whole difference, from peak to peak; of every step, random; ter Braak
+# shares of the unknowns that a step moves, one of them at random (crossover: Vrugt et al. 2009, International Journal
+# of Nonlinear Sciences and Numerical Simulation 10, 273-290)
+_CROSSOVERS = (0.3, 0.6, 1.0)
+_BISECTIONS = 40  # of the next power: to 1e-12; chosen
+
+
+@dataclass(frozen=True, eq=False)
+class ShipInSea:
+    """Draws: headings [rad] (n,), of `PLANT_FACTORS` (n, 3), and of `SEA_UNKNOWNS` (n, 3)."""
+
+    headings: Array
+    ships: Array
+    seas: Array
+
+
+@dataclass(frozen=True, eq=False)
+class _Population:
+    """Members: points (n, 7), evidence (n,), optimum and deviation of the height's logarithm, (n,)."""
+
+    points: Array
+    evidence: Array
+    optimum: Array
+    deviation: Array
+
+    def chosen(self, places: Index) -> "_Population":
+        """Return the members at these places."""
+        return _Population(*(part[places] for part in vars(self).values()))
+
+    def stepped(self, likelihood: SeaLikelihood, power: float, rng: np.random.Generator) -> "_Population":
+        """Return the next generation: each half moves by differences of two members of the other."""
+        first, second = np.split(np.arange(len(self.points)), 2)
+        halfway = self._moved(first, second, likelihood, power, rng)
+        return halfway._moved(second, first, likelihood, power, rng)
+
+    def _moved(
+        self, movers: Index, partners: Index, likelihood: SeaLikelihood, power: float, rng: np.random.Generator
+    ) -> "_Population":
+        """Return the population with the movers where Metropolis' rule takes them."""
+        here, count = self.points[movers], len(movers)
+        one = rng.integers(count, size=count)
+        other = (one + rng.integers(1, count, size=count)) % count
+        scale = _DIFFERENCE / math.sqrt(2.0 * POINT_SIZE) * np.exp(_STRETCHED * rng.standard_normal(count))
+        scale = np.where(rng.random(count) < _JUMPS, 1.0, scale)
+        moves = rng.random(here.shape) < rng.choice(_CROSSOVERS, size=(count, 1))
+        step = scale[:, None] * (self.points[partners[one]] - self.points[partners[other]]) * moves
+        there = here + step + _JITTER * rng.standard_normal(here.shape)
+        heights = likelihood.heights(there)
+        gain = power * (heights.evidence - self.evidence[movers])
+        gain += 0.5 * (np.sum(here[:, NORMAL] ** 2, axis=1) - np.sum(there[:, NORMAL] ** 2, axis=1))
+        accepted = np.log(rng.random(count)) < gain
+        moved = _Population(*(part.copy() for part in vars(self).values()))
+        moved.points[movers[accepted]] = there[accepted]
+        for name in ("evidence", "optimum", "deviation"):
+            getattr(moved, name)[movers[accepted]] = getattr(heights, name)[accepted]
+        return moved
+
+
+def draw_ship_in_sea(likelihood: SeaLikelihood, rng: np.random.Generator) -> ShipInSea:
+    """Return draws of heading, ship and sea that a stretch allows, in the order in which they were made."""
+    population, power = _first_points(likelihood, rng), 0.0
+    population, power = _raised(population, power, _MEMBERS, rng)
+    while power < 1.0:
+        for _ in range(_MOVES):
+            population = population.stepped(likelihood, power, rng)
+        population, power = _raised(population, power, round(_KEPT_WEIGHT * _MEMBERS), rng)
+    kept = []
+    for generation in range(_GENERATIONS):
+        population = population.stepped(likelihood, 1.0, rng)
+        if generation >= _SETTLING and generation % _EVERY == 0:
+            kept.append(population)
+    points, optimum, deviation = (
+        np.concatenate([getattr(one, name) for one in kept]) for name in ("points", "optimum", "deviation")
+    )
+    height = optimum + deviation * rng.standard_normal(len(points))
+    seas = np.column_stack([height, points[:, PERIOD], PEAK_MEAN + PEAK_DEVIATION * points[:, PEAK]])
+    # a cell of headings is all that the likelihood resolves: the truth may lie half a cell to either side
+    headings = np.clip(points[:, HEADING] + HEADING_CELL * (rng.random(len(points)) - 0.5), 0.0, math.pi)
+    return ShipInSea(headings, likelihood.deviations * points[:, SHIP], seas)
+
+
+def _first_points(likelihood: SeaLikelihood, rng: np.random.Generator) -> _Population:
+    """Return points drawn from what was known before the stretch, heading and period evenly (a lattice of rank 1)."""
+    index = np.arange(_FIRST)
+    places = np.column_stack([(index + 0.5) / _FIRST, (_GOLDEN * index + rng.random()) % 1.0])
+    low, high = likelihood.periods
+    normal = rng.standard_normal((_FIRST, NORMAL_SIZE))
+    points = np.column_stack([math.pi * places[:, 0], low + (high - low) * places[:, 1], normal]).astype(np.float64)
+    heights = likelihood.heights(points)
+    return _Population(points, heights.evidence, heights.optimum, heights.deviation)
+
+
+def _raised(population: _Population, power: float, wanted: int, rng: np.random.Generator) -> tuple[_Population, float]:
+    """Return `_MEMBERS` drawn for the largest power up to one that leaves so many of equal weight, and that power."""
+    low, high = power, 1.0
+    if _equal_members((1.0 - power) * population.evidence) >= wanted:
+        low = 1.0
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (low + high)
+        is_kept = _equal_members((middle - power) * population.evidence) >= wanted
+        low, high = (middle, high) if is_kept else (low, middle)
+    places = _resampled((low - power) * population.evidence, _MEMBERS, rng)
+    return population.chosen(rng.permutation(places)), low
+
+
+def _equal_members(log_weight: Array) -> float:
+    """Return how many members of equal weight the weights are worth (Kong, Liu & Wong 1994, JASA 89, 278)."""
+    weight = np.exp(log_weight - np.max(log_weight))
+    return float(np.sum(weight) ** 2 / np.sum(weight**2))
+
+
+def _resampled(log_weight: Array, count: int, rng: np.random.Generator) -> Index:
+    """Return places drawn by weight, (count,), at even steps of the cumulated weight (systematic resampling)."""
+    cumulated = np.cumsum(np.exp(log_weight - np.max(log_weight)))
+    steps = (np.arange(count) + rng.random()) / count
+    return np.minimum(np.searchsorted(cumulated, steps * cumulated[-1]), len(cumulated) - 1)

@@ -1,21 +1,205 @@
-"""One stretch of steady speed and heading in waves that nobody measured: its likelihood in closed loop (Whittle).
+"""One stretch of steady speed and heading in waves that nobody measured: spectra, the sea, and its likelihood."""
 
-The output is S (D w + P e): waves w through the ship's response D, and what the actuator does besides following the
-output, a = -K y + e, through the plant P, all divided by the loop's 1 + P K (identification in closed loop: Ljung 1999,
-System Identification, section 13.4). K is that of the gains which the stretch itself shows, limits and all.
-"""
-
-from dataclasses import dataclass
-from functools import cached_property
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache, reduce
 
 import numpy as np
 
-from seatrial.core.values import Array
-from seatrial.estimation.sea.encountered_sea import SEA_UNKNOWNS, EncounteredSea
-from seatrial.estimation.sea.plant_factors import PLANT_FACTORS, altered_loop
-from seatrial.estimation.sea.stretch_spectra import StretchSpectra
-from seatrial.physics.hydro.excitation import Complex
-from seatrial.physics.loops import TransferLoop
+from seatrial.core.values import Array, InputError
+from seatrial.estimation.problem.spectral_likelihood import WINDOW_CORRELATION, hann_leakage, hann_transform
+from seatrial.physics.hydro.excitation import Complex, encounter_frequency
+from seatrial.physics.loops import Block, TransferLoop, WaveEffect
+from seatrial.physics.sea import Spectrum, bretschneider
+from seatrial.physics.sea.spectrum import speed_factor
+
+# A sea of unknown height, period and peak as the spectra of a moving ship show it.
+
+SEA_UNKNOWNS = ("height", "peak period", "peak")
+"""What is unknown of a sea: logarithms of significant height [m] and peak period [s], and of gamma - 1."""
+
+_WINDOW_POWER = 1.5  # mean of a Hann window's square over the square of its mean: the area under its leakage, in bins
+_NODES_A_BIN = 3.0  # nodes over the wave frequency for each bin of the transform, at least; chosen
+_LEAKAGE_BINS = 8.0  # bins beyond the band from which the window still shows power; chosen
+_PLACES_A_BIN = 64  # at which leakage is tabulated: within 1 % of a node's own, either way; chosen
+_KEPT = 8  # tables of leakage in memory; chosen
+_LONGEST, _SHORTEST = 0.5, 4.0  # wave frequencies over the ends of the band that are looked at; chosen
+
+
+@dataclass(frozen=True, eq=False)
+class EncounteredSea:
+    """Nodes over the wave frequency for one speed and heading.
+
+    Attributes:
+        omega: (n,), rad/s; omega_e: (n,), rad/s, the frequencies at which they are met; width: rad/s.
+        effect_energy: (n,), |effect|^2 for each metre of wave; leakage: (k, n), s/rad, what each frequency of a
+            transform shows of each node's energy.
+    """
+
+    omega: Array
+    omega_e: Array
+    width: float
+    effect_energy: Array
+    leakage: Array
+
+    def disturbance_energy(self, sea: Array) -> Array:
+        """Return each node's share of the variance of the disturbance, (n,), in the sea (3,) of `SEA_UNKNOWNS`."""
+        return self.effect_energy * sea_spectrum(sea).density(self.omega) * self.width
+
+    def density(self, sea: Array, power_gain: Array) -> Array:
+        """Return the density of a motion as the transforms show it, (k,); power_gain: (n,), |response|^2 at omega_e."""
+        return self.leakage @ (power_gain * self.disturbance_energy(sea))
+
+
+def sea_spectrum(sea: Array) -> Spectrum:
+    """Return the spectrum of the unknowns (3,): Bretschneider's with a peak raised as JONSWAP's."""
+    height, period, peak = np.exp(sea).tolist()
+    raw = replace(bretschneider(height, period), gamma=1.0 + peak)
+    return replace(raw, A=raw.A * height**2 / (16.0 * raw.moment(0)))  # significant height is four standard deviations
+
+
+def encountered_sea(bins: Array, U: float, beta: float, effect: WaveEffect) -> EncounteredSea:
+    """Return the nodes for transforms at `bins` (k,) [rad/s], a ship of speed U [m/s], heading beta [rad, 0 following].
+
+    Raises:
+        InputError: speed or heading out of sense.
+    """
+    q, step = speed_factor(U, beta), float(bins[1] - bins[0])
+    longest, shortest = effect.frequency_range
+    lowest = max(_LONGEST * float(bins[0]), longest)
+    highest = _highest_wave(float(bins[-1]) + _LEAKAGE_BINS * step, q)
+    highest = min(highest, shortest, _SHORTEST * float(bins[-1]))
+    steepest = max(abs(1.0 - 2.0 * q * lowest), abs(1.0 - 2.0 * q * highest))
+    count = math.ceil(_NODES_A_BIN * max(steepest, 1.0) * (highest - lowest) / step)
+    width = (highest - lowest) / count
+    omega = np.asarray(lowest + width * (np.arange(count) + 0.5), dtype=np.float64)
+    omega_e = np.abs(encounter_frequency(omega, U, beta))
+    columns = _leakage_columns(len(bins))
+    places = np.rint(((omega_e - bins[0]) / step + _LEAKAGE_BINS) * _PLACES_A_BIN).astype(int)
+    is_near = (places >= 0) & (places < columns.shape[1])
+    leakage = np.where(is_near, columns[:, np.where(is_near, places, 0)], 0.0) / step
+    return EncounteredSea(omega, omega_e, width, np.abs(effect.amplitude(omega, U, beta)) ** 2, leakage)
+
+
+@lru_cache(maxsize=_KEPT)
+def _leakage_columns(count: int) -> Array:
+    """Return what `count` bins show of energy at places from 8 bins below the first to 8 above the last, (count, p)."""
+    width = round((count + 2.0 * _LEAKAGE_BINS - 1.0) * _PLACES_A_BIN) + 1
+    places = np.arange(width) / _PLACES_A_BIN - _LEAKAGE_BINS
+    return hann_leakage(np.arange(count)[:, None] - places) / _WINDOW_POWER
+
+
+def _highest_wave(omega_e: float, q: float) -> float:
+    """Return the highest wave frequency that is met at omega_e: the largest root of |omega - q omega^2| = omega_e."""
+    if q > 0.0:
+        return (1.0 + math.sqrt(1.0 + 4.0 * q * omega_e)) / (2.0 * q)
+    return 2.0 * omega_e / (1.0 + math.sqrt(1.0 - 4.0 * q * omega_e))
+
+
+# A loop whose ship differs from the model: by the actuator's effect, the natural frequency, and the damping.
+
+PLANT_FACTORS = ("gain", "frequency", "damping")
+"""What may differ, as logarithms of factors; zeros leave a loop as it is."""
+
+
+def altered_loop(loop: TransferLoop, factors: Array) -> TransferLoop:
+    """Return the loop with the plant's gain, and the natural frequencies and damping of plant and disturbance, changed.
+
+    factors: (3,), logarithms, in the order of `PLANT_FACTORS`. Gains at rest are kept but for the first factor.
+    """
+    gain, frequency, damping = np.exp(factors).tolist()
+    plant = _altered_block(loop.plant, frequency, damping).scaled(gain)
+    return replace(loop, plant=plant, disturbance=_altered_block(loop.disturbance, frequency, damping))
+
+
+def altered_responses(block: Block, omega: Array, factors: Array) -> Complex:
+    """Return the responses at omega (k,) [rad/s] of a block altered by each row of factors (m, 2), (m, k).
+
+    factors: logarithms, of natural frequency and damping, as of `altered_loop`.
+    """
+    frequency, damping = np.exp(factors).T[:, :, None]
+    s = 1j * omega / frequency
+    poles = damping * block.poles.real + 1j * block.poles.imag
+    if not len(poles.T):
+        return np.polyval(block.num, s) / block.den[-1]
+    factor = reduce(np.multiply, (1.0 - s * (1.0 / pole) for pole in poles.T[:, :, None]))
+    return np.polyval(block.num, s) / (block.den[-1] * factor)
+
+
+def _altered_block(block: Block, frequency: float, damping: float) -> Block:
+    """Return H(s / frequency) with the real parts of its poles times `damping`, the same at s = 0."""
+    poles = frequency * (damping * block.poles.real + 1j * block.poles.imag)
+    stretched = np.array(block.num) / frequency ** np.arange(len(block.num) - 1, -1, -1)
+    den = np.real(np.poly(poles))
+    num = stretched * (den[-1] / block.den[-1])
+    return replace(block, num=tuple(num.tolist()), den=tuple(den.tolist()))
+
+
+# Fourier transforms of the half-overlapping segments of a stretch of a record (Welch 1967, IEEE Trans. AU-15, 70).
+
+# variance of the mean of half-overlapping Hann segments over that of as many independent ones, 1 + 2 (1/6)^2
+# (Welch 1967, section on overlapping segments)
+_OVERLAP_VARIANCE = 1.0 + 2.0 / 36.0
+_FEWEST_SEGMENTS = 4  # from which a spread between segments says something; chosen
+
+
+@dataclass(frozen=True, eq=False)
+class StretchSpectra:
+    """Transforms of m segments of c channels, scaled so that the mean of |transform|^2 is the one-sided density.
+
+    Attributes:
+        omega: (k,), rad/s, evenly spaced; transforms: (m, k, c).
+    """
+
+    omega: Array
+    transforms: Complex
+
+    @property
+    def step(self) -> float:
+        """Return the distance of two frequencies [rad/s]."""
+        return float(self.omega[1] - self.omega[0])
+
+    @property
+    def information(self) -> float:
+        """Return how many independent periodograms the mean of the segments is worth, at each frequency."""
+        return len(self.transforms) / _OVERLAP_VARIANCE / WINDOW_CORRELATION
+
+    def cross_density(self, first: int, second: int) -> Complex:
+        """Return the mean over the segments of one channel times the conjugate of another, (k,)."""
+        return np.mean(self.transforms[:, :, first] * self.transforms[:, :, second].conj(), axis=0)
+
+    def band_limited(self, low: float, high: float) -> "StretchSpectra":
+        """Return the same between two frequencies [rad/s]."""
+        kept = (self.omega >= low) & (self.omega <= high)
+        return replace(self, omega=self.omega[kept], transforms=self.transforms[:, kept])
+
+    def strong_band(self, channel: int, share: float) -> "StretchSpectra":
+        """Return the same on the band about the largest density of a channel where it is at least a share of that."""
+        density = self.cross_density(channel, channel).real
+        peak, weak = int(np.argmax(density)), np.flatnonzero(density < share * np.max(density))
+        first = int(np.max(weak[weak < peak], initial=-1)) + 1
+        last = int(np.min(weak[weak > peak], initial=len(density)))
+        return replace(self, omega=self.omega[first:last], transforms=self.transforms[:, first:last])
+
+
+def stretch_spectra(values: Array, dt: float, segment_s: float) -> StretchSpectra:
+    """Return the transforms of the columns of values (n, c), every dt [s], in segments of `segment_s` [s].
+
+    Raises:
+        InputError: the values have gaps, or hold fewer than four segments.
+    """
+    count = round(segment_s / dt)
+    starts = range(0, len(values) - count + 1, max(1, count // 2))
+    if len(starts) < _FEWEST_SEGMENTS:
+        shortest = 0.5 * (_FEWEST_SEGMENTS + 1) * segment_s
+        raise InputError(f"a stretch of {len(values) * dt:.0f} s is too short for a spectrum; give {shortest:.0f} s")
+    if not np.all(np.isfinite(values)):
+        raise InputError("a stretch has gaps, which a spectrum cannot have; repair them")
+    parts = [hann_transform(values[first : first + count], dt) for first in starts]
+    return StretchSpectra(parts[0][0], np.array([transform for _, transform in parts]))
+
+
+# One stretch of steady speed and heading in waves that nobody measured: its likelihood in closed loop (Whittle).
 
 SHIP_COUNT, SEA_COUNT = len(PLANT_FACTORS), len(SEA_UNKNOWNS)
 STEP = 1e-4  # of logarithmic unknowns, for central differences; chosen

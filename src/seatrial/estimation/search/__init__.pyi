@@ -1,21 +1,18 @@
 """Names of this package, imported when first used."""
 
-from seatrial.estimation.search.fitness import (
+from seatrial.estimation.search.sample_search import (
     Candidates as Candidates,
     Fitness as Fitness,
     one_sample_fitness as one_sample_fitness,
     whole_record_fitness as whole_record_fitness,
 )
-from seatrial.estimation.search.linear_candidates import LinearCandidates as LinearCandidates
+from seatrial.estimation.search.candidates import LinearCandidates as LinearCandidates
 from seatrial.estimation.search.methods import (
     SearchBudget as SearchBudget,
     SearchMethod as SearchMethod,
     search_method as search_method,
 )
-from seatrial.estimation.search.restarts import (
-    FinishedSearch as FinishedSearch,
-    run_search as run_search,
-)
-from seatrial.estimation.search.runs import JudgedRun as JudgedRun
+from seatrial.estimation.search.sample_search import FinishedSearch as FinishedSearch, run_search as run_search
+from seatrial.estimation.search.candidates import JudgedRun as JudgedRun
 from seatrial.estimation.search.sample_search import SampleSearch as SampleSearch
-from seatrial.estimation.search.simulated_candidates import SimulatedCandidates as SimulatedCandidates
+from seatrial.estimation.search.candidates import SimulatedCandidates as SimulatedCandidates

@@ -5,16 +5,23 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from seatrial.core.values import NOTATION
-from seatrial.exporting.ardupilot.choice import LARGEST_MS, ArduPilotTuning, tune_ardupilot
-from seatrial.exporting.ardupilot.controller import LOOP_RATE, SLEW_RATE
-from seatrial.exporting.ardupilot.craft import SteeredCraft, steered_craft, unsuitable_for_ardupilot
-from seatrial.exporting.ardupilot.gains import PidGains
-from seatrial.exporting.ardupilot.sampled_loop import SampledMargins
-from seatrial.exporting.ardupilot.steps import LARGEST_OVERSHOOT, StepResponse
-from seatrial.exporting.identified_range import range_text
-from seatrial.exporting.source import ExportSource, provenance_lines, require_values
-from seatrial.exporting.target import Export
-from seatrial.exporting.templating import rendered
+from seatrial.exporting.ardupilot.choice import (
+    LARGEST_MS,
+    LARGEST_OVERSHOOT,
+    ArduPilotTuning,
+    SampledMargins,
+    StepResponse,
+    tune_ardupilot,
+)
+from seatrial.exporting.ardupilot.controller import (
+    LOOP_RATE,
+    SLEW_RATE,
+    PidGains,
+    SteeredCraft,
+    steered_craft,
+    unsuitable_for_ardupilot,
+)
+from seatrial.exporting.source import Export, ExportSource, provenance_lines, range_text, rendered, require_values
 
 _BOAT = 2.0  # FRAME_CLASS (Rover/Parameters.cpp)
 _STEERING_THROTTLE_MIX = 0.5  # MOT_STR_THR_MIX, default: steering and throttle give way alike (AP_MotorsUGV.cpp)

@@ -5,9 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.estimation.estimate.online.gaussian_state import GaussianState
-from seatrial.estimation.estimate.online.handover import gaussian_state_from_fit
-from seatrial.estimation.estimate.online.recursive import Forgetting, RecursiveFilter
+from seatrial.estimation.estimate.online.recursive import Forgetting, GaussianState, RecursiveFilter
+from seatrial.estimation.estimate.online.window import gaussian_state_from_fit
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import Segments, cut_segments
 from seatrial.numerics.optimise import levenberg_marquardt

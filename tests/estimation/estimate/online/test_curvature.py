@@ -8,7 +8,7 @@ import sympy as sp
 from tests.estimation.estimate.online.streams import NOISE, SeaStream
 
 from seatrial.core.equations import Sheet
-from seatrial.estimation.estimate.online.curvature import LINEAR_ENOUGH, curvature
+from seatrial.estimation.estimate.online.window import LINEAR_ENOUGH, curvature
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import Segments
 from seatrial.numerics.optimise import levenberg_marquardt

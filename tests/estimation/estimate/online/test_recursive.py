@@ -9,9 +9,8 @@ from tests.estimation.estimate.online.streams import DT, NAMES, NOISE, OUTPUTS, 
 
 from seatrial.core.equations import Model, Sheet
 from seatrial.core.values import InputError, Prior
-from seatrial.estimation.estimate.online.gaussian_state import GaussianState
-from seatrial.estimation.estimate.online.handover import filter_from_fit, gaussian_state_from_fit
-from seatrial.estimation.estimate.online.recursive import DivergenceGuard, Forgetting, RecursiveFilter
+from seatrial.estimation.estimate.online.recursive import DivergenceGuard, Forgetting, GaussianState, RecursiveFilter
+from seatrial.estimation.estimate.online.window import filter_from_fit, gaussian_state_from_fit
 from seatrial.estimation.problem.output_error import Nuisance, OutputError
 from seatrial.estimation.problem.segments import Segments
 from seatrial.numerics.optimise import Optimum, levenberg_marquardt

@@ -2,7 +2,7 @@
 
 import pytest
 
-from seatrial.estimation.identify.online.schedule import CONTINUED_INTERVALS, REPEATED_INTERVALS, SearchSchedule
+from seatrial.estimation.identify.online.phases import CONTINUED_INTERVALS, REPEATED_INTERVALS, SearchSchedule
 
 
 @pytest.mark.parametrize(

@@ -6,10 +6,15 @@ import numpy as np
 import pytest
 from tests.estimation.identify.online.streams import sea_stream, window_of
 
-from seatrial.estimation.identify.online import search
-from seatrial.estimation.identify.online.phases import WarmUp
-from seatrial.estimation.identify.online.schedule import CONTINUED_INTERVALS, SearchSchedule
-from seatrial.estimation.identify.online.search import ContinuedSearch, RepeatedSearch, suits_whole_runs
+from seatrial.estimation.identify.online import phases as search
+from seatrial.estimation.identify.online.phases import (
+    CONTINUED_INTERVALS,
+    ContinuedSearch,
+    RepeatedSearch,
+    SearchSchedule,
+    WarmUp,
+    suits_whole_runs,
+)
 
 
 @pytest.fixture(scope="module")

@@ -4,7 +4,7 @@ import numpy as np
 from tests.estimation.identify.online.streams import sea_stream
 
 from seatrial.core.results.online import EstimatorPhase
-from seatrial.estimation.identify.online.snapshots import StreamProgress, at_progress, first_snapshot
+from seatrial.estimation.identify.online.phases import StreamProgress, at_progress, first_snapshot
 
 
 def test_breaks_between_runs_do_not_count_as_time():

@@ -7,7 +7,7 @@ import pytest
 from tests.estimation.identify.online.streams import samples, sea_stream, window_of
 
 from seatrial.core.values import InputError
-from seatrial.estimation.identify.online.stream_window import StreamWindow
+from seatrial.estimation.identify.online.estimator import StreamWindow
 
 
 @pytest.fixture(scope="module")

@@ -7,11 +7,20 @@ import pytest
 from tests.estimation.identify.online.streams import samples, sea_stream, window_of
 
 from seatrial.estimation.estimate.online.change_detection import ChangeDetector
-from seatrial.estimation.identify.online.phases import Carried, WarmUp, Window
-from seatrial.estimation.identify.online.recursive_phase import BLOCK_SAMPLES, RecursivePhase
-from seatrial.estimation.identify.online.schedule import CONTINUED_INTERVALS, REPEATED_INTERVALS, SearchSchedule
-from seatrial.estimation.identify.online.search import ContinuedSearch
-from seatrial.estimation.identify.online.transitions import carried_phase, filter_phase, is_window_full
+from seatrial.estimation.identify.online.phases import (
+    BLOCK_SAMPLES,
+    CONTINUED_INTERVALS,
+    REPEATED_INTERVALS,
+    Carried,
+    ContinuedSearch,
+    RecursivePhase,
+    SearchSchedule,
+    WarmUp,
+    Window,
+    carried_phase,
+    filter_phase,
+    is_window_full,
+)
 from seatrial.physics.sea.spectrum import WaveEncounter
 from seatrial_studies.seaway import box_hull
 

@@ -1,20 +1,39 @@
-"""What an online estimate rests on while samples are kept, and what the samples of a full window become.
+"""Phases of an online estimate: samples that are kept, information that is carried on, and what is shown of both."""
 
-    WarmUp ──► Window ──► RecursivePhase ──► Carried ──► RecursivePhase      output error over whole runs
-                  └─────► Carried ──► Carried                                where no filter can take over
-
-A filter that has diverged leads back to WarmUp. Each phase is a value; `OnlineEstimator` holds one at a time.
-"""
-
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Self
+from typing import Protocol, Self
 
 import numpy as np
 
-from seatrial.core.values import Array
+from seatrial.core.equations import Model
+from seatrial.core.results.online import CoefficientChange, EstimatorPhase, Snapshot
+from seatrial.core.values import Array, InputError, Record
+from seatrial.data.check.conventions import canonical_record
+from seatrial.data.read.assemble import record_from_values
+from seatrial.data.trial import FitCriterion, Trial
+from seatrial.data.trial.settings import Stream
+from seatrial.estimation.estimate.assemble import Runs
+from seatrial.estimation.estimate.fit import estimate_model, with_segment_seconds
+from seatrial.estimation.estimate.online.change_detection import ChangeDetector
 from seatrial.estimation.estimate.online.marginal_prior import MarginalPrior, marginalise
-from seatrial.estimation.estimate.online.window import WindowEstimate
+from seatrial.estimation.estimate.online.recursive import Forgetting
+from seatrial.estimation.estimate.online.window import (
+    LINEAR_ENOUGH,
+    SampleRows,
+    WindowEstimate,
+    better_estimate,
+    cold_start,
+    curvature,
+    filter_from_fit,
+    refuse_diverging,
+    warm_start,
+)
+from seatrial.estimation.estimate.settings import is_pure_roll
 from seatrial.estimation.information.covariance import inverse
+from seatrial.physics.simulate.replay import inputs_of
+
+# What an online estimate rests on while samples are kept, and what the samples of a full window become.
 
 
 @dataclass(frozen=True)
@@ -91,3 +110,409 @@ def _window_information(estimate: WindowEstimate) -> MarginalPrior:
     mean, weight = (values[: len(indices)] for values in problem.priors)
     hessian = estimate.estimate.optimum.normal.without_local()[1]
     return marginalise(indices, estimate.value, hessian, mean, weight)
+
+
+# When the window is searched and left, in seconds of samples that it holds.
+
+# s without a search that make one worthwhile when a run ends, and the share of the window that must be new by then
+_RUN_END_SECONDS, _RUN_END_NEW_SHARE = 10.0, 0.1
+# s between searches from nowhere that check one from the last optimum: at least, and as a share of the window
+_COLD_CHECK_SECONDS, _COLD_CHECK_SHARE = 10.0, 0.5
+# s of samples after which carried information is renewed, at least: several periods of any motion of a ship
+_STRETCH_SECONDS = 60.0
+
+
+@dataclass(frozen=True)
+class SearchIntervals:
+    """How often one way of searching is used; a search must cost less than the samples between two take to come.
+
+    Attributes:
+        shortest: s between two searches, at least.
+        share: between two, as a share of what the window has beyond `excess_from` s.
+        stretch_share: of a full window, after which carried information is renewed.
+        carried: s between two where information is carried; None: as for a window.
+    """
+
+    shortest: float
+    share: float
+    excess_from: float = 0.0
+    stretch_share: float = 0.0
+    carried: float | None = None
+
+    def interval(self, seconds: float, *, is_carried: bool) -> float:
+        """Return the s until the next search, with `seconds` s of samples in the window."""
+        if is_carried and self.carried is not None:
+            return self.carried
+        return max(self.shortest, self.share * (seconds - self.excess_from))
+
+    def stretch(self, window: float) -> float:
+        """Return the s of samples after which carried information is renewed; window: s, a full one."""
+        return max(_STRETCH_SECONDS, self.stretch_share * window)
+
+
+CONTINUED_INTERVALS = SearchIntervals(2.5, 0.15, excess_from=60.0, carried=_STRETCH_SECONDS)
+"""From the last optimum, tens of milliseconds each: every 2.5 s over the first 77 s, then 15 % of the rest."""
+REPEATED_INTERVALS = SearchIntervals(10.0, 0.25, stretch_share=0.25)
+"""From nowhere, seconds each: every 10 s over the first 40 s, then a quarter of the window."""
+
+
+@dataclass
+class SearchSchedule:
+    """Times of searches, s of samples in the window.
+
+    Attributes:
+        next_search: from which on the next one is made.
+        last_search: when the last one was made.
+        next_cold_start: from which on a search from nowhere may check one from the last optimum.
+    """
+
+    intervals: SearchIntervals
+    next_search: float = 0.0
+    last_search: float = 0.0
+    next_cold_start: float = 0.0
+
+    def note_search(self, seconds: float, *, is_carried: bool) -> None:
+        """Set the next search after one made now, with `seconds` s of samples in the window."""
+        self.next_search = seconds + self.intervals.interval(seconds, is_carried=is_carried)
+        self.last_search = seconds
+
+    def note_cold_start(self) -> None:
+        """Set the next check from nowhere after one made with the last search."""
+        self.next_cold_start = self.last_search + max(_COLD_CHECK_SECONDS, _COLD_CHECK_SHARE * self.last_search)
+
+    def is_due_at_run_end(self, seconds: float) -> bool:
+        """Return whether enough is new for a search as a run ends with `seconds` s of samples in the window."""
+        return seconds - self.last_search >= max(_RUN_END_SECONDS, _RUN_END_NEW_SHARE * seconds)
+
+    def restart(self) -> None:
+        """Begin with an empty window."""
+        self.next_search = self.last_search = self.next_cold_start = 0.0
+
+
+# How the window's estimate is found: by continued output error over whole runs, or by `identify` anew each time.
+
+# s of samples within which a search from nowhere accompanies the one from the last optimum, which may be a local one;
+# later where residuals are correlated, or where their rms over that of the last estimate exceeds this ratio
+_FIRST_SECONDS, _MISFIT_GROWTH = 60.0, 1.2
+
+
+class WindowSearch(Protocol):
+    """One way to find the estimate of what is kept."""
+
+    @property
+    def is_efficient(self) -> bool:
+        """Whether all estimates minimise one criterion over whole runs.
+
+        Only then can a filter take over, and successive estimates be tested for a change.
+        """
+        ...
+
+    def estimate(self, phase: KeptPhase, records: Sequence[Record]) -> WindowEstimate:
+        """Return the estimate from the records and from what the phase carries.
+
+        Raises:
+            InputError: the records cannot be fitted.
+        """
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class ContinuedSearch:
+    """Output error over whole runs, from the last optimum; `schedule` says when to check it by one from nowhere.
+
+    When inputs took effect counts as known, unless the trial names their delays.
+    """
+
+    trial: Trial
+    schedule: SearchSchedule
+    is_efficient: bool = True
+
+    def estimate(self, phase: KeptPhase, records: Sequence[Record]) -> WindowEstimate:
+        """As `WindowSearch.estimate`."""
+        model, runs = self.trial.model, _runs(self.trial, phase, records)
+        # a delay that is estimated has no place in the filter that takes over between searches
+        known = self.trial.estimate.with_known_timing(model.input_names)
+        settings = with_segment_seconds(known, model, runs)
+        warm = None
+        if not isinstance(phase, WarmUp):
+            warm = warm_start(phase.estimate, model, runs, settings)
+            if isinstance(phase, Carried) or not self._needs_cold_check(warm, phase.estimate):
+                return warm
+        self.schedule.note_cold_start()
+        cold = cold_start(model, runs, settings)
+        return cold if warm is None else better_estimate(warm, cold)
+
+    def _needs_cold_check(self, warm: WindowEstimate, previous: WindowEstimate) -> bool:
+        """Whether the optimum found from the last one may be a local one, and the last check was long enough ago."""
+        seconds = self.schedule.last_search
+        is_doubtful = seconds < _FIRST_SECONDS or warm.is_coloured or warm.misfit > _MISFIT_GROWTH * previous.misfit
+        return is_doubtful and seconds >= self.schedule.next_cold_start
+
+
+@dataclass(frozen=True, eq=False)
+class RepeatedSearch:
+    """The fit that `identify` makes, from nowhere each time."""
+
+    trial: Trial
+    is_efficient: bool = False
+
+    def estimate(self, phase: KeptPhase, records: Sequence[Record]) -> WindowEstimate:
+        """As `WindowSearch.estimate`; also refuses an estimate at which whole runs diverge."""
+        model, runs = self.trial.model, _runs(self.trial, phase, records)
+        settings = with_segment_seconds(self.trial.estimate, model, runs)
+        if isinstance(phase, Carried):  # carried information holds about that point
+            model = model.with_parameters(model.parameters.with_free_values(phase.estimate.value))
+        estimation = estimate_model(model, runs, settings)
+        point, covariance = estimation.estimate, estimation.interval.covariance
+        refuse_diverging(point, runs, settings)
+        if isinstance(phase, Carried):
+            covariance = phase.inflated_covariance(point.optimum.normal.without_local()[1], point.problem.priors[1])
+        count = len(point.problem.free)
+        return WindowEstimate(point, estimation.residuals, covariance[:count, :count], estimation.inflation)
+
+
+def suits_whole_runs(trial: Trial) -> bool:
+    """Return whether the trial's criterion is output error over whole runs, so that a search can be continued."""
+    wishes, model = trial.estimate, trial.model
+    is_output_error = wishes.criterion in (FitCriterion.AUTO, FitCriterion.OUTPUT_ERROR)
+    return is_output_error and wishes.segment_s is None and (model.is_affine or is_pure_roll(model))
+
+
+def _runs(trial: Trial, phase: KeptPhase, records: Sequence[Record]) -> Runs:
+    """The records, each a session, and beside them the trial's static forces or the carried information with them."""
+    runs = replace(Runs.one_session_each(records, trial.ship.length), noise=trial.noise)
+    if isinstance(phase, Carried):  # with it go the correlations of priors
+        return replace(runs, carried=(phase.prior,))
+    return replace(runs, forces=trial.forces, joint_priors=trial.joint_priors)
+
+
+# Beyond the window: the fit's information carried on by a recursive filter, a block of samples at a time.
+
+# samples taken in at once: enough to spread the cost of a block, few enough that numbers move within a second at 10 Hz
+BLOCK_SAMPLES = 10
+# s of samples between tests for a change: several periods of any motion of a ship
+CHANGE_TEST_INTERVAL = 60.0
+
+
+class RecursivePhase:
+    """Goes on behind the last sample of a fit.
+
+    Where samples are forgotten, a second filter that forgets nothing is tested for a change.
+
+    Raises:
+        InputError: the fit is too curved or does not identify every coefficient, waves come from an elevation, or
+            inputs are corrected for each run; a window goes on instead.
+    """
+
+    def __init__(
+        self, estimate: WindowEstimate, stream: Stream, reference_point: float, change_detector: ChangeDetector
+    ) -> None:
+        fit = estimate.estimate
+        optimum = (fit.problem, fit.common_parameters, fit.optimum.local, fit.optimum.normal)
+        if stream.waves is not None:
+            raise InputError("a filter cannot turn an elevation into forces sample by sample")
+        if curvature(*optimum) > LINEAR_ENOUGH:
+            raise InputError("the fit is too curved within its own errors for a filter to take over")
+        self._estimate, self._stream, self._reference_point = estimate, stream, reference_point
+        widest = tuple(float(v) for v in np.maximum(np.abs(estimate.value), _scales(estimate)))
+        forgetting = None if stream.forgetting_time_s is None else Forgetting(stream.forgetting_time_s, widest)
+        self._filter = filter_from_fit(*optimum, forgetting=forgetting)
+        self._unforgetting_filter = self._filter if forgetting is None else filter_from_fit(*optimum)
+        self._model, self._outputs = fit.problem.model, fit.problem.data.outputs
+        self._change_detector = change_detector
+        self._block = SampleRows(len(stream.layout.columns))
+        self._last_inputs = np.full(len(self._model.inputs), np.nan)
+
+    def add(self, time: float, values: Array, elapsed: float) -> bool:
+        """Take in one sample, `elapsed` s of samples after the first, and return whether the estimate has changed."""
+        self._block.add(time, values)
+        if len(self._block) < BLOCK_SAMPLES:
+            return False
+        self._process_block()
+        self._change_detector.update(elapsed, self._unforgetting_filter.value, self._unforgetting_filter.covariance)
+        return True
+
+    def finish(self) -> None:
+        """Take in the samples that wait: the run or the stream ends."""
+        if len(self._block) > 1:
+            self._process_block()
+        self._filter.flush()
+        if self._unforgetting_filter is not self._filter:
+            self._unforgetting_filter.flush()
+
+    def to_window(self) -> Carried | WarmUp:
+        """Finish, and return the phase that goes on with a run whose initial state is unknown."""
+        self.finish()
+        if not self.is_sound:
+            return WarmUp()
+        problem = self._estimate.estimate.problem
+        indices = np.array([self._model.parameters.index(n) for n in problem.free], dtype=np.int64)
+        mean, weight = (values[: len(indices)] for values in problem.priors)
+        return Carried(self._estimate, marginalise(indices, self.value, inverse(self.covariance), mean, weight))
+
+    @property
+    def is_sound(self) -> bool:
+        """Whether the filter's numbers are to be trusted."""
+        return self._filter.is_sound
+
+    @property
+    def value(self) -> Array:
+        """Coefficients, (k,)."""
+        return self._filter.value
+
+    @property
+    def covariance(self) -> Array:
+        """Of the coefficients, (k, k)."""
+        return self._filter.covariance
+
+    @property
+    def noise(self) -> dict[str, float]:
+        """Rms of the innovations over the last half minute, SI, by channel."""
+        return dict(zip(self._outputs, self._filter.innovations.rms.tolist(), strict=True))
+
+    @property
+    def change(self) -> CoefficientChange | None:
+        """The last significant change, else the result of the last test."""
+        return self._change_detector.reported
+
+    def _process_block(self) -> None:
+        rows, self._block = self._block, SampleRows(self._block.values.shape[1])
+        raw_record = record_from_values("", self._stream.layout, rows.time, rows.values)
+        record = canonical_record(raw_record, self._reference_point)
+        inputs = self._fill_inputs(record)
+        measured = np.stack([record[o] if o in record else np.full(len(record), np.nan) for o in self._outputs], axis=1)
+        self._filter.update(measured, inputs)
+        if self._unforgetting_filter is not self._filter:
+            self._unforgetting_filter.update(measured, inputs)
+
+    def _fill_inputs(self, record: Record) -> Array:
+        """Inputs of a block, (n, nu); a missing value is replaced by the last one received, at first by zero."""
+        filled = {}
+        for index, item in enumerate(self._model.inputs):
+            if item.name in record and not np.all(np.isfinite(record[item.name])):
+                values = record[item.name].copy()
+                before = 0.0 if np.isnan(self._last_inputs[index]) else self._last_inputs[index]
+                for i in np.flatnonzero(~np.isfinite(values)):
+                    values[i] = values[i - 1] if i else before
+                filled[item.name] = record.channel(item.name).with_values(values)
+        complete = Record(record.name, record.time, {**record.channels, **filled}, record.kind, record.provenance)
+        for index, item in enumerate(self._model.inputs):
+            self._last_inputs[index] = complete[item.name][-1] if item.name in complete else 0.0
+        return inputs_of(self._model, complete)
+
+
+def _scales(estimate: WindowEstimate) -> Array:
+    """The size of each free coefficient below which a value counts as zero, (k,)."""
+    parameters = estimate.estimate.problem.model.parameters
+    return np.array([parameters[n].characteristic_scale for n in estimate.estimate.problem.free])
+
+
+# Where a phase leads: from a full window to a filter, or else to carried information.
+
+
+def is_window_full(phase: KeptPhase, seconds: float, stream: Stream, intervals: SearchIntervals) -> bool:
+    """Return whether a phase with `seconds` s of samples in its window is to be left; never before an estimate."""
+    window = min(stream.batch_window_s, stream.forgetting_time_s or np.inf)
+    match phase:
+        case WarmUp():
+            return False
+        case Window():
+            return seconds >= window
+        case Carried():
+            return seconds >= min(intervals.stretch(window), window)
+
+
+def filter_phase(
+    estimate: WindowEstimate, stream: Stream, reference_point: float, change_detector: ChangeDetector
+) -> RecursivePhase | None:
+    """Return the filter that goes on behind the estimate; None where it cannot take over."""
+    try:
+        return RecursivePhase(estimate, stream, reference_point, change_detector)
+    except InputError:
+        return None
+
+
+def carried_phase(phase: Window | Carried, seconds: float, stream: Stream, *, is_efficient: bool) -> Carried:
+    """Return the phase that carries the information of a window of `seconds` s.
+
+    Forgetting reduces that information; so do correlated residuals where the search is efficient (the others state
+    their covariance with them).
+    """
+    carried = phase.carried()
+    if is_efficient and phase.estimate.estimate.problem.inflation is None:
+        carried = carried.discounted(1.0 / max(float(np.max(phase.estimate.inflation)), 1.0))
+    if stream.forgetting_time_s is not None:
+        carried = carried.discounted(float(np.exp(-seconds / stream.forgetting_time_s)))
+    return carried
+
+
+# What is shown of an online estimate: snapshots of warm-up, window and filter.
+
+
+@dataclass(frozen=True)
+class StreamProgress:
+    """What has been received so far: samples, runs, and s of samples, breaks between runs not counted.
+
+    Attributes:
+        last_time: s on the stream's clock, of the present run's latest sample; NaN where a run has none yet.
+    """
+
+    samples: int = 0
+    runs: int = 0
+    elapsed: float = 0.0
+    last_time: float = np.nan
+
+    def with_run(self) -> "StreamProgress":
+        """Return the progress after a run has begun."""
+        return replace(self, runs=self.runs + 1, last_time=np.nan)
+
+    def with_sample(self, time: float) -> "StreamProgress":
+        """Return the progress after a sample at `time` [s]."""
+        step = 0.0 if np.isnan(self.last_time) else time - self.last_time
+        return StreamProgress(self.samples + 1, self.runs, self.elapsed + step, time)
+
+
+def first_snapshot(model: Model) -> Snapshot:
+    """Return the snapshot before the first sample: start values, infinite standard errors."""
+    free = model.parameters.free
+    return Snapshot(
+        time=0.0,
+        samples=0,
+        runs=0,
+        phase=EstimatorPhase.WAITING,
+        names=tuple(p.name for p in free),
+        units=tuple(p.unit for p in free),
+        value=np.array([p.value for p in free]),
+        standard_error=np.full(len(free), np.inf),
+        advice="too few samples yet" if free else "",
+    )
+
+
+def window_snapshot(
+    snapshot: Snapshot, model: Model, phase: KeptPhase, estimate: WindowEstimate, change: CoefficientChange | None
+) -> Snapshot:
+    """Return the snapshot with the window's estimate; `phase` says whether earlier information is part of it."""
+    outputs = estimate.estimate.problem.data.outputs
+    rms = np.sqrt(np.nanmean(estimate.residuals**2, axis=0)).tolist()
+    label = EstimatorPhase.RECURSIVE if isinstance(phase, Carried) else EstimatorPhase.WINDOW
+    snapshot = replace(snapshot, phase=label, noise=dict(zip(outputs, rms, strict=True)), change=change)
+    return _with_values(snapshot, model, estimate.value, estimate.covariance)
+
+
+def recursive_snapshot(snapshot: Snapshot, model: Model, phase: RecursivePhase) -> Snapshot:
+    """Return the snapshot with the filter's estimate."""
+    snapshot = replace(snapshot, phase=EstimatorPhase.RECURSIVE, noise=phase.noise, change=phase.change)
+    return _with_values(snapshot, model, phase.value, phase.covariance)
+
+
+def at_progress(snapshot: Snapshot, progress: StreamProgress) -> Snapshot:
+    """Return the snapshot at the moment of the latest sample."""
+    return replace(snapshot, time=progress.last_time, samples=progress.samples, runs=progress.runs)
+
+
+def _with_values(snapshot: Snapshot, model: Model, value: Array, covariance: Array) -> Snapshot:
+    """A coefficient is identified where its standard error is below its value or its scale."""
+    error = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    free = zip(model.parameters.free, value, error, strict=True)
+    unidentified = tuple(p.name for p, v, s in free if s > max(abs(v), p.scale))
+    return replace(snapshot, value=value, standard_error=error, unidentified=unidentified, advice="")

@@ -10,16 +10,14 @@ from seatrial.core.values import Array, InputError, Record
 from seatrial.data.trial import EstimateMethod, Role, SearchFitness, SearchSettings, Trial
 from seatrial.data.trial.runs import require_stream
 from seatrial.estimation.identify.online.estimator import OnlineEstimator
-from seatrial.estimation.identify.search_problem import (
+from seatrial.estimation.identify.search import (
+    PublishedEstimate,
     search_box,
     search_budget,
     search_candidates,
-    simulated_starts,
-)
-from seatrial.estimation.identify.strategies.published import PublishedEstimate
-from seatrial.estimation.identify.strategies.search import (
     search_findings,
     search_method_text,
+    simulated_starts,
     training_predictions,
 )
 from seatrial.estimation.search import Candidates, SampleSearch, search_method

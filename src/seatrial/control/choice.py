@@ -1,0 +1,287 @@
+"""One controller out of the fronts, with reasons: by simulation where there is one, else the compromise."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.special import stdtrit
+
+from seatrial.control.controller import shortfall
+from seatrial.control.gain_evaluation import (
+    ON_BOUND,
+    GainChoice,
+    GainEvaluator,
+    NamedGains,
+    exceedance_share,
+    gains_on_bound,
+    least_output_gains,
+    motion_and_rate_variances,
+    non_dominated_gains,
+    spread_gains,
+)
+from seatrial.control.simulation import seaway_reductions
+from seatrial.control.task import Demand, TuningTask
+from seatrial.core.results.tuning import ParetoFront
+from seatrial.core.values import Array
+from seatrial.physics.loops import delay_margin
+
+# The choice of a stabiliser: candidates along the fronts and with more margin, all through the same seas.
+
+CANDIDATE_COUNT = 8  # gains of a front that are simulated; chosen
+MAX_SATURATION_LOSS = 0.03  # reduction lost to the actuator's limits, as a share of one; chosen
+# seas of the selection, and their distance from the seeds of the final simulations; chosen
+_SELECTION_SEEDS, _SELECTION_SEED_OFFSET = 8, 100_000
+# reductions that differ less count as equal; share of the permitted loss used in the selection; chosen
+_EQUAL_REDUCTION, _LOSS_MARGIN = 0.003, 0.85
+_CONFIDENCE = 0.95  # level of the paired interval within which a benefit is none; chosen
+_SAFER_MS, _EQUAL_MS = (1.3, 1.45), 0.05  # caps of designs with more margin; Ms that count as equal; chosen
+_LEAST_SHARE = 1e-12  # of amplitudes beyond a limit; guards the logarithm
+ROBUST, HARD_WORKING = "robust", "hard-working"
+"""Names of the two designs that stand beside the chosen one."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Candidate:
+    """A candidate simulated.
+
+    Attributes:
+        reductions: in each sea, with the actuator's limits, mean of with and without stall, (seeds,).
+        saturation_loss: reduction lost to the limits; rate: variance of the actuator's rate.
+        is_on_bound: whether a gain lies on a bound of the search that is not zero.
+        is_delay_kept: whether the delay margin is long enough.
+    """
+
+    evaluator: GainEvaluator
+    gains: Array
+    front_name: str
+    reductions: Array
+    saturation_loss: float
+    rate: float
+    Ms: float
+    is_on_bound: bool
+    is_delay_kept: bool
+
+    @property
+    def reduction(self) -> float:
+        """Mean over the seas."""
+        return float(np.mean(self.reductions))
+
+
+def choose_by_simulation(
+    task: TuningTask,
+    fronts: tuple[tuple[GainEvaluator, ParetoFront], ...],
+    seed: int,
+    report_progress: Callable[[str], None],
+) -> GainChoice:
+    """The candidate that reduces the motion most in simulation, with the most margin where others do as well."""
+    assert task.simulation is not None
+    few = replace(task, simulation=replace(task.simulation, seeds=_SELECTION_SEEDS))
+
+    def simulated(judge: GainEvaluator, front: ParetoFront, gains: Array) -> _Candidate:
+        linear, limited, stalled = seaway_reductions(few, judge.loop, gains, seed + _SELECTION_SEED_OFFSET).T
+        judged, loop = judge.evaluate(gains[None]), judge.loop
+        speeds = dict.fromkeys(met.U for met in task.disturbances)
+        delays = [delay_margin(task.loop_at(U, loop).with_gains(gains)) for U in speeds]
+        return _Candidate(
+            judge, gains, front.name, 0.5 * (limited + stalled), float(np.mean(linear - limited)),
+            float(judged.variances[0, :, 2].mean()), float(judged.Ms[0]), bool(gains_on_bound(loop, gains)),
+            min(delays) >= task.constraints.delay,
+        )  # fmt: skip
+
+    tried: list[_Candidate] = []
+    for judge, front in fronts:
+        some = non_dominated_gains(judge, front)
+        near = some[np.unique(np.linspace(0, len(some) - 1, CANDIDATE_COUNT).astype(int))]
+        for around in ("along the front", "about the best"):
+            made = [simulated(judge, front, gains) for gains in near]
+            tried += made
+            report_progress(f"choice of gains: {front.name}, {len(made)} candidates {around} simulated")
+            near = _neighbouring_gains(some, _best_candidate(made).gains)
+        best = _best_candidate(tried)
+        safer = [_gains_with_margin(judge, tried, best, Ms, seed) for Ms in _SAFER_MS if Ms < task.constraints.Ms]
+        tried += [simulated(judge, front, gains) for gains in safer]
+        report_progress(f"choice of gains: {front.name}, {len(safer)} with more margin simulated")
+    best = _best_candidate(tried)
+    reasons = (
+        f"Of {len(tried)} controllers along the fronts none surely reduces the motion more when simulated within the "
+        f"actuator's limits, with and without stall, whose law is assumed (mean {100.0 * best.reduction:.1f} % on "
+        f"{_SELECTION_SEEDS} seas kept for the choice, compared in pairs); of equals it has the most margin.",
+        f"It loses {100.0 * best.saturation_loss:.1f} points of reduction to angle and rate limits there; a loss of "
+        f"{100.0 * MAX_SATURATION_LOSS:.0f} points or more is not recommended.",
+    )
+    return GainChoice(best.evaluator, best.gains, best.front_name, reasons, _designs(tried, best))
+
+
+def _gains_with_margin(judge: GainEvaluator, tried: list[_Candidate], like: _Candidate, Ms: float, seed: int) -> Array:
+    """Return gains (g,) that leave least of the output within that Ms, with no more actuator than another uses.
+
+    tried: candidates to begin from beside spread gains; terms that their loop lacks have no gain.
+    """
+    task, worst = judge.task, like.evaluator.evaluate(like.gains[None]).variances[0, :, 1:3].max(axis=0)
+    limits = task.constraints
+    amplitudes, rates = (
+        min(share, max(exceedance_share(limit, float(used)), _LEAST_SHARE))
+        for share, limit, used in zip(
+            (limits.saturation, limits.rate_saturation), (limits.limit, limits.rate), worst, strict=True
+        )
+    )
+    within = replace(limits, Ms=Ms, saturation=amplitudes, rate_saturation=rates)
+    evaluator = GainEvaluator(replace(task, constraints=within), judge.loop, (task.motion,))
+    named = [dict(zip(one.evaluator.loop.gains.names, one.gains.tolist(), strict=True)) for one in tried]
+    known = np.array([[gains.get(name, 0.0) for name in judge.loop.gains.names] for gains in named])
+    return least_output_gains(evaluator, np.concatenate([spread_gains(evaluator, seed), known]))
+
+
+def _best_candidate(candidates: list[_Candidate]) -> _Candidate:
+    """Of those that surely reduce no less than the best one: off the bounds of the search, then with the least Ms."""
+    some = _keeping(candidates)
+    most = max(some, key=lambda one: one.reduction)
+    equal = [one for one in some if _benefit(most, one) <= _EQUAL_REDUCTION]
+    return min(equal, key=lambda one: (one.is_on_bound, round(one.Ms / _EQUAL_MS), one.rate))
+
+
+def _keeping(candidates: list[_Candidate]) -> list[_Candidate]:
+    """Return those with the delay margin that lose little to the actuator's limits; all where there is none."""
+    in_time = [one for one in candidates if one.is_delay_kept] or candidates
+    return [one for one in in_time if one.saturation_loss < _LOSS_MARGIN * MAX_SATURATION_LOSS] or in_time
+
+
+def _benefit(one: _Candidate, other: _Candidate) -> float:
+    """Return by how much `one` surely reduces more than `other`: lower end of the paired interval (Student 1908)."""
+    gap, n = one.reductions - other.reductions, len(one.reductions)
+    half = stdtrit(n - 1, 0.5 + 0.5 * _CONFIDENCE) * np.std(gap, ddof=1) / math.sqrt(n)
+    return float(np.mean(gap) - half)
+
+
+def _designs(tried: list[_Candidate], chosen: _Candidate) -> tuple[NamedGains, ...]:
+    """Return the best one with Ms of 1.3 at most, and the one that reduces most whatever its margin, if others."""
+    some = _keeping(tried)
+    robust = max(
+        (one for one in some if one.Ms <= _SAFER_MS[0] + _EQUAL_MS), key=lambda one: one.reduction, default=chosen
+    )
+    hard = max(some, key=lambda one: one.reduction)
+    named = {ROBUST: robust, HARD_WORKING: hard}
+    return tuple(NamedGains(name, one.evaluator, one.gains) for name, one in named.items() if not _is_same(one, chosen))
+
+
+def _is_same(one: _Candidate, other: _Candidate) -> bool:
+    return one.front_name == other.front_name and bool(np.allclose(one.gains, other.gains, rtol=ON_BOUND))
+
+
+def _neighbouring_gains(candidates: Array, gains: Array) -> Array:
+    """Return gains between the neighbours, a candidate's distance away, of one of `candidates`, (n, g)."""
+    place = int(np.argmin(np.abs(candidates - gains).max(axis=1)))
+    step = max(len(candidates) // CANDIDATE_COUNT, 1)
+    low, high = max(place - step, 0), min(place + step, len(candidates) - 1)
+    return candidates[np.unique(np.linspace(low, high, CANDIDATE_COUNT).astype(int))]
+
+
+# One controller out of the fronts, with reasons: by simulation where there is one, else the compromise.
+
+DEMAND_CANDIDATE_COUNT = 16  # gains of a front that follow the demand; chosen
+# rms whose logarithm is still taken, and range that counts as one: guards against zero
+_LEAST_RMS, _LEAST_RANGE = 1e-150, 1e-12
+_ROUNDING = 1e-9  # relative, of a rate that counts as kept
+
+
+@dataclass(frozen=True, eq=False)
+class _DemandCandidate:
+    """Gains (g,) of a front; variances: of the motion that counts and the actuator rate, (2,)."""
+
+    evaluator: GainEvaluator
+    front_name: str
+    gains: Array
+    variances: Array
+
+
+def choose(
+    task: TuningTask,
+    fronts: tuple[tuple[GainEvaluator, ParetoFront], ...],
+    seed: int,
+    report_progress: Callable[[str], None],
+) -> GainChoice:
+    """Return the recommendation, from fronts that are not empty."""
+    filled = tuple((judge, front) for judge, front in fronts if len(front.gains))
+    if task.demand is not None:
+        return _choose_by_demand(task, task.demand, filled, report_progress)
+    if task.simulation is not None:
+        return choose_by_simulation(task, filled, seed, report_progress)
+    best = _compromise(task, _candidates(*filled[0]))
+    return GainChoice(best.evaluator, best.gains, best.front_name, (_compromise_reason(task, "the front"),))
+
+
+def _candidates(judge: GainEvaluator, front: ParetoFront) -> list[_DemandCandidate]:
+    """Return gains of a front of which none leaves less of the output at a lower actuator rate."""
+    some = non_dominated_gains(judge, front)
+    variances = motion_and_rate_variances(judge, some)
+    return [_DemandCandidate(judge, front.name, gains, both) for gains, both in zip(some, variances, strict=True)]
+
+
+def _candidates_by_rate(judge: GainEvaluator, front: ParetoFront) -> list[_DemandCandidate]:
+    """Return the gains that leave least of the motion at actuator rates spread evenly over the front, in decades.
+
+    Rates are those of the worst disturbance. Each set is pressed against its rate, so that the candidates are what the
+    loop is and not where a search has met its front.
+    """
+    some = non_dominated_gains(judge, front)
+    rates = judge.evaluate(some).variances[:, :, 2].max(axis=1)
+    levels = np.geomspace(
+        max(float(rates.min()), _LEAST_RMS), max(float(rates.max()), _LEAST_RMS), DEMAND_CANDIDATE_COUNT
+    )
+    made = []
+    for level in levels:
+        # the share exp(-1/2) of a Rayleigh distribution lies beyond its rms, so that the variance allowed is the level
+        within = replace(judge.task.constraints, rate=math.sqrt(level), rate_saturation=math.exp(-0.5))
+        evaluator = GainEvaluator(replace(judge.task, constraints=within), judge.loop, (judge.task.motion,))
+        made.append(least_output_gains(evaluator, some[rates <= level * (1.0 + _ROUNDING)]))
+    both = motion_and_rate_variances(judge, np.array(made))
+    return [_DemandCandidate(judge, front.name, gains, row) for gains, row in zip(made, both, strict=True)]
+
+
+def _compromise_reason(task: TuningTask, candidates: str) -> str:
+    decades = "the output's in decades" if task.demand is None else "in decades"
+    return (
+        f"It is the compromise of {candidates}: nearest to the best of output and actuator at once, each over its "
+        f"range, {decades} (least largest distance; Zeleny 1973)."
+    )
+
+
+def _compromise(task: TuningTask, candidates: list[_DemandCandidate]) -> _DemandCandidate:
+    """Return the one of least largest distance from the best, rms of output against rms of actuator rate.
+
+    In decades; the rate as it is where no demand is followed: there gains of zero are on the front, decades from any.
+    """
+    both = np.sqrt([one.variances for one in candidates])
+    decades = slice(0, 1 if task.demand is None else 2)
+    both[:, decades] = np.log(np.maximum(both[:, decades], _LEAST_RMS))
+    far = (both - both.min(axis=0)) / np.maximum(np.ptp(both, axis=0), _LEAST_RANGE)
+    return candidates[int(np.argmin(far.max(axis=1)))]
+
+
+def _choose_by_demand(
+    task: TuningTask,
+    demand: Demand,
+    fronts: tuple[tuple[GainEvaluator, ParetoFront], ...],
+    report_progress: Callable[[str], None],
+) -> GainChoice:
+    """Return the compromise among those of all fronts that follow the demand in time, without overshooting."""
+    tried = [one for judge, front in fronts for one in _candidates_by_rate(judge, front)]
+    short = []
+    for one in tried:
+        short.append(shortfall(task, one.evaluator.loop, one.gains))
+        report_progress(f"choice of gains: {len(short)} of {len(tried)} candidates tried on the demand")
+    keeping = [one for one, (far, _) in zip(tried, short, strict=True) if far == 0.0]
+    if not keeping:
+        least = min(range(len(tried)), key=lambda i: short[i][0])
+        why = (f"No candidate follows the demand as asked; this one comes nearest, but {short[least][1]}.",)
+        return GainChoice(tried[least].evaluator, tried[least].gains, tried[least].front_name, why)
+    best = _compromise(task, keeping)
+    in_time = f", settled within {demand.settling:.3g} s" if math.isfinite(demand.settling) else ""
+    why = (
+        f"{len(keeping)} of {len(tried)} controllers along the fronts follow the demand in the nonlinear model, with "
+        f"no more than {100.0 * demand.overshoot:.3g} % of overshoot{in_time}, and keep every ship stable that the fit "
+        "allows.",
+        _compromise_reason(task, "those"),
+    )
+    return GainChoice(best.evaluator, best.gains, best.front_name, why)

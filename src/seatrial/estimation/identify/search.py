@@ -1,0 +1,519 @@
+"""Coefficients by published methods: searches of a population, and regressions on the training runs."""
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import count
+
+import numpy as np
+
+from seatrial.core.equations import Model
+from seatrial.core.results import (
+    Coefficient,
+    Fit,
+    Method,
+    Prediction,
+    ReferenceEstimate,
+    Search,
+    SearchRestart,
+    Solution,
+    Status,
+)
+from seatrial.core.text.numbers import significant
+from seatrial.core.values import (
+    Array,
+    DivergedError,
+    Finding,
+    InputError,
+    ProgressReporter,
+    Record,
+    Severity,
+    spelling_hint,
+)
+from seatrial.data.trial import EstimateMethod, SearchFitness, SearchSettings, Trial
+from seatrial.data.trial.settings import SupportVectorSettings
+from seatrial.estimation.predict.open_loop import compare_measures, is_steered, rms_errors
+from seatrial.estimation.problem.segments import compared_outputs
+from seatrial.estimation.regress import RegressionEstimate, estimator_of_method
+from seatrial.estimation.search import (
+    Candidates,
+    FinishedSearch,
+    Fitness,
+    JudgedRun,
+    LinearCandidates,
+    SearchBudget,
+    SimulatedCandidates,
+    one_sample_fitness,
+    run_search,
+    search_method,
+    whole_record_fitness,
+)
+from seatrial.numerics.optimise import Box, FitnessMemory, Optimiser, SearchError
+from seatrial.physics.simulate import Forcing, LinearBatch, inputs_of
+from seatrial.physics.simulate.replay import replay
+
+# From a trial's runs to what a search needs: candidates, the box of their coefficients, the budget.
+
+
+def search_candidates(
+    trial: Trial,
+    model: Model,
+    records: Sequence[Record],
+    starts: Sequence[Array],
+    weights: Mapping[str, float] | None = None,
+) -> Candidates:
+    """Return the candidates for the free coefficients of a model, judged by records.
+
+    Args:
+        starts: initial state of each record, (states,).
+        weights: deviation of each compared channel that counts as 1; None: `channel_weights`.
+
+    Raises:
+        InputError: the records cannot be compared with the model.
+    """
+    outputs = compared_outputs(model, records, trial.estimate.channels)
+    measured = [_columns(record, outputs) for record in records]
+    weights = weights or channel_weights(trial, outputs, measured)
+    sigma = np.array([weights[name] for name in outputs])
+    states = [_recorded_states(model, record) for record in records]
+    names = model.parameters.free_names
+    is_linear = model.is_affine and set(outputs) <= set(model.states)
+    used, forcings = _linear_forcings(model, records) if is_linear else ((), _recorded_forcings(model, records))
+    judged = tuple(JudgedRun(*run) for run in zip(forcings, starts, measured, states, strict=True))
+    if is_linear:
+        channels = tuple(model.states.index(name) for name in outputs)
+        return LinearCandidates(model, names, used, judged, channels, sigma)
+    return SimulatedCandidates(model, names, judged, outputs, sigma)
+
+
+def simulated_starts(model: Model, runs: Sequence[Prediction]) -> list[Array]:
+    """Return the state in which the simulation of each run begins, (states,)."""
+    return [np.array([run.simulated[state][0] for state in model.states]) for run in runs]
+
+
+def channel_weights(trial: Trial, outputs: Sequence[str], measured: Sequence[Array]) -> dict[str, float]:
+    """Return the deviation of each channel that counts as 1: its noise where all are stated, else its spread, SI."""
+    stated = {name: trial.noise.get(name) for name in outputs}
+    if all(stated.values()):
+        return {name: float(value) for name, value in stated.items() if value is not None}
+    spread = np.nanstd(np.concatenate(measured), axis=0)
+    return {name: float(value) or 1.0 for name, value in zip(outputs, spread, strict=True)}
+
+
+def search_box(model: Model, method: EstimateMethod, settings: SearchSettings) -> Box:
+    """Return the range of every free coefficient: of `[estimate.search]`, else of `[model.bounds]`.
+
+    Raises:
+        InputError: a coefficient has no range, or a range belongs to no free coefficient.
+    """
+    names = model.parameters.free_names
+    for name in settings.bounds:
+        if name not in names:
+            raise InputError(
+                f"[estimate.search.bounds] names '{name}', no free coefficient{spelling_hint(name, list(names))}"
+            )
+    ranges = {p.name: settings.bounds.get(p.name, (p.lower, p.upper)) for p in model.parameters.free}
+    missing = [name for name, ends in ranges.items() if not np.all(np.isfinite(ends))]
+    if missing:
+        raise InputError(
+            f"method '{method}' searches within bounds, which {', '.join(missing)} "
+            f"{'lacks' if len(missing) == 1 else 'lack'}; add [estimate.search.bounds] {missing[0]} = [lower, upper]"
+        )
+    lower, upper = np.array(list(ranges.values())).T
+    return Box(lower, upper)
+
+
+def search_budget(method: EstimateMethod, settings: SearchSettings, unknowns: int) -> SearchBudget:
+    """Return population and iterations as set, else as the method's source has them.
+
+    Raises:
+        InputError: the population is too small for the method.
+    """
+    published = search_method(method)
+    population, iterations = settings.population or published.population(unknowns), settings.iterations
+    changes = settings.fitness is SearchFitness.SAMPLE
+    memory = FitnessMemory.RE_EVALUATE if changes else FitnessMemory.KEEP
+    budget = SearchBudget(population, iterations or published.iterations, memory)
+    try:
+        published.within(budget)
+    except SearchError as error:
+        text = str(error)
+        raise InputError(f"[estimate.search]: {text[0].lower()}{text[1:].rstrip('.')}") from None
+    return budget
+
+
+def check_search_settings(trial: Trial) -> None:
+    """Refuse settings with which no search can begin, before anything is estimated.
+
+    Raises:
+        InputError: `[estimate.search]` beside a method that is no search, missing bounds, too small a population.
+    """
+    method, search = trial.estimate.method, trial.estimate.search
+    if method.is_search:
+        settings = search or SearchSettings()
+        search_budget(method, settings, search_box(trial.model, method, settings).size)
+    elif search is not None:
+        raise InputError(
+            f"[estimate.search] is not used by method '{method}'; "
+            'remove the table, or write method = "iwho" (or another search) under [estimate]'
+        )
+
+
+def _columns(record: Record, outputs: Sequence[str]) -> Array:
+    return np.stack([record[o] if o in record else np.full(len(record), np.nan) for o in outputs], axis=1)
+
+
+def _recorded_states(model: Model, record: Record) -> Array | None:
+    """States as recorded, (samples, states); None where one was not, or has gaps."""
+    if not all(state in record for state in model.states):
+        return None
+    states = _columns(record, model.states)
+    return states if np.all(np.isfinite(states)) else None
+
+
+def _recorded_forcings(model: Model, records: Sequence[Record]) -> list[Forcing]:
+    """All inputs of a model at the samples of each record."""
+    return [Forcing(inputs_of(model, record), record.dt, is_held=True) for record in records]
+
+
+def _linear_forcings(model: Model, records: Sequence[Record]) -> tuple[tuple[int, ...], list[Forcing]]:
+    """The inputs of a linear model that move in any run, and each run's at the fine step."""
+    inputs = [inputs_of(model, record) for record in records]
+    used = tuple(j for j in range(len(model.inputs)) if any(np.any(u[:, j] != 0.0) for u in inputs))
+    held = tuple(place for place, j in enumerate(used) if model.inputs[j].is_held)
+    forcings = []
+    for u, record in zip(inputs, records, strict=True):
+        fine, substeps = LinearBatch(model, u, np.array([0, len(u)]), record.dt, model.states).fine_inputs(0)
+        is_held = len(held) == len(used)
+        columns = () if is_held else held
+        forcings.append(Forcing(np.ascontiguousarray(fine[:, used]), record.dt, is_held, substeps, columns))
+    return used, forcings
+
+
+# A published method: its values for the coefficients, compared with the package's own estimate.
+
+NO_INTERVALS = "none: the method gives none"
+"""What a result says of the intervals of a published method."""
+
+
+@dataclass(frozen=True, eq=False)
+class PublishedEstimate:
+    """What a published method gives.
+
+    Attributes:
+        solution: its point holds the free coefficients in the model's order.
+        method: its name, what it minimises, where it starts, its settings.
+        search: what it did, where it is a search; record_rms: of the package's own values, as of its restarts.
+    """
+
+    solution: Solution
+    method: Method
+    findings: tuple[Finding, ...] = ()
+    search: Search | None = None
+    record_rms: float | None = None
+
+
+def own_estimate_progress(report_progress: ProgressReporter | None) -> ProgressReporter | None:
+    """Return what reports the package's own estimate next to a published method: each line is marked as such."""
+    return None if report_progress is None else lambda text: report_progress(f"own estimate: {text}")
+
+
+def published_fit(reference: Fit, estimate: PublishedEstimate, cpu_s: float) -> Fit:
+    """Return the fit of a published method; the package's own stands in it as its reference.
+
+    Every run is simulated from the initial state that the package's own fit has for it, without offsets.
+
+    Args:
+        reference: the package's own fit of the same records.
+        cpu_s: processor time of the package's own estimate [s].
+    """
+    names = reference.model.parameters.free_names
+    values = dict(zip(names, map(float, estimate.solution.point), strict=True))
+    model = reference.model.with_values(values)
+    predictions, findings = _predictions(reference, model)
+    return replace(
+        reference,
+        model=model,
+        coefficients=tuple(_without_interval(c, values) for c in reference.coefficients),
+        covariance=np.empty((0, 0)),
+        solution=estimate.solution,
+        method=estimate.method,
+        offsets=(),
+        channel_noise=(),
+        residuals=(),
+        predictions=predictions,
+        findings=(*reference.findings, *estimate.findings, *_outside_bounds(model), *findings),
+        identifiability=None,
+        noise_model=None,
+        candidate_models=(),
+        interval_basis=None,
+        k_step_errors=(),
+        frequency_responses=(),
+        seakeeping=None,
+        roll=None,
+        search=estimate.search,
+        reference=_reference(reference, cpu_s, estimate.record_rms),
+    )
+
+
+def _without_interval(c: Coefficient, values: dict[str, float]) -> Coefficient:
+    if c.fixed:
+        return c
+    return replace(c, estimate=values[c.name], standard_error=None, lower=None, upper=None, prior_mean=None,
+                   prior_standard_deviation=None)  # fmt: skip
+
+
+def _outside_bounds(model: Model) -> list[Finding]:
+    """A warning for every coefficient that a method which knows no bounds puts beyond them."""
+    return [
+        Finding(
+            Severity.WARNING, "outside-bounds", f"the method puts coefficient {p.name} outside its bounds",
+            f"{p.value:g}, bounds {p.lower:g} to {p.upper:g}", "take the package's own estimate, which stays within",
+        )
+        for p in model.parameters.free
+        if not p.lower <= p.value <= p.upper
+    ]  # fmt: skip
+
+
+def _predictions(reference: Fit, model: Model) -> tuple[tuple[Prediction, ...], list[Finding]]:
+    """All runs simulated with the method's values, and a warning for each that diverges."""
+    predictions, findings = [], []
+    length = reference.ship.particulars.get("L", 0.0)
+    for p in reference.predictions:
+        try:
+            simulated = replay(model, p.simulated)
+        except DivergedError as error:
+            text = f"with the coefficients of the method run '{p.record}' cannot be simulated"
+            findings.append(Finding(Severity.WARNING, "diverged", text, str(error), "do not use them"))
+            continue
+        measures = compare_measures(p.measured, simulated, length) if is_steered(p.measured, model) else {}
+        predictions.append(
+            Prediction(p.record, p.role, p.measured, simulated, rms_errors(p.measured, simulated), measures,
+                       p.initial_seconds, p.extrapolation)
+        )  # fmt: skip
+    return tuple(predictions), findings
+
+
+def _reference(fit: Fit, cpu_s: float, record_rms: float | None) -> ReferenceEstimate:
+    errors = {p.record: p.rms for p in fit.predictions}
+    return ReferenceEstimate(fit.coefficients, fit.method, fit.solution.evaluations, cpu_s, errors, record_rms)
+
+
+def refuse_options(method: EstimateMethod, *, choose: bool, compare: bool) -> None:
+    """Refuse what belongs to the package's own estimate where a published method is named.
+
+    Raises:
+        InputError: models are to be chosen from, or other estimators compared.
+    """
+    if method.is_published and (choose or compare):
+        option = "--choose" if choose else "--compare"
+        raise InputError(
+            f"{option} goes with the package's own estimate, and method '{method}' is compared with that one anyway; "
+            f"leave out {option}, or the method"
+        )
+
+
+# Coefficients by a published search of a population, restarted, on the whole record or sample by sample.
+
+# lines of progress that one search writes
+_PROGRESS_LINES = 10
+
+
+def estimate_by_search(
+    trial: Trial, reference: Fit, seed: int, report_progress: ProgressReporter | None = None
+) -> PublishedEstimate:
+    """Return what the search that the trial names finds for the free coefficients of its model.
+
+    Interrupted (Ctrl-C), it returns the restarts that are finished; the interrupt is passed on where there is none.
+
+    Args:
+        reference: the package's own fit, which gives the initial states of the runs.
+        seed: of everything drawn at random, with the number of the restart.
+
+    Raises:
+        InputError: bounds are missing, the population is too small, or the runs cannot be compared with the model.
+    """
+    method, settings = trial.estimate.method, trial.estimate.search or SearchSettings()
+    model, runs = trial.model, training_predictions(reference)
+    box = search_box(model, method, settings)
+    budget = search_budget(method, settings, box.size)
+    candidates = search_candidates(trial, model, [run.measured for run in runs], simulated_starts(model, runs))
+    finished = _restarts(method, settings, box, budget, candidates, seed, report_progress)
+    result = _search_result(trial, settings, box, budget, candidates, finished)
+    used = finished[result.used].solution
+    own = np.array([[reference.model.parameters[name].value for name in model.parameters.free_names]])
+    return PublishedEstimate(
+        Solution(used.point, used.value, used.status, result.evaluations, used.history, seed),
+        search_method_text(method, settings, result),
+        search_findings(result, used.point, settings.restarts),
+        result,
+        float(candidates.record_rms(own)[0]),
+    )
+
+
+def training_predictions(fit: Fit) -> tuple[Prediction, ...]:
+    """Return the training runs of a fit, measured and simulated."""
+    return tuple(p for p in fit.predictions if p.role == "training")
+
+
+def _restarts(
+    method: EstimateMethod,
+    settings: SearchSettings,
+    box: Box,
+    budget: SearchBudget,
+    candidates: Candidates,
+    seed: int,
+    report_progress: ProgressReporter | None,
+) -> list[FinishedSearch]:
+    """As many searches as required, or those finished when the user interrupts."""
+    create = search_method(method).within(budget)
+    finished: list[FinishedSearch] = []
+
+    def fitness_of(optimiser: Optimiser) -> Fitness:
+        if settings.fitness is SearchFitness.SAMPLE:
+            return one_sample_fitness(candidates, optimiser)
+        return whole_record_fitness(candidates)
+
+    try:
+        for restart in range(settings.restarts):
+            title = f"{method}, search {restart + 1} of {settings.restarts}"
+            progress = _search_progress(title, budget.iterations, report_progress)
+            finished.append(run_search(box, create, fitness_of, seed, restart, progress))
+    except KeyboardInterrupt:
+        if not finished:
+            raise
+    except SearchError as error:
+        raise InputError(f"method '{method}': {error}") from None
+    return finished
+
+
+def _search_progress(
+    title: str, iterations: int, report_progress: ProgressReporter | None
+) -> Callable[[int, float], None] | None:
+    """What a search calls after each iteration: a line at the first one, then at each tenth of all."""
+    if report_progress is None:
+        return None
+    iteration, stride = count(1), max(1, iterations // _PROGRESS_LINES)
+
+    def report(_: int, best: float) -> None:
+        number = next(iteration)
+        if number == 1 or number % stride == 0:
+            report_progress(f"{title}: iteration {number} of {iterations}, best {best:.4g}")
+
+    return report
+
+
+def _search_result(
+    trial: Trial,
+    settings: SearchSettings,
+    box: Box,
+    budget: SearchBudget,
+    candidates: Candidates,
+    finished: Sequence[FinishedSearch],
+) -> Search:
+    """All restarts; used is the best on the whole record, or the first where each iteration saw another sample."""
+    names = trial.model.parameters.free_names
+    points = np.array([one.solution.point for one in finished])
+    rms = candidates.record_rms(points)
+    by_samples = settings.fitness is SearchFitness.SAMPLE
+    used = 0 if by_samples else int(np.argmin([one.solution.value for one in finished]))
+    restarts = [
+        SearchRestart(_named(names, one.solution.point), float(level), one.solution.evaluations, one.cpu_s,
+                      one.solution.history)
+        for one, level in zip(finished, rms, strict=True)
+    ]  # fmt: skip
+    scatter = _named(names, np.std(points, axis=0, ddof=1)) if len(points) > 1 else {}
+    return Search(
+        fitness=settings.fitness.value,
+        population=budget.population,
+        iterations=budget.iterations,
+        bounds={n: (float(a), float(b)) for n, a, b in zip(names, box.lower, box.upper, strict=True)},
+        weights=dict(zip(candidates.output_names, map(float, candidates.sigma), strict=True)),
+        evaluations=sum(one.solution.evaluations for one in finished),
+        cpu_s=sum(one.cpu_s for one in finished),
+        history=finished[used].solution.history,
+        used=used,
+        restarts=tuple(restarts),
+        scatter=scatter,
+        is_interrupted=len(finished) < settings.restarts,
+        trace={n: tuple(map(float, column)) for n, column in zip(names, finished[used].trace.T, strict=True)},
+    )
+
+
+def _named(names: Sequence[str], values: Array) -> dict[str, float]:
+    return dict(zip(names, map(float, values), strict=True))
+
+
+def search_method_text(method: EstimateMethod, settings: SearchSettings, search: Search) -> Method:
+    published = search_method(method)
+    judged = "one sample an iteration" if settings.fitness is SearchFitness.SAMPLE else "rms over the whole record"
+    return Method(
+        f"{published.title} ({published.source}), {judged}",
+        "points drawn uniformly within the bounds",
+        NO_INTERVALS,
+        ("the method is named by the trial",),
+        {"population": search.population, "iterations": search.iterations, "restarts": len(search.restarts)},
+        method.value,
+    )
+
+
+def search_findings(search: Search, point: Array, required: int) -> tuple[Finding, ...]:
+    """A warning for each coefficient that ends on an end of its range, and one for a search that was interrupted."""
+    findings = [
+        Finding(Severity.WARNING, "bound-hit", f"coefficient {name} ends on an end of its range", f"{value:g}",
+                "widen its range under [estimate.search.bounds]")
+        for (name, ends), value in zip(search.bounds.items(), point, strict=True)
+        if float(value) in ends
+    ]  # fmt: skip
+    if search.is_interrupted:
+        text = f"the search was interrupted after {len(search.restarts)} of {required} restarts"
+        findings.append(Finding(Severity.WARNING, "interrupted", text, "", "run it again to have them all"))
+    return tuple(findings)
+
+
+# Coefficients by a published regression on the training runs.
+
+
+def estimate_by_regression(
+    model: Model,
+    records: Sequence[Record],
+    method: EstimateMethod,
+    window_s: float,
+    svr: SupportVectorSettings | None = None,
+) -> PublishedEstimate:
+    """Return what a regression finds for the free coefficients of a model, from the records as they are.
+
+    Args:
+        window_s: half width of windows, where the method has any [s].
+        svr: settings of the support vectors and of the published pipeline.
+
+    Raises:
+        InputError: the model is not linear in its coefficients, or the records do not show every state of it.
+    """
+    estimator = estimator_of_method(method, window_s, svr)
+    began = time.process_time()
+    try:
+        regression = estimator.estimate(model, records)
+    except InputError as error:
+        raise InputError(f"method '{method}': {error}") from None
+    except np.linalg.LinAlgError:
+        raise InputError(f"method '{method}': its equations are singular in these records; add other runs") from None
+    seconds = time.process_time() - began
+    if not np.all(np.isfinite(regression.values)):
+        raise InputError(f"method '{method}': its coefficients are no finite numbers; take another method")
+    text = Method(
+        estimator.name, "none: linear equations", NO_INTERVALS, ("the method is named by the trial",),
+        {"processor time, s": round(seconds, 3)}, method.value,
+    )  # fmt: skip
+    solution = Solution(regression.values, np.nan, Status.CONVERGED, 1)
+    return PublishedEstimate(solution, text, (*regression.findings, *_bias_findings(regression)))
+
+
+def _bias_findings(regression: RegressionEstimate) -> list[Finding]:
+    """What each equation was given besides the model's terms."""
+    return [
+        Finding(Severity.INFO, "constant", f"the {equation} equation was given a constant besides the model's terms",
+                significant(bias, 3))
+        for equation, bias in regression.bias.items()
+        if bias
+    ]  # fmt: skip

@@ -1,0 +1,451 @@
+"""What to warn of in a fit: records, bands, priors and optima that its numbers do not show."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from seatrial.core.equations import Model
+from seatrial.core.results import Prediction
+from seatrial.core.results.coefficients import REFERENCE_LEVEL, FeedbackEvidence
+from seatrial.core.results.ship_motions import FrequencyResponse
+from seatrial.core.text.numbers import p_value, percent, significant
+from seatrial.core.text.words import counted, enumeration
+from seatrial.core.values import NOTATION, Array, Finding, Record, Severity
+from seatrial.estimation.estimate.fit import Estimation
+from seatrial.estimation.estimate.point_estimate import split_segments
+from seatrial.estimation.estimate.process_noise import has_noise
+from seatrial.physics.models.thruster_layout import Thruster, ThrusterLayout
+
+# What to warn of where a controller was on while the training runs were recorded.
+
+LEAST_AGREEMENT = 0.5
+"""Correlation of a declared controller's orders with the input below which they contradict each other; chosen."""
+
+
+def closed_loop_findings(estimation: Estimation) -> list[Finding]:
+    """Return warnings of a closed loop that is fitted by output error, and of declarations that do not agree."""
+    loop = estimation.noise_model.closed_loop
+    if loop is None:
+        return []
+    findings = list(_contradictions(loop))
+    if not estimation.has_process_noise and has_noise(estimation.estimate):
+        was_compared = bool(estimation.noise_model.candidates)
+        advice = (
+            "runs left out decided for it; use the coefficients for predictions under the same controller"
+            if was_compared
+            else 'write method = "auto" under [estimate], without robust and segment_s, so that prediction error is '
+            "compared with it"
+        )
+        findings.append(Finding(Severity.WARNING, "closed-loop", f"'{loop.input}' follows '{loop.output}', and the "
+                                f"criterion is {estimation.criterion}: disturbances that are answered count as the "
+                                "craft's own response", "", advice))  # fmt: skip
+    return findings
+
+
+def _contradictions(loop: FeedbackEvidence) -> Iterator[Finding]:
+    if loop.reference_p is not None and loop.reference_p < REFERENCE_LEVEL:
+        yield Finding(Severity.WARNING, "reference-residual", "the innovations follow earlier changes of the "
+                      "reference, as those of a true model do not: model error, which the intervals do not cover",
+                      p_value(loop.reference_p), "free more coefficients, allow for a delay of the input under "
+                      "[estimate] delays, or take a richer model")  # fmt: skip
+    agreement = loop.controller_correlation
+    if agreement is not None and agreement < LEAST_AGREEMENT:
+        yield Finding(Severity.WARNING, "controller-mismatch", f"'{loop.input}' is not what the declared controller "
+                      "orders", f"correlation {significant(agreement, 2)}", "correct sign, gains or reference under "
+                      "[feedback], or name the runs in which it was on with runs = [...]")  # fmt: skip
+
+
+# A warning where the estimated disturbance moves a state by more than the state moves at all: no sea does that.
+
+EXCEEDS_MOTION = "disturbance-exceeds-motion"
+# of the disturbance, an open-loop error below which the model does not miss the state by anything like it; chosen
+_LEAST_ERROR = 0.3
+
+
+@dataclass(frozen=True)
+class _Excess:
+    """A state whose disturbance exceeds its motion: both, and the open-loop error (NaN: not measured), all SI."""
+
+    state: str
+    disturbed: float
+    spread: float
+    error: float
+
+    @property
+    def is_misfit(self) -> bool:
+        """Whether the model misses the state by something like the disturbance."""
+        return not self.error < _LEAST_ERROR * self.disturbed
+
+    def text(self, seconds: float) -> str:
+        unit = NOTATION[self.state].unit
+        moved = f"{self.state}: {significant(self.disturbed, 2)} {unit} within {significant(seconds, 2)} s"
+        missed = f" and the model misses it by {significant(self.error, 2)} {unit}" if math.isfinite(self.error) else ""
+        return f"{moved}, while the runs spread by {significant(self.spread, 2)} {unit}{missed}"
+
+
+def misfit_disturbance(
+    intensities: Mapping[str, float], trained: Sequence[Prediction], seconds: float
+) -> tuple[Finding, ...]:
+    """Return a warning `disturbance-exceeds-motion` of the states whose noise exceeds their own spread.
+
+    Where the model misses such a state by far less, open loop, it is no misfit: the intensity is not determined.
+
+    Args:
+        intensities: state -> intensity of its process noise, SI over the root of a second.
+        trained: the training runs as the model has them.
+        seconds: in which the craft changes its motion; noise that is not damped grows to q sqrt(T) in it.
+    """
+    found = list(_excesses(intensities, trained, seconds))
+    undetermined = [one for one in found if not one.is_misfit]
+    misfit = [one for one in found if one.is_misfit]
+    findings = list[Finding]()
+    if misfit:
+        findings.append(Finding(
+            Severity.WARNING, EXCEEDS_MOTION, "the estimated disturbance moves the craft by more than it moves in the "
+            "runs: the model's misfit, not the sea, is likely", "; ".join(one.text(seconds) for one in misfit),
+            "free more coefficients, correct a channel, or take a richer model",
+        ))  # fmt: skip
+    if undetermined:
+        names = enumeration([one.state for one in undetermined])
+        findings.append(Finding(
+            Severity.WARNING, EXCEEDS_MOTION, f"the estimated disturbance of {names} cannot be: the model without it "
+            "misses far less, so that its size is not determined", "; ".join(one.text(seconds) for one in undetermined),
+            f"state the sensors' noise of {names} under [noise], so that the filter does not choose it",
+            "intervals and bands that rest on it are too wide",
+        ))  # fmt: skip
+    return tuple(findings)
+
+
+def _excesses(intensities: Mapping[str, float], trained: Sequence[Prediction], seconds: float) -> Iterator[_Excess]:
+    moving = {state: intensity for state, intensity in intensities.items() if state in NOTATION}  # no instrument's own
+    for state, intensity in moving.items():
+        runs = [p for p in trained if state in p.simulated]
+        samples = [p.simulated[state][np.isfinite(p.simulated[state])] for p in runs]
+        spread = float(np.std(np.concatenate(samples))) if samples else math.nan
+        error = max((p.rms[state] for p in runs if state in p.rms), default=math.nan)
+        disturbed = intensity * math.sqrt(seconds)
+        if disturbed > spread > 0.0:
+            yield _Excess(state, disturbed, spread, error)
+
+
+# Held-out runs that leave their 95 % bands far more often than chance would: intervals that promise too much.
+
+LEAST_INSIDE = 0.7
+"""Share of the samples of held-out runs inside a 95 % band below which the band is too narrow; chosen."""
+
+
+def narrow_band_findings(predictions: Sequence[Prediction]) -> tuple[Finding, ...]:
+    """Return a warning with the held-out runs and channels of which too little lies inside the band.
+
+    Over the longest windows of each run, as on the first screen of the report.
+    """
+    outside = list[str]()
+    for p in (one for one in predictions if one.role == "validation" and one.windows):
+        longest = max(p.windows, key=lambda w: w.seconds)
+        outside += [
+            f"{100.0 * score.inside_band:.0f} % of {name} in {p.record}"
+            for name, score in longest.scores.items()
+            if score.inside_band is not None and score.inside_band < LEAST_INSIDE
+        ]
+    if not outside:
+        return ()
+    return (
+        Finding(
+            Severity.WARNING, "narrow-band",
+            "held-out samples lie outside their 95 % band more often than chance explains",
+            f"inside are {enumeration(outside)}",
+            "take the intervals of predictions and coefficients for too narrow; exchange the runs that are fitted and "
+            "held out and compare, look for what differed between them, and fit four runs or more: their spread then "
+            "makes the intervals",
+        ),
+    )  # fmt: skip
+
+
+# What searches from several starting points say of the estimate: optima that are as good, and better ones.
+
+_AS_GOOD = 2.0
+"""Loss above the lowest (negative log-likelihood) up to which records hardly distinguish two optima; chosen: about the
+95 % limit of one coefficient, half of 3.84."""
+_APART = 3.0
+"""Standard errors by which some coefficient differs at another optimum; chosen."""
+
+
+def other_optima(estimation: Estimation) -> list[Finding]:
+    """Return findings on ends of the search that explain the records as well with other coefficients.
+
+    Ends are compared with the best one: where the criterion is another than that of the search, the estimate went on.
+    """
+    problem, errors = estimation.estimate.problem, estimation.interval.standard_error
+    findings = []
+    for attempt in estimation.search_attempts[1:]:
+        if attempt.loss > _AS_GOOD:
+            continue
+        point = [estimation.search_attempts[0].values[name] for name in problem.free]
+        apart = np.array([attempt.values[name] - point[i] for i, name in enumerate(problem.free)])
+        ratio = np.abs(apart) / np.maximum(errors[: len(apart)], np.finfo(float).tiny)
+        worst = int(np.argmax(ratio))
+        if ratio[worst] > _APART:
+            name = problem.free[worst]
+            findings.append(Finding(
+                Severity.WARNING, "equal-optimum", f"other coefficients explain the records as well: {name} = "
+                f"{attempt.values[name]:.3g} instead of {point[worst]:.3g}",
+                f"search from {attempt.origin}: loss {attempt.loss:.2g} above the lowest",
+                "give a prior or a bound by what is known of the craft, or a manoeuvre that distinguishes them",
+            ))  # fmt: skip
+    return findings
+
+
+# Priors that the records contradict: the estimate lies many of their standard deviations away.
+
+REFUTED = 3.0
+"""Distance of an estimate from its prior's mean, in the prior's standard deviations, from which on records and prior
+disagree: of a normal prior one in 370 lies so far out by chance; chosen."""
+_MOST_NAMED = 6  # that a message holds, the farthest first; chosen
+
+
+def refuted_prior_findings(estimation: Estimation) -> tuple[Finding, ...]:
+    """Return a warning `prior-refuted` with the priors that the estimate left, and by how far; else nothing."""
+    distances = {
+        p.name: abs(p.value - p.prior.mean) / p.prior.standard_deviation
+        for p in estimation.model.parameters.free
+        if p.prior is not None and p.prior.standard_deviation > 0.0
+    }
+    off = sorted((n for n, d in distances.items() if d > REFUTED), key=lambda n: -distances[n])
+    if not off:
+        return ()
+    sizes = [f"{name} by {significant(distances[name], 2)}" for name in off[:_MOST_NAMED]]
+    more = f", and {len(off) - len(sizes)} more" if len(off) > len(sizes) else ""
+    return (Finding(
+        Severity.WARNING, "prior-refuted",
+        f"the records contradict the priors of {counted(len(off), 'coefficient')}",
+        f"prior standard deviations from their means: {', '.join(sizes)}{more}",
+        "check that the priors' source is of this ship, loading and scale, widen them under [model.priors], or free "
+        "the term whose effect these coefficients may have taken; until then do not read them one by one",
+        "intervals count each such prior as wrong by as much",
+    ),)  # fmt: skip
+
+
+# A warning where the model's frequency response leaves the region of the records' own.
+
+# frequencies compared from which on a response is judged, and share of them inside the 95 % region below which it is
+# named; chosen: chance leaves 95 % inside, and half outside are no longer a matter of estimators
+_FEWEST_COMPARED, _LEAST_INSIDE = 5, 0.5
+
+
+def response_findings(responses: Sequence[FrequencyResponse]) -> tuple[Finding, ...]:
+    """Return a warning `frequency-response` with the responses of which the model misses more than half."""
+    texts = list(_missed(responses))
+    if not texts:
+        return ()
+    return (Finding(
+        Severity.WARNING, "frequency-response", f"the model lies outside the 95 % region of the records in "
+        f"{enumeration(texts, len(texts))} frequencies", "",
+        "look at which frequencies it misses: coefficients that change with frequency, or forces of the wrong size",
+        "intervals of coefficients do not cover this error",
+    ),)  # fmt: skip
+
+
+def _missed(responses: Sequence[FrequencyResponse]) -> Iterator[str]:
+    for r in responses:
+        compared, inside = int(r.is_compared.sum()), int((r.is_inside & r.is_compared).sum())
+        if compared >= _FEWEST_COMPARED and inside < _LEAST_INSIDE * compared:
+            yield f"{r.output} over {r.input} at {compared - inside} of {compared}"
+
+
+# Time constants that are estimated below the step of the records: what happens between two samples is not seen.
+
+_SECONDS = "s"  # unit of time constants and delays
+
+
+def short_time_constant_findings(estimation: Estimation) -> tuple[Finding, ...]:
+    """Return a note `short-time-constant` on those free coefficients in s that are below the step; else nothing."""
+    step, parameters = estimation.estimate.problem.data.dt, estimation.model.parameters
+    short = [p for p in parameters.free if p.unit == _SECONDS and p.value < step]
+    if not short:
+        return ()
+    names = " and ".join(p.name for p in short)
+    sizes = ", ".join(f"{p.name} {significant(p.value, 2)} s" for p in short)
+    verb = "is" if len(short) == 1 else "are"
+    return (Finding(
+        Severity.INFO, "short-time-constant", f"{names} {verb} below the step of the records",
+        f"{sizes}; a sample every {significant(step, 2)} s",
+        "take it as shorter than a sample; where a controller needs more, log commands and motion at a higher rate",
+        "it is not distinguishable from a delay of the logged commands",
+    ),)  # fmt: skip
+
+
+# Held-out runs of a kind of manoeuvre that no training run shows: predictions of them are extrapolations.
+
+_MOST_RUNS = 3  # names that a message holds; chosen
+
+
+def untrained_manoeuvre_findings(predictions: Sequence[Prediction]) -> tuple[Finding, ...]:
+    """Return a warning `untrained-manoeuvre` for each kind that was held out and never fitted."""
+    of_kind = dict[str, list[str]]()
+    for p in predictions:
+        if p.role == "validation" and p.extrapolation is not None and p.extrapolation.untrained_kind:
+            of_kind.setdefault(p.extrapolation.untrained_kind, []).append(p.record)
+    return tuple(
+        Finding(
+            Severity.WARNING, "untrained-manoeuvre", f"no training run is a {kind.replace('-', ' ')}",
+            f"held out: {enumeration(names, _MOST_RUNS)}",
+            "their bands are extrapolations, calibrated by other manoeuvres: read them as lower limits, or train a "
+            f"{kind.replace('-', ' ')}",
+        )
+        for kind, names in of_kind.items()
+    )  # fmt: skip
+
+
+# Thrust that no training run shows: its coefficients are held, not sought; and thrust shown at one order alone.
+
+_ASTERN = ("k_b", "p_b", "k_4")  # thrust at full command, exponent, loss with speed: docs/thrusters.md
+_LEAST_ORDER = 0.02  # share of full command astern that drives a thruster, where it has no dead band; chosen
+_ORDER_PERCENTILES = (10.0, 90.0)  # of the orders to one side: between them lie those that are held, not slews; chosen
+_ONE_ORDER = 0.1  # share of full command between these percentiles up to which there was one order; chosen
+
+
+@dataclass(frozen=True)
+class _Side:
+    """One direction of thrust: its name, the sign of its orders, and the two coefficients of its curve."""
+
+    name: str
+    sign: float
+    symbols: tuple[str, str]
+
+
+_SIDES = (_Side("ahead", 1.0, ("k_f", "p_f")), _Side("astern", -1.0, ("k_b", "p_b")))
+
+
+def with_unexcited_thrust_held(model: Model, records: Sequence[Record]) -> tuple[Model, tuple[Finding, ...]]:
+    """Return the model with the thrust astern of thrusters that no record drives astern held, and a finding of each.
+
+    Without an order astern these coefficients change nothing, and a search carries them anywhere. A coefficient with a
+    prior stays free. Models without thrusters are returned as they are.
+    """
+    if not model.equations.layout:
+        return model, ()
+    layout, findings = ThrusterLayout.from_text(model.equations.layout), list[Finding]()
+    for leader in layout.leaders:
+        alike = [t for t in layout.thrusters if layout.leader(t) is leader]
+        symbols = [symbol + layout.suffix(leader) for symbol in _ASTERN]
+        held = [p.name for p in model.parameters.free if p.name in symbols and p.prior is None]
+        if not held or any(_is_driven_astern(t, r) for t in alike for r in records):
+            continue
+        names = " or ".join(t.name for t in alike)
+        model = model.with_parameters(model.parameters.fixed(*held))
+        findings.append(
+            Finding(
+                Severity.WARNING, "no-thrust-astern", f"no training run has an order astern of {names}: "
+                f"{enumeration(held)} are held where they start", "",
+                "train on a run with orders astern, or simulate none with this model",
+            )
+        )  # fmt: skip
+    return model, tuple(findings)
+
+
+def single_order_findings(model: Model, records: Sequence[Record]) -> tuple[Finding, ...]:
+    """Return a warning `single-order` for each curve of thrust whose both coefficients are free on one order alone.
+
+    At one order any exponent fits with the thrust at full command that goes with it; elsewhere the curve is a guess.
+    """
+    if not model.equations.layout:
+        return ()
+    layout, free = ThrusterLayout.from_text(model.equations.layout), {p.name for p in model.parameters.free}
+    findings = list[Finding]()
+    for leader in layout.leaders:
+        alike = [t for t in layout.thrusters if layout.leader(t) is leader]
+        for side in _SIDES:
+            names = [symbol + layout.suffix(leader) for symbol in side.symbols]
+            orders = np.concatenate([_orders(t, r, side.sign) for t in alike for r in records] or [np.zeros(0)])
+            is_open = all(n in free and model.parameters[n].prior is None for n in names)
+            if is_open and len(orders) and float(np.ptp(np.percentile(orders, _ORDER_PERCENTILES))) <= _ONE_ORDER:
+                thrusters = " or ".join(t.name for t in alike)
+                findings.append(_single_order(side, thrusters, names, float(np.median(orders))))
+    return tuple(findings)
+
+
+def _single_order(side: _Side, thrusters: str, names: Sequence[str], order: float) -> Finding:
+    scale, exponent = names
+    return Finding(
+        Severity.WARNING, "single-order", f"the training runs hold orders {side.name} of {thrusters} only near "
+        f"{percent(order)} % of full command: {scale} and {exponent} together give the thrust there, neither by itself",
+        "", f"record a second order {side.name}, or fix {exponent} under [model.fixed]",
+        f"thrust {side.name} at any other order is a guess: full command is {significant(1.0 / order, 2)} times that "
+        "order",
+    )  # fmt: skip
+
+
+def _is_driven_astern(thruster: Thruster, record: Record) -> bool:
+    return bool(len(_orders(thruster, record, -1.0)))
+
+
+def _orders(thruster: Thruster, record: Record, sign: float) -> Array:
+    """The orders to one side that drive a thruster, as positive shares of full command."""
+    command = thruster.command
+    if command.channel not in record:
+        return np.zeros(0)
+    order = sign * (record[command.channel] - command.zero) / command.span
+    return order[order > max(thruster.dead_band, _LEAST_ORDER)]
+
+
+# A warning where a search from sample to sample led outside physics: which runs the model cannot have, and why.
+
+LEAST_LOSS = 1.0 / 3.0
+"""Share of its speed that a run loses, from which on a model without surge cannot have it; chosen."""
+_WORST = 2.0  # times the median run's residuals from which on a run is named; chosen
+_EDGE_SHARE = 0.1  # of a run, over which its speed is averaged at begin and end; chosen
+
+
+def abandoned_criterion_finding(estimation: Estimation, records: Sequence[Record]) -> tuple[Finding, ...]:
+    """Return a warning `search-abandoned` where whole runs took the place of another criterion; else nothing.
+
+    records: the training runs, in their order.
+    """
+    if not estimation.abandoned:
+        return ()
+    losses = _speed_losses(estimation.model, records)
+    worst = {} if losses else _worst_runs(estimation, records)
+    named = [*losses, *worst]
+    evidence = [f"{name} loses {100.0 * share:.0f} % of its speed, which the model does not have"
+                for name, share in losses.items()]  # fmt: skip
+    evidence += [f"{name} has {ratio:.1f} times the residuals of the median run" for name, ratio in worst.items()]
+    listed = ", ".join(f'"{name}"' for name in named)
+    ways = [f"leave them out, with leave_out = [{listed}] under [[records]]"] if 0 < len(named) < len(records) else []
+    ways += ["take a model with surge (mmg, abkowitz)" if losses else "take a model with more terms"]
+    return (Finding(
+        Severity.WARNING, "search-abandoned",
+        f"{estimation.abandoned}: these runs contradict the model from sample to sample, and the estimate is that of "
+        "output error over whole runs", "; ".join(evidence), f"{', or '.join(ways)}",
+        "coefficients are a compromise between runs that differ by more than their intervals",
+    ),)  # fmt: skip
+
+
+def _speed_losses(model: Model, records: Sequence[Record]) -> dict[str, float]:
+    """Runs that lose much of their speed, of a model that has none, and the share that they lose."""
+    if "u" in model.states:
+        return {}
+    losses: dict[str, float] = {}
+    for record in records:
+        if "u" not in record:
+            continue
+        count = max(1, round(_EDGE_SHARE * len(record)))
+        first, last = (float(np.nanmedian(record["u"][part])) for part in (slice(count), slice(-count, None)))
+        if first > 0.0 and 1.0 - last / first > LEAST_LOSS:
+            losses[record.name] = 1.0 - last / first
+    return losses
+
+
+def _worst_runs(estimation: Estimation, records: Sequence[Record]) -> dict[str, float]:
+    """Runs whose residuals are much larger than those of the median run, and how many times."""
+    problem, values = estimation.estimate.problem, estimation.residuals
+    if len(problem.data.runs) != len(records) or len(records) < 2:
+        return {}
+    squares = np.zeros(len(records))
+    for column, noise in zip(values.T, problem.noise, strict=True):
+        pieces = split_segments(problem, column / noise)
+        squares += [np.mean(np.square(np.concatenate([pieces[k] for k in problem.data.run_segments(r)])))
+                    for r in range(len(records))]  # fmt: skip
+    ratios = np.sqrt(squares / np.median(squares))
+    return {record.name: float(ratio) for record, ratio in zip(records, ratios, strict=True) if ratio > _WORST}
