@@ -36,7 +36,7 @@ from seatrial.core.values import Channel, Finding, InputError, Parameters, Prior
 from seatrial.data.read import ColumnSpec, Layout
 from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRun
 from seatrial.estimation import regress as estimators
-from seatrial.estimation.estimate.fit import TrialProblem as Problem
+from seatrial.estimation.estimate.trial_problem import TrialProblem as Problem
 from seatrial.numerics import optimise as optimisers
 from seatrial.numerics.optimise import Solution
 from seatrial.physics import manoeuvres, models, sea

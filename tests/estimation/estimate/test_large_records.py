@@ -5,7 +5,7 @@ import pytest
 from scipy.signal import lfilter
 
 from seatrial.core.values import Record
-from seatrial.estimation.estimate import fit as large_records
+from seatrial.estimation.estimate import large_records
 from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
 from seatrial.estimation.estimate.settings import EstimatorOptions

@@ -6,7 +6,7 @@ import pytest
 from seatrial.core.equations import Model
 from seatrial.core.values import Prior, Record, Ship
 from seatrial.data.trial import EstimateSettings, Trial, TrialRun
-from seatrial.estimation.estimate.fit import TrialProblem
+from seatrial.estimation.estimate.trial_problem import TrialProblem
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.simulate import replay
 

@@ -24,8 +24,8 @@ from tests.estimation.information.symmetry_models import (
 )
 
 from seatrial.core.equations import Model
+from seatrial.estimation.information.generator import Generator
 from seatrial.estimation.information.symmetries import (
-    Generator,
     generators,
     refuse_unidentifiable,
     structural_symmetries,

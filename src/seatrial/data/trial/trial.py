@@ -16,7 +16,7 @@ from seatrial.data.trial.settings import CompareSettings, EstimateSettings, Mode
 from seatrial.physics.sea.spectrum import WaveEncounter
 
 if TYPE_CHECKING:
-    from seatrial.estimation.estimate.fit import TrialProblem
+    from seatrial.estimation.estimate.trial_problem import TrialProblem
 
 
 class Role(StrEnum):
@@ -153,6 +153,6 @@ class Trial:
         Raises:
             InputError: the records do not pass the checks, show no excitation, or cannot be compared with the model.
         """
-        from seatrial.estimation.estimate.fit import trial_problem
+        from seatrial.estimation.estimate.trial_problem import trial_problem
 
         return trial_problem(self)

@@ -1,28 +1,22 @@
 """Records and a model in, a fit out: the decision table of the estimator (docs/estimation.md)."""
 
-import math
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.results import NoiseModel, SearchAttempt
 from seatrial.core.values import NOTATION, Array, InputError, ProgressReporter, Record, display_unit
-from seatrial.data.trial import EstimateMethod, EstimateSettings, FitCriterion, Trial, checked_records
-from seatrial.estimation.estimate.assemble import Runs, output_error_problem, training_runs
+from seatrial.data.trial import EstimateMethod, EstimateSettings, FitCriterion
+from seatrial.estimation.estimate.assemble import Runs, output_error_problem
 from seatrial.estimation.estimate.closed_loop import LoopEvidence, closed_loop, loop_evidence
 from seatrial.estimation.estimate.criterion_choice import (
     PREDICTION_ERROR,
-    SPREAD,
     WAVE_FORCES,
     CriterionChoice,
     choose_criterion,
-    output_error_choice,
-    prediction_error_choice,
     with_sufficient_steps,
 )
 from seatrial.estimation.estimate.disturbance_models import refuse_short_runs
@@ -34,8 +28,8 @@ from seatrial.estimation.estimate.intervals import (
     refuse_few_runs,
     with_spread,
 )
+from seatrial.estimation.estimate.large_records import choice_over_all, choice_runs
 from seatrial.estimation.estimate.left_out_parts import WindowSeconds
-from seatrial.estimation.estimate.newton_refinement import newton_optimum
 from seatrial.estimation.estimate.plausibility import implausible_coefficients, refuse_implausible
 from seatrial.estimation.estimate.point_estimate import (
     PointEstimate,
@@ -66,120 +60,7 @@ from seatrial.estimation.estimate.start import (
     search_from_several,
 )
 from seatrial.estimation.information.covariance import Interval, inverse
-from seatrial.estimation.information.whiteness import WhitenessTest, whiteness_test
-from seatrial.estimation.problem.output_error import OutputError
-from seatrial.estimation.problem.prediction_error import over_runs
-from seatrial.estimation.problem.segments import cut_segments
-from seatrial.estimation.problem.static_forces import StaticForces
-from seatrial.numerics.optimise import Optimum
-
-# Records of more samples than a choice needs: decide on a stated part of them, then take one step over all.
-
-MOST_SAMPLES = 100_000
-"""Samples of all runs up to which everything is done with all of them; chosen."""
-
-CHOICE_SAMPLES, _STRETCHES = 20_000, 3
-"""Samples on which start, disturbance and criterion are chosen beyond that, and stretches of a single run; chosen."""
-
-PIECE_SAMPLES = 20_000
-"""Samples of the pieces in which all of them are filtered: each forgets its initial state within a few; chosen."""
-
-_MOST_GROWTH = 10.0
-"""Samples of a Newton step over those of the one before, at most; chosen: a step then leaves 0.1 standard errors."""
-
-_FAR, _MOST_REPEATS = 4.0, 2
-"""Decrement of the last step from which on it is taken again, and how often at most: from 2.8 standard errors a step
-leaves a tenth of one; chosen."""
-
-_LATER_EVALUATIONS = 6
-"""Most evaluations of output error over all samples, from the optimum over some; chosen."""
-
-
-def choice_runs(runs: Runs) -> Runs | None:
-    """Return stretches of all runs with some twenty thousand samples; None where all runs together are short enough."""
-    return _part(runs, CHOICE_SAMPLES) if _sample_count(runs) > MOST_SAMPLES else None
-
-
-def _sample_count(runs: Runs) -> int:
-    return sum(len(r) for r in runs.records)
-
-
-def _part(runs: Runs, samples: int) -> Runs:
-    """Stretches of all runs with about so many samples together."""
-    count = max(1, round(_STRETCHES / len(runs)))
-    length = max(samples // (count * len(runs)), 2)
-    stretches = [(s, session) for r, session in zip(runs.records, runs.sessions, strict=True)
-                 for s in _stretches(r, count, length)]  # fmt: skip
-    return replace(runs, records=tuple(s for s, _ in stretches), sessions=tuple(n for _, n in stretches))
-
-
-def _stretches(record: Record, count: int, length: int) -> Iterator[Record]:
-    """Yield stretches of a record from its beginning to its end."""
-    length = min(length, len(record))
-    for number, first in enumerate(np.linspace(0, len(record) - length, count).round().astype(int).tolist()):
-        yield record.rows(slice(first, first + length)).renamed(f"{record.name}, stretch {number + 1}")
-
-
-def choice_over_all(choice: CriterionChoice, runs: Runs) -> CriterionChoice:
-    """Return a choice moved to its optimum over all samples.
-
-    Prediction error takes Newton steps: the point comes from so many samples that what a step leaves is far below its
-    standard error. Output error searches on from the point.
-    """
-    few = choice.estimate.problem
-    total, part = _sample_count(runs), len(few.data.inputs)
-    reason = f"criterion and disturbance were chosen on {part} of {total} samples, the estimate is that of all"
-    if choice.disturbances is None or choice.process_noise is None:
-        problem = _with_all_samples(few, runs, None)  # whole: without a disturbance nothing is forgotten
-        estimate = fit_output_error(problem, choice.estimate.common_parameters, problem.measured_initial_states(),
-                                    runs.noise, rounds=1, evaluations=_LATER_EVALUATIONS)  # fmt: skip
-        return output_error_choice(estimate, choice.criterion).with_reasons(reason)
-    noise = _noise_over_all(choice.process_noise, runs)
-    reasons = (f"{choice.disturbances.choice_text}; over all samples {noise.test.innovations_text}", reason)
-    more = () if noise.test.is_white else (SPREAD,)
-    return prediction_error_choice(noise, choice.disturbances, *reasons, *more)
-
-
-def _noise_over_all(few: ProcessNoise, runs: Runs) -> ProcessNoise:
-    """The optimum over all samples, by way of parts that grow by one factor, ten at most.
-
-    What a Newton step leaves grows with the square of its distance, and this with the root of that factor; where the
-    last one still came from far away, it is taken again.
-    """
-    part = len(few.problem.runs.data.inputs)
-    factor = _sample_count(runs) / part
-    steps = max(1, math.ceil(math.log(factor) / math.log(_MOST_GROWTH)))
-    growth, noise = factor ** (1.0 / steps), few
-    for step in range(1, steps):
-        noise = _one_step(few, noise.optimum, _part(runs, round(part * growth**step)), growth)
-    noise = _one_step(few, noise.optimum, runs, growth)
-    for _ in range(_MOST_REPEATS):
-        if noise.newton_decrement <= _FAR:
-            break
-        noise = _one_step(few, noise.optimum, runs, 1.0)
-    normalised = noise.problem.innovations(noise.optimum.solution.point).normalised
-    pieces = [normalised[a:b] for a, b in pairwise(noise.problem.runs.data.offsets)]
-    return replace(noise, newton_decrement=0.0, test=replace(few.test, whiteness=whiteness_test(pieces)))
-
-
-def _one_step(few: ProcessNoise, before: Optimum, runs: Runs, growth: float) -> ProcessNoise:
-    """One Newton step over these runs from an optimum of `growth` times fewer samples; its decrement is kept."""
-    output_error = _with_all_samples(few.output_error, runs, PIECE_SAMPLES * few.output_error.data.dt)
-    problem = over_runs(few.problem, output_error)
-    step = newton_optimum(problem, before, growth)
-    return replace(
-        few, problem=problem, optimum=step.optimum, newton_decrement=step.decrement, output_error=output_error
-    )
-
-
-def _with_all_samples(problem: OutputError, runs: Runs, seconds: float | None) -> OutputError:
-    """The problem with all samples, in pieces of so many seconds; None: whole runs."""
-    return replace(
-        problem, data=cut_segments(problem.model, runs.records, problem.data.outputs, seconds, runs.sessions)
-    )
-
-
-# Records and a model in, a fit out: the decision table of the estimator (docs/estimation.md).
+from seatrial.estimation.information.whiteness import WhitenessTest
 
 _MIN_RUDDER_RANGE = float(np.radians(0.5))
 """Range of rudder angle [rad] that counts as a manoeuvre: 0.5 deg, chosen."""
@@ -477,127 +358,6 @@ def _fit_whole_runs(
         evaluations=options.evaluations,
         report_progress=report_progress,
     )
-
-
-# What `identify` minimises first, as a plain least-squares problem that any optimiser takes.
-
-
-@dataclass(frozen=True, eq=False)
-class Bounds:
-    """Lower and upper bounds of the unknowns, both (n,), infinite where there are none."""
-
-    lower: Array
-    upper: Array
-
-
-@dataclass(frozen=True, eq=False)
-class TrialProblem:
-    """Output error over the segments of all training runs.
-
-    Unknowns, in SI units: free coefficients, what each session has of its own, then the initial states of each
-    segment. Half the sum of squared residuals is the fitness.
-
-    Attributes:
-        output_error: the same problem with shared and local unknowns apart.
-        start: the model's own values, prior means, and initial states as measured, (n,).
-    """
-
-    output_error: OutputError
-    start: Array
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Name of each unknown."""
-        problem = self.output_error
-        kinds = [name for name, _ in problem.session_parameters] + [n.correction.name for n in problem.nuisances]
-        return (
-            *problem.free,
-            *(f"{kind} of {session}" for session in problem.data.sessions for kind in kinds),
-            *(f"{state} of segment {s + 1}" for s in range(problem.data.count) for state in problem.starts),
-        )
-
-    @cached_property
-    def bounds(self) -> Bounds:
-        """Bounds of the unknowns; only coefficients have finite ones."""
-        free = np.full(len(self.start) - self.output_error.size, np.inf)
-        return Bounds(np.concatenate([self.output_error.lower, -free]), np.concatenate([self.output_error.upper, free]))
-
-    def residuals(self, point: Array) -> Array:
-        """Return weighted residuals (m,): simulated minus measured over noise, force points, then priors.
-
-        What was not measured counts as zero; a simulation that diverges gives infinite residuals.
-        """
-        shared, local = self._parts(point)
-        problem = self.output_error
-        simulated = problem.simulated_outputs(shared, local)
-        difference = np.where(np.isfinite(simulated), simulated, np.inf) - problem.data.measured
-        scaled = np.where(np.isfinite(problem.data.measured), difference / problem.noise, 0.0)
-        forces = [term.scaled_rows(self._values(shared), ())[0].ravel() for term in self._forces]
-        mean, weight = problem.priors
-        first, known = problem.initial_prior
-        begun = np.sqrt(known) * (local - first)
-        return np.concatenate([scaled.ravel(), *forces, np.sqrt(weight) * (shared - mean), begun.ravel()])
-
-    def jacobian(self, point: Array) -> Array:
-        """Return the derivatives of the residuals by the unknowns, (m, n)."""
-        shared, local = self._parts(point)
-        problem, data = self.output_error, self.output_error.data
-        slopes = problem.slopes(shared, local) / problem.noise[:, None]
-        slopes = np.where(np.isfinite(data.measured)[:, :, None], slopes, 0.0)
-        ny, starts = len(data.outputs), len(problem.starts)
-        rows = np.zeros((len(slopes), ny, len(point)))
-        for s, (first, last) in enumerate(pairwise(data.offsets)):
-            local_columns = problem.size + s * starts + np.arange(starts)
-            columns = np.concatenate([problem.columns_of(int(data.session[s])), local_columns])
-            rows[first:last, :, columns] = slopes[first:last]
-        forces = [self._force_rows(term, shared, len(point)) for term in self._forces]
-        weights = np.concatenate([problem.priors[1], problem.initial_prior[1].ravel()])
-        return np.concatenate([rows.reshape(-1, len(point)), *forces, np.diag(np.sqrt(weights))])
-
-    def fitness(self, points: Array) -> Array:
-        """Return half the sum of squared residuals at each row of points (k, n), (k,); infinite after a divergence."""
-        return np.array([self.output_error.cost(*self._parts(point)) for point in np.atleast_2d(points)])
-
-    def _parts(self, point: Array) -> tuple[Array, Array]:
-        size, count = self.output_error.size, self.output_error.data.count
-        return point[:size], point[size:].reshape(count, -1)
-
-    @property
-    def _forces(self) -> list[StaticForces]:
-        return [term for term in self.output_error.extra_terms if isinstance(term, StaticForces)]
-
-    @cached_property
-    def _free_positions(self) -> list[int]:
-        parameters = self.output_error.model.parameters
-        return [parameters.index(name) for name in self.output_error.free]
-
-    def _values(self, shared: Array) -> Array:
-        """All model parameters."""
-        values = self.output_error.model.parameters.values
-        values[self._free_positions] = shared[: len(self._free_positions)]
-        return values
-
-    def _force_rows(self, term: StaticForces, shared: Array, width: int) -> Array:
-        by_coefficients = term.scaled_rows(self._values(shared), self._free_positions)[1]
-        return np.pad(by_coefficients, ((0, 0), (0, width - by_coefficients.shape[1])))
-
-
-def trial_problem(trial: Trial) -> TrialProblem:
-    """Return the problem of a trial's training runs, in segments by the decision table, noise as stated.
-
-    A channel without stated noise counts with a tenth of its spread.
-
-    Raises:
-        InputError: the records do not pass the checks, show no excitation, or cannot be compared with the model.
-    """
-    runs, model = training_runs(trial, checked_records(trial).records), trial.model
-    refuse_without_excitation(model, runs.records)
-    settings = with_segment_seconds(trial.estimate, model, runs)
-    unit = characteristic_time(model, runs.records, runs.length, settings.segment_s)
-    problem = output_error_problem(model, runs, segment_seconds(model, settings, unit), settings)
-    noise = [runs.noise.get(output, level) for output, level in zip(problem.data.outputs, problem.noise, strict=True)]
-    problem = replace(problem, noise=np.array(noise))
-    return TrialProblem(problem, np.concatenate([problem.start(), problem.measured_initial_states().ravel()]))
 
 
 # Waves that nobody measured: a fit that takes their motions for the ship's response to something else is refused.

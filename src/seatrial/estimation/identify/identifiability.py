@@ -24,8 +24,8 @@ from seatrial.estimation.information.covariance import (
     effective_parameters,
     relative_information,
 )
+from seatrial.estimation.information.generator import join_names
 from seatrial.estimation.information.stability import growth_rate, stability
-from seatrial.estimation.information.symmetries import join_names
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.physics.hydro.excitation import BoxHull
 from seatrial.physics.models.published import HEAVE_PITCH_COEFFICIENTS, HEAVE_PITCH_STIFFNESSES
