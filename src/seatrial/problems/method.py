@@ -1,7 +1,7 @@
 """Methods that are entered against the problems: built-in, installed, or of a user's file; those of other packages."""
 
 import hashlib
-import importlib.util as importlib
+import importlib.util
 import inspect
 import sys
 from collections.abc import Callable, Mapping
@@ -475,7 +475,7 @@ def _module_of_file(path: Path) -> ModuleType:
 
 def _module(name: str) -> ModuleType:
     try:
-        return importlib.import_module(name)
+        return import_module(name)
     except Exception as error:
         raise InputError(f"module '{name}' of the method cannot be imported: {error}; install or correct it") from error
 
