@@ -138,12 +138,13 @@ def test_a_store_of_a_newer_version_or_a_damaged_one_is_refused(tmp_path: Path) 
 
 
 def test_a_full_disk_ends_the_campaign_with_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from seatrial.core.values import files as frames
+    from seatrial.core.values import files
 
     def full(_descriptor: int) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(frames, "flush_to_disk", full)
+    run_campaign(work(3), tmp_path / "store", CampaignOptions(workers=1, shard=Shard(1, 3)))
+    monkeypatch.setattr(files, "flush_to_disk", full)
     with pytest.raises(InputError, match=r"No space left on device\); what was finished before is kept"):
         run_campaign(work(3), tmp_path / "store", ONE)
     monkeypatch.undo()
