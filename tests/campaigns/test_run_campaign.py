@@ -140,11 +140,14 @@ def test_a_store_of_a_newer_version_or_a_damaged_one_is_refused(tmp_path: Path) 
 def test_a_full_disk_ends_the_campaign_with_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from seatrial.core.values import files
 
-    def full(_descriptor: int) -> None:
-        raise OSError(28, "No space left on device")
+    flushed: list[int] = []
 
-    run_campaign(work(3), tmp_path / "store", CampaignOptions(workers=1, shard=Shard(1, 3)))
-    monkeypatch.setattr(files, "flush_to_disk", full)
+    def full_after_the_plan(descriptor: int) -> None:
+        flushed.append(descriptor)
+        if len(flushed) > 1:  # the plan
+            raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(files, "flush_to_disk", full_after_the_plan)
     with pytest.raises(InputError, match=r"No space left on device\); what was finished before is kept"):
         run_campaign(work(3), tmp_path / "store", ONE)
     monkeypatch.undo()

@@ -63,17 +63,18 @@ def test_a_rudder_that_does_less_is_named() -> None:
 
 
 def test_the_model_is_estimated_by_the_log_almost_alone() -> None:
-    """The prior leaves 50 %: four logs come within 15 %, by intervals of a quarter at most; one of four may miss by
-    chance (0.2 of such tests), none by three standard errors."""
+    """The prior leaves 50 %: logs come within 15 %, by intervals of a quarter at most.
+
+    Of eight intervals of 95 % fewer than six hold the gain once in 170 such tests (binomial).
+    """
     inside = []
-    for seed in range(3, 7):
+    for seed in range(3, 11):
         (gain, lag) = refitted_coefficients(ship(), [course_log(seed)], 40.0)
         assert (gain.name, lag.name) == ("K", "T")
-        inside.append(gain.lower < K < gain.upper)
-        assert abs(gain.log - K) < 3.0 * (gain.upper - gain.lower) / (2.0 * 1.96)
         assert gain.log == pytest.approx(K, rel=0.15) and lag.log == pytest.approx(T, rel=0.2)
         assert gain.upper - gain.lower < 0.25 * K
-    assert sum(inside) >= 3
+        inside.append(gain.lower < K < gain.upper)
+    assert sum(inside) >= 6
 
 
 def test_what_changed_is_named_and_an_unchanged_ship_passes() -> None:
