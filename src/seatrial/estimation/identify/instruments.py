@@ -182,6 +182,7 @@ _LEAST_LEVER = 0.05  # of the ship's length, as in `antenna_place`: less is what
 _LEAST_LAG = 0.2  # s: below, a model that is not the craft's may well ask for it; chosen
 _LAG = 1.0  # s, that of a lag where it is sought; chosen: filters of receivers and compasses
 _LIKELIER = 25.0  # twice the gain of likelihood from which an error is sought, five standard errors; chosen
+_ERROR_STEP = 0.1  # of such an error's deviation, of differences by it: a filter follows what it is shown; chosen
 _ERROR_EVALUATIONS = 12  # of a short search beside such errors; chosen
 
 
@@ -390,7 +391,7 @@ def instrument_errors(
     errors = [e for one in among for e in one.errors]
     if not errors:
         return None
-    candidates = [Candidate(e.name, e.problem_with) for e in errors]
+    candidates = [Candidate(e.name, e.problem_with, _ERROR_STEP * (e.deviation or 1.0)) for e in errors]
     if isinstance(estimate, PointEstimate):
         estimate = _with_noise_beside_errors(estimate, errors, candidates)
     return ErrorInformation(tuple(among), score_test(estimate, candidates))
