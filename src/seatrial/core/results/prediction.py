@@ -101,7 +101,7 @@ class ChannelScore:
     r_squared: Annotated[Number, Field(description="1 - sum of squared errors over that about the mean")]
     inside_band: Annotated[
         Number | None,
-        Field(description="share of samples inside their 95 % band (sensor noise included); null: no band"),
+        Field(description="share of samples inside their 95 % band (sensor noise and waves included); null: no band"),
     ] = None
     band_share: Annotated[
         Number | None,
