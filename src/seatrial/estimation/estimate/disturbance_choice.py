@@ -174,7 +174,7 @@ def choose_disturbance(
         needs_disturbance: whether a disturbance is used even where none is likelier (inputs follow outputs); what the
             likelihood would be without one is still in the table.
     """
-    search = _Search(white, evaluations, report_progress or (lambda _: None), needs_disturbance)
+    search = _Search(white, report_progress or (lambda _: None), needs_disturbance)
     none = without_disturbance(white, plain, evaluations, search.report)
     fitted = [FittedDisturbance(none, 0)]
     if np.isfinite(white.newton_decrement):
@@ -337,12 +337,11 @@ class _Search:
     """How candidates are searched.
 
     Attributes:
-        white: the optimum with white noise, against which they are tested; evaluations: most of each search.
+        white: the optimum with white noise, against which they are tested.
         needs_disturbance: whether one is used even where none is likelier.
     """
 
     white: ProcessNoise
-    evaluations: int
     report: ProgressReporter
     needs_disturbance: bool
 
