@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Record
 from seatrial.estimation.estimate.likelihood_ratio import boundary_quantile
+from seatrial.estimation.estimate.plausibility import own_starts
 from seatrial.estimation.estimate.point_estimate import PointEstimate, fit_output_error
 from seatrial.estimation.estimate.process_noise import ProcessNoise, fit_prediction_error, has_noise
 from seatrial.estimation.predict.draws import PredictionUncertainty, StartStates, draw_runs
@@ -95,6 +96,17 @@ def test_sensor_noise_is_no_process_noise(model: Model, seed: int) -> None:
     none = fit_prediction_error(made_of(model, 0.0, seed))
     assert not none.test.is_needed
     assert none.test.summary.startswith("no process noise")
+
+
+def test_a_search_that_begins_in_the_basin_of_an_unstable_ship(model: Model, found: ProcessNoise) -> None:
+    """As where an autopilot answers gusts: output error ends there, and the model's own values lead out of it."""
+    made = made_of(model, INTENSITY, 3, runs=4)
+    point = made.common_parameters.copy()
+    point[made.problem.free.index("T")] *= -1.0
+    solution = replace(made.optimum.solution, point=point)
+    astray = replace(made, optimum=replace(made.optimum, solution=solution))
+    again = fit_prediction_error(astray, further_starts=own_starts(astray))
+    assert again.common_parameters == pytest.approx(found.common_parameters, rel=1e-3)
 
 
 def test_a_known_deviation_is_kept(model: Model) -> None:

@@ -20,7 +20,7 @@ from seatrial.estimation.estimate.left_out_parts import (
     output_error_points,
 )
 from seatrial.estimation.estimate.newton_refinement import refine_by_newton
-from seatrial.estimation.estimate.plausibility import is_lost, with_input_offsets, with_plausible_start
+from seatrial.estimation.estimate.plausibility import is_lost, own_starts, with_input_offsets, with_plausible_start
 from seatrial.estimation.estimate.point_estimate import (
     PointEstimate,
     filter_with_steps,
@@ -137,13 +137,16 @@ def choose_criterion(
     is_unforced: nothing moves the ship but its initial state; has_feedback: inputs follow outputs.
     """
     first = with_input_offsets(with_plausible_start(shooting))
-    other = None if begun is None else with_input_offsets(with_plausible_start(begun))
+    further = [] if begun is None else [with_input_offsets(with_plausible_start(begun))]
+    further += own_starts(first)
     shot = output_error_choice(shooting, _output_error_name(seconds))
     match settings.criterion:
         case FitCriterion.OUTPUT_ERROR | FitCriterion.MULTIPLE_SHOOTING:
             return _required_choice(shot, settings, noise, SET_BY_TRIAL)
         case FitCriterion.PREDICTION_ERROR:
-            white = fit_prediction_error(first, noise, other=other, thorough=True, report_progress=report_progress)
+            white = fit_prediction_error(
+                first, noise, further_starts=further, thorough=True, report_progress=report_progress
+            )
             disturbances = choose_disturbance(white, [first], report_progress=report_progress)
             reasons = ("it is set by the trial", disturbances.summary)
             return prediction_error_choice(disturbances.chosen.noise, disturbances, *reasons)
@@ -167,7 +170,9 @@ def choose_criterion(
         return shot.with_reasons(_CORRELATED, _SEGMENTED)
     if is_coarsely_sampled(shooting.problem):
         return shot.with_reasons(_CORRELATED, _COARSE_SAMPLES)
-    white = fit_prediction_error(first, noise, other=other, thorough=not in_waves, report_progress=report_progress)
+    white = fit_prediction_error(
+        first, noise, further_starts=further, thorough=not in_waves, report_progress=report_progress
+    )
     if np.isnan(white.newton_decrement):  # not searched: no disturbance makes such innovations white
         return replace(shot.with_reasons(white.test.summary, _SEGMENTED), process_intensities=white.process_intensities)
     parts, plain = Parts.for_runs(runs), list[CriterionChoice]()

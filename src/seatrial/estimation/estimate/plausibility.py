@@ -11,6 +11,7 @@ from seatrial.core.values import NOTATION, Array, InputError, Prior
 from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.information.covariance import signed_terms
 from seatrial.estimation.problem.output_error import Nuisance, OutputError
+from seatrial.physics.models.candidate_structures import course_unstable
 from seatrial.physics.simulate.batch import InputCorrection
 
 # Directions in parameter space that the records do not determine, named before any number is printed for them.
@@ -165,12 +166,22 @@ def with_plausible_start(estimate: PointEstimate) -> PointEstimate:
     Output error takes a disturbance for a ship without damping where a record is short; from there no other criterion
     finds back, as the likelihood is flat.
     """
-    if not np.any(_is_beyond(estimate, _LOST_FACTOR)):
-        return estimate
+    return estimate if not np.any(_is_beyond(estimate, _LOST_FACTOR)) else own_starts(estimate)[0]
+
+
+def own_starts(estimate: PointEstimate) -> list[PointEstimate]:
+    """Return the estimate at the model's own values and, of a steering model, at those of the other course stability.
+
+    Gusts that a helmsman or an autopilot answers lead every estimate without a disturbance into the basin of a ship of
+    the other stability, and no search passes through the infinite time constant between the two.
+    """
     problem, solution = estimate.problem, estimate.optimum.solution
-    point = solution.point.copy()
-    point[: len(problem.free)] = [problem.model.parameters[name].value for name in problem.free]
-    return replace(estimate, optimum=replace(estimate.optimum, solution=replace(solution, point=point)))
+    starts = []
+    for model in dict.fromkeys((problem.model, course_unstable(problem.model))):
+        point = solution.point.copy()
+        point[: len(problem.free)] = [model.parameters[name].value for name in problem.free]
+        starts.append(replace(estimate, optimum=replace(estimate.optimum, solution=replace(solution, point=point))))
+    return starts
 
 
 def is_lost(problem: OutputError, common_parameters: Array) -> bool:

@@ -4,7 +4,7 @@ Prediction error with the intensities estimated, begun from an output-error esti
 needed (likelihood against the same filter without process noise) and whether it suffices (white innovations).
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum, auto
 from functools import cached_property
@@ -301,7 +301,7 @@ def fit_prediction_error(
     known_noise: Mapping[str, float] | None = None,
     driven_states: tuple[str, ...] = (),
     *,
-    other: PointEstimate | None = None,
+    further_starts: Sequence[PointEstimate] = (),
     thorough: bool = False,
     evaluations: int = 60,  # of the innovations, at most; chosen
     report_progress: ProgressReporter | None = None,
@@ -315,7 +315,7 @@ def fit_prediction_error(
         estimate: over segments or whole runs; its robust loss is not kept, outliers must be gone.
         known_noise: standard deviations of channels that are not estimated, SI.
         driven_states: states with process noise; empty: all that are no kinematics.
-        other: another point of the same problem, from which the search starts if that is likelier: disturbances and
+        further_starts: points of the same problem, of which the search starts from the likeliest: disturbances and
             feedback can lead output error far astray.
         thorough: search the coefficients even where the innovations cannot become white.
 
@@ -329,7 +329,7 @@ def fit_prediction_error(
     """
     report = report_progress or (lambda _: None)
     report("process noise: intensities")
-    begun = [(e, *_begun(e, known_noise or {}, driven_states)) for e in (estimate, other) if e is not None]
+    begun = [(e, *_begun(e, known_noise or {}, driven_states)) for e in (estimate, *further_starts)]
     estimate, problem, point = min(begun, key=lambda one: one[1].cost(one[2], _NO_INITIAL_STATES))
     if not thorough and np.max(innovation_correlation(problem, point)[1]) > _HOPELESS_INFLATION:
         return _without_search(problem, point)
