@@ -90,7 +90,7 @@ def outcome(item: Item) -> Outcome:
     blank = model.with_values(dict(craft.guess))
     names = model.parameters.free_names
     truth = np.array([model.parameters[n].value for n in names])
-    limit = limit_of(craft, disturbance, item.record)
+    bound, efficient = limit_of(craft, disturbance, item.record)
     began = time.process_time()
     nothing = np.full(len(names), np.nan)
     try:
@@ -103,15 +103,15 @@ def outcome(item: Item) -> Outcome:
     except InputError as error:
         spent = time.process_time() - began
         none = np.zeros(len(names), dtype=bool)
-        return Outcome(nothing, nothing, limit.standard_error, limit.efficient, none, "", False, spent, str(error))
+        return Outcome(nothing, nothing, bound, efficient, none, "", False, spent, str(error))
     k, profiles = len(names), {p.parameter: (p.lower, p.upper) for p in default_profiles(fit)}
     spent, values, half = time.process_time() - began, fit.estimate.common_parameters, fit.interval.half_width
     limits = [profiles.get(n, (values[i] - half[i], values[i] + half[i])) for i, n in enumerate(names)]
     is_covered = [(low is None or low <= t) and (high is None or t <= high)
                   for (low, high), t in zip(limits, truth, strict=True)]  # fmt: skip
     return Outcome(
-        fit.estimate.common_parameters[:k] - truth, fit.interval.standard_error[:k], limit.standard_error,
-        limit.efficient, np.array(is_covered), fit.noise_model.disturbance, fit.whiteness.is_white, spent,
+        fit.estimate.common_parameters[:k] - truth, fit.interval.standard_error[:k], bound,
+        efficient, np.array(is_covered), fit.noise_model.disturbance, fit.whiteness.is_white, spent,
     )  # fmt: skip
 
 

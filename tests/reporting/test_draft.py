@@ -32,12 +32,12 @@ def test_parts_are_coloured_on_the_track_and_behind_each_channel(tmp_path: Path)
     draft = draft_trial(write(tmp_path / "run.csv", BASE), folder=tmp_path)
     (record,), (parts,) = draft.records, draft.stretches
     assert record is not None
-    with_parts, plain = log_view(record, parts), log_view(record, ())
-    assert len(with_parts.run.legend) == len(with_parts.spans) == len(parts) and not plain.run.legend
-    assert len(with_parts.run.tracks) == 1 + len(parts)
-    assert [(s.start, s.stop, s.words) for s in with_parts.spans] == [
+    (with_parts, spans), (plain, _) = log_view(record, parts), log_view(record, ())
+    assert len(with_parts.legend) == len(spans) == len(parts) and not plain.legend
+    assert len(with_parts.tracks) == 1 + len(parts)
+    assert [(s.start, s.stop, s.words) for s in spans] == [
         (one.start, one.stop, str(k)) for k, one in enumerate(parts, start=1)
     ]
-    assert with_parts.run.channels[0].curves[0].time[0] == 0.0
-    for track, part in zip(with_parts.run.tracks[1:], parts, strict=True):  # its own points only: all can be drawn
+    assert with_parts.channels[0].curves[0].time[0] == 0.0
+    for track, part in zip(with_parts.tracks[1:], parts, strict=True):  # its own points only: all can be drawn
         assert np.isfinite(track.north).all() and len(track.north) <= 1.01 * (part.stop - part.start) / record.dt + 1

@@ -104,11 +104,10 @@ def _reading(fit: "Fit", p: "Prediction") -> Reading | None:
     """None where the run has no heading, and neither a rudder nor thrusters that turn."""
     from seatrial.core.results.prediction import estimated_current
     from seatrial.physics.manoeuvres import ObservedManoeuvre
-    from seatrial.physics.models.thruster_layout import ThrusterLayout, with_steering_order
+    from seatrial.physics.models.thruster_layout import layout_of, with_steering_order
     from seatrial.physics.sensors.measured_outputs import shows_ground_velocity
 
-    layout = fit.model.equations.layout
-    measured = with_steering_order(p.measured, ThrusterLayout.from_text(layout)) if layout else p.measured
+    measured = with_steering_order(p.measured, layout_of(fit.model)) if fit.model.has_thrusters else p.measured
     try:
         manoeuvre = ObservedManoeuvre.from_record(measured)
     except InputError:

@@ -130,7 +130,7 @@ def _approach_speed(fit: "Fit", speed: float | None, manoeuvres: "Sequence[Poste
     balanced = next((one["approach_speed"] for one in begun if "approach_speed" in one), None)
     if balanced is not None:
         return balanced
-    return straight_by_thrusters(file.model).speed if file.model.equations.layout else file.approach.get("u", 0.0)
+    return straight_by_thrusters(file.model).speed if file.model.has_thrusters else file.approach.get("u", 0.0)
 
 
 def _speed_of_trials(readings: "Sequence[Reading]") -> float | None:

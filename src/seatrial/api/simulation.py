@@ -44,20 +44,18 @@ def steering(
     Raises:
         InputError: unknown manoeuvre, or a rudder that cannot move.
     """
-    from seatrial.physics.simulate.steer import rolls_only
-
     file = as_model_file(model)
     _refuse_no_number(speed)
-    if file.model.equations.layout:
+    if file.model.has_thrusters:
         return _by_thrusters(file, _with_seed(manoeuvre, seed), speed, inputs, duration, rudder_rate)
-    if rolls_only(file.model):
+    if file.model.is_roll:
         return _by_release(file.model, manoeuvre, speed, inputs, duration, rudder_rate)
     from seatrial.physics.manoeuvres.programme import programme
     from seatrial.physics.simulate.steer import manoeuvre as steered
 
     rate = rudder_rate_of(file, rudder_rate).value
     constant = {name: value for name, value in file.approach.items() if name in file.model.input_names}
-    approach_speed = file.approach.get("u") if "u" not in file.model.states else None
+    approach_speed = file.approach.get("u") if not file.model.has_speed else None
     orders = programme(_with_seed(manoeuvre, seed))
 
     def steer(ship: "Model") -> "Record":
@@ -103,10 +101,10 @@ def _by_thrusters(
     rudder_rate: float | None,
 ) -> Steering:
     from seatrial.physics.manoeuvres.thrust_programme import ThrustProgramme
-    from seatrial.physics.models.thruster_layout import ThrusterLayout
+    from seatrial.physics.models.thruster_layout import layout_of
     from seatrial.physics.simulate.thrust import craft_manoeuvre, craft_programme, refuse_rudder_options
 
-    orders = craft_programme(ThrusterLayout.from_text(file.model.equations.layout), manoeuvre)
+    orders = craft_programme(layout_of(file.model), manoeuvre)
     if isinstance(orders, ThrustProgramme):
         refuse_rudder_options(orders, speed, rudder_rate)
     rate = rudder_rate_of(file, rudder_rate).value
@@ -292,7 +290,7 @@ def course_findings(
     from seatrial.estimation.identify.identifiability import course_finding, course_stability
     from seatrial.physics.manoeuvres.thrust_programme import thrust_programme
 
-    if not model.model.equations.layout or not manoeuvre.startswith("straight:"):
+    if not model.model.has_thrusters or not manoeuvre.startswith("straight:"):
         return ()
     ahead, basis = thrust_programme(manoeuvre).ahead or 0.0, model.interval_basis
     approach = {**model.approach, **(inputs or {})}

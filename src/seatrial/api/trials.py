@@ -95,7 +95,7 @@ def _require_motion(model: "Model", records: "Sequence[Record]") -> None:
     """
     from seatrial.physics.simulate.states import hidden_states, measured_states
 
-    if "delta" in model.input_names and not hidden_states(model, records):
+    if model.has_rudder and not hidden_states(model, records):
         for record in records:
             measured_states(model, record)
 

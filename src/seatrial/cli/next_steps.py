@@ -42,9 +42,9 @@ def after_fit(fit: "Fit", folder: Path, trial: Path | None = None) -> str:
     if is_missed(fit):
         return "docs/bad-fit.md, By symptom: the held-out run is not predicted, so correct the fit before it is used"
     model = in_shell(folder / "model.toml")
-    if fit.model.equations.layout:
+    if fit.model.has_thrusters:
         return _craft_step(fit, model)
-    if "delta" in fit.model.input_names and "psi" in fit.model.states:
+    if fit.model.has_rudder and fit.model.has_heading:
         circle = f"seatrial simulate {model} --manoeuvre turning-circle:{_recorded_rudder(fit):.0f} --out circle.csv"
         return f"{circle}{_design_step(fit, model, trial)}"
     if {"phi", "c_1"} <= {*fit.model.states, *fit.model.parameters.names} and fit.validation:
@@ -59,10 +59,10 @@ def after_fit(fit: "Fit", folder: Path, trial: Path | None = None) -> str:
 
 def _craft_step(fit: "Fit", model: str) -> str:
     """The command that turns a craft with thrusters: by its steering angle, by difference of thrust, or not at all."""
-    from seatrial.physics.models.thruster_layout import ThrusterLayout
+    from seatrial.physics.models.thruster_layout import layout_of
     from seatrial.physics.simulate.thrust import craft_programmes
 
-    kind = craft_programmes(ThrusterLayout.from_text(fit.model.equations.layout))[0].partition(":")[0]
+    kind = craft_programmes(layout_of(fit.model))[0].partition(":")[0]
     if kind in ("spin", "straight"):
         return f"seatrial simulate {model} --manoeuvre {kind}:50 --out {kind}.csv"
     return f"seatrial simulate {model} --manoeuvre turning-circle:{_recorded_rudder(fit):.0f} --out circle.csv"
@@ -76,11 +76,11 @@ def _recorded_rudder(fit: "Fit") -> float:
     import numpy as np
 
     from seatrial.physics.manoeuvres import REACH_PERCENTILE
-    from seatrial.physics.models.thruster_layout import ThrusterLayout, with_steering_order
+    from seatrial.physics.models.thruster_layout import layout_of, with_steering_order
 
-    training, layout = [p.measured for p in fit.predictions if p.role == "training"], fit.model.equations.layout
-    if layout:
-        training = [with_steering_order(run, ThrusterLayout.from_text(layout)) for run in training]
+    training = [p.measured for p in fit.predictions if p.role == "training"]
+    if fit.model.has_thrusters:
+        training = [with_steering_order(run, layout_of(fit.model)) for run in training]
     runs = [run for run in training if "delta" in run]
     reaches = [float(np.degrees(np.nanpercentile(np.abs(run["delta"]), REACH_PERCENTILE))) for run in runs]
     return min(max(reaches, default=FULL_RUDDER_DEG), FULL_RUDDER_DEG)

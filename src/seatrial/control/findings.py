@@ -160,8 +160,8 @@ def _noise_findings(evaluator: GainEvaluator, chosen: Controller) -> list[Findin
                               "Tustin's rule its output changes sign at every sample",
                               "sample faster, or give a slower filter"))  # fmt: skip
     if loop.sampling.noise_variance and math.isfinite(chosen.Ms):
-        moved = calm_actuator(loop)
-        share = moved.rate / evaluator.task.constraints.rate
+        _, rms_rate = calm_actuator(loop)
+        share = rms_rate / evaluator.task.constraints.rate
         if share > MAX_CALM_RATE:
             found.append(_warning("works-in-calm", f"in calm water the sensor's errors alone move the actuator at "
                                   f"{100.0 * share:.0f} % of its largest rate (rms)",

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from seatrial.control.task import TrimmedShip, TuningTask
 from seatrial.core.equations import Model
-from seatrial.core.equations.model import stored_model
+from seatrial.core.equations.model import RUDDER, stored_model
 from seatrial.core.values import NOTATION, Array, InputError, Parameter, Parameters, frozen, spelling_hint
 from seatrial.core.values.record import froude_factor
 from seatrial.data.folder.model_file import ModelFile
@@ -23,7 +23,7 @@ from seatrial.physics.hydro.free_roll import equivalent_damping
 from seatrial.physics.loops import Block, TransferLoop
 from seatrial.physics.models.thrust_orders import YAW
 from seatrial.physics.simulate.replay import ZERO_BY_DEFAULT
-from seatrial.physics.simulate.states import RUDDER, approach_speed, balancing_input, held_inputs, settled_actuators
+from seatrial.physics.simulate.states import approach_speed, balancing_input, held_inputs, settled_actuators
 
 # An identified model at another scale, by Froude's law: that of a ship from the trials of its model.
 
@@ -94,7 +94,7 @@ def held_inputs_at_speed(
         raise InputError(f"the speed of a straight run must be positive, not {speed:g} m/s")
     if "u" in names:
         return model, held_inputs(model, known | {"u": speed}, RUDDER)
-    if "u" not in model.states:
+    if not model.has_speed:
         return _at_nominal_speed(model, speed), held_inputs(model, known, RUDDER)
     free = [n for n in drives if n not in own]
     if len(free) != 1:
@@ -298,7 +298,7 @@ def plant_text(ship: TrimmedShip) -> str:
     """Return the plant in words: the model, the trim, whether it is stable by itself."""
     model, (plant, _) = ship.model, plant_and_disturbance(ship)
     where = "about its mean position"
-    if "u" in model.states:
+    if model.has_speed:
         where = f"straight run at {ship.state[model.states.index('u')]:.4g} m/s"
     held = [f"{i.name} {v:.4g}" for i, v in zip(model.inputs, ship.inputs, strict=True)
             if abs(v) > _NEGLIGIBLE and i.name != RUDDER]  # fmt: skip

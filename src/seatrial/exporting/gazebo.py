@@ -25,7 +25,7 @@ from seatrial.exporting.source import (
     require_values,
 )
 from seatrial.physics.manoeuvres.programme import programme
-from seatrial.physics.models.thruster_layout import ThrusterLayout, steering_angles
+from seatrial.physics.models.thruster_layout import layout_of, steering_angles
 from seatrial.physics.simulate.replay import replay
 from seatrial.physics.simulate.steer import manoeuvre
 from seatrial.physics.simulate.thrust import craft_manoeuvre, craft_programme
@@ -99,8 +99,8 @@ def training_motions(source: ExportSource) -> list[Record]:
         InputError: the model cannot be taken through them.
     """
     model, file = source.model, source.file
-    if model.equations.layout:
-        layout = ThrusterLayout.from_text(model.equations.layout)
+    if model.has_thrusters:
+        layout = layout_of(model)
         texts = RUDDER_MOTIONS if steering_angles(layout) else THRUST_MOTIONS
         return [craft_manoeuvre(model, craft_programme(layout, text)) for text in texts]
     held = {name: value for name, value in file.approach.items() if name in model.input_names}

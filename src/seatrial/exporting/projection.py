@@ -75,7 +75,7 @@ def unsuitable_hull(file: ModelFile) -> str:
     rigid = rigid_body(file)
     if rigid is None:
         return "neither the model nor its ship states the mass m and the inertia I_z that the link needs"
-    if "M_u" in model.parameters and model.parameters["M_u"].value < rigid.mass:
+    if model.parameters.value_of("M_u", math.inf) < rigid.mass:
         return (
             f"its M_u of {model.parameters['M_u'].value:.4g} kg is less than the mass m of {rigid.mass:.4g} kg, so "
             "that its forces are not in newtons; identify it with the bollard thrust of a thruster"
@@ -102,7 +102,7 @@ def truncation(
 ) -> dict[str, float]:
     """Return the coefficients that the model itself has for the target's terms, at its approach speed."""
     model, speed = file.model, float(records[0]["u"][0]) or 1.0
-    length = model.parameters["L"].value if "L" in model.parameters else 1.0
+    length = model.parameters.value_of("L", 1.0)
     sway, turn = OFF_COURSE * speed, OFF_COURSE * speed / length
     rows = {"": (speed, 0.0, 0.0), "v": (speed, sway, 0.0), "r": (speed, 0.0, turn), "vr": (speed, sway, turn),
             "small v": (speed, _SMALL * speed, 0.0), "small r": (speed, 0.0, _SMALL * speed / length)}  # fmt: skip

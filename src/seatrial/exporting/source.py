@@ -14,7 +14,7 @@ from seatrial.core.text.words import printable
 from seatrial.core.values import NOTATION, InputError, Record
 from seatrial.data.folder.model_file import CONVENTIONS, ModelFile
 from seatrial.estimation.information.extrapolation import COMMAND, COMMAND_GAIN, NEGLIGIBLE, REST_SHARE
-from seatrial.physics.models.thruster_layout import Thruster, ThrusterLayout
+from seatrial.physics.models.thruster_layout import Thruster, layout_of
 
 if TYPE_CHECKING:
     import sympy as sp
@@ -248,8 +248,7 @@ def identified_range(source: ExportSource) -> dict[str, float]:
 
 
 def _thrusters(source: ExportSource) -> tuple[Thruster, ...]:
-    layout = source.model.equations.layout
-    return ThrusterLayout.from_text(layout).thrusters if layout else ()
+    return layout_of(source.model).thrusters if source.model.has_thrusters else ()
 
 
 def range_text(source: ExportSource) -> str:

@@ -9,6 +9,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 
 from seatrial.core.equations import Model
+from seatrial.core.equations.model import RUDDER
 from seatrial.core.results.online import EstimatorPhase, Snapshot
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, InputError, Record
@@ -18,13 +19,12 @@ from seatrial.data.trial.runs import require_stream
 from seatrial.estimation.design.manoeuvre_information import ManoeuvreEvaluator
 from seatrial.estimation.design.search import search_step, standard_manoeuvres
 from seatrial.estimation.design.task import DesignTask, PriorShips
-from seatrial.estimation.estimate.settings import characteristic_time, is_pure_roll
+from seatrial.estimation.estimate.settings import characteristic_time
 from seatrial.estimation.information.covariance import inverse
 from seatrial.estimation.information.extrapolation import motion_envelope
 from seatrial.numerics.optimise import NormalEquations
 from seatrial.physics.simulate.linear import batch_class
 from seatrial.physics.simulate.replay import ZERO_BY_DEFAULT, state_limits
-from seatrial.physics.simulate.states import RUDDER
 from seatrial.physics.simulate.steer import RUDDER_RATE, rudder_rate
 
 # Manoeuvres that could come next, and the information each would add at the present estimate.
@@ -67,7 +67,7 @@ def candidate_manoeuvres(
     Raises:
         InputError: no input can be moved, or the ship cannot be simulated.
     """
-    if is_pure_roll(model) and not model.is_affine:
+    if not model.has_course and not model.is_affine:
         return _roll_releases(model, records)
     task = _design_task(trial, model, records, noise)
     ship = PriorShips(model.parameters.values[None], np.zeros(len(model.parameters.free)))
@@ -151,7 +151,7 @@ def _default_request(trial: Trial, model: Model, records: Sequence[Record], rate
     # propellers and jets keep their recorded value; waves and wind are zero
     others = [n for n in model.input_names if n not in inputs and n not in ZERO_BY_DEFAULT]
     held = {n: _median(records, n) for n in others if any(n in r for r in records)}
-    speed = _median(records, "u") if "u" in model.states and any("u" in r for r in records) else None
+    speed = _median(records, "u") if model.has_speed and any("u" in r for r in records) else None
     return DesignRequest(duration=duration, rate=rate, inputs=inputs, held=held, speed=speed, draws=0)
 
 
@@ -351,7 +351,7 @@ def _qualitative_advice(snapshot: Snapshot, model: Model, records: Sequence[Reco
     """What to do where no manoeuvre can be evaluated: move what never moved, excite more, or fix coefficients."""
     still = [n for n in model.input_names if not any(n in r and np.ptp(r[n]) > 0.0 for r in records)]
     named = enumeration(list(snapshot.unidentified), _MAX_ITEMS)
-    if is_pure_roll(model) and not model.is_affine:
+    if not model.has_course and not model.is_affine:
         return f"{named}: release the ship from a larger angle, or record roll in beam waves ({reason})"
     if RUDDER in still:
         return f"{named}: the rudder has not moved so far; steer a zigzag 20/20 and a turning circle ({reason})"

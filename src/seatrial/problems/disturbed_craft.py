@@ -246,16 +246,8 @@ Generator = Callable[..., list[Record]]
 NONE = np.zeros((0, 0))
 
 
-@dataclass(frozen=True, eq=False)
-class DisturbanceLimit:
-    """Standard errors that a likelihood admits on a record, and the errors of an efficient estimate, both (k,)."""
-
-    standard_error: Array
-    efficient: Array
-
-
-def limit_of(craft: DisturbedCraft, disturbance: Disturbance, record: Record) -> DisturbanceLimit:
-    """Return what the likelihood of the true disturbance admits on this record."""
+def limit_of(craft: DisturbedCraft, disturbance: Disturbance, record: Record) -> tuple[Array, Array]:
+    """Return standard errors that the true disturbance admits on a record, and an efficient estimate's errors, (k,)."""
     model = craft.model
     settings = EstimateSettings().with_known_timing(model.input_names)  # the records were simulated sample by sample
     problem = output_error_problem(model, Runs.one_session_each([record], craft.length), np.inf, settings, 1)
@@ -290,7 +282,7 @@ def limit_of(craft: DisturbedCraft, disturbance: Disturbance, record: Record) ->
     exact = replace(white, steps=white.difference_steps(point, normal.hessian))
     at = Optimum(Solution(point, 0.0, Status.CONVERGED, 1), NONE, exact.normal(point, NONE))
     noise = ProcessNoise(exact, at, 0.0, None, estimate.problem)  # type: ignore[arg-type]
-    return DisturbanceLimit(noise.interval.standard_error[:free], (newton_step(exact, point) - point)[:free])
+    return noise.interval.standard_error[:free], (newton_step(exact, point) - point)[:free]
 
 
 # Nomoto's steering model under gusts with a memory: a random rudder, and a controller on courses.
@@ -336,7 +328,7 @@ def _draw(rng: np.random.Generator, placement: Placement, *, is_closed: bool) ->
     model = nomoto().with_values({"K": float(truth[0]), "T": float(truth[1])})
     craft = replace(NOMOTO, model=model, driven={"r": float(AMPLITUDE * truth[0] / truth[1])})
     (record,) = independent_nomoto(craft, _GUSTS, 1, rng, is_closed=is_closed)
-    bound = limit_of(craft, _GUSTS, record).standard_error
+    bound, _ = limit_of(craft, _GUSTS, record)
     box = off_centre_box(truth, _HALF_WIDTH, rng)
     known = KnownCraft(
         Ship("steering model", {"L": NOMOTO.length}), model, [record], NOMOTO.sensors, dict.fromkeys(model.states, 0.0),

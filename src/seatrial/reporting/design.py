@@ -168,7 +168,7 @@ def order_columns(design: Design) -> list[list[list[str]]]:
 def _speed_option(design: Design) -> str:
     """The option of `simulate` that starts a replay as the design did; empty for a model without surge."""
     executed = design.designed.executed
-    return f" --speed {float(executed['u'][0]):.7g}" if "u" in design.model.states and "u" in executed else ""
+    return f" --speed {float(executed['u'][0]):.7g}" if design.model.has_speed and "u" in executed else ""
 
 
 def _manoeuvre_row(manoeuvre: ManoeuvrePrecision, design: Design) -> ManoeuvreRow:

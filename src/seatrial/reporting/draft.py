@@ -78,6 +78,5 @@ def _column_row(guess: ColumnGuess) -> ColumnRow:
 
 def _run_section(number: int, run: LogRun, record: Record, parts: tuple[LogStretch, ...]) -> DrawnRun:
     name = run.name or run.sources[0].path.name
-    view = log_view(record, parts)
-    figure = run_figure(view.run, view.spans)
+    figure = run_figure(*log_view(record, parts))
     return DrawnRun(f"run-{number}", name, counted(len(parts), "part"), parts, figure)

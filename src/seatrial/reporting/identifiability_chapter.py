@@ -171,7 +171,7 @@ def identifiability_chapter(fit: Fit) -> IdentifiabilityChapter | None:
         consequences=tuple(_consequence_row(c, fit) for c in content.consequences),
         stability=_stability_sentence(content.stability, names) if content.stability else "",
         stability_condition="craft returns to a straight course at equal orders of its thrusters"
-        if fit.model.equations.layout
+        if fit.model.has_thrusters
         else "ship returns to a straight course with the rudder amidships",
         noise=_noise_text(fit.noise_model, names) if fit.noise_model else None,
         profiles=Markup(svg(profile_chart(content.profiles, {c.name: c.unit for c in fit.coefficients}))),

@@ -64,8 +64,8 @@ def html(fit: Fit) -> str:
     """Return the page as text; sections without content are left out."""
     fit, citations = with_mass_specific_units(fit), Citations()
     length = fit.ship.length if "L" in fit.ship.particulars else 0.0
-    has_thrusters = bool(fit.model.equations.layout)
-    is_steered = "psi" in fit.model.states or "delta" in fit.model.input_names
+    has_thrusters = fit.model.has_thrusters
+    is_steered = fit.model.has_heading or fit.model.has_rudder
     shown = runs.drawn_predictions(fit.predictions)
     drawn_names = {p.record for p in shown}
     parts = MissingParts()

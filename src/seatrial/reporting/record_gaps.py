@@ -12,7 +12,7 @@ from seatrial.core.values import Array, Record
 from seatrial.core.values.notation import channel_meaning, channel_unit, unit_text
 from seatrial.physics.manoeuvres import REACH_PERCENTILE, initial_speed, ordered_degrees, steered_orders, to_starboard
 from seatrial.physics.models.thrust_orders import work_shares
-from seatrial.physics.models.thruster_layout import ThrusterLayout, steering_angles, with_steering_order
+from seatrial.physics.models.thruster_layout import ThrusterLayout, layout_of, steering_angles, with_steering_order
 from seatrial.reporting.first_screen import KeyFact
 from seatrial.reporting.verdict import LEAST_RUDDER, ONE_SPEED
 
@@ -32,15 +32,8 @@ _PROPULSION = ("n", "v_j")
 _OTHER = {"port": "starboard", "starboard": "port"}
 
 
-@dataclass(frozen=True)
-class _SteeringWords:
-    """What steers and what is steered, in a sentence."""
-
-    angle: str
-    craft: str
-
-
-_RUDDER, _TURNED = _SteeringWords("rudder", "ship"), _SteeringWords("steering angle", "craft")
+_RUDDER, _TURNED = ("rudder", "ship"), ("steering angle", "craft")
+"""What steers and what is steered, in a sentence."""
 
 
 @dataclass(frozen=True)
@@ -62,9 +55,9 @@ def record_gaps(fit: Fit) -> tuple[RecordGap, ...]:
     runs = [p.measured for p in fit.predictions if p.role == "training"]
     if not runs:
         return ()
-    if fit.model.equations.layout:
-        return tuple(gaps_of_thrusters(runs, ThrusterLayout.from_text(fit.model.equations.layout)))
-    if "delta" in fit.model.input_names:
+    if fit.model.has_thrusters:
+        return tuple(gaps_of_thrusters(runs, layout_of(fit.model)))
+    if fit.model.has_rudder:
         return tuple(_of_steering(fit, [r for r in runs if "delta" in r]))
     return tuple(gaps_of_rolling(runs)) if fit.roll is not None else ()
 
@@ -84,7 +77,7 @@ def _of_steering(fit: Fit, runs: Sequence[Record]) -> Iterator[RecordGap]:
     yield from _of_angles(runs, _RUDDER)
     zigzag = _usual_zigzag(runs)
     speeds = [speed for r in runs if math.isfinite(speed := initial_speed(r)) and speed > 0.0]
-    if "u" in fit.model.states and speeds and np.ptp(speeds) <= ONE_SPEED * np.mean(speeds):
+    if fit.model.has_speed and speeds and np.ptp(speeds) <= ONE_SPEED * np.mean(speeds):
         speed = float(np.mean(speeds))
         begin = {1: "The only run begins", 2: "Both runs begin"}.get(len(runs), f"All {len(runs)} runs begin")
         yield RecordGap(
@@ -97,8 +90,9 @@ def _of_steering(fit: Fit, runs: Sequence[Record]) -> Iterator[RecordGap]:
             yield from _of_propulsion(name, [r for r in runs if name in r], zigzag)
 
 
-def _of_angles(runs: Sequence[Record], words: _SteeringWords) -> Iterator[RecordGap]:
+def _of_angles(runs: Sequence[Record], words: tuple[str, str]) -> Iterator[RecordGap]:
     """Yield a side to which the rudder, or what turns instead, was not put over, and larger angles than in the runs."""
+    angle, craft = words
     angles = np.concatenate([to_starboard(r, "delta") for r in runs]) if runs else np.zeros(1)
     port, starboard = (_reach(side) for side in (-angles, angles))
     over = math.degrees(max(port, starboard))
@@ -107,13 +101,13 @@ def _of_angles(runs: Sequence[Record], words: _SteeringWords) -> Iterator[Record
     if other := _unused_side(port, starboard):
         yield RecordGap(
             f"turns to {other}",
-            f"The {words.angle} went to {_OTHER[other]} only: whether the {words.craft} turns alike to both sides is "
+            f"The {angle} went to {_OTHER[other]} only: whether the {craft} turns alike to both sides is "
             "assumed.",
             f"turning-circle:{over:.0f}{':port' if other == 'port' else ''}",
         )  # fmt: skip
     if over < REACHED * FULL_RUDDER_DEG:
         yield RecordGap(
-            f"{words.angle} beyond {over:.0f}°", f"The {words.angle} went to {over:.0f}° at most: forces beyond that, "
+            f"{angle} beyond {over:.0f}°", f"The {angle} went to {over:.0f}° at most: forces beyond that, "
             "as in a hard turn, are extrapolated.", f"turning-circle:{FULL_RUDDER_DEG:.0f}",
         )  # fmt: skip
 

@@ -214,14 +214,14 @@ def extrapolation_limit(fit: Fit) -> str:
     training = [p.measured for p in fit.predictions if p.role == "training"]
     rudder = [to_starboard(r, "delta") for r in training if "delta" in r]
     if rudder:
-        speed = _only_speed(training) if "u" in fit.model.states else ""
+        speed = _only_speed(training) if fit.model.has_speed else ""
         return _beyond(
             _rudder_reach(np.concatenate(rudder)), f", or from approach speeds far from {speed}," if speed else ""
         )
     if "phi" in fit.model.states and any("phi" in r for r in training):
         largest = max(float(np.nanmax(np.abs(r["phi"]))) for r in training if "phi" in r)  # a decay has it once
         return _beyond(f"{math.degrees(largest):.0f}° of roll")
-    if "u" in fit.model.states and any("u" in r for r in training):
+    if fit.model.has_speed and any("u" in r for r in training):
         speed = np.concatenate([np.abs(r["u"]) for r in training if "u" in r])
         return _beyond(f"{significant(float(np.nanpercentile(speed, REACH_PERCENTILE)), 2)} m/s")
     return ""

@@ -15,6 +15,8 @@ from seatrial.core.equations.generate import (
     live_assignments,
     tangent_assignments,
 )
+from seatrial.core.equations.latex import rates_function
+from seatrial.physics.models.published import kvlcc2
 
 v, r = sp.symbols("v r", real=True)
 EXPRESSION = sp.Piecewise((sp.Abs(v) * v**2, r > 0), (sp.sqrt(v) + sp.sign(r) + sp.pi + v**r, True))
@@ -51,3 +53,9 @@ def test_every_local_name_is_used(model: Model, dialect: Dialect) -> None:
 def test_what_nothing_rests_on_is_left_out() -> None:
     lines = [Assignment("a", "1.0"), Assignment("b", "a"), Assignment("c", "a"), Assignment("out[0]", "c")]
     assert [line.target for line in live_assignments(lines)] == ["a", "c", "out[0]"]
+
+
+def test_a_modulus_and_a_condition_are_those_of_the_equations() -> None:
+    text = rates_function(kvlcc2())
+    assert "Math.abs(" in text and "?" in text
+    assert text.startswith("(x, u, p, out) => {") and "out[5] = " in text

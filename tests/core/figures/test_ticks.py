@@ -1,9 +1,9 @@
-"""Ticks are round numbers within the range, about as many as wanted; ranges enclose what is finite."""
+"""Ticks are round numbers within the range; ranges enclose what is finite; curves of fewer points keep what matters."""
 
 import numpy as np
 import pytest
 
-from seatrial.core.figures.ticks import decade_ticks, linear_ticks, span, whole_decades
+from seatrial.core.figures.ticks import decade_ticks, decimated, linear_ticks, span, thinned, whole_decades
 
 
 @pytest.mark.parametrize(("low", "high"), [(0.0, 1.0), (-37.0, 41.0), (0.66, 1.21), (-3e-4, 2e-4), (0.0, 2075.0)])
@@ -36,3 +36,20 @@ def test_constant_and_empty_values_have_a_range() -> None:
 def test_whole_decades_enclose_values_and_the_least_range() -> None:
     assert whole_decades([0.3, 70.0], (1.0, 10.0)) == pytest.approx((0.1, 100.0))
     assert whole_decades([], (1.0, 1000.0)) == pytest.approx((1.0, 1000.0))
+
+
+def test_decimation_keeps_extremes_order_and_gaps(rng: np.random.Generator) -> None:
+    x = np.arange(10_000.0)
+    y = rng.standard_normal(10_000)
+    y[5_000:6_000] = np.nan
+    a, b = decimated(x, y, 400)
+    assert len(a) <= 400 and np.all(np.diff(a) >= 0)
+    assert np.nanmax(b) == np.nanmax(y) and np.nanmin(b) == np.nanmin(y)
+    assert np.isnan(b[(a > 5_050) & (a < 5_950)]).all()
+
+
+def test_thinning_keeps_both_ends_and_short_curves_whole() -> None:
+    x = np.arange(1_000.0)
+    a, b = thinned(x, 2.0 * x, 50)
+    assert len(a) == 50 and (a[0], a[-1]) == (0.0, 999.0) and np.array_equal(b, 2.0 * a)
+    assert len(thinned(x[:9], x[:9], 50)[0]) == 9

@@ -1,10 +1,10 @@
-"""Arrays are frozen; covariances become correlations."""
+"""Arrays that nobody can change, correlations, and values that stand for no reading."""
 
 import numpy as np
 import pytest
 
 from seatrial.core.values import frozen
-from seatrial.core.values.arrays import correlation_matrix
+from seatrial.core.values.arrays import correlation_matrix, sentinel_value
 
 
 def test_correlation_of_a_covariance() -> None:
@@ -19,3 +19,17 @@ def test_a_frozen_array_is_a_copy_that_cannot_be_written() -> None:
     assert copy[0] == 0.0
     with pytest.raises(ValueError, match="read-only"):
         copy[1] = 2.0
+
+
+def test_only_what_recurs_far_outside_is_no_reading() -> None:
+    values = np.linspace(-1.0, 1.0, 50)
+    assert sentinel_value(np.append(values, [-999.0, -999.0])) == -999.0
+    assert sentinel_value(np.append(values, [1e6, np.nan, 1e6])) == 1e6
+    assert sentinel_value(np.append(values, -999.0)) is None and sentinel_value(values) is None
+
+
+def test_north_is_next_to_a_heading_a_little_west_of_it() -> None:
+    headings = np.radians(np.append(np.linspace(355.0, 359.9, 50), [0.0, 0.0, 0.0]))
+    assert sentinel_value(headings, "rad") is None and sentinel_value(headings) == 0.0
+    assert sentinel_value(np.append(headings[:50], np.radians([-999.0, -999.0])), "rad") == np.radians(-999.0)
+    assert sentinel_value(np.append(headings[:50], [2.0, 2.0]), "rad") == 2.0

@@ -1,8 +1,8 @@
-"""Messages of bad input: short, and harmless on a terminal, whatever file they quote."""
+"""Errors and findings: what a bad input is told, and findings with the worst first."""
 
 import pickle
 
-from seatrial.core.values import InputError
+from seatrial.core.values import Finding, InputError, Severity, worst_first
 
 
 def test_a_message_that_quotes_a_long_text_is_cut_in_its_middle() -> None:
@@ -19,3 +19,9 @@ def test_what_would_steer_a_terminal_is_escaped() -> None:
 
 def test_a_message_survives_the_way_between_processes() -> None:
     assert str(pickle.loads(pickle.dumps(InputError("a 'b'; c")))) == "a 'b'; c"
+
+
+def test_errors_come_first_and_findings_of_one_severity_keep_their_order() -> None:
+    severities = [Severity.INFO, Severity.WARNING, Severity.ERROR, Severity.ERROR]
+    findings = [Finding(severity, code, "a sentence") for code, severity in zip("abcd", severities, strict=True)]
+    assert [finding.code for finding in worst_first(findings)] == ["c", "d", "b", "a"]

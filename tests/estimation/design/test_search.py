@@ -85,24 +85,24 @@ def test_leaving_the_limits_costs_more_than_any_worth(craft: DesignTask) -> None
 def test_the_search_improves_and_repeats_itself_to_the_bit(craft: DesignTask) -> None:
     at = bench(craft)
     yardstick = DesignObjective.from_standards(at, standard_manoeuvres(at))
-    first, again = (search_orders(yardstick, 7, quiet, GENERATIONS) for _ in range(2))
-    other = search_orders(yardstick, 8, quiet, GENERATIONS)
-    assert np.array_equal(first.solution.point, again.solution.point)
-    assert not np.array_equal(first.solution.point, other.solution.point)
-    history = np.array(first.solution.history)
+    first, again = (search_orders(yardstick, 7, quiet, GENERATIONS)[0] for _ in range(2))
+    other, _ = search_orders(yardstick, 8, quiet, GENERATIONS)
+    assert np.array_equal(first.point, again.point)
+    assert not np.array_equal(first.point, other.point)
+    history = np.array(first.history)
     assert np.all(np.diff(history) <= 0.0)
     assert history[-1] < history[0] - 0.1
-    assert yardstick.cost(first.solution.point) == first.solution.value == history[-1]
+    assert yardstick.cost(first.point) == first.value == history[-1]
 
 
 def test_one_worker_finds_the_same_bits(craft: DesignTask, monkeypatch: pytest.MonkeyPatch) -> None:
     at = bench(craft)
     yardstick = DesignObjective.from_standards(at, standard_manoeuvres(at))
-    many = search_orders(yardstick, 7, quiet, GENERATIONS)
+    many, _ = search_orders(yardstick, 7, quiet, GENERATIONS)
     monkeypatch.setattr(
         "seatrial.estimation.design.search.map_in_threads", lambda function, items: [function(i) for i in items]
     )
-    assert np.array_equal(search_orders(yardstick, 7, quiet, GENERATIONS).solution.point, many.solution.point)
+    assert np.array_equal(search_orders(yardstick, 7, quiet, GENERATIONS)[0].point, many.point)
 
 
 def test_ctrl_c_gives_the_best_so_far_and_says_so(craft: DesignTask) -> None:

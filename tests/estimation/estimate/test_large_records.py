@@ -74,7 +74,7 @@ def test_steps_over_growing_parts_lead_to_the_optimum_of_all(monkeypatch: pytest
     few = estimated(steered(np.radians(1.2)))
     noise = few.process_noise
     assert noise is not None
-    again = large_records.newton_optimum(noise.problem, noise.optimum, 1.0).optimum.solution.point
+    again = large_records.newton_optimum(noise.problem, noise.optimum, 1.0)[0].solution.point
     moved = (again - noise.optimum.solution.point)[:2] / few.interval.standard_error[:2]
     assert np.all(np.abs(moved) < 0.2), moved
 

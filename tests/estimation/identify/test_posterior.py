@@ -56,19 +56,19 @@ def assert_agrees_with_the_bound(posterior: Posterior, estimation: Estimation) -
 
 def test_white_residuals_give_the_bound(records: tuple[Record, ...]) -> None:
     estimation = estimated(records)
-    sampled = sample_posterior(estimation, seed=0)
-    assert sampled.posterior.is_converged
-    assert min(c.effective_size for c in sampled.posterior.coefficients) >= 400.0
-    assert sampled.posterior.tempering == {}
-    assert sampling_findings(sampled.posterior) == []
-    assert_agrees_with_the_bound(sampled.posterior, estimation)
-    draws = sampled.posterior.points.reshape(-1, len(sampled.posterior.coefficients))
-    np.testing.assert_allclose(np.cov(draws, rowvar=False), sampled.estimation.interval.covariance, rtol=1e-9)
+    sampled, posterior = sample_posterior(estimation, seed=0)
+    assert posterior.is_converged
+    assert min(c.effective_size for c in posterior.coefficients) >= 400.0
+    assert posterior.tempering == {}
+    assert sampling_findings(posterior) == []
+    assert_agrees_with_the_bound(posterior, estimation)
+    draws = posterior.points.reshape(-1, len(posterior.coefficients))
+    np.testing.assert_allclose(np.cov(draws, rowvar=False), sampled.interval.covariance, rtol=1e-9)
 
 
 def test_draws_are_the_same_bits_whatever_the_number_of_workers(records: tuple[Record, ...]) -> None:
     few = ChainSettings(most_steps=100)
-    one, two = (sample_posterior(estimated(records[:1], n), 3, settings=few).posterior for n in (1, 2))
+    one, two = (sample_posterior(estimated(records[:1], n), 3, settings=few)[1] for n in (1, 2))
     np.testing.assert_array_equal(one.points, two.points)
 
 
@@ -78,7 +78,7 @@ def test_process_noise_is_drawn_with_the_coefficients() -> None:
     estimation = estimated((record,))
     assert estimation.has_process_noise
     enough = ChainSettings(effective_size=150.0, r_hat=1.05)
-    posterior = sample_posterior(estimation, seed=1, settings=enough).posterior
+    _, posterior = sample_posterior(estimation, seed=1, settings=enough)
     assert posterior.is_converged
     assert [c.name for c in posterior.coefficients] == ["K", "T"]
     for c, error in zip(posterior.coefficients, estimation.interval.standard_error, strict=False):

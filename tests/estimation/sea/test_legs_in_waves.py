@@ -76,7 +76,7 @@ def test_expected_spectra_give_back_ship_and_seas() -> None:
 
 def _exact(leg: WaveLeg, ship: Array, sea: Array) -> WaveLeg:
     """The leg with its outputs scaled to the model's density, its actuator to the same controller."""
-    density = np.exp(leg.likelihood(ship, sea).log_density)
+    density = np.exp(leg.likelihood(ship, sea)[1])
     factor = np.sqrt(density / leg.observed.output_density)
     spectra = replace(leg.spectra, transforms=leg.spectra.transforms * factor[None, :, None])
     return replace(leg, observed=replace(leg.observed, spectra=spectra))

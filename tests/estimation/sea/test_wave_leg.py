@@ -38,7 +38,7 @@ def test_gradient_of_one_leg_is_that_of_its_likelihood() -> None:
     leg = WaveLeg(observed(), encountered_sea(OMEGA, U, BETA, HULL), 9.0)
     gradient = leg.equations(SHIP, SEA)[0]
     steps = STEP * np.eye(3)
-    slopes = [(leg.likelihood(SHIP, SEA + s).cost - leg.likelihood(SHIP, SEA - s).cost) / (2.0 * STEP) for s in steps]
+    slopes = [(leg.likelihood(SHIP, SEA + s)[0] - leg.likelihood(SHIP, SEA - s)[0]) / (2.0 * STEP) for s in steps]
     assert gradient[3:] == pytest.approx(slopes)
 
 

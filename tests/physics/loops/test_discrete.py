@@ -8,6 +8,7 @@ from seatrial.core.values import InputError
 from seatrial.physics.loops import Block
 from seatrial.physics.loops.autopilot import heading_loop
 from seatrial.physics.loops.discrete import default_sample_time, difference_equation, holding_terms, ringing_blocks
+from seatrial.physics.loops.loop import straight_step
 from seatrial.physics.loops.structures import fin_loop
 
 BLOCKS = [
@@ -56,3 +57,12 @@ def test_slow_terms_hold_with_the_sign_of_their_share() -> None:
 def test_no_block_rings_at_the_default_sample_time() -> None:
     loop = heading_loop(Block("ship", (0.2,), (8.0, 1.0, 0.0)), Block("ship", (0.2,), (8.0, 1.0, 0.0)), ())
     assert ringing_blocks(loop, default_sample_time(loop)) == ()
+
+
+def test_a_step_over_a_straight_input_is_the_solution_of_a_lag() -> None:
+    """T x' = u - x from 0, u from 0 to 1 over h: x(h) = 1 - T / h (1 - e^(-h / T)); with both ends a held input."""
+    T, h = 2.0, 0.5
+    E, before, after = straight_step(np.array([[-1.0 / T]]), np.array([1.0 / T]), h)
+    assert pytest.approx(np.exp(-h / T)) == E
+    assert after == pytest.approx(1.0 - T / h * (1.0 - np.exp(-h / T)))
+    assert before + after == pytest.approx(1.0 - np.exp(-h / T))

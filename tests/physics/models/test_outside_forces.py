@@ -8,7 +8,6 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Array
 from seatrial.physics.models.thrust_orders import (
     OUTSIDE_FORCES,
-    coefficient_or_zero,
     inertia_matrix,
     thrust_configuration,
     with_outside_forces,
@@ -39,4 +38,4 @@ def test_the_configuration_is_that_of_places_and_angles() -> None:
     own = craft(cross_drive())
     B = thrust_configuration(own.model, own.thrusters[:1], [np.pi / 4.0])
     assert B[:, 0] == pytest.approx(np.sqrt(0.5) * np.array([1.0, 1.0, 0.8]))
-    assert coefficient_or_zero(own.model, "no_such") == 0.0
+    assert own.model.parameters.value_of("no_such", 0.0) == 0.0

@@ -5,7 +5,7 @@ import pytest
 
 from seatrial.core.values import InputError, Record
 from seatrial.estimation.estimate.assemble import Runs
-from seatrial.estimation.estimate.settings import dominant_period, is_pure_roll
+from seatrial.estimation.estimate.settings import dominant_period
 from seatrial.estimation.identify import estimate_model
 from seatrial.physics.models.heave_pitch import heave_pitch
 from seatrial.physics.models.nomoto import nomoto
@@ -71,6 +71,6 @@ def test_the_period_is_that_of_the_swing() -> None:
 
 def test_only_ships_without_heading_and_speed_swing() -> None:
     """A steered ship does not, whatever its model."""
-    assert is_pure_roll(roll())
-    assert is_pure_roll(heave_pitch())
-    assert not is_pure_roll(nomoto())
+    assert not roll().has_course
+    assert not heave_pitch().has_course
+    assert nomoto().has_course

@@ -10,7 +10,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import InputError
 from seatrial.physics.manoeuvres.measures import measures
 from seatrial.physics.models import nomoto, roll
-from seatrial.physics.simulate.steer import natural_period, release, rolls_only
+from seatrial.physics.simulate.steer import natural_period, release
 
 OMEGA, ZETA = 0.85, 0.03
 
@@ -51,8 +51,8 @@ def test_the_angle_counts_from_the_angle_of_rest() -> None:
 
 
 def test_which_models_roll_only() -> None:
-    assert rolls_only(ship())
-    assert not rolls_only(nomoto())
+    assert ship().is_roll
+    assert not nomoto().is_roll
 
 
 def test_a_ship_that_does_not_right_itself_cannot_be_released() -> None:

@@ -54,7 +54,7 @@ from seatrial.core.values.files import parse_toml, read_table_text, refuse_absur
 from seatrial.data.trial.amounts import schema_error
 from seatrial.physics.loops import ActuatorDrive, Block, Objective, Sampling, TransferLoop
 from seatrial.physics.loops.discrete import default_sample_time, ringing_blocks, round_sample_time
-from seatrial.physics.models.thruster_layout import ThrusterLayout
+from seatrial.physics.models.thruster_layout import layout_of
 from seatrial.physics.simulate.closed_loop import simulation_step
 
 _TIME_CONSTANTS = 30.0  # duration of a demand where none is given, in its time constants; chosen
@@ -319,7 +319,7 @@ def _station(table: StationTable, file: LoopFile, plant: LoopPlant) -> StationDe
             "station: a station is kept by the thrusters of an identified craft beside its heading loop; give "
             'plant.model of a craft with thrusters and leave plant.output out (or "psi"), or leave [station] out'
         )
-    layout = ThrusterLayout.from_text(plant.craft.model.equations.layout)
+    layout = layout_of(plant.craft.model)
     gust = 0.0
     if table.gust is not None:
         gust = positive_value(table.gust, "N" if layout.has_bollard else "m/s^2", "station.gust")

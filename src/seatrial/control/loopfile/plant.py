@@ -35,7 +35,7 @@ from seatrial.data.trial.runs import expand_variables
 from seatrial.physics.loops import Block, HullFactor, TransferLoop
 from seatrial.physics.loops.structures import K_alpha_at, band_pass, high_pass, low_pass, notch
 from seatrial.physics.models.thrust_orders import AHEAD, YAW, with_orders
-from seatrial.physics.models.thruster_layout import ORDER, ThrusterLayout, order_text
+from seatrial.physics.models.thruster_layout import ORDER, layout_of, order_text
 from seatrial.physics.simulate.thrust import DEFAULT_AHEAD
 
 # Tables of a loop file into blocks: transfer functions as given, filters by their kind.
@@ -243,7 +243,7 @@ def _plant_of_model(table: PlantTable, path: Path, own_model: Model | None) -> L
     file = read_model_file(path, own_model)
     if table.scale is not None:
         file = model_at_scale(file, table.scale)
-    craft = file if file.model.equations.layout else None
+    craft = file if file.model.has_thrusters else None
     if craft is not None:
         file = replace(file, model=with_orders(file.model), approach={})
         table = _by_orders(table, file.model)
@@ -267,7 +267,7 @@ def _plant_of_model(table: PlantTable, path: Path, own_model: Model | None) -> L
     response, disturbed = plant_and_disturbance(ship, amplitude)
     turned = ""
     if craft is not None and actuator == ORDER:
-        turned = order_text(ThrusterLayout.from_text(craft.model.equations.layout))
+        turned = order_text(layout_of(craft.model))
     about = "" if amplitude is None else f"linearised at a roll of {math.degrees(amplitude):.3g} deg"
     return LoopPlant(
         response, disturbed, output, actuator, disturbance or actuator,
@@ -349,9 +349,9 @@ def _known_K_alpha(table: FinTable, model: Model, path: Path) -> float:
 
 def _trim_speed(ship: TrimmedShip, file: ModelFile) -> float:
     model = file.model
-    if "u" in model.states:
+    if model.has_speed:
         return float(ship.state[model.states.index("u")])
-    if "U" in model.parameters and model.parameters["U"].value > 0.0:
+    if model.parameters.value_of("U", 0.0) > 0.0:
         return float(model.parameters["U"].value)
     if file.approach.get("u", 0.0) > 0.0:
         return float(file.approach["u"])

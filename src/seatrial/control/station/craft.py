@@ -12,12 +12,11 @@ from seatrial.core.equations import Model
 from seatrial.core.results.station import StationCapability
 from seatrial.core.values import Array, InputError
 from seatrial.physics.models.thrust_orders import (
-    coefficient_or_zero,
     inertia_matrix,
     thrust_configuration,
     with_outside_forces,
 )
-from seatrial.physics.models.thruster_layout import AngleInput, Thruster, ThrusterLayout
+from seatrial.physics.models.thruster_layout import AngleInput, Thruster, ThrusterLayout, layout_of
 
 # A craft with thrusters at rest, as station keeping needs it: matrices, thrusters with their limits, lags.
 
@@ -65,7 +64,7 @@ class StationCraft:
     @cached_property
     def layout(self) -> ThrusterLayout:
         """The thrusters."""
-        return ThrusterLayout.from_text(self.model.equations.layout)
+        return layout_of(self.model)
 
     @property
     def thrusters(self) -> tuple[Thruster, ...]:
@@ -180,7 +179,7 @@ class StationCraft:
         return replace(self, model=without_current(self.model.with_values(values)))
 
     def _coefficient(self, thruster: Thruster, symbol: str) -> float:
-        return coefficient_or_zero(self.model, symbol + self.layout.suffix(thruster))
+        return self.model.parameters.value_of(symbol + self.layout.suffix(thruster), 0.0)
 
     def _lag(self, place: int, symbol: str) -> float:
         thruster = self.thrusters[place]
@@ -267,18 +266,10 @@ def share_given(craft: StationCraft, inverse: Array, forces: Array) -> Array:
     return share
 
 
-@dataclass(frozen=True)
-class LargestForce:
-    """The largest force of a direction: a factor of the force given, and the thrusters that are at their limits."""
-
-    factor: float
-    at_limit: tuple[str, ...]
-
-
-def largest_force(craft: StationCraft, force: Array) -> LargestForce:
+def largest_force(craft: StationCraft, force: Array) -> tuple[float, tuple[str, ...]]:
     """Return how many times a force (3,) the thrusters give at most, by linear programming; exact for fixed thrusters.
 
-    The circle of an azimuth thruster's thrust is a polygon inside it.
+    With the factor the thrusters at their limits. The circle of an azimuth thruster's thrust is a polygon inside it.
     """
     from scipy.optimize import linprog
 
@@ -304,8 +295,8 @@ def largest_force(craft: StationCraft, force: Array) -> LargestForce:
         A_eq=equal, b_eq=np.zeros(3), bounds=[*bounds, (0.0, None)], method="highs",
     )  # fmt: skip
     if found.x is None:
-        return LargestForce(0.0, ())
-    return LargestForce(float(found.x[m]), _at_limit(craft, found.x[:m]))
+        return 0.0, ()
+    return float(found.x[m]), _at_limit(craft, found.x[:m])
 
 
 def _at_limit(craft: StationCraft, T: Array) -> tuple[str, ...]:
@@ -342,10 +333,10 @@ def capability(craft: StationCraft, inverse: Array) -> StationCapability:
     currents = np.array([_largest_current(craft, direction, None) for direction in directions])
     shared_out = np.array([_largest_current(craft, direction, inverse) for direction in directions])
     limiting = tuple(
-        largest_force(craft, -current_force(craft, speed, direction)).at_limit
+        largest_force(craft, -current_force(craft, speed, direction))[1]
         for speed, direction in zip(currents, directions, strict=True)
     )
-    forces = [largest_force(craft, np.array([math.cos(a), math.sin(a), 0.0])).factor for a in directions]
+    forces = [largest_force(craft, np.array([math.cos(a), math.sin(a), 0.0]))[0] for a in directions]
     return StationCapability(directions, currents, shared_out, np.array(forces), limiting)
 
 
@@ -355,7 +346,7 @@ def _largest_current(craft: StationCraft, direction: float, inverse: Array | Non
     for _ in range(_ROUNDS):
         force = -current_force(craft, speed, direction)
         if inverse is None:
-            factor = largest_force(craft, force).factor
+            factor = largest_force(craft, force)[0]
         else:
             factor = float(share_given(craft, inverse, force[None])[0])
         before, speed = speed, min(speed * factor**_POWER, _FASTEST)

@@ -20,6 +20,8 @@ from seatrial.core.values import Array, InputError, Parameter, Parameters, Ship
 # A model: equations, written once, and the values of their parameters.
 
 MEASURED = "_measured"
+RUDDER = "delta"
+"""The input by which a ship with a rudder or nozzle is steered."""
 
 
 def measured_name(channel: str) -> str:
@@ -103,6 +105,36 @@ class Model:
     def is_affine(self) -> bool:
         """Whether it is affine in states and inputs, so that exact propagators serve."""
         return self.equations.is_affine
+
+    @property
+    def has_thrusters(self) -> bool:
+        """Whether thrusters drive it, which the layout of its equations places."""
+        return bool(self.equations.layout)
+
+    @property
+    def has_rudder(self) -> bool:
+        """Whether a rudder or nozzle is among its inputs."""
+        return RUDDER in self.input_names
+
+    @property
+    def has_heading(self) -> bool:
+        """Whether its heading is a state."""
+        return "psi" in self.states
+
+    @property
+    def has_speed(self) -> bool:
+        """Whether its speed is a state, not given."""
+        return "u" in self.states
+
+    @property
+    def has_course(self) -> bool:
+        """Whether it goes somewhere; without heading and surge, as state or input, it swings about a rest."""
+        return bool({"psi", "u"} & {*self.states, *self.input_names})
+
+    @property
+    def is_roll(self) -> bool:
+        """Whether it can only be released: it rolls, and has no heading to be steered."""
+        return {"phi", "p"} <= set(self.states) and not self.has_heading
 
     @property
     def compiled(self) -> CompiledEquations:

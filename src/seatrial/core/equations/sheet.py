@@ -13,19 +13,12 @@ It reads like the paper:
 """
 
 import math
-from dataclasses import dataclass
 
 import sympy as sp
 
 from seatrial.core.equations.bindings import Binding, Input, ModelEquations
 from seatrial.core.equations.model import Model
 from seatrial.core.values import InputError, Parameter, Parameters
-
-
-@dataclass
-class _Rate:
-    expression: sp.Expr
-    source: str
 
 
 class Sheet:
@@ -41,7 +34,7 @@ class Sheet:
         self._inputs: list[Input] = []
         self._parameters: list[Parameter] = []
         self._bindings: list[Binding] = []
-        self._rates: dict[str, _Rate] = {}
+        self._rates: dict[str, tuple[sp.Expr, str]] = {}
         self._outputs: list[str] = []
 
     @property
@@ -107,7 +100,7 @@ class Sheet:
         if str(state) in self._rates:
             raise InputError(f"model '{self.name}': the rate of '{state}' is given twice")
         self._check(sp.sympify(expression), f"rate of '{state}'")
-        self._rates[str(state)] = _Rate(sp.sympify(expression), source)
+        self._rates[str(state)] = (sp.sympify(expression), source)
 
     def output(self, channel: str, expression: sp.Expr, source: str = "", unit: str = "1") -> sp.Symbol:
         """Declare a binding that can be measured: the record channel of this name is compared with it."""
@@ -125,9 +118,7 @@ class Sheet:
         absent = [s for s in self._states if s not in self._rates]
         if absent:
             raise InputError(f"model '{self.name}': no rate given for state '{absent[0]}'")
-        rates = tuple(
-            Binding.from_expression(s, self._rates[s].expression, self._rates[s].source) for s in self._states
-        )
+        rates = tuple(Binding.from_expression(s, *self._rates[s]) for s in self._states)
         parameters = Parameters(tuple(self._parameters))
         equations = ModelEquations(
             self.name, self.source, tuple(self._inputs), tuple(self._bindings), rates, tuple(self._outputs),

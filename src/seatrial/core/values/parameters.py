@@ -125,6 +125,10 @@ class Parameters:
         """Names of parameters without a value."""
         return tuple(p.name for p in self.items if math.isnan(p.value))
 
+    def value_of(self, name: str, default: float) -> float:
+        """Return the value of a parameter, the default where there is none of that name."""
+        return self[name].value if name in self else default
+
     def index(self, name: str) -> int:
         """Return the position of a name."""
         if name not in self._index_by_name:

@@ -28,7 +28,7 @@ from seatrial.data.check.phases import STOPPED_FRACTION
 from seatrial.data.check.time_base import INPUT_CHANNELS
 from seatrial.numerics.local_polynomials import smoothed_locally
 from seatrial.physics.manoeuvres.track import speed
-from seatrial.physics.models.thruster_layout import AngleInput, Thruster, ThrusterLayout
+from seatrial.physics.models.thruster_layout import AngleInput, Thruster, ThrusterLayout, layout_of
 
 # Does the rudder move, and does the ship turn the way its sign says?
 
@@ -200,9 +200,9 @@ def refuse_impossible_commands(model: Model, record: Record) -> None:
     Raises:
         InputError: which command or direction of the record, and what to correct.
     """
-    if not model.equations.layout:
+    if not model.has_thrusters:
         return
-    for thruster in ThrusterLayout.from_text(model.equations.layout).thrusters:
+    for thruster in layout_of(model).thrusters:
         commands = _command_findings(thruster, [record]) if thruster.command.channel in record else []
         for finding in (*commands, *_angle_findings(thruster, [record])):
             if finding.severity is Severity.ERROR:

@@ -165,7 +165,7 @@ def refuse_unsuitable(request: DesignRequest, model: Model, length: float) -> No
             f"design.sea_room: {request.sea_room:g} m are less than the ship's length of {length:g} m; no manoeuvre "
             "keeps within"
         )
-    if request.speed is not None and "u" not in model.states:
+    if request.speed is not None and not model.has_speed:
         raise InputError(f"design.speed: model '{model.name}' has no surge velocity u to approach with; leave it out")
 
 

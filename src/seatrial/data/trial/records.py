@@ -24,7 +24,7 @@ from seatrial.data.check.phases import (
 )
 from seatrial.data.check.water_speed import speed_through_water
 from seatrial.data.trial.trial import Role, Trial, TrialRun, Trimming
-from seatrial.physics.models.thruster_layout import ThrusterLayout
+from seatrial.physics.models.thruster_layout import layout_of
 from seatrial.physics.sea.spectrum import WaveEncounter
 from seatrial.physics.sea.wave_forces import with_wave_forces
 
@@ -265,14 +265,15 @@ def _load_unless_bad(run: TrialRun, reference_point: float) -> tuple[TrialRecord
 
 def _craft_findings(trial: Trial, records: tuple[TrialRecord, ...]) -> tuple[Finding, ...]:
     """What all runs together show of the thrusters that the model has."""
-    layout = trial.model.equations.layout
-    of_thrusters = thruster_findings(ThrusterLayout.from_text(layout), [r.record for r in records]) if layout else ()
+    if not trial.model.has_thrusters:
+        return tuple(_one_course_findings(trial, records))
+    of_thrusters = thruster_findings(layout_of(trial.model), [r.record for r in records])
     return (*of_thrusters, *_one_course_findings(trial, records))
 
 
 def _one_course_findings(trial: Trial, records: tuple[TrialRecord, ...]) -> tuple[Finding, ...]:
     """A warning where a current is estimated and positions on one course are all that shows a speed."""
-    if not trial.estimate.current or "u" not in trial.model.states or any("u" in r.record for r in records):
+    if not trial.estimate.current or not trial.model.has_speed or any("u" in r.record for r in records):
         return ()
     sessions = {r.session: [s.record for s in records if s.session == r.session] for r in records}
     shown = {name: speed_through_water(runs) for name, runs in sessions.items()}

@@ -280,16 +280,16 @@ def design(
     standard = standard_manoeuvres(bench)
     _refuse_impossible_limits(bench, standard)
     yardstick = DesignObjective.from_standards(bench, standard)
-    result = search_orders(yardstick, int(seeds[1]), report_progress, generations)
-    fine, orders = at_sensor_rate(bench), orders_at(task, result.solution.point)
+    solution, interrupted = search_orders(yardstick, int(seeds[1]), report_progress, generations)
+    fine, orders = at_sensor_rate(bench), orders_at(task, solution.point)
     inputs = input_series(task, orders, fine.dt)
     planned = planned_record(task, inputs, fine.dt)
     report_progress("scoring at the sensors' rate")
     designed = assess_manoeuvre("designed", fine, inputs, simulate_plan(task, planned, "designed"))
-    if not result.is_interrupted:
+    if not interrupted:
         refuse_violated_limits(task, designed)
     baselines = tuple(_evaluate_standard(fine, one) for one in standard)
-    tried, interrupted = None, result.is_interrupted
+    tried = None
     if confirmation_runs and not interrupted:
         try:
             tried = confirm_design(
@@ -318,7 +318,7 @@ def design(
         baselines=baselines,
         orders=order_table(task, orders),
         plan=planned,
-        solution=result.solution,
+        solution=solution,
         confirmation=tried,
         findings=findings(task, designed, tried, is_interrupted=interrupted),
         seed=seed,

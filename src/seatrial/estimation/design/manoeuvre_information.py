@@ -207,7 +207,7 @@ class ManoeuvreEvaluator:
         at = {name: y[:, :, self.outputs.index(name)] for name in _TRACK_CHANNELS if name in self.outputs}
         none = np.zeros(len(y))
         drift = np.abs(np.arctan2(at["v"], at["u"])).max(axis=1) if {"u", "v"} <= set(at) else none
-        if self.task.model.equations.layout:
+        if self.task.model.has_thrusters:
             drift = np.full(len(y), np.nan)
         room = np.hypot(at["x0"], at["y0"]).max(axis=1) if {"x0", "y0"} <= set(at) else none
         return drift, room

@@ -7,6 +7,7 @@ from operator import itemgetter
 
 import numpy as np
 
+from seatrial.core.equations.model import RUDDER
 from seatrial.core.results import Actuator
 from seatrial.core.values import Array, InputError
 from seatrial.data.trial.design_request import DesignCriterion
@@ -26,7 +27,6 @@ from seatrial.numerics.optimise import AdaptationSettings, Box, CovarianceAdapta
 from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.manoeuvres.programme import binary_sequence, programme
 from seatrial.physics.simulate.replay import inputs_of
-from seatrial.physics.simulate.states import RUDDER
 from seatrial.physics.simulate.steer import SOLAS_SLEW_RATE, manoeuvre
 
 # Exchange of single orders: one after another takes the value that lowers the cost most (Meyer & Nachtsheim 1995).
@@ -109,7 +109,7 @@ def standard_manoeuvres(evaluator: ManoeuvreEvaluator) -> list[StandardManoeuvre
     task = evaluator.task
     drawn = (_largest_within_limits(evaluator, share, seed) for share in SWITCHING_SHARES for seed in SEQUENCE_SEEDS)
     sequences = list({one.name: one for one in drawn}.values())  # a short trial shortens all holds to one
-    if task.model.equations.layout:
+    if task.model.has_thrusters:
         return [*sequences, StandardManoeuvre("steps one by one", _single_step_inputs)]
     if not _is_steered(task):
         return [*sequences, StandardManoeuvre("sine sweep", _sweep_inputs), StandardManoeuvre("steps", _step_inputs)]
@@ -151,7 +151,7 @@ def _mid_range(actuator: Actuator) -> float:
 
 
 def _is_steered(task: DesignTask) -> bool:
-    return "psi" in task.model.states and any(a.name == RUDDER for a in task.request.actuators)
+    return task.model.has_heading and any(a.name == RUDDER for a in task.request.actuators)
 
 
 def _programmes(task: DesignTask) -> list[str]:
@@ -192,7 +192,7 @@ def _simulate_steered(evaluator: ManoeuvreEvaluator, parameters: Array, text: st
         programme(text),
         dt=step,
         duration=task.request.duration,
-        speed=float(task.initial_state[model.states.index("u")]) if "u" in model.states else task.request.speed,
+        speed=float(task.initial_state[model.states.index("u")]) if model.has_speed else task.request.speed,
         inputs={**task.request.held, **other_inputs},
         slew_rate=rudder.rate if np.isfinite(rudder.rate) else SOLAS_SLEW_RATE,
     )
@@ -294,14 +294,6 @@ class DesignObjective:
         return float(np.log(np.mean(ratio**MEAN_POWER)) / MEAN_POWER + _limit_cost(task, precision))
 
 
-@dataclass(frozen=True, eq=False)
-class SearchResult:
-    """The best point of the search's box; whether the search was cut short by the keyboard."""
-
-    solution: Solution
-    is_interrupted: bool
-
-
 def criterion_errors(task: DesignTask, information: ManoeuvreInformation) -> Array:
     """Return what the criterion looks at, for each ship; NaN for a lost one."""
     if task.request.criterion is DesignCriterion.WORST:
@@ -311,11 +303,11 @@ def criterion_errors(task: DesignTask, information: ManoeuvreInformation) -> Arr
 
 def search_orders(
     objective: DesignObjective, seed: int, report_progress: Callable[[str], None], generations: int = GENERATIONS
-) -> SearchResult:
+) -> tuple[Solution, bool]:
     """Random sequences, orders of the best few exchanged one by one, then an evolution strategy about the best result.
 
     The strategy is that of Hansen 2016, by `cmaes`; exchange finds the ends that orders go to, and leaves the rest.
-    Ctrl-C gives the best so far. The same seed gives the same bits, whatever the number of workers.
+    Ctrl-C gives the best so far, and True with it. The same seed gives the same bits, whatever the number of workers.
     """
     generator = np.random.default_rng(seed)
     best, value, evaluations, history = np.zeros(0), np.inf, 0, []
@@ -354,7 +346,7 @@ def search_orders(
             raise
         interrupted = True
     status = Status.EXHAUSTED
-    return SearchResult(Solution(best, value, status, evaluations, tuple(history), seed), interrupted)
+    return Solution(best, value, status, evaluations, tuple(history), seed), interrupted
 
 
 def _cost_text(value: float) -> str:

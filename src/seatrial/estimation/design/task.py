@@ -101,7 +101,7 @@ class DesignTask:
                 raise InputError(
                     f"[noise] {name} is nothing that model '{self.model.name}' shows{spelling_hint(name, known)}"
                 )
-        if self.model.equations.layout and math.isfinite(self.request.limits.drift):
+        if self.model.has_thrusters and math.isfinite(self.request.limits.drift):
             raise InputError(
                 "[design] drift means nothing for a craft that turns on the spot and goes astern; remove it, and limit "
                 "sea_room"
@@ -130,7 +130,7 @@ class DesignTask:
     def initial_state(self) -> Array:
         """The state before the first order, shape (nx,): a straight course; rest without surge, or with thrusters."""
         state = settled_actuators(self.model, self.neutral_inputs)
-        if "u" in self.model.states:
+        if self.model.has_speed:
             state[self.model.states.index("u")] = self._initial_speed
         return state
 
@@ -139,7 +139,7 @@ class DesignTask:
         """As required, else that at which surge balances; craft with thrusters start at rest."""
         if self.request.speed is not None:
             return self.request.speed
-        return 0.0 if self.model.equations.layout else approach_speed(self.model, self.neutral_inputs)
+        return 0.0 if self.model.has_thrusters else approach_speed(self.model, self.neutral_inputs)
 
     @property
     def shortest_hold(self) -> float:

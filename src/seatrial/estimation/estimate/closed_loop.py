@@ -75,6 +75,7 @@ def closed_loop(
     if not evidence.is_closed or (test is None and declared is None):
         return None
     agreement = None if declared is None else controller_agreement(declared, records)
+    correlation, delay = agreement or (None, None)
     return FeedbackEvidence(
         input=declared.input if declared else test.command if test else "",
         output=declared.output if declared else test.motion if test else "",
@@ -86,8 +87,8 @@ def closed_loop(
         reference=_reference_text(declared),
         reference_steps=None if declared is None else reference_steps(declared, records),
         reference_p=None if declared is None or noise is None else reference_p(declared, records, noise),
-        controller_correlation=None if agreement is None else agreement.correlation,
-        controller_delay=None if agreement is None else agreement.delay,
+        controller_correlation=correlation,
+        controller_delay=delay,
         without_disturbance=() if disturbances is None or noise is None else _without_disturbance(disturbances),
     )
 
@@ -99,16 +100,8 @@ def _reference_text(declared: Feedback | None) -> str:
     return declared.reference if isinstance(declared.reference, str) else f"{declared.constant:g}"
 
 
-@dataclass(frozen=True)
-class ControllerAgreement:
-    """Largest correlation between a declared controller's orders and the input, and the delay [s] at which it is."""
-
-    correlation: float
-    delay: float
-
-
-def controller_agreement(declared: Feedback, records: Sequence[Record]) -> ControllerAgreement | None:
-    """Return how far the input is what the declared controller orders; None without a controller."""
+def controller_agreement(declared: Feedback, records: Sequence[Record]) -> tuple[float, float] | None:
+    """Return the largest correlation of a controller's orders with the input and its delay [s]; None: no orders."""
     pairs = [(order, r[declared.input], r.dt) for r in records if (order := declared.order_of(r)) is not None]
     if not pairs:
         return None
@@ -116,7 +109,7 @@ def controller_agreement(declared: Feedback, records: Sequence[Record]) -> Contr
     longest = min(round(_LONGEST_DELAY / dt), min(len(order) for order, _, _ in pairs) // 2)
     correlations = [_correlation([(o[: len(o) - k], u[k:]) for o, u, _ in pairs]) for k in range(longest + 1)]
     best = int(np.argmax(correlations))
-    return ControllerAgreement(float(correlations[best]), best * dt)
+    return float(correlations[best]), best * dt
 
 
 def _correlation(pairs: Sequence[tuple[Array, Array]]) -> float:

@@ -50,7 +50,6 @@ from seatrial.estimation.estimate.settings import (
     EstimatorOptions,
     IntervalMethod,
     characteristic_time,
-    is_pure_roll,
 )
 from seatrial.estimation.estimate.start import (
     SearchStart,
@@ -136,7 +135,7 @@ def refuse_without_excitation(model: Model, records: Sequence[Record]) -> None:
     Raises:
         InputError: which records, and what manoeuvre is needed.
     """
-    if model.equations.layout and not moving_inputs(model, records):
+    if model.has_thrusters and not moving_inputs(model, records):
         raise InputError(
             f"no excitation: none of {', '.join(model.input_names)} moves in {', '.join(r.name for r in records)}; "
             "record spins, straights ahead and astern, and steps of each thruster"
@@ -147,7 +146,7 @@ def refuse_without_excitation(model: Model, records: Sequence[Record]) -> None:
             "give wave forces or fin angles, or the wave elevation with [excitation]"
         )
     still = all("delta" in r and np.ptp(r["delta"]) < _MIN_RUDDER_RANGE for r in records)
-    if "delta" in model.input_names and still:
+    if model.has_rudder and still:
         raise InputError(
             f"no excitation: 'delta' never moves in {', '.join(r.name for r in records)}; "
             "record a zigzag (10/10 or 20/20) or a turning circle"
@@ -274,13 +273,13 @@ def _chosen(
 
 def _is_unforced(model: Model, records: Sequence[Record]) -> bool:
     """Whether the ship rolls out from a release, and nothing that was recorded moves it."""
-    return is_pure_roll(model) and not moving_inputs(model, records)
+    return not model.has_course and not moving_inputs(model, records)
 
 
 def segment_seconds(model: Model, settings: EstimateSettings, unit: float) -> float:
     """Return the length of segments [s], infinite for whole runs; unit: the ship's characteristic time [s]."""
     is_automatic = settings.criterion is FitCriterion.AUTO and settings.segment_s is None
-    is_stable = model.is_affine or is_pure_roll(model)  # in waves or rolling out: nothing to cut short
+    is_stable = model.is_affine or not model.has_course  # in waves or rolling out: nothing to cut short
     if settings.criterion is FitCriterion.OUTPUT_ERROR or (is_stable and is_automatic):
         return np.inf
     return settings.segment_s or SEGMENT_SHIP_LENGTHS * unit

@@ -115,10 +115,8 @@ def _one_step(few: ProcessNoise, before: Optimum, runs: Runs, growth: float) -> 
     """One Newton step over these runs from an optimum of `growth` times fewer samples; its decrement is kept."""
     output_error = _with_all_samples(few.output_error, runs, PIECE_SAMPLES * few.output_error.data.dt)
     problem = over_runs(few.problem, output_error)
-    step = newton_optimum(problem, before, growth)
-    return replace(
-        few, problem=problem, optimum=step.optimum, newton_decrement=step.decrement, output_error=output_error
-    )
+    optimum, decrement = newton_optimum(problem, before, growth)
+    return replace(few, problem=problem, optimum=optimum, newton_decrement=decrement, output_error=output_error)
 
 
 def _with_all_samples(problem: OutputError, runs: Runs, seconds: float | None) -> OutputError:

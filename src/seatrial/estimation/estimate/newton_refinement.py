@@ -156,17 +156,10 @@ def with_curvature(hessian: Array, moved: Array, gradient_change: Array) -> Arra
     return hessian - np.outer(pull, pull) / believed + np.outer(change, change) / float(moved @ change)
 
 
-@dataclass(frozen=True, eq=False)
-class NewtonOptimum:
-    """Where one Newton step leads; decrement: half the squared distance from its begin, in the information's metric."""
-
-    optimum: Optimum
-    decrement: float
-
-
-def newton_optimum(problem: PredictionError, few: Optimum, share: float) -> NewtonOptimum:
+def newton_optimum(problem: PredictionError, few: Optimum, share: float) -> tuple[Optimum, float]:
     """The optimum of a problem by one Newton step from that of some of its samples, `share` of which it has more.
 
+    With it half the squared length of the step, in the information's metric.
     The gradient is taken by differences to one side, a filter pass for each unknown.
     """
     point = few.solution.point
@@ -177,7 +170,7 @@ def newton_optimum(problem: PredictionError, few: Optimum, share: float) -> Newt
     cost = normal.cost - decrement if np.isfinite(decrement) else np.inf
     solution = Solution(moved, cost, Status.CONVERGED, few.solution.evaluations + 1)
     optimum = Optimum(solution, _NO_INITIAL_STATES, replace(normal, cost=cost))
-    return NewtonOptimum(optimum, decrement)
+    return optimum, decrement
 
 
 def newton_step(problem: PredictionError, point: Array) -> Array:

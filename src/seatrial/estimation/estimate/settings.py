@@ -101,9 +101,9 @@ def characteristic_time(
     """
     if model.is_affine:
         return float(np.sqrt(length / G))
-    if is_pure_roll(model):
+    if not model.has_course:
         return PERIOD_SHARE * float(np.median([dominant_period(r[model.states[0]], r.dt) for r in records]))
-    if "u" not in model.states and segment_seconds is None and not any(_shows_speed(r) for r in records):
+    if not model.has_speed and segment_seconds is None and not any(_shows_speed(r) for r in records):
         return yaw_time(records)
     return ship_length_seconds(records, length, segment_seconds)
 
@@ -125,11 +125,6 @@ def yaw_time(records: Sequence[Record]) -> float:
     if not rates:
         raise InputError("the records show neither speed nor yaw; give r or psi, or set estimate.segment_s")
     return float(np.median([_strongest_period(rate, dt, 1) for rate, dt in rates])) / (2.0 * math.pi)
-
-
-def is_pure_roll(model: Model) -> bool:
-    """Return whether the ship swings about a rest: a model without heading and surge."""
-    return not {"psi", "u"} & {*model.states, *model.input_names}
 
 
 _PADDED = 4  # lengths of the record over which its spectrum is taken, so that it has places between; chosen

@@ -16,7 +16,7 @@ from seatrial.estimation.estimate.point_estimate import (
     residual_spread,
     with_steps_of_start,
 )
-from seatrial.estimation.estimate.settings import dominant_period, is_pure_roll
+from seatrial.estimation.estimate.settings import dominant_period
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.regress.operators import WeakForm
 from seatrial.numerics.optimise import NormalEquations, levenberg_marquardt
@@ -57,7 +57,7 @@ def find_start(problem: OutputError, records: Sequence[Record], seconds: float) 
         shared, origin = problem.start(), "the model's own values: those of the weak form diverge"
         problem = with_steps_of_start(problem, shared, local)
         simulated = problem.simulated_outputs(shared, local)
-    if is_pure_roll(problem.model):
+    if not problem.model.has_course:
         swinging = _with_period(problem, records)
         if not problem.cost(swinging, local) >= problem.cost(shared, local):
             shared, origin = swinging, "the period of the records, as the weak form explains less"
@@ -209,19 +209,13 @@ _SPREAD = 0.7
 """Standard deviation of the logarithm of a drawn coefficient that keeps its sign: a factor of two; chosen."""
 
 
-@dataclass(frozen=True)
-class _Round:
-    """How many searches go on, the best ones, and for how many evaluations each."""
-
-    searches: int
-    evaluations: int
-
-
 _FIRST_EVALUATIONS = 20
 """Of each start before any is given up: most stand then nearer to their own optimum than optima lie apart; chosen."""
-_ROUNDS = (_Round(3, 20), _Round(1, 40))
-"""What follows; chosen so that, of simulated craft, all searches end in the optimum next to the truth
-(benchmarks/thrusters_truth.py)."""
+_ROUNDS = ((3, 20), (1, 40))
+"""How many searches go on then, the best ones, and for how many evaluations each.
+
+Chosen so that, of simulated craft, all searches end in the optimum next to the truth (benchmarks/thrusters_truth.py).
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -264,7 +258,7 @@ class _Attempt:
 
 def number_of_starts(model: Model, required: int | None) -> int:
     """Return how many points to search from: what the trial requires, else one unless thrusters drive the craft."""
-    return required or (MANY_STARTS if model.equations.layout else 1)
+    return required or (MANY_STARTS if model.has_thrusters else 1)
 
 
 def search_from_several(
@@ -281,13 +275,12 @@ def search_from_several(
         if report_progress:
             report_progress(f"starting points: {len(attempts) + 1} of {count}, {origin}")
         attempts.append(_Attempt(origin, point, point, local).continued(likelihood, _FIRST_EVALUATIONS))
-    for following in _ROUNDS:  # the best one shows how correlated residuals are, so that samples count as they should
+    for searches, evaluations in _ROUNDS:
+        # the best one shows how correlated residuals are, so that samples count as they should
         best = min(attempts, key=lambda a: a.loss)
         likelihood = replace(likelihood, problem=likelihood.settled_at(best.shared, best.local))
         attempts = sorted((a.scored(likelihood, local) for a in attempts), key=lambda a: a.loss)
-        attempts[: following.searches] = [
-            a.continued(likelihood, following.evaluations) for a in attempts[: following.searches]
-        ]
+        attempts[:searches] = [a.continued(likelihood, evaluations) for a in attempts[:searches]]
     attempts.sort(key=lambda a: a.loss)
     best = attempts[0]
     again = SearchStart(

@@ -204,8 +204,8 @@ def _with_sampling(task: Identification, selected: SelectedModel) -> tuple[Selec
     """Return the estimate with the interval of draws from its posterior, and these, where sampling is required."""
     if task.options.intervals is not IntervalMethod.SAMPLING:
         return selected, None
-    sampled = sample_posterior(selected.estimation, task.options.seed, task.report_progress)
-    return replace(selected, estimation=sampled.estimation), sampled.posterior
+    estimation, posterior = sample_posterior(selected.estimation, task.options.seed, task.report_progress)
+    return replace(selected, estimation=estimation), posterior
 
 
 def interval_ends(

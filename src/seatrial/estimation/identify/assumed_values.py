@@ -14,7 +14,6 @@ from seatrial.data.trial import TrialRecord
 from seatrial.data.trial.plausibility import ESTIMATED_VALUES
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.process_noise_interval import one_step_by_run
-from seatrial.estimation.estimate.settings import is_pure_roll
 from seatrial.estimation.identify.identifiability import RELATIVE_CHANGE
 from seatrial.estimation.identify.roll_characteristics import DAMPING_NAMES, RESTORING_NAMES
 from seatrial.estimation.identify.score_test import (
@@ -309,7 +308,7 @@ def differing_decays(estimation: Estimation) -> DifferingDecays | None:
     its own: else what they differ by would pass for noise. Q, the sum of squares about the weighted mean over the
     errors, is a chi squared where they share one value (Cochran 1954, Biometrics 10, 101-129).
     """
-    if not is_pure_roll(estimation.model) or len(estimation.shooting.problem.data.runs) < 2:
+    if estimation.model.has_course or len(estimation.shooting.problem.data.runs) < 2:
         return None
     estimate, problem, found = estimation.shooting, estimation.shooting.problem, []
     by_run = one_step_by_run(estimate)

@@ -16,7 +16,6 @@ from seatrial.core.values import NOTATION, Array, Finding, InputError, Parameter
 from seatrial.data.trial.records import approach_condition
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import split_segments
-from seatrial.estimation.estimate.settings import is_pure_roll
 from seatrial.estimation.information.covariance import Interval, QuantityInterval, differences, joint_test
 from seatrial.physics.models import MODELS, model_named
 
@@ -226,7 +225,7 @@ def open_signs(model: Model, table: Sequence[Coefficient]) -> list[Finding]:
     if not names:
         return []
     advice = "do not use them alone; fix them at 0 if the others predict as well, or give a prior"
-    if not is_pure_roll(model):
+    if model.has_course:
         advice += "; a manoeuvre that identifies them: seatrial design TRIAL.toml --out plan, with a table [design]"
     return [Finding(Severity.WARNING, SIGN_OPEN, f"the 95 % {'intervals' if len(names) > 1 else 'interval'} of "
                     f"{enumeration(names)} {'contain' if len(names) > 1 else 'contains'} 0", "", advice)]  # fmt: skip

@@ -127,7 +127,7 @@ def course_stability(
     def judged(run: StraightRun) -> Stability | None:
         return stability(model, covariance, degrees_of_freedom, run.speed, run.inputs, length)
 
-    if model.equations.layout:
+    if model.has_thrusters:
         try:
             run = straight_by_thrusters(model, ahead, approach)
             top = straight_at_speed(model, fastest, approach) if math.isfinite(fastest) else run
@@ -136,7 +136,7 @@ def course_stability(
         except InputError:  # it has no steady speed ahead
             return None
     speed = approach.get("u", 0.0)
-    if speed <= 0.0 and "u" in model.states:
+    if speed <= 0.0 and model.has_speed:
         return None
     inputs = np.array(
         [
@@ -196,7 +196,7 @@ def _index_text(course: Stability) -> str:
 
 def _turn_text(model: Model, approach: Mapping[str, float], speed: float | None) -> str:
     """The turn in which a craft with thrusters ends at equal orders; empty for others."""
-    if not model.equations.layout or speed is None:
+    if not model.has_thrusters or speed is None:
         return ""
     try:
         turn = abs(math.degrees(settled_yaw_rate(model, straight_at_speed(model, speed, approach))))

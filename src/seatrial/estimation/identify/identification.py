@@ -18,7 +18,7 @@ from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, est
 from seatrial.estimation.estimate.assemble import training_runs
 from seatrial.estimation.estimate.criterion_choice import WAVE_FORCES
 from seatrial.estimation.estimate.fit import moving_inputs, with_segment_seconds
-from seatrial.estimation.estimate.settings import INITIAL_STATE_SHIP_LENGTHS, characteristic_time, is_pure_roll
+from seatrial.estimation.estimate.settings import INITIAL_STATE_SHIP_LENGTHS, characteristic_time
 from seatrial.estimation.identify.identifiability import box_scale, stands_on_box
 from seatrial.estimation.identify.instruments import ErrorInformation, Suspect, detected_errors, instrument_errors
 from seatrial.estimation.identify.score_test import output_error_estimate
@@ -67,7 +67,7 @@ def situation_of(
         return Situation.WAVE_SPECTRUM
     if model.is_affine or set(WAVE_FORCES) & set(model.input_names):
         return Situation.RECORDED_WAVES
-    if not is_pure_roll(model):
+    if model.has_course:
         return Situation.STATIC_FORCES if has_force_points else Situation.STEERED
     if not is_unforced_roll(model, [run.record for run in runs]):
         return Situation.DRIVEN_ROLL
@@ -78,7 +78,7 @@ def situation_of(
 
 def is_unforced_roll(model: Model, records: Sequence[Record]) -> bool:
     """Return whether all records hold the roll of a model that waves can drive, and no input of it moves."""
-    if not is_pure_roll(model) or WAVE_SLOPE not in model.input_names or not all("phi" in r for r in records):
+    if model.has_course or WAVE_SLOPE not in model.input_names or not all("phi" in r for r in records):
         return False
     return not moving_inputs(model, records)
 

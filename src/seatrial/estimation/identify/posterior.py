@@ -42,20 +42,12 @@ class _Target:
     tempering: dict[str, float]
 
 
-@dataclass(frozen=True, eq=False)
-class SampledEstimation:
-    """An estimate whose interval comes from draws, and these."""
-
-    estimation: Estimation
-    posterior: Posterior
-
-
 def sample_posterior(
     estimation: Estimation,
     seed: int,
     report_progress: ProgressReporter | None = None,
     settings: ChainSettings | None = None,
-) -> SampledEstimation:
+) -> tuple[Estimation, Posterior]:
     """Return the estimate with the covariance of draws from its posterior, and the draws.
 
     Raises:
@@ -77,7 +69,7 @@ def sample_posterior(
         raise InputError("sampling needs the package emcee: pip install 'seatrial[sampling]'") from error
     place = {int(column): i for i, column in enumerate(moving)}
     common = np.array([place[int(column)] for column in target.common])
-    return SampledEstimation(_with_draws(estimation, chains, common), _posterior(estimation, chains, common, target))
+    return _with_draws(estimation, chains, common), _posterior(estimation, chains, common, target)
 
 
 def sampling_findings(posterior: Posterior) -> list[Finding]:

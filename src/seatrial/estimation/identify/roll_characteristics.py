@@ -12,7 +12,6 @@ from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
 from seatrial.core.results.ship_motions import IntervalEstimate, RollCharacteristics
 from seatrial.core.text.numbers import significant
 from seatrial.core.values import Array, Finding, Record, Severity, Ship
-from seatrial.estimation.estimate.settings import is_pure_roll
 from seatrial.estimation.information.covariance import Interval
 from seatrial.physics.hydro.free_roll import (
     equivalent_damping,
@@ -251,7 +250,7 @@ def objections(
         if name in parameters and parameters[name].free and sign * parameters[name].value < 0.0
     ]
     far = _far_off_priors(model, errors).values()
-    return (*turned, *far, *(_roll_objections(model, records) if is_pure_roll(model) else ()))
+    return (*turned, *far, *(_roll_objections(model, records) if not model.has_course else ()))
 
 
 def _far_off_priors(model: Model, errors: Mapping[str, float]) -> dict[str, str]:
@@ -287,7 +286,7 @@ def unphysical_finding(
         advice = "how far the prior may be wrong is assumed (prior_sd_percent): read these values with care"
         return (Finding(Severity.INFO, "unphysical-values", f"unusual: {', '.join(against)}", "", advice),)
     advice = "record a decay from a larger angle, or fix b_2 and b_3 at 0 under [model.fixed]; --choose tries that"
-    if "phi" not in model.states or not is_pure_roll(model):
+    if "phi" not in model.states or model.has_course:
         advice = "fix these under [model.fixed], or look for what the model lacks; --choose takes no such model"
     what = f"the estimate is implausible: {', '.join(against)}"
     return (Finding(Severity.WARNING, "unphysical-values", what, "", advice),)

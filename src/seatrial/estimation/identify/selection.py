@@ -13,7 +13,7 @@ from seatrial.data.trial import EstimateSettings, ModelFamily
 from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
 from seatrial.estimation.estimate.plausibility import refuse_singular
-from seatrial.estimation.estimate.settings import EstimatorOptions, IntervalMethod, is_pure_roll
+from seatrial.estimation.estimate.settings import EstimatorOptions, IntervalMethod
 from seatrial.estimation.identify.fit_result import refuse_unidentified
 from seatrial.estimation.identify.identification import Identification
 from seatrial.estimation.identify.model_selection import HOLDOUT_WINDOW_SHIP_LENGTHS, SelectedModel, select_model
@@ -209,7 +209,7 @@ def selected_model(task: Identification) -> SelectedModel:
     refuse_singular(hessian, problem.free, estimation.estimate.common_parameters[:count])
     refuse_unidentified(estimation, abandoned_criterion_finding(estimation, task.runs.records))
     model, family = task.trial.model, task.trial.family
-    if task.choose and is_pure_roll(model):
+    if task.choose and not model.has_course:
         return select_roll_model(
             estimation, model, task.runs, task.initial_seconds, task.settings, task.options, family,
             task.report_progress,

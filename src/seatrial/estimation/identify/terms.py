@@ -33,7 +33,7 @@ from seatrial.estimation.problem.output_error import OutputError
 from seatrial.numerics.optimise import Optimum, levenberg_marquardt
 from seatrial.physics.manoeuvres import REACH_PERCENTILE
 from seatrial.physics.models.candidate_structures import structural_terms, with_candidate_terms, with_terms
-from seatrial.physics.models.thruster_layout import ThrusterLayout
+from seatrial.physics.models.thruster_layout import layout_of
 from seatrial.physics.simulate.replay import inputs_of
 
 # Terms of a fitted model without which the runs that were held out would be predicted better.
@@ -185,7 +185,7 @@ def held_couplings(
         predictions, records: of all runs, and training runs in the order of the estimate.
         window_s: length of the windows in which training runs left out are predicted [s].
     """
-    model, has_thrusters = estimation.model, bool(estimation.model.equations.layout)
+    model, has_thrusters = estimation.model, estimation.model.has_thrusters
     wide = model if has_thrusters else with_candidate_terms(model)
     terms = _terms_of_thrusters(model) if has_thrusters else structural_terms(model.name)
     held = (p for p in wide.parameters if p.name in terms and p.name not in model.parameters.free_names)
@@ -237,7 +237,7 @@ def _terms_of_thrusters(model: Model) -> frozenset[str]:
     """The couplings of the hull, and the dead bands of the thrusters."""
     from seatrial.physics.models.thrusters import COUPLINGS  # here, as it imports SymPy
 
-    layout = ThrusterLayout.from_text(model.equations.layout)
+    layout = layout_of(model)
     return frozenset((*COUPLINGS, *(f"dead{layout.suffix(leader)}" for leader in layout.leaders)))
 
 
@@ -302,9 +302,9 @@ def drifting_thrust_finding(estimation: Estimation, records: Sequence[Record]) -
     straight from half of it at the start to less half of it at the end.
     """
     model = estimation.model
-    if not model.equations.layout:
+    if not model.has_thrusters:
         return ()
-    layout = ThrusterLayout.from_text(model.equations.layout)
+    layout = layout_of(model)
     zeros = {model.input_names.index(t.command.channel): t.command.zero for t in layout.thrusters}
     estimate = output_error_estimate(estimation)
     slopes, free = [_slope_of_orders(inputs_of(model, r), zeros) for r in records], estimate.problem.free
@@ -316,7 +316,7 @@ def drifting_thrust_finding(estimation: Estimation, records: Sequence[Record]) -
     moved = np.abs(test.by_candidates[: len(free), 0] * slope) / errors
     most = [free[int(i)] for i in np.argsort(-moved)[:3]]
     powers = [f"p_f{layout.suffix(leader)}" for leader in layout.leaders]
-    power = float(np.mean([model.parameters[p].value if p in model.parameters else 1.0 for p in powers]))
+    power = float(np.mean([model.parameters.value_of(p, 1.0) for p in powers]))
     change, way = (1.0 + slope) ** power - 1.0, "falls" if slope < 0.0 else "rises"
     return (Finding(
         Severity.WARNING, "thrust-drifts", f"the thrust at one order {way} from the start of the runs to their end, by "

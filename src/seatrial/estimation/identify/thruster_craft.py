@@ -21,8 +21,8 @@ from seatrial.core.values import Array, InputError, Record
 from seatrial.estimation.information.extrapolation import extrapolation, thruster_conditions
 from seatrial.estimation.predict.draws import measure_intervals, perturbed_models
 from seatrial.physics.manoeuvres import measures
-from seatrial.physics.models.thrust_orders import coefficient_or_zero, inertia_matrix, thrust_configuration
-from seatrial.physics.models.thruster_layout import AngleInput, Thruster, ThrusterLayout
+from seatrial.physics.models.thrust_orders import inertia_matrix, thrust_configuration
+from seatrial.physics.models.thruster_layout import AngleInput, Thruster, ThrusterLayout, layout_of
 from seatrial.physics.simulate.steer import RUDDER_RATE, rudder_rate
 from seatrial.physics.simulate.thrust import AHEAD, craft_manoeuvre, craft_programme
 
@@ -66,9 +66,9 @@ def thruster_craft(
         basis: covariance of the free coefficients, degrees of freedom, envelope of the training runs.
         length: of the craft [m]; held_out: runs that were not fitted.
     """
-    if not model.equations.layout:
+    if not model.has_thrusters:
         return None
-    layout = ThrusterLayout.from_text(model.equations.layout)
+    layout = layout_of(model)
     matrices = (_inertia(model), *_damping(model), _configuration(model, layout))
     return ThrusterCraft(
         "N" if layout.has_bollard else "N/kg",
@@ -88,7 +88,7 @@ def craft_measures(model: Model, basis: IntervalBasis, length: float) -> dict[st
     A programme through which it cannot be simulated, or not by its thrusters, has no measure.
     """
     found: dict[str, CraftMeasure] = {}
-    layout = ThrusterLayout.from_text(model.equations.layout)
+    layout = layout_of(model)
     rate = rudder_rate(1.0, basis.training_envelope.get(RUDDER_RATE)).value
     for text, names in _PROGRAMMES.items():
         try:
@@ -197,7 +197,7 @@ def _damping(model: Model) -> list[FossenMatrix]:
     """D and its parts with |u|, |v| and |r|, as far as they are not zero; the forces are minus these times nu."""
     parts = {name: np.zeros((3, 3)) for name in _MEANINGS}
     for coefficient, (name, row, column) in _DAMPING.items():
-        parts[name][row, column] = 0.0 - coefficient_or_zero(model, coefficient)  # not -0
+        parts[name][row, column] = 0.0 - model.parameters.value_of(coefficient, 0.0)  # not -0
     return [
         FossenMatrix(name, _MEANINGS[name], tuple(_floats(row) for row in part), _damping_units(name))
         for name, part in parts.items()

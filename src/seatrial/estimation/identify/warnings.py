@@ -16,7 +16,7 @@ from seatrial.core.values import NOTATION, Array, Finding, Record, Severity
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import split_segments
 from seatrial.estimation.estimate.process_noise import has_noise
-from seatrial.physics.models.thruster_layout import Thruster, ThrusterLayout
+from seatrial.physics.models.thruster_layout import Thruster, layout_of
 
 # What to warn of where a controller was on while the training runs were recorded.
 
@@ -324,9 +324,9 @@ def with_unexcited_thrust_held(model: Model, records: Sequence[Record]) -> tuple
     Without an order astern these coefficients change nothing, and a search carries them anywhere. A coefficient with a
     prior stays free. Models without thrusters are returned as they are.
     """
-    if not model.equations.layout:
+    if not model.has_thrusters:
         return model, ()
-    layout, findings = ThrusterLayout.from_text(model.equations.layout), list[Finding]()
+    layout, findings = layout_of(model), list[Finding]()
     for leader in layout.leaders:
         alike = [t for t in layout.thrusters if layout.leader(t) is leader]
         symbols = [symbol + layout.suffix(leader) for symbol in _ASTERN]
@@ -350,9 +350,9 @@ def single_order_findings(model: Model, records: Sequence[Record]) -> tuple[Find
 
     At one order any exponent fits with the thrust at full command that goes with it; elsewhere the curve is a guess.
     """
-    if not model.equations.layout:
+    if not model.has_thrusters:
         return ()
-    layout, free = ThrusterLayout.from_text(model.equations.layout), {p.name for p in model.parameters.free}
+    layout, free = layout_of(model), {p.name for p in model.parameters.free}
     findings = list[Finding]()
     for leader in layout.leaders:
         alike = [t for t in layout.thrusters if layout.leader(t) is leader]
@@ -424,7 +424,7 @@ def abandoned_criterion_finding(estimation: Estimation, records: Sequence[Record
 
 def _speed_losses(model: Model, records: Sequence[Record]) -> dict[str, float]:
     """Runs that lose much of their speed, of a model that has none, and the share that they lose."""
-    if "u" in model.states:
+    if model.has_speed:
         return {}
     losses: dict[str, float] = {}
     for record in records:

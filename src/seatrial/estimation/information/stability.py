@@ -36,7 +36,7 @@ def one_sided_rates(model: Model, speed: float, inputs: Array) -> Array:
     They differ where a coefficient does (gamma_R): such a model has a kink on the straight course itself.
     """
     straight = settled_actuators(model, inputs)
-    if "u" in model.states:
+    if model.has_speed:
         straight[model.states.index("u")] = speed
     place = [model.states.index(s) for s in lateral_states(model)]
     aside = np.zeros(len(model.states))
@@ -87,7 +87,7 @@ def stability(
         (value_of(model), t * _deviation(model, value_of, covariance)) for value_of in (index_of, growth_of)
     )
     starboard, port = (_index(rates, unit) for rates in one_sided_rates(model, ahead, inputs))
-    noun = "craft" if model.equations.layout else "ship"
+    noun = "craft" if model.has_thrusters else "ship"
     is_known = abs(index) > wide or abs(growth) > open_by
     text = _stability_text(noun, speed, is_known=is_known, is_stable=growth < 0.0)
     text += _growth_text(growth, open_by, None if speed is None else unit)

@@ -218,7 +218,7 @@ def _mean_square(errors: Array) -> float:
 
 def is_steered(record: Record, model: Model) -> bool:
     """Return whether manoeuvring measures can be read from the record and from a simulation of it."""
-    return {"psi", "delta"} <= set(record.channels) and "psi" in model.states
+    return {"psi", "delta"} <= set(record.channels) and model.has_heading
 
 
 def compare_measures(

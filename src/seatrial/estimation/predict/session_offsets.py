@@ -262,9 +262,7 @@ def _errors(
         return []
     shares = MOST_ORIGINS * rows // np.sum(rows)
     runs_ahead = [_run_ahead(over, s, steps, int(most)) for s, most in enumerate(shares)]
-    predicted, last, measured = (
-        np.concatenate(values) for values in zip(*((r.predicted, r.last, r.measured) for r in runs_ahead), strict=True)
-    )
+    predicted, last, measured = (np.concatenate(values) for values in zip(*runs_ahead, strict=True))
     seconds = tuple(float(k * data.dt) for k in steps)
     result = []
     for j, channel in enumerate(channels):
@@ -290,17 +288,10 @@ def _over(estimation: Estimation, base: _Filter, runs: Runs) -> _Filter:
     return _Filter(over_runs(base.problem, output_error), shared)
 
 
-@dataclass(frozen=True, eq=False)
-class _RunAhead:
-    """Outputs at horizons after some moments of a run, (moments, horizons, ny): predicted, last measured, measured."""
+def _run_ahead(over: _Filter, segment: int, steps: Sequence[int], most: int) -> tuple[Array, ...]:
+    """Outputs at horizons after some moments of a run, (moments, horizons, ny): predicted, last measured, measured.
 
-    predicted: Array
-    last: Array
-    measured: Array
-
-
-def _run_ahead(over: _Filter, segment: int, steps: Sequence[int], most: int) -> _RunAhead:
-    """Predictions from so many moments of a run at most; NaN where a horizon reaches beyond the run.
+    So many moments at most; NaN where a horizon reaches beyond the run.
 
     The first quarter of the run is left to the filter to forget its initial state.
     """
@@ -310,14 +301,14 @@ def _run_ahead(over: _Filter, segment: int, steps: Sequence[int], most: int) -> 
     first = rows // 4
     longest = max((k for k in steps if k < rows - first), default=0)
     if not longest or not most:
-        return _RunAhead(*(np.full((0, len(steps), measured.shape[1]), np.nan) for _ in range(3)))
+        return tuple(np.full((0, len(steps), measured.shape[1]), np.nan) for _ in range(3))
     origins: Index = np.unique(np.linspace(first, rows - 1 - longest, most).round().astype(np.int64))
     within = [k for k in steps if k <= longest]
     rest = ((0, 0), (0, len(steps) - len(within)), (0, 0))
     ahead = over.problem.predicted_ahead(over.point, segment, origins, longest)[:, within]
     target = measured[origins[:, None] + np.array(within)]
     last = np.repeat(measured[origins][:, None], len(within), axis=1)
-    return _RunAhead(*(np.pad(values, rest, constant_values=np.nan) for values in (ahead, last, target)))
+    return tuple(np.pad(values, rest, constant_values=np.nan) for values in (ahead, last, target))
 
 
 def _rms(errors: Array) -> Array:

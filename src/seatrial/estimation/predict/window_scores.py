@@ -239,10 +239,10 @@ def window_scores(
     except InputError:  # no speed was recorded: windows in seconds only
         unit = None
     seconds_of = {"s": 1.0} | ({} if unit is None else {"L": unit})
-    has_thrusters = bool(predictor.model.equations.layout)
+    has_thrusters = predictor.model.has_thrusters
     usual = [WindowLength(n, "s") for n in THRUSTER_LENGTHS]
     if not has_thrusters:
-        usual = [_usual_length(n, unit, is_steered="psi" in predictor.model.states) for n in DEFAULT_LENGTHS]
+        usual = [_usual_length(n, unit, is_steered=predictor.model.has_heading) for n in DEFAULT_LENGTHS]
     wanted = [(str(w), w.value * seconds_of[w.unit]) for w in lengths or usual if w.unit in seconds_of]
     if not lengths:
         wanted = [(name, seconds) for name, seconds in wanted if 2.0 * seconds <= record.duration]
@@ -364,7 +364,7 @@ def window_baselines(
     chosen by.
     """
     without_fit: Mapping[str, Callable[[Record, float], Record]] = (
-        {CONSTANT_COURSE: constant_course, STAYS: stays} if "psi" in model.states else {AT_REST: at_rest}
+        {CONSTANT_COURSE: constant_course, STAYS: stays} if model.has_heading else {AT_REST: at_rest}
     )
     baselines: dict[str, Predictor] = {name: partial(_each, predict) for name, predict in without_fit.items()}
     expected = prior_means(model)

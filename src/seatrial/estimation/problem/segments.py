@@ -272,7 +272,7 @@ class Segments:
 def _still_channels(model: Model) -> tuple[str, ...]:
     """Positions that a model of steering alone leaves where they are: its speed U is fixed at 0."""
     names = model.parameters.names
-    if "u" in model.states or "U" not in names:
+    if model.has_speed or "U" not in names:
         return ()
     speed = model.parameters["U"]
     return () if speed.free or speed.value else ("x0", "y0")

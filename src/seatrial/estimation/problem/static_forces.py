@@ -87,7 +87,7 @@ class StaticForces:
         table = np.stack([self.points.forces.get(force, missing) for force in FORCES], axis=1)
         if self.points.includes is not ForceContent.PRESSURE:
             return table
-        mass, x_G = (self.model.parameters[n].value if n in self.model.parameters else 0.0 for n in ("m", "x_G"))
+        mass, x_G = (self.model.parameters.value_of(n, 0.0) for n in ("m", "x_G"))
         u, v, r = (self.points.motion[s] for s in ("u", "v", "r"))
         # rigid body at constant u, v, r (Yasukawa & Yoshimura 2015, equations of motion)
         return table + mass * np.stack([v * r + x_G * r**2, -u * r, -x_G * u * r], axis=1)

@@ -7,7 +7,7 @@ from seatrial.estimation.sea.legs_in_waves import LegsInWaves as LegsInWaves, fi
 from seatrial.estimation.sea.wave_leg import PLANT_FACTORS as PLANT_FACTORS, altered_loop as altered_loop
 from seatrial.estimation.sea.wave_leg import StretchSpectra as StretchSpectra
 from seatrial.estimation.sea.wave_leg import stretch_spectra as stretch_spectra
-from seatrial.estimation.sea.wave_leg import LegLikelihood as LegLikelihood, ObservedLeg as ObservedLeg
+from seatrial.estimation.sea.wave_leg import ObservedLeg as ObservedLeg
 from seatrial.estimation.sea.wave_leg import WaveLeg as WaveLeg
 from seatrial.estimation.sea.sea_likelihood import ShipInSea as ShipInSea, draw_ship_in_sea as draw_ship_in_sea
 from seatrial.estimation.sea.sea_likelihood import TransformBins as TransformBins, band_edges as band_edges

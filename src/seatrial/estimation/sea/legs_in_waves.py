@@ -54,7 +54,7 @@ class LegsInWaves:
         """Return minus the logarithm of the posterior, up to a constant."""
         ship, seas = _split(shared)
         away = shared - self._prior_mean
-        legs = sum(leg.likelihood(ship, sea).cost for leg, sea in zip(self.legs, seas, strict=True))
+        legs = sum(leg.likelihood(ship, sea)[0] for leg, sea in zip(self.legs, seas, strict=True))
         return legs + 0.5 * float(away @ self._precision @ away)
 
     def normal(self, shared: Array, local: Array) -> NormalEquations:

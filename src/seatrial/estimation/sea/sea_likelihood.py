@@ -30,15 +30,6 @@ _LEAKAGE_BINS = 6  # bins either way in which a node shows: beyond them less tha
 
 
 @dataclass(frozen=True, eq=False)
-class _Nodes:
-    """Each node's band, its frequency and width [rad/s], (p,)."""
-
-    band: Index
-    omega: Array
-    width: Array
-
-
-@dataclass(frozen=True, eq=False)
 class TransformBins:
     """Bins of a stretch's transform: omega (k,) [rad/s], `stride` of the transform's steps [rad/s] apart."""
 
@@ -72,10 +63,10 @@ def encounter_matrix(bins: TransformBins, edges: Array, U: float, headings: Arra
     rows, columns, values = [], [], []
     for beta in headings.tolist():
         speed_factor(U, beta)  # refuses what is out of sense
-        nodes = _nodes(edges, U, beta, step)
-        places = (np.abs(encounter_frequency(nodes.omega, U, beta)) - bins.omega[0]) / step
-        share = nodes.width / (_WINDOW_POWER * step * len(headings))
-        energy = np.abs(effect.amplitude(nodes.omega, U, beta)) ** 2 * share
+        band, omega, width = _nodes(edges, U, beta, step)
+        places = (np.abs(encounter_frequency(omega, U, beta)) - bins.omega[0]) / step
+        share = width / (_WINDOW_POWER * step * len(headings))
+        energy = np.abs(effect.amplitude(omega, U, beta)) ** 2 * share
         near = np.rint(places).astype(int)
         shows = (near > -_LEAKAGE_BINS) & (near < last + _LEAKAGE_BINS)
         row = near[shows, None] + np.arange(-_LEAKAGE_BINS, _LEAKAGE_BINS + 1)
@@ -83,7 +74,7 @@ def encounter_matrix(bins: TransformBins, edges: Array, U: float, headings: Arra
         value = leakage[part] * energy[shows, None]
         inside = (row >= 0) & (row <= last) & (row % bins.stride == 0)
         rows.append(row[inside] // bins.stride)
-        columns.append(np.broadcast_to(nodes.band[shows, None], row.shape)[inside])
+        columns.append(np.broadcast_to(band[shows, None], row.shape)[inside])
         values.append(value[inside])
     cells = np.concatenate(rows), np.concatenate(columns)
     return csr_array((np.concatenate(values), cells), shape=(len(bins.omega), len(edges) - 1))
@@ -96,14 +87,14 @@ def _leakage() -> Array:
     return hann_leakage(np.arange(-_LEAKAGE_BINS, _LEAKAGE_BINS + 1) - places[:, None])
 
 
-def _nodes(edges: Array, U: float, beta: float, step: float) -> _Nodes:
-    """Return nodes so close that they are met at most a third of a bin apart."""
+def _nodes(edges: Array, U: float, beta: float, step: float) -> tuple[Index, Array, Array]:
+    """Return each node's band, its frequency and width [rad/s], (p,), met at most a third of a bin apart."""
     met = encounter_frequency(edges, U, beta)
     counts = np.maximum(np.ceil(_NODES_A_BIN * np.abs(np.diff(met)) / step), 1.0).astype(int)
     band = np.repeat(np.arange(len(counts)), counts)
     first = np.repeat(np.cumsum(counts) - counts, counts)
     width = (np.diff(edges) / counts)[band]
-    return _Nodes(band, edges[band] + (np.arange(len(band)) - first + 0.5) * width, width)
+    return band, edges[band] + (np.arange(len(band)) - first + 0.5) * width, width
 
 
 # The likelihood of a whole stretch's motion in a sea of unknown heading, for many ships and seas at once (Whittle).

@@ -209,22 +209,6 @@ _ALIKE = 1e-3  # of the strongest combination of the controller's terms, below w
 
 
 @dataclass(frozen=True, eq=False)
-class LegLikelihood:
-    """Minus the logarithm of a leg's likelihood, up to a constant; logarithm of the output's density, (k,)."""
-
-    cost: float
-    log_density: Array
-
-
-@dataclass(frozen=True, eq=False)
-class ShipResponses:
-    """Of one ship with its loop closed: |S D|^2 at the nodes, and the density that S P e has, (k,)."""
-
-    gain: Array
-    by_actuator: Array
-
-
-@dataclass(frozen=True, eq=False)
 class ObservedLeg:
     """What a stretch shows, whatever sea it was in.
 
@@ -293,24 +277,28 @@ class WaveLeg:
     def _node_controller(self) -> Complex:
         return self.observed.controller_at(self.sea.omega_e)
 
-    def likelihood(self, ship: Array, sea: Array) -> LegLikelihood:
-        """Return the likelihood at factors on the ship (3,) and unknowns of the sea (3,)."""
+    def likelihood(self, ship: Array, sea: Array) -> tuple[float, Array]:
+        """Return minus the logarithm of the likelihood, up to a constant, and that of the output's density (k,).
+
+        At factors on the ship (3,) and unknowns of the sea (3,).
+        """
         return self._likelihood(self.responses(ship), self.sea.disturbance_energy(sea))
 
-    def responses(self, ship: Array) -> ShipResponses:
-        """Return the responses of the ship with these factors (3,)."""
+    def responses(self, ship: Array) -> tuple[Array, Array]:
+        """Return |S D|^2 at the nodes and the density of S P e (k,), the ship having these factors (3,)."""
         loop = altered_loop(self.observed.loop, ship)
         closed = 1.0 + loop.plant.frequency_response(self.sea.omega_e) * self._node_controller
         gain = np.abs(loop.disturbance.frequency_response(self.sea.omega_e) / closed) ** 2
         P = loop.plant.frequency_response(self.spectra.omega)
         moved = np.abs(P / (1.0 + P * self.observed.controller)) ** 2 * self.observed.independent_actuator
-        return ShipResponses(gain, moved + _FLOOR * float(np.max(self.observed.output_density)))
+        return gain, moved + _FLOOR * float(np.max(self.observed.output_density))
 
-    def _likelihood(self, ship: ShipResponses, energy: Array) -> LegLikelihood:
+    def _likelihood(self, responses: tuple[Array, Array], energy: Array) -> tuple[float, Array]:
         """Return the likelihood of a ship met by waves of that energy at each node, (n,)."""
-        density = self.sea.leakage @ (ship.gain * energy) + ship.by_actuator
+        gain, by_actuator = responses
+        density = self.sea.leakage @ (gain * energy) + by_actuator
         terms = np.log(density) + self.observed.output_density / density
-        return LegLikelihood(self.spectra.information * float(np.sum(terms)), np.log(density))
+        return self.spectra.information * float(np.sum(terms)), np.log(density)
 
     def equations(self, ship: Array, sea: Array) -> tuple[Array, Array]:
         """Return gradient (6,) and Fisher information (6, 6) of the cost, over the ship's and the sea's unknowns."""
@@ -321,8 +309,7 @@ class WaveLeg:
             *([self._likelihood(here, self.sea.disturbance_energy(sea + sign * step)) for sign in (1.0, -1.0)]
               for step in STEP * np.eye(SEA_COUNT)),
         ]  # fmt: skip
-        gradient = np.array([up.cost - down.cost for up, down in ends]) / (2.0 * STEP)
-        slopes = np.array([up.log_density - down.log_density for up, down in ends]) / (2.0 * STEP)
+        gradient, slopes = (np.array([up[part] - down[part] for up, down in ends]) / (2.0 * STEP) for part in (0, 1))
         return gradient, self.spectra.information * slopes @ slopes.T
 
     def start(self, ship: Array, peak: float) -> Array:
@@ -330,6 +317,6 @@ class WaveLeg:
         points = [np.array([0.0, np.log(self.expected_period * ratio), peak]) for ratio in _PERIODS]
         responses = self.responses(ship)
         for point in points:
-            density = np.exp(self._likelihood(responses, self.sea.disturbance_energy(point)).log_density)
+            density = np.exp(self._likelihood(responses, self.sea.disturbance_energy(point))[1])
             point[0] = 0.5 * np.log(np.mean(self.observed.output_density / density))
-        return min(points, key=lambda point: self._likelihood(responses, self.sea.disturbance_energy(point)).cost)
+        return min(points, key=lambda point: self._likelihood(responses, self.sea.disturbance_energy(point))[0])

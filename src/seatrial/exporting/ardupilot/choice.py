@@ -7,7 +7,6 @@ from functools import cached_property
 from itertools import product
 
 import numpy as np
-from scipy.linalg import expm
 
 from seatrial.control.controller import relative_overshoot, settling_time
 from seatrial.control.ship import draw_parameters
@@ -27,6 +26,7 @@ from seatrial.exporting.ardupilot.controller import (
 from seatrial.physics.hydro.excitation import Complex
 from seatrial.physics.loops import Block, controllable_form
 from seatrial.physics.loops.autopilot import FASTEST, SLOWEST, speed_gains_at
+from seatrial.physics.loops.loop import held_step
 
 # The sampled loop about the trim: its frequency response, its margins, and whether it is stable.
 
@@ -96,12 +96,9 @@ def sampled_speed(plant: Block, dt: float) -> SampledPlant:
 
 def _sampled(plant: Block, angle: Array, rate: Array, dt: float) -> SampledPlant:
     A, b, _, _ = controllable_form(plant)
-    n, sizes = len(b), np.abs(plant.poles)
-    block = np.zeros((n + 1, n + 1))
-    block[:n, :n], block[:n, n] = A, b
-    stepped: Array = np.asarray(expm(dt * block), dtype=np.float64)
+    sizes = np.abs(plant.poles)
     slowest = float(sizes[sizes > AT_ORIGIN * sizes.max()].min())
-    return SampledPlant(stepped[:n, :n], stepped[:n, n], angle, rate, dt, slowest)
+    return SampledPlant(*held_step(A, b, dt), angle, rate, dt, slowest)
 
 
 def open_loop(plant: SampledPlant, gains: CascadeGains, omega: Array | None = None) -> Complex:

@@ -10,19 +10,19 @@ from numba import njit
 from seatrial.control.ship import plant_and_disturbance, trim_ship
 from seatrial.control.task import TrimmedShip
 from seatrial.core.equations import Model
+from seatrial.core.equations.model import RUDDER
 from seatrial.core.values import Array, InputError
 from seatrial.data.folder.model_file import ModelFile
 from seatrial.numerics.kernels.feedback import clamp, steer
 from seatrial.numerics.kernels.kernel import COMMAND_SIGNATURE, OPTIONS, kernel
 from seatrial.physics.loops import Block
 from seatrial.physics.models.thrust_orders import AHEAD, YAW, with_orders, work_shares
-from seatrial.physics.models.thruster_layout import ThrusterLayout
+from seatrial.physics.models.thruster_layout import ThrusterLayout, layout_of
 from seatrial.physics.simulate.replay import ZERO_BY_DEFAULT, trajectory
 from seatrial.physics.simulate.thrust import DEFAULT_AHEAD
 
 # A craft as ArduPilot steers it: shares of full steering and throttle in, heading, yaw rate and speed out.
 
-RUDDER = "delta"
 FULL_RUDDER = math.radians(35.0)  # SOLAS, chapter II-1, regulation 29.3.2
 CRUISE_SHARE = 0.5  # of full throttle at the approach speed, ArduPilot's default of CRUISE_THROTTLE
 SCALING_SHARE = 0.8
@@ -98,9 +98,9 @@ def unsuitable_for_ardupilot(file: ModelFile) -> str:
     absent = next((s for s in ("psi", "r") if s not in model.states), "")
     if absent:
         return f"it has no state '{absent}', and ArduPilot steers a boat by heading and yaw rate"
-    if model.equations.layout:
-        return _unsuitable_thrusters(ThrusterLayout.from_text(model.equations.layout))
-    return "" if RUDDER in model.input_names else f"it has no input '{RUDDER}' and no thrusters that could steer it"
+    if model.has_thrusters:
+        return _unsuitable_thrusters(layout_of(model))
+    return "" if model.has_rudder else f"it has no input '{RUDDER}' and no thrusters that could steer it"
 
 
 def _unsuitable_thrusters(layout: ThrusterLayout) -> str:
@@ -125,7 +125,7 @@ def steered_craft(file: ModelFile) -> SteeredCraft:
     Raises:
         InputError: the craft has no steady straight run, no known speed, or does not answer its steering.
     """
-    is_skid, model = bool(file.model.equations.layout), file.model
+    is_skid, model = file.model.has_thrusters, file.model
     if is_skid:
         model = with_orders(model)
         approach = {n: v for n, v in file.approach.items() if n in model.input_names}
@@ -140,7 +140,7 @@ def steered_craft(file: ModelFile) -> SteeredCraft:
         ship = trim_ship(file, output="psi", actuator=steering, speed=fastest, inputs={YAW: 0.0})
     throttle = AHEAD if is_skid else _throttle_input(model)
     trim = 0.0 if not throttle else float(ship.inputs[model.input_names.index(throttle)])
-    throttle = throttle if trim > 0.0 and "u" in model.states else ""
+    throttle = throttle if trim > 0.0 and model.has_speed else ""
     sign = -1.0 if model.inputs[model.input_names.index(steering)].is_reversed else 1.0
     towards = sign * math.copysign(1.0, plant_and_disturbance(ship)[0].num[0])
     return SteeredCraft(
@@ -176,9 +176,9 @@ def _throttle_input(model: Model) -> str:
 
 def _cruising_speed(file: ModelFile, ship: TrimmedShip) -> float:
     model = ship.model
-    if "u" in model.states:
+    if model.has_speed:
         return float(ship.state[model.states.index("u")])
-    design_speed = model.parameters["U"].value if "U" in model.parameters else math.nan
+    design_speed = model.parameters.value_of("U", math.nan)
     speed = design_speed if design_speed > 0.0 else file.approach.get("u", math.nan)
     if not speed > 0.0:
         raise InputError(

@@ -6,7 +6,6 @@ Results come in the order of the items whatever the number of workers, so the sa
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, ThreadPoolExecutor, wait
 from contextlib import contextmanager
-from dataclasses import dataclass
 from typing import TypeVar
 
 from seatrial.numerics.platform import usable_cores
@@ -18,24 +17,18 @@ CountReporter = Callable[[int, int], None]
 _POLL = 0.1  # s between looks at the keyboard
 
 
-@dataclass
-class _Limits:
-    """Largest number of workers that is taken where none is given, of each `limited_workers` that is active."""
-
-    counts: list[int]
-
-
-_LIMITS = _Limits([])
+_LIMITS = list[int]()
+"""Largest number of workers that is taken where none is given, of each `limited_workers` that is active."""
 
 
 @contextmanager
 def limited_workers(count: int) -> Iterator[None]:
     """Let at most `count` workers be taken where no number is given, in all threads of this process."""
-    _LIMITS.counts.append(count)
+    _LIMITS.append(count)
     try:
         yield
     finally:
-        _LIMITS.counts.remove(count)
+        _LIMITS.remove(count)
 
 
 def worker_count(workers: int | None = None) -> int:
@@ -45,7 +38,7 @@ def worker_count(workers: int | None = None) -> int:
         ValueError: fewer than one worker.
     """
     if workers is None:
-        return min([usable_cores(), *_LIMITS.counts])
+        return min([usable_cores(), *_LIMITS])
     if workers < 1:
         raise ValueError(f"{workers} workers cannot do anything; give at least one, or None for all cores")
     return workers

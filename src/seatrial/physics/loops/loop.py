@@ -232,18 +232,33 @@ def _split(sampling: Sampling) -> tuple[int, float]:
 
 def _stepped(A: Array, b: Array, T: float, late: float) -> tuple[Array, Array, Array]:
     """Return exp(A T), and what the order before and the one now do in a step: the former acts for `late` seconds."""
-    first, began = _step(A, b, late)
-    second, now = _step(A, b, T - late)
+    first, began = held_step(A, b, late)
+    second, now = held_step(A, b, T - late)
     return second @ first, second @ began, now
 
 
-def _step(A: Array, b: Array, dt: float) -> tuple[Array, Array]:
-    """Return exp(A dt) and its integral times b (Van Loan 1978, IEEE Trans. Autom. Control 23(3), 395-404)."""
+def held_step(A: Array, b: Array, dt: float) -> tuple[Array, Array]:
+    """Return exp(A dt) and what an input does that is held over the step.
+
+    The latter is the integral of the former times b (Van Loan 1978, IEEE Trans. Autom. Control 23(3), 395-404).
+    """
     n = len(b)
     joined = np.zeros((n + 1, n + 1))
     joined[:n, :n], joined[:n, n] = A * dt, b * dt
-    made = np.asarray(expm(joined), dtype=np.float64)
-    return made[:n, :n], made[:n, n]
+    stepped = np.asarray(expm(joined), dtype=np.float64)
+    return stepped[:n, :n], stepped[:n, n]
+
+
+def straight_step(A: Array, b: Array, dt: float) -> tuple[Array, Array, Array]:
+    """Return exp(A dt) and what an input does that runs straight over the step, by its values at both ends.
+
+    As `held_step`, with the input's slope as a further state (Franklin, Powell & Workman 1998, section 6.3).
+    """
+    n = len(b)
+    joined = np.zeros((n + 2, n + 2))
+    joined[:n, :n], joined[:n, n], joined[n, n + 1] = A * dt, b * dt, 1.0
+    stepped = np.asarray(expm(joined), dtype=np.float64)
+    return stepped[:n, :n], stepped[:n, n] - stepped[:n, n + 1], stepped[:n, n + 1]
 
 
 def _zeros(A: Array, b: Array, c: Array, d: float) -> Complex:

@@ -210,20 +210,13 @@ def _closest_to_zero(near: np.ndarray) -> float:
     return u
 
 
-@dataclass(frozen=True)
-class CalmActuator:
-    """Rms of the actuator and of its rate by the sensor's errors alone, SI."""
-
-    angle: float
-    rate: float
-
-
-def calm_actuator(loop: TransferLoop) -> CalmActuator:
-    """Return what the samples' errors make of the actuator of a stable loop, at its own gains."""
+def calm_actuator(loop: TransferLoop) -> tuple[float, float]:
+    """Return the rms of a stable loop's actuator and of its rate, SI, by the sensor's errors alone, at its gains."""
     angle, rate = (WeightedVariance(LoopSignal.ACTUATOR, lambda w, n=power: w**n) for power in (0, 1))
     still = disturbance_spectrum(lambda w: 0.0 * w, _STILL[0], _STILL[1], loop.disturbance, "calm water")
     variances = Performance(loop, still, (angle, rate)).evaluate(loop.gain_values, with_Ms=False).variances[0]
-    return CalmActuator(*np.sqrt(variances).tolist())
+    rms_angle, rms_rate = np.sqrt(variances).tolist()
+    return rms_angle, rms_rate
 
 
 def distinct_variances(objectives: tuple[Objective, ...]) -> tuple[tuple[WeightedVariance, ...], list[list[int]]]:

@@ -115,26 +115,20 @@ class RudderForce:
     cosine: sp.Symbol
 
 
-@dataclass(frozen=True)
-class _Inflow:
-    u: sp.Symbol
-    v: sp.Symbol
-
-
 def normal_force(
     sheet: Sheet, flow: RudderFlow, rudder: RudderCoefficients, delta: sp.Symbol, suffix: str = ""
 ) -> RudderForce:
     """Write the normal force at the angle delta [rad, positive turns to starboard]; bindings end in `suffix`."""
-    inflow = _inflow(sheet, flow, rudder, suffix)
+    u_R, v_R = _inflow(sheet, flow, rudder, suffix)
     sine = sheet.bind(f"sin_delta{suffix}", sp.sin(delta), "of the rudder angle")
     cosine = sheet.bind(f"cos_delta{suffix}", sp.cos(delta), "of the rudder angle")
-    U_R = sheet.bind(f"U_R{suffix}", sp.sqrt(inflow.u**2 + inflow.v**2 + flow.U_0**2), f"{YASUKAWA}, U_R", "m/s")
-    normal = flow.rho / 2 * rudder.A_R * rudder.f_alpha * U_R * (inflow.u * sine - inflow.v * cosine)
+    U_R = sheet.bind(f"U_R{suffix}", sp.sqrt(u_R**2 + v_R**2 + flow.U_0**2), f"{YASUKAWA}, U_R", "m/s")
+    normal = flow.rho / 2 * rudder.A_R * rudder.f_alpha * U_R * (u_R * sine - v_R * cosine)
     source = f"{YASUKAWA}, normal force: U_R sin(alpha_R) = u_R sin(delta) - v_R cos(delta)"
     return RudderForce(sheet.bind(f"F_N{suffix}", normal, source, "N"), sine, cosine)
 
 
-def _inflow(sheet: Sheet, flow: RudderFlow, rudder: RudderCoefficients, suffix: str) -> _Inflow:
+def _inflow(sheet: Sheet, flow: RudderFlow, rudder: RudderCoefficients, suffix: str) -> tuple[sp.Symbol, sp.Symbol]:
     def bind(name: str, expression: sp.Expr, source: str, unit: str = "1") -> sp.Symbol:
         return sheet.bind(f"{name}{suffix}", expression, source, unit)
 
@@ -157,7 +151,7 @@ def _inflow(sheet: Sheet, flow: RudderFlow, rudder: RudderCoefficients, suffix: 
     v_B = bind("v_B", flow.U * flow.beta - rudder.l_R * flow.r_L, f"{YASUKAWA}, U beta_R", "m/s")
     side = sp.Piecewise((rudder.gamma_plus, v_B > 0), (rudder.gamma_minus, True))
     gamma_R = bind("gamma_R", side, f"{YASUKAWA}, gamma_R by the side of beta_R")
-    return _Inflow(u_R, bind("v_R", gamma_R * v_B, f"{YASUKAWA}, v_R", "m/s"))
+    return u_R, bind("v_R", gamma_R * v_B, f"{YASUKAWA}, v_R", "m/s")
 
 
 # Force of the wind on areas above water: a Fourier series in its apparent direction, shared by the models.

@@ -11,7 +11,14 @@ from seatrial.core.equations import Model
 from seatrial.core.equations.bindings import Binding, Input, ModelEquations
 from seatrial.core.equations.model import stored_equations
 from seatrial.core.values import Array, InputError
-from seatrial.physics.models.thruster_layout import ORDER, AngleInput, Thruster, ThrusterLayout, steering_angles
+from seatrial.physics.models.thruster_layout import (
+    ORDER,
+    AngleInput,
+    Thruster,
+    ThrusterLayout,
+    layout_of,
+    steering_angles,
+)
 
 # Orders of a craft with thrusters: how far it is to go ahead and to turn, shared out over the thrusters.
 
@@ -52,11 +59,11 @@ def with_orders(model: Model) -> Model:
     Raises:
         InputError: the model has no thrusters.
     """
-    if not model.equations.layout:
+    if not model.has_thrusters:
         raise InputError(
             f"model '{model.name}' has no thrusters; orders ahead and to starboard are for craft with them"
         )
-    layout = ThrusterLayout.from_text(model.equations.layout)
+    layout = layout_of(model)
     # places are parameters, which the equations' hash does not hold, and decide who turns the craft to which side
     key = (model.equation_hash, "orders", work_shares(layout), steering_angles(layout))
     equations = stored_equations(key, lambda: _ordered(model, layout), (Path(__file__).parent,))
@@ -132,14 +139,9 @@ def _pushed(model: Model) -> ModelEquations:
 # Matrices of M dnu/dt + C(M) nu + D(nu) nu = B T of a craft with thrusters, nu = (u, v, r), from its coefficients.
 
 
-def coefficient_or_zero(model: Model, name: str) -> float:
-    """Return the value of a coefficient, zero where the model has none of that name."""
-    return model.parameters[name].value if name in model.parameters else 0.0
-
-
 def inertia_matrix(model: Model) -> Array:
     """Return mass and added mass (3, 3) (Fossen 2021, eqs. (6.14) and (6.40), surge, sway and yaw)."""
-    M_u, M_v, M_r, M_c = (coefficient_or_zero(model, f"M_{x}") for x in "uvrc")
+    M_u, M_v, M_r, M_c = (model.parameters.value_of(f"M_{x}", 0.0) for x in "uvrc")
     return np.array([[M_u, 0.0, 0.0], [0.0, M_v, M_c], [0.0, M_c, M_r]])
 
 
@@ -150,5 +152,5 @@ def thrust_configuration(model: Model, thrusters: Sequence[Thruster], angles: Se
     """
     X, Y = np.cos(angles), np.sin(angles)
     N = np.array([t.x for t in thrusters]) * Y - np.array([t.y for t in thrusters]) * X
-    Y = Y + coefficient_or_zero(model, "Y_T") * X + coefficient_or_zero(model, "Y_NT") * N
+    Y = Y + model.parameters.value_of("Y_T", 0.0) * X + model.parameters.value_of("Y_NT", 0.0) * N
     return np.stack([X, Y, N])

@@ -11,6 +11,7 @@ from itertools import pairwise
 import numpy as np
 from pydantic import TypeAdapter
 
+from seatrial.core.equations import Model
 from seatrial.core.values import Channel, InputError, Record, spelling_hint
 from seatrial.core.values.notation import OPPOSITE
 
@@ -287,6 +288,11 @@ def _arms(layout: ThrusterLayout) -> Iterator[tuple[str, float]]:
             yield thruster.angle.channel, thruster.x
         if thruster.rudder is not None:
             yield thruster.rudder.channel, -thruster.rudder.x  # lift of a positive angle is to port
+
+
+def layout_of(model: Model) -> ThrusterLayout:
+    """Return where the thrusters of a model lie, which has some."""
+    return ThrusterLayout.from_text(model.equations.layout)
 
 
 def order_text(layout: ThrusterLayout) -> str:

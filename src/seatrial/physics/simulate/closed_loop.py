@@ -6,7 +6,6 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, reduce
 
 import numpy as np
-from scipy.linalg import expm
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, DivergedError, InputError, Provenance, Record, frozen, spelling_hint
@@ -17,7 +16,7 @@ from seatrial.numerics.kernels.propagate import propagators
 from seatrial.numerics.kernels.sampled import sampled_controller
 from seatrial.physics.loops import Block, TransferLoop
 from seatrial.physics.loops.discrete import difference_equation, holding_terms
-from seatrial.physics.loops.loop import Sampling, controllable_form, in_series
+from seatrial.physics.loops.loop import Sampling, controllable_form, held_step, in_series, straight_step
 from seatrial.physics.loops.loop_states import StateSpace
 from seatrial.physics.simulate.replay import record_of, require_bounded
 
@@ -47,14 +46,9 @@ class ControllerStateSpace:
         Slow states stand still if `is_holding`.
         """
         moving = np.where(self.is_slow, 0.0, 1.0) if is_holding else np.ones(len(self.b))
-        n = len(self.b)
-        whole = np.zeros((n + 2, n + 2))
-        whole[:n, :n], whole[:n, n] = moving[:, None] * self.A * dt, moving * self.b * dt
-        whole[n, n + 1] = 1.0
-        made = expm(whole)
-        E, held, ramp = made[:n, :n], made[:n, n], made[:n, n + 1]
-        ahead = (self.c @ E, [self.c @ (held - ramp)], [self.c @ ramp + self.d])
-        return np.concatenate([E.T.ravel(), held - ramp, ramp, *ahead])
+        E, before, after = straight_step(moving[:, None] * self.A, moving * self.b, dt)
+        ahead = (self.c @ E, [self.c @ before], [self.c @ after + self.d])
+        return np.concatenate([E.T.ravel(), before, after, *ahead])
 
 
 _UNIT_GAIN = ControllerStateSpace(np.zeros((0, 0)), np.zeros(0), np.zeros(0), 1.0, np.zeros(0, dtype=bool), np.zeros(1))
@@ -198,22 +192,17 @@ def _block(block: Block, T: float, gain: float, holds: float) -> Array:
 def _sensor(block: Block, dt: float) -> tuple[Array, int]:
     """Return a sensor for an input that runs straight over each step (Franklin, Powell & Workman 1998, section 6.3)."""
     A, b, c, d = controllable_form(block)
+    E, before, after = straight_step(A, b, dt)
     n = len(b)
-    whole = np.zeros((n + 2, n + 2))
-    whole[:n, :n], whole[:n, n], whole[n, n + 1] = A * dt, b * dt, 1.0
-    made = np.asarray(expm(whole), dtype=np.float64)
-    held, ramp = made[:n, n], made[:n, n + 1]
-    return np.concatenate([made[:n, :n].T.ravel(), held - ramp, ramp, c, [d], np.zeros(2 * n + 1)]), n
+    return np.concatenate([E.T.ravel(), before, after, c, [d], np.zeros(2 * n + 1)]), n
 
 
 def _servo(block: Block, dt: float) -> tuple[Array, int]:
     """Return a servo for an input that is held over each step."""
     A, b, c, d = controllable_form(block)
+    E, held = held_step(A, b, dt)
     n = len(b)
-    whole = np.zeros((n + 1, n + 1))
-    whole[:n, :n], whole[:n, n] = A * dt, b * dt
-    made = np.asarray(expm(whole), dtype=np.float64)
-    return np.concatenate([made[:n, :n].T.ravel(), made[:n, n], c, [d], np.zeros(2 * n)]), n
+    return np.concatenate([E.T.ravel(), held, c, [d], np.zeros(2 * n)]), n
 
 
 # A linear loop simulated in time: output, actuator and actuator rate, met by one series of the disturbance.

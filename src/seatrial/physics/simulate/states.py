@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from seatrial.core.equations import Model
+from seatrial.core.equations.model import RUDDER
 from seatrial.core.values import NOTATION, Array, Index, InputError, Record, spelling_hint
 from seatrial.numerics.local_polynomials import smoothed_locally
 from seatrial.physics.sensors.measured_outputs import is_late
@@ -153,7 +154,6 @@ def _actuators_only(model: Model, names: tuple[str, ...]) -> Model:
 
 # The straight run before a manoeuvre: inputs that are held, the steady speed, the time to travel one's own length.
 
-RUDDER = "delta"
 _MAX_SPEED = 100.0  # m/s; guards against a wrong unit
 _SEARCHED = np.geomspace(1e-3, 1e3, 121)  # propulsion over speed, m/s or rps: twenty a decade; chosen
 
@@ -232,7 +232,7 @@ def straight_run(model: Model, plan: Record, speed: float | None = None) -> dict
     start = dict.fromkeys(model.states, 0.0)
     if "u" in start and speed is not None:
         start["u"] = speed
-    elif "u" in start and not model.equations.layout:
+    elif "u" in start and not model.has_thrusters:
         first = inputs_of(model, plan)[0].copy()
         first[[name == RUDDER for name in model.input_names]] = 0.0
         start["u"] = approach_speed(model, first)
@@ -244,17 +244,14 @@ def characteristic_time(model: Model, start: Array, given_speed: float | None, l
 
     length: L [m] where it is no parameter of the model.
     """
-    names = model.parameters.names
-    length = model.parameters["L"].value if "L" in names else length
-    if "u" in model.states:
-        speed = float(start[model.states.index("u")])
-    else:
-        speed = given_speed or (model.parameters["U"].value if "U" in names else 0.0)
+    parameters = model.parameters
+    length = parameters.value_of("L", length)
+    speed = float(start[model.states.index("u")]) if model.has_speed else given_speed or parameters.value_of("U", 0.0)
     if length > 0.0 and speed > 0.0:
         return length / speed
     for constant in ("T", "T_1"):
-        if constant in names:
-            return model.parameters[constant].value
+        if constant in parameters:
+            return parameters[constant].value
     raise InputError(f"model '{model.name}': the approach speed must be positive, and its parameters must give L")
 
 

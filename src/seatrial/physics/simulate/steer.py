@@ -8,6 +8,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from seatrial.core.equations import Model
+from seatrial.core.equations.model import RUDDER
 from seatrial.core.values import Array, InputError, Provenance, Record, frozen
 from seatrial.core.values.record import MAX_SAMPLES
 from seatrial.numerics.kernels.feedback import steer
@@ -21,17 +22,12 @@ from seatrial.physics.manoeuvres.programme import (
     rudder_angles,
 )
 from seatrial.physics.simulate.replay import record_of, require_bounded, trajectory
-from seatrial.physics.simulate.states import RUDDER, approach_speed, characteristic_time, held_inputs, settled_actuators
+from seatrial.physics.simulate.states import approach_speed, characteristic_time, held_inputs, settled_actuators
 
 # A ship that rolls, let go from an angle: the decay that a model foresees.
 
 _PERIODS = 15.0  # natural periods that a decay is simulated for where nothing is said; chosen
 _SAMPLES_A_PERIOD = 100.0  # chosen; Runge-Kutta of fourth order then errs by 1e-6 of the angle a period
-
-
-def rolls_only(model: Model) -> bool:
-    """Return whether the model can only be released: it rolls, and has no heading to be steered."""
-    return {"phi", "p"} <= set(model.states) and "psi" not in model.states
 
 
 def natural_period(model: Model) -> float:
@@ -40,7 +36,7 @@ def natural_period(model: Model) -> float:
     Raises:
         InputError: the model has no restoring moment `c_1`, or one that is not positive.
     """
-    c_1 = model.parameters["c_1"].value if "c_1" in model.parameters else math.nan
+    c_1 = model.parameters.value_of("c_1", math.nan)
     if not c_1 > 0.0:
         raise InputError(f"model '{model.name}' cannot be released: it needs a positive restoring moment c_1")
     return 2.0 * math.pi / math.sqrt(c_1)
@@ -67,7 +63,7 @@ def release(model: Model, text: str, period: float, duration: float | None = Non
     dt = period / _SAMPLES_A_PERIOD
     time = frozen(dt * np.arange(round(longest / dt) + 1))
     start = np.zeros(len(model.states))
-    rest = model.parameters["phi_0"].value if "phi_0" in model.parameters else 0.0
+    rest = model.parameters.value_of("phi_0", 0.0)
     start[model.states.index("phi")] = rest + angle
     inputs = np.zeros((len(time), len(model.inputs)))
     states, outputs = trajectory(model, inputs, dt, start)
@@ -119,7 +115,7 @@ def manoeuvre(
     _require_steerable(model, dt, slew_rate)
     held = held_inputs(model, inputs or {}, RUDDER)
     start = settled_actuators(model, held)
-    if "u" in model.states:
+    if model.has_speed:
         start[model.states.index("u")] = approach_speed(model, held) if speed is None else speed
     unit = characteristic_time(model, start, given_speed=speed, length=length)
     longest = approach + programme.maximum_lengths * unit if duration is None else duration
@@ -140,7 +136,7 @@ def manoeuvre(
 
 
 def _require_steerable(model: Model, dt: float, slew_rate: float) -> None:
-    if RUDDER not in model.input_names or "psi" not in model.states:
+    if not model.has_rudder or not model.has_heading:
         raise InputError(f"model '{model.name}' cannot be steered: it needs the input '{RUDDER}' and the state 'psi'")
     if model.parameters.missing:
         raise InputError(f"model '{model.name}' has no value for {', '.join(model.parameters.missing)}")

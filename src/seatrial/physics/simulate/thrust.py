@@ -26,6 +26,7 @@ from seatrial.physics.models.thruster_layout import (
     ORDER,
     AngleInput,
     ThrusterLayout,
+    layout_of,
     steering_angles,
     with_steering_order,
 )
@@ -71,7 +72,7 @@ def straight_by_thrusters(
     Raises:
         InputError: an input is missing, or the craft has no steady speed ahead.
     """
-    layout = ThrusterLayout.from_text(model.equations.layout)
+    layout = layout_of(model)
     rest = _at_rest(layout)
     further = {name: value for name, value in (inputs or {}).items() if name in model.input_names and name not in rest}
     held = held_inputs(model, rest | further, "")
@@ -133,7 +134,7 @@ def thrust_manoeuvre(
     Raises:
         InputError: an input is missing or unknown, the duration is no time, or the simulation diverges.
     """
-    layout, given = ThrusterLayout.from_text(model.equations.layout), dict(inputs or {})
+    layout, given = layout_of(model), dict(inputs or {})
     takes_ahead = programme.ahead is None
     ahead = require_share(given.pop(AHEAD, DEFAULT_AHEAD)) if programme.ahead is None else programme.ahead
     undriven_inputs(model, layout, programme.text, given, takes_ahead=takes_ahead)
@@ -279,10 +280,9 @@ def craft_programmes(layout: ThrusterLayout) -> tuple[str, ...]:
 
 def is_steered_by_angle(model: Model) -> bool:
     """Return whether a model goes through the manoeuvres of ships: by a rudder, or by thrusters that turn."""
-    if "psi" not in model.states:
+    if not model.has_heading:
         return False
-    layout = model.equations.layout
-    return bool(steering_angles(ThrusterLayout.from_text(layout))) if layout else ORDER in model.input_names
+    return bool(steering_angles(layout_of(model))) if model.has_thrusters else model.has_rudder
 
 
 def _kind(text: str) -> str:
@@ -355,7 +355,7 @@ def _held(ordered: Model, inputs: Mapping[str, float], ahead: float) -> np.ndarr
 def _by_angle(
     model: Model, orders: Programme, duration: float | None, given: dict[str, float], slew_rate: float
 ) -> Record:
-    layout = ThrusterLayout.from_text(model.equations.layout)
+    layout = layout_of(model)
     angles = steering_angles(layout)
     ahead = require_share(given.pop(AHEAD, DEFAULT_AHEAD))
     further = undriven_inputs(model, layout, orders.text, given, driven=[angle.channel for angle in angles])

@@ -29,7 +29,7 @@ def order_view(design: Design) -> RunView:
     panels = [_order_panel(design, actuator) for actuator in design.actuators]
     panels += [] if drift is None else [_drift_panel(design, drift)]
     tracks = (record_track(executed, EXECUTED),) if has_moving_track(executed) else ()
-    length = design.model.parameters["L"].value if "L" in design.model.parameters else 0.0
+    length = design.model.parameters.value_of("L", 0.0)
     legend = (LegendEntry("ordered", ORDERED), LegendEntry("moved, ship as assumed", EXECUTED),
               LegendEntry("limit", LIMIT))  # fmt: skip
     return RunView(f"orders of {design.designed.name}", tuple(panels), tracks, length, legend)
@@ -67,7 +67,7 @@ def track_chart(design: Design) -> Chart | None:
     if not has_moving_track(executed):
         return None
     parameters, room = design.model.parameters, design.limits.sea_room
-    length = parameters["L"].value if "L" in parameters else 0.0
+    length = parameters.value_of("L", 0.0)
     is_near = room < LARGEST_ROOM_RATIO * float(np.hypot(executed["x0"], executed["y0"]).max())
     track, circle = record_track(executed, EXECUTED), [_circle(room)] if is_near else []
     is_strip = is_slender([track, *circle])

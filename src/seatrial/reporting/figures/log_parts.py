@@ -1,7 +1,7 @@
 """A run of a log with its manoeuvres: track and channels, the parts in colour."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -23,16 +23,10 @@ _THIN, _THICK = Stroke(GREY, 0.8), 2.2  # px, chosen
 _CHANNELS_SHOWN = 12  # the first in the order of reading; chosen: two screens of a telephone
 
 
-@dataclass(frozen=True, eq=False)
-class LogView:
-    """A run of a log, and its manoeuvres as stretches of time."""
+def log_view(record: Record, parts: Sequence[LogStretch]) -> tuple[RunView, tuple[TimeSpan, ...]]:
+    """Return the track and the channels of a run, and its manoeuvres as stretches of time.
 
-    run: RunView
-    spans: tuple[TimeSpan, ...]
-
-
-def log_view(record: Record, parts: Sequence[LogStretch]) -> LogView:
-    """Return the track and the channels of a run; each part has a colour on the track and behind the channels.
+    Each part has a colour on the track and behind the channels.
 
     parts: start and stop are s after the first sample.
     """
@@ -42,7 +36,7 @@ def log_view(record: Record, parts: Sequence[LogStretch]) -> LogView:
     legend = tuple(LegendEntry(f"{k} {one.name}", Stroke(_colour(k), _THICK)) for k, one in enumerate(parts, start=1))
     view = RunView(record.name, channel_panels(record, shown[:_CHANNELS_SHOWN]), tracks, 0.0, legend)
     spans = (TimeSpan(one.start, one.stop, _PALE[k % len(_PALE)], str(k + 1)) for k, one in enumerate(parts))
-    return LogView(view, tuple(spans))
+    return view, tuple(spans)
 
 
 def _from_zero(record: Record) -> Record:

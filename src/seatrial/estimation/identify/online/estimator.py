@@ -50,14 +50,6 @@ class _StreamRun:
     rows: SampleRows
 
 
-@dataclass(frozen=True, eq=False)
-class _ClosedRun:
-    """A run that has ended: as received, and as a canonical record."""
-
-    raw_record: Record
-    record: Record
-
-
 class StreamWindow:
     """Grows with each sample and is emptied when its information is carried on elsewhere.
 
@@ -72,7 +64,7 @@ class StreamWindow:
         self._trial_records = tuple(
             load_run(run, trial.reference_point).record for run in trial.runs if run.role is Role.TRAIN
         )
-        self._closed: list[_ClosedRun] = []
+        self._closed: list[tuple[Record, Record]] = []  # as received, and as a canonical record
         self._closed_seconds, self._closed_samples = 0.0, 0
         self._open: _StreamRun | None = None
 
@@ -107,7 +99,7 @@ class StreamWindow:
         if ended is None or len(ended.rows) < MIN_RUN_SAMPLES:
             return
         raw_record = self._raw_record(ended)
-        self._closed.append(_ClosedRun(raw_record, self._canonical_record(raw_record)))
+        self._closed.append((raw_record, self._canonical_record(raw_record)))
         self._closed_seconds += ended.rows.duration
         self._closed_samples += len(ended.rows)
 
@@ -134,13 +126,11 @@ class StreamWindow:
             InputError: the present run is too short to be read as a record.
         """
         present = [self._canonical_record(raw) for raw in self._present_record()]
-        return [*self._trial_records, *(run.record for run in self._closed), *present]
+        return [*self._trial_records, *(record for _, record in self._closed), *present]
 
     def training_runs(self) -> tuple[TrialRun, ...]:
         """Return the stream's runs kept, as received, as training runs of a trial."""
-        return tuple(
-            self._training_run(raw) for raw in (*(run.raw_record for run in self._closed), *self._present_record())
-        )
+        return tuple(self._training_run(raw) for raw in (*(raw for raw, _ in self._closed), *self._present_record()))
 
     def _empty_run(self, number: int) -> _StreamRun:
         return _StreamRun(number, SampleRows(len(self._stream.layout.columns)))

@@ -29,7 +29,6 @@ from seatrial.estimation.estimate.online.window import (
     refuse_diverging,
     warm_start,
 )
-from seatrial.estimation.estimate.settings import is_pure_roll
 from seatrial.estimation.information.covariance import inverse
 from seatrial.physics.simulate.replay import inputs_of
 
@@ -275,7 +274,7 @@ def suits_whole_runs(trial: Trial) -> bool:
     """Return whether the trial's criterion is output error over whole runs, so that a search can be continued."""
     wishes, model = trial.estimate, trial.model
     is_output_error = wishes.criterion in (FitCriterion.AUTO, FitCriterion.OUTPUT_ERROR)
-    return is_output_error and wishes.segment_s is None and (model.is_affine or is_pure_roll(model))
+    return is_output_error and wishes.segment_s is None and (model.is_affine or not model.has_course)
 
 
 def _runs(trial: Trial, phase: KeptPhase, records: Sequence[Record]) -> Runs:

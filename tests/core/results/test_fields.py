@@ -1,8 +1,9 @@
-"""What an interactive session shows of a noun: a line or two, a table, HTML."""
+"""What a session shows of a noun, in text, tables and HTML; a part that cannot be computed is a finding."""
 
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 from tests.reporting.complete_fit import tanker
 from tests.reporting.fabricated import fabricated_fit
@@ -10,7 +11,8 @@ from tests.reporting.fabricated_design import fabricated_design
 from tests.reporting.fabricated_study import fabricated_study
 from tests.reporting.fabricated_tuning import fabricated_fin
 
-from seatrial.core.results.fields import Summarised, Summary
+from seatrial.core.results.fields import MissingParts, Summarised, Summary
+from seatrial.core.values import InputError
 from seatrial.data.trial import load_trial
 from seatrial.physics.models.published import kvlcc2
 
@@ -68,3 +70,19 @@ def test_a_summary_is_an_aligned_table() -> None:
 
 def test_html_takes_no_markup_from_names() -> None:
     assert "<b>" not in Summary("<b>", ("<b>",), (("<b>",),), {"<b>": "<b>"}, ("<b>",))._repr_html_()
+
+
+def test_what_cannot_be_computed_is_said_and_replaced() -> None:
+    def refused() -> str:
+        raise InputError("the table ends at 2.3 rad/s")
+
+    parts = MissingParts()
+    assert parts.computed("the motions in waves", refused, "") == ""
+    assert parts.computed("the inverse", lambda: float(np.linalg.inv(np.zeros((2, 2)))[0, 0]), 0.0) == 0.0
+    assert parts.computed("the mean", lambda: 3.0, 0.0) == 3.0
+    first, second = parts.findings
+    assert first.code == "part-missing"
+    assert first.text == (
+        "the result is without the motions in waves, which could not be computed (the table ends at 2.3 rad/s)"
+    )
+    assert second.evidence == "LinAlgError: Singular matrix"
