@@ -21,7 +21,8 @@ from seatrial.control.proposals import GainSchedule, Stretch, gain_schedule, loo
 from seatrial.control.schedule import schedule
 from seatrial.control.task import ScheduleGrid, Seaway, TuningTask
 from seatrial.control.verification.stabiliser import natural_period, prior_deviations
-from seatrial.core.results.online import Estimated, Proposal
+from seatrial.core.results.online import Proposal
+from seatrial.core.results.ship_motions import IntervalEstimate
 from seatrial.core.values import Array
 from seatrial.estimation.sea import altered_loop, sea_spectrum
 from seatrial.numerics.workers import map_in_processes
@@ -231,7 +232,7 @@ def _is_inside(one: Look, name: str) -> float:
     return _holds((sea.height, sea.period)[which], math.exp(weather.sea[which]))
 
 
-def _holds(interval: Estimated, value: float) -> bool:
+def _holds(interval: IntervalEstimate, value: float) -> bool:
     return interval.lower <= value <= interval.upper
 
 

@@ -396,8 +396,8 @@ def discrete_controller(task: TuningTask, loop: TransferLoop) -> DiscreteControl
     holds, sign = holding_terms(loop)
 
     def block(role: str, one: Block, gain: str = "", *, is_held: bool = False) -> DiscreteBlock:
-        made = difference_equation(one, sampling.sample_s)
-        return DiscreteBlock(role, one.name, gain, made.b, made.a, int(sign) if is_held else 0)
+        b, a = difference_equation(one, sampling.sample_s)
+        return DiscreteBlock(role, one.name, gain, b, a, int(sign) if is_held else 0)
 
     terms = (block("term", t.block, t.gain, is_held=held) for t, held in zip(loop.terms, holds, strict=True))
     blocks = (*terms, *(block("filter", one) for one in loop.filters))

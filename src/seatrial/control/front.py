@@ -29,23 +29,18 @@ from seatrial.physics.simulate.closed_loop import loop_record
 _REPEATS = 3  # of which the fastest counts; chosen
 
 
-@dataclass(frozen=True)
-class RecordCost:
-    """CPU time [s] of one record of 1000 s at 0.1 s: by a compiled scalar loop, and by scipy.signal.lsim."""
+def record_cost(loop: TransferLoop, gains: Array, seed: int) -> tuple[float, float]:
+    """Measure the CPU time [s] of a record of 1000 s at 0.1 s, by a compiled scalar loop and by scipy.signal.lsim.
 
-    compiled: float
-    lsim: float
-
-
-def record_cost(loop: TransferLoop, gains: Array, seed: int) -> RecordCost:
-    """Measure records of one loop with the gains (g,) in white noise: each one holds its input exactly."""
+    Of one loop with the gains (g,) in white noise: each one holds its input exactly.
+    """
     from scipy.signal import lsim
 
     states = state_space(loop)
     disturbance = np.random.default_rng(seed).standard_normal(round(RECORD_SECONDS / RECORD_STEP) + 1)
     system = (states.closed_loop_matrix(gains), states.b[:, None], states.c[None], np.zeros((1, 1)))
     times = RECORD_STEP * np.arange(len(disturbance))
-    return RecordCost(
+    return (
         _least_cpu_time(lambda: loop_record(states, gains, disturbance, RECORD_STEP)),
         _least_cpu_time(lambda: lsim(system, disturbance, times, interp=False)),
     )
@@ -348,7 +343,7 @@ def _search_result(
 ) -> GainSearch:
     judged, (low, high) = evaluator.evaluate(answers), free_gain_bounds(evaluator)[1]
     beaten = (package_front.objectives[:, None] < judged.objectives).all(axis=2).any(axis=0)
-    cost = record_cost(evaluator.loop, answers[0], seed)
+    compiled, lsim = record_cost(evaluator.loop, answers[0], seed)
     return GainSearch(
         source=SOURCE,
         settings={field.name: _setting_text(getattr(settings, field.name)) for field in fields(settings)},
@@ -366,8 +361,8 @@ def _search_result(
         is_feasible=tuple(judged.is_feasible.tolist()),
         dominated=int(beaten.sum()),
         hypervolume=_covered_share(front.objectives, package_front.objectives),
-        compiled_record_s=cost.compiled,
-        lsim_record_s=cost.lsim,
+        compiled_record_s=compiled,
+        lsim_record_s=lsim,
     )
 
 

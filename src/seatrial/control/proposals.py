@@ -11,7 +11,8 @@ from seatrial.control.gain_evaluation import GainEvaluator, exceedance_share
 from seatrial.control.schedule import schedule_conditions
 from seatrial.control.task import Effectiveness, ScheduleGrid, Seaway, TuningTask
 from seatrial.control.verification.stabiliser import natural_period, prior_deviations
-from seatrial.core.results.online import CraftFactor, Estimated, GainMargins, HeadingRange, Proposal, SeaEstimate
+from seatrial.core.results.online import CraftFactor, GainMargins, HeadingRange, Proposal, SeaEstimate
+from seatrial.core.results.ship_motions import IntervalEstimate
 from seatrial.core.results.tuning import OperatingPoint
 from seatrial.core.values import Array, Index, InputError
 from seatrial.estimation.problem.spectral_likelihood import hann_transform
@@ -242,7 +243,7 @@ def _judged(evaluators: list[GainEvaluator], candidates: Array) -> _Judged:
 def _margins(evaluators: list[GainEvaluator], judged: _Judged, k: int, gains: Array) -> GainMargins:
     every = [margins(one.loop.with_gains(gains)) for one in evaluators]
 
-    def over_draws(value: Callable[[int], float]) -> Estimated:
+    def over_draws(value: Callable[[int], float]) -> IntervalEstimate:
         return estimated(np.array([value(i) for i in range(len(every))]))
 
     return GainMargins(
@@ -257,10 +258,10 @@ def _margins(evaluators: list[GainEvaluator], judged: _Judged, k: int, gains: Ar
     )
 
 
-def estimated(values: Array) -> Estimated:
+def estimated(values: Array) -> IntervalEstimate:
     """Return the median of draws (n,) with the ends of their middle 95 %; what is infinite counts as largest."""
     low, middle, high = np.quantile(values, _MIDDLE_95, method="nearest").tolist()
-    return Estimated(middle, low, high)
+    return IntervalEstimate(middle, low, high)
 
 
 def _reasons(judged: _Judged, chosen: int, had_gains: bool, short: list[str]) -> tuple[str, ...]:

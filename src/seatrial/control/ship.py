@@ -22,6 +22,7 @@ from seatrial.numerics.kernels.sensitivity import evaluate_tangent
 from seatrial.physics.hydro.free_roll import equivalent_damping
 from seatrial.physics.loops import Block, TransferLoop
 from seatrial.physics.models.thrust_orders import YAW
+from seatrial.physics.simulate.linear import LinearSystem
 from seatrial.physics.simulate.replay import ZERO_BY_DEFAULT
 from seatrial.physics.simulate.states import approach_speed, balancing_input, held_inputs, settled_actuators
 
@@ -218,16 +219,6 @@ _LATERAL_OFFSET, _NEGLIGIBLE = 1e-12, 1e-10
 _ROLL_PARAMETERS = ("b_1", "b_2", "b_3", "c_1", "c_3", "c_5", "phi_0")
 
 
-@dataclass(frozen=True, eq=False)
-class LinearisedShip:
-    """x' = A x + B u, y = C x + D u about a trim, inputs in the model's signs; (n, n), (n, nu), (n,), (nu,)."""
-
-    A: Array
-    B: Array
-    C: Array
-    D: Array
-
-
 def trim_ship(
     file: ModelFile,
     *,
@@ -307,13 +298,13 @@ def plant_text(ship: TrimmedShip) -> str:
     return f"model '{model.name}', {', '.join([where, *held])}{stable}"
 
 
-def linearise(ship: TrimmedShip) -> LinearisedShip:
+def linearise(ship: TrimmedShip) -> LinearSystem:
     """Return the matrices about the trim, the mean over both sides."""
     one, other = _one_sided_matrices(ship)
-    return LinearisedShip(*(0.5 * (getattr(one, k) + getattr(other, k)) for k in ("A", "B", "C", "D")))
+    return LinearSystem(*(0.5 * (getattr(one, k) + getattr(other, k)) for k in ("A", "B", "C", "D")))
 
 
-def _one_sided_matrices(ship: TrimmedShip) -> tuple[LinearisedShip, LinearisedShip]:
+def _one_sided_matrices(ship: TrimmedShip) -> tuple[LinearSystem, LinearSystem]:
     model = ship.model
     nx, nu = len(model.states), len(model.inputs)
     aside = np.zeros(nx)
@@ -323,7 +314,7 @@ def _one_sided_matrices(ship: TrimmedShip) -> tuple[LinearisedShip, LinearisedSh
     rates, seen = (jacobian_at(model, states, ship.inputs, of_outputs=b) for b in (False, True))
     row = model.observables.index(ship.output)
     rows = np.eye(nx, nx + nu)[None, row].repeat(2, 0) if row < nx else seen[:, row - nx]
-    one, other = (LinearisedShip(j[:, :nx], j[:, nx : nx + nu], c[:nx], c[nx : nx + nu])
+    one, other = (LinearSystem(j[:, :nx], j[:, nx : nx + nu], c[:nx], c[nx : nx + nu])
                   for j, c in zip(rates, rows, strict=True))  # fmt: skip
     return one, other
 
@@ -377,14 +368,14 @@ def response_of_states(ship: TrimmedShip, name: str, weights: Mapping[str, float
     return _transfer_function(ship, replace(linear, C=C, D=np.zeros(len(linear.D))), name)
 
 
-def _transfer_function(ship: TrimmedShip, linear: LinearisedShip, name: str) -> Block:
+def _transfer_function(ship: TrimmedShip, linear: LinearSystem, name: str) -> Block:
     """Return C (s I - A)^-1 B + D of one input, controllable and observable states only, in the notation's signs."""
     column = ship.model.input_names.index(name)
     sign = -1.0 if ship.model.inputs[column].is_reversed else 1.0
     return _response(ship, linear, sign * linear.B[:, column], sign * float(linear.D[column]), name)
 
 
-def _response(ship: TrimmedShip, linear: LinearisedShip, b: Array, feed: float, name: str) -> Block:
+def _response(ship: TrimmedShip, linear: LinearSystem, b: Array, feed: float, name: str) -> Block:
     kept = _linked_states(linear.A, _is_significant(b)) & _linked_states(linear.A.T, _is_significant(linear.C))
     A, b, c = linear.A[np.ix_(kept, kept)], b[kept], linear.C[kept]
     den = _characteristic_polynomial(A)

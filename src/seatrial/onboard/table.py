@@ -10,13 +10,13 @@ import numpy as np
 
 from seatrial.core.results.online import (
     CoefficientChange,
-    Estimated,
     EstimatorPhase,
     Proposal,
     SampleCounts,
     SeaEstimate,
     Snapshot,
 )
+from seatrial.core.results.ship_motions import IntervalEstimate
 from seatrial.core.text.numbers import DASH, duration, exponent, fixed, percent, raised, significant
 from seatrial.core.text.words import counted, enumeration, printable
 from seatrial.core.values import Array, Severity, display_unit, worst_first
@@ -205,7 +205,7 @@ def margins_text(proposal: Proposal) -> str:
     return ", ".join(parts) + f"; stable on {m.stable_draws} of {m.draws}"
 
 
-def _interval(one: Estimated, unit: str = "", factor: float = 1.0) -> str:
+def _interval(one: IntervalEstimate, unit: str = "", factor: float = 1.0) -> str:
     low, middle, high = (_number(factor * value) for value in (one.lower, one.value, one.upper))
     return f"{middle} [{low}, {high}] {unit}".rstrip()
 

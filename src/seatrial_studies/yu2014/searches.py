@@ -111,6 +111,6 @@ def time_domain_seconds(seed: int) -> tuple[float, float]:
     By a compiled scalar loop, and by scipy's lsim: the time of one record times all evaluations; the sea free of cost.
     """
     settings = GeneticSettings()
-    cost = record_cost(performance(Preamplifier.WASHOUT).loop, PUBLISHED_VALUES, seed)
+    compiled, lsim = record_cost(performance(Preamplifier.WASHOUT).loop, PUBLISHED_VALUES, seed)
     count = settings.generations * settings.population
-    return cost.compiled * count, cost.lsim * count
+    return compiled * count, lsim * count

@@ -50,7 +50,7 @@ class SampledMatrices:
         self._blocks = [difference_equation(term.block, T) for term in loop.terms]
         self._filters = [difference_equation(block, T) for block in loop.filters]
         self._gains = loop.gain_values
-        self.size = len(A) + sum(len(b.a) - 1 for b in (*self._blocks, *self._filters)) + whole + 1
+        self.size = len(A) + sum(len(a) - 1 for _, a in (*self._blocks, *self._filters)) + whole + 1
         self._n = len(A)
         self.M = np.stack([self._stepped(row, 0.0)[0] for row in np.eye(self.size)], axis=1)
         self.N = self._stepped(np.zeros(self.size), 1.0)[0]
@@ -62,8 +62,8 @@ class SampledMatrices:
         plant, rest = x[: self._n], list(x[self._n : self.size - self._whole - 1])
         orders, following = x[self.size - self._whole - 1 :], []
 
-        def through(block: object, value: float) -> float:
-            b, a = block.b, block.a  # type: ignore[attr-defined]
+        def through(block: tuple[tuple[float, ...], tuple[float, ...]], value: float) -> float:
+            b, a = block
             own = [rest.pop(0) for _ in range(len(a) - 1)]
             y = b[0] * value + (own[0] if own else 0.0)
             for i in range(len(own)):

@@ -8,18 +8,10 @@ import numpy as np
 from pydantic import Field, computed_field
 
 from seatrial.core.results.fields import ListedArray, Number, ReportedFinding, StoredRecord
+from seatrial.core.results.ship_motions import IntervalEstimate
 from seatrial.core.values import Array
 
 # Gains proposed on board: the sea and the craft that the last minutes show, and the gains that fit both. SI.
-
-
-@dataclass(frozen=True)
-class Estimated:
-    """A value with the ends of its 95 % interval."""
-
-    value: Annotated[Number, Field(description="median")]
-    lower: Number
-    upper: Number
 
 
 @dataclass(frozen=True)
@@ -35,9 +27,9 @@ class HeadingRange:
 class SeaEstimate:
     """The sea that the motions of a stretch show."""
 
-    height: Annotated[Estimated, Field(description="significant wave height, m")]
-    period: Annotated[Estimated, Field(description="peak period, s")]
-    heading: Annotated[Estimated, Field(description="to the waves, rad, 0 following, pi head")]
+    height: Annotated[IntervalEstimate, Field(description="significant wave height, m")]
+    period: Annotated[IntervalEstimate, Field(description="peak period, s")]
+    heading: Annotated[IntervalEstimate, Field(description="to the waves, rad, 0 following, pi head")]
     headings: Annotated[
         tuple[HeadingRange, ...],
         Field(description="the fewest headings that hold 95 %, the likeliest range first; several: it is ambiguous"),
@@ -50,19 +42,19 @@ class CraftFactor:
     """One property of the craft over that of the loop file's model."""
 
     name: Annotated[str, Field(description="gain of the actuator's effect, natural frequency, damping")]
-    factor: Estimated
+    factor: IntervalEstimate
 
 
 @dataclass(frozen=True)
 class GainMargins:
     """Margins of the proposed gains, over the draws of sea and craft that the stretch allows."""
 
-    Ms: Annotated[Estimated, Field(description="the largest |S|")]
-    gain_margin: Annotated[Estimated, Field(description="factor by which the loop gain may grow; null: any")]
-    phase_margin: Annotated[Estimated, Field(description="rad; null: any")]
-    delay_margin: Annotated[Estimated, Field(description="s of dead time until the loop is unstable; null: any")]
-    reduction: Annotated[Estimated, Field(description="of the output's rms, 0 to 1")]
-    saturation: Annotated[Estimated, Field(description="share of actuator amplitudes beyond the limit, 0 to 1")]
+    Ms: Annotated[IntervalEstimate, Field(description="the largest |S|")]
+    gain_margin: Annotated[IntervalEstimate, Field(description="factor by which the loop gain may grow; null: any")]
+    phase_margin: Annotated[IntervalEstimate, Field(description="rad; null: any")]
+    delay_margin: Annotated[IntervalEstimate, Field(description="s of dead time until the loop is unstable; null: any")]
+    reduction: Annotated[IntervalEstimate, Field(description="of the output's rms, 0 to 1")]
+    saturation: Annotated[IntervalEstimate, Field(description="share of actuator amplitudes beyond the limit, 0 to 1")]
     stable_draws: int
     draws: int
 

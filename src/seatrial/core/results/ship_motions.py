@@ -66,7 +66,7 @@ class FrequencyResponse:
 
 @dataclass(frozen=True)
 class IntervalEstimate:
-    """A derived value with its 95 % interval, SI."""
+    """A derived value, of draws their median, with its 95 % interval, SI."""
 
     value: Number
     lower: Number

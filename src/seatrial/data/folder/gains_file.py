@@ -15,7 +15,8 @@ import tomli_w
 from numpy.typing import NDArray
 
 from seatrial.core.results import Actuator, Design, TimedOrder
-from seatrial.core.results.online import Estimated, HeadingRange, Proposal
+from seatrial.core.results.online import HeadingRange, Proposal
+from seatrial.core.results.ship_motions import IntervalEstimate
 from seatrial.core.results.station import StationKeeping
 from seatrial.core.results.tuning import (
     Component,
@@ -393,7 +394,7 @@ def proposal_toml(proposal: Proposal) -> str:
     return tomli_w.dumps(table)
 
 
-def _interval(estimated: Estimated, factor: float = 1.0) -> dict[str, float]:
+def _interval(estimated: IntervalEstimate, factor: float = 1.0) -> dict[str, float]:
     ends = {"value": estimated.value, "lower": estimated.lower, "upper": estimated.upper}
     return _finite({name: _rounded(factor * value) for name, value in ends.items()})
 

@@ -1,7 +1,7 @@
 """A controller for other programs: as difference equations, and as python-control's objects."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,18 +25,10 @@ _AT_ORIGIN = 1e-9  # rad/s, below which a pole integrates: rounding
 _STEPS = (1.0, 2.0, 5.0)  # sample times are these times a power of ten
 
 
-@dataclass(frozen=True)
-class DifferenceEquation:
-    """y[k] = b_0 x[k] + b_1 x[k-1] + ... - a_1 y[k-1] - ...; `a` begins with 1."""
-
-    b: tuple[float, ...]
-    a: tuple[float, ...]
-
-
-def difference_equation(block: Block, sample_s: float) -> DifferenceEquation:
+def difference_equation(block: Block, sample_s: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Return a block by Tustin's rule, s = 2 / T (z - 1) / (z + 1) (Astrom & Wittenmark 1997, section 8.3).
 
-    sample_s: T [s].
+    b and a of y[k] = b_0 x[k] + b_1 x[k-1] + ... - a_1 y[k-1] - ...; a begins with 1. sample_s: T [s].
 
     Raises:
         InputError: T is not positive, or the block has a pole at 2 / T.
@@ -47,7 +39,7 @@ def difference_equation(block: Block, sample_s: float) -> DifferenceEquation:
     num, den = (_substituted(side, order, 2.0 / sample_s) for side in (block.num, block.den))
     if den[0] == 0.0:
         raise InputError(f"block '{block.name}' has a pole at 2 / T for T = {sample_s:g} s; take another sample time")
-    return DifferenceEquation(tuple((num / den[0]).tolist()), tuple((den / den[0]).tolist()))
+    return tuple((num / den[0]).tolist()), tuple((den / den[0]).tolist())
 
 
 def holding_terms(loop: TransferLoop) -> tuple[tuple[bool, ...], float]:

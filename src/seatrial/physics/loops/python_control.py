@@ -52,5 +52,5 @@ def open_loop_transfer_function(loop: TransferLoop) -> "TransferFunction":
     d, n = loop.polynomials
     if loop.sampling is None:
         return control.TransferFunction(loop.gain_values @ n, np.array(d))
-    made = difference_equation(Block("open loop", tuple(loop.gain_values @ n), tuple(d)), loop.sampling.sample_s)
-    return control.TransferFunction(made.b, made.a, loop.sampling.sample_s)
+    b, a = difference_equation(Block("open loop", tuple(loop.gain_values @ n), tuple(d)), loop.sampling.sample_s)
+    return control.TransferFunction(b, a, loop.sampling.sample_s)

@@ -184,9 +184,9 @@ def sampled_body(
 
 
 def _block(block: Block, T: float, gain: float, holds: float) -> Array:
-    made = difference_equation(block, T)
-    n = len(made.a) - 1
-    return np.concatenate([[n, gain, holds, 0.0], made.b, made.a, np.zeros(n)])
+    b, a = difference_equation(block, T)
+    n = len(a) - 1
+    return np.concatenate([[n, gain, holds, 0.0], b, a, np.zeros(n)])
 
 
 def _sensor(block: Block, dt: float) -> tuple[Array, int]:

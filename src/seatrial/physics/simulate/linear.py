@@ -206,7 +206,10 @@ _NONE: Index = np.empty(0, dtype=np.int64)
 
 @dataclass(frozen=True, eq=False)
 class LinearSystem:
-    """x' = A x + B u, y = C x + D u of an affine model about its rest; (nx, nx), (nx, nu), (ny, nx), (ny, nu)."""
+    """x' = A x + B u, y = C x + D u of a model about its rest or trim; (nx, nx), (nx, nu), (ny, nx), (ny, nu).
+
+    Of one output C is (nx,) and D (nu,); inputs are in the model's signs.
+    """
 
     A: Array
     B: Array

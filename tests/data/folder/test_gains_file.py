@@ -1,7 +1,9 @@
-"""What other programs read of a tuning: gains that come back, a loop that python-control closes alike, strict JSON."""
+"""Files of gains: what other programs read of a tuning, the helmsman's table, proposals; earlier versions load."""
 
 import csv
 import io
+import math
+import shutil
 import tomllib
 from dataclasses import replace
 from pathlib import Path
@@ -10,14 +12,26 @@ import control
 import numpy as np
 import pytest
 from scipy.io import loadmat
+from tests.data.folder.write_earlier_results import FOLDER, RESULTS
+from tests.reporting.fabricated_design import fabricated_design
 from tests.reporting.fabricated_tuning import fabricated_autopilot, fabricated_bare, fabricated_fin, heading_loop
 
+import seatrial as st
+from seatrial.api import campaign_status, gather_campaign
+from seatrial.core.results import Actuator, TimedOrder
+from seatrial.core.results.online import GainMargins, Proposal
+from seatrial.core.results.ship_motions import IntervalEstimate
 from seatrial.core.results.tuning import Component, Tuning
 from seatrial.core.values import InputError
 from seatrial.data.folder.gains_file import (
+    channel_display_unit,
     controller_gains,
     gains_toml,
     loop_mat,
+    order_cells,
+    order_headings,
+    orders_csv,
+    proposal_toml,
     read_gains,
     read_schedule,
     schedule_csv,
@@ -194,3 +208,103 @@ def test_gains_that_need_a_filter_have_no_place_without_it(tmp_path: Path) -> No
         controller_gains(path)
     path.write_text(lines.format("reversed"), encoding="utf-8")
     assert controller_gains(path) == {"KP": 1.0}
+
+
+ACTUATORS = (Actuator("delta", -0.6, 0.6, 0.05, 5.0), Actuator("v_j", 1.0, 3.0, 0.5, 5.0))
+
+
+def test_angles_are_given_in_degrees() -> None:
+    assert channel_display_unit("delta") == (pytest.approx(180.0 / math.pi), "deg")
+    assert channel_display_unit("no channel of the notation") == (1.0, "1")
+    assert order_headings(ACTUATORS) == ["time [s]", "delta [deg]", "v_j [m/s]"]
+
+
+def test_an_order_is_as_fine_as_a_hundredth_of_the_range() -> None:
+    assert order_cells(TimedOrder(6.25, {"delta": math.radians(10.04), "v_j": 1.23456}), ACTUATORS) == [
+        "6.25", "10", "1.23",
+    ]  # fmt: skip
+    assert order_cells(TimedOrder(7.0, {}), ACTUATORS) == ["7", "", ""]
+
+
+def test_the_file_has_a_line_for_each_order() -> None:
+    design = fabricated_design()
+    lines = orders_csv(design).splitlines()
+    assert lines[0] == "time [s],delta [deg]" and len(lines) == 1 + len(design.orders)
+
+
+ANY = IntervalEstimate(math.inf, 2.0, math.inf)
+ANGLE = IntervalEstimate(1.0, 0.5, 2.0)
+
+
+def test_infinite_margins_are_left_out_and_angles_are_degrees() -> None:
+    margins = GainMargins(ANGLE, ANY, ANGLE, ANY, ANGLE, ANGLE, 40, 40)
+    table = tomllib.loads(proposal_toml(Proposal("fins", 0.0, 1200.0, {"KP": 3.0}, ("why",), margins=margins)))
+    assert table["gains"] == {"KP": 3.0}
+    assert table["margins"]["gain_margin"] == {"lower": 2.0}
+    assert table["margins"]["phase_margin_deg"]["value"] == pytest.approx(math.degrees(1.0), rel=1e-5)
+
+
+def test_a_proposal_without_gains_says_why() -> None:
+    table = tomllib.loads(proposal_toml(Proposal("fins", math.nan, math.nan, {}, ("too little roll",))))
+    assert not table["has_gains"]
+    assert table["reasons"] == ["too little roll"]
+    assert "sea" not in table
+
+
+FILES = Path(__file__).with_name("earlier_files")
+LOOPS = {
+    "fin_from_decay": "roll", "fin_stabiliser": "", "ride_control": "heave_pitch", "waterjet_autopilot": "waterjet",
+    "waterjet_track": "waterjet", "waterjet_weather": "waterjet",
+}  # fmt: skip
+TRIALS = sorted(path.stem for path in FILES.glob("*.toml") if path.stem not in {*LOOPS, "gains"})
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_a_result_loads(name: str) -> None:
+    result = st.load(FOLDER / name)
+    assert type(result).__name__.lower() == name
+
+
+def test_the_numbers_of_a_fit_are_those_that_were_written() -> None:
+    fit = st.load_fit(FOLDER / "fit")
+    assert len(fit.params) == 11 and len(fit.records) == 4
+    assert fit.params["Y_v"] == pytest.approx(fit.model.parameters["Y_v"].value, rel=1e-12)
+    assert fit.covariance.shape == (11, 11) and np.isfinite(fit.predictions[0].simulated["psi"]).all()
+    assert "zigzag_25_25" in [p.record for p in fit.validation]
+
+
+@pytest.mark.parametrize("path", sorted((FILES / "models").glob("*.toml")), ids=lambda p: p.stem)
+def test_a_model_file_loads(path: Path) -> None:
+    file = st.load_model(path)
+    assert len(file.covariance) == len(file.model.parameters.free)
+    assert [source.role for source in file.provenance.records].count("training") >= 1
+
+
+@pytest.mark.parametrize("name", TRIALS)
+def test_a_trial_file_loads(name: str, tmp_path: Path, repository: Path, request: pytest.FixtureRequest) -> None:
+    text = (FILES / f"{name}.toml").read_text(encoding="utf-8")
+    if "${SEATRIAL_DATA}" in text:
+        text = text.replace("${SEATRIAL_DATA}", request.getfixturevalue("data_folder").as_posix())
+    (tmp_path / "trial.toml").write_text(text, encoding="utf-8")
+    for folder in (repository / "examples").iterdir():
+        if folder.is_dir() and f'folder = "{folder.name}"' in text:
+            shutil.copytree(folder, tmp_path / folder.name)
+    trial = st.load_trial(tmp_path / "trial.toml")
+    assert trial.model.states
+
+
+@pytest.mark.parametrize("name", LOOPS)
+def test_a_loop_file_loads(name: str) -> None:
+    model = FILES / "models" / f"{LOOPS[name]}.toml" if LOOPS[name] else None
+    task = st.load_loop(FILES / f"{name}.toml", model_file=model)
+    assert len(task.objectives) > 1
+
+
+def test_a_file_of_gains_loads() -> None:
+    gains = read_gains(FILES / "gains.toml")
+    assert gains and all(np.isfinite(list(gains.values())))
+
+
+def test_a_campaign_loads() -> None:
+    assert campaign_status(FILES / "campaign").done == 1
+    assert len(gather_campaign(FILES / "campaign").coefficients) == 11
