@@ -2,7 +2,7 @@
 # Works with GNU make on Linux and macOS, and on Windows from Git Bash with `choco install make`; there, without make,
 # run the lines of a target by hand with .venv\Scripts in place of .venv/bin.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test lint style types imports bench golden docs clean
+.PHONY: help setup demo test test-long lint style types imports bench golden docs clean
 MAKEFLAGS += --no-print-directory
 
 VENV := .venv
@@ -26,7 +26,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 
 help:
 	@echo 'make demo   run the main job on a simulated trial series; the report lies in demo/'
-	@echo 'make test   the whole test suite'
+	@echo 'make test   the test suite, with a sample of the long tests (make test-long)'
 	@echo 'make lint   style, types and the order of the layers (make style, make types, make imports)'
 	@echo 'make bench  times and ratios on this machine'
 	@echo 'make golden compare results with the recorded ones, trial by trial'
@@ -51,6 +51,9 @@ demo: $(READY)
 
 test: $(READY)
 	@$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
+
+test-long: $(READY)
+	@$(BIN)/python -m pytest -n 2 -m long
 
 lint: style types imports
 

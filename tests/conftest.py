@@ -4,6 +4,7 @@ import gc
 import os
 import shutil
 import sys
+import zlib
 from collections.abc import Callable, Iterator
 from contextlib import nullcontext
 from pathlib import Path
@@ -33,12 +34,25 @@ gc.set_threshold(cli.COLLECTION_THRESHOLD)
 # folders whose files take longest, run first, so that no worker of a parallel run waits for one of them at the end
 LONGEST_FIRST = {"studies", "cli", "reporting"}
 
+# of the tests marked long one in so many runs with the others, the next ones with SEATRIAL_SAMPLE=1 to 9; chosen
+LONG_SHARE = 10
+
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Put the longest files first; the others keep their order."""
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Put the longest files first; of long tests keep a sample, unless they are asked for by `-m long` or by name."""
     items.sort(key=lambda item: LONGEST_FIRST.isdisjoint(item.path.relative_to(REPOSITORY).parts))
+    if config.option.markexpr or any("::" in argument for argument in config.args):
+        return
+    sample = int(os.environ.get("SEATRIAL_SAMPLE", "0")) % LONG_SHARE
+    left_out = [item for item in items if item.get_closest_marker("long") and _sample_of(item) != sample]
+    config.hook.pytest_deselected(items=left_out)
+    items[:] = [item for item in items if item not in left_out]
+
+
+def _sample_of(item: pytest.Item) -> int:
+    return zlib.crc32(item.nodeid.encode()) % LONG_SHARE
 
 
 @pytest.fixture(scope="session", autouse=True)

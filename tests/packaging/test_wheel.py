@@ -12,7 +12,7 @@ import pytest
 
 from seatrial import __version__
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.long
 SCRIPTS = "Scripts" if os.name == "nt" else "bin"
 STUDIES = """
 from importlib.metadata import entry_points

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 
-@pytest.mark.parametrize("is_closed", [False, True])
+@pytest.mark.parametrize("is_closed", [pytest.param(False, marks=pytest.mark.long), True])
 def test_a_gust_with_a_memory_is_modelled(is_closed: bool) -> None:
     """Yaw disturbance worth 2 deg of rudder with a memory of 5 s; two runs, of which each lies within 3.5 errors."""
     cell = gusts.Cell("nomoto", gusts.Disturbance(0.5, 5.0), is_closed)

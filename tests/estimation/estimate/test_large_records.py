@@ -34,6 +34,7 @@ def estimated(record: Record) -> Estimation:
     return estimate_model(nomoto(), Runs.one_session_each([record], 50.0), options=EstimatorOptions(workers=1))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("gust", [0.0, np.radians(1.2)])
 def test_one_step_from_stretches_is_the_estimate_of_all(gust: float, monkeypatch: pytest.MonkeyPatch) -> None:
     record = steered(gust)

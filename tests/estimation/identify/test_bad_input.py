@@ -90,6 +90,7 @@ def test_one_sentence_and_exit_code_2(
     assert not list(out.glob("*"))
 
 
+@pytest.mark.long
 def test_runs_that_a_wrong_value_cannot_repeat_are_said_to_diverge(
     trial_of: WriteTrial, run_command: Callable[..., int], capsys: pytest.CaptureFixture
 ) -> None:

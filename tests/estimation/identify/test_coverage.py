@@ -2,12 +2,14 @@
 
 import interval_coverage as coverage
 import numpy as np
+import pytest
 
 from seatrial.estimation.estimate.settings import IntervalMethod
 
 SERIES = 2
 
 
+@pytest.mark.long
 def test_intervals_hold_what_is_measured() -> None:
     """Some 30 values of two ships: .85 is two standard deviations below .95 if a ship's values go together."""
     turns_and_zigzags = coverage.series(SERIES, 3, IntervalMethod.AUTO)

@@ -64,7 +64,9 @@ def test_a_dead_band_that_is_held_at_zero_is_named(dead: float) -> None:
 
 
 @pytest.mark.parametrize("sag", [0.15, 0.0, -0.15])
-@pytest.mark.parametrize("method", [EstimateMethod.OUTPUT_ERROR, EstimateMethod.AUTO])
+@pytest.mark.parametrize(
+    "method", [EstimateMethod.OUTPUT_ERROR, pytest.param(EstimateMethod.AUTO, marks=pytest.mark.long)]
+)
 def test_thrust_that_drifts_is_named_with_its_size(sag: float, method: EstimateMethod) -> None:
     records = (run(sag, 1), run(sag, 2))
     findings = drifting_thrust_finding(fitted(records, method), records)

@@ -110,6 +110,7 @@ def test_a_turned_force_is_refused_with_the_way_to_declare_it(tmp_path: Path) ->
         identify(trial)
 
 
+@pytest.mark.long
 def test_the_predicted_turn_hardly_moves_with_the_prior() -> None:
     """A sample of the benchmark, which also chooses a disturbance; output error alone takes a third of the time."""
     alone, together = fusion.compare_with_captive(seed=13, spreads=(10.0, 100.0), method=EstimateMethod.OUTPUT_ERROR)

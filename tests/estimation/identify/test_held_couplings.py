@@ -40,7 +40,10 @@ def simulated(model: Model, rng: np.random.Generator, name: str) -> Record:
     return replace(planned, channels=dict(planned.channels) | noisy)
 
 
-@pytest.mark.parametrize(("N_uv", "criterion"), [(0.4, "output-error"), (0.0, "output-error"), (0.4, "auto")])
+@pytest.mark.parametrize(
+    ("N_uv", "criterion"),
+    [(0.4, "output-error"), (0.0, "output-error"), pytest.param(0.4, "auto", marks=pytest.mark.long)],
+)
 def test_a_coupling_of_the_truth_is_named_with_what_it_moves(
     N_uv: float, criterion: str, rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch
 ) -> None:

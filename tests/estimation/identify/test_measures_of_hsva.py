@@ -8,6 +8,7 @@ from seatrial.data.trial import load_trial
 from seatrial.estimation.identify import identify
 
 
+@pytest.mark.long
 def test_every_measured_overshoot_has_a_simulated_one(
     data_folder: Path, repository: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

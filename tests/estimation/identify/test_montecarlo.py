@@ -5,11 +5,13 @@ Limits are the 0.1 % quantiles of eight Gaussian errors; the benchmark holds two
 
 import montecarlo
 import numpy as np
+import pytest
 from scipy import stats
 
 RUNS = 8
 
 
+@pytest.mark.long
 def test_errors_keep_to_the_bound() -> None:
     made = montecarlo.series(runs=RUNS, seed=1, executes=1)
     low, high = np.sqrt(stats.chi2.ppf([0.001, 0.999], RUNS) / RUNS)

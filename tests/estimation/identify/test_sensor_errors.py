@@ -88,6 +88,7 @@ def test_what_a_pair_leaves_open_is_in_the_intervals() -> None:
     )
 
 
+@pytest.mark.long
 def test_waves_on_compass_and_gyro_show_their_lag() -> None:
     """Prediction error with the waves in its model knows the lag far better than residuals of the craft alone."""
     records = boat_records(0.02, math.radians(3.0))

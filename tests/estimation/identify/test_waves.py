@@ -81,6 +81,7 @@ def test_beam_seas_known_by_their_spectrum_are_refused(tmp_path: Path) -> None:
         identify(load_trial(path))
 
 
+@pytest.mark.long
 def test_a_sea_twice_as_high_as_it_was_is_refused(tmp_path: Path) -> None:
     wrong = SEA.replace("2.27", "5.0")
     path = write_wave_trial(tmp_path, [long(135)], FORCES[2:], WITH_BOX + NOISE, waves_table(135, wrong))
@@ -88,9 +89,13 @@ def test_a_sea_twice_as_high_as_it_was_is_refused(tmp_path: Path) -> None:
         identify(load_trial(path))
 
 
-def test_waves_that_nobody_measured_are_refused_and_calm_water_is_not(tmp_path: Path) -> None:
+def test_waves_that_nobody_measured_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="although no wave is recorded"):
         identify(load_trial(write_wave_trial(tmp_path, [SeawayScenario(135)], FORCES[2:])))
+
+
+@pytest.mark.long
+def test_calm_water_needs_no_waves(tmp_path: Path) -> None:
     calm = identify(load_trial(write_wave_trial(tmp_path, [SeawayScenario(135, has_waves=False)], FORCES[2:])))
     assert np.abs(errors(calm)).max() < 4.0
 

@@ -49,6 +49,7 @@ def predicted_runs(model: Model, number: int) -> RunPredictions:
     return predict_runs(found, records, 4.0, 8.0, number)
 
 
+@pytest.mark.long
 def test_bands_and_intervals_hold_what_happens(model: Model) -> None:
     """Nine runs: gross errors show, no more; the coverage benchmark counts a hundred series."""
     inside, measures = [], []
