@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.estimation.identify.test_fit_comparison import other_day
+from tests.estimation.identify.test_fit_result import other_day
 from tests.reporting.fabricated import fabricated_fit
 from typer.testing import CliRunner
 

@@ -1,4 +1,4 @@
-"""What cannot be asked for is refused in one sentence; where a trial begins."""
+"""What a trial asks of a design reaches the search, with or without its table; what cannot be asked for is refused."""
 
 from dataclasses import replace
 
@@ -7,10 +7,14 @@ import pytest
 from tests.estimation.design.conftest import BOTH, NOZZLE_RANGE, with_inputs, with_limits
 
 from seatrial.core.results import TrialLimits
-from seatrial.core.values import InputError
+from seatrial.core.values import InputError, Record, Ship
+from seatrial.data.folder.model_file import ModelFile
+from seatrial.data.trial import Role, Trial, TrialRun
+from seatrial.data.trial.design_request import DesignRequest, InputRange
 from seatrial.estimation.design.design import design
 from seatrial.estimation.design.manoeuvre_information import planned_record, sample_count, simulate_plan
-from seatrial.estimation.design.task import DesignTask
+from seatrial.estimation.design.task import DesignTask, design_task, recorded_request
+from seatrial.physics.models import model_named
 
 
 @pytest.mark.parametrize(
@@ -63,3 +67,86 @@ def test_a_trial_begins_straight_ahead_where_surge_balances(craft: DesignTask) -
 def test_an_input_begins_at_zero_or_in_the_middle_of_its_range(craft: DesignTask) -> None:
     both = with_inputs(craft, BOTH, {})
     assert both.neutral_positions == {"delta": 0.0, "v_j": pytest.approx(1.9)}
+
+
+NOZZLE = InputRange(lower=-0.6, upper=0.6, unit="rad", rate=0.07, hold=5.0)
+REQUEST = DesignRequest(
+    duration=300.0, rate=5.0, inputs={"delta": NOZZLE}, held={"v_j": 1.866}, draws=3, prior_percent=20.0
+)
+
+
+def trial(**changes: object) -> Trial:
+    noise = {"u": 0.02, "psi": 0.003}
+    made = Trial(Ship("craft", {"L": 9.8}), (), model_named("waterjet"), noise=noise, design_request=REQUEST)
+    return replace(made, **changes)
+
+
+def test_the_brief_becomes_a_task() -> None:
+    task = design_task(trial(question="how?"))
+    assert (
+        task.question,
+        task.request.duration,
+        task.request.rate,
+        task.request.draws,
+        task.request.relative_spread,
+    ) == ("how?", 300.0, 5.0, 3, 0.2)
+    assert task.request.actuators == (NOZZLE.actuator("delta"),)
+    assert task.sensors == {"u": 0.02, "psi": 0.003}
+    assert task.covariance is None
+    assert task.initial_state[0] == pytest.approx(0.8, rel=0.01)
+
+
+def test_a_model_file_takes_the_place_of_the_trial_s_values() -> None:
+    model = model_named("waterjet").with_values({"Y_v": -0.25})
+    covariance = np.eye(11) * 1e-6
+    task = design_task(trial(), ModelFile(model, covariance))
+    assert task.model.parameters["Y_v"].value == -0.25
+    assert task.covariance is not None and np.array_equal(task.covariance, covariance)
+    assert design_task(trial(), ModelFile(model)).covariance is None
+
+
+@pytest.mark.parametrize(
+    ("changes", "says"),
+    [
+        ({"design_request": None}, r"there is no table \[design\]"),
+        ({"noise": {}}, r"give \[noise\]"),
+        ({"noise": {"thrust": 1.0}}, r"\[noise\] thrust is nothing that model 'waterjet' shows"),
+        ({"design_request": replace(REQUEST, held={})}, "needs the input 'v_j'"),
+        ({"model": model_named("waterjet").with_values({"X_rr": 0.0})}, "coefficient 'X_rr' is zero"),
+    ],
+)
+def test_what_cannot_be_designed_is_refused(changes: dict[str, object], says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        design_task(trial(**changes))
+
+
+def test_a_model_file_of_other_equations_is_refused() -> None:
+    with pytest.raises(InputError, match="holds the equations 'nomoto', the trial 'waterjet'"):
+        design_task(trial(), ModelFile(model_named("nomoto")))
+
+
+TIME = 0.5 * np.arange(600)
+
+
+def _trial(rudder_deg: float) -> Trial:
+    generator = np.random.default_rng(3)
+    delta = np.radians(rudder_deg) * np.clip(4.0 * np.sin(0.1 * TIME), -1.0, 1.0)
+    noise = np.radians(0.2) * generator.standard_normal(TIME.size)
+    record = Record.from_arrays("run", TIME, {"delta": delta, "psi": 0.3 * np.sin(0.1 * TIME) + noise})
+    return Trial(Ship("craft", {"L": 30.0}), (TrialRun(record, Role.TRAIN),), model_named("nomoto"))
+
+
+def test_orders_go_as_far_as_recorded_and_sensors_are_as_good() -> None:
+    request, sensors = recorded_request(_trial(20.0))
+    (rudder,) = request.actuators
+    assert (request.duration, request.rate) == (pytest.approx(299.5), 1.0)
+    assert np.degrees([rudder.lower, rudder.upper]) == pytest.approx([-20.0, 20.0], abs=0.1)
+    assert np.degrees(rudder.rate) == pytest.approx(8.0, rel=0.2)
+    assert np.degrees(sensors["psi"]) == pytest.approx(0.2, rel=0.2)
+
+
+def test_a_trial_without_moving_inputs_or_records_is_refused() -> None:
+    with pytest.raises(InputError, match="no input moves"):
+        recorded_request(_trial(0.0))
+    with pytest.raises(InputError, match=r"no table \[design\]"):
+        recorded_request(replace(_trial(20.0), runs=()))

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
-from tests.estimation.predict.test_divergence import GENTLE, run
+from tests.estimation.predict.test_open_loop import GENTLE, run
 
 from seatrial.core.values import Ship
 from seatrial.data.trial import Role, Trial, TrialRun

@@ -1,25 +1,37 @@
-"""What is said of coefficients the records do not tell: a warning for some, a refusal where it is all of them."""
+"""What is said of coefficients the records do not tell, of offsets over sessions, and of two fits compared."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+from tests.reporting.fabricated import fabricated_fit
 
-from seatrial.core.results import Coefficient
-from seatrial.core.values import InputError, Prior
+from seatrial.core.results import Coefficient, Fit, OffsetPopulation
+from seatrial.core.values import InputError, Prior, Ship
+from seatrial.data.trial import EstimateSettings
+from seatrial.estimation.estimate import EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.identify.fit_result import (
     bounds_hit,
+    changes,
+    coefficient_differences,
     coefficients,
+    compared_fit,
+    findings,
+    offset_populations,
     open_signs,
     refuse_unidentified,
     unconverged,
 )
 from seatrial.estimation.information.covariance import Interval
 from seatrial.numerics.optimise import Status
+from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models import model_named
+from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.waterjet import WATERJET_COEFFICIENTS as COEFFICIENTS
 from seatrial.physics.models.waterjet import waterjet
+from seatrial.physics.simulate.steer import manoeuvre
 
 VALUES = waterjet().parameters
 
@@ -113,3 +125,92 @@ def test_what_ends_on_a_bound_has_no_interval_but_that_of_a_profile() -> None:
     assert (stopped.estimate, stopped.standard_error, stopped.lower, stopped.upper) == (5.0, None, None, None)
     profiled = coefficients(estimation, {}, {"T": (None, 6.0)})
     assert next(c for c in profiled if c.name == "T").upper == 6.0
+
+
+def other_day(fit: Fit) -> Fit:
+    """The fit with a coefficient moved by five standard errors, another draught, and records of its own."""
+    moved = tuple(
+        replace(c, estimate=c.estimate + 5.0 * c.standard_error, lower=c.lower + 5.0 * c.standard_error,
+                upper=c.upper + 5.0 * c.standard_error)
+        if c.name == "N_r" and c.standard_error and c.lower is not None and c.upper is not None else c
+        for c in fit.coefficients
+    )  # fmt: skip
+    ship = Ship(fit.ship.name, dict(fit.ship.particulars) | {"d": 0.6}, fit.ship.source)
+    records = tuple(r.rows(slice(5, None)).renamed(f"{r.name}_b") for r in fit.records)
+    method = replace(fit.method, criterion="prediction error")
+    return replace(fit, coefficients=moved, ship=ship, records=records, method=method, predictions=())
+
+
+def test_the_coefficient_that_moved_is_significant() -> None:
+    first = fabricated_fit()
+    rows, test = coefficient_differences(first, other_day(first))
+    assert [r.name for r in rows if r.is_significant] == ["N_r"]
+    assert len(rows) == sum(not c.fixed for c in first.coefficients)
+    assert test is not None
+    assert test.p < 0.05
+    same, test = coefficient_differences(first, first)
+    assert all(r.difference == 0.0 for r in same)
+    assert test is not None
+    assert (test.statistic, test.p) == (0.0, 1.0)
+
+
+def test_what_else_changed_is_named() -> None:
+    first = fabricated_fit()
+    texts = changes(first, other_day(first))
+    assert "criterion: output error over whole runs → prediction error" in texts
+    assert "particulars: d 0.71 → 0.6" in texts
+    assert any(
+        text.startswith("training runs: zigzag_10_10, zigzag_20_20, zigzag_30_30 → zigzag_10_10_b") for text in texts
+    )
+    assert changes(first, first) == ()
+    assert compared_fit(first, "a").records == ("zigzag_10_10", "zigzag_20_20", "zigzag_30_30")
+
+
+def test_shared_records_are_a_warning() -> None:
+    first = fabricated_fit()
+    assert [f.code for f in findings(first, first)] == ["shared-records"]
+    assert findings(first, other_day(first)) == ()
+
+
+HELM = np.array([8.0, 12.0, 16.0, 20.0, 24.0])
+ZEROS = np.radians([1.4, 1.15, 1.0, 0.75, 0.6])
+"""Zeros of the rudder that fall with the helm, 0.2 deg for a standard deviation of it."""
+
+
+def populations(covariates: dict[str, str]) -> tuple[OffsetPopulation, ...]:
+    """Of zigzags whose recorded rudder angle lacks the zero of their session."""
+    truth = nomoto().with_values({"K": 0.15, "T": 8.0, "U": 1.0})
+    records = []
+    for i, (helm, zero) in enumerate(zip(HELM, ZEROS, strict=True)):
+        run = manoeuvre(truth, programme(f"zigzag:{helm:g}/10"), dt=0.5, speed=1.0, duration=90.0).renamed(f"run_{i}")
+        records.append(run.with_channel("delta", run.channel("delta").with_values(run["delta"] - zero)))
+    offsets, timing = {"delta": np.radians(2.0)}, {"delta": 0.0}
+    settings = EstimateSettings(method="output-error", offsets=offsets, covariates=covariates, delays=timing)
+    runs = Runs.one_session_each(records, 7.0)
+    return offset_populations(estimate_model(truth, runs, settings, EstimatorOptions(workers=1)))
+
+
+def test_mean_and_deviation_stand_in_the_fit() -> None:
+    (zero,) = populations({})
+    assert (zero.name, zero.unit, zero.covariate, zero.slope) == ("delta zero", "rad", "", None)
+    assert zero.mean == pytest.approx(ZEROS.mean(), rel=0.02)
+    assert zero.deviation == pytest.approx(np.std(ZEROS, ddof=1), rel=0.5)
+    assert zero.sentence.startswith("delta zero of a new session: 0.9")
+    assert zero.sentence.endswith("deg standard deviation between sessions.")
+
+
+def test_a_slope_stands_with_its_error_and_what_it_is_worth() -> None:
+    (zero,) = populations({"delta": "delta"})
+    assert zero.covariate == "delta"
+    assert zero.slope is not None
+    assert zero.slope_standard_error is not None
+    assert np.degrees(zero.slope) == pytest.approx(-0.28, abs=0.05)  # of all five, by a line through them
+    assert abs(zero.slope) > 3.0 * zero.slope_standard_error
+    assert "rms of delta." in zero.sentence
+
+
+def test_a_slope_within_its_error_is_said_to_be_chance() -> None:
+    slope, error = np.radians([-0.13, 0.09])
+    zero = OffsetPopulation("delta zero", "rad", 0.016, 0.0016, 0.005, "delta", float(slope), float(error))
+    assert "changes by \N{MINUS SIGN}0.13 deg (standard error 0.090)" in zero.sentence.replace("-", "\N{MINUS SIGN}")
+    assert zero.sentence.endswith("which is no more than chance explains.")

@@ -1,12 +1,15 @@
-"""Windows of held-out runs: lengths, scores against their definitions, baselines that are right where they must be."""
+"""Scores of windows and of the baselines beside them."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from tests.estimation.identify.conftest import TRUTH
-from tests.estimation.predict.test_divergence import GENTLE, run
+from tests.estimation.predict.test_open_loop import GENTLE, run
 
+from seatrial.core.equations import Model
 from seatrial.core.results import Fit
-from seatrial.core.values import InputError, Record, Ship
+from seatrial.core.values import InputError, Parameters, Prior, Record, Ship
 from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRun
 from seatrial.data.trial.settings import WindowLength, window_lengths
 from seatrial.estimation.identify import identify
@@ -18,10 +21,13 @@ from seatrial.estimation.predict.window_scores import (
     at_rest,
     constant_course,
     pooled_rms,
+    prior_means,
     stays,
 )
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.roll import roll
+from seatrial.physics.models.thrusters import thrusters
+from seatrial.physics.sensors import Compass, Sensors, with_sensors
 from seatrial.physics.simulate.replay import trajectory
 
 
@@ -145,3 +151,27 @@ def test_the_band_of_a_decay_holds_what_gusts_do_to_the_roll() -> None:
     inside = window.scores["phi_deg"].inside_band
     assert inside is not None
     assert inside > 0.9
+
+
+def with_priors(model: Model, names: set[str]) -> Model:
+    """The model with a prior about the value of each of these coefficients."""
+    known = (replace(p, prior=Prior(p.value, 0.5)) if p.name in names else p for p in model.parameters)
+    return replace(model, parameters=Parameters(tuple(known)))
+
+
+def test_priors_of_instruments_alone_are_no_knowledge_of_a_craft() -> None:
+    craft = thrusters()
+    measured = with_sensors(craft, Sensors(compass=Compass.HARMONIC))
+    assert any(p.prior is not None for p in measured.parameters.free)
+    assert prior_means(measured) == {}
+
+
+def test_some_priors_beside_start_values_are_no_published_craft() -> None:
+    assert prior_means(with_priors(thrusters(), {"M_v", "Y_v"})) == {}
+
+
+def test_priors_of_all_coefficients_are_a_craft_that_was_not_fitted() -> None:
+    craft = thrusters()
+    free = set(craft.parameters.free_names)
+    measured = with_sensors(with_priors(craft, free), Sensors(compass=Compass.OFFSET))
+    assert prior_means(measured) == {n: craft.parameters[n].value for n in free} | {"compass_A": 0.0}

@@ -1,4 +1,4 @@
-"""The box-shaped hull: its limits, its symmetries, the sign of its pitch moment."""
+"""The box-shaped hull and dispersion: limits, symmetries, signs, deep water."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from seatrial.core.values import InputError
-from seatrial.physics.hydro.excitation import BoxHull, G, box_wave, encounter_frequency
+from seatrial.physics.hydro.excitation import BoxHull, G, box_wave, encounter_frequency, group_velocity, wavenumber
 
 HULL = BoxHull(L=60.0, B=7.14, T=2.27, c33=3.15e6, c35=6.83e6, c53=6.83e6, c55=6.54e8)
 SPEED = 9.26
@@ -131,3 +131,30 @@ def test_hulls_out_of_sense(key: str, value: float, words: str) -> None:
 def test_a_hull_without_a_stiff_way_is_refused() -> None:
     with pytest.raises(InputError, match="determinant"):
         BoxHull(60.0, 7.14, 2.27, 1.0, 2.0, 2.0, 1.0)
+
+
+omegas, depths = st.floats(0.05, 20.0), st.floats(0.05, 500.0)
+
+
+@given(omegas, depths)
+def test_the_relation_holds_at_any_depth(omega: float, depth: float) -> None:
+    k = float(wavenumber(omega, depth))
+    assert G * k * np.tanh(k * depth) == pytest.approx(omega**2, rel=1e-10)
+
+
+@given(omegas, depths)
+def test_the_group_velocity_is_the_slope(omega: float, depth: float) -> None:
+    step = 1e-5 * omega
+    slope = 2.0 * step / float(wavenumber(omega + step, depth) - wavenumber(omega - step, depth))
+    assert float(group_velocity(omega, depth)) == pytest.approx(slope, rel=1e-5)
+
+
+def test_infinite_depth_is_the_limit() -> None:
+    w = np.array([0.5, 2.0, 9.0])
+    assert wavenumber(w, np.inf) == pytest.approx(w**2 / G)
+    assert group_velocity(w, 1e4) == pytest.approx(0.5 * G / w)
+
+
+def test_still_water_has_no_wave_number() -> None:
+    with pytest.raises(InputError, match="positive frequencies"):
+        wavenumber(0.0, 1.0)

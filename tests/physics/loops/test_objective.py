@@ -1,4 +1,4 @@
-"""Objectives: by hand, against the same criterion elsewhere in the house, gradients by differences."""
+"""Objectives by hand and against the same criterion elsewhere; reversals and energy of an actuator."""
 
 import math
 
@@ -7,7 +7,15 @@ import pytest
 
 from seatrial.core.values import Array
 from seatrial.physics.hydro.excitation import G
-from seatrial.physics.loops import HullFactor, LoopSignal, Objective, Performance, sea_disturbance
+from seatrial.physics.loops import (
+    ActuatorDrive,
+    HullFactor,
+    LoopSignal,
+    Objective,
+    Performance,
+    reversals_per_hour,
+    sea_disturbance,
+)
 from seatrial.physics.loops.objective import (
     motion_interruptions,
     motion_sickness,
@@ -151,3 +159,13 @@ def test_a_dose_grows_with_the_root_of_the_time() -> None:
     v = np.array([[0.25]])
     assert motion_sickness_dose(20.0, 7200.0).value(v)[0] == pytest.approx(0.5 * math.sqrt(7200.0))
     assert vertical_acceleration(20.0).value(v)[0] == 0.25
+
+
+def test_a_harmonic_turns_back_twice_a_period() -> None:
+    omega = 0.8
+    assert reversals_per_hour(omega, omega**2) == pytest.approx(2.0 * 3600.0 * omega / (2.0 * math.pi))
+
+
+def test_a_reversal_costs_the_kinetic_energy_of_its_peak_over_the_efficiency() -> None:
+    peak = 0.3
+    assert ActuatorDrive(800.0, 0.8).energy(peak**2 / 2.0) == pytest.approx(0.5 * 800.0 * peak**2 / 0.8)

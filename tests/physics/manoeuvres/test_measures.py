@@ -1,4 +1,4 @@
-"""Measures against motions whose measures follow from geometry or from an independent fine integration."""
+"""Measures against motions whose measures follow from geometry or from finer integration, and their intervals."""
 
 import math
 from collections.abc import Callable
@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import InputError, Record
-from seatrial.physics.manoeuvres import ManoeuvreKind, imo_criteria, measures, recognise_manoeuvre
+from seatrial.physics.manoeuvres import ManoeuvreKind, bounded_interval, imo_criteria, measures, recognise_manoeuvre
 from seatrial.physics.manoeuvres.imo import first_overshoot_limit, second_overshoot_limit
+from seatrial.physics.manoeuvres.measures import commands_of, thrust_measures
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.published import kvlcc2
@@ -175,3 +176,94 @@ def test_a_rudder_that_never_rests_holds_no_angle() -> None:
     psi = 0.1 * np.cos(0.7 * time)
     record = Record.from_arrays("auto", time, {"delta": delta, "psi": psi, "r": np.gradient(psi, time)})
     assert recognise_manoeuvre(record) in ManoeuvreKind
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "half", "lowest", "highest"),
+    [
+        ("tactical_diameter_L", 3.0, 4.0, 0.0, math.inf),
+        ("overshoot_1_deg", 1.3, 2.0, 0.0, math.inf),
+        ("time_90_s", 40.0, 50.0, 0.0, math.inf),
+        ("speed_loss", 0.6, 0.6, -math.inf, 1.0),
+        ("steady_drift_deg", 20.0, 100.0, -90.0, 90.0),
+    ],
+)
+def test_wide_intervals_stay_among_possible_values(
+    name: str, value: float, half: float, lowest: float, highest: float
+) -> None:
+    bounds = bounded_interval(name, value, half)
+    assert bounds is not None
+    assert lowest < bounds[0] < value < bounds[1] < highest
+
+
+@pytest.mark.parametrize("name", ["advance_L", "overshoot_2_deg", "speed_loss", "steady_drift_deg", "transfer_L"])
+def test_narrow_intervals_are_symmetric(name: str) -> None:
+    bounds = bounded_interval(name, 0.7, 1e-4)
+    assert bounds == pytest.approx((0.6999, 0.7001), abs=1e-7)
+
+
+def test_the_interval_of_a_positive_measure_is_that_of_its_logarithm() -> None:
+    assert bounded_interval("advance_L", 2.0, 1.0) == pytest.approx((2.0 / math.exp(0.5), 2.0 * math.exp(0.5)))
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "half"),
+    [("steady_drift_deg", 20.0, 169.0), ("tactical_diameter_L", 3.0, 9.0), ("overshoot_1_deg", -0.5, 0.1),
+     ("speed_loss", 0.9, 0.4), ("steady_drift_deg", 95.0, 1.0), ("advance_L", 3.0, math.nan)],
+)  # fmt: skip
+def test_what_would_say_nothing_is_not_determined(name: str, value: float, half: float) -> None:
+    assert bounded_interval(name, value, half) is None
+
+
+def test_a_measure_without_limits_keeps_its_symmetric_interval() -> None:
+    assert bounded_interval("residual_yaw_rate_deg_s", 0.1, 0.5) == (-0.4, 0.6)
+
+
+TIME = 0.1 * np.arange(400)
+
+
+def record(**channels: np.ndarray) -> Record:
+    still = {"command_1": np.full(400, 0.5), "command_2": np.full(400, 0.5), "u": np.zeros(400), "psi": np.zeros(400)}
+    return Record.from_arrays("run", TIME, still | channels)
+
+
+def test_commands_are_the_numbered_channels() -> None:
+    assert commands_of(record(delta=np.zeros(400))) == ("command_1", "command_2")
+
+
+def test_a_spin_has_its_rate_and_the_time_of_a_turn() -> None:
+    found = thrust_measures(record(psi=np.angle(np.exp(0.5j * TIME))))
+    assert found == pytest.approx(
+        {"steady_yaw_rate_deg_s": np.degrees(0.5), "time_360_s": 4.0 * np.pi, "time_constant_s": 0.0}  # at once
+    )
+
+
+def test_a_straight_run_has_speed_and_time_constant() -> None:
+    found = thrust_measures(record(u=2.0 * (1.0 - np.exp(-TIME / 3.0))))
+    assert found == pytest.approx({"steady_speed": 2.0, "time_constant_s": 3.0}, rel=1e-3)
+
+
+def test_a_stop_is_read_from_the_change_of_commands_to_rest() -> None:
+    u = np.where(TIME < 10.0, 2.0, 2.0 - 0.25 * (TIME - 10.0))
+    found = thrust_measures(record(u=u, command_1=np.where(TIME <= 10.0, 0.5, -0.5)))
+    assert found == pytest.approx({"approach_speed": 2.0, "stopping_time_s": 8.0, "stopping_distance_m": 8.0})
+
+
+def test_a_zigzag_has_overshoots_behind_its_executes() -> None:
+    psi = 0.5 * np.sin(0.5 * TIME)
+    executes = (np.pi / 6.0 + np.pi * np.arange(6)) / 0.5  # at 15 deg on the way to 0.5 rad and back
+    command = 0.5 + 0.3 * (-1.0) ** np.searchsorted(executes, TIME)
+    found = thrust_measures(record(psi=psi, u=np.full(400, 1.5), command_1=command))
+    step = np.degrees(0.25 * np.cos(np.pi / 6.0) * 0.1)  # of the heading in a sample, within which an execute is known
+    assert found["overshoot_1_deg"] == pytest.approx(np.degrees(0.5 - 0.25), abs=step)
+    assert found["period_s"] == pytest.approx(4.0 * np.pi, rel=0.01)
+
+
+def test_commands_that_step_at_will_are_no_manoeuvre() -> None:
+    steps = np.repeat([0.1, 0.7, -0.3, 0.4, 0.2], 80)
+    assert thrust_measures(record(psi=0.5 * np.sin(0.5 * TIME), command_1=steps)) == {}
+
+
+def test_what_is_missing_is_named() -> None:
+    with pytest.raises(InputError, match="has no 'psi'"):
+        thrust_measures(record().without("psi"))

@@ -1,4 +1,4 @@
-"""Spectra against their analytic moments, and the published band."""
+"""Spectra against their analytic moments; encounter in head and following seas."""
 
 import math
 from itertools import pairwise
@@ -10,7 +10,17 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from seatrial.core.values import InputError
-from seatrial.physics.sea.spectrum import Spectrum, bretschneider, ittc, ittc_two_parameter, jonswap, sea_state
+from seatrial.physics.hydro.excitation import encounter_frequency
+from seatrial.physics.sea.spectrum import (
+    Spectrum,
+    bretschneider,
+    ittc,
+    ittc_two_parameter,
+    jonswap,
+    sea_state,
+    speed_factor,
+    wave_frequency,
+)
 
 ALL = [ittc(2.27), ittc_two_parameter(3.0, 8.0), bretschneider(3.0, 9.0), jonswap(3.0, 9.0), jonswap(1.0, 5.0, 1.0)]
 
@@ -109,3 +119,16 @@ def test_sea_state_four_has_the_height_between_its_limits() -> None:
     assert four.lowest <= 2.27 <= four.highest
     with pytest.raises(InputError, match="no sea state 12"):
         sea_state(12)
+
+
+def test_the_wave_of_a_head_sea_is_found_and_that_of_a_following_sea_refused() -> None:
+    omega = np.array([0.5, 1.0, 2.5])
+    np.testing.assert_allclose(wave_frequency(encounter_frequency(omega, 9.26, 2.4), 9.26, 2.4), omega)
+    with pytest.raises(InputError, match="three waves"):
+        wave_frequency(omega, 9.26, 0.5)
+
+
+@pytest.mark.parametrize(("U", "beta", "said"), [(-1.0, 1.0, "knots"), (60.0, 1.0, "knots"), (9.0, 90.0, "degrees")])
+def test_speed_and_heading_out_of_sense_are_refused(U: float, beta: float, said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        speed_factor(U, beta)

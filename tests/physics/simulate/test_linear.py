@@ -1,16 +1,17 @@
-"""Affine models by exact propagators: against continuous truth, SciPy and differences."""
+"""Affine models by exact propagators and harmonics: against continuous truth, SciPy and differences."""
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 from seatrial.core.equations import Model
-from seatrial.core.values import Array
+from seatrial.core.values import Array, InputError
 from seatrial.physics.models.heave_pitch import heave_pitch, heave_pitch_zoh
+from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.published import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
 from seatrial.physics.models.published import QI2025_HEADINGS, theoretical_coefficients
 from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch
-from seatrial.physics.simulate.linear import LinearBatch
+from seatrial.physics.simulate.linear import LinearBatch, frequency_response, harmonic_motion, linear_system
 
 FIN = {"lift_1": 7.9e5, "x_f1": -25.0}
 STATES = ("z", "z_dot", "theta", "theta_dot")
@@ -116,3 +117,29 @@ def test_runge_kutta_agrees_where_its_steps_are_fine(rng: np.random.Generator) -
     exact, rk4 = LinearBatch(*args).simulate(0, 1, *point)[0], SegmentBatch(*args).simulate(0, 1, *point)[0]
     scale = np.abs(exact).max(axis=0)  # inputs straight between samples there: (omega h)^2 / 12 = 2e-4
     np.testing.assert_allclose(exact / scale, rk4 / scale, atol=3e-4)
+
+
+def test_motion_in_harmonics_equals_the_propagated_one(rng: np.random.Generator) -> None:
+    model = theoretical_coefficients(90).applied_to(heave_pitch())
+    omega, dt, n = np.array([0.7, -1.3, 2.1]), 0.02, 2001
+    amplitude = np.zeros((3, 4), complex)
+    amplitude[:, :2] = rng.normal(size=(3, 2, 2)) @ [1, 1j] * [2e5, 5e6]
+    time, start = np.arange(n) * dt, rng.normal(size=4) * 0.1
+    exact = harmonic_motion(linear_system(model), omega, amplitude, time, start)
+    u = (np.exp(1j * np.outer(time, omega)) @ amplitude).real
+    y, _ = LinearBatch(model, np.ascontiguousarray(u), np.array([0, n]), dt, model.states).simulate(
+        0, 1, start[None], model.parameters.values[None], np.empty((1, 0))
+    )
+    np.testing.assert_allclose(y, exact, atol=1e-5 * np.abs(exact).max())
+
+
+def test_a_constant_force_is_met_by_the_stiffness() -> None:
+    model = theoretical_coefficients(180).applied_to(heave_pitch())
+    still = frequency_response(linear_system(model, ("z", "theta")), np.zeros(1))[0, :, :2].real
+    stiffness = np.array([[3.15e6, 6.83e6], [6.83e6, 6.54e8]])
+    np.testing.assert_allclose(still @ stiffness, np.eye(2), atol=1e-9)
+
+
+def test_a_ship_that_turns_has_no_frequency_response() -> None:
+    with pytest.raises(InputError, match="not linear"):
+        linear_system(nomoto())

@@ -1,4 +1,4 @@
-"""From phase to phase, one transition at a time."""
+"""When a search begins, which one suits a trial, and what leads from phase to phase."""
 
 from dataclasses import replace
 
@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from tests.estimation.identify.online.streams import samples, sea_stream, window_of
 
+from seatrial.core.results.online import EstimatorPhase
 from seatrial.estimation.estimate.online.change_detection import ChangeDetector
+from seatrial.estimation.identify.online import phases as search
 from seatrial.estimation.identify.online.phases import (
     BLOCK_SAMPLES,
     CONTINUED_INTERVALS,
@@ -14,20 +16,120 @@ from seatrial.estimation.identify.online.phases import (
     Carried,
     ContinuedSearch,
     RecursivePhase,
+    RepeatedSearch,
     SearchSchedule,
+    StreamProgress,
     WarmUp,
     Window,
+    at_progress,
     carried_phase,
     filter_phase,
+    first_snapshot,
     is_window_full,
+    suits_whole_runs,
 )
 from seatrial.physics.sea.spectrum import WaveEncounter
 from seatrial_studies.seaway import box_hull
 
 
+@pytest.mark.parametrize(
+    ("intervals", "seconds", "is_carried", "expected"),
+    [
+        (CONTINUED_INTERVALS, 0.0, False, 2.5),
+        (CONTINUED_INTERVALS, 76.0, False, 2.5),
+        (CONTINUED_INTERVALS, 160.0, False, 15.0),
+        (CONTINUED_INTERVALS, 160.0, True, 60.0),
+        (REPEATED_INTERVALS, 20.0, False, 10.0),
+        (REPEATED_INTERVALS, 80.0, False, 20.0),
+        (REPEATED_INTERVALS, 80.0, True, 20.0),
+    ],
+)
+def test_searches_become_rarer_as_the_window_grows(intervals, seconds, is_carried, expected):
+    assert intervals.interval(seconds, is_carried=is_carried) == pytest.approx(expected)
+
+
+def test_carried_information_is_renewed_every_minute_or_quarter_of_a_window():
+    assert CONTINUED_INTERVALS.stretch(3600.0) == 60.0
+    assert REPEATED_INTERVALS.stretch(100.0) == 60.0
+    assert REPEATED_INTERVALS.stretch(3600.0) == 900.0
+
+
+def test_the_next_search_counts_from_the_last():
+    schedule = SearchSchedule(CONTINUED_INTERVALS)
+    schedule.note_search(40.0, is_carried=False)
+    assert (schedule.last_search, schedule.next_search) == (40.0, 42.5)
+    schedule.note_cold_start()
+    assert schedule.next_cold_start == 60.0
+
+
+@pytest.mark.parametrize(("seconds", "is_due"), [(49.0, False), (50.0, True)])
+def test_ten_new_seconds_are_searched_as_a_short_run_ends(seconds, is_due):
+    schedule = SearchSchedule(CONTINUED_INTERVALS, last_search=40.0)
+    assert schedule.is_due_at_run_end(seconds) is is_due
+
+
+def test_a_long_window_needs_a_tenth_that_is_new():
+    assert not SearchSchedule(CONTINUED_INTERVALS, last_search=500.0).is_due_at_run_end(550.0)
+    assert SearchSchedule(CONTINUED_INTERVALS, last_search=500.0).is_due_at_run_end(556.0)
+
+
+def test_an_empty_window_is_searched_at_once():
+    schedule = SearchSchedule(CONTINUED_INTERVALS, 10.0, 20.0, 30.0)
+    schedule.restart()
+    assert schedule == SearchSchedule(CONTINUED_INTERVALS)
+
+
 @pytest.fixture(scope="module")
 def stream():
     return sea_stream(135, 60.0)
+
+
+def test_linear_models_under_output_error_continue_their_search(stream):
+    assert suits_whole_runs(stream.trial)
+    assert not suits_whole_runs(replace(stream.trial, estimate=replace(stream.trial.estimate, segment_s=20.0)))
+    prediction = replace(stream.trial.estimate, method="prediction-error")
+    assert not suits_whole_runs(replace(stream.trial, estimate=prediction))
+
+
+@pytest.mark.parametrize(("seconds", "next_check", "checks"), [(50.0, 0.0, 1), (50.0, 55.0, 0), (70.0, 0.0, 0)])
+def test_a_local_optimum_is_guarded_against_in_the_first_minute(stream, monkeypatch, seconds, next_check, checks):
+    records = window_of(stream, slice(0, 500)).records()
+    schedule = SearchSchedule(CONTINUED_INTERVALS, last_search=seconds)
+    continued = ContinuedSearch(stream.trial, schedule)
+    phase = WarmUp().with_estimate(continued.estimate(WarmUp(), records))
+    schedule.next_cold_start = next_check
+    calls = []
+    original = search.cold_start
+    monkeypatch.setattr(search, "cold_start", lambda *arguments: calls.append(1) or original(*arguments))
+    continued.estimate(phase, records)
+    assert len(calls) == checks
+
+
+def test_a_repeated_search_uses_what_is_carried(stream):
+    trial = replace(stream.trial, estimate=replace(stream.trial.estimate, segment_s=20.0))
+    repeated = RepeatedSearch(trial)
+    first = repeated.estimate(WarmUp(), window_of(stream, slice(0, 400)).records())
+    carried = WarmUp().with_estimate(first).carried()
+    both = repeated.estimate(carried, window_of(stream, slice(400, 600)).records())
+    assert np.all(np.diag(both.covariance) < np.diag(first.covariance))
+
+
+def test_breaks_between_runs_do_not_count_as_time():
+    progress = StreamProgress().with_run().with_sample(10.0).with_sample(10.5).with_run().with_sample(100.0)
+    progress = progress.with_sample(100.25)
+    assert (progress.samples, progress.runs) == (4, 2)
+    assert progress.elapsed == 0.75
+    assert progress.last_time == 100.25
+
+
+def test_before_the_first_sample_start_values_are_shown_without_confidence():
+    trial = sea_stream(135, 10.0).trial
+    snapshot = first_snapshot(trial.model)
+    assert snapshot.phase is EstimatorPhase.WAITING
+    np.testing.assert_array_equal(snapshot.value, [p.value for p in trial.model.parameters.free])
+    assert np.all(np.isinf(snapshot.standard_error))
+    later = at_progress(snapshot, StreamProgress().with_run().with_sample(3.0))
+    assert (later.time, later.samples, later.runs) == (3.0, 1, 1)
 
 
 @pytest.fixture(scope="module")
