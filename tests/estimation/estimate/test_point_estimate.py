@@ -9,6 +9,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Prior, Record
 from seatrial.estimation.estimate.point_estimate import (
     COLOUR_ROUNDS,
+    NEAR_ENOUGH,
     PointEstimate,
     fit_output_error,
     residual_correlation,
@@ -18,6 +19,7 @@ from seatrial.estimation.estimate.point_estimate import (
 from seatrial.estimation.estimate.start import ConcentratedLikelihood
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import cut_segments
+from seatrial.numerics.optimise import Status
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.simulate.steer import manoeuvre
@@ -55,6 +57,21 @@ def test_noise_levels_come_back(model: Model, clean: Record, rng: np.random.Gene
     made = made_from(model, noisy(clean, rng))
     np.testing.assert_allclose(made.problem.noise, [2e-3, 4e-3], rtol=0.06)
     np.testing.assert_allclose(made.common_parameters, [0.15, 8.0], rtol=0.01)
+
+
+def test_a_search_goes_on_until_another_gains_next_to_nothing(
+    model: Model, clean: Record, rng: np.random.Generator
+) -> None:
+    record = noisy(clean, rng)
+    problem = problem_of(model.with_values({"K": 0.4, "T": 60.0}), record)
+    start, stated = (problem.start(), problem.measured_initial_states()), {"r": 2e-3, "psi": 4e-3}
+    best = fit_output_error(problem, *start, stated)
+    short = fit_output_error(problem, *start, stated, rounds=1, evaluations=6)
+    assert short.optimum.solution.status is Status.CONVERGED
+    assert short.optimum.solution.evaluations > 6 + 6  # of the search and that with the noise found by it
+    assert short.optimum.solution.value - best.optimum.solution.value <= NEAR_ENOUGH
+    stuck = fit_output_error(problem, *start, stated, rounds=1, evaluations=3)  # no step is tried that far off
+    assert stuck.optimum.solution.status is Status.EXHAUSTED
 
 
 def test_known_noise_is_kept(model: Model, clean: Record, rng: np.random.Generator) -> None:

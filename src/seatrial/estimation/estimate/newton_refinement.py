@@ -11,12 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatrial.core.values import Array
+from seatrial.estimation.estimate.point_estimate import NEAR_ENOUGH
 from seatrial.estimation.problem.prediction_error import PredictionError
 from seatrial.numerics.optimise import NormalEquations, Optimum, Solution, Status, bounded_step, predicted_decrease
 
 _MAX_DECREMENT = 1e-3  # decrease of the cost that a Newton step still promises at an optimum, ours
-# the same at which a search that no step helps counts as converged: 0.2 standard errors away; chosen
-_NEAR_ENOUGH = 0.02
 # most steps by the exact gradient, and shares of one of which the best is taken, ours: intensity and memory of a weak
 # disturbance are far from quadratic, so that whole steps overshoot, and each costs as much as fifty evaluations
 _NEWTON_STEPS, _STEP_SHARES = 30, (1.0, 0.5, 0.25, 0.125)
@@ -50,7 +49,7 @@ def refine_by_newton(problem: PredictionError, optimum: Optimum) -> tuple[Predic
     slope = end.decrement
     solution = replace(
         optimum.solution, point=end.point, value=end.normal.cost,
-        status=Status.CONVERGED if slope <= _NEAR_ENOUGH else Status.STALLED,
+        status=Status.CONVERGED if slope <= NEAR_ENOUGH else Status.STALLED,
         evaluations=optimum.solution.evaluations + end.count, history=(*optimum.solution.history, end.normal.cost),
     )  # fmt: skip
     return exact, Optimum(solution, _NO_INITIAL_STATES, end.normal), slope

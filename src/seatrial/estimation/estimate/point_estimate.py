@@ -126,9 +126,9 @@ def integration_text(problem: OutputError) -> str:
 
 # promised decrease of the cost at which a search ends, ours
 _NEGLIGIBLE = 1e-8
-# promised decrease that suffices where the evaluations run out: the point then lies within 0.014 standard errors
-# (root of twice the promise) of the model's minimum, ours
-_SUFFICIENT = 1e-4
+NEAR_ENOUGH = 0.02
+"""Decrease that a search may leave which gets no further: its point lies within 0.2 standard errors (root of twice
+that) of the minimum; chosen."""
 # rounds of noise estimates at most; each brings the noise some 40 % nearer where residuals are coloured, ours
 _ROUNDS = 25
 # of a search before noise levels are estimated anew, ours
@@ -273,8 +273,31 @@ def fit_output_error(
         spent += estimate.optimum.solution.evaluations
         if settled:
             break
-    solution = replace(estimate.optimum.solution, evaluations=spent)
+    estimate, more = _searched_on(estimate, evaluations, report_progress)
+    solution = replace(estimate.optimum.solution, evaluations=spent + more)
     return replace(estimate, optimum=replace(estimate.optimum, solution=solution), is_settled=settled)
+
+
+def _searched_on(
+    estimate: PointEstimate, evaluations: int, report_progress: ProgressReporter | None
+) -> tuple[PointEstimate, int]:
+    """Search on where the evaluations ran out until another search gains next to nothing; return its evaluations, too.
+
+    Kinks of a model (a command near zero, |u| r) promise decreases that are none and stop the damped steps; a search
+    that begins anew with small damping passes them. One that takes no step at all says nothing.
+    """
+    spent, gained = 0, np.inf
+    for _ in range(_ROUNDS):
+        before = estimate.optimum
+        if before.solution.status is not Status.EXHAUSTED or gained <= 0.0:
+            break
+        estimate = _search(estimate.problem, before.solution.point, before.local, evaluations, report_progress)
+        solution = estimate.optimum.solution
+        gained, spent = before.solution.value - solution.value, spent + solution.evaluations
+        if 0.0 < gained <= NEAR_ENOUGH:
+            solution = replace(solution, status=Status.CONVERGED)
+            estimate = replace(estimate, optimum=replace(estimate.optimum, solution=solution))
+    return estimate, spent
 
 
 def effective_inflation(inflation: Array) -> Array | None:
@@ -331,7 +354,7 @@ def _search(
         common_parameters,
         initial_states,
         negligible=_NEGLIGIBLE,
-        sufficient=_SUFFICIENT,
+        sufficient=NEAR_ENOUGH,
         evaluations=evaluations,
         report_progress=report,
     )
