@@ -37,6 +37,7 @@ from seatrial.estimation.identify.search import (
 from seatrial.estimation.identify.selection import selected_model
 from seatrial.estimation.identify.unrecorded_waves import identify_by_wave_spectrum, identify_in_unknown_waves
 from seatrial.estimation.identify.warnings import single_order_findings, with_unexcited_thrust_held
+from seatrial.estimation.identify.wave_readings import contradicted_waves
 from seatrial.estimation.information.frequency_response import frequency_range, frequency_range_finding
 from seatrial.estimation.predict.session_offsets import horizon_list
 
@@ -49,9 +50,17 @@ def identify_in_recorded_waves(task: Identification) -> Fit:
     Raises:
         InputError: the ship moves although no wave is recorded, or the records do not determine the coefficients.
     """
-    refuse_unmeasured_waves(task.estimation, task.runs.records)
-    selected = selected_model(task)
-    fit = assembled_fit(task, selected, force_consistency(selected.estimation.estimate))
+    try:
+        refuse_unmeasured_waves(task.estimation, task.runs.records)
+        selected = selected_model(task)
+    except InputError as error:
+        contradicted = contradicted_waves(task)
+        cause = f"; {contradicted.message}; {contradicted.evidence}" if contradicted else ""
+        raise InputError(f"{error}{cause}") from None
+    is_white = task.estimation.whiteness.is_white and not task.estimation.has_process_noise
+    contradicted = None if is_white else contradicted_waves(task)
+    findings = [*force_consistency(selected.estimation.estimate), *([contradicted] if contradicted else [])]
+    fit = assembled_fit(task, selected, findings)
     if not task.trial.model.is_affine:
         return fit
     covered = frequency_range(task.runs.records, task.outputs)
