@@ -22,7 +22,7 @@ from seatrial.api import draft_trial
 OUTRIGHT, RIGHT_OR_OPEN = 0.85, 0.95  # shares of the channels that exist: targets
 
 # channel -> column | unit | frame | positive; empty: the notation table's
-_NMEA_0183 = {"lat": "GGA/lat|rad", "lon": "GGA/lon|rad", "u": "RMC/north|m/s|earth", "v": "RMC/east|m/s|earth",
+_NMEA_0183 = {"lat": "GGA/lat|rad", "lon": "GGA/lon|rad", "sog": "RMC/speed|m/s", "cog": "RMC/course|rad",
               "psi": "HDT/heading|rad"}  # fmt: skip
 _BODY = "navigation/twist_body.csv"
 TRUTH: dict[str, Mapping[str, str]] = {

@@ -8,8 +8,6 @@ import pytest
 from tests.data.draft.test_draft import STEP, TRUTH, write
 
 from seatrial.api import draft_trial
-from seatrial.data.draft import ColumnGuess
-from seatrial.data.draft.behaviour import with_axes_by_fixes
 
 
 def _fixes(forward: float) -> dict[str, np.ndarray]:
@@ -48,5 +46,3 @@ def test_a_straight_line_to_the_north_east_leaves_the_axes_open(tmp_path: Path) 
     write(tmp_path / "pose.csv", {"time": TRUTH["t"], "pose_position_x": along, "pose_position_y": along})
     used = {g.symbol: g for part in draft_trial(tmp_path).guesses for g in part if g.is_used}
     assert used["x0"].is_open and used["y0"].is_open
-    plain = [[ColumnGuess("x", "x0", "m")]]
-    assert with_axes_by_fixes(plain, lambda _: None) == plain

@@ -217,7 +217,9 @@ def test_the_only_log_of_a_craft_with_thrusters_is_cut_in_two_and_nothing_is_lef
     craft = {
         names.get(name, name): values * (100.0 if name in names else 1.0) for name, values in two_thrusters().items()
     }
-    write(tmp_path / "session.csv", craft)
+    slow = {"yaw [deg]": craft.pop("psi"), "r [deg/s]": craft.pop("r")}  # no turn of it is a circle
+    del craft["x0"], craft["y0"]
+    write(tmp_path / "session.csv", craft | slow)
     draft = draft_trial(tmp_path / "session.csv", length=2.0)
     (parts,) = draft.parts
     assert [one.name for one in parts] == ["first_part", "last_part"]

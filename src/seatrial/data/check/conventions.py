@@ -27,13 +27,15 @@ _UNWRAPPED_CHANNELS = (
     "psi", "wind_direction", "wind_direction_relative", *(c for c in COMMANDS if c.startswith("alpha"))
 )  # fmt: skip
 
+_UPRIGHT_CHANNELS = ("phi", "theta")
+
 
 def canonical_record(record: Record, reference_point: float = 0.0) -> Record:
     """Return the record in the notation table's conventions, by its declared metadata only.
 
     Every channel points in the table's positive direction (positive rudder turns to starboard), u and v are body-fixed,
     v, x0 and y0 refer to the point `reference_point` metres forward of midship, headings and wind angles are
-    unwrapped. Applying it twice changes nothing.
+    unwrapped, roll and pitch also about upright. Applying it twice changes nothing.
 
     Raises:
         InputError: a positive direction is unknown, or the heading or yaw rate a conversion needs is missing.
@@ -69,6 +71,9 @@ def _with_standard_sign(symbol: str, channel: Channel, *, flip: bool) -> Channel
     values = -channel.values if flip else channel.values
     if symbol in _UNWRAPPED_CHANNELS:
         values = unwrapped(values)
+    if symbol in _UPRIGHT_CHANNELS and np.any(np.isfinite(values)):
+        values = unwrapped(values)
+        values = values - math.tau * np.round(np.nanmean(values) / math.tau)
     positive = positive_direction(symbol, channel.frame) if symbol in NOTATION else channel.positive
     return replace(channel.with_values(values), positive=positive)
 

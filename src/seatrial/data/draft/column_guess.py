@@ -1,5 +1,6 @@
 """What one column is taken for, with the evidence; guesses of several runs made one."""
 
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -9,6 +10,7 @@ from seatrial.data.read import ColumnSpec
 
 # What one column is taken for, with the evidence.
 
+_TOPIC = re.compile(r"^[^\[(]*/")  # before the name of a column; not what stands in brackets behind it: [m/s]
 RELATIVE = "_relative"
 """The end of the channels of an apparent wind."""
 
@@ -19,7 +21,7 @@ class ColumnGuess:
 
     Attributes:
         source: as the trial file addresses it.
-        symbol, unit, frame, positive, zero, span, scale, kind: as in a channel of the trial file.
+        symbol, unit, frame, positive, zero, span, scale, offset, kind: as in a channel of the trial file.
         evidence: why.
         other_reading: what it may be instead; empty: it is assigned outright.
         side: of the craft on which the motion or a name shows a thruster or shaft, port or starboard; empty: not shown.
@@ -27,6 +29,8 @@ class ColumnGuess:
         follows_track: whether the motion shows a velocity to be the derivative of the position, over ground.
         is_used: whether it is the one chosen for its symbol.
         unused_because: why it is not; empty: it is used.
+        is_assumed: whether nothing that is measured shows its side or zero, and the usual one is taken.
+        is_documented: whether the documentation of its logger says what it is.
         is_commented: whether its line is a comment, as the model does not take it.
     """
 
@@ -47,6 +51,9 @@ class ColumnGuess:
     is_used: bool = True
     unused_because: str = ""
     is_commented: bool = False
+    is_documented: bool = False
+    is_assumed: bool = False
+    offset: float = 0.0
 
     @property
     def is_open(self) -> bool:
@@ -71,6 +78,7 @@ class ColumnGuess:
             zero=self.zero,
             span=self.span,
             factor=self.scale,
+            offset=self.offset,
             kind="command" if self.kind == "command" or self.symbol.startswith("command_") else "",
         )
 
@@ -102,7 +110,7 @@ def _key(guess: ColumnGuess) -> tuple[str, str]:
 
     A wind that a run shows to be an apparent one is the same column.
     """
-    return str(guess.source).rpartition("/")[2], guess.symbol.removesuffix(RELATIVE)
+    return _TOPIC.sub("", str(guess.source)), guess.symbol.removesuffix(RELATIVE)
 
 
 def _agreed(guess: ColumnGuess, readings: Sequence[ColumnGuess]) -> ColumnGuess:

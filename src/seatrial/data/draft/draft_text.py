@@ -526,6 +526,7 @@ def _channel_table(guess: ColumnGuess) -> str:
         ("zero", guess.zero, 0.0),
         ("span", guess.span, 1.0),
         ("scale", guess.scale, 1.0),
+        ("offset", guess.offset, 0.0),
     )
     parts += [f"{key} = {value:g}" for key, value, default in numbers if value != default]
     return f"{{ {', '.join(parts)} }}"

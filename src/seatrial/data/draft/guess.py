@@ -18,7 +18,6 @@ from seatrial.data.draft.naming import NameGuess, bracketed_unit, guess_by_name,
 from seatrial.data.draft.stored_parameters import OutputSetting, is_disabled, output_setting
 from seatrial.data.draft.stretches import padded, smooth_speed
 from seatrial.data.draft.survey import ColumnSummary, LogSurvey, TopicSummary, column_values
-from seatrial.data.read.layout import log_quantity
 from seatrial.physics.models.thruster_layout import CommandInput, Thruster, ThrusterLayout
 
 # Columns without names, by what they do: derivatives of one another, the heading of the track, what turns the ship.
@@ -264,22 +263,12 @@ def _with_direction(effect: ThrusterEffect, guess: ColumnGuess) -> ColumnGuess:
     return replace(guess, positive="astern" if is_astern else "", other_reading="").with_evidence(text)
 
 
-# What the columns of a log are by name and range; unsure stays open, with both readings.
+# What the columns of a log are by name; the judge of readings has their units, frames and signs.
 
-_FULL_TURN = 2.0 * math.pi
-# rad: a range of headings beyond which the column is not in radians; rad: one that shows a heading through the circle
-_BEYOND_A_TURN, _MOST_OF_A_TURN = _FULL_TURN + 0.3, 5.5
-_LARGEST_RUDDER = math.pi / 2.0  # rad
-_LARGEST_TILT = math.pi / 2.0  # rad, of roll and pitch
-_LATITUDE_RAD = math.pi / 2.0  # rad, of a pole
-_LARGEST_RPS = 60.0  # 1/s; propellers of ships and models turn more slowly, those of small craft are in rpm
 # headings of the angle of a thruster that is turned; chosen
 _TURNED = re.compile("steer|outboard|azimuth", re.IGNORECASE)
 # headings of the rate of a propeller or its shaft, which no gear stands before
 _SHAFT = re.compile("prop|shaft|welle|aksel|arbre|helice|hélice|elica", re.IGNORECASE)
-_TILT = frozenset({"phi", "theta"})
-_ATTITUDE = _TILT | {"psi"}
-_MAY_BE_DEGREES = 'unit = "deg"'
 _PLACE_OR_SPEED = frozenset({"lat", "x0", "u", "v", "sog", "stw"})
 _HEADING_OF_PHONES = "azimuth"  # of the triple azimuth, pitch, roll (Android, SensorManager.getOrientation)
 _FOLDERS_READ = 3  # folders above a file whose names may be those of a topic; chosen
@@ -314,7 +303,7 @@ class _RankedGuess:
 def _ranked_guesses(survey: LogSurvey, topic: TopicSummary, gear: float) -> list[_RankedGuess]:
     """The guesses of a topic."""
     ranked = [_RankedGuess((0.0,), guess) for guess in _without_names(survey, topic)]
-    has_degrees, has_tilt = _has_latitude_in_degrees(survey, topic), _has_tilt(survey, topic)
+    has_tilt = _has_tilt(survey, topic)
     for column in topic.columns:
         named = _named(survey, topic, column)
         if named is None or (column.is_constant and named.symbol.startswith("command_")):
@@ -324,13 +313,10 @@ def _ranked_guesses(survey: LogSurvey, topic: TopicSummary, gear: float) -> list
         guess = _first_guess(survey, topic, column, named)
         if guess is None:
             continue
-        if guess.symbol == "lon" and guess.is_open and has_degrees:
-            guess = replace(guess, unit="deg", other_reading="").with_evidence("degrees, as the latitude")
         if guess.symbol == "n" and gear and not _SHAFT.search(column.name):
             guess = _of_propeller(guess, gear)
         ranked.append(_RankedGuess((column.is_constant, not named.unit, column.missing, -topic.rows), guess))
-    alike = _with_units_alike([one.guess for one in ranked])
-    return [replace(one, guess=guess) for one, guess in zip(ranked, alike, strict=True)]
+    return ranked
 
 
 def _chosen(guess: ColumnGuess, best: ColumnGuess | None) -> ColumnGuess:
@@ -366,31 +352,10 @@ def _without_names(survey: LogSurvey, topic: TopicSummary) -> list[ColumnGuess]:
     ]
 
 
-def _has_latitude_in_degrees(survey: LogSurvey, topic: TopicSummary) -> bool:
-    """Whether a topic has a latitude that is too large for radians: its longitude, however small, is in degrees too."""
-    for column in topic.columns:
-        named = _named(survey, topic, column)
-        if named is not None and named.symbol == "lat" and not named.unit:
-            return max(abs(column.low), abs(column.high)) > _LATITUDE_RAD
-    return False
-
-
 def _has_tilt(survey: LogSurvey, topic: TopicSummary) -> bool:
     """Whether a topic has roll and pitch."""
     symbols = {named.symbol for column in topic.columns if (named := _named(survey, topic, column)) is not None}
     return {"phi", "theta"} <= symbols
-
-
-def _with_units_alike(guesses: Sequence[ColumnGuess]) -> list[ColumnGuess]:
-    """The guesses of a topic, roll and pitch that may be radians in degrees where the other angles are."""
-    others = [guess.unit for guess in guesses if guess.symbol in _ATTITUDE and not guess.is_open]
-    if not others or set(others) != {"deg"}:
-        return list(guesses)
-    return [
-        replace(guess, unit="deg", other_reading="").with_evidence("degrees, as the other angles")
-        if guess.symbol in _TILT and guess.other_reading == _MAY_BE_DEGREES else guess
-        for guess in guesses
-    ]  # fmt: skip
 
 
 def _named(survey: LogSurvey, topic: TopicSummary, column: ColumnSummary) -> NameGuess | None:
@@ -426,48 +391,17 @@ def _first_guess(survey: LogSurvey, topic: TopicSummary, column: ColumnSummary, 
         evidence=(f"by {named.evidence}{': ' if rule.note else ''}{rule.note}",),
         unused_because=rule.unused_because,
         side=named.side if named.symbol == "n" else "",
+        is_documented=rule.logger not in ("", "ROS"),
     )
     if named.symbol.startswith("command_"):
         return command_guess(replace(guess, side=named.side), column, survey)
     if named.symbol == "delta" and named.unit == "percent":
         return rudder_in_percent(guess)
     if rule.frame == "enu":
-        other = 'frame = "earth" (x north, y east): the log does not say'
-        return replace(guess, other_reading=other).with_evidence("axes as ROS recommends (REP 103)")
-    guess = guess if named.unit else _with_unit_by_range(guess, column)
+        guess = guess.with_evidence("axes as ROS recommends (REP 103)")
     if column.is_repeated:
         return replace(guess, other_reading=f"the number of another column that is called '{name}'")
-    if rule.logger == "ROS" and rule.positive:
-        return replace(guess, other_reading='positive = "starboard": the log does not say')
-    return replace(guess, other_reading=guess.other_reading or rule.other_reading)
-
-
-def _with_unit_by_range(guess: ColumnGuess, column: ColumnSummary) -> ColumnGuess:
-    """The unit that the range of the numbers shows, or one with the other reading."""
-    size, span = max(abs(column.low), abs(column.high)), column.high - column.low
-    text = f"from {column.low:.4g} to {column.high:.4g}"
-    match log_quantity(guess.symbol).unit:
-        case "rad":
-            limits = {"delta": _LARGEST_RUDDER, "phi": _LARGEST_TILT, "theta": _LARGEST_TILT, "lat": _LATITUDE_RAD}
-            if size > limits.get(guess.symbol, _BEYOND_A_TURN) and (guess.symbol != "theta" or size > _BEYOND_A_TURN):
-                return replace(guess, unit="deg").with_evidence(f"{text}: degrees")
-            if guess.symbol == "theta" and size > _LARGEST_TILT:
-                return replace(guess, unit="rad", other_reading="psi, with frame").with_evidence(f"{text}: no pitch")
-            if span > _MOST_OF_A_TURN or guess.symbol == "delta":
-                return replace(guess, unit="rad").with_evidence(f"{text}: radians")
-            return replace(guess, unit="rad", other_reading=_MAY_BE_DEGREES).with_evidence(text)
-        case "rad/s":
-            return replace(guess, unit="rad/s", other_reading='unit = "deg/s" or "deg/min"').with_evidence(text)
-        case "m/s":
-            return replace(guess, unit="m/s", other_reading='unit = "kn"').with_evidence(text)
-        case "rps" if size > _LARGEST_RPS:
-            return replace(guess, unit="rpm").with_evidence(f"{text}: per minute")
-        case "rps":
-            return replace(guess, unit="rps", other_reading='unit = "rpm"').with_evidence(text)
-        case "m":
-            return replace(guess, unit="m").with_evidence("metres, as positions are")
-        case unit:
-            return replace(guess, unit=unit).with_evidence(f"in {unit} by default")
+    return replace(guess, other_reading=rule.other_reading)
 
 
 def without_conflicts(parts: Sequence[Sequence[ColumnGuess]]) -> list[tuple[ColumnGuess, ...]]:

@@ -211,17 +211,19 @@ _PULSE = "(_(pwm|us|out|output|raw|cmd|command|thrust))*"
 _WORDS = [
     *_rules(
         "",
-        (r"lat(itude)?", "lat", ""), (r"lon(gitude)?|lng", "lon", ""),
+        (r"(position_)?lat(itude)?", "lat", ""), (r"(position_)?lon(gitude)?|lng", "lon", ""),
         (r"sog|speed_over_ground|ground_?speed|(gps|gnss)\d*_(speed|spd)|spd", "sog", ""),
         (r"cog|course(_over_ground)?|(gps|gnss)\d*_(heading|course|track)|gcrs", "cog", ""),
-        (r"stw|speed_through_water|log_speed", "stw", ""),
+        (r"stw|speed_through_water|log_speed|boat_?speed", "stw", ""),
+        (r"(magnetic_)?variation", "variation", ""),
+        (r"(set|ordered|desired|target)_(heading|course)", "psi_ref", ""),
         (r"hdm|mag(netic)?_heading|heading_mag(netic)?", "psi_magnetic", ""),
         (r"compass(_heading)?|gyro(_?compass)?", "psi", "", "", "", 1.0, "", _COMPASS),
         (r"((true|course|kurs|koers|cap|rumbo)_)?(heading|hdg|hdt)|psi|psi_hat|yaw|yaw_angle", "psi", ""),
         (r"turn(ing)?_rate|rate_of_turn|rot", "r", ""),
         (r"yaw_?rate|yaw_?speed|r|r_angvelo|gyro?_?z|angular_velocity_z", "r", ""),
-        (r"x_ned|x_?north|north(ing)?|north_x|x0|pos(ition)?_n(orth)?", "x0", ""),
-        (r"y_ned|y_?east|east(ing)?|east_y|y0|pos(ition)?_e(ast)?", "y0", ""),
+        (r"x_ned|x_?north|north(ing)?|north_x|x0|pos(ition)?_n(orth)?", "x0", "", "earth"),
+        (r"y_ned|y_?east|east(ing)?|east_y|y0|pos(ition)?_e(ast)?", "y0", "", "earth"),
         (r"x_position(_mid)?|x", "x0", ""), (r"y_position(_mid)?|y", "y0", ""),
         (r"surge(_speed|_velocity)?|u_velo", "u", "", "body"), (r"sway(_speed|_velocity)?|vm?_velo", "v", "", "body"),
         (rf"{_FORWARD}_(speed|velocity)|(speed|velocity)_{_FORWARD}", "u", "", "body"),
@@ -276,6 +278,8 @@ _QUALIFIERS = re.compile(
 _CAPITALS = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 # of motions: a heading of another of these than a channel has means another quantity
 _MOTION_UNITS = frozenset({"m", "m/s", "m/s^2", "rad", "rad/s"})
+# degrees behind a heading, from true or magnetic north, or a rate; the serial number of the instrument before them
+_DEGREES, _SERIAL = re.compile(r"\s*°([MT]?)(/s|/min)?(?:ec)?$"), re.compile(r"\s\d{6}#?\s*$")
 _BRACKETS = re.compile(r"[\[(]([^\])]*)[\])]")
 
 
@@ -317,15 +321,21 @@ def guess_by_name(topic: str, name: str, stated_unit: str, log_format: str = "te
     if log_format in _KNOWN_LOGGERS:
         return None
     names = [word for word in _WORDS if word.symbol.startswith("command_")] if _ORDERS.search(last.lower()) else _WORDS
-    unit = _known_unit(stated_unit) or bracketed_unit(name)
-    bare = _BRACKETS.sub("", name)
+    degrees = _DEGREES.search(name)
+    unit = _known_unit(stated_unit) or bracketed_unit(name) or (f"deg{degrees[2] or ''}" if degrees else "")
+    bare = _SERIAL.sub("", _BRACKETS.sub("", name[: degrees.start()] if degrees else name))
     for text, word_unit in (*_readings(plain_name(bare)), *_readings(plain_name(_CAPITALS.sub("_", bare)))):
         for rule in names:
             match = re.fullmatch(rule.pattern, in_english(text))
             guess = _guess(rule, match, unit or word_unit, "its name") if match else None
             if guess is not None and (guess.unit or not word_unit):  # not heave for a ``z`` in rad/s
-                return guess
+                return _from_magnetic_north(guess) if degrees and degrees[1] == "M" else guess
     return None
+
+
+def _from_magnetic_north(guess: NameGuess) -> NameGuess | None:
+    """The heading from magnetic north; a course from there is none that is read."""
+    return replace(guess, symbol="psi_magnetic") if guess.symbol == "psi" else None
 
 
 def command_of_topic(topic: str, unit: str = "") -> NameGuess | None:

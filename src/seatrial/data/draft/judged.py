@@ -1,0 +1,158 @@
+"""The guesses of a run's columns as the judge of readings decides them; unsure ones with both readings."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from seatrial.core.values import Array, si_unit
+from seatrial.core.values.notation import positive_direction
+from seatrial.data.draft.column_guess import ColumnGuess
+from seatrial.data.draft.survey import ColumnSummary, LogSurvey, TopicSummary, column_values
+from seatrial.data.read.clock import stamps
+from seatrial.data.readings import ColumnReading, NamedColumn, ReadingVerdict, Samples, is_impossible, judge
+
+_GROUPS = (("lat", "lon"), ("x0", "y0"), ("u", "v"), ("q_w", "q_x", "q_y", "q_z"))
+_SIDES = ("port", "starboard")
+_ANGLES = frozenset({"psi", "psi_magnetic", "cog", "phi", "theta", "wind_direction", "wind_direction_relative"})
+_COMMAND = "command_"
+_WORDS = {"deg": "degrees", "rad": "radians", "rpm": "per minute", "rps": "per second"}
+
+Parts = list[list[ColumnGuess]]
+
+
+@dataclass(frozen=True, eq=False)
+class _Place:
+    """A guess among those of a run, and its column."""
+
+    part: int
+    row: int
+    column: ColumnSummary
+    named: NamedColumn
+
+
+def judged_guesses(surveys: Sequence[LogSurvey], guesses: Sequence[Sequence[ColumnGuess]]) -> Parts:
+    """Return the guesses of the sources of one run with units, frames, signs and zeros as all columns show them."""
+    parts = [list(part) for part in guesses]
+    places = list(_places(surveys, parts))
+    groups = _grouped(places)
+    verdicts = judge([[place.named for place in group] for group in groups])
+    for group, verdict in zip(groups, verdicts, strict=True):
+        for k, place in enumerate(group):
+            guess = parts[place.part][place.row]
+            parts[place.part][place.row] = _decided(guess, place, verdict, k) if guess.is_used else guess
+    return parts
+
+
+def _places(surveys: Sequence[LogSurvey], parts: Parts) -> Iterator[_Place]:
+    """The columns that are judged: those that are used, and fixes beside a pose."""
+    for k, (survey, part) in enumerate(zip(surveys, parts, strict=True)):
+        columns = dict(_columns(survey))
+        clocks: dict[str, Array] = {}
+        for row, guess in enumerate(part):
+            is_judged = (guess.is_used and not guess.symbol.startswith(_COMMAND)) or guess.symbol in ("lat", "lon")
+            if not is_judged or guess.source not in columns or guess.span != 1.0:
+                continue
+            topic, column = columns[guess.source]
+            table = next(one for one in survey.log.tables if one.topic == topic.topic)
+            if topic.topic not in clocks:
+                clocks[topic.topic] = stamps(table, topic.time).seconds
+            cells = column_values(table, column.number - 1)
+            if cells is None:
+                continue
+            reading = ColumnReading(guess.symbol, guess.unit, guess.frame, guess.positive, 0.0, guess.scale)
+            samples = Samples(clocks[topic.topic], cells, guess.symbol in _ANGLES)
+            yield _Place(k, row, column, NamedColumn(reading, samples, guess.is_documented))
+
+
+def _columns(survey: LogSurvey) -> Iterator[tuple[str | int, tuple[TopicSummary, ColumnSummary]]]:
+    """Source as a guess has it -> topic and column, of topics with a time."""
+    for topic in (one for one in survey.topics if one.time is not None):
+        for column in topic.columns:
+            source = f"{topic.topic}/{column.name}" if topic.topic else column.name
+            yield source, (topic, column)
+            if not topic.topic:
+                yield column.number, (topic, column)
+
+
+def _grouped(places: Sequence[_Place]) -> list[list[_Place]]:
+    """The columns that are read together."""
+    groups, taken = list[list[_Place]](), set[int]()
+    for symbols in _GROUPS:
+        members = [next((p for p in places if p.named.reading.symbol == symbol), None) for symbol in symbols]
+        if all(one is not None for one in members):
+            groups.append([one for one in members if one is not None])
+            taken |= {id(one) for one in members}
+    return [*groups, *([one] for one in places if id(one) not in taken)]
+
+
+def _decided(guess: ColumnGuess, place: _Place, verdict: ReadingVerdict, k: int) -> ColumnGuess:
+    """The guess as it is read, with the reason; open where another reading is near."""
+    best, rival = verdict.best.readings[k], verdict.rival.readings[k] if verdict.rival is not None else None
+    read = replace(
+        guess, unit=best.unit, frame=best.frame, positive=best.positive, offset=best.offset, scale=best.factor
+    )
+    text = f"from {place.column.low:.4g} to {place.column.high:.4g}"
+    if is_impossible(best, place.named.samples):
+        return replace(read, other_reading=_instead(best, place)).with_evidence(f"{text}: no {_WORDS[best.unit]}")
+    other = _differences(best, rival) if rival is not None and verdict.is_open else ""
+    if verdict.best.contradicts:
+        other = f"{_differences(best, place.named.reading)} as its heading says"
+    if not guess.unit:
+        word = _WORDS.get(best.unit, best.unit) if best.factor == 1.0 else f"in {best.factor:g} {best.unit}"
+        read = read.with_evidence(text if "unit" in other else f"{text}: {word}")
+    said = _deciding_words(guess, best, rival) if rival is not None and verdict.reason else ""
+    read = read.with_evidence(f"{said} by {verdict.reason}") if said else read
+    zeros = [one.offset for one in (best, rival) if one is not None and one.offset and (one is best or other)]
+    read = read.with_evidence(_zero_text(best, zeros[0])) if zeros else read
+    # an unknown unit of wind comes before whose wind it is; which of two columns is meant comes before its unit
+    both = (other, guess.other_reading) if guess.is_of_wind else (guess.other_reading, other)
+    return replace(read, other_reading=both[0] or both[1], is_assumed=verdict.is_assumed)
+
+
+def _instead(best: ColumnReading, place: _Place) -> str:
+    """What numbers are that no unit makes possible."""
+    if best.symbol == "theta":
+        return "psi, with frame"
+    middle = float(np.median(place.named.samples.readings[1]))
+    return f"counts: write zero = {middle:g} (their median) and span = the counts of one {best.unit}"
+
+
+def _deciding_words(guess: ColumnGuess, best: ColumnReading, rival: ColumnReading) -> str:
+    """What sets the reading apart from the nearest other one and is not said of the column."""
+    words = [best.unit] if best.unit not in (guess.unit, rival.unit) else []
+    words += [f"{best.frame}-fixed"] if best.frame and best.frame not in (guess.frame, rival.frame) else []
+    words += [f"positive {_to(best)}"] if best.positive != rival.positive else []
+    return ", ".join(words)
+
+
+def _zero_text(reading: ColumnReading, offset: float) -> str:
+    """What a zero elsewhere than usual means."""
+    if reading.symbol != "psi":
+        return "its sensor is upside down"
+    return f"the heading points {abs(math.degrees(offset * si_unit(reading.unit)[0])):.0f} deg off the course"
+
+
+def _to(reading: ColumnReading) -> str:
+    """The side to which a column is positive, as one says it."""
+    side = reading.positive or positive_direction(reading.symbol, reading.frame)
+    return f"to {side}" if side in _SIDES else side
+
+
+def _differences(best: ColumnReading, other: ColumnReading) -> str:
+    """The keys in which another reading differs, as a trial file has them."""
+    words = [f'unit = "{other.unit}"'] if other.unit != best.unit else []
+    if other.frame != best.frame:
+        axes = {"enu": "x east, y north", "earth": "north, east", "body": "ahead, aside"}
+        frame = other.frame or "earth"
+        words.append(f'frame = "{frame}" ({"counter-clockwise from east" if _is_angle(other) else axes[frame]})')
+    if other.positive != best.positive:
+        words.append(f'positive = "{other.positive or positive_direction(other.symbol, other.frame)}"')
+    numbers = (("offset", other.offset, best.offset), ("scale", other.factor, best.factor))
+    words += [f"{key} = {new:.6g}" for key, new, old in numbers if not math.isclose(new, old)]
+    return ", ".join(words)
+
+
+def _is_angle(reading: ColumnReading) -> bool:
+    return reading.frame == "enu" and reading.symbol == "psi"

@@ -1,0 +1,306 @@
+"""What a column, or a pair of columns, may be: units, frames, signs, zeros, each with its share among logs."""
+
+import math
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cache, cached_property
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+
+from seatrial.core.values import Array, si_unit
+from seatrial.core.values.notation import NOTATION, OPPOSITE, positive_direction
+from seatrial.data.readings.grids import Grid, Samples
+
+ROLES = {
+    ("lat", "lon"): "fixes", ("x0", "y0"): "place", ("u", "v"): "velocity", ("q_w", "q_x", "q_y", "q_z"): "heading",
+    ("wind_speed", "wind_direction"): "wind", ("wind_speed_relative", "wind_direction_relative"): "apparent wind",
+    ("psi",): "heading", ("psi_magnetic",): "heading",
+}  # fmt: skip
+"""Columns that are read together -> what they show; a column by itself shows its symbol."""
+# nats against a unit or sign that the heading or the logger's documentation contradicts, and against a size beyond
+# what is possible, or numbers too coarse, or a wrap at another turn; chosen as in docs/logs.md
+CONTRADICTED, IMPOSSIBLE, COARSE, OTHER_TURN = 8.0, 14.0, 7.0, 16.0
+SAME_TURN = 4.0  # nats for the unit in whose full turn an angle jumps; chosen
+_COARSEST = 0.05  # step from which numbers are degrees rather than radians; chosen
+_ROUNDING = 1e-3  # of a step, by which it may miss a round number; chosen
+_TURN_SLACK = 1.001  # of a full turn, by which rounded numbers may miss it; chosen
+_EARTH_RADIUS = 6371000.8  # m, mean of the ellipsoid of WGS 84 (NIMA TR 8350.2, 3rd ed., table 3.2-1)
+
+
+@dataclass(frozen=True)
+class ColumnReading:
+    """How one column is read: the number in its unit is cell * factor + offset, positive as said in its frame."""
+
+    symbol: str
+    unit: str = ""
+    frame: str = ""
+    positive: str = ""
+    offset: float = 0.0
+    factor: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class NamedColumn:
+    """A column with what its heading says of it; empty words are not said.
+
+    is_documented: whether the documentation of its logger says so.
+    """
+
+    reading: ColumnReading
+    samples: Samples
+    is_documented: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class JointReading:
+    """One way to read the columns of a variable together.
+
+    Attributes:
+        readings: of its columns, in order.
+        parts: why -> nats for it, by itself.
+        slots: what it shows, on each grid.
+        contradicts: what the heading says otherwise; empty: nothing.
+    """
+
+    readings: tuple[ColumnReading, ...]
+    parts: Mapping[str, float]
+    slots: Mapping[str, tuple[Array, ...]] = field(default_factory=dict)
+    contradicts: str = ""
+
+    @cached_property
+    def own_nats(self) -> float:
+        """Nats of its parts."""
+        return sum(self.parts.values())
+
+    @cached_property
+    def system(self) -> str:
+        """Its unit of angles, deg or rad; empty where it has none."""
+        return next((r.unit.partition("/")[0] for r in self.readings if r.unit[:3] in ("deg", "rad")), "")
+
+
+@dataclass(frozen=True, eq=False)
+class ColumnGroup:
+    """Columns that are read together, what they show, and their candidates."""
+
+    role: str
+    columns: tuple[NamedColumn, ...]
+    candidates: tuple[JointReading, ...]
+
+
+_Readings = tuple[ColumnReading, ...]
+
+
+@cache
+def shares() -> Mapping[str, Mapping]:
+    """Return the table of shares and sizes."""
+    return tomllib.loads(Path(__file__).with_name("shares.toml").read_text(encoding="utf-8"))
+
+
+def variable(columns: Sequence[NamedColumn], on: Sequence[Grid]) -> ColumnGroup:
+    """Return columns that are read together with all their candidates."""
+    symbols = tuple(entry.reading.symbol for entry in columns)
+    role = ROLES.get(symbols, symbols[0])
+    options = []
+    for readings, parts in _combined(role, columns):
+        sizes = [_fit(entry, column.samples) for entry, column in zip(readings, columns, strict=True)]
+        own_nats = {**parts, **{why: sum(size.get(why, 0.0) for size in sizes) for why in ("size", "turn", "step")}}
+        pairs = zip(columns, readings, strict=True)
+        contradicts = next((text for pair in pairs if (text := _contradicted(*pair))), "")
+        options.append(JointReading(readings, own_nats, _slots(role, readings, columns, on), contradicts))
+    return ColumnGroup(role, tuple(columns), tuple(options))
+
+
+def is_impossible(reading: ColumnReading, samples: Samples) -> bool:
+    """Return whether the numbers so read are beyond what the quantity can be."""
+    return _fit(reading, samples).get("size", 0.0) <= -IMPOSSIBLE
+
+
+def _contradicted(column: NamedColumn, reading: ColumnReading) -> str:
+    stated = column.reading
+    return f'unit = "{stated.unit}"' if stated.unit and stated.unit != reading.unit else ""
+
+
+def _combined(role: str, columns: Sequence[NamedColumn]) -> Iterator[tuple[_Readings, dict[str, float]]]:
+    """The readings of all columns together: one unit for a pair, frames alike."""
+    lead = columns[0]
+    for (unit, factor, unit_share), (frame, frame_share) in product(_units(lead), _frames(role, lead)):
+        plain = [replace(column.reading, frame=frame or column.reading.frame) for column in columns]
+        plain[0] = replace(plain[0], unit=unit, factor=factor)
+        plain[1:] = [
+            replace(entry, unit=unit, factor=factor) if _kind(entry.symbol) == _kind(plain[0].symbol) else
+            replace(entry, unit=entry.unit or _units(column)[0][0])
+            for entry, column in zip(plain[1:], columns[1:], strict=True)
+        ]  # fmt: skip
+        for signed, sign_share in _signed(plain, columns):
+            for zeroed, zero_share in _zeroed(role, signed):
+                parts = {"unit": unit_share, "frame": frame_share, "sign": sign_share, "zero": zero_share}
+                yield tuple(zeroed), parts
+
+
+def _kind(symbol: str) -> str:
+    if symbol in NOTATION:
+        return NOTATION[symbol].unit
+    return {"sog": "m/s", "stw": "m/s"}.get(symbol, "1" if symbol.startswith("q_") else "rad")
+
+
+def quantity_frame(symbol: str) -> str:
+    """Return the frame of a quantity where none is said."""
+    return NOTATION[symbol].frame if symbol in NOTATION else "earth"
+
+
+def _units(column: NamedColumn) -> list[tuple[str, float, float]]:
+    """Unit, factor and nats; parts of a unit where the numbers are beyond all plain ones."""
+    stated = column.reading
+    usual = shares()["units"].get(_kind(stated.symbol), {_kind(stated.symbol): 1.0})
+    if stated.unit:
+        against = [(unit, stated.factor, -CONTRADICTED) for unit in usual if unit != stated.unit]
+        options = [(stated.unit, stated.factor, 0.0), *(against if not column.is_documented else [])]
+    else:
+        options = [(unit, stated.factor, math.log(share)) for unit, share in usual.items()]
+    if stated.factor != 1.0 or not all(
+        is_impossible(replace(stated, unit=unit), column.samples) for unit, _, _ in options if unit in usual
+    ):
+        return options
+    scales = shares()["scales"]
+    scaled = [(options[0][0], factor, math.log(scales["share"])) for factor in scales.get(stated.symbol, ())]
+    return [*options, *scaled]
+
+
+def _frames(role: str, lead: NamedColumn) -> list[tuple[str, float]]:
+    """Frames of a role with nats; empty: the one that is said."""
+    stated, other = lead.reading, shares()["frames"]
+    match role if not lead.is_documented else "":
+        case "velocity" if stated.frame != "enu":
+            first, second = ("earth", "body") if stated.frame == "earth" else ("body", "earth")
+            share = other["named velocity"] if stated.frame else other["velocity"]
+            return [(first, math.log(1.0 - share)), (second, math.log(share))]
+        case "place" | "heading" if stated.frame == "enu":
+            return [("enu", 0.0), ("earth", 0.0)]  # of a pose of ROS, which recommends the first (REP 103)
+        case "place":
+            share = other["named axes" if stated.frame else "axes"]
+            return [(stated.frame, math.log(1.0 - share)), ("enu", math.log(share))]
+        case "heading" if stated.symbol == "psi":
+            return [("", math.log(1.0 - other["heading"])), ("enu", math.log(other["heading"]))]
+        case _:
+            return [("", 0.0)]
+
+
+def _signed(readings: Sequence[ColumnReading], columns: Sequence[NamedColumn]) -> list[tuple[_Readings, float]]:
+    """The readings with each combination of signs, with nats."""
+    options: list[tuple[_Readings, float]] = [((), 0.0)]
+    for reading, column in zip(readings, columns, strict=True):
+        share = shares()["opposite"].get(reading.symbol, 0.0)
+        if reading.frame == "enu" or not share or reading.symbol not in NOTATION:
+            choices = [(reading, 0.0)]
+        else:
+            opposite = reversed_reading(reading)
+            share = shares()["opposite"]["of stated"] if column.reading.positive else share
+            share = math.exp(-CONTRADICTED) if column.is_documented else share
+            choices = [(reading, math.log(1.0 - share)), (opposite, math.log(share))]
+        options = [((*before, entry), nats + more) for before, nats in options for entry, more in choices]
+    return options
+
+
+def reversed_reading(reading: ColumnReading) -> ColumnReading:
+    """Return the reading that counts to the other side."""
+    opposite = OPPOSITE[positive_direction(reading.symbol, reading.frame)]
+    return replace(reading, positive="" if reading.positive == opposite else opposite)
+
+
+def _zeroed(role: str, readings: Sequence[ColumnReading]) -> list[tuple[Sequence[ColumnReading], float]]:
+    """The readings with each zero, with nats."""
+    zeros = shares()["zeros"].get(readings[0].symbol, {}) if len(readings) == 1 else {}
+    if not zeros or readings[0].frame == "enu" or role == "place":
+        return [(readings, 0.0)]
+    unit = si_unit("deg")[0] if readings[0].unit == "rad" else 1.0
+    offsets = [(float(zero) * unit, share) for zero, share in zeros.items()]
+    plain = (readings, math.log(1.0 - sum(zeros.values())))
+    return [plain, *(([replace(readings[0], offset=offset)], math.log(share)) for offset, share in offsets)]
+
+
+def _fit(reading: ColumnReading, samples: Samples) -> dict[str, float]:
+    """Nats for the size of the numbers, for the turn at which they jump and for their steps."""
+    kind, (factor, _) = _kind(reading.symbol), si_unit(reading.unit or "1")
+    parts: dict[str, float] = {}
+    sized = reading.unit if kind == "rps" else reading.symbol.partition("_")[0]
+    sized = sized if sized in ("alpha", "rpm", "rps") else reading.symbol
+    if sized in shares()["sizes"] and samples.readings[1].size:
+        usual, spread, limit = shares()["sizes"][sized]
+        factor = 1.0 if kind == "rps" else factor
+        about = _level(samples) if reading.symbol in ("phi", "theta") else samples.readings[1]
+        largest = float(np.max(np.abs(about * reading.factor + reading.offset))) * factor
+        nats = -0.5 * (math.log(max(largest, 1e-6) / usual) / spread) ** 2  # a log-normal's; never log of zero
+        parts["size"] = -IMPOSSIBLE if largest > limit * _TURN_SLACK else max(nats, -IMPOSSIBLE / 2.0)
+    if kind == "rad":
+        turn = math.tau / factor / reading.factor
+        if samples.turn:
+            parts["turn"] = SAME_TURN if abs(samples.turn / turn - 1.0) < _TURN_SLACK - 1.0 else -OTHER_TURN
+        if samples.resolution and reading.unit in ("deg", "rad"):
+            is_other = samples.resolution >= _COARSEST if reading.unit == "rad" else _is_of_degrees(samples.resolution)
+            parts["step"] = -COARSE if is_other else 0.0
+    return parts
+
+
+def _is_of_degrees(step: float) -> bool:
+    """Whether a step is a round part of a degree in radians, and no round number itself."""
+    return _is_round(math.degrees(step)) and not _is_round(step)
+
+
+def _is_round(step: float) -> bool:
+    """Whether a step is 1, 2 or 5 times a power of ten, as numbers are rounded to."""
+    mantissa = step / 10.0 ** math.floor(math.log10(step) + _ROUNDING)
+    return any(abs(mantissa / digit - 1.0) < _ROUNDING for digit in (1.0, 2.0, 5.0))  # leading digits of steps
+
+
+def _level(samples: Samples) -> Array:
+    """The unwrapped readings, by whole turns as near zero as can be."""
+    cells = samples.unwrapped
+    return cells - samples.turn * np.round(np.mean(cells) / samples.turn) if samples.turn else cells
+
+
+def in_si(reading: ColumnReading, cells: Array) -> Array:
+    """Return numbers of a column in SI units and the notation table's sign, angles from north or upright."""
+    values = (cells * reading.factor + reading.offset) * si_unit(reading.unit or "1")[0]
+    if reading.symbol not in NOTATION or reading.frame == "enu":
+        return values
+    is_reversed = reading.positive not in ("", positive_direction(reading.symbol, reading.frame))
+    return -values if is_reversed else values
+
+
+def _slots(
+    role: str, readings: Sequence[ColumnReading], columns: Sequence[NamedColumn], on: Sequence[Grid]
+) -> dict[str, tuple[Array, ...]]:
+    """What the readings show on each grid."""
+    by_grid: list[dict[str, Array]] = []
+    for grid in on:
+        pairs = zip(readings, columns, strict=True)
+        values = [in_si(reading, grid.means(column.samples)) for reading, column in pairs]
+        by_grid.append(dict(_slot_values(role, readings, values)))
+    return {slot: tuple(entry[slot] for entry in by_grid) for slot in (by_grid[0] if by_grid else ())}
+
+
+def _slot_values(role: str, readings: Sequence[ColumnReading], values: Sequence[Array]) -> Iterator[tuple[str, Array]]:
+    is_enu = readings[0].frame == "enu"
+    match role:
+        case "fixes":
+            north = _EARTH_RADIUS * (values[0] - np.nanmean(values[0]))
+            east = _EARTH_RADIUS * np.cos(np.nanmean(values[0])) * (values[1] - np.nanmean(values[1]))
+            yield "track", north + 1j * east
+        case "place":
+            yield "track", values[1] + 1j * values[0] if is_enu else values[0] + 1j * values[1]
+        case "velocity":
+            pair = values[1] + 1j * values[0] if is_enu else values[0] + 1j * values[1]
+            yield "over ground" if readings[0].frame in ("earth", "enu") else "along the hull", pair
+        case "heading" if len(values) > 1:
+            w, x, y, z = values
+            yaw = np.unwrap(np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)))  # Fossen 2021, eq. 2.79
+            yield "psi", np.pi / 2.0 - yaw if is_enu else yaw
+        case "heading":
+            yield "psi", np.pi / 2.0 - values[0] if is_enu else values[0]
+        case "wind" | "apparent wind":
+            yield role, values[0] * np.exp(1j * values[1])
+        case _:
+            yield role, values[0]

@@ -1,0 +1,281 @@
+"""What readings show together, in nats: kinematics, course, the answer to the rudder, waves."""
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from seatrial.core.values import Array
+
+Slots = Mapping[str, tuple[Array, ...]]
+"""What the readings of some variables show, on each grid."""
+_LAGS = (1, 3, 9)  # bins over which rates are taken; the clearest counts; chosen
+_MOST_NUMBERS = 40.0  # independent numbers that a comparison counts for at most; chosen: models are never exact
+_CAP, _LEAST = 15.0, -10.0  # nats that one relation counts for softly, and that it costs at most; chosen
+# share of the difference that is disagreement, and from which on a relation is no proof; chosen
+_DISAGREEING, _PROVING = 0.08, 0.04
+_HALF = 0.5  # share of the difference from which on two signals are unlike; chosen
+_DISAGREEMENT = 6.0  # nats for each e-fold of the share beyond that; chosen
+_MEANS = {"rate": 4.0, "ahead": 8.0, "aside": 2.0}  # nats' weight of means that agree; chosen
+_CURRENT, _CURRENT_M_S = 0.12, 0.05  # of the speed, and m/s, by which a current may explain a mean; chosen
+# sd of drift and compass errors [rad], share of logs that have them, numbers that directions count for; chosen
+_COURSE_SD, _COURSE_SHARE, _COURSE_NUMBERS = math.radians(10.0), 0.9, 14.0
+_BESIDE_SURGE = 0.25  # share that the course counts beside velocities, which are the same evidence; chosen
+_SLOW = 0.3  # of the fastest speed, below which a craft has no course; chosen
+_TURNING_CAP, _WAVES, _WAVES_SURE = 12.0, 6.0, 0.5  # nats, nats, share in phase from which a sign is sure; chosen
+_LONG_WAVES = 0.5  # share of the waves' energy up to which they count as long; chosen
+_FLOOR = 1e-9  # share of the variance that is rounding
+
+
+@dataclass(frozen=True)
+class Relation:
+    """A relation of roles: its name for people, the roles that it compares, and its nats.
+
+    roles: any one of each group must be there.
+    """
+
+    text: str
+    roles: tuple[tuple[str, ...], ...]
+    nats: Callable[[Slots], float]
+
+
+def independent_numbers(values: Array) -> float:
+    """Return for how many independent numbers a signal counts: 2 (sum S)^2 / sum S^2 of its spectrum S.
+
+    Degrees of freedom of a spectrum's sum (Priestley 1981, Spectral Analysis and Time Series, section 6.2.3).
+    """
+    power = np.abs(np.fft.rfft(values - np.mean(values))) ** 2
+    total = float(np.sum(power**2))
+    return min(2.0 * float(np.sum(power)) ** 2 / total, _MOST_NUMBERS) if total > 0.0 else 0.0
+
+
+def softly(nats: float, cap: float = _CAP) -> float:
+    """Return nats that grow slowly beyond a cap, so that the better of two good readings still shows."""
+    return nats if nats <= cap else cap + 2.0 * math.log1p(0.5 * (nats - cap))
+
+
+def identity(first: Array, second: Array, means: float, most: float = _MOST_NUMBERS) -> float:
+    """Return the nats for two signals being the same, (n,) each; negative where both move and disagree."""
+    finite = np.isfinite(first) & np.isfinite(second)
+    a, b = first[finite], second[finite]
+    if a.size < 2 * max(_LAGS):
+        return 0.0
+    total = float(np.var(a) + np.var(b))
+    scale = float(np.mean(a**2) + np.mean(b**2))
+    if total <= _FLOOR * scale or scale == 0.0:
+        return 0.0
+    share = float(np.var(a - b)) / total + _FLOOR
+    nats = _CAP * max(1.0 - 2.0 * share, 0.0) ** 2
+    if share <= _HALF:
+        count = min(independent_numbers(b), independent_numbers(a), most)
+        proof = -0.5 * count * math.log(share)
+        nats = proof if share <= _PROVING else min(proof, nats)
+    if share > _DISAGREEING:
+        nats -= _DISAGREEMENT * math.log(share / _DISAGREEING)
+    elif means:
+        off = float(np.mean(a - b)) ** 2 / (float(np.mean(a) ** 2 + np.mean(b) ** 2) + _FLOOR * scale)
+        nats -= 0.5 * means * math.log(off + _PROVING)
+    return max(softly(nats), _LEAST)
+
+
+def _rates(signal: Array, lag: int) -> Array:
+    return signal[lag:] - signal[:-lag]
+
+
+def _integral(rate: Array, lag: int) -> Array:
+    """The integral of a rate over so many bins, in bins."""
+    total = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]))])
+    return total[lag:] - total[:-lag]
+
+
+def _derivative(angle: tuple[Array, ...], rate: tuple[Array, ...], steps: Sequence[float]) -> float:
+    """The nats for one signal being the derivative of another; the clearest grid and lag counts."""
+    results = [
+        identity(_rates(a, lag), step * _integral(r, lag), _MEANS["rate"])
+        for a, r, step in zip(angle, rate, steps, strict=True)
+        for lag in _LAGS
+    ]
+    return max(results, key=abs, default=0.0) if max(results, default=0.0) <= 0.0 else max(results)
+
+
+@dataclass(frozen=True)
+class Relations:
+    """The relations of a run's readings on grids with these steps [s]."""
+
+    steps: tuple[float, ...]
+
+    @property
+    def terms(self) -> tuple[Relation, ...]:
+        """All relations."""
+        over_ground = ("place", "fixes", "velocity", "sog")
+        return (
+            Relation("the rate of the heading", (("heading",), ("r",)), self._yaw_rate),
+            Relation("the rate of the course", (("place", "fixes"), ("r",), ("no heading",)), self._course_rate),
+            Relation("the rate of roll", (("phi",), ("p",)), lambda s: _derivative(s["phi"], s["p"], self.steps)),
+            Relation("the derivative of position", (("place", "fixes"), ("velocity",), ("heading",)), self._track),
+            Relation("the speed of the track", (("place", "fixes"), ("sog", "stw", "u")), self._speed),
+            Relation("the course over ground", (over_ground, ("heading",)), self._course),
+            Relation("the course of the track", (("place", "fixes"), ("cog",)), self._track_course),
+            Relation("the fixes", (("place",), ("fixes",)), self._fixes),
+            Relation("the turn that follows", (("delta",), ("r", "heading")), self._rudder),
+            Relation("the waves", (("zeta",), ("z",)), lambda s: -_in_phase(s, "z", 1.0)),
+            Relation("the slope of the waves", (("zeta",), ("theta",)), lambda s: _in_phase(s, "theta", 1j)),
+        )
+
+    def _yaw_rate(self, slots: Slots) -> float:
+        return _derivative(slots["psi"], slots["r"], self.steps)
+
+    def _course_rate(self, slots: Slots) -> float:
+        course = tuple(np.unwrap(np.angle(v)) for v in self._velocities(slots["track"]))
+        return _derivative(course, tuple(r[1:] for r in slots["r"]), self.steps)
+
+    def _velocities(self, track: tuple[Array, ...], lag: int = 1) -> Iterator[NDArray[np.complex128]]:
+        for place, step in zip(track, self.steps, strict=True):
+            yield (place[lag:] - place[:-lag]) / (lag * step)
+
+    def _track(self, slots: Slots) -> float:
+        """Velocities against the derivative of position, ahead and aside, less a current."""
+        is_hull = "along the hull" in slots
+        results = []
+        for k, step in enumerate(self.steps):
+            for lag in _LAGS[::2]:
+                velocity = (slots["along the hull"] if is_hull else slots["over ground"])[k]
+                axes = np.exp(1j * slots["psi"][k])
+                turned = velocity * axes if is_hull else velocity
+                mean = _integral(turned, lag) / lag
+                rate = (slots["track"][k][lag:] - slots["track"][k][:-lag]) / (lag * step)
+                turn = np.conj(_midway(axes, lag))
+                off = _less_current(rate - mean, mean)
+                ahead = identity(((mean + off) * turn).real, (mean * turn).real, _MEANS["ahead"])
+                aside = identity(((mean + off) * turn).imag, (mean * turn).imag, _MEANS["aside"])
+                results.append(ahead + aside)
+        return max(results, default=0.0)
+
+    def _speed(self, slots: Slots) -> float:
+        """A speed against that of the track."""
+        speed = next(slots[s] for s in ("sog", "stw", "u") if s in slots)
+        results = [0.0]
+        for k, v in enumerate(self._velocities(slots["track"], _LAGS[1])):
+            size, logged = np.abs(v), _integral(np.abs(speed[k]), _LAGS[1]) / _LAGS[1]
+            off = np.nanmean(size - logged)
+            bound = _CURRENT * np.nanmean(logged) + _CURRENT_M_S
+            ratio = abs(off) / max(bound, 1e-9)  # never a zero
+            nats = _MEANS["ahead"] - 0.5 * ratio**2 if np.isfinite(ratio) else 0.0
+            results.append(max(nats, _LEAST) + 0.5 * identity(size - off, logged, 0.0))
+        return max(results[1:], default=0.0)
+
+    def _course(self, slots: Slots) -> float:
+        """Where the craft points against where it goes."""
+        share = _BESIDE_SURGE if {"track", "along the hull"} <= set(slots) else 1.0
+        return share * max((_alike(v, psi) for v, psi in self._courses(slots)), key=abs, default=0.0)
+
+    def _courses(self, slots: Slots) -> Iterator[tuple[Array, Array]]:
+        psi = slots["psi"]
+        if "along the hull" in slots and "track" not in slots:
+            yield from ((v, np.zeros(len(v))) for v in slots["along the hull"])
+        elif "track" in slots:
+            pairs = zip(self._velocities(slots["track"], _LAGS[0]), psi, strict=True)
+            yield from ((v, 0.5 * (p[1:] + p[:-1])) for v, p in pairs)
+        elif "over ground" in slots:
+            yield from zip(slots["over ground"], psi, strict=True)
+        elif "sog" in slots and "cog" in slots:
+            yield from ((s * np.exp(1j * c), p) for s, c, p in zip(slots["sog"], slots["cog"], psi, strict=True))
+
+    def _track_course(self, slots: Slots) -> float:
+        pairs = zip(self._velocities(slots["track"]), slots["cog"], strict=True)
+        return max((_alike(v, 0.5 * (c[1:] + c[:-1])) for v, c in pairs), key=abs, default=0.0)
+
+    def _fixes(self, slots: Slots) -> float:
+        """A pose against the fixes of the same run."""
+        results = [
+            identity(p.real, f.real, 0.0) + identity(p.imag, f.imag, 0.0)
+            for p, f in zip(slots["place track"], slots["track"], strict=True)
+        ]
+        return results[0] if results else 0.0
+
+    def _rudder(self, slots: Slots) -> float:
+        """The yaw acceleration, and the turn that follows, against the rudder (Nomoto 1957, eq. 1)."""
+        signed = [0.0]
+        for k, step in enumerate(self.steps):
+            delta = slots["delta"][k]
+            rate = slots["r"][k] if "r" in slots else np.gradient(slots["psi"][k], step)
+            for lag in (*_LAGS, 3 * _LAGS[-1]):
+                mean_rate, mean_delta = _integral(rate, lag) / lag, _integral(delta, lag) / lag
+                signed.append(_signed_nats(_rates(rate, lag), mean_delta, mean_rate, lag))
+                signed.append(_signed_nats(rate[lag:], delta[:-lag], None, lag))
+        for_it, against = max(signed), -min(signed)
+        nats = for_it - 0.5 * against if for_it >= against else -(against - 0.5 * for_it)
+        return math.copysign(min(abs(nats), _TURNING_CAP), nats)
+
+
+def _midway(axes: NDArray[np.complex128], lag: int) -> NDArray[np.complex128]:
+    mean = _integral(axes, lag)
+    return mean / np.maximum(np.abs(mean), _FLOOR)
+
+
+def _less_current(off: NDArray[np.complex128], velocity: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """The residual of the track without what a steady current may be."""
+    if not np.any(np.isfinite(off)):
+        return off
+    mean, bound = complex(np.nanmean(off)), _CURRENT * float(np.nanmean(np.abs(velocity))) + _CURRENT_M_S
+    return off - (mean * min(1.0, bound / abs(mean)) if abs(mean) > 0.0 else 0.0)
+
+
+def _alike(velocity: NDArray[np.complex128], angle: Array) -> float:
+    """The nats for a velocity north + i east pointing along an angle: its turns, then its mean direction."""
+    finite = np.isfinite(velocity) & np.isfinite(angle)
+    v, a = velocity[finite], angle[finite]
+    if v.size < 2 * max(_LAGS) or np.max(np.abs(v)) == 0.0:
+        return 0.0
+    moving = np.abs(v) > _SLOW * np.max(np.abs(v))
+    course, heading = np.exp(1j * np.angle(v[moving])), np.exp(1j * a[moving])
+    off = complex(np.mean(course * np.conj(heading)))
+    apart = float(np.angle(off))
+    spread = float(np.var(course) + np.var(heading))
+    nats = 0.0
+    if spread > 2.0 * _COURSE_SD**2:
+        share = float(np.var(course - heading * np.exp(1j * apart))) / spread + _FLOOR
+        count = min(max(independent_numbers(course.real), independent_numbers(course.imag)), _COURSE_NUMBERS)
+        nats = max(-0.5 * count * math.log(max(share, _PROVING)), _LEAST)
+        nats -= _DISAGREEMENT * math.log(share / _HALF) if share > _HALF else 0.0
+    density = math.exp(-0.5 * (apart / _COURSE_SD) ** 2) / (_COURSE_SD * math.sqrt(2.0 * math.pi))
+    return max(nats + math.log(_COURSE_SHARE * density * math.tau + 1.0 - _COURSE_SHARE), _LEAST)
+
+
+def _signed_nats(answer: Array, cause: Array, beside: Array | None, lag: int) -> float:
+    """Nats for an answer to a cause, with the sign of the partial correlation."""
+    columns = [np.ones(len(answer)), *([] if beside is None else [beside])]
+    table = np.stack([*columns, cause, answer], axis=1)
+    table = table[np.all(np.isfinite(table), axis=1)][:: max(lag // 2, 1)]
+    if len(table) < 2 * _LAGS[-1] // 2 or np.ptp(table[:, -2]) == 0.0:
+        return 0.0
+    basis = np.linalg.qr(table[:, :-2])[0]
+    residuals = table[:, -2:] - basis @ (basis.T @ table[:, -2:])
+    power = np.sum(residuals**2, axis=0)
+    if np.min(power) <= _FLOOR * np.sum(table[:, -1] ** 2) or np.min(power) == 0.0:
+        return 0.0
+    correlation = float(residuals[:, 0] @ residuals[:, 1] / math.sqrt(power[0] * power[1]))
+    if correlation**2 < _PROVING:
+        return 0.0
+    count = independent_numbers(residuals[:, 0])
+    return math.copysign(0.5 * max(count - 1.0, 0.0) * -math.log1p(-min(correlation**2, 1.0 - _FLOOR)), correlation)
+
+
+def _in_phase(slots: Slots, motion: str, slope: complex) -> float:
+    """Nats for a motion in long waves being in phase with their elevation, or with its rate."""
+    waves, moved = (_spectrum(slots[s][-1]) for s in ("zeta", motion))
+    energy = np.cumsum(np.abs(waves) ** 2)
+    if energy[-1] == 0.0:
+        return 0.0
+    long = energy <= _LONG_WAVES * energy[-1]
+    followed = waves[long] * slope
+    size = float(np.sqrt(np.sum(np.abs(followed) ** 2) * np.sum(np.abs(moved[long]) ** 2)))
+    share = float(np.real(np.sum(np.conj(followed) * moved[long]))) / size if size > 0.0 else 0.0
+    return _WAVES * max(min(share / _WAVES_SURE, 1.0), -1.0)
+
+
+def _spectrum(values: Array) -> NDArray[np.complex128]:
+    finite = np.nan_to_num(values)
+    return np.fft.rfft((finite - np.mean(finite)) * np.hanning(len(finite)))
