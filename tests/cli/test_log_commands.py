@@ -43,7 +43,11 @@ def test_a_folder_is_listed_as_init_takes_it(tmp_path: Path) -> None:
 def test_a_draft_is_written_once_and_checked(tmp_path: Path) -> None:
     log, trial = write(tmp_path / "run.csv", BASE | {"rot": TRUTH["r"]}), tmp_path / "trial.toml"
     text = output("init", str(log), "--out", str(trial))
-    assert "follows d(psi)/dt" in text and "zigzag1, " in text and "Next: name the column of rudder" in text
+    assert (
+        "rad/s, positive to starboard by the rate of the heading" in text
+        and "zigzag1, " in text
+        and "Next: name the column of rudder" in text
+    )
     assert "zigzag1" in trial.with_suffix(".html").read_text(encoding="utf-8")
     with pytest.raises(InputError, match=r"trial.toml' exists; add --overwrite"):
         output("init", str(log), "--out", str(trial))

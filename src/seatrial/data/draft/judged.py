@@ -1,7 +1,7 @@
 """The guesses of a run's columns as the judge of readings decides them; unsure ones with both readings."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,6 +15,7 @@ from seatrial.data.readings import ColumnReading, NamedColumn, ReadingVerdict, S
 
 _GROUPS = (("lat", "lon"), ("x0", "y0"), ("u", "v"), ("q_w", "q_x", "q_y", "q_z"))
 _SIDES = ("port", "starboard")
+_EITHER_SIDE = frozenset({"delta", "v", "r", "z", "theta"})  # of which logs use both sides; ours
 _ANGLES = frozenset({"psi", "psi_magnetic", "cog", "phi", "theta", "wind_direction", "wind_direction_relative"})
 _COMMAND = "command_"
 _WORDS = {"deg": "degrees", "rad": "radians", "rpm": "per minute", "rps": "per second"}
@@ -99,11 +100,12 @@ def _decided(guess: ColumnGuess, place: _Place, verdict: ReadingVerdict, k: int)
     other = _differences(best, rival) if rival is not None and verdict.is_open else ""
     if verdict.best.contradicts:
         other = f"{_differences(best, place.named.reading)} as its heading says"
+    reasons = _reasons(guess, best, {} if other else verdict.reasons)
     if not guess.unit:
         word = _WORDS.get(best.unit, best.unit) if best.factor == 1.0 else f"in {best.factor:g} {best.unit}"
-        read = read.with_evidence(text if "unit" in other else f"{text}: {word}")
-    said = _deciding_words(guess, best, rival) if rival is not None and verdict.reason else ""
-    read = read.with_evidence(f"{said} by {verdict.reason}") if said else read
+        read = read.with_evidence(text if "unit" in other or best.unit in reasons else f"{text}: {word}")
+    for relation in dict.fromkeys(reasons.values()):
+        read = read.with_evidence(f"{', '.join(w for w, r in reasons.items() if r == relation)} by {relation}")
     zeros = [one.offset for one in (best, rival) if one is not None and one.offset and (one is best or other)]
     read = read.with_evidence(_zero_text(best, zeros[0])) if zeros else read
     # an unknown unit of wind comes before whose wind it is; which of two columns is meant comes before its unit
@@ -119,12 +121,16 @@ def _instead(best: ColumnReading, place: _Place) -> str:
     return f"counts: write zero = {middle:g} (their median) and span = the counts of one {best.unit}"
 
 
-def _deciding_words(guess: ColumnGuess, best: ColumnReading, rival: ColumnReading) -> str:
-    """What sets the reading apart from the nearest other one and is not said of the column."""
-    words = [best.unit] if best.unit not in (guess.unit, rival.unit) else []
-    words += [f"{best.frame}-fixed"] if best.frame and best.frame not in (guess.frame, rival.frame) else []
-    words += [f"positive {_to(best)}"] if best.positive != rival.positive else []
-    return ", ".join(words)
+def _reasons(guess: ColumnGuess, best: ColumnReading, reasons: Mapping[str, str]) -> dict[str, str]:
+    """What is not said of a column and a relation decides: its words -> the relation."""
+    words = {
+        "unit": "" if guess.unit else best.unit,
+        "frame": "" if best.frame == guess.frame else f"{best.frame}-fixed",
+    }
+    words["positive"] = (
+        f"positive {_to(best)}" if best.symbol in _EITHER_SIDE or best.positive != guess.positive else ""
+    )
+    return {word: reasons[key] for key, word in words.items() if word and key in reasons}
 
 
 def _zero_text(reading: ColumnReading, offset: float) -> str:

@@ -1,6 +1,6 @@
 """The readings of a run that explain it best, and for each the nearest other one with its distance in nats."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, product
 
@@ -36,7 +36,7 @@ class ReadingVerdict:
         best, rival: the best candidate and the nearest other one; None: there is no other.
         gap: nats between them, everything else read as goes best with each.
         measured: nats of them that records show, beyond names, units and sides that are usual.
-        reason: the relation that speaks most for the best one; empty: none does.
+        reasons: unit, frame or positive -> the relation by which readings that differ in nothing else are worse.
     """
 
     columns: tuple[NamedColumn, ...]
@@ -44,7 +44,7 @@ class ReadingVerdict:
     rival: JointReading | None
     gap: float
     measured: float
-    reason: str
+    reasons: Mapping[str, str]
 
     @property
     def is_open(self) -> bool:
@@ -178,26 +178,48 @@ class _Search:
                     self.ascended([*start[:place], other, *start[place + 1 :]], place, by_pairs=False)
                     for start in starts
                 ]
-                results += [(self.total(choice), choice) for choice in choices]
+                results.append(max((self.total(choice), choice) for choice in choices))
         return results
 
     def verdict(self, best: Sequence[int], place: int, rivals: Sequence[tuple[float, list[int]]]) -> ReadingVerdict:
         """Return the verdict on one variable: against the nearest other reading that leaves it open, or the nearest."""
-        entry = self.variables[place]
+        entry, reasons = self.variables[place], self._reasons(best, place)
         ordered = sorted(rivals, key=lambda rival: -rival[0])
-        verdicts = [self._against(best, place, choice) for _, choice in ordered]
-        alone = ReadingVerdict(entry.columns, entry.candidates[best[place]], None, 0.0, 0.0, "")
+        verdicts = [self._against(best, place, choice, reasons) for _, choice in ordered]
+        alone = ReadingVerdict(entry.columns, entry.candidates[best[place]], None, 0.0, 0.0, reasons)
         return next((v for v in verdicts if v.is_open), next(iter(verdicts), alone))
 
-    def _against(self, best: Sequence[int], place: int, other: Sequence[int]) -> ReadingVerdict:
+    def _against(
+        self, best: Sequence[int], place: int, other: Sequence[int], reasons: Mapping[str, str]
+    ) -> ReadingVerdict:
         entry = self.variables[place]
         candidate, rival = entry.candidates[best[place]], entry.candidates[other[place]]
-        nats = {term.text: self.term_nats(t, best) - self.term_nats(t, other) for t, (term, _) in enumerate(self.terms)}
-        sizes = sum(candidate.parts[why] - rival.parts[why] for why in ("size", "turn", "step"))
-        reason = max(nats, key=lambda text: nats[text], default="")
-        is_shown = bool(reason) and nats[reason] > _NO_EVIDENCE
-        measured, gap = sum(nats.values()) + sizes, self.total(best) - self.total(other)
-        return ReadingVerdict(entry.columns, candidate, rival, gap, measured, reason if is_shown else "")
+        measured = sum(self._differences(best, other).values())
+        measured += sum(candidate.parts[why] - rival.parts[why] for why in ("size", "turn", "step"))
+        gap = self.total(best) - self.total(other)
+        return ReadingVerdict(entry.columns, candidate, rival, gap, measured, reasons)
+
+    def _differences(self, best: Sequence[int], other: Sequence[int]) -> dict[str, float]:
+        """Relation -> nats by which one choice has it better than another."""
+        return {term.text: self.term_nats(t, best) - self.term_nats(t, other) for t, (term, _) in enumerate(self.terms)}
+
+    def _reasons(self, best: Sequence[int], place: int) -> dict[str, str]:
+        """Unit, frame or positive -> the relation that speaks most against the nearest reading that differs in it."""
+        candidates, reasons = self.variables[place].candidates, dict[str, str]()
+        for key in ("unit", "frame", "positive"):
+            differing = [k for k in self.likely[place] if _differs_in(candidates[best[place]], candidates[k], key)]
+            choices = [[*best[:place], k, *best[place + 1 :]] for k in differing]
+            if choices:
+                nats = self._differences(best, max(choices, key=self.total))
+                reason = max(nats, key=lambda text: nats[text], default="")
+                reasons |= {key: reason} if reason and nats[reason] > _NO_EVIDENCE else {}
+        return reasons
+
+
+def _differs_in(best: JointReading, other: JointReading, key: str) -> bool:
+    """Whether two readings differ in one key and in nothing else."""
+    pairs = list(zip(best.readings, other.readings, strict=True))
+    return best is not other and all(replace(a, **{key: getattr(b, key)}) == b for a, b in pairs)
 
 
 def _likely(variable: ColumnGroup) -> list[int]:
