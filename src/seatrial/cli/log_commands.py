@@ -93,6 +93,7 @@ def init(
     write_atomically(out, draft.text.encode())
     write_atomically(page, draft_page(draft, out.name).encode())
     _print_guesses([g for part in draft.guesses for g in part if g.is_used])
+    print_lines(f"NOTE {survey.path.name}: {note}" for survey in draft.surveys for note in survey.notes)
     ignored = draft.unrecognised
     if ignored:
         more = f" and {len(ignored) - COLUMNS_SHOWN} more" if len(ignored) > COLUMNS_SHOWN else ""
@@ -216,6 +217,7 @@ def _print_survey(survey: "LogSurvey", *, show_all: bool) -> None:
     if len(topics) < len(survey.topics):
         names = ", ".join(topic.topic for topic in survey.topics[len(topics) :])
         print_lines([f"... and {len(survey.topics) - len(topics)} more topics; --all shows them: {names[:300]}"])
+    print_lines(f"NOTE {note}" for note in survey.notes)
     print_lines(f"event at {event.time:.6g} s: {event.name}" for event in survey.log.events[:TOPICS_SHOWN])
     if survey.log.parameters:
         print_lines([f"{counted(len(survey.log.parameters), 'parameter')} stored"])

@@ -16,7 +16,8 @@ from seatrial.data.draft import ColumnGuess, find_stretches, guess_columns
 from seatrial.data.draft.guess import recognised_columns
 from seatrial.data.draft.naming import guess_by_name
 from seatrial.data.draft.runs_of_logs import zone_offsets
-from seatrial.data.draft.survey import column_values, text_layout, time_column
+from seatrial.data.draft.survey import column_values, time_column
+from seatrial.data.read.formats.text import text_layout
 from seatrial.data.trial import load_runs
 
 DEGREE, KNOT = np.pi / 180.0, 1852.0 / 3600.0

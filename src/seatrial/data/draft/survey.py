@@ -12,92 +12,9 @@ from seatrial.core.values.files import is_folder
 from seatrial.data.draft.naming import NOTHING_STATED, TIME, StatedColumns, in_english, refuse_absent, without_accents
 from seatrial.data.read import FORMATS, ColumnSpec, Layout, Log, format_of, read_log
 from seatrial.data.read.clock import stamps
-from seatrial.data.read.formats.text import column_names, decoded_text, detect_separator
+from seatrial.data.read.formats.text import text_layout
 from seatrial.data.read.layout import TimeSpec
-from seatrial.data.read.log import RawTable, table_header
-
-# How a text file is laid out, from its first lines: header, separator, decimal sign, encoding.
-
-# lines in which the first row of numbers is sought, ours: the longest header of a towing tank's files has forty
-_HEADER_LINES = 60
-_SECOND_ENCODING = "cp1252"  # of programs on Windows that write no mark
-_CELL = re.compile(
-    r"[+-]?(\d+[.,]?\d*|[.,]\d+)([eE][+-]?\d+)?|nan|inf|true|false|\d{4}[-/]\d\d?[-/]\d\d?([T ].*)?|\d\d?:\d\d:\d\d.*|",
-    re.IGNORECASE,
-)
-_DECIMAL_COMMA = re.compile(r"[+-]?\d+(,\d+)?")
-_WHITESPACE = r"\s+"
-_HEAD_BYTES, _ZERO_SHARE = 2048, 0.9  # bytes looked at for lost marks of UTF-16, share of zeros in its high bytes; ours
-_NUMBER_SHARE = 0.5  # of the cells of a row of data that must be numbers or times; ours
-
-
-def text_layout(path: Path) -> Layout:
-    """Return the layout of a text file without channels: what stands above the first two rows of numbers is header.
-
-    Raises:
-        InputError: no rows of numbers in its first lines; empty or binary.
-    """
-    encoding, text = _decoded(path)
-    lines = text.splitlines()[: _HEADER_LINES + 2]
-    for first in range(max(len(lines) - 1, 0)):
-        separator = _separator(lines[first])
-        rows = [_cells(line, separator) for line in lines[first : first + 2]]
-        if len(rows[0]) == len(rows[1]) and all(_is_data(row) for row in rows):
-            return _layout(lines, first, separator, encoding)
-    raise InputError(f"{path.name} has no rows of numbers in its first {len(lines)} lines; check what it is")
-
-
-def _decoded(path: Path) -> tuple[str, str]:
-    """The encoding of a file and its text: UTF-8, else that of Windows, or UTF-16 of which the mark was lost."""
-    try:
-        return "utf-8", decoded_text(path, "utf-8")
-    except InputError as error:
-        encoding = _unmarked_encoding(path) if "binary" in str(error) else ""
-        encoding = _SECOND_ENCODING if "is not utf-8 text" in str(error) else encoding
-        if not encoding:
-            raise
-    return encoding, decoded_text(path, encoding)
-
-
-def _unmarked_encoding(path: Path) -> str:
-    """UTF-16 in the order in which every second byte of the file's beginning is zero; empty for other files."""
-    with path.open("rb") as file:
-        head = file.read(_HEAD_BYTES)
-    zeros = {head[0::2].count(0): "utf-16-be", head[1::2].count(0): "utf-16-le"}
-    most = max(zeros)
-    return zeros[most] if most > _ZERO_SHARE * (len(head) // 2) and len(zeros) > 1 and min(zeros) == 0 else ""
-
-
-def _separator(line: str) -> str:
-    """`;` or tab where the line has one, else comma unless that is the decimal sign, else whitespace."""
-    separator = detect_separator(line, Layout("text", ColumnSpec("time", 1, "s"), ()))
-    cells = line.split()
-    if separator == "," and len(cells) > 1 and all(_DECIMAL_COMMA.fullmatch(cell) for cell in cells):
-        return _WHITESPACE
-    return separator
-
-
-def _cells(line: str, separator: str) -> list[str]:
-    return column_names(line, separator) if line.strip() else []
-
-
-def _is_data(row: list[str]) -> bool:
-    """Whether a row has a number, and numbers or times in most cells."""
-    filled = [cell for cell in row if cell]
-    known = sum(_CELL.fullmatch(cell) is not None for cell in filled)
-    return bool(filled) and known >= _NUMBER_SHARE * len(filled) and any(cell[0] in "+-.0123456789" for cell in filled)
-
-
-def _layout(lines: list[str], first: int, separator: str, encoding: str) -> Layout:
-    row = _cells(lines[first], separator)
-    decimal = "," if separator != "," and any("," in cell and _DECIMAL_COMMA.fullmatch(cell) for cell in row) else "."
-    while first and not lines[first - 1].strip():  # the reader passes over empty lines between header and data
-        first -= 1
-    header = table_header([_cells(line, separator) for line in lines[:first]]).names
-    named = len(header) == len(row) and any(cell and not _CELL.fullmatch(cell) for cell in header)
-    source: str | int = next(cell for cell in header if cell) if named else 1
-    return Layout("text", ColumnSpec("time", source, "s"), (), first, encoding, decimal=decimal)
-
+from seatrial.data.read.log import RawTable
 
 # Which column of a table holds the time stamps, and in what unit: by name, size, step and cells.
 
@@ -139,7 +56,7 @@ def time_column(table: RawTable, layout: Layout, stated: str = "") -> tuple[Colu
     """
     if table.time_name:
         return ColumnSpec("time", "", "s"), f"time of the {layout.format} log"
-    if stated in table.names and stated:
+    if stated in _headings(table):
         return _with_unit(table, stated, "")[0], "as stated"
     plain = {_plain_name(name): name for name in reversed(table.names) if name}
     completed = _of_two_columns(plain)
@@ -165,6 +82,11 @@ def time_column(table: RawTable, layout: Layout, stated: str = "") -> tuple[Colu
             spec, note = _with_unit(table, table.names[index] or index + 1, "")
             return spec, f"the only column that increases evenly, {note}"
     return None, fault
+
+
+def _headings(table: RawTable) -> tuple[str, ...]:
+    """The names of the columns; of one without a name its number."""
+    return tuple(name or f"{k}" for k, name in enumerate(table.names, start=1))
 
 
 def _of_two_columns(plain: dict[str, str]) -> tuple[TimeSpec, str] | None:
@@ -234,8 +156,9 @@ def _backwards(table: RawTable, name: str) -> str:
     back = np.flatnonzero(np.diff(values[known]) < 0.0) if values is not None else known
     if values is None or not back.size:
         return ""
-    row = int(known[back[0] + 1])
-    return f"'{name}' runs backwards from {values[known[back[0]]]:g} to {values[row]:g} in row {table.first_row + row}"
+    before, row = int(known[back[0]]), int(known[back[0] + 1])
+    ends = f"from {values[before]:.10g} to {values[row]:.10g}"
+    return f"'{name}' runs backwards {ends} in row {table.first_row + row}"
 
 
 def _plain_name(name: str) -> str:
@@ -358,6 +281,7 @@ class TopicSummary:
         columns, text_columns: those that hold numbers, and the names of those that hold text.
         time_note: how the time column was recognised, or what is wrong with the one that is called so.
         faults: of columns that begin with numbers and hold something else further down.
+        clock_note: how stamps were read that run back or in odd steps; empty: there is nothing to say.
     """
 
     topic: str
@@ -370,6 +294,7 @@ class TopicSummary:
     time_note: str
     text_columns: tuple[str, ...] = ()
     faults: tuple[str, ...] = ()
+    clock_note: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -386,6 +311,11 @@ class LogSurvey:
     def duration(self) -> float:
         """s of the longest topic."""
         return max((topic.duration for topic in self.topics if np.isfinite(topic.duration)), default=float("nan"))
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is to be known of how it was read, and of what of it is not read."""
+        return tuple(dict.fromkeys((*self.log.notes, *(topic.clock_note for topic in self.topics if topic.clock_note))))
 
     @property
     def kind(self) -> tuple:
@@ -456,25 +386,26 @@ def _ranged(column: ColumnSummary, ends: tuple[float, float]) -> ColumnSummary:
 def _topic_summary(table: RawTable, layout: Layout, stated_time: str) -> TopicSummary:
     time, note = time_column(table, layout, stated_time)
     seconds = np.full(len(table), np.nan)
+    clock_note = ""
     if time is not None:
-        seconds = stamps(table, time).seconds
+        clock = stamps(table, time)
+        seconds, clock_note = clock.seconds, clock.note
     known = seconds[np.isfinite(seconds)]
     steps = np.diff(known)
     step = float(np.median(steps[steps > 0])) if np.any(steps > 0) else np.nan
     own = set() if time is None else {time.source, "time" if not time.source else time.source}
     own |= {time.nanoseconds, time.date, time.week} - {""} if isinstance(time, TimeSpec) else set()
-    columns = [
-        summary
-        for index in range(len(table.names))
-        if table.names[index] not in own and (summary := _column_summary(table, index)) is not None
-    ]
-    textual = [k for k, name in enumerate(table.names) if name not in own and column_values(table, k) is None]
+    places = [k for k, heading in enumerate(_headings(table)) if heading not in own and k + 1 not in own]
+    columns = [summary for k in places if (summary := _column_summary(table, k)) is not None]
+    textual = [k for k in places if column_values(table, k) is None]
     dates = [k for k in textual if is_date_column(table, k)]
     texts = tuple(table.names[k] or f"{k + 1}" for k in textual if k not in dates)
     faults = tuple(fault for k in textual if (fault := date_fault(table, k) if k in dates else _fault(table, k)))
     duration = float(known[-1] - known[0]) if known.size > 1 else float("nan")
     start = float(known[0]) if known.size else float("nan")
-    return TopicSummary(table.topic, time, len(table), 1.0 / step, start, duration, tuple(columns), note, texts, faults)
+    return TopicSummary(
+        table.topic, time, len(table), 1.0 / step, start, duration, tuple(columns), note, texts, faults, clock_note
+    )
 
 
 def _column_summary(table: RawTable, index: int) -> ColumnSummary | None:
@@ -539,7 +470,7 @@ def survey_logs(paths: Sequence[Path], stated: StatedColumns = NOTHING_STATED) -
     if not surveys:
         first = next(iter(reasons.items()))
         raise InputError(f"there is no log to draft a trial of: {first[0]}: {first[1]}")
-    refuse_absent(stated, (name for one in surveys for table in one.log.tables for name in table.names))
+    refuse_absent(stated, (name for survey in surveys for table in survey.log.tables for name in _headings(table)))
     return SurveyedLogs(tuple(surveys), reasons)
 
 

@@ -11,7 +11,7 @@ from seatrial.core.values.arrays import EMPTIED, Mask, sentinel_value, unwrapped
 from seatrial.core.values.files import plain_name
 from seatrial.core.values.record import froude_scaled
 from seatrial.data.held_readings import between_readings, held_text, slower_channels
-from seatrial.data.read.clock import Series, common_time, ordered_series, stamps, values_at
+from seatrial.data.read.clock import Series, common_time, moment_text, ordered_series, stamps, values_at
 from seatrial.data.read.layout import LOG_QUANTITIES, ColumnSpec, Geometry, Layout
 from seatrial.data.read.log import Log, RawTable
 
@@ -465,7 +465,7 @@ def record_name(file: str) -> str:
 
 
 def _require_increasing_time(time: Array, table: RawTable, layout: Layout) -> None:
-    if len(time) > 1 and np.all(time[1:] >= time[:-1]):  # the usual case at a tenth of the cost
+    if len(time) > 1 and time[0] < time[-1] and np.all(time[1:] >= time[:-1]):  # usual, at a tenth of the cost
         return
     stamped = np.flatnonzero(np.isfinite(time))
     if stamped.size < 2:
@@ -473,10 +473,16 @@ def _require_increasing_time(time: Array, table: RawTable, layout: Layout) -> No
         raise InputError(f"{table.title} has {count} in {layout.time.display_name}; a record needs at least two")
     back = np.flatnonzero(np.diff(time[stamped]) < 0)
     if back.size:
-        row = stamped[back[0] + 1]
+        before, row = stamped[back[0]], stamped[back[0] + 1]
+        ends = f"from {moment_text(time[before])} to {moment_text(time[row])}"
         raise InputError(
-            f"{table.title}: row {table.first_row + row}: time runs backwards from {time[stamped[back[0]]]:g} s "
-            f"to {time[row]:g} s{_more(back.size)}; sort or split the file"
+            f"{table.title}: row {table.first_row + row}: time runs backwards {ends}{_more(back.size)} "
+            f"({time[row] - time[before]:.6g} s); sort or split the file"
+        )
+    if time[stamped[0]] == time[stamped[-1]]:
+        raise InputError(
+            f"{table.title}: the clock stands still: all {stamped.size} stamps are {moment_text(time[stamped[0]])}; "
+            "write the time by the row, or leave the file out"
         )
 
 

@@ -3,12 +3,13 @@
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from typing import cast
 
 import numpy as np
 
 from seatrial.core.values import Array, InputError
-from seatrial.core.values.record import MAX_SAMPLES
+from seatrial.core.values.record import LATEST_TIME, MAX_SAMPLES
 from seatrial.data.read.layout import ColumnSpec, TimeSpec
 from seatrial.data.read.log import RawTable
 
@@ -16,12 +17,17 @@ from seatrial.data.read.log import RawTable
 
 _DAY_S, _WEEK_S, _NANO = 86400.0, 604800.0, 1e-9  # s, of a day, of a week, of a nanosecond
 _GNSS_EPOCH_S = 315964800.0  # 1980-01-06 in s since 1970 (IS-GPS-200); leap seconds are not taken off
+_FIRST_DATED_S = 1e8  # s since 1970 from which a stamp has a date; as where logs are grouped into runs
 _EXCEL_EPOCH_DAYS = 25569.0  # days from 1899-12-30, where Excel counts from, to 1970-01-01
+_HALF_DAYS = r"(\s*[AaPp]\.?[Mm]\.?)?"
 _DATE_TIME = re.compile(
-    r"\d{4}[-/.]\d{1,2}[-/.]\d{1,2}([T ]\d{1,2}:\d{2}(:\d{2}([.,]\d*)?)?)?\s*(Z|UTC|[+-]\d{2}:?\d{2})?"
+    rf"\d{{4}}[-/.]\d{{1,2}}[-/.]\d{{1,2}}([T ]\d{{1,2}}:\d{{2}}(:\d{{2}}([.,]\d*)?)?{_HALF_DAYS})?"
+    r"\s*(Z|UTC|[+-]\d{2}:?\d{2})?"
 )
-_DAY_FIRST = re.compile(r"^(\d{1,2})\.(\d{1,2})\.(\d{4})(?!\d)")  # 14.8.2026: with dots the day comes first
-_TIME_OF_DAY = re.compile(r"\d{1,2}:\d{2}:\d{2}([.,]\d*)?")
+_YEAR_LAST = re.compile(r"^(\d{1,2})([-/.])(\d{1,2})\2(\d{4})(?!\d)")
+_TWELVE_HOURS = re.compile(r"(?<![\d:])(\d{1,2})(:\d{2}(?::\d{2}(?:[.,]\d*)?)?)\s*([AaPp])\.?[Mm]\.?")
+_MONTHS, _NOON = 12, 12  # of a year; h, at which the clock of twelve hours begins anew
+_TIME_OF_DAY = re.compile(rf"\d{{1,2}}:\d{{2}}:\d{{2}}([.,]\d*)?{_HALF_DAYS}")
 _FRACTION = re.compile(r"(?<=:\d\d)[.,](\d+)")
 
 
@@ -70,7 +76,9 @@ def _column_stamps(table: RawTable, time: ColumnSpec) -> Stamps:
     first = next((text for cell in cells if (text := _text(cell))), "") if not _is_numeric(cells) else ""
     if _is_date(first):
         alike = _parsed_alike(cells, first)
-        return Stamps(alike) if alike is not None else _parsed([_text(cell) for cell in cells], table, time)
+        if alike is not None:
+            return Stamps(*_with_days(alike))
+        return _parsed([_text(cell) for cell in cells], table, time)
     if _TIME_OF_DAY.fullmatch(first):
         return _parsed([f"1970-01-01 {text}" if (text := _text(cell)) else "" for cell in cells], table, time)
     numbers = table.numbers(time)
@@ -81,7 +89,7 @@ def _column_stamps(table: RawTable, time: ColumnSpec) -> Stamps:
                 'unit of the number, such as "s" or "ms"'
             )
         case "hhmmss":
-            return Stamps(_without_midnights(_clock_seconds(numbers)))
+            return Stamps(_with_days(_clock_seconds(numbers), is_of_day=True)[0])
         case "excel":
             return Stamps((numbers - _EXCEL_EPOCH_DAYS) * _DAY_S)
         case _:
@@ -116,8 +124,8 @@ def _parsed(texts: list[str], table: RawTable, time: ColumnSpec) -> Stamps:
     """Dates with their time of day as seconds since 1970, fractions padded as the order of the stamps demands."""
     import pandas as pd
 
-    ordered = (_DAY_FIRST.sub(_year_first, text) for text in texts)
-    plain = [text.replace("/", "-").replace(",", ".").removesuffix("UTC") for text in ordered]
+    where = f"{table.title}: {time.display_name}"
+    plain = [text.replace("/", "-").replace(",", ".").removesuffix("UTC") for text in _as_iso(texts, where)]
     whole = [_FRACTION.sub("", text) for text in plain]
     try:
         parsed = pd.to_datetime(pd.Series(whole).replace("", None), format="ISO8601", utc=True)
@@ -133,16 +141,44 @@ def _parsed(texts: list[str], table: RawTable, time: ColumnSpec) -> Stamps:
     digits = [match[1] if (match := _FRACTION.search(text)) else "" for text in plain]
     fractions, note = _fractions(digits, seconds)
     seconds = seconds + fractions
-    is_clock_only = texts and _text(texts[0]).startswith("1970-01-01 ")
-    return Stamps(_without_midnights(seconds) if is_clock_only else seconds, note)
+    is_of_day = bool(texts) and _text(texts[0]).startswith("1970-01-01 ")
+    seconds, counted = _with_days(seconds, is_of_day=is_of_day)
+    return Stamps(seconds, "; ".join(filter(None, (note, counted))))
 
 
-def _year_first(date: re.Match[str]) -> str:
-    return f"{date[3]}-{date[2]:0>2}-{date[1]:0>2}"
+def _as_iso(texts: Sequence[str], where: str) -> list[str]:
+    """Dates with the year first and clocks of 24 hours, whatever order days and months are written in.
+
+    With dots the day comes first. Otherwise a number beyond twelve shows the day; where there is none, the month comes
+    first with a clock of twelve hours, and a column of one date is read day first.
+
+    Raises:
+        InputError: days and months may stand in either order.
+    """
+    dates = {match.groups() for text in texts if (match := _YEAR_LAST.match(text))}
+    has_halves = any(_TWELVE_HOURS.search(text) for text in texts[:1])
+    texts = [_TWELVE_HOURS.sub(_of_24_hours, text) for text in texts] if has_halves else list(texts)
+    if not dates:
+        return texts
+    is_day_first = any(mark == "." or int(first) > _MONTHS for first, mark, _, _ in dates)
+    is_month_first = any(mark != "." and int(second) > _MONTHS for _, mark, second, _ in dates) or has_halves
+    if is_day_first is is_month_first and any(first != second for first, _, second, _ in dates):
+        first, mark, second, year = next(date for date in dates if date[0] != date[2])
+        raise InputError(
+            f"{where}: '{first}{mark}{second}{mark}{year}' may be either of two days; write it as "
+            f"{year}-{second}-{first} or {year}-{first}-{second}"
+        )
+    order = r"\4-\1-\3" if is_month_first and not is_day_first else r"\4-\3-\1"
+    return [_YEAR_LAST.sub(order, text) for text in texts]
+
+
+def _of_24_hours(clock: re.Match[str]) -> str:
+    hour = int(clock[1]) % _NOON + (_NOON if clock[3] in "Pp" else 0)
+    return f"{hour:02}{clock[2]}"
 
 
 def _is_date(text: str) -> bool:
-    return _DATE_TIME.fullmatch(_DAY_FIRST.sub(_year_first, text.strip())) is not None
+    return _DATE_TIME.fullmatch(_YEAR_LAST.sub(r"\4-\3-\1", text.strip())) is not None
 
 
 def _fractions(digits: Sequence[str], seconds: Array) -> tuple[Array, str]:
@@ -169,13 +205,34 @@ def _clock_seconds(numbers: Array) -> Array:
     return hours * 3600.0 + minutes * 60.0 + numbers % 100.0  # s, of an hour and of a minute
 
 
-def _without_midnights(seconds: Array) -> Array:
-    """Seconds of the day that go on counting when midnight passes."""
-    known = np.flatnonzero(np.isfinite(seconds))
+def _with_days(seconds: Array, *, is_of_day: bool = False) -> tuple[Array, str]:
+    """Seconds that go on counting when midnight passes and the logger's date does not, and a note; empty: none passed.
+
+    A stamp of the day before that comes late stays there. is_of_day: they are seconds of a day: whatever goes back by
+    more than half a day has passed midnight. Otherwise they are dated, and go back by a day less a step where their
+    date was not advanced.
+    """
+    stamped = np.flatnonzero(np.isfinite(seconds))
+    steps = np.diff(seconds[stamped])
+    if not np.any(steps < -_DAY_S / 2.0):
+        return seconds, ""
+    sizes = np.abs(steps)
+    usual = float(np.median(sizes[sizes < _DAY_S / 2.0])) if np.any(sizes < _DAY_S / 2.0) else 0.0
+    is_jump = sizes > _DAY_S / 2.0 if is_of_day else np.abs(sizes - _DAY_S) <= _GAP_STEPS * usual
+    days, counts = 0, np.zeros(stamped.size)
+    for place in np.flatnonzero(is_jump).tolist():
+        days = days + 1 if steps[place] < 0.0 else max(days - 1, 0)
+        counts[place + 1 :] = days
     result = np.array(seconds)
-    passed = np.diff(seconds[known], prepend=seconds[known[0]] if known.size else 0.0) < -_DAY_S / 2.0
-    result[known] += _DAY_S * np.cumsum(passed)
-    return result
+    result[stamped] += _DAY_S * counts
+    return result, "" if is_of_day or not counts.any() else "the date was not advanced at midnight: counted on"
+
+
+def moment_text(seconds: float) -> str:
+    """Return a stamp as messages write it: a date where it counts from 1970, else s."""
+    if not _FIRST_DATED_S < seconds < LATEST_TIME:
+        return f"{seconds:.6g} s"
+    return f"{datetime.fromtimestamp(seconds, UTC):%Y-%m-%d %H:%M:%S.%f}"[:-3]
 
 
 def _numbers(table: RawTable, time: TimeSpec, source: str | int) -> Array:

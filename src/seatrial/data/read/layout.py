@@ -225,5 +225,6 @@ class Layout:
 
     @property
     def has_named_columns(self) -> bool:
-        """Whether some column is wanted by name."""
-        return any(isinstance(column.source, str) for column in (self.time, *self.columns))
+        """Whether some column is wanted by name; a number in quotes is one of a column."""
+        sources = [column.source for column in (self.time, *self.columns)]
+        return any(isinstance(source, str) and not source.isdecimal() for source in sources)

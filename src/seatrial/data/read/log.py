@@ -67,6 +67,7 @@ def _are_sides(cells: Sequence) -> bool:
 # Names and units of a table's columns, from the rows above its numbers.
 
 _BRACKETS = "[]() "
+_COMMENT_MARKS = ("#", "%", "//")
 _LEAST_UNITS = (
     0.5  # of the cells of a row of units that must be ones: units that nobody converts stand there too; chosen
 )
@@ -88,18 +89,57 @@ class TableHeader:
         return (*self.units[:width], *[""] * (width - len(self.units))) if self.units else ()
 
 
-def table_header(rows: Sequence[Sequence[str]]) -> TableHeader:
+def table_header(rows: Sequence[Sequence[str]], width: int = 0) -> TableHeader:
     """Return the header from the rows above the numbers: the last one, or the last two where the last holds units.
 
-    Rows without text are passed over. A cell is a unit where it is known as one or stands in brackets.
+    Rows without text are passed over, and a mark of a comment before the first name is taken off. A cell is a unit
+    where it is known as one or stands in brackets. Names of groups in the row right above go on to the next group and
+    stand before those of their columns: ``Rudder port``.
+
+    width: columns of the table; 0: as many as the header has.
     """
-    filled = [row for row in rows if any(row)][-2:]
-    if not filled:
+    places = [place for place, row in enumerate(rows) if any(row)]
+    if not places:
         return TableHeader()
-    names, last = filled[0], filled[-1]
-    if len(filled) == 2 and len(names) == len(last) and _unit_share(last) >= max(_LEAST_UNITS, _unit_share(names)):
-        return TableHeader(tuple(names), tuple(cell.strip(_BRACKETS) for cell in last))
-    return TableHeader(tuple(last))
+    filled = [_without_mark(rows[place], width) for place in places]
+    units: tuple[str, ...] = ()
+    names, last = filled[-2:][0], filled[-1]
+    if len(filled) > 1 and len(names) == len(last) and _unit_share(last) >= max(_LEAST_UNITS, _unit_share(names)):
+        units = tuple(cell.strip(_BRACKETS) for cell in last)
+        filled.pop()
+    names, place = filled[-1], places[len(filled) - 1]
+    if len(filled) > 1 and places[len(filled) - 2] == place - 1 and _are_groups(filled[-2], names):
+        names = _with_groups(filled[-2], names)
+    return TableHeader(tuple(names), units)
+
+
+def _without_mark(row: Sequence[str], width: int) -> Sequence[str]:
+    """The cells of a header that stands in a comment, without its mark."""
+    if row[0] in _COMMENT_MARKS and len(row) == width + 1:
+        return row[1:]
+    bare = row[0].lstrip("".join(_COMMENT_MARKS)).strip()
+    return row if bare == row[0] or not bare else [bare, *row[1:]]
+
+
+def _are_groups(groups: Sequence[str], names: Sequence[str]) -> bool:
+    """Whether a row holds names of groups of columns: not a title, settings or a full row of other names."""
+    filled = [cell for cell in groups if cell]
+    is_text = not any(_PLAIN_NUMBER.fullmatch(cell) or cell.endswith(":") for cell in filled)
+    spans = "" in groups[1:] or len(set(names)) < len(names)
+    return len(groups) == len(names) and len(filled) > 1 and is_text and spans
+
+
+def _with_groups(groups: Sequence[str], names: Sequence[str]) -> Sequence[str]:
+    """The names behind those of the groups above them; of a group of one column its own name, if it has one."""
+    group, joined = "", list[str]()
+    for k, (above, name) in enumerate(zip(groups, names, strict=True)):
+        is_alone = bool(above) and (k + 1 == len(groups) or bool(groups[k + 1]))
+        group = above or (group if name else "")
+        if is_alone and name and names.count(name) == 1 and not is_unit(name):
+            joined.append(name)
+        else:
+            joined.append(f"{group} [{name}]" if is_unit(name) else f"{group} {name}".strip())
+    return joined
 
 
 def _unit_share(cells: Sequence[str]) -> float:
@@ -179,13 +219,14 @@ class RawTable:
         """
         if column.symbol == "time" and not column.source:
             return self._time_index()
-        if isinstance(column.source, int):
-            if not 1 <= column.source <= len(self.cells):
+        if isinstance(column.source, int) or (column.source.isdecimal() and column.source not in self.names):
+            number = int(column.source)
+            if not 1 <= number <= len(self.cells):
                 raise InputError(
-                    f"{self.file}: channel '{column.symbol}' wants column {column.source}, "
+                    f"{self.file}: channel '{column.symbol}' wants column {number}, "
                     f"but the file has {len(self.cells)} columns; columns count from 1"
                 )
-            return column.source - 1
+            return number - 1
         name = column.source if column.source in self.names else column.source.removeprefix(self.topic).lstrip("/")
         if name not in self.names:
             known = [name for name in self.names if name]
@@ -277,12 +318,14 @@ class Log:
         tables: one for each topic (message, sheet, group); a plain table is the only one and has no topic.
         parameters: settings that the logger stored, such as ``SERVO1_REVERSED``.
         events: in order of time.
+        notes: what is to be known of how it was read, and of what it holds that is not read.
     """
 
     file: str
     tables: tuple[RawTable, ...]
     parameters: Mapping[str, float] = field(default_factory=dict)
     events: tuple[LogEvent, ...] = ()
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "parameters", MappingProxyType(dict(self.parameters)))
@@ -290,7 +333,7 @@ class Log:
             raise InputError(f"{self.file} holds no samples; leave it out or replace it")
 
     def __reduce__(self) -> tuple[type["Log"], tuple]:
-        return type(self), (self.file, self.tables, dict(self.parameters), self.events)
+        return type(self), (self.file, self.tables, dict(self.parameters), self.events, self.notes)
 
     @classmethod
     def of_table(cls, table: RawTable) -> "Log":
@@ -308,7 +351,7 @@ class Log:
         Raises:
             InputError: there is no such topic; the nearest one is named.
         """
-        if len(self.tables) == 1 and (isinstance(column.source, int) or column.source in self.tables[0].names):
+        if len(self.tables) == 1 and (str(column.source).isdecimal() or column.source in self.tables[0].names):
             return self.tables[0]
         for table in self.tables:
             name = str(column.source).removeprefix(f"{table.topic}/")

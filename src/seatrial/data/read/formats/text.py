@@ -1,19 +1,23 @@
 """Text files: comma, semicolon, tab or whitespace separated, plain or .gz, either decimal sign."""
 
 import codecs
+import contextlib
 import csv
 import gzip
 import io
 import re
 import warnings
+from collections import Counter
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, cast
 
 import numpy as np
 
 from seatrial.core.values import InputError
-from seatrial.data.read.layout import Layout
+from seatrial.data.read.layout import ColumnSpec, Layout
 from seatrial.data.read.log import EMPTY_CELLS, Log, RawTable, table_header, with_sides
 
 if TYPE_CHECKING:
@@ -37,6 +41,8 @@ _LARGEST_EXPANSION, _ALWAYS_ALLOWED = 200, 2**26
 def utf8_text(path: Path, encoding: str) -> bytes:
     """The text of a file in UTF-8, without a byte order mark; one of UTF-16 overrides the encoding.
 
+    Lines end with a line feed, whichever way the file ends them.
+
     Raises:
         InputError: empty, packed wrongly or without end, binary, or not in that encoding.
     """
@@ -48,10 +54,9 @@ def utf8_text(path: Path, encoding: str) -> bytes:
     if b"\0" in data[:_HEAD_BYTES] and not _may_hold_zeros(encoding):
         raise _binary_error(path)
     try:
-        if codecs.lookup(encoding).name in _ASCII_COMPATIBLE and data.isascii():
-            return data
-        text = data.decode(encoding)
-        return data if codecs.lookup(encoding).name == "utf-8" else text.encode()
+        if not (codecs.lookup(encoding).name in _ASCII_COMPATIBLE and data.isascii()):
+            text = data.decode(encoding)
+            data = data if codecs.lookup(encoding).name == "utf-8" else text.encode()
     except UnicodeDecodeError as error:
         line = data[: error.start].count(b"\n") + 1
         raise InputError(
@@ -60,6 +65,9 @@ def utf8_text(path: Path, encoding: str) -> bytes:
         ) from None
     except (LookupError, ValueError):  # no such codec, or one that is none of text
         raise InputError(f"{path.name}: unknown encoding {encoding!r}; try 'utf-8' or 'cp1252'") from None
+    for ending in (b"\r\r\n", b"\r\n", b"\r") if b"\r" in data else ():
+        data = data.replace(ending, b"\n")
+    return data
 
 
 def _plain_bytes(path: Path, encoding: str) -> bytes:
@@ -109,6 +117,119 @@ def _unpacked(path: Path) -> bytes:
     return bytes(data)
 
 
+# How a text file is laid out, from its first lines: header, separator, decimal sign, encoding.
+
+# lines in which the first row of numbers is sought, and that are looked at in all, ours: the longest header of a towing
+# tank's files has forty; cells of them that are looked at, ours: of a wide table some rows say as much
+_HEADER_LINES, _LINES, _CELLS = 60, 200, 20_000
+_SECOND_ENCODING = "cp1252"  # of programs on Windows that write no mark
+_CELL = re.compile(
+    r"[+-]?(\d+[.,]?\d*|[.,]\d+)([eE][+-]?\d+)?|nan|inf|true|false|"
+    r"\d{1,4}[-/.]\d\d?[-/.]\d{1,4}([T ].*)?|\d\d?:\d\d:\d\d.*|",
+    re.IGNORECASE,
+)
+_DECIMAL_COMMA = re.compile(r"[+-]?\d+(,\d+)?")
+_WHITESPACE = r"\s+"
+_MARK_BYTES, _ZERO_SHARE = 2048, 0.9  # bytes looked at for lost marks of UTF-16, share of zeros in its high bytes; ours
+_NUMBER_SHARE = 0.5  # of the cells of a row of data that must be numbers or times; ours
+
+
+@dataclass(frozen=True)
+class _Line:
+    """A line of a text file: its cells, and which of them are numbers or times; empty cells count as such."""
+
+    separator: str
+    cells: list[str]
+
+    @property
+    def shape(self) -> tuple[str, int]:
+        return self.separator, len(self.cells)
+
+    @cached_property
+    def numbers(self) -> list[bool]:
+        return [_CELL.fullmatch(cell) is not None for cell in self.cells]
+
+    @cached_property
+    def is_data(self) -> bool:
+        """Whether it has a number, and numbers or times in most cells."""
+        filled = [(cell, number) for cell, number in zip(self.cells, self.numbers, strict=True) if cell]
+        return sum(number for _, number in filled) >= _NUMBER_SHARE * len(filled) and any(
+            cell[0] in "+-.0123456789" for cell, _ in filled
+        )
+
+
+def text_layout(path: Path) -> Layout:
+    """Return the layout of a text file without channels: what stands above its table is header.
+
+    The table is what most lines of numbers share: separator, number of cells, and which of these are numbers.
+
+    Raises:
+        InputError: no rows of numbers in its first lines; empty or binary.
+    """
+    head = _ascii_head(path)
+    encoding, text = _decoded(path) if head is None else ("utf-8", head.decode())
+    lines, count = list[_Line](), 0
+    for line in text.split("\n", _LINES)[:_LINES]:
+        lines.append(_line(line.rstrip("\r")))
+        count += len(lines[-1].cells)
+        if count > _CELLS and len(lines) > 2:
+            break
+    rows = [line for line in lines if line.is_data]
+    shape = max(Counter(row.shape for row in rows).items(), key=lambda each: each[1], default=(None, 0))[0]
+    rows = [row for row in rows if row.shape == shape]
+    usual = np.mean([row.numbers for row in rows], axis=0) > _NUMBER_SHARE if rows else np.empty(0, dtype=bool)
+    is_row = [line.shape == shape and line.is_data and np.all(np.array(line.numbers)[usual]) for line in lines]
+    first = next((k for k in range(min(len(lines) - 1, _HEADER_LINES)) if is_row[k] and is_row[k + 1]), None)
+    if first is None:
+        raise InputError(f"{path.name} has no rows of numbers in its first {len(lines)} lines; check what it is")
+    return _layout(lines, first, encoding)
+
+
+def _decoded(path: Path) -> tuple[str, str]:
+    """The encoding of a file and its text: UTF-8, else that of Windows, or UTF-16 of which the mark was lost."""
+    try:
+        return "utf-8", decoded_text(path, "utf-8")
+    except InputError as error:
+        encoding = _unmarked_encoding(path) if "binary" in str(error) else ""
+        encoding = _SECOND_ENCODING if "is not utf-8 text" in str(error) else encoding
+        if not encoding:
+            raise
+    return encoding, decoded_text(path, encoding)
+
+
+def _unmarked_encoding(path: Path) -> str:
+    """UTF-16 in the order in which every second byte of the file's beginning is zero; empty for other files."""
+    with path.open("rb") as file:
+        head = file.read(_MARK_BYTES)
+    zeros = {head[0::2].count(0): "utf-16-be", head[1::2].count(0): "utf-16-le"}
+    most = max(zeros)
+    return zeros[most] if most > _ZERO_SHARE * (len(head) // 2) and len(zeros) > 1 and min(zeros) == 0 else ""
+
+
+def _line(text: str) -> _Line:
+    """The cells by `;` or tab where the line has one, else by comma unless that is the decimal sign, else by spaces."""
+    separator = detect_separator(text, Layout("text", ColumnSpec("time", 1, "s"), ()))
+    cells = text.split()
+    if separator == "," and len(cells) > 1 and all(_DECIMAL_COMMA.fullmatch(cell) for cell in cells):
+        separator = _WHITESPACE
+    return _Line(separator, column_names(text, separator) if cells else [])
+
+
+def _layout(lines: list[_Line], first: int, encoding: str) -> Layout:
+    separator, row = lines[first].separator, lines[first].cells
+    decimal = "," if separator != "," and any("," in cell and _DECIMAL_COMMA.fullmatch(cell) for cell in row) else "."
+    while first and not lines[first - 1].cells:  # the reader passes over empty lines between header and data
+        first -= 1
+    header = table_header([line.cells for line in lines[:first]], len(row)).names
+    filled = len(row) - next((k for k, cell in enumerate(reversed(row)) if cell), 0)
+    named = filled <= len(header) <= len(row) and any(cell and not _CELL.fullmatch(cell) for cell in header)
+    source: str | int = next(cell for cell in header if cell) if named else 1
+    return Layout("text", ColumnSpec("time", source, "s"), (), first, encoding, decimal=decimal)
+
+
+# The table of a text file.
+
+
 def detect_separator(sample_line: str, layout: Layout) -> str:
     """The separator of the layout, or the one the line shows."""
     if layout.separator != "auto":
@@ -123,7 +244,9 @@ def column_names(line: str, separator: str) -> list[str]:
     """The cells of a header line."""
     if separator == r"\s+":
         return [cell.strip().strip('"') for cell in re.split(separator, line.strip())]
-    return [cell.strip() for cell in next(csv.reader([line], delimiter=separator), [])]
+    with contextlib.suppress(csv.Error):  # a cell beyond the limit of that module is one all the same
+        return [cell.strip() for cell in next(csv.reader([line], delimiter=separator), [])]
+    return [cell.strip() for cell in line.split(separator)]
 
 
 def read_text(path: Path, layout: Layout) -> Log:
@@ -132,12 +255,12 @@ def read_text(path: Path, layout: Layout) -> Log:
     Raises:
         InputError: see `utf8_text`; no data lines; a line with too many cells; a quote that does not end in its line.
     """
-    head = _plain_head(path, layout)
+    head = _ascii_head(path) if layout.encoding.lower() in _ASCII_COMPATIBLE else None
+    if head is not None and not _holds_a_row(head, layout):
+        head = None
     data = utf8_text(path, layout.encoding) if head is None else head
     if data[-2:].isspace() and head is None:
         data = data.rstrip()
-    if b"\n" not in data:
-        data = data.replace(b"\r", b"\n")
     first = int(data.startswith(RECORD_MARK.encode()))
     header_lines = max(layout.header_lines, 1) if layout.has_named_columns else layout.header_lines
     header, sample_line, start = _beginning(data, first + header_lines)
@@ -152,30 +275,35 @@ def read_text(path: Path, layout: Layout) -> Log:
     has_spaces = f"{separator} " in sample_line
     frame = _data_frame(source, start, separator, layout.decimal, path.name, has_spaces=has_spaces)
     above = [column_names(line, separator) for line in header] if layout.has_named_columns else []
-    columns = table_header(above)
-    cells = with_sides([_cells(frame.pop(column), layout.decimal) for column in tuple(frame.columns)])
+    cells = with_sides([_column_cells(frame[column], layout.decimal) for column in frame.columns])
     width = len(cells)
+    columns = table_header(above, width)
     return Log.of_table(RawTable(path.name, columns.names_of(width), cells, start + 1, "", columns.units_of(width)))
 
 
-def _plain_head(path: Path, layout: Layout) -> bytes | None:
+def _ascii_head(path: Path) -> bytes | None:
     """The first lines of a file that pandas can read as it stands, which is faster than bytes; None of another.
 
-    Such a file is packed in nothing, ASCII, without quotes, and does not end with empty lines.
+    Such a file is packed in nothing, ASCII, without quotes and lone carriage returns, and does not end with empty
+    lines.
     """
-    if path.suffix == ".gz" or layout.encoding.lower() not in _ASCII_COMPATIBLE:
+    if path.suffix == ".gz":
         return None
     with path.open("rb") as file:
         head = chunk = file.read(_HEAD_BYTES)
-        end = b""
+        end, returns = b"", 0
         while chunk:
             if not chunk.isascii() or b'"' in chunk or b"\0" in chunk:
                 return None
+            returns += chunk.count(b"\r") - (end[-1:] + chunk).count(b"\r\n")
             end = (end + chunk[-2:])[-2:]
             chunk = file.read(_CHUNK_BYTES)
-    filled = sum(not line.isspace() for line in head.splitlines())
-    holds_a_row = filled > layout.header_lines + 2 or len(head) < _HEAD_BYTES  # the mark of a record, a cut line
-    return head if holds_a_row and b"\n" in head and not end.isspace() else None
+    return head if b"\n" in head and not returns and not end.isspace() else None
+
+
+def _holds_a_row(head: bytes, layout: Layout) -> bool:
+    """Whether the beginning of a file reaches into its data: beyond the mark of a record, and a line that is cut."""
+    return len(head) < _HEAD_BYTES or sum(map(bool, map(bytes.strip, head.splitlines()))) > layout.header_lines + 2
 
 
 class _Beginning(NamedTuple):
@@ -232,6 +360,8 @@ def _data_frame(
                 skipinitialspace=has_spaces,
                 **_exact_numbers(pd.__version__),
             )
+    except pd.errors.EmptyDataError:
+        raise InputError(f"{file} has no data lines after line {start}; check header_lines") from None
     except pd.errors.ParserError as error:
         found = re.search(r"Expected (\d+) fields in line (\d+), saw (\d+)", str(error))
         row = 0 if found is None else int(found[2]) + (0 if isinstance(source, str) else start)
@@ -245,7 +375,7 @@ def _exact_numbers(version: str) -> dict:
     return {} if (major, minor) >= (3, 1) else {"float_precision": "round_trip"}
 
 
-def _cells(column: "pandas.Series", decimal: str) -> Sequence | np.ndarray:
+def _column_cells(column: "pandas.Series", decimal: str) -> Sequence | np.ndarray:
     """A column as numbers where pandas parsed it, else its text with a decimal point; empty cells are empty text."""
     if column.dtype.kind in "fiub":
         return column.to_numpy()
