@@ -10,36 +10,28 @@ import numpy as np
 from seatrial.core.results.online import Sample, SampleCounts
 from seatrial.core.values import Array, InputError, spelling_hint
 from seatrial.data.read.layout import ColumnSpec, Layout
-from seatrial.data.read.nmea_sentence import SentenceFault, parse_sentence, readings, utc_time
+from seatrial.data.read.nmea_sentence import READ, SentenceFault, SentenceReader, unit_of
 from seatrial.onboard.lines import LineBatch
 
 # Which field of which NMEA sentence gives which channel.
 
-# field -> SI unit; a second word distinguishes the quantities of one sentence
-_FIELD_UNITS = {
-    **dict.fromkeys(("HDT", "THS", "HDM", "VHW heading", "RSA", "RSA port"), "rad"),
-    "ROT": "rad/s",
-    **dict.fromkeys(("VBW", "VBW transverse", "VBW ground", "VBW ground transverse", "VHW"), "m/s"),
-    **{f"{kind} {part}": "m/s" for kind in ("VTG", "RMC") for part in ("north", "east")},
-    **{f"{kind} {part}": "m" for kind in ("GGA", "RMC", "GNS", "GLL") for part in ("lat", "lon")},
-    **{f"RPM {source}{number}": "rps" for source in "SE" for number in range(5)},  # five shafts, five engines
-}
 _TRANSDUCER_PREFIX = "XDR "
+_SHAFTS = {f"RPM {source}{number}": "rps" for source in "SE" for number in range(5)}  # five shafts, five engines
 
 # (channel, frame) -> fields, the best first
 _DEFAULT_FIELDS: dict[tuple[str, str], tuple[str, ...]] = {
-    ("psi", "earth"): ("HDT", "THS", "VHW heading"),
+    ("psi", "earth"): ("HDT", "THS", "OSD heading", "PASHR heading", "HDG true", "HDM true", "VHW heading"),
     ("r", "body"): ("ROT",),
-    ("delta", "body"): ("RSA", "XDR RUDDER"),
-    ("u", "body"): ("VBW", "VHW"),
+    ("delta", "body"): ("RSA", "XDR RUDDER", "RSA port"),
+    ("u", "body"): ("VBW", "VHW", "OSD speed"),
     ("v", "body"): ("VBW transverse",),
     ("u", "earth"): ("VTG north", "RMC north"),
     ("v", "earth"): ("VTG east", "RMC east"),
     ("x0", "earth"): ("GGA lat", "RMC lat", "GNS lat", "GLL lat"),
     ("y0", "earth"): ("GGA lon", "RMC lon", "GNS lon", "GLL lon"),
-    ("phi", "body"): ("XDR ROLL", "XDR HEEL"),
-    ("theta", "body"): ("XDR PTCH", "XDR PITCH"),
-    ("z", "body"): ("XDR HEAV", "XDR HEAVE"),
+    ("phi", "body"): ("XDR ROLL", "XDR HEEL", "PASHR roll"),
+    ("theta", "body"): ("XDR PTCH", "XDR PITCH", "PASHR pitch"),
+    ("z", "body"): ("XDR HEAV", "XDR HEAVE", "PASHR heave"),
     ("n", "none"): ("RPM S0", "RPM S1", "RPM S2"),
     **{(f"rpm_{k}", "none"): (f"RPM S{k}", f"RPM E{k}") for k in range(1, 5)},  # four shafts or engines
 }
@@ -73,14 +65,13 @@ def _column_fields(column: ColumnSpec) -> tuple[str, ...]:
         return usual
     if source.startswith(_TRANSDUCER_PREFIX):
         return (_TRANSDUCER_PREFIX + source.removeprefix(_TRANSDUCER_PREFIX).strip().upper(),)
-    if source not in _FIELD_UNITS:
-        raise InputError(
-            f"channel '{column.symbol}': no NMEA field '{source}'{spelling_hint(source, sorted(_FIELD_UNITS))}"
-        )
-    if _FIELD_UNITS[source] != column.quantity.unit:
-        raise InputError(
-            f"channel '{column.symbol}' cannot come from NMEA '{source}', which is in {_FIELD_UNITS[source]}"
-        )
+    unit = _SHAFTS.get(source) or (unit_of(source) if source.split(" ")[0] in READ else "")
+    if not unit:
+        usual = {name for names in _DEFAULT_FIELDS.values() for name in names} | {*READ, *_SHAFTS}
+        raise InputError(f"channel '{column.symbol}': no NMEA field '{source}'{spelling_hint(source, sorted(usual))}")
+    is_place = source[-4:] in (" lat", " lon")
+    if ("m" if is_place else unit) != column.quantity.unit:
+        raise InputError(f"channel '{column.symbol}' cannot come from NMEA '{source}', which is in {unit}")
     return (source,)
 
 
@@ -88,8 +79,8 @@ def _column_fields(column: ColumnSpec) -> tuple[str, ...]:
 
 ARRIVAL = "arrival"
 _STAMP_NAMES = ("stamp", "time")
-# s a day; s by which a relayed sentence may be late; share of a step within which stamps are one, as receivers round
-_DAY_S, _RELAY_DELAY_S, _SAME_EPOCH = 86400.0, 10.0, 0.25
+# s by which a relayed sentence may be late; share of a step within which stamps are one, as receivers round
+_RELAY_DELAY_S, _SAME_EPOCH = 10.0, 0.25
 # WGS 84 (NIMA 2000, TR8350.2): semi-major axis [m], first eccentricity squared
 _A, _E2 = 6378137.0, 6.69437999014e-3
 
@@ -145,7 +136,8 @@ class NmeaReader:
         self._arrived_at = -math.inf
         self.origin = origin
         self.used = self.unused = 0
-        self._garbled = self._checksum = self._late = 0
+        self._sentences = SentenceReader()
+        self._late = 0
         self._last_error = ""
 
     @property
@@ -154,7 +146,11 @@ class NmeaReader:
         last = self._last_error
         if not (self._by_arrival or self._group or self._completed) and self.unused > 100:
             last = "no sentence with a time (RMC, GGA, GLL, ZDA) has arrived; set column = 'arrival' in follow.time"
-        return SampleCounts(garbled=self._garbled, checksum=self._checksum, late=self._late, last_problem=last)
+        faults = self._sentences.faults
+        return SampleCounts(
+            garbled=faults[SentenceFault.GARBLED], checksum=faults[SentenceFault.CHECKSUM], late=self._late,
+            last_problem=last,
+        )  # fmt: skip
 
     def samples(self, batch: LineBatch) -> list[Sample]:
         """Return the samples that these lines complete, in order."""
@@ -172,45 +168,30 @@ class NmeaReader:
         return [] if group is None else [Sample(group.time, group.values)]
 
     def _read_line(self, line: bytes) -> None:
-        sentence = parse_sentence(line)
-        if isinstance(sentence, SentenceFault):
-            self._count_fault(sentence, line)
+        received = self._sentences.read(line)
+        if received is None:
+            self._last_error = self._sentences.problem
             return
-        try:
-            field_values, stamp = readings(sentence), math.nan if self._by_arrival else utc_time(sentence)
-        except ValueError:
-            self._count_fault(SentenceFault.GARBLED, line)
-            return
-        self._set_origin(field_values)
+        self._set_origin(received.values)
         is_used = False
-        if math.isfinite(stamp):
-            if not self._accept_stamp(stamp):
+        if math.isfinite(received.stamp) and not self._by_arrival:
+            if not self._accept_stamp(received.stamp):
                 self._late += 1
-                self._last_error = f"a {sentence.kind} sentence is behind the clock of the others"
+                self._last_error = f"a {received.sentence.kind} sentence is behind the clock of the others"
                 return
             is_used = True
-        for name, value in field_values.items():
+        for name, value in received.values.items():
             if math.isfinite(value) and name in self._column_ranks:
                 is_used |= self._use_reading(name, value)
         self.used += is_used
         self.unused += not is_used
 
-    def _count_fault(self, fault: SentenceFault, line: bytes) -> None:
-        excerpt = repr(line[:40])[1:]
-        if fault is SentenceFault.CHECKSUM:
-            self._checksum += 1
-            self._last_error = f"wrong checksum: {excerpt}"
-        else:
-            self._garbled += 1
-            self._last_error = f"not a sentence: {excerpt}"
-
-    def _accept_stamp(self, time_of_day: float) -> bool:
+    def _accept_stamp(self, stamp: float) -> bool:
         """Begin a group if the stamp is a new one, and return whether its sentence belongs to the present group."""
         if self._group is None:
-            self._start_group(time_of_day)
+            self._start_group(stamp)
             return True
         now = self._group.time
-        stamp = time_of_day + _DAY_S * round((now - time_of_day) / _DAY_S)
         if -_RELAY_DELAY_S < stamp - now < -_SAME_EPOCH * self._dt:
             return False
         if abs(stamp - now) > _SAME_EPOCH * self._dt:

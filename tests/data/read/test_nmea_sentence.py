@@ -1,13 +1,27 @@
 """Sentences against values worked out by hand from published examples."""
 
 import math
+from collections.abc import Callable
+from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from tests.onboard.sentences import sentence
 
-from seatrial.data.read.nmea_sentence import Sentence, SentenceFault, parse_sentence, readings, utc_time
+from seatrial.data.read.formats.nmea0183 import read_nmea0183
+from seatrial.data.read.layout import ColumnSpec, Layout
+from seatrial.data.read.log import Log
+from seatrial.data.read.nmea_sentence import (
+    Sentence,
+    SentenceFault,
+    SentenceReader,
+    parse_sentence,
+    readings,
+    utc_time,
+)
+from seatrial.data.read.registry import format_of
 
 KNOT = 1852 / 3600
 
@@ -30,7 +44,9 @@ def test_published_examples_with_their_own_checksums() -> None:
         "XDR ROLL": math.radians(-85.2),
     }
     assert read(b"$HCHDT,115.1,T*2D") == {"HDT": math.radians(115.1)}
-    assert read(b"$IIVHW,201.1,T,209.2,M,6.5,N,12.0,K*6E") == {"VHW": 6.5 * KNOT, "VHW heading": math.radians(201.1)}
+    assert read(b"$IIVHW,201.1,T,209.2,M,6.5,N,12.0,K*6E") == {
+        "VHW": 6.5 * KNOT, "VHW heading": math.radians(201.1), "VHW magnetic": math.radians(209.2)
+    }  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -65,8 +81,21 @@ def test_published_examples_with_their_own_checksums() -> None:
         ("GPRMC,010203,A,3000.0,N,06000.0,E,10.0,0.0,010224,,", {"RMC lat": math.radians(30),
          "RMC lon": math.radians(60), "RMC north": 10 * KNOT, "RMC east": 0.0,
          "RMC speed": 10 * KNOT, "RMC course": 0.0}),
+        ("GPRMC,010203,A,,,,,,,010224,2.5,W", {"RMC variation": math.radians(-2.5)}),
         ("GPRMC,010203,V,3000.0,N,06000.0,E,10.0,0.0,010224,,", {}),
         ("PASHR,1,2,3", {}),
+        ("PASHR,010203.00,90.0,T,2.0,-1.0,0.3,0.1,0.1,0.1,1,1", {
+            "PASHR heading": math.pi / 2, "PASHR roll": math.radians(2), "PASHR pitch": math.radians(-1),
+            "PASHR heave": 0.3}),
+        ("HCHDG,15.0,5.0,W,10.0,W", {"HDG magnetic": math.radians(10), "HDG variation": math.radians(-10)}),
+        ("HCHDG,15.0,,,3.0,E", {"HDG magnetic": math.radians(15), "HDG variation": math.radians(3)}),
+        ("RAOSD,90.0,A,91.0,B,10.0,W,,,N", {"OSD heading": math.pi / 2, "OSD speed": 10 * KNOT}),
+        ("RAOSD,90.0,A,91.0,B,10.0,B,,,N", {"OSD heading": math.pi / 2}),
+        ("SDDPT,12.5,0.5", {"DPT depth": 12.5}),
+        ("SDDBT,10.0,f,,M,,F", {"DBT depth": 3.048}),
+        ("WIMWD,270.0,T,,M,10.0,N,,M", {"MWD direction": 1.5 * math.pi, "MWD speed": 10 * KNOT}),
+        ("IIVWR,30.0,L,10.0,N,,M,,K", {"VWR angle": -math.pi / 6, "VWR speed": 10 * KNOT}),
+        ("IIXDR,A,5.0,D,rudder#0,T,120,R,shaft", {"XDR RUDDER#0": math.radians(5), "XDR SHAFT": 2.0}),
         ("HEHDT", {}),
     ],
 )  # fmt: skip
@@ -127,3 +156,60 @@ def test_no_bytes_raise(body: bytes) -> None:
                 readings(found)
             except ValueError:
                 pass
+
+
+def test_a_magnetic_heading_becomes_true_by_the_last_variation() -> None:
+    reader = SentenceReader()
+    bodies = ("HCHDM,30.0,M", "GPRMC,010203,A,,,,,,,010224,10.0,W", "HCHDM,30.0,M", "IIVHW,,T,40.0,M,5.0,N,,K")
+    heard = [reader.read(sentence(body)) for body in bodies]
+    values = [one.values for one in heard if one is not None]
+    assert "HDM true" not in values[0]
+    assert math.degrees(values[2]["HDM true"]) == pytest.approx(20.0)
+    assert math.degrees(values[3]["VHW heading"]) == pytest.approx(30.0)
+
+
+def test_checksums_are_required_from_the_first_right_one_on() -> None:
+    reader = SentenceReader()
+    lines = (b"$HEHDT,90.0,T", sentence("HEHDT,91.0,T"), b"$HEHDT,92.0,T", b"$HEHDT,93.0,T*00")
+    assert [reader.read(line) is not None for line in lines] == [True, True, False, False]
+    assert reader.unchecked == 1
+    assert reader.faults == {SentenceFault.GARBLED: 1, SentenceFault.CHECKSUM: 1}
+
+
+def test_a_late_sentence_of_the_day_before_stays_there() -> None:
+    reader = SentenceReader()
+    clocks = ("235958.00", "235959.00", "000000.00", "235959.50", "000001.00")
+    heard = [reader.read(sentence(f"GPZDA,{clock},01,09,2025,,")) for clock in clocks]
+    assert [one.stamp - 86400.0 for one in heard if one is not None] == [-2.0, -1.0, 0.0, -0.5, 1.0]
+
+
+def _log(path: Path, *lines: str) -> Log:
+    path.write_text("".join(f"{line}\n" for line in lines))
+    assert format_of(path) == "nmea0183"
+    return read_nmea0183(path, Layout("nmea0183", ColumnSpec("time", "", "s"), ()))
+
+
+def _line(body: str) -> str:
+    return sentence(body).decode().strip()
+
+
+@pytest.mark.parametrize(
+    "written",
+    [
+        lambda body: _line(body),
+        lambda body: f"\\s:GP0001,c:1756720800*00\\{_line(body)}",
+        lambda body: f'2025-09-01T10:00:00.5,"{_line(body)}",ok',
+        lambda body: f"[12.5] COM3> {_line(body)}",
+        lambda body: f"${body}",
+    ],
+    ids=["plain", "tag block", "cell of a table", "prefix", "no checksum"],
+)
+def test_sentences_are_known_by_their_content(written: Callable[[str], str], tmp_path: Path) -> None:
+    bodies = [
+        body for k in range(3) for body in (f"GPZDA,0102{k:02},01,09,2025,,", f"IIRSA,,V,{k}.0,A", "GPGSV,3,1,11")
+    ]
+    log = _log(tmp_path / "trip.log", *map(written, bodies))
+    rudder = log.tables[log.topics.index("RSA")]
+    np.testing.assert_allclose(rudder.numbers(ColumnSpec("delta", "angle", "rad")), np.radians([0.0, 1.0, 2.0]))
+    assert "sentences that are not read: GSV (3)" in log.notes
+    assert any("no checksum" in note for note in log.notes) is (written("A") == "$A")

@@ -1,7 +1,8 @@
 """What is in a log, or in a folder of logs: layout, topics, columns, time stamps, rates, ranges."""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -396,7 +397,8 @@ def _topic_summary(table: RawTable, layout: Layout, stated_time: str) -> TopicSu
     own = set() if time is None else {time.source, "time" if not time.source else time.source}
     own |= {time.nanoseconds, time.date, time.week} - {""} if isinstance(time, TimeSpec) else set()
     places = [k for k, heading in enumerate(_headings(table)) if heading not in own and k + 1 not in own]
-    columns = [summary for k in places if (summary := _column_summary(table, k)) is not None]
+    repeated = {name for name, count in Counter(table.names).items() if name and count > 1}
+    columns = [summary for k in places if (summary := _column_summary(table, k, repeated)) is not None]
     textual = [k for k in places if column_values(table, k) is None]
     dates = [k for k in textual if is_date_column(table, k)]
     texts = tuple(table.names[k] or f"{k + 1}" for k in textual if k not in dates)
@@ -408,7 +410,7 @@ def _topic_summary(table: RawTable, layout: Layout, stated_time: str) -> TopicSu
     )
 
 
-def _column_summary(table: RawTable, index: int) -> ColumnSummary | None:
+def _column_summary(table: RawTable, index: int, repeated: Set[str]) -> ColumnSummary | None:
     """None where the column holds text, or nothing."""
     values = column_values(table, index)
     if values is None:
@@ -421,10 +423,8 @@ def _column_summary(table: RawTable, index: int) -> ColumnSummary | None:
     missing = 1.0 - finite.size / values.size
     numbers, counts = np.unique(finite, return_counts=True)
     common = float(numbers[np.argmax(counts)])
-    name, is_repeated = table.names[index] or f"{index + 1}", table.names.count(table.names[index]) > 1
-    return ColumnSummary(
-        name, unit, low, high, missing, low == high, common, index + 1, is_repeated and bool(table.names[index])
-    )
+    name, is_repeated = table.names[index] or f"{index + 1}", table.names[index] in repeated
+    return ColumnSummary(name, unit, low, high, missing, low == high, common, index + 1, is_repeated)
 
 
 def _fault(table: RawTable, index: int) -> str:

@@ -16,6 +16,7 @@ from seatrial.core.values import InputError, spelling_hint
 from seatrial.core.values.files import is_file
 from seatrial.data.read.layout import Layout
 from seatrial.data.read.log import Log, Reader
+from seatrial.data.read.nmea_sentence import READ
 from seatrial.numerics.platform import limit_resources
 
 # Files of binary formats, read in a process of its own: a damaged one can end that process, and nothing else.
@@ -120,7 +121,11 @@ FORMATS: dict[str, Format] = {
     "parquet": Format("parquet", (".parquet", ".pq"), b"PAR1"),
     "netcdf": Format("netcdf", (".nc", ".nc4", ".netcdf")),
 }
-_SENTENCE = re.compile(rb"^[^,\n]{0,60}[$!][A-Z]{5},[^\n]*\*[0-9A-Fa-f]{2}\s*$", re.MULTILINE)
+# behind whatever a logger writes before it, such as a tag block or the cells of a table; without a checksum by its kind
+_SENTENCE = re.compile(
+    rb"^[^\n$!]{0,120}[$!](?:[A-Z]{5},[^\n]*\*[0-9A-Fa-f]{2}\b|[A-Z]{2}(?:%s),)" % "|".join(sorted(READ)).encode(),
+    re.MULTILINE,
+)
 _BUS_MESSAGE = re.compile(
     rb"^(<0x[0-9A-Fa-f]+> \[\d\]|\(\d+\.\d+\) \w+ [0-9A-Fa-f]{8}#|\w*can\d+\s+[0-9A-Fa-f]{8}\s+\[\d\]"
     rb"|A\d{6}\.\d{3} [0-9A-Fa-f]{5} |\d{4}-\d\d-\d\d[T-][0-9:.]+Z?,\d,\d{5,6},\d+,\d+,\d+,[0-9a-f]{2},)",

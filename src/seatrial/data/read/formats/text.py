@@ -167,6 +167,8 @@ def text_layout(path: Path) -> Layout:
         InputError: no rows of numbers in its first lines; empty or binary.
     """
     head = _ascii_head(path)
+    if head is not None and len(head) == _HEAD_BYTES:  # its last line is cut
+        head = head[: head.rfind(b"\n")] if head.count(b"\n") > _HEADER_LINES else None
     encoding, text = _decoded(path) if head is None else ("utf-8", head.decode())
     lines, count = list[_Line](), 0
     for line in text.split("\n", _LINES)[:_LINES]:
