@@ -1,5 +1,6 @@
 """Small logs with known contents in every format, written by the format's own library where it writes."""
 
+import json
 import math
 import struct
 from collections.abc import Callable
@@ -22,6 +23,7 @@ from seatrial.data.read.formats.nmea0183 import read_nmea0183
 from seatrial.data.read.formats.nmea2000 import read_nmea2000
 from seatrial.data.read.formats.parquet import read_parquet
 from seatrial.data.read.formats.rosbag import read_rosbag
+from seatrial.data.read.formats.signalk import read_signalk
 from seatrial.data.read.formats.tdms import read_tdms
 from seatrial.data.read.formats.text import read_text
 from seatrial.data.read.formats.ulog import read_ulog
@@ -251,6 +253,16 @@ def write_nmea2000(path: Path) -> None:
     path.write_text("\n".join(lines) + "\n", encoding="ascii")
 
 
+def write_signalk(path: Path) -> None:
+    lines = ["1785733527000;N;$GPGSV,1,1,00"]
+    for t, u, psi in zip(TIME, SPEED, HEADING, strict=True):
+        values = [("navigation.speedThroughWater", u), ("navigation.headingTrue", math.radians(psi)), ("name", "Anna")]
+        update = {"timestamp": f"2026-08-03T05:05:{27 + t:06.3f}Z",
+                  "values": [{"path": name, "value": value} for name, value in values]}  # fmt: skip
+        lines.append(f"{1785733527000 + round(1000 * t)};I;{json.dumps({'updates': [update]})}")
+    path.write_text("\n".join(lines) + "\n", encoding="ascii")
+
+
 _NAMED = _columns("speed", "heading")
 _ROS = _columns("/nav/twist/twist.linear.x", "/nav/heading/data")
 _EPOCH = 1_700_000_000.0
@@ -278,5 +290,8 @@ SAMPLES = {
                1733365638.0),
         Sample("nmea2000", read_nmea2000, "run.n2k", write_nmea2000, "",
                *_columns("speed/speedWaterReferenced", "vesselHeading:True/heading", "rad"), 1785733527.0, 6e-3),
+        Sample("signalk", read_signalk, "run.log", write_signalk, "", *_columns(
+            "navigation.speedThroughWater/speedThroughWater", "navigation.headingTrue/headingTrue", "rad"),
+            1785733527.0),
     )
 }  # fmt: skip

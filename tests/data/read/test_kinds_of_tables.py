@@ -113,3 +113,30 @@ def test_a_clock_that_stands_still_is_named(tmp_path: Path) -> None:
     layout = Layout("text", ColumnSpec("time", "time", "s"), (ColumnSpec("psi", "psi", "deg"),), 1)
     with pytest.raises(InputError, match=r"the clock stands still: all 3 stamps are 12.5 s"):
         read_record(path, layout)
+
+
+def test_a_table_with_a_reading_in_each_row_has_a_topic_for_each_quantity(tmp_path: Path) -> None:
+    path = tmp_path / "run.csv"
+    names = ("navigation.headingTrue", "steering.rudderAngle", "navigation.state")
+    cells = [(time, name, cell) for time, *values in ROWS for name, cell in zip(names, (*values, "ok"), strict=True)]
+    path.write_text("timestamp,path,value\n" + "".join(f"{time},{name},{cell}\n" for time, name, cell in cells))
+    survey = survey_log(path)
+    assert survey.log.topics == names
+    assert [topic.rows for topic in survey.topics] == [len(ROWS)] * 3
+    assert survey.topics[0].columns[0].name == "headingTrue"
+    path.write_text("time,name,value\n" + "".join(f"{time},row {time},{value}\n" for time, value, _ in ROWS))
+    assert survey_log(path).log.topics == ("",)
+
+
+def test_empty_columns_of_a_sheet_take_no_memory(tmp_path: Path) -> None:
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    for row in (("Time", None, "Rudder", None), (None, None, "port", "starboard"), ("s", None, "deg", "deg")):
+        book.active.append(row)
+    for time, _, rudder in ROWS:
+        book.active.append((float(time), None, float(rudder), float(rudder)))
+    book.active.cell(row=50, column=16384, value="x")  # the last column that a sheet has
+    book.save(tmp_path / "run.xlsx")
+    table = survey_log(tmp_path / "run.xlsx").log.tables[0]
+    assert table.names[:5] == ("Time", "", "Rudder port", "Rudder starboard", "")
+    assert sum(isinstance(cells, list) for cells in table.cells) == 4

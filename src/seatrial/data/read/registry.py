@@ -109,6 +109,7 @@ FORMATS: dict[str, Format] = {
     "text": Format("text", _TEXT_SUFFIXES, is_text=True),
     "nmea0183": Format("nmea0183", (".nmea",), is_text=True),
     "nmea2000": Format("nmea2000", (".n2k",)),
+    "signalk": Format("signalk", is_text=True),
     "ardupilot-bin": Format("ardupilot_bin", (".bin",), b"\xa3\x95"),
     "ardupilot-tlog": Format("ardupilot_tlog", (".tlog",)),
     "rosbag": Format("rosbag", (".bag", ".mcap", ".db3")),
@@ -126,6 +127,7 @@ _SENTENCE = re.compile(
     rb"^[^\n$!]{0,120}[$!](?:[A-Z]{5},[^\n]*\*[0-9A-Fa-f]{2}\b|[A-Z]{2}(?:%s),)" % "|".join(sorted(READ)).encode(),
     re.MULTILINE,
 )
+_DELTA = re.compile(rb'\{[^\n]*"updates"\s*:\s*\[')
 _BUS_MESSAGE = re.compile(
     rb"^(<0x[0-9A-Fa-f]+> \[\d\]|\(\d+\.\d+\) \w+ [0-9A-Fa-f]{8}#|\w*can\d+\s+[0-9A-Fa-f]{8}\s+\[\d\]"
     rb"|A\d{6}\.\d{3} [0-9A-Fa-f]{5} |\d{4}-\d\d-\d\d[T-][0-9:.]+Z?,\d,\d{5,6},\d+,\d+,\d+,[0-9a-f]{2},)",
@@ -156,6 +158,8 @@ def format_of(path: Path) -> str:
             return name
     suffix = Path(path.name.removesuffix(".gz")).suffix.lower()
     if suffix in ("", *_TEXT_SUFFIXES):
+        if _DELTA.search(head):
+            return "signalk"
         if _SENTENCE.search(head):
             return "nmea0183"
         if _BUS_MESSAGE.search(head):

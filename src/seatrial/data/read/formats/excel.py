@@ -5,6 +5,8 @@ import zipfile
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from seatrial.core.values import InputError
 from seatrial.data.read.layout import Layout
 from seatrial.data.read.log import Log, RawTable, fault_text, require_library, table_header
@@ -29,7 +31,7 @@ def read_excel(path: Path, layout: Layout) -> Log:  # noqa: ARG001
         if size > _LARGEST_EXPANSION * path.stat().st_size:
             raise InputError(f"{path.name} unpacks to {size / 1e6:.0f} MB, which no table does; save it again")
         book = openpyxl.load_workbook(path, read_only=True, data_only=True)
-        sheets = [(sheet.title, list(sheet.iter_rows(values_only=True))) for sheet in book.worksheets]
+        sheets = [(sheet.title, list(map(_filled, sheet.iter_rows(values_only=True)))) for sheet in book.worksheets]
     except InputError:
         raise
     except Exception as error:  # openpyxl raises zip, key, XML and value errors on damaged workbooks
@@ -45,14 +47,23 @@ def read_excel(path: Path, layout: Layout) -> Log:  # noqa: ARG001
     return Log(path.name, tuple(tables))
 
 
+def _filled(row: tuple) -> tuple:
+    """A row up to its last cell that holds anything."""
+    return row[: max((k for k, cell in enumerate(row, start=1) if cell is not None), default=0)]
+
+
 def _table(file: str, title: str, rows: list[tuple]) -> RawTable | None:
     first = next((k for k, row in enumerate(rows[: _HEADER_ROWS + 1]) if any(map(_is_number, row))), None)
     if first is None or len(rows) < first + 2:
         return None
-    header = table_header([[_text(cell) for cell in row] for row in rows[:first]])
-    width = max(len(row) for row in rows[first:])
-    body = [row for row in rows[first:] if any(cell is not None for cell in row)]
-    cells = tuple([_cell(row[k]) if k < len(row) else None for row in body] for k in range(width))
+    body = [row for row in rows[first:] if row]
+    width = max(map(len, body))
+    header = table_header([[_text(cell) for cell in row] + [""] * (width - len(row)) for row in rows[:first]], width)
+    columns = {place for row in body for place, cell in enumerate(row) if cell is not None}
+    empty = np.broadcast_to(np.nan, len(body))  # takes no memory, however many columns hold nothing
+    cells = tuple(
+        [_cell(row[k]) if k < len(row) else None for row in body] if k in columns else empty for k in range(width)
+    )
     return RawTable(file, header.names_of(width), cells, first + 1, title, header.units_of(width))
 
 

@@ -33,6 +33,22 @@ _BYTE_ORDER_MARKS = {
     b"\xfe\xff": "utf-16",
     b"\xef\xbb\xbf": "utf-8-sig",
 }
+# what columns of a table with a reading in each row are called; share of its rows that names of quantities are at most,
+# ours: a name comes again and again
+_QUANTITY_NAMES = (
+    "path",
+    "name",
+    "key",
+    "channel",
+    "signal",
+    "parameter",
+    "sensor",
+    "quantity",
+    "variable",
+    "field",
+    "topic",
+)
+_VALUE_NAMES, _SHARE_OF_NAMES = ("value", "val", "reading", "data"), 0.5
 _ASCII_COMPATIBLE = ("utf-8", "cp1252", "iso8859-1", "ascii")
 # unpacked over packed bytes of a .gz, and bytes that any may unpack to; ours: tables of numbers reach 30
 _LARGEST_EXPANSION, _ALWAYS_ALLOWED = 200, 2**26
@@ -280,7 +296,37 @@ def read_text(path: Path, layout: Layout) -> Log:
     cells = with_sides([_column_cells(frame[column], layout.decimal) for column in frame.columns])
     width = len(cells)
     columns = table_header(above, width)
-    return Log.of_table(RawTable(path.name, columns.names_of(width), cells, start + 1, "", columns.units_of(width)))
+    table = RawTable(path.name, columns.names_of(width), cells, start + 1, "", columns.units_of(width))
+    return Log(path.name, _topics_of(table) or (table,))
+
+
+def _topics_of(table: RawTable) -> tuple[RawTable, ...]:
+    """A topic for each quantity of a table with a reading in each row: its name in one column, its value in another.
+
+    Empty for a table with a column for each quantity. The last part of the name is that of the topic's column.
+    """
+    plain = [name.strip().lower() for name in table.names]
+    places = [k for k, name in enumerate(plain) if name in _QUANTITY_NAMES]
+    value = next((k for k, name in enumerate(plain) if name in _VALUE_NAMES), None)
+    if len(places) != 1 or value is None or isinstance(table.cells[places[0]], np.ndarray):
+        return ()
+    rows: dict[str, list[int]] = {}
+    for row, cell in enumerate(table.cells[places[0]]):
+        rows.setdefault(str(cell), []).append(row)
+    if not 0 < len(rows) <= _SHARE_OF_NAMES * len(table):
+        return ()
+    kept = [k for k in range(len(plain)) if k != places[0]]
+    return tuple(
+        RawTable(
+            table.file,
+            tuple(re.split(r"[./]", topic)[-1] if k == value else table.names[k] for k in kept),
+            tuple(np.asarray(table.cells[k])[chosen] for k in kept),
+            table.first_row + chosen[0],
+            topic,
+        )
+        for topic, chosen in rows.items()
+        if topic
+    )
 
 
 def _ascii_head(path: Path) -> bytes | None:
