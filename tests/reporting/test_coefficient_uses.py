@@ -25,8 +25,8 @@ def content(inflation: float = 1.5, **parts: tuple) -> Identifiability:
         (PLAIN, 9.9, Use.BY_ITSELF),
         (replace(PLAIN, standard_error=0.19), 9.9, Use.BY_ITSELF),
         (replace(PLAIN, standard_error=0.21), 9.9, Use.VAGUELY),
-        (PLAIN, 10.0, Use.AS_A_SET),
-        (PLAIN, math.inf, Use.AS_A_SET),
+        (PLAIN, math.inf, Use.BY_ITSELF),
+        (replace(PLAIN, standard_error=0.21), 10.0, Use.AS_A_SET),
         (replace(PLAIN, prior_mean=2.0, prior_standard_deviation=0.05), 1.5, Use.FROM_PRIOR),
         (replace(PLAIN, prior_mean=2.0, prior_standard_deviation=0.5), 1.5, Use.BY_ITSELF),
         (replace(PLAIN, lower=-0.1, upper=4.1), 50.0, Use.SIGN_OPEN),
@@ -39,7 +39,8 @@ def test_the_use_is_the_least_that_anything_allows(coefficient: Coefficient, inf
 
 
 def test_a_strong_correlation_of_the_intervals_ties_a_coefficient_whatever_its_inflation() -> None:
-    (row,) = coefficient_uses([PLAIN], content(1.5), {"a": Partner("c", -0.97)})
+    wide = replace(PLAIN, standard_error=0.21)
+    (row,) = coefficient_uses([wide], content(1.5), {"a": Partner("c", -0.97)})
     assert row.use is Use.AS_A_SET and row.partner == "c −0.97"
 
 
@@ -71,10 +72,9 @@ def test_the_lines_name_what_is_used_how_and_the_assumption_that_matters_most(fi
     known = replace(known, consequences=(slight, strong))
     one = replace(fit, coefficients=(PLAIN, vague, held), identifiability=known)
     lines = dict(meaning_lines(one, known, coefficient_uses(one.coefficients, known)))
-    assert lines["Single values"] == "a can be used by itself; not even the sign of v is known."
+    assert lines["Single values"] == "a is known to better than 10 %. v has an open sign."
     assert lines["Assumed values"] == (
-        "m is held, as no manoeuvre identifies it apart from the others; "
-        "a change of k by +10 % would change a by −20 %."
+        "No manoeuvre identifies m apart from the others. Changing k by +10 % would change a by −20 %."
     )
     assert list(lines) == ["Predictions", "Single values", "Assumed values"]
     bare = Identifiability((), (), 1.0, 1.0)

@@ -16,7 +16,13 @@ def test_the_page_shows_columns_runs_and_parts(tmp_path: Path) -> None:
     draft = draft_trial(write(tmp_path / "run.csv", columns), folder=tmp_path)
     page = html(draft, "<trial>.toml")
     assert "&lt;trial&gt;.toml" in page and "<b>n</b>" not in page
-    for part in ("1 column to decide", "unit = &#34;rpm&#34;", "1 zigzag1", "circle_starboard_1", "turns to starboard"):
+    for part in (
+        "1 column to decide",
+        "unit = &#34;rpm&#34;",
+        "1 zigzag1",
+        "circle_starboard_1",
+        "positive to starboard by",
+    ):
         assert part in page
     assert verdict(draft) == f"1 run with {len(draft.stretches[0])} manoeuvres found; 1 column to decide."
     assert "Parts that stand behind a #" in page

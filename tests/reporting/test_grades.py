@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.reporting.test_course import unstable
+from tests.reporting.test_course import unstable, with_course
 
 from seatrial.core.results import ChannelScore, Divergence, Fit, Prediction, WindowScore
 from seatrial.core.values import Record
@@ -13,12 +13,12 @@ from seatrial.reporting.grades import (
     ErrorShare,
     Grade,
     error_shares,
+    graded_errors,
     is_missed,
     judged_share,
-    judging_course,
     judging_window,
     largest_error_share,
-    share_sentence,
+    longest_judged,
     window_shares,
     worst_share,
 )
@@ -30,19 +30,18 @@ def test_the_largest_share_over_quantities_and_runs_counts(fit: Fit) -> None:
     half, more = (replace(p, rms={"psi_deg": share * spread}) for share in (0.49, 0.51))
     largest = largest_error_share(half)
     assert largest is not None and largest.share == pytest.approx(0.49) and largest.grade is Grade.ROUGHLY
-    worst = worst_share([half, more])
+    worst = worst_share(replace(fit, predictions=(half, more)))
     assert worst is not None and worst.share == pytest.approx(0.51)
-    assert largest_error_share(replace(p, rms={})) is None and worst_share([]) is None
+    assert largest_error_share(replace(p, rms={})) is None and worst_share(replace(fit, predictions=())) is None
 
 
-def test_grade_and_scale_stand_with_the_share(fit: Fit) -> None:
+def test_error_motion_and_grade_stand_together(fit: Fit) -> None:
     p = fit.validation[0]
     spread = math.degrees(float(np.nanstd(p.measured["psi"])))
-    text = share_sentence([replace(p, rms={"psi_deg": 0.51 * spread})])
-    assert text.startswith(
-        "share of the standard deviation of the motion itself: 0.51 in heading, roughly (closely to "
-    )
-    assert share_sentence([]) == ""
+    half = replace(fit, predictions=(replace(p, rms={"psi_deg": 0.51 * spread}),))
+    assert graded_errors(half) == f"{0.51 * spread:.0f}° of {spread:.0f}° in heading: roughly"
+    assert graded_errors(replace(fit, predictions=())) == ""
+    assert " in heading and " in graded_errors(fit) and " in position: " in graded_errors(fit)
 
 
 @pytest.mark.parametrize(("share", "grade", "is_marked"), [
@@ -50,8 +49,8 @@ def test_grade_and_scale_stand_with_the_share(fit: Fit) -> None:
     (1.001, Grade.NOT, True), (math.inf, Grade.NOT, True),
 ])  # fmt: skip
 def test_each_limit_belongs_to_the_better_grade(share: float, grade: Grade, *, is_marked: bool) -> None:
-    one = ErrorShare("psi_deg", share)
-    assert one.grade is grade and one.needs_attention is is_marked
+    error = ErrorShare("psi_deg", share, 1.0)
+    assert error.grade is grade and error.needs_attention is is_marked
 
 
 def test_a_run_whose_mean_is_nearer_and_one_that_diverges_are_missed(fit: Fit) -> None:
@@ -73,15 +72,7 @@ def test_turning_on_the_spot_hides_no_error_of_heading(fit: Fit) -> None:
     (share,) = error_shares(p)
     anywhere = 360.0 / math.sqrt(12.0)  # std. dev. of a uniform distribution over a turn
     assert share.share == pytest.approx(80.0 / anywhere) and share.grade is Grade.POORLY
-    assert "(104° for a heading that turns on and on): 0.77 in heading, poorly" in share_sentence([p])
-
-
-def test_both_heading_and_position_are_named_where_a_run_has_them(fit: Fit) -> None:
-    p = fit.validation[0]
-    text = share_sentence([p])
-    shares = {one.name: one.share for one in error_shares(p)}
-    assert set(shares) == {"psi_deg", "position_m"}
-    assert text.startswith("shares of the standard deviation of the motion itself: ") and " in heading and " in text
+    assert graded_errors(replace(fit, predictions=(p,))) == "80° of 100° in heading: poorly"
 
 
 def ramp_in_windows(fit: Fit, whole: float, *inside: tuple[float, float]) -> Prediction:
@@ -103,14 +94,28 @@ def test_a_share_over_windows_is_that_of_the_motion_inside_them(fit: Fit) -> Non
 
 def test_windows_judge_an_unstable_craft_that_leaves_its_run_and_no_other(fit: Fit) -> None:
     missed, kept = (ramp_in_windows(fit, error, (5.0, 0.1), (30.0, 8.0)) for error in (40.0, 1.0))
-    course = unstable(2.0)  # grows a hundredfold in 9.2 s
-    assert judging_course([missed], course) is course and judging_window(missed, course) is missed.windows[0]
-    share = judged_share(missed, course)
+    course = with_course(fit, unstable(2.0))  # grows a hundredfold in 9.2 s
+    by_windows = replace(course, predictions=(missed,))
+    longest = longest_judged(by_windows)
+    assert longest == pytest.approx(9.21, abs=0.01) and judging_window(missed, longest) is missed.windows[0]
+    share = judged_share(missed, longest)
     assert share is not None and share.window == "5 s" and share.grade is Grade.CLOSELY
-    assert judging_course([kept], course) is None and judging_course([missed], None) is None
-    slow = judging_window(missed, unstable(20.0))
-    assert slow is missed.windows[1]
-    assert judging_window(missed, unstable(0.1)) is missed.windows[0]  # all are too long: the shortest
-    assert judging_course([replace(missed, windows=())], course) is None
-    worst = worst_share([missed], None)
+    assert longest_judged(replace(course, predictions=(kept,))) is None
+    whole = replace(fit, predictions=(missed,))
+    assert longest_judged(whole) is None
+    assert judging_window(missed, 92.0) is missed.windows[1]
+    assert judging_window(missed, 0.5) is missed.windows[0]  # all are too long: the shortest
+    assert longest_judged(replace(course, predictions=(replace(missed, windows=()),))) is None
+    worst = worst_share(whole)
     assert worst is not None and worst.grade is Grade.NOT and not worst.window
+
+
+def test_windows_judge_a_craft_that_the_estimated_disturbance_carries_off(fit: Fit) -> None:
+    assert fit.noise_model is not None
+    missed = replace(ramp_in_windows(fit, 40.0, (5.0, 0.1), (30.0, 8.0)), noise_floor={})
+    gusty = replace(fit, predictions=(missed,), noise_model=replace(fit.noise_model, disturbance="white"))
+    assert longest_judged(gusty) == math.inf  # its floor would exceed the error, and is not stored
+    for floor, longest in ((29.0, math.inf), (27.0, None)):
+        assert longest_judged(replace(gusty, predictions=(replace(missed, noise_floor={"psi_deg": floor}),))) == longest
+    calm = replace(gusty, noise_model=replace(fit.noise_model, disturbance="none"))
+    assert longest_judged(calm) is None

@@ -58,7 +58,7 @@ def test_a_turn_to_a_side_is_called_so_and_goes_there(name: str, manoeuvre: str,
     assert side * record["psi"][-1] > 1.0 and side * record["delta"][-1] > 0.3  # rad
     assert record.channel("delta").positive == "starboard"
     (held,) = fabricated_fit().validation
-    assert run_name(replace(held, measured=record)) == f"a turning circle to {words} with 20° rudder"
+    assert run_name(replace(held, measured=record)) == f"turning circle to {words} with 20° rudder"
     assert manoeuvre_name(manoeuvre).endswith("to port") == (side < 0.0)
 
 

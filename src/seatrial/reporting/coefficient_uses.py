@@ -56,7 +56,7 @@ def coefficient_uses(
     effects = {s.parameter: s.effect for s in content.sensitivities}
     rows = []
     for c in (c for c in coefficients if not c.fixed):
-        tied, spread = collinear.get(c.name), _relative_half_width(c)
+        tied, spread = collinear.get(c.name), relative_half_width(c)
         inflation = tied.variance_inflation if tied else math.nan
         use = _use(c, inflation, is_paired=c.name in strong)
         partner = strong.get(c.name) or (Partner(tied.partner, tied.correlation) if tied and tied.partner else None)
@@ -76,14 +76,13 @@ def _use(c: Coefficient, inflation: float, *, is_paired: bool) -> Use:
         return Use.SIGN_OPEN
     if c.prior_standard_deviation and (c.standard_error or 0.0) >= PRIOR_SHARE * c.prior_standard_deviation:
         return Use.FROM_PRIOR
-    if is_paired or inflation >= MIN_VARIANCE_INFLATION:
-        return Use.AS_A_SET
-    if c.is_level:
+    if c.is_level or (c.standard_error or 0.0) < WELL_DETERMINED * abs(c.estimate):
         return Use.BY_ITSELF
-    return Use.VAGUELY if (c.standard_error or 0.0) >= WELL_DETERMINED * abs(c.estimate) else Use.BY_ITSELF
+    return Use.AS_A_SET if is_paired or inflation >= MIN_VARIANCE_INFLATION else Use.VAGUELY
 
 
-def _relative_half_width(c: Coefficient) -> float:
+def relative_half_width(c: Coefficient) -> float:
+    """Return half the 95 % interval over the estimate; NaN where there is none, and of an angle or level about 0."""
     if c.lower is None or c.upper is None or c.estimate == 0.0 or c.is_level:
         return math.nan
     return 0.5 * (c.upper - c.lower) / abs(c.estimate)
@@ -92,8 +91,7 @@ def _relative_half_width(c: Coefficient) -> float:
 def meaning_lines(fit: Fit, content: Identifiability, uses: Sequence[CoefficientUse]) -> tuple[tuple[str, str], ...]:
     """Return what the identifiability means for predictions, for single values, and for what was assumed."""
     lines = [
-        ("Predictions", "of manoeuvres like those recorded rest only on what is determined; those of another kind may "
-                        "rest on what is not."),
+        ("Predictions", "Manoeuvres like those recorded rest on combinations that are determined. Others may not."),
         ("Single values", _single_values(uses)),
     ]  # fmt: skip
     assumed = _assumptions(fit, content)
@@ -102,32 +100,35 @@ def meaning_lines(fit: Fit, content: Identifiability, uses: Sequence[Coefficient
 
 def _single_values(uses: Sequence[CoefficientUse]) -> str:
     names = {use: [row.name for row in uses if row.use is use] for use in Use}
-    free = names[Use.BY_ITSELF]
-    parts = [f"{enumeration(free, MAX_NAMES) if free else 'no coefficient'} can be used by "
-             f"{'themselves' if len(free) > 1 else 'itself'}"]  # fmt: skip
     sentences = {
-        Use.VAGUELY: "{} only vaguely, with standard errors above 10 %",
-        Use.AS_A_SET: "{} only together, as their errors depend on one another",
-        Use.FROM_PRIOR: "{} as far as the prior is right: the records add next to nothing",
-        Use.SIGN_OPEN: "not even the sign of {} is known",
-        Use.NO_INTERVAL: "{} without an interval",
+        Use.BY_ITSELF: "{} {are} known to better than 10 %.",
+        Use.VAGUELY: "{} {are} known vaguely, with standard errors above 10 %.",
+        Use.AS_A_SET: "{} {are} known together only: their errors depend on one another.",
+        Use.FROM_PRIOR: "{} {are} as good as the prior: the records add next to nothing.",
+        Use.SIGN_OPEN: "{} {have} an open sign.",
+        Use.NO_INTERVAL: "{} {have} no interval.",
     }
-    parts += [words.format(enumeration(names[use], MAX_NAMES)) for use, words in sentences.items() if names[use]]
-    return "; ".join(parts) + "."
+    return " ".join(
+        words.format(enumeration(names[use], MAX_NAMES), are="are" if len(names[use]) > 1 else "is",
+                     have="have" if len(names[use]) > 1 else "has")
+        for use, words in sentences.items() if names[use]
+    )  # fmt: skip
 
 
 def _assumptions(fit: Fit, content: Identifiability) -> str:
     tied = {name for symmetry in content.structural for name in symmetry.parameters}
     held = [c.name for c in fit.coefficients if c.fixed and c.name in tied]
-    parts = [f"{enumeration(held, MAX_NAMES)} {'are' if len(held) > 1 else 'is'} held, as no manoeuvre identifies "
-             f"{'them' if len(held) > 1 else 'it'} apart from the others"] if held else []  # fmt: skip
     guessed = [c.name for c in fit.coefficients if c.is_unmeasured]
+    sentences = []
+    if held:
+        sentences.append(f"No manoeuvre identifies {enumeration(held, MAX_NAMES)} apart from the others.")
     if guessed:
-        parts.append(f"{enumeration(guessed, MAX_NAMES)} {'are' if len(guessed) > 1 else 'is'} {NOT_MEASURED}")
+        are = "are" if len(guessed) > 1 else "is"
+        sentences.append(f"{enumeration(guessed, MAX_NAMES)} {are} {NOT_MEASURED}.")
     is_open = {c.name for c in fit.coefficients if c.is_sign_open}
     moves = [(abs(x), c, n, x) for c in content.consequences for n, x in c.estimate_changes.items() if n not in is_open]
     if moves:
         _, worst, name, change = max(moves, key=lambda move: move[0])
-        parts.append(f"a change of {worst.parameter} by {signed_percent(worst.change)} would change {name} by "
-                     f"{signed_percent(change)}")  # fmt: skip
-    return "; ".join(parts) + "." if parts else ""
+        sentences.append(f"Changing {worst.parameter} by {signed_percent(worst.change)} would change {name} by "
+                         f"{signed_percent(change)}.")  # fmt: skip
+    return " ".join(sentences)

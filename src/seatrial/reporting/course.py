@@ -37,8 +37,4 @@ def course_facts(fit: Fit) -> tuple[KeyFact, ...]:
     speed = f" at {significant(course.speed, 2)} m/s" if course.speed is not None else ""
     if course.stable_below is not None:
         speed += f", course stable below about {significant(course.stable_below, 2)} m/s"
-    text = (
-        f"{growth_clause(course)}{speed}; without steering it leaves a straight course, and errors of runs simulated "
-        "whole grow as fast"
-    )
-    return (KeyFact("Straight course", text, "identifiability"),)
+    return (KeyFact("Straight course", f"{growth_clause(course)}{speed}", "identifiability"),)

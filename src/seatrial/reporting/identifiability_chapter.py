@@ -184,32 +184,25 @@ def identifiability_chapter(fit: Fit) -> IdentifiabilityChapter | None:
 
 
 def determined_sentence(fit: Fit) -> str:
-    """Return what the records determine: combinations of coefficients, and the signs of single ones.
+    """Return what the records determine: combinations of coefficients, and whose signs they leave open.
 
-    A sign is determined where the 95 % interval does not contain 0. Empty where that is not known.
+    A sign is open where the 95 % interval contains 0. Empty where that is not known.
     """
     identifiability = fit.identifiability
     free = [c for c in fit.coefficients if not c.fixed]
     if identifiability is None or not math.isfinite(identifiability.effective_parameters):
         return ""
     number, vague = round(identifiability.effective_parameters), [c.name for c in free if c.is_sign_open]
-    because = f"(the 95 % {'intervals' if len(vague) > 1 else 'interval'} of {enumeration(vague)} "
-    because += f"{'contain' if len(vague) > 1 else 'contains'} 0)"
     if number >= len(free):
         tied = {name for symmetry in identifiability.structural for name in symmetry.parameters}
         held = [c.name for c in fit.coefficients if c.fixed and c.name in tied]
-        given = f", given {_held_text(fit, held)}, which no manoeuvre identifies apart from them" if held else ""
-        signs = f"but the signs of only {len(free) - len(vague)} {because}"
-        together = f" together{given}, {signs}" if vague else given
-        all_of_them = f"all {len(free)} free coefficients" if len(free) > 1 else "the free coefficient"
-        return f"The records determine {all_of_them}{together}."
-    rest = "; the rest comes from the priors" if any(c.prior_mean is not None for c in free) else ""
-    single = (
-        f"; of {len(free) - len(vague)} of the {len(free)} coefficients the sign is determined {because}"
-        if vague
-        else ""
-    )
-    return f"The records determine about {number} of {len(free)} combinations of the free coefficients{rest}{single}."
+        every = f"all {len(free)} free coefficients" if len(free) > 1 else "the free coefficient"
+        text = f"The records determine {every}{f', given {_held_text(fit, held)}' if held else ''}."
+    else:
+        rest = "; the priors give the others" if any(c.prior_mean is not None for c in free) else ""
+        text = f"The records determine about {number} of {len(free)} combinations of the free coefficients{rest}."
+    signs = "signs" if len(vague) > 1 else "sign"
+    return f"{text} The {signs} of {enumeration(vague)} {'are' if len(vague) > 1 else 'is'} open." if vague else text
 
 
 def _held_text(fit: Fit, names: Sequence[str]) -> str:

@@ -33,6 +33,7 @@ from seatrial.reporting.document import page_text
 from seatrial.reporting.figures.record_charts import track_overview
 from seatrial.reporting.figures.residual_charts import residual_series, whiteness_chart
 from seatrial.reporting.figures.search_charts import attempts_chart
+from seatrial.reporting.grades import GRADE_NOTE
 from seatrial.reporting.mass_specific import with_mass_specific_units
 from seatrial.reporting.wind import wind_sentence
 from seatrial.reporting.windows import WINDOW_NOTE, baseline_sentence, shortest_judged
@@ -97,6 +98,7 @@ def html(fit: Fit) -> str:
         "search_status": summary.search_status(fit),
         "offset_sentences": summary.offset_sentences(fit),
         "better_baselines": baseline_sentence(fit.validation, runs.ERROR_LABELS, shortest_judged(fit)),
+        "grade_note": GRADE_NOTE,
         "reading_note": runs.reading_note(fit.predictions),
         "window_note": WINDOW_NOTE if any(p.windows for p in fit.predictions) else "",
         "scores": runs.score_table(fit.predictions, 0.0 if has_thrusters else length),

@@ -14,10 +14,12 @@ from seatrial.physics.manoeuvres import REACH_PERCENTILE, initial_speed, ordered
 from seatrial.physics.models.thrust_orders import work_shares
 from seatrial.physics.models.thruster_layout import ThrusterLayout, layout_of, steering_angles, with_steering_order
 from seatrial.reporting.first_screen import KeyFact
-from seatrial.reporting.verdict import LEAST_RUDDER, ONE_SPEED
+from seatrial.reporting.verdict import LEAST_RUDDER, extrapolation_limit
 
 # share of the other side's rudder angle below which a side was not used; chosen
 ONE_SIDED = 0.1
+# share of their mean by which speeds at the start of runs differ that count as one; chosen
+ONE_SPEED = 0.1
 # share of their mean by which rates of a propeller differ that count as one; chosen
 ONE_RATE = 0.05
 # deg, of most ships' rudders (SOLAS II-1/29), and the share of it from which on it was reached; chosen
@@ -63,12 +65,14 @@ def record_gaps(fit: Fit) -> tuple[RecordGap, ...]:
 
 
 def gap_facts(fit: Fit) -> tuple[KeyFact, ...]:
-    """Return the row that names them; no row where there is none."""
-    gaps = record_gaps(fit)
-    if not gaps:
+    """Return the row that names them, first beyond what the model extrapolates; no row where there is none."""
+    limit = extrapolation_limit(fit)
+    subject = limit.partition(" beyond ")[0]
+    names = [gap.name for gap in record_gaps(fit) if not (subject and gap.name.startswith(f"{subject} beyond "))]
+    names = [limit, *names] if limit else names
+    if not names:
         return ()
-    text = "; ".join(f"{gap.name} (such a run: simulate {gap.command})" for gap in gaps)
-    return (KeyFact("Not in the training runs", text, "identifiability" if fit.identifiability else ""),)
+    return (KeyFact("Not in the training runs", "; ".join(names), "identifiability" if fit.identifiability else ""),)
 
 
 def _of_steering(fit: Fit, runs: Sequence[Record]) -> Iterator[RecordGap]:

@@ -124,6 +124,13 @@ class RunSection:
     windows: tuple[TextTable, ...] = ()
 
 
+def error_text(name: str, rms: float) -> str:
+    """Return an error of `Prediction.rms` with its unit: ``6.3°``, ``0.037 m/s``."""
+    unit = ERROR_LABELS[name][1]
+    value = significant(rms * (_DEGREES if name == "r" else 1.0), 2)
+    return f"{value}°" if unit == "deg" else f"{value} {unit}"
+
+
 def score_table(predictions: Sequence[Prediction], length: float) -> ScoreTable:
     """Return the errors of every run, those held out first."""
     names = [name for name in ERROR_LABELS if any(name in p.rms for p in predictions)]

@@ -14,15 +14,13 @@ SWING = np.sin(2.0 * np.pi * TIME / 10.0)
 
 def test_the_spread_is_the_standard_deviation_in_the_unit_of_the_error() -> None:
     spread = motion_spread("psi_deg", [math.radians(20.0) * SWING])
-    assert spread.size == pytest.approx(20.0 / math.sqrt(2.0)) and not spread.is_turning
-    assert motion_spread("position_m", [3.0 * SWING, 4.0 * SWING]).size == pytest.approx(5.0 / math.sqrt(2.0))
+    assert spread == pytest.approx(20.0 / math.sqrt(2.0))
+    assert motion_spread("position_m", [3.0 * SWING, 4.0 * SWING]) == pytest.approx(5.0 / math.sqrt(2.0))
 
 
 def test_turns_on_and_on_spread_a_heading_no_further_than_all_directions_do() -> None:
     spread = motion_spread("psi_deg", [0.5 * TIME])
-    assert spread.is_turning and spread.size == pytest.approx(math.degrees(HEADING_SPREAD)) == pytest.approx(
-        103.92, 1e-4
-    )
+    assert spread == pytest.approx(math.degrees(HEADING_SPREAD)) == pytest.approx(103.92, 1e-4)
 
 
 def test_a_held_heading_is_judged_as_a_small_turn_and_a_turn_by_itself() -> None:
@@ -33,5 +31,5 @@ def test_a_held_heading_is_judged_as_a_small_turn_and_a_turn_by_itself() -> None
         ]
         for size in (2.0, 10.0)
     )
-    assert held.is_held and held.size == pytest.approx(10.0)
-    assert not turned.is_held and turned.size == pytest.approx(10.0 / math.sqrt(2.0))
+    assert held == pytest.approx(10.0)
+    assert turned == pytest.approx(10.0 / math.sqrt(2.0))

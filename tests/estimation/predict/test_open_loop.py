@@ -116,7 +116,7 @@ def test_a_fit_is_kept_whose_own_run_diverges(rng: np.random.Generator, tmp_path
     (warning,) = [f for f in fit.findings if f.code == "diverged"]
     assert warning.message.startswith("training run 'b' diverges in 'r'")
     assert "train on a run" not in warning.advice
-    assert verdict(fit).startswith("Does not reproduce b of 2 runs that it was fitted to: the simulation diverges")
+    assert verdict(fit).startswith("Does not reproduce b of its 2 runs: the simulation diverges")
     save_result(fit, tmp_path)
     assert load_fit(tmp_path).predictions[1].divergence == fit.predictions[1].divergence
 

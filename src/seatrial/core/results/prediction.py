@@ -25,39 +25,28 @@ _HELD_WITHIN = math.radians(5.0)  # standard deviation of a heading below which 
 _DEGREES = math.degrees(1.0)
 
 
-@dataclass(frozen=True)
-class MotionSpread:
-    """Standard deviation of a motion in the unit of its error.
+def motion_spread(name: str, motions: Sequence[Array]) -> float:
+    """Return the standard deviation of the channels of a motion together, in the unit of its error.
 
-    is_turning: the heading spreads further than all directions alike do, so that it is theirs. is_held: the heading is
-    held over the run, so that it is that of a small turn.
+    A heading that turns on and on spreads no further than one that points anywhere alike.
+
+    Args:
+        name: of its error, as in `Prediction.rms`.
+        motions: shape (n,) each, SI.
     """
-
-    size: float
-    is_turning: bool = False
-    is_held: bool = False
-
-
-def motion_spread(name: str, motions: Sequence[Array]) -> MotionSpread:
-    """Return the spread of the channels of a motion together; name: of its error; motions: shape (n,) each, SI."""
     spread = math.sqrt(sum(float(np.nanvar(motion)) for motion in motions))
-    is_turning = name == "psi_deg" and spread > HEADING_SPREAD
-    size = (HEADING_SPREAD if is_turning else spread) * (_DEGREES if name.endswith("_deg") else 1.0)
-    return MotionSpread(size, is_turning)
+    if name == "psi_deg":
+        spread = min(spread, HEADING_SPREAD)
+    return spread * (_DEGREES if name.endswith("_deg") else 1.0)
 
 
-def motion_spreads(names: Container[str], measured: Record) -> dict[str, MotionSpread]:
+def motion_spreads(names: Container[str], measured: Record) -> dict[str, float]:
     """Return what errors of these names over a whole run are compared with, as far as it holds their channels."""
-    spreads = _own_spreads(names, measured)
-    heading = spreads.get("psi_deg")
-    if heading is not None and heading.size < _DEGREES * _HELD_WITHIN:
-        spreads["psi_deg"] = MotionSpread(_DEGREES * HELD_COURSE_SPREAD, is_held=True)
-    return spreads
-
-
-def _own_spreads(names: Container[str], measured: Record) -> dict[str, MotionSpread]:
     compared = (name for name, channels in MOTIONS.items() if name in names and all(c in measured for c in channels))
-    return {name: motion_spread(name, [measured[c] for c in MOTIONS[name]]) for name in compared}
+    spreads = {name: motion_spread(name, [measured[c] for c in MOTIONS[name]]) for name in compared}
+    if spreads.get("psi_deg", math.inf) < _DEGREES * _HELD_WITHIN:
+        spreads["psi_deg"] = _DEGREES * HELD_COURSE_SPREAD
+    return spreads
 
 
 # Errors of predictions some samples ahead, from the samples up to each moment.
