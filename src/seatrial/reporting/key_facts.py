@@ -166,9 +166,10 @@ def _coverage(fit: Fit) -> KeyFact:
     widest = max((_band_over_error(score) for p in fit.validation if (w := _longest_windows(p))
                   for score in w.scores.values()), default=0.0)  # fmt: skip
     widest = max(widest, *(_whole_band_over_error(p) for p in fit.validation))
+    is_whole_kept = whole is None or whole >= LEAST_COVERAGE
     clauses = [
         *([f"{', '.join(texts)}{over}"] if texts else []),
-        *([f"{fixed(100.0 * whole, 0)} % of heading, simulated whole"] if (whole or 1.0) < LEAST_COVERAGE else []),
+        *([] if whole is None or is_whole_kept else [f"{fixed(100.0 * whole, 0)} % of heading, simulated whole"]),
         *([f"too wide to test: {enumeration(untested)}"] if untested else []),
         *([f"bands {significant(widest, 2)} times as wide as the error"] if widest > _CAUTIOUS else []),
     ]
