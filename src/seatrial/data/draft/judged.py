@@ -57,7 +57,7 @@ def _places(surveys: Sequence[LogSurvey], parts: Parts) -> Iterator[_Place]:
                 continue
             topic, column = columns[guess.source]
             table = next(one for one in survey.log.tables if one.topic == topic.topic)
-            if topic.topic not in clocks:
+            if topic.topic not in clocks and topic.time is not None:
                 clocks[topic.topic] = stamps(table, topic.time).seconds
             cells = column_values(table, column.number - 1)
             if cells is None:

@@ -474,15 +474,15 @@ def _require_increasing_time(time: Array, table: RawTable, layout: Layout) -> No
     back = np.flatnonzero(np.diff(time[stamped]) < 0)
     if back.size:
         before, row = stamped[back[0]], stamped[back[0] + 1]
-        ends = f"from {moment_text(time[before])} to {moment_text(time[row])}"
+        ends = f"from {moment_text(float(time[before]))} to {moment_text(float(time[row]))}"
         raise InputError(
             f"{table.title}: row {table.first_row + row}: time runs backwards {ends}{_more(back.size)} "
             f"({time[row] - time[before]:.6g} s); sort or split the file"
         )
     if time[stamped[0]] == time[stamped[-1]]:
         raise InputError(
-            f"{table.title}: the clock stands still: all {stamped.size} stamps are {moment_text(time[stamped[0]])}; "
-            "write the time by the row, or leave the file out"
+            f"{table.title}: the clock stands still: all {stamped.size} stamps are "
+            f"{moment_text(float(time[stamped[0]]))}; write the time by the row, or leave the file out"
         )
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from seatrial.core.values import Array, si_unit
 from seatrial.core.values.notation import NOTATION, OPPOSITE, positive_direction
-from seatrial.data.readings.grids import Grid, Samples
+from seatrial.data.readings.grids import Grid, Samples, Signal
 
 ROLES = {
     ("lat", "lon"): "fixes", ("x0", "y0"): "place", ("u", "v"): "velocity", ("q_w", "q_x", "q_y", "q_z"): "heading",
@@ -67,7 +67,7 @@ class JointReading:
 
     readings: tuple[ColumnReading, ...]
     parts: Mapping[str, float]
-    slots: Mapping[str, tuple[Array, ...]] = field(default_factory=dict)
+    slots: Mapping[str, tuple[Signal, ...]] = field(default_factory=dict)
     contradicts: str = ""
 
     @cached_property
@@ -272,9 +272,9 @@ def in_si(reading: ColumnReading, cells: Array) -> Array:
 
 def _slots(
     role: str, readings: Sequence[ColumnReading], columns: Sequence[NamedColumn], on: Sequence[Grid]
-) -> dict[str, tuple[Array, ...]]:
+) -> dict[str, tuple[Signal, ...]]:
     """What the readings show on each grid."""
-    by_grid: list[dict[str, Array]] = []
+    by_grid: list[dict[str, Signal]] = []
     for grid in on:
         pairs = zip(readings, columns, strict=True)
         values = [in_si(reading, grid.means(column.samples)) for reading, column in pairs]
@@ -282,7 +282,7 @@ def _slots(
     return {slot: tuple(entry[slot] for entry in by_grid) for slot in (by_grid[0] if by_grid else ())}
 
 
-def _slot_values(role: str, readings: Sequence[ColumnReading], values: Sequence[Array]) -> Iterator[tuple[str, Array]]:
+def _slot_values(role: str, readings: Sequence[ColumnReading], values: Sequence[Array]) -> Iterator[tuple[str, Signal]]:
     is_enu = readings[0].frame == "enu"
     match role:
         case "fixes":

@@ -4,12 +4,16 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from seatrial.core.values import Array
 from seatrial.core.values.arrays import sentinel_value
 
+Signal = NDArray[Any]
+"""What a reading shows on a grid, (n,): real, or in the plane as north + i east or ahead + i aside."""
 BINS = 240
 """Bins of a grid; chosen: a manoeuvre has some ten of them, and all readings are compared within a second."""
 _LIVELY_SHARE = 12  # of a run, one part of so many, on the fine grid; chosen

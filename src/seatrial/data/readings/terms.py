@@ -5,11 +5,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from seatrial.core.values import Array
+from seatrial.data.readings.grids import Signal
 
-Slots = Mapping[str, tuple[Array, ...]]
+Slots = Mapping[str, tuple[Signal, ...]]
 """What the readings of some variables show, on each grid."""
 _LAGS = (1, 3, 9)  # bins over which rates are taken; the clearest counts; chosen
 _MOST_NUMBERS = 40.0  # independent numbers that a comparison counts for at most; chosen: models are never exact
@@ -41,7 +40,7 @@ class Relation:
     nats: Callable[[Slots], float]
 
 
-def independent_numbers(values: Array) -> float:
+def independent_numbers(values: Signal) -> float:
     """Return for how many independent numbers a signal counts: 2 (sum S)^2 / sum S^2 of its spectrum S.
 
     Degrees of freedom of a spectrum's sum (Priestley 1981, Spectral Analysis and Time Series, section 6.2.3).
@@ -56,7 +55,7 @@ def softly(nats: float, cap: float = _CAP) -> float:
     return nats if nats <= cap else cap + 2.0 * math.log1p(0.5 * (nats - cap))
 
 
-def identity(first: Array, second: Array, means: float, most: float = _MOST_NUMBERS) -> float:
+def identity(first: Signal, second: Signal, means: float, most: float = _MOST_NUMBERS) -> float:
     """Return the nats for two signals being the same, (n,) each; negative where both move and disagree."""
     finite = np.isfinite(first) & np.isfinite(second)
     a, b = first[finite], second[finite]
@@ -80,17 +79,17 @@ def identity(first: Array, second: Array, means: float, most: float = _MOST_NUMB
     return max(softly(nats), _LEAST)
 
 
-def _rates(signal: Array, lag: int) -> Array:
+def _rates(signal: Signal, lag: int) -> Signal:
     return signal[lag:] - signal[:-lag]
 
 
-def _integral(rate: Array, lag: int) -> Array:
+def _integral(rate: Signal, lag: int) -> Signal:
     """The integral of a rate over so many bins, in bins."""
     total = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]))])
     return total[lag:] - total[:-lag]
 
 
-def _derivative(angle: tuple[Array, ...], rate: tuple[Array, ...], steps: Sequence[float]) -> float:
+def _derivative(angle: tuple[Signal, ...], rate: tuple[Signal, ...], steps: Sequence[float]) -> float:
     """The nats for one signal being the derivative of another; the clearest grid and lag counts."""
     results = [
         identity(_rates(a, lag), step * _integral(r, lag), _MEANS["rate"])
@@ -131,7 +130,7 @@ class Relations:
         course = tuple(np.unwrap(np.angle(v)) for v in self._velocities(slots["track"]))
         return _derivative(course, tuple(r[1:] for r in slots["r"]), self.steps)
 
-    def _velocities(self, track: tuple[Array, ...], lag: int = 1) -> Iterator[NDArray[np.complex128]]:
+    def _velocities(self, track: tuple[Signal, ...], lag: int = 1) -> Iterator[Signal]:
         for place, step in zip(track, self.steps, strict=True):
             yield (place[lag:] - place[:-lag]) / (lag * step)
 
@@ -159,8 +158,8 @@ class Relations:
         results = [0.0]
         for k, v in enumerate(self._velocities(slots["track"], _LAGS[1])):
             size, logged = np.abs(v), _integral(np.abs(speed[k]), _LAGS[1]) / _LAGS[1]
-            off = np.nanmean(size - logged)
-            bound = _CURRENT * np.nanmean(logged) + _CURRENT_M_S
+            off = float(np.nanmean(size - logged))
+            bound = _CURRENT * float(np.nanmean(logged)) + _CURRENT_M_S
             ratio = abs(off) / max(bound, 1e-9)  # never a zero
             nats = _MEANS["ahead"] - 0.5 * ratio**2 if np.isfinite(ratio) else 0.0
             results.append(max(nats, _LEAST) + 0.5 * identity(size - off, logged, 0.0))
@@ -171,7 +170,7 @@ class Relations:
         share = _BESIDE_SURGE if {"track", "along the hull"} <= set(slots) else 1.0
         return share * max((_alike(v, psi) for v, psi in self._courses(slots)), key=abs, default=0.0)
 
-    def _courses(self, slots: Slots) -> Iterator[tuple[Array, Array]]:
+    def _courses(self, slots: Slots) -> Iterator[tuple[Signal, Signal]]:
         psi = slots["psi"]
         if "along the hull" in slots and "track" not in slots:
             yield from ((v, np.zeros(len(v))) for v in slots["along the hull"])
@@ -190,7 +189,7 @@ class Relations:
     def _fixes(self, slots: Slots) -> float:
         """A pose against the fixes of the same run."""
         results = [
-            identity(p.real, f.real, 0.0) + identity(p.imag, f.imag, 0.0)
+            identity(np.real(p), np.real(f), 0.0) + identity(np.imag(p), np.imag(f), 0.0)
             for p, f in zip(slots["place track"], slots["track"], strict=True)
         ]
         return results[0] if results else 0.0
@@ -210,12 +209,12 @@ class Relations:
         return math.copysign(min(abs(nats), _TURNING_CAP), nats)
 
 
-def _midway(axes: NDArray[np.complex128], lag: int) -> NDArray[np.complex128]:
+def _midway(axes: Signal, lag: int) -> Signal:
     mean = _integral(axes, lag)
     return mean / np.maximum(np.abs(mean), _FLOOR)
 
 
-def _less_current(off: NDArray[np.complex128], velocity: NDArray[np.complex128]) -> NDArray[np.complex128]:
+def _less_current(off: Signal, velocity: Signal) -> Signal:
     """The residual of the track without what a steady current may be."""
     if not np.any(np.isfinite(off)):
         return off
@@ -223,7 +222,7 @@ def _less_current(off: NDArray[np.complex128], velocity: NDArray[np.complex128])
     return off - (mean * min(1.0, bound / abs(mean)) if abs(mean) > 0.0 else 0.0)
 
 
-def _alike(velocity: NDArray[np.complex128], angle: Array) -> float:
+def _alike(velocity: Signal, angle: Signal) -> float:
     """The nats for a velocity north + i east pointing along an angle: its turns, then its mean direction."""
     finite = np.isfinite(velocity) & np.isfinite(angle)
     v, a = velocity[finite], angle[finite]
@@ -237,14 +236,14 @@ def _alike(velocity: NDArray[np.complex128], angle: Array) -> float:
     nats = 0.0
     if spread > 2.0 * _COURSE_SD**2:
         share = float(np.var(course - heading * np.exp(1j * apart))) / spread + _FLOOR
-        count = min(max(independent_numbers(course.real), independent_numbers(course.imag)), _COURSE_NUMBERS)
+        count = min(max(independent_numbers(np.real(course)), independent_numbers(np.imag(course))), _COURSE_NUMBERS)
         nats = max(-0.5 * count * math.log(max(share, _PROVING)), _LEAST)
         nats -= _DISAGREEMENT * math.log(share / _HALF) if share > _HALF else 0.0
     density = math.exp(-0.5 * (apart / _COURSE_SD) ** 2) / (_COURSE_SD * math.sqrt(2.0 * math.pi))
     return max(nats + math.log(_COURSE_SHARE * density * math.tau + 1.0 - _COURSE_SHARE), _LEAST)
 
 
-def _signed_nats(answer: Array, cause: Array, beside: Array | None, lag: int) -> float:
+def _signed_nats(answer: Signal, cause: Signal, beside: Signal | None, lag: int) -> float:
     """Nats for an answer to a cause, with the sign of the partial correlation."""
     columns = [np.ones(len(answer)), *([] if beside is None else [beside])]
     table = np.stack([*columns, cause, answer], axis=1)
@@ -276,6 +275,6 @@ def _in_phase(slots: Slots, motion: str, slope: complex) -> float:
     return _WAVES * max(min(share / _WAVES_SURE, 1.0), -1.0)
 
 
-def _spectrum(values: Array) -> NDArray[np.complex128]:
+def _spectrum(values: Signal) -> Signal:
     finite = np.nan_to_num(values)
     return np.fft.rfft((finite - np.mean(finite)) * np.hanning(len(finite)))
