@@ -140,3 +140,10 @@ def test_empty_columns_of_a_sheet_take_no_memory(tmp_path: Path) -> None:
     table = survey_log(tmp_path / "run.xlsx").log.tables[0]
     assert table.names[:5] == ("Time", "", "Rudder port", "Rudder starboard", "")
     assert sum(isinstance(cells, list) for cells in table.cells) == 4
+
+
+def test_a_cell_beyond_all_size_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "run.csv"
+    path.write_text(f"time,u\n0,{'9' * 140_000}\n1,2\n2,3\n")
+    with pytest.raises(InputError, match=r"run.csv: a cell of the line '0,9+\.\.\.' has over 131,072 characters"):
+        survey_log(path)

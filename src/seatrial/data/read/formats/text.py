@@ -1,7 +1,6 @@
 """Text files: comma, semicolon, tab or whitespace separated, plain or .gz, either decimal sign."""
 
 import codecs
-import contextlib
 import csv
 import gzip
 import io
@@ -33,6 +32,7 @@ _BYTE_ORDER_MARKS = {
     b"\xfe\xff": "utf-16",
     b"\xef\xbb\xbf": "utf-8-sig",
 }
+_LINE_SHOWN = 20  # characters of a line that a message quotes; ours
 # what columns of a table with a reading in each row are called; share of its rows that names of quantities are at most,
 # ours: a name comes again and again
 _QUANTITY_NAMES = (
@@ -188,7 +188,7 @@ def text_layout(path: Path) -> Layout:
     encoding, text = _decoded(path) if head is None else ("utf-8", head.decode())
     lines, count = list[_Line](), 0
     for line in text.split("\n", _LINES)[:_LINES]:
-        lines.append(_line(line.rstrip("\r")))
+        lines.append(_line(line.rstrip("\r"), path.name))
         count += len(lines[-1].cells)
         if count > _CELLS and len(lines) > 2:
             break
@@ -224,13 +224,13 @@ def _unmarked_encoding(path: Path) -> str:
     return zeros[most] if most > _ZERO_SHARE * (len(head) // 2) and len(zeros) > 1 and min(zeros) == 0 else ""
 
 
-def _line(text: str) -> _Line:
+def _line(text: str, file: str) -> _Line:
     """The cells by `;` or tab where the line has one, else by comma unless that is the decimal sign, else by spaces."""
     separator = detect_separator(text, Layout("text", ColumnSpec("time", 1, "s"), ()))
     cells = text.split()
     if separator == "," and len(cells) > 1 and all(_DECIMAL_COMMA.fullmatch(cell) for cell in cells):
         separator = _WHITESPACE
-    return _Line(separator, column_names(text, separator) if cells else [])
+    return _Line(separator, column_names(text, separator, file) if cells else [])
 
 
 def _layout(lines: list[_Line], first: int, encoding: str) -> Layout:
@@ -258,13 +258,21 @@ def detect_separator(sample_line: str, layout: Layout) -> str:
     return "," if "," in sample_line and layout.decimal != "," else r"\s+"
 
 
-def column_names(line: str, separator: str) -> list[str]:
-    """The cells of a header line."""
+def column_names(line: str, separator: str, file: str) -> list[str]:
+    """The cells of a line of a file.
+
+    Raises:
+        InputError: one is longer than any logger writes.
+    """
     if separator == r"\s+":
         return [cell.strip().strip('"') for cell in re.split(separator, line.strip())]
-    with contextlib.suppress(csv.Error):  # a cell beyond the limit of that module is one all the same
+    try:
         return [cell.strip() for cell in next(csv.reader([line], delimiter=separator), [])]
-    return [cell.strip() for cell in line.split(separator)]
+    except csv.Error:
+        raise InputError(
+            f"{file}: a cell of the line '{line[:_LINE_SHOWN]}...' has over {csv.field_size_limit():,} characters; "
+            "remove the line"
+        ) from None
 
 
 def read_text(path: Path, layout: Layout) -> Log:
@@ -292,7 +300,7 @@ def read_text(path: Path, layout: Layout) -> Log:
     del data
     has_spaces = f"{separator} " in sample_line
     frame = _data_frame(source, start, separator, layout.decimal, path.name, has_spaces=has_spaces)
-    above = [column_names(line, separator) for line in header] if layout.has_named_columns else []
+    above = [column_names(line, separator, path.name) for line in header] if layout.has_named_columns else []
     cells = with_sides([_column_cells(frame[column], layout.decimal) for column in frame.columns])
     width = len(cells)
     columns = table_header(above, width)
