@@ -138,7 +138,7 @@ def choose_criterion(
     """
     first = with_input_offsets(with_plausible_start(shooting))
     further = [] if begun is None else [with_input_offsets(with_plausible_start(begun))]
-    further += own_starts(first)
+    further += own_starts(further[0] if further else first)
     shot = output_error_choice(shooting, _output_error_name(seconds))
     match settings.criterion:
         case FitCriterion.OUTPUT_ERROR | FitCriterion.MULTIPLE_SHOOTING:
