@@ -29,6 +29,7 @@ from seatrial.data.draft import ColumnGuess
 REPOSITORY = Path(__file__).parents[1]
 SILENT, RIGHT_OR_OPEN, OPEN = 0.005, 0.97, 0.15  # shares of the channels: targets
 TURN, KNOT = 360.0, 1852.0 / 3600.0  # deg; m/s
+_SAME_ZERO = 0.01  # of a turn, by which zeros may differ; chosen
 
 
 @dataclass(frozen=True)
@@ -152,7 +153,7 @@ def heading_from_east(table: Table, _: np.random.Generator) -> Table | None:
     name = table.column("psi")
     if name is None:
         return None
-    turn = TURN if table.truth[name].unit == "deg" else 2.0 * np.pi
+    turn = _full_turn(table.truth[name])
     values = np.mod(0.25 * turn - table.cells[name].to_numpy(float), turn)
     return table.with_values(name, values, Truth("psi", table.truth[name].unit, "enu"))
 
@@ -186,7 +187,7 @@ def wrapped_elsewhere(table: Table, _: np.random.Generator) -> Table | None:
         name = table.column(symbol)
         if name is not None:
             one = table.truth[name]
-            turn = TURN if one.unit == "deg" else 2.0 * np.pi
+            turn = _full_turn(one)
             values = table.cells[name].to_numpy(float)
             half = 0.5 * turn if symbol == "psi" else 0.0
             table = table.with_values(name, np.mod(values + half, turn) - half, one)
@@ -194,26 +195,29 @@ def wrapped_elsewhere(table: Table, _: np.random.Generator) -> Table | None:
 
 
 def upside_down(table: Table, _: np.random.Generator) -> Table | None:
-    """Roll of a sensor that hangs upside down."""
-    name = table.column("phi")
-    if name is None:
-        return None
-    one = table.truth[name]
-    turn = TURN if one.unit == "deg" else 2.0 * np.pi
-    values = np.mod(table.cells[name].to_numpy(float) + turn, turn) - 0.5 * turn
-    return table.with_values(name, values, replace(one, offset=0.5 * turn))
+    """Roll of a sensor that hangs upside down, from -180 to 180."""
+    return _turned(table, "phi", 0.5, lowest=-0.5)
 
 
 def heading_across(table: Table, generator: np.random.Generator) -> Table | None:
     """A compass that is a quarter or half of a turn off."""
-    name = table.column("psi")
+    return _turned(table, "psi", float(generator.choice([0.25, -0.25, 0.5])))
+
+
+def _turned(table: Table, symbol: str, share: float, lowest: float = 0.0) -> Table | None:
+    """An angle that a share of a turn is added to, from a lowest value on, which is one too."""
+    name = table.column(symbol)
     if name is None:
         return None
-    one = table.truth[name]
-    turn = TURN if one.unit == "deg" else 2.0 * np.pi
-    off = turn * generator.choice([0.25, -0.25, 0.5])
-    values = np.mod(table.cells[name].to_numpy(float) + off, turn)
-    return table.with_values(name, values, replace(one, offset=-off))
+    truth = table.truth[name]
+    turn = _full_turn(truth)
+    values = np.mod(table.cells[name].to_numpy(float) + (share - lowest) * turn, turn) + lowest * turn
+    return table.with_values(name, values, replace(truth, offset=-share * turn))
+
+
+def _full_turn(truth: Truth) -> float:
+    """A full turn in the unit of an angle."""
+    return TURN if truth.unit == "deg" else 2.0 * np.pi
 
 
 def whole_numbers(table: Table, _: np.random.Generator) -> Table:
@@ -322,13 +326,12 @@ def _outcome(guess: ColumnGuess, truth: Truth) -> str:
         return "open"
     frame = truth.frame if truth.frame in ("body", "enu") or truth.symbol in ("u", "v") else ""
     is_frame = guess.frame == frame or (guess.frame != "enu" and frame != "enu" and truth.symbol not in ("u", "v"))
-    offset = getattr(guess, "offset", 0.0)
-    turn = TURN if truth.unit == "deg" else 2.0 * np.pi
-    is_zero = abs((offset - truth.offset + 0.5 * turn) % turn - 0.5 * turn) < 0.01 * turn
+    turn = _full_turn(truth)
+    is_zero = abs((guess.offset - truth.offset + 0.5 * turn) % turn - 0.5 * turn) < _SAME_ZERO * turn
     is_side = guess.positive == truth.positive or truth.frame == "enu"
     if (guess.symbol, guess.unit) == (truth.symbol, truth.unit) and is_frame and is_zero and is_side:
         return "right"
-    is_marked = getattr(guess, "is_assumed", False) and guess.unit == truth.unit
+    is_marked = guess.is_assumed and guess.unit == truth.unit
     return "assumed, wrong" if is_marked else "silent"
 
 

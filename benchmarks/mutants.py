@@ -111,7 +111,7 @@ def draw(count: int, seed: int) -> list[Mutant]:
 
 
 def is_noticed(mutant: Mutant, checkout: Path) -> bool:
-    """Return whether a test of its folder fails in a copy of the checkout with the mutant; the copy is mended again."""
+    """Return whether a test of its folder fails in a copy of the checkout with the mutant; the copy is restored."""
     file = checkout / mutant.path
     text = file.read_text(encoding="utf-8")
     lines = text.splitlines(keepends=True)

@@ -14,6 +14,7 @@ from seatrial.reporting.grades import (
     Grade,
     error_shares,
     graded_errors,
+    is_disturbed,
     is_missed,
     judged_share,
     judging_window,
@@ -119,3 +120,14 @@ def test_windows_judge_a_craft_that_the_estimated_disturbance_carries_off(fit: F
         assert longest_judged(replace(gusty, predictions=(replace(missed, noise_floor={"psi_deg": floor}),))) == longest
     calm = replace(gusty, noise_model=replace(fit.noise_model, disturbance="none"))
     assert longest_judged(calm) is None
+    shown = replace(fit.noise_model, disturbance="waves on the sensors", process={})
+    assert longest_judged(replace(gusty, noise_model=shown)) is None  # they carry no craft off
+
+
+def test_a_disturbance_excuses_no_error_of_which_it_has_no_floor(fit: Fit) -> None:
+    assert fit.noise_model is not None
+    gusty = replace(fit, noise_model=replace(fit.noise_model, disturbance="white"))
+    (run, *_) = fit.validation
+    bare = replace(run, noise_floor={})
+    assert is_disturbed(gusty, bare, ErrorShare("psi_deg", 5.0, 4.0))
+    assert not is_disturbed(gusty, bare, ErrorShare("phi_deg", 5.0, 4.0))

@@ -54,7 +54,7 @@ def correlation_text(names: Sequence[str], covariance: Array, degrees_of_freedom
     strongest = enumeration([f"{names[i]} and {names[j]} ({fixed(below[i, j], 2)})" for i, j in strong])
     return (
         f"{counted(count, 'pair').capitalize()} at {fixed(least, 2)} or above in size; the strongest: {strongest}. "
-        "The records determine such coefficients mainly together: take them as a set, not one by one."
+        "Their errors depend on one another: use them with their covariance."
     )
 
 

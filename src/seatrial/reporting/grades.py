@@ -22,6 +22,8 @@ from seatrial.reporting.runs import ERROR_LABELS, error_text
 
 MAX_GROWTH = 100.0
 """Growth of a deviation over the windows that judge a course-unstable craft: a hundredth becomes the whole; chosen."""
+_CARRIED = ("psi_deg", "position_m")
+"""Errors of which a disturbance that moves the craft has a floor; waves on sensors alone carry nothing off."""
 _EXPLAINED = 0.7  # share of an error from which on a disturbance is said to leave it; chosen
 _ROUNDING = 1e-9  # of a window, by which time stamps are rounded
 
@@ -127,7 +129,8 @@ def longest_judged(fit: Fit) -> float | None:
 
 def is_disturbed(fit: Fit, p: Prediction, share: ErrorShare) -> bool:
     """Return whether the disturbance that was estimated leaves most of an error by itself."""
-    if fit.noise_model is None or fit.noise_model.disturbance == "none":
+    noise = fit.noise_model
+    if noise is None or noise.disturbance == "none" or share.name not in _CARRIED or not any(noise.process.values()):
         return False
     return p.noise_floor.get(share.name, share.rms) >= _EXPLAINED * share.rms  # no floor: it would leave more
 

@@ -1,4 +1,4 @@
-"""Errors and findings: what a bad input is told, and findings with the worst first."""
+"""Errors and findings: messages for bad input, and findings with the worst first."""
 
 import pickle
 

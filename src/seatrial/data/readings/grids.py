@@ -20,7 +20,9 @@ _LIVELY_SHARE = 12  # of a run, one part of so many, on the fine grid; chosen
 _TURNS = (360.0, math.tau, 36000.0, 3600.0)  # full turns as numbers: deg, rad, 1/100 and 1/10 deg
 # share of a turn that a step must jump to be a wrap, and of the steps that may; chosen
 _JUMP, _JUMPS = 0.62, 0.34
-_LEAST_STEPS = 8  # different steps from which a resolution is told; chosen
+_TURN_SLACK = 1.02  # of a full turn, to which rounded numbers may reach; chosen
+_LEAST_FILLED = 0.5  # share of bins with a reading below which readings are taken one by one; chosen
+_LEAST_STEPS = 8  # different steps from which a resolution is estimated; chosen
 _MULTIPLE = 1e-3  # of a resolution, by which steps may miss its multiples; chosen: rounding
 
 
@@ -51,7 +53,7 @@ class Samples:
         cells = self.readings[1]
         steps = np.abs(np.diff(cells))
         reach = float(np.ptp(cells)) if cells.size else 0.0
-        wrapping = (turn for turn in _TURNS if _JUMP * turn < reach <= 1.02 * turn)  # by rounding beyond a turn
+        wrapping = (turn for turn in _TURNS if _JUMP * turn < reach <= _TURN_SLACK * turn)
         return next((t for t in wrapping if 0.0 < np.mean(steps > _JUMP * t) < _JUMPS), 0.0)
 
     @cached_property
@@ -59,12 +61,6 @@ class Samples:
         """The readings without jumps by a full turn, about the level at which they began."""
         cells = self.readings[1]
         return np.unwrap(cells, period=self.turn) if self.turn else cells
-
-    @cached_property
-    def largest(self) -> float:
-        """The largest size of a reading."""
-        cells = self.readings[1]
-        return float(np.max(np.abs(cells))) if cells.size else 0.0
 
     @cached_property
     def resolution(self) -> float:
@@ -103,7 +99,7 @@ class Grid:
             return np.full(len(centres), np.nan)
         filled = counts > 0
         means = np.interp(centres, centres[filled], sums[filled] / counts[filled])
-        if np.mean(filled) < 0.5:  # more bins than readings: these as they are
+        if np.mean(filled) < _LEAST_FILLED:
             means = np.interp(centres, seconds, cells)
         means[(centres < seconds[0] - self.step) | (centres > seconds[-1] + self.step)] = np.nan
         return means

@@ -36,18 +36,8 @@ _LINE_SHOWN = 20  # characters of a line that a message quotes; ours
 # what columns of a table with a reading in each row are called; share of its rows that names of quantities are at most,
 # ours: a name comes again and again
 _QUANTITY_NAMES = (
-    "path",
-    "name",
-    "key",
-    "channel",
-    "signal",
-    "parameter",
-    "sensor",
-    "quantity",
-    "variable",
-    "field",
-    "topic",
-)
+    "path", "name", "key", "channel", "signal", "parameter", "sensor", "quantity", "variable", "field", "topic",
+)  # fmt: skip
 _VALUE_NAMES, _SHARE_OF_NAMES = ("value", "val", "reading", "data"), 0.5
 _ASCII_COMPATIBLE = ("utf-8", "cp1252", "iso8859-1", "ascii")
 # unpacked over packed bytes of a .gz, and bytes that any may unpack to; ours: tables of numbers reach 30
