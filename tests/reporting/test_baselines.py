@@ -6,11 +6,12 @@ from dataclasses import replace
 import pytest
 from tests.reporting.complete_fit import baselines as fabricated
 from tests.reporting.fabricated import fabricated_fit
+from tests.reporting.section_text import header, part
 
 from seatrial.core.results import Fit
 from seatrial.core.results.prediction import NO_COMPARISON
 from seatrial.core.values import Finding, Severity
-from seatrial.reporting.baselines import baseline_chapter, baseline_sentences
+from seatrial.reporting.baselines import baseline_section, baseline_sentences
 from seatrial.reporting.page import html
 
 
@@ -38,8 +39,8 @@ def test_sentences_name_the_nearest_the_failed_and_what_proves_nothing(fit: Fit)
 def test_where_the_truth_is_not_known_the_fit_is_the_measure(fit: Fit) -> None:
     first, second = baseline_sentences(unknown(fit))
     assert "Nearest to the fit comes “weak form”" in first and "from the fit in the median" in second
-    chapter = baseline_chapter(unknown(fit))
-    assert chapter is not None and chapter.truth == () and "difference from the fit" in chapter.figure
+    (first_part, *_) = baseline_section(unknown(fit)).parts
+    assert "known" not in header(first_part.table) and "difference from the fit" in first_part.pictures[0].draw()
 
 
 def test_the_fit_without_offsets_is_the_measure_of_headings(fit: Fit) -> None:
@@ -47,16 +48,16 @@ def test_the_fit_without_offsets_is_the_measure_of_headings(fit: Fit) -> None:
                     validation=replace(fit.baselines[0].validation, rms={"psi_deg": 99.0}))  # fmt: skip
     both = replace(fit, baselines=(fit.baselines[0], worse, *fit.baselines[1:]))
     assert "fit’s, its offsets set to zero: 2 of the 2 that simulate the held-out runs" in baseline_sentences(both)[1]
-    chapter = baseline_chapter(both)
-    assert chapter is not None and [r.name for r in chapter.rows][:2] == [fit.baselines[0].name, "weak form"]
+    names = header(part(baseline_section(both), "Coefficients").table)
+    assert fit.baselines[0].name in names and "weak form" in names and worse.name not in names
 
 
 def test_gaps_are_marked_in_words(fit: Fit) -> None:
-    chapter = baseline_chapter(fit)
-    assert chapter is not None
-    words = {row.name: {cell.gap_class for cell in row.cells} for row in chapter.rows}
-    assert words[fit.baselines[0].name] == {""}
-    assert words["weak form"] == {"near"} and words["ridge"] == {"off"} and words["Euler"] == {"far"}
+    table = part(baseline_section(fit), "Coefficients").table
+    assert table is not None
+    for name, distance in (("weak form", "near"), ("ridge", "off"), ("Euler", "far")):
+        column = header(table).index(name)
+        assert {row.cells[column].under.partition(":")[0] for row in table.rows} == {distance}
 
 
 def test_the_page_shows_everything_once(fit: Fit) -> None:
@@ -71,7 +72,7 @@ def test_the_page_shows_everything_once(fit: Fit) -> None:
 
 def test_a_refusal_is_one_sentence_and_silence_stays_silent(fit: Fit) -> None:
     plain = replace(fit, baselines=())
-    assert baseline_chapter(plain) is None and 'id="baselines"' not in html(plain)
+    assert not baseline_section(plain) and 'id="baselines"' not in html(plain)
     why = Finding(Severity.INFO, NO_COMPARISON, "no other estimators to compare: model 'nomoto' is not linear in K")
     page = html(replace(plain, findings=(why,)))
     section = page[page.index('id="baselines"') :].partition("</section>")[0]

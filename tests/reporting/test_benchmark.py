@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import pytest
+from tests.reporting.section_text import cells, text_of
 
 from seatrial.core.results.campaign import (
     Benchmark,
@@ -14,7 +15,7 @@ from seatrial.core.results.campaign import (
     ProblemScore,
     TargetCurve,
 )
-from seatrial.reporting.benchmark import html, method_table, outcome, problem_part, target_chart, waterfall_chart
+from seatrial.reporting.benchmark import html, method_table, outcome, problem_section, target_chart, waterfall_chart
 
 
 @pytest.fixture
@@ -39,7 +40,7 @@ def test_the_page_shows_everything_and_escapes_what_users_wrote(result: Benchmar
         "toy-2, version 1",
         "a paper",
         "the bound",
-        "To cite: cite &lt;me&gt;",
+        "cite &lt;me&gt;",
         "it raises &lt;x&gt;",
         "Holm",
         "a is better than b",
@@ -59,7 +60,7 @@ def test_the_summary_says_what_an_entered_method_does(result: Benchmark) -> None
 
 
 def test_the_table_has_a_row_for_each_method(result: Benchmark) -> None:
-    first, second = method_table(result.problems[0]).rows
+    first, second = cells(method_table(result.problems[0]))
     assert first[:5] == ("de", "0.900", "1.50", "67", "100")
     assert second[1] == "∞" and "1 outside the box" in second[-1] and "1 answers cannot be evaluated" in second[-1]
 
@@ -70,4 +71,4 @@ def test_charts_have_a_curve_for_each_method_and_none_without_answers(result: Be
         assert chart is not None and {"de", "a<b>.py"} <= {entry.words for entry in chart.legend}
     empty = replace(problem, methods=(replace(problem.methods[0], errors=(), targets=TargetCurve((), 18)),))
     assert target_chart(empty) is None and waterfall_chart(empty) is None
-    assert problem_part(empty, (1.0,)).tests is not None
+    assert "a<b>.py de 0 3" in text_of(problem_section(empty, (1.0,)))

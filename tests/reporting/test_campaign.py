@@ -1,6 +1,7 @@
 """The page of a campaign: sections for what there is, texts escaped, status in words."""
 
 import pytest
+from tests.reporting.section_text import cells
 
 from seatrial.core.results.campaign import (
     CampaignStatus,
@@ -11,7 +12,7 @@ from seatrial.core.results.campaign import (
     RepeatedScore,
 )
 from seatrial.core.values import Finding, Severity
-from seatrial.reporting.campaign import coefficient_table, coverage_chart, error_histograms, outcome, status_sentence
+from seatrial.reporting.campaign import coefficient_section, coverage_chart, error_histograms, outcome, status_sentence
 from seatrial.reporting.pages import report_page
 
 
@@ -67,4 +68,4 @@ def test_sentences(summary: CampaignSummary) -> None:
 def test_charts_without_content_are_none_and_the_table_gives_per_cent() -> None:
     assert coverage_chart([]) is None
     assert error_histograms([]) is None
-    assert coefficient_table([coefficient()]).rows[0][-2:] == ("95.0", "88.7 to 98.4")
+    assert cells(coefficient_section([coefficient()]).table)[0][-2:] == ("95.0", "88.7 to 98.4")

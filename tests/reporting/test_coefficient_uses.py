@@ -7,7 +7,7 @@ import pytest
 
 from seatrial.core.results import Coefficient, Consequence, Fit, Identifiability, Symmetry
 from seatrial.core.results.fit import Collinearity, Sensitivity
-from seatrial.reporting.coefficient_uses import Use, coefficient_uses, meaning_lines
+from seatrial.reporting.coefficient_uses import Use, coefficient_uses, meaning_sentences
 from seatrial.reporting.correlations import Partner
 
 PLAIN = Coefficient("a", "1", 2.0, 0.05, 1.9, 2.1, False)
@@ -71,11 +71,9 @@ def test_the_lines_name_what_is_used_how_and_the_assumption_that_matters_most(fi
     known = content(structural=(Symmetry(("m", "a"), "", {}),))
     known = replace(known, consequences=(slight, strong))
     one = replace(fit, coefficients=(PLAIN, vague, held), identifiability=known)
-    lines = dict(meaning_lines(one, known, coefficient_uses(one.coefficients, known)))
-    assert lines["Single values"] == "a is known to better than 10 %. v has an open sign."
-    assert lines["Assumed values"] == (
-        "No manoeuvre identifies m apart from the others. Changing k by +10 % would change a by −20 %."
+    sentences = meaning_sentences(one, known, coefficient_uses(one.coefficients, known))
+    assert sentences[1:] == (
+        "a is known to better than 10 %. v has an open sign.",
+        "No manoeuvre identifies m apart from the others. Changing k by +10 % would change a by −20 %.",
     )
-    assert list(lines) == ["Predictions", "Single values", "Assumed values"]
-    bare = Identifiability((), (), 1.0, 1.0)
-    assert list(dict(meaning_lines(fit, bare, ()))) == ["Predictions", "Single values"]
+    assert len(meaning_sentences(fit, Identifiability((), (), 1.0, 1.0), ())) == 1

@@ -3,12 +3,13 @@
 from dataclasses import replace
 
 from tests.reporting.fabricated_comparison import fabricated_comparison
+from tests.reporting.section_text import cells
 
 from seatrial.core.figures.marks import Line
 from seatrial.reporting.comparison import (
-    coefficient_table,
     difference_forest,
-    manoeuvre_table,
+    difference_table,
+    manoeuvre_section,
     outcome,
 )
 from seatrial.reporting.pages import report_page
@@ -29,13 +30,13 @@ def test_the_summary_names_what_differs() -> None:
 
 def test_tables_have_the_digits_that_intervals_allow() -> None:
     comparison = fabricated_comparison()
-    assert coefficient_table(comparison.coefficients).rows == (
+    assert cells(difference_table(comparison.coefficients)) == [
         ("K, 1/s", "0.15", "0.19", "0.040", "0.020", "0.060", "differs"),
         ("T, s", "8.0", "7.6", "−0.40", "−2.4", "1.6", ""),
-    )
-    turn, failed = (manoeuvre_table(m) for m in comparison.manoeuvres)
-    assert turn.rows[1] == ("steady drift angle, deg", "12.00", "12.50", "0.50", "", "", "")
-    assert (failed.rows, failed.note) == ((), "it diverges")
+    ]
+    turn, failed = (manoeuvre_section(m) for m in comparison.manoeuvres)
+    assert cells(turn.table)[1] == ("steady drift angle, deg", "12.00", "12.50", "0.50", "", "", "")
+    assert not failed.table and failed.sentences == ("It diverges.",)
     assert turn.title == "Turning circle with 35° to port"
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.reporting.fabricated_tuning import fabricated_fin
+from tests.reporting.section_text import cells, header
 
 from seatrial.cli.application import result_document
 from seatrial.cli.tuning_output import print_tuning
@@ -32,9 +33,8 @@ def tuning() -> Tuning:
 
 def test_one_table_has_the_own_front_the_answer_and_the_scatter(tuning: Tuning) -> None:
     table = search_table(tuning)
-    assert table is not None
-    assert table.header == ("", "own front", "genetic algorithm", "least", "median", "largest")
-    rows = {row[0]: row[1:] for row in table.rows}
+    assert header(table) == ("", "own front", "genetic algorithm", "least", "median", "largest")
+    rows = {row[0]: row[1:] for row in cells(table)}
     assert rows["KP"] == ("11.05", "19.4", "19.4", "30", "80")
     assert rows["Ms"][2:] == ("1.5", "2.5", "80")
     assert rows["keeps the limits"] == ("yes", "yes", "", "1 of 3", "")
@@ -72,6 +72,6 @@ def test_page_terminal_and_document_have_it(tuning: Tuning, capsys: pytest.Captu
 
 def test_without_a_search_there_is_no_chapter() -> None:
     plain = fabricated_fin()
-    assert search_table(plain) is None and search_sentences(plain) == ()
+    assert not search_table(plain) and search_sentences(plain) == ()
     assert "The published search" not in html(plain)
     assert "Recommended gains" in html(plain)

@@ -13,7 +13,7 @@ from seatrial.core.values import Record, Severity
 from seatrial.numerics.optimise import Status
 from seatrial.reporting.first_screen import KeyFact
 from seatrial.reporting.key_facts import first_screen, key_facts, whole_run_share
-from seatrial.reporting.runs import _ranged
+from seatrial.reporting.prediction_chapter import ranged_motions
 from seatrial.reporting.windows import baseline_sentence, shortest_judged
 
 
@@ -153,11 +153,13 @@ def test_the_band_of_a_run_without_a_track_is_not_compared_with_one(fit: Fit) ->
 
 def test_the_extrapolation_index_names_what_it_compares(fit: Fit) -> None:
     (run,) = [p.measured for p in fit.validation]
-    assert _ranged([run]) == "yaw rate, drift, rudder or speed"
+    assert ranged_motions([run]) == "yaw rate, drift, rudder or speed"
     still = np.zeros(len(run))
     waves = Record.from_arrays("waves", run.time, {"zeta": still, "z": still})
     decay = Record.from_arrays("decay", run.time, {"phi": still})
-    assert _ranged([waves]) == "heave, pitch or elevation of the waves" and _ranged([decay]) == "roll angle"
+    assert (
+        ranged_motions([waves]) == "heave, pitch or elevation of the waves" and ranged_motions([decay]) == "roll angle"
+    )
 
 
 def test_a_search_that_did_not_converge_comes_first(fit: Fit) -> None:

@@ -98,7 +98,7 @@ def test_a_chapter_that_cannot_be_written_is_a_sentence(fit: Fit, monkeypatch: p
         raise InputError("the curve needs 2.31 rad/s")
 
     whole = complete_fit(fit)
-    monkeypatch.setattr(identifiability_chapter, "identifiability_chapter", refuse)
+    monkeypatch.setattr(identifiability_chapter, "identifiability_section", refuse)
     text = html(whole)
     assert "without the chapter" in text and "the curve needs 2.31 rad/s" in text
     assert 'id="coefficients"' in text

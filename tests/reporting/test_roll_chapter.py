@@ -2,9 +2,11 @@
 
 from dataclasses import replace
 
+from tests.reporting.section_text import cells, header
+
 from seatrial.core.results import Fit, IntervalEstimate, RollCharacteristics
 from seatrial.reporting.page import html
-from seatrial.reporting.roll_chapter import figures, tables
+from seatrial.reporting.roll_chapter import roll_section
 
 AMPLITUDE = tuple(0.02 * k for k in range(1, 11))
 KNOWN = RollCharacteristics(
@@ -26,22 +28,22 @@ KNOWN = RollCharacteristics(
 
 def test_tables_have_digits_by_the_interval_and_full_scale_by_froude() -> None:
     """Period times the root of the scale, GM times the scale; an exact radius has no interval."""
-    first, second = tables(KNOWN, 64.0)
-    assert first.rows[0] == ("natural period at small angles, s", "2.5512", "2.5475", "2.5550", "20.410")
-    assert first.rows[1][1:] == ("0.50", "0.10", "0.90", "0.50")
-    assert first.rows[2][-1] == "4.608"
-    assert first.rows[3][2:4] == ("\u2013", "\u2013")
-    assert "taken as exact" in first.note
-    assert len(tables(KNOWN, 1.0)[0].header) == 4
-    assert second.rows[-1][0] == "11.5"
+    chapter = roll_section(KNOWN, 64.0)
+    rows = cells(chapter.table)
+    assert rows[0] == ("natural period at small angles, s", "2.5512", "2.5475", "2.5550", "20.410")
+    assert rows[1][1:] == ("0.50", "0.10", "0.90", "0.50")
+    assert rows[2][-1] == "4.608"
+    assert rows[3][2:4] == ("\u2013", "\u2013")
+    assert "taken as exact" in chapter.note
+    assert len(header(roll_section(KNOWN, 1.0).table)) == 4
+    assert cells(chapter.parts[0].table)[-1][0] == "11.5"
 
 
 def test_the_note_explains_the_dots_where_there_are_any() -> None:
     """A driven ship has none."""
-    ((drawn, figure),) = figures(KNOWN)
-    assert ">one recorded swing<" in drawn and "Dots" in figure.note
-    ((bare, plain),) = figures(replace(KNOWN, swings=()))
-    assert ">one recorded swing<" not in bare and "Dots" not in plain.note
+    (dotted,), (plain,) = (roll_section(roll, 1.0).pictures for roll in (KNOWN, replace(KNOWN, swings=())))
+    assert ">one recorded swing<" in dotted.draw() and "Dots" in dotted.caption
+    assert ">one recorded swing<" not in plain.draw() and "Dots" not in plain.caption
 
 
 def test_the_page_has_the_chapter_and_the_answer_its_sentence(fit: Fit) -> None:

@@ -17,7 +17,7 @@ from seatrial.physics.models.waterjet import waterjet
 from seatrial.physics.simulate.replay import trajectory
 from seatrial.reporting.design_text import order_meaning
 from seatrial.reporting.measures import manoeuvre_name
-from seatrial.reporting.tables import sign_conventions
+from seatrial.reporting.model_chapter import sign_conventions
 from seatrial.reporting.verdict import run_name
 
 SMALL = 0.01  # rad, of the rudder in the model's own sign

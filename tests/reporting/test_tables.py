@@ -7,7 +7,7 @@ from seatrial.physics.models.abkowitz import abkowitz
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.roll import roll
 from seatrial.physics.models.waterjet import waterjet
-from seatrial.reporting.tables import sign_conventions
+from seatrial.reporting.model_chapter import sign_conventions
 
 
 def test_a_rudder_that_turns_to_port_is_declared_with_the_sign_of_the_records() -> None:

@@ -4,6 +4,7 @@ import re
 from dataclasses import replace
 
 import pytest
+from tests.reporting.section_text import cells, part, text_of
 
 from seatrial.core.results import (
     CommandCurve,
@@ -16,7 +17,7 @@ from seatrial.core.results import (
 )
 from seatrial.physics.models import model_named
 from seatrial.reporting.page import html
-from seatrial.reporting.thruster_chapter import thruster_chapter
+from seatrial.reporting.thruster_chapter import thruster_section
 
 UNITS = (("kg",) * 3,) * 3
 CRAFT = ThrusterCraft(
@@ -42,28 +43,24 @@ CRAFT = ThrusterCraft(
 
 
 def test_measures_have_digits_by_their_interval_and_a_mark_beyond_the_training_runs() -> None:
-    chapter = thruster_chapter(CRAFT)
-    assert chapter is not None and chapter.measures is not None
-    assert chapter.measures.rows[0] == ("top speed, m/s *", "2.5595", "2.5523", "2.5668")
-    assert chapter.measures.rows[1] == ("stopping time, s", "1.26", "\u2013", "\u2013")
-    assert "* beyond the training runs" in chapter.measures.note
+    chapter = thruster_section(CRAFT)
+    assert cells(chapter.table)[0] == ("top speed, m/s *", "2.5595", "2.5523", "2.5668")
+    assert cells(chapter.table)[1][:2] == ("stopping time, s", "1.26")
+    assert "* beyond the training runs" in chapter.note
 
 
 def test_damping_is_one_matrix_with_all_its_parts() -> None:
-    chapter = thruster_chapter(CRAFT)
-    assert chapter is not None
-    _, damping, configuration = chapter.matrices
-    assert damping.rows[0] == ("surge", "0.1000 + 0.3000 |u|", "0", "0")
-    assert damping.rows[1][2] == "0.5000 − 0.2500 |u|"
-    assert configuration.rows[2] == ("yaw", "0.3000", "−0.3000")
+    _, damping, configuration = (cells(one.table) for one in part(thruster_section(CRAFT), "Matrices").parts)
+    assert damping[0] == ("surge", "0.1000 + 0.3000 |u|", "0", "0")
+    assert damping[1][2] == "0.5000 − 0.2500 |u|"
+    assert configuration[2] == ("yaw", "0.3000", "−0.3000")
 
 
 def test_ratios_to_the_mass_and_terms_without_a_matrix_are_named() -> None:
-    chapter = thruster_chapter(CRAFT)
-    assert chapter is not None and len(chapter.notes) == 2
-    assert "N_uv" in chapter.notes[1]
-    known = thruster_chapter(replace(CRAFT, force_unit="N", left_out=(), compass=None))
-    assert known is not None and not known.notes and known.compass is None
+    _, *notes = part(thruster_section(CRAFT), "Matrices").sentences
+    assert len(notes) == 2 and "N_uv" in notes[1]
+    known = thruster_section(replace(CRAFT, force_unit="N", left_out=(), compass=None))
+    assert len(part(known, "Matrices").sentences) == 1 and "Deviation of the compass" not in text_of(known)
 
 
 @pytest.fixture(scope="module")
@@ -72,14 +69,14 @@ def page(fit: Fit) -> str:
 
 
 def test_the_page_of_such_a_craft_has_no_imo_table_and_no_ship_lengths(page: str) -> None:
-    assert "The craft: speed, turn, stop" in page
+    assert "The craft at full command" in page
     assert "IMO standards" not in page
     assert 'position <span class="u">L' not in page and " L) (rms)" not in page
 
 
 def test_the_page_of_a_ship_has_no_such_chapter(fit: Fit) -> None:
     text = html(fit)
-    assert "The craft: speed, turn, stop" not in text and "IMO standards" in text
+    assert "The craft at full command" not in text and "IMO standards" in text
 
 
 WITHOUT_RUDDER = ("waves", "roll", "thrusters")
@@ -108,11 +105,11 @@ def test_the_page_of_a_craft_without_a_rudder_does_not_speak_of_one(fit: Fit, ki
     found = re.findall(r".{60}\brudder\b.{20}", text)
     assert not found
     if kind == "thrusters":
-        assert "returns to a straight course at equal orders of its thrusters" in text
+        assert "a craft with equal orders of its thrusters returns to a straight course" in text
         assert "largest ratio of yaw rate, drift, command or speed" in text
 
 
 def test_the_page_of_a_ship_with_a_rudder_does(fit: Fit) -> None:
     text = html(fit)
-    assert "returns to a straight course with the rudder amidships" in text
+    assert "a ship with the rudder amidships returns to a straight course" in text
     assert "largest ratio of yaw rate, drift, rudder or speed" in text

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+from tests.reporting.section_text import cells
 
 from seatrial.core.results.verification import (
     ModelCorrection,
@@ -13,8 +14,8 @@ from seatrial.core.results.verification import (
     VerifiedQuantity,
 )
 from seatrial.reporting.pages import report_page
-from seatrial.reporting.verification import changes_chart, html, quantity_forest, spectra_chart
-from seatrial.reporting.verification_text import key_facts, tables, verdict
+from seatrial.reporting.verification import changes_chart, html, quantity_forest, sections, spectra_chart
+from seatrial.reporting.verification_text import key_facts, verdict
 
 NAN = float("nan")
 REDUCTION = VerifiedQuantity("reduction", "1", 0.78, 0.77, 0.79, 0.65, 0.6, 0.7, False)
@@ -50,12 +51,12 @@ def test_the_verdict_gives_what_was_achieved_and_whether_it_was_predicted() -> N
 
 
 def test_tables_are_those_that_have_rows() -> None:
-    assert list(tables(LEGS)) == ["quantities", "reductions", "model", "legs"]
-    assert list(tables(TURNS)) == ["quantities", "changes"]
-    assert tables(LEGS)["quantities"].rows[0] == ("reduction", "%", "78.0", "77.0 to 79.0", "65.0", "60.0 to 70.0",
-                                                  "outside")  # fmt: skip
-    assert tables(TURNS)["quantities"].rows[1][5:] == ("–", "outside")
-    assert tables(LEGS)["legs"].rows[1][-1] == "–"
+    legs, turns = ({chapter.key: cells(chapter.table) for chapter in sections(v)} for v in (LEGS, TURNS))
+    assert list(legs) == ["quantities", "reductions", "model", "legs", "method"]
+    assert list(turns) == ["quantities", "changes", "method"]
+    assert legs["quantities"][0] == ("reduction", "%", "78.0", "77.0 to 79.0", "65.0", "60.0 to 70.0", "outside")
+    assert turns["quantities"][1][5:] == ("–", "outside")
+    assert legs["legs"][1][-1] == "–"
 
 
 def test_key_facts_name_what_moved() -> None:

@@ -4,12 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.reporting.section_text import cells
 
 from seatrial.core.results import Coefficient, Fit, OffsetPopulation
 from seatrial.numerics.optimise import Status
 from seatrial.reporting import summary
 from seatrial.reporting.citations import Citations
 from seatrial.reporting.correlations import correlation_text, strong_partners
+from seatrial.reporting.records_chapter import offset_section
 
 
 def test_publications_are_numbered_once_and_the_longest_wording_is_listed() -> None:
@@ -62,11 +64,6 @@ def test_a_correlation_that_four_runs_give_by_chance_is_not_called_strong(rng: n
     assert correlation_text(("a", "b", "c"), np.where(strong == 0.96, 0.984, strong), 3.0).startswith("1 pair at 0.98")
 
 
-def test_the_coefficients_count_known_values(fit: Fit) -> None:
-    known = [c for c in fit.coefficients if not c.fixed and c.truth is not None]
-    assert f"of {len(known)} 95 % intervals contain" in " ".join(summary.coefficient_sentences(fit))
-
-
 def test_residuals_and_search_are_stated_where_they_stand(fit: Fit) -> None:
     coloured = [n.channel for n in fit.channel_noise if not n.is_white]
     assert coloured and all(name in summary.residual_sentence(fit) for name in coloured)
@@ -76,24 +73,24 @@ def test_residuals_and_search_are_stated_where_they_stand(fit: Fit) -> None:
 
 
 def test_the_spread_of_offsets_over_one_session_is_called_assumed(fit: Fit) -> None:
-    population = OffsetPopulation("delta zero", "rad", 0.0, 0.01, 0.02)
-    several = replace(fit, offset_populations=(population,))
-    assert summary.offset_sentences(several)[0] == population.sentence
-    assert not any("One session" in text for text in summary.offset_sentences(several))
-    one = replace(several, offsets=several.offsets[:1])
-    assert summary.offset_sentences(one)[0].startswith("One session was recorded: ")
-    assert summary.offset_sentences(replace(one, offset_populations=())) == ()
+    population = OffsetPopulation("delta zero", "rad", 0.0, 0.01, 0.02, "v_j", 0.02, 0.004)
+    several = offset_section(replace(fit, offset_populations=(population,)))
+    (row,) = cells(several.table)
+    assert row == ("delta zero", "0", "0.57", "1.1", "deg", "v_j: 1.1 ± 0.23 a standard deviation")
+    assert not several.sentences
+    one = replace(fit, offset_populations=(replace(population, slope=0.004),), offsets=fit.offsets[:1])
+    assert offset_section(one).sentences[0].startswith("One session was recorded: ")
+    assert cells(offset_section(one).table)[0][-1].endswith(", by chance")
 
 
 def test_a_rudder_zero_is_said_to_look_like_an_asymmetric_hull(fit: Fit) -> None:
-    fitted = replace(fit, offset_populations=(OffsetPopulation("delta zero", "rad", 0.0, 0.01, 0.02),))
     asymmetry = replace(fit.coefficients[0], name="Y_0", estimate=0.0, fixed=True)
 
-    def said(*more: Coefficient) -> str:
-        return " ".join(summary.offset_sentences(replace(fitted, coefficients=(*fit.coefficients, *more))))
+    def note(*more: Coefficient) -> str:
+        return summary.steering_zero_note(replace(fit, coefficients=(*fit.coefficients, *more)))
 
-    assert "asymmetric hull, which this model does not have, would look the same" in said()
-    assert "asymmetric hull, held at zero here (Y_0), would look the same" in said(asymmetry)
-    assert "asymmetric" not in said(replace(asymmetry, fixed=False))
-    currents = replace(fitted, offsets=tuple(replace(o, name="current_north") for o in fit.offsets))
-    assert "asymmetric" not in " ".join(summary.offset_sentences(currents))
+    assert "asymmetric hull, which this model does not have, would look the same" in note()
+    assert "asymmetric hull, held at zero here (Y_0), would look the same" in note(asymmetry)
+    assert note(replace(asymmetry, fixed=False)) == ""
+    currents = replace(fit, offsets=tuple(replace(o, name="current_north") for o in fit.offsets))
+    assert summary.steering_zero_note(currents) == ""

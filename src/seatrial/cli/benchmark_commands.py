@@ -9,6 +9,7 @@ from seatrial.cli.application import Json, app, result_document, write_json
 from seatrial.cli.finding_output import print_findings
 from seatrial.cli.progress import progress_reporter
 from seatrial.cli.screen import print_file, print_lines, print_table
+from seatrial.cli.section_output import print_text_table
 
 RUNS = 30
 """Runs of a method where none are stated: COCO has 15 (Hansen et al. 2016); twice that suits paired tests."""
@@ -75,8 +76,7 @@ def _print_benchmark(result: "Benchmark") -> None:
 
     for score in result.problems:
         print_lines([f"{score.name}: an error of 1 is {score.error_unit}"])
-        table = method_table(score)
-        print_table([table.header, *table.rows], flush_left=(0, len(table.header) - 1), indent="  ")
+        print_text_table(method_table(score))
     print_lines(outcome(result))
     print_lines([f"to cite: {result.citation}"])
     if result.findings:

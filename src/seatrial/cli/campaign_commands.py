@@ -11,7 +11,8 @@ from seatrial.cli.application import Application, Json, app, result_document, wr
 from seatrial.cli.finding_output import print_findings
 from seatrial.cli.next_steps import after_campaign
 from seatrial.cli.progress import progress_reporter
-from seatrial.cli.screen import print_file, print_lines, print_next, print_table
+from seatrial.cli.screen import print_file, print_lines, print_next
+from seatrial.cli.section_output import print_sections
 
 if TYPE_CHECKING:
     from seatrial.core.results.campaign import CampaignStatus, CampaignSummary
@@ -143,12 +144,10 @@ def _print_status(status: "CampaignStatus") -> None:
 
 
 def _print_summary(summary: "CampaignSummary") -> None:
-    from seatrial.reporting.campaign import coefficient_table, outcome
+    from seatrial.reporting.campaign import coefficient_section, outcome
 
     print_lines(outcome(summary))
-    if summary.coefficients:
-        table = coefficient_table(summary.coefficients)
-        print_table([table.header, *table.rows], indent="  ")
+    print_sections([coefficient_section(summary.coefficients)])
     print_lines(f"{failure.count} failed: {failure.example}" for failure in summary.failures)
     if summary.findings:
         print_findings(summary.findings, 1)

@@ -13,7 +13,7 @@ from seatrial.cli.fit_output import print_measures
 from seatrial.cli.progress import progress_reporter
 from seatrial.cli.run_errors import errors_text
 from seatrial.cli.screen import print_file, print_lines
-from seatrial.cli.tuning_output import print_tuning
+from seatrial.cli.tuning_output import print_tuning, print_verification
 
 if TYPE_CHECKING:
     from seatrial.control.task import TuningTask
@@ -84,7 +84,6 @@ def tune(
 def _verify(task: "TuningTask", gains: Path, logs: list[Path], out: Path | None, json: Path | None) -> None:
     """Verify gains by logs, print the result and write it where that is wanted."""
     from seatrial import api
-    from seatrial.cli.verification_output import print_verification
 
     with progress_reporter() as report_progress:
         report_progress("ship and seas that the legs show")

@@ -6,13 +6,15 @@ from typing import Annotated
 import typer
 
 from seatrial.cli.application import Json, OwnModelPath, Seed, app, own_model, result_document, write_json
-from seatrial.cli.comparison_output import print_comparison
+from seatrial.cli.finding_output import print_warnings
 from seatrial.cli.fit_output import print_fit
 from seatrial.cli.next_steps import after_fit
 from seatrial.cli.poster_output import print_poster
 from seatrial.cli.progress import progress_reporter
 from seatrial.cli.screen import print_file, print_next
+from seatrial.cli.section_output import print_sections
 from seatrial.cli.study_output import print_study
+from seatrial.cli.summary_output import print_summary
 
 
 @app.command()
@@ -59,6 +61,7 @@ def compare(
     from seatrial import api
     from seatrial.api.comparison import MANOEUVRES
     from seatrial.core.values.files import writable_folder
+    from seatrial.reporting.comparison import first_screen, sections
 
     if out is not None:
         writable_folder(out)
@@ -73,7 +76,10 @@ def compare(
             report_progress=report_progress,
         )
         page = None if out is None else api.save(result, out)
-    print_comparison(result)
+    screen = first_screen(result)
+    print_summary(f"{result.first.name} (first) and {result.second.name} (second)", screen.verdict, screen.facts)
+    print_sections(sections(result))
+    print_warnings(result.findings)
     write_json(json, lambda: result_document(result))
     if page is not None:
         print_file("report", page)

@@ -1,83 +1,133 @@
 """The chapter on other estimators: their coefficients compared with the fit's, and how they predict the runs."""
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from functools import partial
 from statistics import median
 
-from markupsafe import Markup
-
 from seatrial.core.figures.svg_text import svg
-from seatrial.core.results import Baseline, Coefficient, Fit, OpenLoopScores, Table
+from seatrial.core.results import Baseline, Coefficient, Fit, OpenLoopScores
 from seatrial.core.results.prediction import NO_COMPARISON
 from seatrial.core.text.numbers import exact, fixed, significant
 from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import display_unit
 from seatrial.core.values.notation import unit_text
 from seatrial.reporting.figures.relative_errors import CoefficientError, estimator_chart
-from seatrial.reporting.text_tables import TextTable, text_table
+from seatrial.reporting.section import Cell, Column, Level, Picture, Section, TextTable, name, number, table_of, words
 
 # distance from the fit in its standard errors up to which a coefficient is near, and up to which it is off
 NEAR, OFF = 2.0, 10.0
 # correlation of simulated and measured channels from which on a trajectory counts as good
 HIGH_CORRELATION = 0.9
+_TITLE = "Other estimators on the same records"
+_RUN_NOTE = (
+    "Root mean square of simulated minus measured over all runs of that kind, open loop from the recorded inputs and "
+    "from the initial state that the fit gave each run; CC: Pearson’s correlation of measured and simulated, mean over "
+    "the runs. Good trajectories and correlations prove nothing about coefficients."
+)
+_TEST_NOTE = (
+    "The last part of each record, predicted row by row by the regression. Explained: 1 less the residual's mean "
+    "square over the variance; below 0 the mean of the rows predicts better."
+)
 _COLUMNS = {
-    "psi_deg": ("heading, deg", 1.0), "position_m": ("position, m", 1.0), "u": ("u, m/s", 1.0), "v": ("v, m/s", 1.0),
-    "r": ("r, deg/s", math.degrees(1.0)), "z": ("heave, m", 1.0), "theta_deg": ("pitch, deg", 1.0),
-}  # fmt: skip
+    "psi_deg": ("heading, deg", 1.0),
+    "position_m": ("position, m", 1.0),
+    "u": ("u, m/s", 1.0),
+    "v": ("v, m/s", 1.0),
+    "r": ("r, deg/s", math.degrees(1.0)),
+    "z": ("heave, m", 1.0),
+    "theta_deg": ("pitch, deg", 1.0),
+}
 
 
-@dataclass(frozen=True)
-class BaselineCell:
-    """A coefficient as text, the gap to the fit below it, and a word for its size: near, off or far."""
-
-    value: str
-    gap: str
-    gap_class: str
-
-
-@dataclass(frozen=True)
-class BaselineRow:
-    """An estimator's coefficients; median and worst are per cent, of the truth where it is known, else of the fit."""
-
-    name: str
-    median: str
-    worst: str
-    cells: tuple[BaselineCell, ...]
-
-
-@dataclass(frozen=True)
-class BaselineChapter:
-    """What the chapter shows; without rows, `sentences` say why there is no comparison."""
-
-    sentences: tuple[str, ...]
-    header: tuple[tuple[str, str], ...] = ()
-    truth: tuple[str, ...] = ()
-    rows: tuple[BaselineRow, ...] = ()
-    figure: Markup = Markup("")  # noqa: RUF009
-    tables: tuple[TextTable, ...] = ()
-    notes: tuple[str, ...] = ()
-
-
-def baseline_chapter(fit: Fit) -> BaselineChapter | None:
-    """Return the chapter; None where no comparison was requested."""
+def baseline_section(fit: Fit) -> Section:
+    """Return the chapter on other estimators; empty where no comparison was requested."""
     if not fit.baselines:
         why = [f.text for f in fit.findings if f.code == NO_COMPARISON]
-        return BaselineChapter((sentence(why[0]),)) if why else None
-    free = [c for c in fit.coefficients if not c.fixed]
+        return Section(_TITLE, "baselines", (sentence(why[0]),)) if why else Section("")
+    first, held = fit.baselines[0], "Held-out runs"
+    parts = [
+        Section(
+            "Coefficients",
+            pictures=(_picture(fit.baselines),),
+            table=_coefficients(fit),
+            note=_distance_note(first),
+            level=Level.PAGE,
+        ),
+        *(
+            Section(
+                title, table=_runs(fit.baselines, role), note=_RUN_NOTE if title == held else "", level=Level.DETAIL
+            )
+            for title, role in ((held, "validation"), ("Training runs", "training"))
+        ),
+        _test_section(fit.baselines),
+        Section(
+            "Notes on the estimators",
+            points=tuple(f"{note}." for r in fit.baselines for note in _notes(r)),
+            level=Level.DETAIL,
+        ),
+    ]
+    return Section(
+        _TITLE, "baselines", baseline_sentences(fit), table=_deviation_table(fit), parts=tuple(parts), is_folded=True
+    )
+
+
+def _picture(items: Sequence[Baseline]) -> Picture:
+    axis = (
+        "error, per cent of the known value" if items[0].error else "difference from the fit, per cent of its estimate"
+    )
+    caption = (
+        "A dot for each coefficient; filled: within two standard errors of the fit, ring: farther off. The upright "
+        "tick is the median, the name is that of the worst coefficient."
+    )
+    return Picture(lambda: svg(estimator_chart(_coefficient_errors(items), axis)), caption)
+
+
+def _deviation_table(fit: Fit) -> TextTable:
+    """How far each estimator is from the fit, or from the truth where it is known, or why it gave nothing."""
     first = fit.baselines[0]
-    held, fitted = _named_runs(fit.baselines, "validation"), _named_runs(fit.baselines, "training")
-    axis_name = "error, per cent of the known value" if first.error else (
-        "difference from the fit, per cent of its estimate"
-    )  # fmt: skip
-    return BaselineChapter(
-        baseline_sentences(fit),
-        tuple((c.name, unit_text(c.unit)) for c in free),
-        tuple(exact(_display_value(c.truth, c), 4) for c in free) if first.error else (),
-        tuple(_baseline_row(r, first, free) for r in fit.baselines if r.values and (r is first or not r.is_fit)),
-        Markup(svg(estimator_chart(_coefficient_errors(fit.baselines), axis_name))),
-        tuple(text_table(t) for t in _tables(fit.baselines, held, fitted) if t.header[1:] and t.rows),
-        tuple(note for r in fit.baselines for note in _notes(r)),
+    off = "errors" if first.error else "from this fit"
+    return table_of(
+        fit.baselines,
+        words("", lambda r: r.name),
+        number(f"{off}, median", lambda r: _share(r, first, _median_deviation), "%"),
+        number("worst", lambda r: _share(r, first, _worst_deviation), "%"),
+        words("", lambda r: _failure(r, len(fit.predictions))),
+    )
+
+
+def _share(r: Baseline, first: Baseline, part: Callable[[Baseline, Baseline], float]) -> str:
+    is_known = r.relative_deviation(first) and (first.error or r is not first)
+    return _percent(part(r, first)) if is_known else ""
+
+
+def _failure(r: Baseline, runs: int) -> str:
+    if r.note:
+        return f"failed: {r.note}"
+    return f"diverges in {len(r.diverged)} of {runs} runs, {r.diverged[0]} first" if r.diverged else ""
+
+
+def _coefficients(fit: Fit) -> TextTable:
+    """Each estimator's value of each coefficient, below it the distance from the fit in its standard errors."""
+    free, first = [c for c in fit.coefficients if not c.fixed], fit.baselines[0]
+    solved = [r for r in fit.baselines if r.values and (r is first or not r.is_fit)]
+
+    def column(r: Baseline) -> Column[Coefficient]:
+        return number(r.name, lambda c: _fit_cell(c) if r is first else _baseline_cell(r, c), is_wide=r is not first)
+
+    return table_of(
+        free,
+        name("Coefficient", lambda c: c.name),
+        words("unit", lambda c: unit_text(c.unit)),
+        number("known", lambda c: exact(_display_value(c.truth, c), 4) if first.error else ""),
+        *map(column, solved),
+    )
+
+
+def _distance_note(first: Baseline) -> str:
+    return (
+        "Below each value: its distance from the fit in the fit’s standard errors; near: up to 2, off: up to 10, far: "
+        f"more. Per cent off: {'of the known values' if first.error else 'of the fit’s estimates'}."
     )
 
 
@@ -100,8 +150,10 @@ def baseline_sentences(fit: Fit) -> tuple[str, ...]:
         text.append(_nearest_sentence(first, solved))
     held = sum(c.prior_mean is not None for c in fit.coefficients if not c.fixed)
     if held:
-        text.append(f"The fit has priors for {counted(held, 'coefficient')} and the regressions have none, so that "
-                    "differences show what the priors do as well.")  # fmt: skip
+        text.append(
+            f"The fit has priors for {counted(held, 'coefficient')} and the regressions have none, so that "
+            "differences show what the priors do as well."
+        )
     return tuple(t for t in (" ".join(text), _trajectory_sentences(fit, solved)) if t)
 
 
@@ -162,10 +214,6 @@ def _simulated_runs(baseline: Baseline, role: str) -> OpenLoopScores:
     return baseline.validation if role == "validation" else baseline.training
 
 
-def _named_runs(items: Sequence[Baseline], role: str) -> list[tuple[str, OpenLoopScores]]:
-    return [(r.name, _simulated_runs(r, role)) for r in items if r.values]
-
-
 def _deviations(baseline: Baseline, reference: Baseline) -> list[float]:
     return [abs(a) for a in baseline.relative_deviation(reference).values()] or [math.nan]
 
@@ -186,29 +234,18 @@ def _display_value(value: float | None, c: Coefficient) -> float | None:
     return None if value is None else value * display_unit(c.unit)[0]
 
 
-def _baseline_row(baseline: Baseline, reference: Baseline, free: Sequence[Coefficient]) -> BaselineRow:
-    is_first = baseline is reference
-    has_errors = bool(reference.error) or not is_first
-    middle, worst = (
-        _percent(part(baseline, reference)) if has_errors else "" for part in (_median_deviation, _worst_deviation)
-    )
-    cells = tuple(_fit_cell(c) if is_first else _baseline_cell(baseline, c) for c in free)
-    return BaselineRow(baseline.name, middle, worst, cells)
-
-
-def _fit_cell(c: Coefficient) -> BaselineCell:
+def _fit_cell(c: Coefficient) -> Cell:
     """The fit's own estimate with its standard error."""
     error = "" if c.standard_error is None else f"± {significant(_display_value(c.standard_error, c), 2)}"
-    return BaselineCell(significant(_display_value(c.estimate, c)), error, "")
+    return Cell(significant(_display_value(c.estimate, c)), error)
 
 
-def _baseline_cell(baseline: Baseline, c: Coefficient) -> BaselineCell:
+def _baseline_cell(baseline: Baseline, c: Coefficient) -> Cell:
     value, gap = significant(_display_value(baseline.values[c.name], c)), baseline.normalised_difference.get(c.name)
     if gap is None:
-        return BaselineCell(value, "", "")
-    where = "near" if abs(gap) <= NEAR else "off" if abs(gap) <= OFF else "far"
-    sign = "+" if gap > 0 else ""
-    return BaselineCell(value, f"{where}: {sign}{significant(gap, 2)}", where)
+        return Cell(value)
+    where, tone = ("near", "") if abs(gap) <= NEAR else ("off", "warn") if abs(gap) <= OFF else ("far", "bad")
+    return Cell(value, f"{where}: {'+' if gap > 0 else ''}{significant(gap, 2)}", tone)
 
 
 def _coefficient_errors(items: Sequence[Baseline]) -> dict[str, dict[str, CoefficientError]]:
@@ -224,33 +261,40 @@ def _coefficient_errors(items: Sequence[Baseline]) -> dict[str, dict[str, Coeffi
     return errors
 
 
-def _table(title: str, items: Sequence[tuple[str, OpenLoopScores]]) -> Table:
-    keys = [k for k in _COLUMNS if any(k in s.rms for _, s in items)]
-    channels = list(dict.fromkeys(c for _, s in items for c in s.correlation))
-    header = tuple(_COLUMNS[k][0] for k in keys) + tuple(f"CC of {c}" for c in channels)
-    rows = []
-    for name, s in items:
-        errors = [s.rms[k] * _COLUMNS[k][1] if k in s.rms else None for k in keys]
-        rows.append((name, *errors, *(s.correlation.get(c) for c in channels)))
-    return Table(title, ("Estimator", *header) if header else ("Estimator",), tuple(rows))
+def _runs(items: Sequence[Baseline], role: str) -> TextTable:
+    """Errors and correlations of the runs of a role that each estimator simulates."""
+    scored = [(r.name, _simulated_runs(r, role)) for r in items if r.values]
+    channels = list(dict.fromkeys(c for _, scores in scored for c in scores.correlation))
+    return table_of(
+        [row for row in scored if row[1].rms or row[1].correlation],
+        words("Estimator", lambda row: row[0]),
+        *(number(title, partial(_rms, key, factor)) for key, (title, factor) in _COLUMNS.items()),
+        *(number(f"CC of {channel}", partial(_correlation, channel)) for channel in channels),
+    )
 
 
-def _tables(
-    items: Sequence[Baseline], held: Sequence[tuple[str, OpenLoopScores]], fitted: Sequence[tuple[str, OpenLoopScores]]
-) -> tuple[Table, ...]:
-    """Scores of simulated runs, and of the rows that pipelines keep for testing."""
-    return _table("Held-out runs", held), _table("Training runs", fitted), _test_table(items)
+def _rms(key: str, factor: float, row: tuple[str, OpenLoopScores]) -> str:
+    value = row[1].rms.get(key)
+    return "" if value is None else significant(value * factor, 3)
 
 
-def _test_table(items: Sequence[Baseline]) -> Table:
-    rows = [
-        (r.name, equation, s.rows, s.rmse, s.correlation, s.explained) for r in items for equation, s in r.test.items()
-    ]
-    return Table(
-        "Rows kept for testing", ("Estimator", "equation", "rows", "RMSE, SI", "CC", "explained"), tuple(rows),
-        "The last part of each record, predicted row by row by the regression. Explained: 1 less the residual's mean "
-        "square over the variance; below 0 the mean of the rows predicts better.",
-    )  # fmt: skip
+def _correlation(channel: str, row: tuple[str, OpenLoopScores]) -> str:
+    return fixed(row[1].correlation.get(channel), 3)
+
+
+def _test_section(items: Sequence[Baseline]) -> Section:
+    """Scores of the rows that pipelines keep for testing."""
+    rows = [(r.name, equation, scores) for r in items for equation, scores in r.test.items()]
+    table = table_of(
+        rows,
+        words("Estimator", lambda row: row[0]),
+        words("equation", lambda row: row[1]),
+        number("rows", lambda row: str(row[2].rows)),
+        number("RMSE, SI", lambda row: significant(row[2].rmse, 3)),
+        number("CC", lambda row: significant(row[2].correlation, 3)),
+        number("explained", lambda row: significant(row[2].explained, 3)),
+    )
+    return Section("Rows kept for testing", table=table, note=_TEST_NOTE if table else "")
 
 
 def _notes(baseline: Baseline) -> list[str]:

@@ -2,10 +2,8 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
-from markupsafe import Markup
 
 from seatrial.core.figures.chart import WIDTH, Axis, Chart, LegendEntry, Panel, Region
 from seatrial.core.figures.curves import HEIGHT, LEFT, STROKES
@@ -14,18 +12,18 @@ from seatrial.core.figures.svg_text import svg
 from seatrial.core.results.campaign import Benchmark, CheckedClaim, MethodScore, PairedTest, ProblemScore
 from seatrial.core.text.numbers import DASH, fixed, p_value, significant
 from seatrial.core.text.words import counted, enumeration
-from seatrial.reporting.document import page_text
-from seatrial.reporting.tables import finding_groups
-from seatrial.reporting.text_tables import TextTable
+from seatrial.reporting.document import chapters_page
+from seatrial.reporting.finding_chapter import finding_section
+from seatrial.reporting.first_screen import FirstScreen, KeyFact
+from seatrial.reporting.model_chapter import version_section
+from seatrial.reporting.section import Picture, Section, TextTable, fact_table, plain_table
 
 _OTHERS = Stroke(GREY, 1.0)  # px, chosen
 _LIMIT = Stroke(GREY, 1.2, "5 3")  # px, chosen
 _HEADER = ("method", "median", "rms", "success %", "evaluations", "to success", "coverage %", "time", "")
-_NUMERIC = (False, True, True, True, True, True, True, True, False)
 _ZERO = 1e-9  # smallest error that is drawn on a logarithmic axis; chosen
 _MARGIN = 1.3  # free factor beyond the ends of a logarithmic axis; chosen
-HEADINGS = {"problems": "Problems", "findings": "Findings", "methods": "Methods",
-            "provenance": "Provenance"}  # fmt: skip
+_DIGEST = 16  # digits of a hash that are shown
 TABLE_NOTE = (
     "Median and rms: errors in the unit of the problem. Evaluations: median of a run; to success: those of all runs "
     "over the number of successes. The median counts runs without an answer as the worst, the rms leaves them out. "
@@ -34,37 +32,27 @@ TABLE_NOTE = (
 )
 
 
-@dataclass(frozen=True)
-class ProblemPart:
-    """What the page shows of one problem."""
-
-    score: ProblemScore
-    facts: tuple[tuple[str, str], ...]
-    table: TextTable
-    targets: Markup
-    waterfall: Markup
-    tests: TextTable | None
-    claims: TextTable | None
+def sections(result: Benchmark) -> tuple[Section, ...]:
+    """Return the chapters of a benchmark that have content, in order."""
+    problems = tuple(problem_section(score, result.targets) for score in result.problems)
+    sources = [(m.name, m.source, "" if m.is_built_in else m.digest[:_DIGEST]) for m in result.methods]
+    chapters = (
+        Section("Problems", "problems", note=TABLE_NOTE, parts=problems),
+        finding_section(result.findings),
+        Section("Methods", "methods", table=plain_table(("method", "source", ""), sources, flush_left=(0, 1, 2)),
+                note="The last column has the first digits of the SHA-256 of a method's own file."),
+        version_section(result.versions, {"Processor": ", ".join(result.processors), "To cite": result.citation}),
+    )  # fmt: skip
+    return tuple(chapter for chapter in chapters if chapter)
 
 
 def html(result: Benchmark) -> str:
     """Return the page as text."""
-    content: dict[str, object] = {"findings": finding_groups(result.findings)}
-    context = {
-        **content,
-        "titles": {key: title for key, title in HEADINGS.items() if content.get(key, True)},
-        "benchmark": result,
-        "outcome": outcome(result),
-        "heading_counts": f"{counted(len(result.problems), 'problem')}, {counted(len(result.methods), 'method')}",
-        "parts": [problem_part(score, result.targets) for score in result.problems],
-        "note": TABLE_NOTE,
-        "method_table": TextTable(
-            "As they were entered", ("method", "source", ""), (False, False, False),
-            tuple((m.name, m.source, "" if m.is_built_in else m.digest[:16]) for m in result.methods),  # 16 digits
-            "The last column has the first digits of the SHA-256 of a method's own file.",
-        ),
-    }  # fmt: skip
-    return page_text("benchmark.html", context)
+    extent, *verdicts = outcome(result)
+    counts = f"{counted(len(result.problems), 'problem')}, {counted(len(result.methods), 'method')}"
+    heading = f"{counts}, seeds {result.seeds[0]} to {result.seeds[1]}"
+    screen = FirstScreen(" ".join(verdicts), (KeyFact("Extent", extent.removesuffix(".")),))
+    return chapters_page("Benchmark", heading, screen, sections(result), title="Benchmark of methods")
 
 
 def outcome(result: Benchmark) -> list[str]:
@@ -95,24 +83,34 @@ def _entered_sentence(name: str, result: Benchmark) -> str:
     return f"{text} Answers outside the box: {outside}." if outside else text
 
 
-def problem_part(score: ProblemScore, targets: Sequence[float]) -> ProblemPart:
+def problem_section(score: ProblemScore, targets: Sequence[float]) -> Section:
     """Return what the page shows of a problem."""
-    facts = (
-        ("Source", score.source), ("Noise", score.noise), ("Unknowns", ", ".join(score.unknowns)),
-        ("Budget", f"{counted(score.budget, 'evaluation')} a run"), ("Error of 1", score.error_unit),
-        ("Success", f"error of at most {significant(score.success_limit, 1)}"),
-    )  # fmt: skip
-    tests = comparison_table(score.tests) if score.tests else None
     limits = ", ".join(f"{factor * score.success_limit:g}" for factor in targets)
-    return ProblemPart(
-        score, (*facts, ("Targets", f"errors of {limits}")), method_table(score), Markup(svg(target_chart(score))),
-        Markup(svg(waterfall_chart(score))), tests, claim_table(score.claims) if score.claims else None,
+    facts = {
+        "Source": score.source, "Noise": score.noise, "Unknowns": ", ".join(score.unknowns),
+        "Budget": f"{counted(score.budget, 'evaluation')} a run", "Error of 1": score.error_unit,
+        "Success": f"error of at most {significant(score.success_limit, 1)}", "Targets": f"errors of {limits}",
+    }  # fmt: skip
+    pictures = (
+        Picture(lambda: svg(target_chart(score)),
+                "Share of all runs and targets that a method has met after so many evaluations."),
+        Picture(lambda: svg(waterfall_chart(score)), "Errors of the answers, each method's in order of size."),
     )  # fmt: skip
+    return Section(
+        f"{score.name}, version {score.version}: {score.title}",
+        score.name,
+        table=fact_table(facts),
+        parts=(
+            Section("Methods compared", table=method_table(score), pictures=pictures),
+            claim_section(score.claims),
+            comparison_section(score.tests),
+        ),
+    )
 
 
 def method_table(score: ProblemScore) -> TextTable:
     """Return all methods on a problem, the best median first."""
-    return TextTable("Methods", _HEADER, _NUMERIC, tuple(_row(m) for m in score.methods), "")
+    return plain_table(_HEADER, map(_row, score.methods), flush_left=(0, -1))
 
 
 def _row(m: MethodScore) -> tuple[str, ...]:
@@ -140,31 +138,33 @@ def _remarks(m: MethodScore) -> list[str]:
     return [*remarks, *([f"{infinite} answers cannot be evaluated"] if infinite else [])]
 
 
-def comparison_table(tests: Sequence[PairedTest]) -> TextTable:
+def comparison_section(tests: Sequence[PairedTest]) -> Section:
     """Return the paired tests."""
-    rows = tuple(
+    rows = [
         (t.method, t.against, str(t.smaller), str(t.larger), p_value(t.p_adjusted).removeprefix("p "), t.verdict)
         for t in tests
+    ]
+    header = ("method", "against", "smaller error", "larger error", "p, corrected", "")
+    return Section(
+        f"Paired comparisons ({len(tests)})",
+        table=plain_table(header, rows, flush_left=(0, 1, -1)),
+        note="Sign tests on the same draws, corrected for all comparisons of this page (Holm 1979)." if tests else "",
+        is_folded=True,
     )
-    return TextTable(
-        "Paired comparisons", ("method", "against", "smaller error", "larger error", "p, corrected", ""),
-        (False, False, True, True, True, False), rows,
-        "Sign tests on the same draws, corrected for all comparisons of this page (Holm 1979).",
-    )  # fmt: skip
 
 
-def claim_table(claims: Sequence[CheckedClaim]) -> TextTable:
+def claim_section(claims: Sequence[CheckedClaim]) -> Section:
     """Return what the problem's paper says, and what the draws show."""
-    rows = tuple(
+    rows = [
         (c.text, str(c.test.smaller), str(c.test.larger), p_value(c.test.p_adjusted).removeprefix("p "), c.verdict)
         for c in claims
+    ]
+    return Section(
+        "Claims of the paper",
+        table=plain_table(("claim", "draws for it", "against it", "p, corrected", ""), rows, flush_left=(0, -1)),
+        note="Contradicted: the other method is significantly better here. Not shown: they do not differ "
+        "significantly. Corrected for all claims of this page.",
     )
-    return TextTable(
-        "Claims of the paper", ("claim", "draws for it", "against it", "p, corrected", ""),
-        (False, True, True, True, False), rows,
-        "Contradicted: the other method is significantly better here. Not shown: they do not differ significantly. "
-        "Corrected for all claims of this page.",
-    )  # fmt: skip
 
 
 def target_chart(score: ProblemScore) -> Chart | None:

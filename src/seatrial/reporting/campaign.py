@@ -22,16 +22,16 @@ from seatrial.core.results.campaign import (
 from seatrial.core.text.numbers import DASH, duration, exact, fixed, significant
 from seatrial.core.text.words import counted, enumeration
 from seatrial.core.values import Severity
-from seatrial.reporting.document import page_text
+from seatrial.reporting.document import chapters_page
+from seatrial.reporting.finding_chapter import finding_section
 from seatrial.reporting.first_screen import FirstScreen, KeyFact
-from seatrial.reporting.tables import finding_groups
-from seatrial.reporting.text_tables import TextTable
+from seatrial.reporting.model_chapter import version_section
+from seatrial.reporting.section import Picture, Section, plain_table
 
-TITLES = {
-    "coefficients": "Coefficients", "distributions": "Distributions of the errors",
-    "scores": "Scores of held-out runs", "maps": "Over the keys", "failures": "Failures", "findings": "Findings",
-    "provenance": "Provenance",
-}  # fmt: skip
+_HISTOGRAM_CAPTION = (
+    "Errors over the Cramér-Rao bound; without a known bound, deviations from the mean over their standard deviation. "
+    "The outer bars hold all beyond."
+)
 _LEVEL = 0.95
 """Probability of the intervals whose coverage is shown, 1."""
 _INTERVAL, _LIMIT, _NORMAL = Stroke(ACCENT, 2.0), Stroke(SECOND, 1.2, "5 3"), Stroke(INK, 1.2)  # px, chosen
@@ -41,38 +41,40 @@ _BAR = "#a9bccb"
 _LOWEST_SHARE = 0.5  # lowest share at which the axis of coverage begins, chosen
 
 
+def sections(summary: CampaignSummary) -> tuple[Section, ...]:
+    """Return the chapters of a campaign that have content, in order."""
+    repeated = [c for c in summary.coefficients if c.count > 1]
+    histograms = (Picture(lambda: svg(error_histograms(repeated)), _HISTOGRAM_CAPTION),) if repeated else ()
+    scores = [(s.name, s.unit, str(s.count), *(significant(v, 3) for v in (s.median, s.mean, s.worst)))
+              for s in summary.scores]  # fmt: skip
+    failures = [(f.example, str(f.count), f.task) for f in summary.failures]
+    chapters = (
+        coefficient_section(summary.coefficients),
+        Section("Distributions of the errors", "distributions", pictures=histograms),
+        Section("Scores of held-out runs", "scores",
+                table=plain_table(("score", "unit", "runs", "median", "mean", "worst"), scores, flush_left=(0, 1))),
+        Section("Over the keys", "maps", parts=tuple(map(_map_section, summary.maps))),
+        Section("Failures", "failures",
+                table=plain_table(("reason", "tasks", "first one"), failures, flush_left=(0, 2)),
+                note="The sentence is that of the first one; others may differ in their numbers."),
+        finding_section(summary.findings),
+        version_section(summary.versions, {"Processor": ", ".join(summary.processors),
+                                           "Linear algebra": "; ".join(summary.linear_algebra)}),
+    )  # fmt: skip
+    return tuple(chapter for chapter in chapters if chapter)
+
+
 def html(summary: CampaignSummary) -> str:
-    """Return the page as text; sections without content are left out."""
-    coefficients, scores = summary.coefficients, summary.scores
-    content: dict[str, object] = {
-        "coefficients": coefficients,
-        "distributions": [c for c in coefficients if c.count > 1],
-        "scores": scores,
-        "maps": [(Markup(svg(_map_chart(one))), one) for one in summary.maps],
-        "failures": summary.failures,
-        "findings": finding_groups(summary.findings),
-    }
-    context = {
-        **content,
-        "titles": {key: title for key, title in TITLES.items() if content.get(key, True)},
-        "campaign": summary,
-        "heading_text": summary.question or f"Campaign: {summary.kind}" if summary.kind else "Campaign",
-        "screen": first_screen(summary),
-        "table": coefficient_table(coefficients),
-        "histograms": Markup(svg(error_histograms(coefficients))),
-        "score_table": TextTable(
-            "Over all tasks", ("score", "unit", "runs", "median", "mean", "worst"),
-            (False, False, True, True, True, True),
-            tuple((s.name, s.unit, str(s.count), *(significant(v, 3) for v in (s.median, s.mean, s.worst)))
-                  for s in scores), "",
-        ),
-        "failure_table": TextTable(
-            "Tasks that failed", ("reason", "tasks", "first one"), (False, True, False),
-            tuple((f.example, str(f.count), f.task) for f in summary.failures),
-            "The sentence is that of the first one; others may differ in their numbers.",
-        ),
-    }  # fmt: skip
-    return page_text("campaign.html", context)
+    """Return the page as text; chapters without content are left out."""
+    heading = summary.question or f"Campaign: {summary.kind}" if summary.kind else "Campaign"
+    kind = f"Campaign, {summary.kind}" if summary.kind else "Campaign"
+    return chapters_page(kind, heading, first_screen(summary), sections(summary))
+
+
+def _map_section(one: KeyMap) -> Section:
+    rows = f"{one.row_key} from top to bottom, " if one.row_key else ""
+    picture = Picture(lambda: svg(_map_chart(one)), f"{rows}{one.column_key} from left to right.")
+    return Section(one.quantity, pictures=(picture,))
 
 
 def first_screen(summary: CampaignSummary) -> FirstScreen:
@@ -117,12 +119,14 @@ def status_sentence(status: CampaignStatus) -> str:
     return f"{text}."
 
 
-def coefficient_table(rows: Sequence[RepeatedCoefficient]) -> TextTable:
-    """Return the coefficients as text."""
+def coefficient_section(rows: Sequence[RepeatedCoefficient]) -> Section:
+    """Return the chapter on the coefficients over all tasks."""
     header = ("", "tasks", "truth", "mean", "std. deviation", "RMSE", "RMSE / bound", "coverage %", "95 % interval")
-    return TextTable("Over all tasks", header, (False, *(True,) * (len(header) - 1)), tuple(map(_row, rows)),
-                     "RMSE / bound: root mean square of each error over its Cramér-Rao bound. The interval of the "
-                     "coverage is binomial (Clopper and Pearson 1934).")  # fmt: skip
+    note = (
+        "RMSE / bound: root mean square of each error over its Cramér-Rao bound. The interval of the coverage is "
+        "binomial (Clopper and Pearson 1934)."
+    )
+    return Section("Coefficients", "coefficients", table=plain_table(header, map(_row, rows)), note=note)
 
 
 def _row(c: RepeatedCoefficient) -> tuple[str, ...]:

@@ -88,14 +88,12 @@ def relative_half_width(c: Coefficient) -> float:
     return 0.5 * (c.upper - c.lower) / abs(c.estimate)
 
 
-def meaning_lines(fit: Fit, content: Identifiability, uses: Sequence[CoefficientUse]) -> tuple[tuple[str, str], ...]:
+def meaning_sentences(fit: Fit, content: Identifiability, uses: Sequence[CoefficientUse]) -> tuple[str, ...]:
     """Return what the identifiability means for predictions, for single values, and for what was assumed."""
-    lines = [
-        ("Predictions", "Manoeuvres like those recorded rest on combinations that are determined. Others may not."),
-        ("Single values", _single_values(uses)),
-    ]  # fmt: skip
-    assumed = _assumptions(fit, content)
-    return (*lines, ("Assumed values", assumed)) if assumed else tuple(lines)
+    predictions = (
+        "Predictions of manoeuvres like those recorded rest on combinations that are determined; others may not."
+    )
+    return tuple(text for text in (predictions, _single_values(uses), _assumptions(fit, content)) if text)
 
 
 def _single_values(uses: Sequence[CoefficientUse]) -> str:

@@ -1,7 +1,7 @@
 """The page of two fits compared: what changed, coefficients, manoeuvres; nothing is computed."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from markupsafe import Markup
@@ -15,20 +15,16 @@ from seatrial.core.results import Comparison, Difference, ManoeuvreDifferences
 from seatrial.core.text.numbers import DASH, exact, p_value, significant
 from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import Severity
-from seatrial.reporting.document import page_text
+from seatrial.reporting.document import chapters_page
+from seatrial.reporting.finding_chapter import finding_section
 from seatrial.reporting.first_screen import FirstScreen, KeyFact
 from seatrial.reporting.measures import manoeuvre_name, simulated_measure_label
-from seatrial.reporting.tables import finding_groups
-from seatrial.reporting.text_tables import TextTable
+from seatrial.reporting.model_chapter import version_section
+from seatrial.reporting.section import Level, Section, TextTable, plain_table
 
-TITLES = {
-    "fits": "The two fits", "changes": "What else changed", "coefficients": "Coefficients",
-    "manoeuvres": "Manoeuvres", "findings": "Findings", "versions": "Versions",
-}  # fmt: skip
 _AGREES, _DIFFERS, _ZERO = Stroke(ACCENT, 2.0), Stroke(SECOND, 2.0), Stroke("#8a9299", 1.2)  # px, chosen
 _SIZE = 3.2  # px, chosen
 _HEADER = ("", "first", "second", "difference", "95 % from", "to", "")
-_NUMERIC = (False, True, True, True, True, True, False)
 _SIGNIFICANCE = 0.05
 """p-value below which coefficients differ, as the intervals have it."""
 _MOST_DIGITS = 6  # of a value, chosen
@@ -38,23 +34,37 @@ _NOTE = (
 )
 
 
+def sections(comparison: Comparison) -> tuple[Section, ...]:
+    """Return the chapters of a comparison that have content, in order."""
+    first, second = comparison.first, comparison.second
+    properties = {
+        "Fit": (first.name, second.name),
+        "Ship": (first.ship, second.ship),
+        "Model": (first.model, second.model),
+        "Training runs": (", ".join(first.records), ", ".join(second.records)),
+        "Criterion": (first.criterion, second.criterion),
+        "Intervals": (first.intervals, second.intervals),
+    }
+    fits = plain_table(
+        ("", "first", "second"), [(name, *values) for name, values in properties.items()], flush_left=(0, 1, 2)
+    )
+    chapters = (
+        Section("The two fits", "fits", table=fits, level=Level.PAGE),
+        Section("What else changed", "changes", points=comparison.changes),
+        Section("Coefficients", "coefficients", table=difference_table(comparison.coefficients), note=_NOTE),
+        Section("Manoeuvres", "manoeuvres", parts=tuple(map(manoeuvre_section, comparison.manoeuvres)), note=_NOTE),
+        finding_section(comparison.findings),
+        version_section(comparison.versions),
+    )
+    return tuple(chapter for chapter in chapters if chapter)
+
+
 def html(comparison: Comparison) -> str:
-    """Return the page as text; sections without content are left out."""
-    content: dict[str, object] = {
-        "changes": comparison.changes,
-        "coefficients": comparison.coefficients,
-        "manoeuvres": [manoeuvre_table(m) for m in comparison.manoeuvres],
-        "findings": finding_groups(comparison.findings),
-    }
-    context = {
-        **content,
-        "titles": {key: title for key, title in TITLES.items() if content.get(key, True)},
-        "comparison": comparison,
-        "screen": first_screen(comparison),
-        "note": _NOTE,
-        "table": coefficient_table(comparison.coefficients),
-    }
-    return page_text("comparison.html", context)
+    """Return the page as text; chapters without content are left out."""
+    names = f"{comparison.first.name} and {comparison.second.name}"
+    return chapters_page(
+        "Comparison of two fits", names, first_screen(comparison), sections(comparison), title=f"{names} compared"
+    )
 
 
 def first_screen(comparison: Comparison) -> FirstScreen:
@@ -106,15 +116,16 @@ def _clause(d: Difference, name: str | None = None) -> str:
     return f"{label} {exact(d.first, 3)} → {exact(d.second, 3)}".strip()
 
 
-def coefficient_table(rows: Sequence[Difference]) -> TextTable:
-    """Return the differences of coefficients as text."""
-    return TextTable("Coefficients that both fits estimate", _HEADER, _NUMERIC, tuple(_row(d) for d in rows), "")
+def difference_table(rows: Sequence[Difference], label: Callable[[str], tuple[str, str]] | None = None) -> TextTable:
+    """Return differences as text; label: name and unit in which a quantity is read, None: its own."""
+    return plain_table(_HEADER, [_row(d, label(d.name) if label else None) for d in rows], flush_left=(0, -1))
 
 
-def manoeuvre_table(m: ManoeuvreDifferences) -> TextTable:
-    """Return the differences of a manoeuvre's measures as text."""
-    rows = tuple(_row(d, simulated_measure_label(d.name)) for d in m.measures)
-    return TextTable(_title(m), _HEADER, _NUMERIC, rows, m.note)
+def manoeuvre_section(m: ManoeuvreDifferences) -> Section:
+    """Return the differences of a manoeuvre's measures."""
+    missing = () if m.measures else (sentence(m.note or "no measure in common"),)
+    table = difference_table(m.measures, simulated_measure_label)
+    return Section(_title(m), sentences=missing, table=table, note=m.note if m.measures else "")
 
 
 def _title(m: ManoeuvreDifferences) -> str:

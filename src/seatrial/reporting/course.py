@@ -3,8 +3,11 @@
 import math
 
 from seatrial.core.results import Fit, Stability
+from seatrial.core.results.fit import COURSE_UNSTABLE
 from seatrial.core.text.numbers import significant
+from seatrial.core.text.words import sentence
 from seatrial.reporting.first_screen import KeyFact
+from seatrial.reporting.section import Level, Section
 
 
 def unstable_course(fit: Fit) -> Stability | None:
@@ -38,3 +41,21 @@ def course_facts(fit: Fit) -> tuple[KeyFact, ...]:
     if course.stable_below is not None:
         speed += f", course stable below about {significant(course.stable_below, 2)} m/s"
     return (KeyFact("Straight course", f"{growth_clause(course)}{speed}", "identifiability"),)
+
+
+def course_section(fit: Fit) -> Section:
+    """Return the chapter on whether the craft holds a straight course; empty where that is not known."""
+    course = fit.identifiability.stability if fit.identifiability else None
+    if course is None:
+        return Section("")
+    turns = [f.evidence.partition("; ")[2] for f in fit.findings if f.code == COURSE_UNSTABLE]
+    index = f"{significant(course.index, 2)} [{significant(course.lower, 2)}, {significant(course.upper, 2)}]"
+    craft = "craft with equal orders of its thrusters" if fit.model.has_thrusters else "ship with the rudder amidships"
+    return Section(
+        "Straight course",
+        "course",
+        sentences=tuple(sentence(text) for text in (course.text, *turns) if text),
+        note=f"Index of straight-line stability, C = {index}: positive where a {craft} returns to a straight course.",
+        level=Level.DETAIL,
+        is_folded=True,
+    )

@@ -28,10 +28,10 @@ from seatrial.reporting.design_text import LARGEST_SHOWN_ERROR
 from seatrial.reporting.document import page_text
 from seatrial.reporting.figures.designed_manoeuvre import order_view, track_chart
 from seatrial.reporting.figures.relative_errors import FILLED, OPEN, TICK, ErrorSeries, error_chart
+from seatrial.reporting.finding_chapter import finding_section
 from seatrial.reporting.first_screen import FirstScreen
 from seatrial.reporting.mathml import inline
 from seatrial.reporting.measures import manoeuvre_name
-from seatrial.reporting.tables import finding_groups
 from seatrial.reporting.time_figures import run_figure
 
 TITLES = {
@@ -102,7 +102,7 @@ def html(design: Design) -> str:
         "speed": _speed_option(design),
         "errors": Markup(_errors_figure(design)),
         "ships": Markup(_drawn_ships_figure(design, baselines)),
-        "findings": finding_groups(design.findings),
+        "findings": finding_section(design.findings),
     }
     return page_text("design.html", context)
 

@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -11,7 +11,9 @@ from markupsafe import Markup
 from seatrial.core.figures.night import night_colour
 from seatrial.core.pages import shell
 from seatrial.core.text.numbers import duration, significant
+from seatrial.reporting.first_screen import FirstScreen
 from seatrial.reporting.mathml import inline, pieces
+from seatrial.reporting.section import Section
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -29,6 +31,22 @@ def page_text(template: str, context: Mapping[str, object]) -> str:
     text = text.replace(_PLOT_SCRIPTS, environment().get_template("plots.html").render() if has_series else "", 1)
     colours = sorted(set(_ANY_COLOUR.findall(text))) if has_series else []
     return shell.with_policy(text.replace(_NIGHT_COLOURS, json.dumps({c: night_colour(c) for c in colours}), 1))
+
+
+def chapters_page(
+    kind: str, heading: str, screen: FirstScreen, chapters: Sequence[Section], *, title: str = "", question: str = "",
+    about: Sequence[str] = (),
+) -> str:  # fmt: skip
+    """Return the page of a result: what it answers first, then its chapters with their contents.
+
+    kind: of result, above the heading; title: of the window, empty: the heading; question: that the result answers;
+    about: on what it rests, in a line.
+    """
+    context = {
+        "kind": kind, "heading": heading, "screen": screen, "chapters": chapters, "title": title or heading,
+        "question": question, "about": about, "titles": {chapter.key: chapter.title for chapter in chapters},
+    }  # fmt: skip
+    return page_text("chapters.html", context)
 
 
 @cache

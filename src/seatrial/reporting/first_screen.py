@@ -25,6 +25,7 @@ class FirstScreen:
     """A verdict, its table, and a picture with its caption; an empty picture or lead is not shown.
 
     lead: what the result means to those who operate the craft, in a sentence.
+    gains: symbols and values of a controller, under `gains_title`.
     """
 
     verdict: str
@@ -32,3 +33,5 @@ class FirstScreen:
     figure: Markup = field(default_factory=Markup)
     caption: str = ""
     lead: str = ""
+    gains_title: str = ""
+    gains: tuple[tuple[str | Markup, str], ...] = ()

@@ -13,7 +13,7 @@ from seatrial.core.results.tuning import Controller, GainSearch, Tuning
 from seatrial.core.text.numbers import DASH, exact, fixed, significant
 from seatrial.core.text.words import counted
 from seatrial.core.values import Array
-from seatrial.reporting.text_tables import TextTable
+from seatrial.reporting.section import TextTable, plain_table
 
 # convergence curves drawn at most: more hide one another
 MAX_CURVES = 6
@@ -21,11 +21,11 @@ MAX_CURVES = 6
 _QUANTILES = {"least": 0.0, "median": 0.5, "largest": 1.0}
 
 
-def search_table(tuning: Tuning) -> TextTable | None:
-    """Return the package's own choice and the answers of a published search side by side; None without a search."""
+def search_table(tuning: Tuning) -> TextTable:
+    """Return the package's own choice and the answers of a published search side by side; empty without a search."""
     search, own = tuning.search, tuning.reference
     if search is None or own is None:
-        return None
+        return plain_table((), ())
     names = list(dict.fromkeys((*search.gain_names, *own.gains)))
     objectives = [f"{name}{_unit_text(unit)}" for name, unit in tuning.objectives.items()]
     front = tuning.front
@@ -36,12 +36,18 @@ def search_table(tuning: Tuning) -> TextTable | None:
     if len(search.gains) > 1:
         columns |= {label: _quantile_cells(share, search, names, tuning) for label, share in _QUANTILES.items()}
     labels = (*names, *objectives, "Ms", "keeps the limits", "evaluations", "CPU time [s]")
-    rows = tuple(zip(labels, *columns.values(), strict=True))
-    return TextTable(
-        "The published search and the package's front", ("", *columns), (False, *[True] * len(columns)), rows,
+    rows = list(zip(labels, *columns.values(), strict=True))
+    return plain_table(("", *columns), rows)
+
+
+def search_note(tuning: Tuning) -> str:
+    """Return how the table of the published search is to be read; empty without a search."""
+    if tuning.search is None or tuning.reference is None:
+        return ""
+    return (
         "Own front: evaluations and CPU time of its search with the task's own gains. Least, median and largest are of "
-        f"the answers of {counted(len(search.gains), 'seed')}, line by line.",
-    )  # fmt: skip
+        f"the answers of {counted(len(tuning.search.gains), 'seed')}, line by line."
+    )
 
 
 def _unit_text(unit: str) -> str:

@@ -1,42 +1,46 @@
-"""Draws from the posterior on the page: credible intervals next to the others, how far the chains agree, densities."""
-
-from dataclasses import dataclass
-
-from markupsafe import Markup
+"""Draws from the posterior: credible intervals next to the others, how far the chains agree, densities."""
 
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import CredibleInterval, Posterior
-from seatrial.core.text.numbers import estimate_text, fixed
+from seatrial.core.text.numbers import EstimateText, estimate_text, fixed
 from seatrial.core.values import display_unit
 from seatrial.core.values.notation import unit_text
 from seatrial.reporting.figures.posterior_densities import posterior_densities
-from seatrial.reporting.text_tables import TextTable
+from seatrial.reporting.section import Picture, Section, name, number, table_of, words
 
-_HEADER = ("Coefficient", "", "mean", "sd", "95 % credible", "without sampling", "R-hat", "independent draws")
-
-
-@dataclass(frozen=True)
-class PosteriorPart:
-    """The table with its sentences, and the figure."""
-
-    table: TextTable
-    densities: Markup
+_CAPTION = (
+    "Draws of each coefficient; between the lines lie 95 % of them, on the dashed lines the ends of the interval "
+    "without sampling."
+)
 
 
-def posterior_part(posterior: Posterior) -> PosteriorPart:
-    """Return what the page shows of the draws."""
-    numeric = (False, False, *(True for _ in _HEADER[2:]))
-    note = f"{' '.join(posterior.sentences)} Without sampling: {posterior.other_intervals}."
-    rows = tuple(_row(c) for c in posterior.coefficients)
-    table = TextTable("Draws from what records and priors leave open", _HEADER, numeric, rows, note)
-    return PosteriorPart(table, Markup(svg(posterior_densities(posterior))))
-
-
-def _row(c: CredibleInterval) -> tuple[str, ...]:
-    factor = display_unit(c.unit)[0]
-    mean, sd, *ends = (
-        factor * v for v in (c.mean, c.standard_deviation, c.lower, c.upper, c.other_lower, c.other_upper)
+def posterior_section(posterior: Posterior | None) -> Section:
+    """Return the part on draws from what records and priors leave open; empty where there are none."""
+    if posterior is None:
+        return Section("")
+    table = table_of(
+        posterior.coefficients,
+        name("Coefficient", lambda c: c.name),
+        words("unit", lambda c: unit_text(c.unit)),
+        number("mean", lambda c: f"{_text(c).value}{_text(c).power}"),
+        number("sd", lambda c: _text(c).error),
+        number("95 % credible", lambda c: f"[{_text(c).lower}, {_text(c).upper}]"),
+        number("without sampling", lambda c: f"[{_without(c).lower}, {_without(c).upper}]"),
+        number("R-hat", lambda c: fixed(c.r_hat, 3)),
+        number("independent draws", lambda c: fixed(c.effective_size, 0)),
     )
-    own, other = (estimate_text(mean, sd, low, high) for low, high in (ends[:2], ends[2:]))
-    cells = (own.value + own.power, own.error, f"[{own.lower}, {own.upper}]", f"[{other.lower}, {other.upper}]")
-    return (c.name, unit_text(c.unit), *cells, fixed(c.r_hat, 3), fixed(c.effective_size, 0))
+    return Section(
+        "Draws from what records and priors leave open", sentences=posterior.sentences, table=table,
+        note=f"Without sampling: {posterior.other_intervals}.",
+        pictures=(Picture(lambda: svg(posterior_densities(posterior)), _CAPTION),),
+    )  # fmt: skip
+
+
+def _text(c: CredibleInterval) -> EstimateText:
+    factor = display_unit(c.unit)[0]
+    return estimate_text(factor * c.mean, factor * c.standard_deviation, factor * c.lower, factor * c.upper)
+
+
+def _without(c: CredibleInterval) -> EstimateText:
+    factor = display_unit(c.unit)[0]
+    return estimate_text(factor * c.mean, factor * c.standard_deviation, factor * c.other_lower, factor * c.other_upper)

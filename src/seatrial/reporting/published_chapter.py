@@ -1,9 +1,9 @@
 """The chapter on a published method: its values set beside the package's own estimate, and what its search did."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
-from markupsafe import Markup
 
 from seatrial.core.figures.chart import Chart
 from seatrial.core.figures.curves import NamedCurve, curves_chart
@@ -25,35 +25,39 @@ from seatrial.reporting.figures.search_charts import (
     value_charts,
     waterfall_chart,
 )
-from seatrial.reporting.text_tables import TextTable
+from seatrial.reporting.section import Picture, Section, TextTable, plain_table
+
+_EFFORT = (
+    "Evaluations of the package’s estimate are those under its final criterion, each with exact slopes; its processor "
+    "time holds everything from the start to the intervals."
+)
 
 
-@dataclass(frozen=True)
-class PublishedChapter:
-    """Sentences, tables and figures with their captions."""
-
-    sentences: tuple[str, ...]
-    tables: tuple[TextTable, ...]
-    figures: tuple[tuple[Markup, str], ...]
-
-
-def published_chapter(fit: Fit) -> PublishedChapter | None:
-    """Return the chapter; None where the fit is the package's own estimate."""
+def published_section(fit: Fit) -> Section:
+    """Return the chapter on a published method; empty where the fit is the package's own estimate."""
     reference = fit.reference
     if reference is None:
-        return None
-    tables = (
-        _text_table("Coefficients", coefficient_comparison(fit, reference),
-                    "Difference: of the method from the package’s estimate, in its standard errors."
-                    + (" Scatter: standard deviation over the restarts." if fit.search and fit.search.scatter else "")),
-        _text_table("Effort, and errors of simulated runs", cost_comparison(fit, reference),
-                    "Evaluations of the package’s estimate are those under its final criterion, each with exact "
-                    "slopes; its processor time holds everything from the start to the intervals."),
-    )  # fmt: skip
-    figures = _search_figures(fit.search, reference) if fit.search else ()
+        return Section("")
+    scatter = " Scatter: standard deviation over the restarts." if fit.search and fit.search.scatter else ""
+    pictures = _search_pictures(fit.search, reference) if fit.search else ()
     if fit.search and fit.search.track:
-        figures = (*_track_figures(fit.search.track, reference, fit.method.name), *figures)
-    return PublishedChapter(tuple(_sentences(fit, reference)), tables, figures)
+        pictures = (*_track_pictures(fit.search.track, reference, fit.method.name), *pictures)
+    return Section(
+        "The published method and the package’s own estimate",
+        "published",
+        tuple(_sentences(fit, reference)),
+        parts=(
+            Section(
+                "",
+                table=_table(coefficient_comparison(fit, reference)),
+                note=f"Difference: of the method from the package’s estimate, in its standard errors.{scatter}",
+            ),
+            Section(
+                "Effort, and errors of simulated runs", table=_table(cost_comparison(fit, reference)), note=_EFFORT
+            ),
+            Section("", pictures=pictures),
+        ),
+    )
 
 
 def _sentences(fit: Fit, reference: ReferenceEstimate) -> list[str]:
@@ -78,21 +82,26 @@ def _sentences(fit: Fit, reference: ReferenceEstimate) -> list[str]:
     return text
 
 
-def _text_table(title: str, table: ComparisonTable, note: str) -> TextTable:
-    numeric = (False, *(name != "unit" for name in table.header[1:]))
-    return TextTable(title, table.header, numeric, table.rows, note)
+def _table(table: ComparisonTable) -> TextTable:
+    words = [k for k, name in enumerate(table.header) if k == 0 or name == "unit"]
+    return plain_table(table.header, table.rows, flush_left=words)
 
 
-def _search_figures(search: Search, reference: ReferenceEstimate) -> tuple[tuple[Markup, str], ...]:
+def _search_pictures(search: Search, reference: ReferenceEstimate) -> tuple[Picture, ...]:
     by_samples = search.fitness == "sample"
     convergence = "Best fitness after each iteration of each restart (logarithm to base 10)."
     if by_samples:
         convergence += " Each iteration judges by a sample of its own, so that the best may rise."
     drawn: list[tuple[Chart | None, str]] = [(_convergence_chart(search), convergence)]
     if search.track:
-        return tuple((Markup(svg(chart)), caption) for chart, caption in drawn if chart is not None)
-    drawn.append((waterfall_chart(search, reference), "Weighted rms over the whole record at the end of each restart, "
-                  "in order of size, and of the package’s own estimate."))  # fmt: skip
+        return _pictures(drawn)
+    drawn.append(
+        (
+            waterfall_chart(search, reference),
+            "Weighted rms over the whole record at the end of each restart, "
+            "in order of size, and of the package’s own estimate.",
+        )
+    )
     free = [c for c in reference.coefficients if not c.fixed]
     marks = ["bars: its 95 % intervals"] if any(c.lower is not None for c in free) else []
     marks += ["diamonds: known values"] if any(c.truth is not None for c in free) else []
@@ -101,16 +110,19 @@ def _search_figures(search: Search, reference: ReferenceEstimate) -> tuple[tuple
     if by_samples:
         caption = "Best value after each iteration of the restart that is used."
         drawn += [(chart, caption) for chart in trace_charts(search, reference)]
-    return tuple((Markup(svg(chart)), caption) for chart, caption in drawn if chart is not None)
+    return _pictures(drawn)
 
 
-def _track_figures(track: SearchTrack, reference: ReferenceEstimate, method: str) -> tuple[tuple[Markup, str], ...]:
+def _track_pictures(track: SearchTrack, reference: ReferenceEstimate, method: str) -> tuple[Picture, ...]:
     motion = "Recorded, and simulated with the coefficients that the search and the package’s own follower had at each "
     motion += "moment."
     values = "Coefficient of each moment, by the search and by the package’s own follower."
-    drawn = [(chart, motion) for chart in track_charts(track, method)]
-    drawn += [(chart, values) for chart in value_charts(track, reference, method)]
-    return tuple((Markup(svg(chart)), caption) for chart, caption in drawn)
+    drawn: list[tuple[Chart | None, str]] = [(chart, motion) for chart in track_charts(track, method)]
+    return _pictures([*drawn, *((chart, values) for chart in value_charts(track, reference, method))])
+
+
+def _pictures(captioned: Sequence[tuple[Chart | None, str]]) -> tuple[Picture, ...]:
+    return tuple(Picture(partial(svg, chart), caption) for chart, caption in captioned if chart is not None)
 
 
 def _convergence_chart(search: Search) -> Chart | None:

@@ -1,9 +1,9 @@
 """The chapter on roll: what the coefficients mean, as tables and a figure."""
 
 import math
+from functools import partial
 
 import numpy as np
-from markupsafe import Markup
 
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Curve, Figure, RollCharacteristics
@@ -11,15 +11,32 @@ from seatrial.core.results.ship_motions import IntervalEstimate
 from seatrial.core.text.numbers import DASH, estimate_text, fixed, significant
 from seatrial.reporting.figures.roll_damping import roll_damping_chart
 from seatrial.reporting.figures.study_figures import study_chart
-from seatrial.reporting.text_tables import TextTable
+from seatrial.reporting.section import Level, Picture, Section, TextTable, number, plain_table, table_of
 
 # amplitudes in the table; degrees of a radian
 _AMPLITUDES, _DEGREES = 5, math.degrees(1.0)
 _WHOLE_RANGE = " The range of GM has the whole range of the radius in it."
 
 
-def tables(roll: RollCharacteristics, scale: float) -> list[TextTable]:
-    """Return derived quantities, at full scale too by Froude's law, and swings of some amplitudes."""
+def roll_section(roll: RollCharacteristics | None, scale: float) -> Section:
+    """Return the chapter on what the coefficients of a roll model mean; empty for any other model."""
+    if roll is None:
+        return Section("")
+    height, radius = roll.metacentric_height, roll.gyradius
+    ranges = height is not None and radius is not None and height.lower < height.upper and radius.lower < radius.upper
+    return Section(
+        "Roll: period, damping, metacentric height",
+        "rolling",
+        table=_quantities(roll, scale),
+        note=f"Inertia: {roll.gyradius_source}.{_WHOLE_RANGE if ranges else ''}",
+        pictures=(_picture(roll),),
+        parts=(_swings(roll),) if roll.amplitude else (),
+        level=Level.PAGE,
+    )
+
+
+def _quantities(roll: RollCharacteristics, scale: float) -> TextTable:
+    """Derived quantities, at full scale too by Froude's law."""
     rows = [
         ("natural period at small angles, s", roll.natural_period, math.sqrt(scale)),
         ("linear damping, share of critical, %", roll.damping_ratio.scaled(100.0), 1.0),
@@ -28,14 +45,10 @@ def tables(roll: RollCharacteristics, scale: float) -> list[TextTable]:
     ]
     has_scale = scale != 1.0
     header = ("Quantity", "estimate", "95 % from", "to", *(("at full scale",) if has_scale else ()))
-    quantities = tuple(
-        _quantity_row(name, value, factor, has_scale=has_scale) for name, value, factor in rows if value is not None
+    return plain_table(
+        header,
+        [_quantity_row(name, value, factor, has_scale=has_scale) for name, value, factor in rows if value is not None],
     )
-    height, radius = roll.metacentric_height, roll.gyradius
-    ranges = height is not None and radius is not None and height.lower < height.upper and radius.lower < radius.upper
-    note = f"Inertia: {roll.gyradius_source}.{_WHOLE_RANGE if ranges else ''}"
-    first = TextTable("What the coefficients mean", header, _numeric_columns(header), quantities, note)
-    return [first, _amplitude_table(roll)] if roll.amplitude else [first]
 
 
 def _quantity_row(name: str, value: IntervalEstimate, factor: float, *, has_scale: bool) -> tuple[str, ...]:
@@ -47,27 +60,27 @@ def _quantity_row(name: str, value: IntervalEstimate, factor: float, *, has_scal
     return (*cells, estimate_text(full.value, factor * error, full.lower, full.upper).value) if has_scale else cells
 
 
-def _numeric_columns(header: tuple[str, ...]) -> tuple[bool, ...]:
-    return (False, *(True for _ in header[1:]))
-
-
-def _amplitude_table(roll: RollCharacteristics) -> TextTable:
+def _swings(roll: RollCharacteristics) -> Section:
+    """Period and damping of swings of some amplitudes."""
     places = np.linspace(0, len(roll.amplitude) - 1, _AMPLITUDES + 1).round().astype(int)[1:]
-    rows = tuple(
-        (
-            fixed(math.degrees(roll.amplitude[i]), 1),
-            significant(roll.period[i], 4),
-            *(significant(b[i], 3) for b in (roll.damping, roll.damping_lower, roll.damping_upper)),
-            significant(100.0 * share_of_critical(roll.damping[i], roll.period[i]), 2),
-        )
-        for i in places
+    table = table_of(
+        places,
+        number("Amplitude", lambda i: fixed(math.degrees(roll.amplitude[i]), 1), "deg"),
+        number("period", lambda i: significant(roll.period[i], 4), "s"),
+        number("equivalent damping", lambda i: significant(roll.damping[i], 3), "1/s"),
+        number("95 % from", lambda i: significant(roll.damping_lower[i], 3)),
+        number("to", lambda i: significant(roll.damping_upper[i], 3)),
+        number("share of critical", lambda i: _percent_of_critical(roll, i), "%"),
     )
-    header = ("Amplitude, deg", "period, s", "equivalent damping, 1/s", "95 % from", "to", "share of critical, %")
     note = (
         "Equivalent: the linear damping that takes as much energy in a swing, b₁ + 8/(3π) ω a b₂ + ¾ ω² a² b₃ (Himeno "
         "1981; ITTC 7.5-02-07-04.5)."
     )
-    return TextTable("Swings of some amplitudes", header, (True, *_numeric_columns(header)[1:]), rows, note)
+    return Section("Swings of some amplitudes", table=table, note=note)
+
+
+def _percent_of_critical(roll: RollCharacteristics, place: int) -> str:
+    return significant(100.0 * share_of_critical(roll.damping[place], roll.period[place]), 2)
 
 
 def share_of_critical(damping: float, period: float) -> float:
@@ -75,24 +88,22 @@ def share_of_critical(damping: float, period: float) -> float:
     return damping * period / (4.0 * math.pi)
 
 
-def figures(roll: RollCharacteristics) -> list[tuple[Markup, Figure]]:
-    """Return damping and period over amplitude, or the spectrum of roll."""
-    note = "Equivalent linear damping and period over the amplitude of a swing, the model with its 95 % band."
-    if roll.swings:
-        note += " Dots: each recorded swing on its own, with damping 2 ln(aᵢ / aᵢ₊₂) / T, independent of the model."
+def _picture(roll: RollCharacteristics) -> Picture:
+    """Damping and period over amplitude, or the spectrum of roll."""
     if roll.spectrum:
-        return [_spectrum_figure(roll)]
-    picture = svg(roll_damping_chart(roll))
-    return [(Markup(picture), Figure("Damping and period", "", "", (), note))] if picture else []
+        caption = "The sea's own spectrum, of one peak, is estimated with natural period and damping."
+        return Picture(partial(_spectrum, roll), caption)
+    caption = "Equivalent linear damping and period over the amplitude of a swing, the model with its 95 % band."
+    if roll.swings:
+        caption += " Dots: each recorded swing on its own, with damping 2 ln(aᵢ / aᵢ₊₂) / T, independent of the model."
+    return Picture(lambda: svg(roll_damping_chart(roll)), caption)
 
 
-def _spectrum_figure(roll: RollCharacteristics) -> tuple[Markup, Figure]:
+def _spectrum(roll: RollCharacteristics) -> str:
     """Recorded and expected density of roll."""
     omega, recorded, expected = (np.array(column) for column in zip(*roll.spectrum, strict=True))
     lines = (
         Curve("recorded, smoothed", omega, _DEGREES**2 * recorded),
         Curve("expected", omega, _DEGREES**2 * expected),
     )
-    note = "The sea's own spectrum, of one peak, is estimated with natural period and damping."
-    figure = Figure("Spectrum of roll", "frequency, rad/s", "deg\u00b2 s/rad", lines, note)
-    return Markup(svg(study_chart(figure))), figure
+    return svg(study_chart(Figure("Spectrum of roll", "frequency, rad/s", "deg\u00b2 s/rad", lines, "")))

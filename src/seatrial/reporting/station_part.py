@@ -11,6 +11,7 @@ from seatrial.core.results.station import StationKeeping
 from seatrial.core.text.numbers import exact, fixed, significant
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array
+from seatrial.reporting.section import Level, Picture, Section, plain_table
 
 AXES = ("surge", "sway", "yaw")
 FOOTPRINT_CAPTION = (
@@ -28,9 +29,35 @@ CAPABILITY_CAPTION = (
 _CIRCLE = 73  # points of a closed circle, every 5 degrees; chosen
 
 
-def station_sentences(station: StationKeeping) -> tuple[str, ...]:
-    """Return precision, margins and capability, a sentence each."""
-    return precision_sentence(station), margin_sentence(station), capability_sentence(station)
+def station_section(station: StationKeeping | None) -> Section:
+    """Return the chapter on station keeping; empty without one."""
+    if station is None:
+        return Section("")
+    unit = station.force_unit
+    gains = plain_table(("gain", "force", "value", "unit"), gain_rows(station), flush_left=(0, 1, 3))
+    head = ("thruster", f"full astern, {unit}", f"full ahead, {unit}", "used, rms, %")
+    note = (
+        "τ = −K_p Rᵀe − K_i Rᵀ∫e dt − K_d v in body axes, e the pose less that ordered, v = Rᵀ de/dt behind a filter "
+        f"(Fossen 2021, Algorithm 15.2), every {exact(station.sample_s, 3)} s; shared out by a generalised inverse "
+        "that is weighted with the thrusters’ largest thrusts, all reduced alike where one would exceed its limit. "
+        f"Varying besides the steady current: {enumeration(station.disturbances)}. Drift forces of waves are left out."
+    )
+    pictures = (
+        Picture(lambda: footprint_figure(station), FOOTPRINT_CAPTION),
+        Picture(lambda: capability_figure(station), CAPABILITY_CAPTION),
+        Picture(lambda: front_figure(station), FRONT_CAPTION),
+    )
+    return Section(
+        "Station keeping",
+        "station",
+        sentences=(margin_sentence(station), capability_sentence(station)),
+        note=note,
+        pictures=pictures,
+        parts=(
+            Section("Gains of station keeping", table=gains, level=Level.DETAIL),
+            Section("Thrusters", table=plain_table(head, thruster_rows(station)), level=Level.DETAIL),
+        ),
+    )
 
 
 def precision_sentence(station: StationKeeping) -> str:

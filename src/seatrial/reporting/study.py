@@ -1,66 +1,95 @@
 """The page of a study: claims with verdicts, checks with limits, tables, figures, runs; nothing is computed."""
 
-from dataclasses import dataclass
+from dataclasses import replace
+from functools import partial
 
 from markupsafe import Markup
 
 from seatrial.core.figures.svg_text import svg
-from seatrial.core.results import Check, CheckStatus, Study
-from seatrial.core.text.numbers import exact
+from seatrial.core.results import Bars, CheckStatus, Figure, Matrix, Study, Verdict
+from seatrial.core.text.numbers import duration, exact
 from seatrial.core.text.words import counted, enumeration
 from seatrial.core.values import Severity
-from seatrial.reporting import runs, tables
-from seatrial.reporting.document import page_text
+from seatrial.reporting.document import chapters_page
 from seatrial.reporting.figures.study_figures import study_chart
+from seatrial.reporting.finding_chapter import finding_section
 from seatrial.reporting.first_screen import FirstScreen, KeyFact
-from seatrial.reporting.text_tables import text_table
+from seatrial.reporting.model_chapter import version_section
+from seatrial.reporting.prediction_chapter import run_section, score_table
+from seatrial.reporting.runs import reading_note
+from seatrial.reporting.section import (
+    Cell,
+    Picture,
+    Section,
+    TextTable,
+    number,
+    result_section,
+    table_of,
+    words,
+)
 
 # channels a run is given rather than predicted
 INPUT_CHANNELS = ("delta", "n", "v_j", "wind_speed", "wind_direction")
-TITLES = {
-    "answer": "The answer in full", "claims": "Claims", "checks": "Checks", "tables": "Tables", "figures": "Figures",
-    "runs": "Runs", "findings": "Findings", "versions": "Versions",
-}  # fmt: skip
 # significant digits of a check's value and limit; chosen
 _CHECK_DIGITS = 3
-# how the page colours a check
-_CSS_CLASS = {CheckStatus.HOLDS: "good", CheckStatus.FAILS: "bad", CheckStatus.WITHDRAWN: "u"}
+# how a check is coloured
+_TONES = {CheckStatus.HOLDS: "good", CheckStatus.FAILS: "bad"}
+_VERDICT_TONES = {Verdict.REFUTED: "bad"}
 
 
-@dataclass(frozen=True)
-class CheckRow:
-    """A check as text."""
-
-    name: str
-    value: str
-    limit: str
-    status: str
-    css_class: str
-    remark: str
+def sections(study: Study) -> tuple[Section, ...]:
+    """Return the chapters of a study that have content, in order."""
+    run_parts = [run_section(p, study.predictions, 0.0, INPUT_CHANNELS) for p in study.predictions]
+    figures = [Section(f.title, pictures=(Picture(partial(_drawing, f), f.note),)) for f in study.figures[1:]]
+    facts = {"Seed": str(study.seed), "Elapsed": duration(study.elapsed_s)}
+    chapters = (
+        Section("The answer in full", "answer", study.answer[1:]),
+        Section("Claims", "claims", table=_claims(study)),
+        Section("Checks", "checks", table=_checks(study)),
+        Section("Tables", "tables", parts=tuple(map(result_section, study.tables))),
+        Section("Figures", "figures", parts=tuple(figures)),
+        Section(
+            "Runs",
+            "runs",
+            table=score_table(study.predictions, 0.0) if run_parts else None,
+            note=reading_note(study.predictions),
+            parts=tuple(replace(part, is_folded=True) for part in run_parts),
+        ),
+        finding_section(study.findings),
+        version_section(study.versions, facts),
+    )
+    return tuple(chapter for chapter in chapters if chapter)
 
 
 def html(study: Study) -> str:
-    """Return the page as text; sections without content are left out."""
-    content: dict[str, object] = {
-        "answer": study.answer[1:],
-        "claims": study.claims,
-        "checks": [_check_row(c) for c in study.checks],
-        "tables": [text_table(t) for t in study.tables],
-        "figures": [(Markup(svg(study_chart(f))), f) for f in study.figures[1:]],
-        "runs": runs.run_sections(study.predictions, 0.0, INPUT_CHANNELS),
-        "findings": tables.finding_groups(study.findings),
-    }
-    titles = {key: title for key, title in TITLES.items() if content.get(key, True)}
-    context = {
-        **content,
-        "titles": titles,
-        "study": study,
-        "screen": first_screen(study),
-        "has_remarks": any(c.remark for c in study.checks),
-        "scores": runs.score_table(study.predictions, 0.0),
-        "reading_note": runs.reading_note(study.predictions),
-    }
-    return page_text("study.html", context)
+    """Return the page as text; chapters without content are left out."""
+    return chapters_page(
+        study.kind, study.title or study.name, first_screen(study), sections(study), question=study.question
+    )
+
+
+def _drawing(figure: Figure | Bars | Matrix) -> str:
+    return svg(study_chart(figure))
+
+
+def _claims(study: Study) -> TextTable:
+    return table_of(
+        study.claims,
+        words("Claim", lambda c: c.claim),
+        words("Verdict", lambda c: Cell(c.verdict.value, c.setting, _VERDICT_TONES.get(c.verdict, ""))),
+        words("Evidence", lambda c: c.evidence),
+    )
+
+
+def _checks(study: Study) -> TextTable:
+    return table_of(
+        study.checks,
+        words("Check", lambda c: c.name),
+        number("value", lambda c: exact(c.value, _CHECK_DIGITS)),
+        number("limit", lambda c: c.limit if isinstance(c.limit, str) else exact(c.limit, _CHECK_DIGITS)),
+        words("Verdict", lambda c: Cell(c.status.value, tone=_TONES.get(c.status, ""))),
+        words("Reason", lambda c: c.remark),
+    )
 
 
 def first_screen(study: Study) -> FirstScreen:
@@ -92,8 +121,3 @@ def outcome(study: Study) -> list[str]:
         tail = f" Failing: {'; '.join(failed)}." if failed else ""
         sentences.append(f"{counted(len(study.checks), 'check').capitalize()}: {study.check_counts}.{tail}")
     return sentences
-
-
-def _check_row(c: Check) -> CheckRow:
-    limit = c.limit if isinstance(c.limit, str) else exact(c.limit, _CHECK_DIGITS)
-    return CheckRow(c.name, exact(c.value, _CHECK_DIGITS), limit, c.status.value, _CSS_CLASS[c.status], c.remark)

@@ -1,7 +1,6 @@
 """Sentences at the head of a fit's sections: what the ship is, what limits coefficients, residuals and search."""
 
-from seatrial.core.results import Coefficient, Fit, ReferenceEstimate, Search
-from seatrial.core.results.comparison import inside_own_intervals
+from seatrial.core.results import Fit, Search
 from seatrial.core.text.numbers import duration, exact, percent
 from seatrial.core.text.words import counted, enumeration
 
@@ -22,48 +21,6 @@ def facts(fit: Fit) -> list[str]:
         *length, *scale, f"model {fit.model.name} with {counted(free, 'free coefficient')}",
         f"fitted to {counted(len(trained), 'run')}, {duration(seconds)} of records", fit.method.criterion,
     ]  # fmt: skip
-
-
-def coefficient_sentences(fit: Fit) -> list[str]:
-    """Return which coefficients differ from zero, or contain a known value."""
-    parts = [_significance(fit), _truth_coverage(fit)]
-    return [text for text in parts if text]
-
-
-def _free_coefficients(fit: Fit) -> list[Coefficient]:
-    return [c for c in fit.coefficients if not c.fixed]
-
-
-def _significance(fit: Fit) -> str:
-    free = _free_coefficients(fit)
-    if fit.reference is not None:
-        return _published_sentence(fit, fit.reference)
-    vague = [c.name for c in free if c.is_sign_open]
-    if not vague:
-        differ = f"All {len(free)} free coefficients differ" if len(free) > 1 else "The free coefficient differs"
-        return f"{differ} from zero at the 95 % level."
-    return (
-        f"{len(vague)} of {len(free)} free coefficients do not differ significantly from zero at the 95 % level "
-        f"({enumeration(vague)})."
-    )
-
-
-def _published_sentence(fit: Fit, reference: ReferenceEstimate) -> str:
-    """How a published method's values compare with the package's own estimate."""
-    return (
-        f"The method gives no intervals. {inside_own_intervals(fit, reference)}, the package’s own estimate, which the "
-        "next section shows with it."
-    )
-
-
-def _truth_coverage(fit: Fit) -> str:
-    comparable = [
-        c for c in _free_coefficients(fit) if c.truth is not None and c.lower is not None and c.upper is not None
-    ]
-    if not comparable:
-        return ""
-    inside = [c for c in comparable if c.lower <= c.truth <= c.upper]  # type: ignore[operator]
-    return f"{len(inside)} of {len(comparable)} 95 % intervals contain the comparable value of the coefficient."
 
 
 def residual_sentence(fit: Fit) -> str:
@@ -92,31 +49,16 @@ def search_status(fit: Fit) -> str:
     return fit.solution.status.value.partition(";")[0]
 
 
-def offset_sentences(fit: Fit) -> tuple[str, ...]:
-    """Return what is expected of a new session's offsets; of one recorded session, first that their spread is assumed.
-
-    Of a rudder's or nozzle's zero also what else would look the same.
-    """
-    sentences = tuple(population.sentence for population in fit.offset_populations)
-    if not sentences:
-        return ()
-    if any(offset.name == _STEERING_ZERO for offset in fit.offsets):
-        sentences = (*sentences, *_steering_zero_sentence(fit))
-    if len({offset.group for offset in fit.offsets}) > 1:
-        return sentences
-    return ("One session was recorded: how offsets differ between sessions is assumed, not estimated.", *sentences)
-
-
-def _steering_zero_sentence(fit: Fit) -> tuple[str, ...]:
-    """What else a rudder or nozzle amidships that turns the ship may come from; none where all of that is free."""
+def steering_zero_note(fit: Fit) -> str:
+    """Return what else a rudder or nozzle amidships that turns the ship may come from; empty where all that is free."""
     present = [c for c in fit.coefficients if c.name in _ASYMMETRIES]
     held = [c.name for c in present if c.fixed and c.estimate == 0.0]
-    if present and not held:
-        return ()
+    if not any(offset.name == _STEERING_ZERO for offset in fit.offsets) or (present and not held):
+        return ""
     where = f"held at zero here ({enumeration(held)})" if held else "which this model does not have"
     return (
         f"{_STEERING_ZERO} is known only as the angle at which the ship goes straight: a side force of the propeller "
-        f"or an asymmetric hull, {where}, would look the same.",
+        f"or an asymmetric hull, {where}, would look the same."
     )
 
 

@@ -1,8 +1,8 @@
 """Rows of a tuning's page: controllers, schedule, bounds, blocks, as text."""
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from operator import itemgetter
 
 from markupsafe import Markup
 
@@ -12,6 +12,7 @@ from seatrial.core.results.tuning import (
     Component,
     Controller,
     DiscreteBlock,
+    DiscreteController,
     DisturbanceSimulation,
     OperatingPoint,
     PerformanceBound,
@@ -22,26 +23,11 @@ from seatrial.core.values.notation import channel_meaning
 from seatrial.data.folder.gains_file import channel_display_unit
 from seatrial.reporting import tuning_text
 from seatrial.reporting.mathml import inline
-from seatrial.reporting.text_tables import TextTable
+from seatrial.reporting.section import Column, Level, TextTable, formula, number, plain_table, table_of, words
 
 _HALF = 1.96  # standard errors of half a 95 % interval
 # share of the largest gain of a name below which a gain is rounding
 ZERO_TOLERANCE = 1e-9
-
-
-@dataclass(frozen=True)
-class ControllerRow:
-    """One controller as text: cells in the order of the heads."""
-
-    name: str
-    gains: tuple[str, ...]
-    objectives: tuple[str, ...]
-    rms: tuple[str, ...]
-    reduction: str
-    margins: tuple[str, ...]
-    work: tuple[str, ...]
-    saturation_shares: tuple[str, ...]
-    violated: tuple[str, ...]
 
 
 def gain_symbol(name: str) -> Markup:
@@ -56,11 +42,14 @@ def gain_unit(tuning: Tuning, name: str) -> str:
     return "" if unit == "1" else unit
 
 
-def discrete_rows(tuning: Tuning) -> list[tuple[str, str, Markup]]:
+def discrete_table(controller: DiscreteController) -> TextTable:
     """Return role, name and difference equation of every block of the controller on board."""
-    if tuning.discrete is None:
-        return []
-    return [(b.role, b.name, Markup(inline(_difference_latex(b)))) for b in tuning.discrete.blocks]
+    return table_of(
+        controller.blocks,
+        words("Role", lambda b: b.role),
+        words("Block", lambda b: b.name),
+        formula("Difference equation", lambda b: Markup(inline(_difference_latex(b)))),
+    )
 
 
 def _difference_latex(block: DiscreteBlock) -> str:
@@ -97,11 +86,77 @@ def rms_headings(tuning: Tuning) -> list[tuple[str, str]]:
     return [*channels, ("its rate", tuning_text.unit_label(tuning.actuator, "/s")), *motion]
 
 
-def controller_rows(tuning: Tuning) -> list[ControllerRow]:
-    """Return the chosen controller, then the baselines."""
+def effect_rows(tuning: Tuning) -> list[tuple[str, ...]]:
+    """Return what the controllers do, a row for each quantity: reduction, rms, Ms, beyond limits, constraints."""
     controllers = tuning.compared
-    gains = gain_texts([c.gains for c in controllers], gain_names(tuning))
-    return [_controller_row(c, texts, tuning) for c, texts in zip(controllers, gains, strict=True)]
+    of_output, of_actuator = channel_display_unit(tuning.output)[0], channel_display_unit(tuning.actuator)[0]
+    factors = {"output": of_output, "actuator": of_actuator, "actuator_rate": of_actuator, "motion": 1.0}
+    used = [key for key in factors if key != "motion" or tuning.motion]
+    rms = [
+        (_label(*heading), *(significant(c.rms.get(key, math.nan) * factors[key], 3) for c in controllers))
+        for key, heading in zip(used, rms_headings(tuning), strict=True)
+    ]
+    reduction = ("reduction, %", *(fixed(100.0 * c.reduction, 1) for c in controllers))
+    limits = tuning.constraints
+    beyond = [
+        (f"{name} beyond limits, %", *(fixed(100.0 * share(c), 1) for c in controllers))
+        for name, limit, share in (
+            ("amplitudes", limits.limit, lambda c: c.saturation), ("rates", limits.rate, lambda c: c.rate_saturation)
+        ) if math.isfinite(limit)
+    ]  # fmt: skip
+    return [
+        *([reduction] if tuning_text.has_reduction(tuning) else []),
+        *rms,
+        ("sensitivity peak Ms", *(_ratio_text(c.Ms, 2) for c in controllers)),
+        *beyond,
+        ("constraints", *("violated" if c.violated else "kept" for c in controllers)),
+    ]
+
+
+def detail_rows(tuning: Tuning) -> list[tuple[str, ...]]:
+    """Return gains, objectives, margins and work of the actuator, a row for each."""
+    controllers, names = tuning.compared, gain_names(tuning)
+    gains = zip(*gain_texts([c.gains for c in controllers], names), strict=True)
+    factors = [degree_unit(unit)[0] for unit in tuning.units]
+    objectives = [
+        (_label(name, degree_unit(unit)[1]), *(significant(float(c.objectives[k]) * factors[k]) for c in controllers))
+        for k, (name, unit) in enumerate(tuning.objectives.items())
+    ]
+    margins: dict[str, Callable[[Controller], str]] = {
+        "gain may grow by a factor of": lambda c: _ratio_text(c.gain_margin, 1),
+        "gain may fall to a factor of": lambda c: fixed(c.lower_gain_margin, 2),
+        "phase margin, deg": lambda c: _ratio_text(math.degrees(c.phase_margin), 0),
+        "delay margin, s": lambda c: "∞" if math.isinf(c.delay_margin) else significant(c.delay_margin, 2),
+        "least damping ratio": lambda c: fixed(c.damping, 2),
+        "noise amplification, largest |K S|": lambda c: significant(c.noise_gain, 3),
+        "reversals, 1/h": lambda c: significant(c.reversals, 3),
+    }
+    if any(math.isfinite(c.energy) for c in controllers):
+        margins["energy of a reversal, J"] = lambda c: significant(c.energy, 3)
+        margins["mean power of the drive, W"] = lambda c: significant(c.power, 3)
+    return [
+        *((_label(name, gain_unit(tuning, name)), *texts) for name, texts in zip(names, gains, strict=True)),
+        *objectives,
+        *((label, *map(text, controllers)) for label, text in margins.items()),
+    ]
+
+
+def _label(quantity: str, unit: str) -> str:
+    return f"{quantity}, {unit}" if unit else quantity
+
+
+def rms_table(headings: Sequence[tuple[str, str, int]], rows: Sequence[Sequence[str]]) -> TextTable:
+    """Return rms values predicted, simulated and with limits: of the first heading also on the terminal.
+
+    headings: of what, unit, and how many columns: two where nothing was simulated without limits.
+    """
+    columns: list[Column[Sequence[str]]] = [words("rms of", lambda row: row[0])]
+    for k, (quantity, unit, count) in enumerate(headings):
+        for kind in ("predicted", "simulated", "with limits") if count == 3 else ("predicted", "with limits"):
+            place = len(columns)
+            level = Level.PAGE if k else Level.NORMAL
+            columns.append(number(f"{quantity} {kind}", itemgetter(place), unit, level=level))
+    return table_of(rows, *columns)
 
 
 def schedule_table(operating_points: tuple[OperatingPoint, ...]) -> TextTable:
@@ -118,7 +173,7 @@ def schedule_table(operating_points: tuple[OperatingPoint, ...]) -> TextTable:
         )
         for s, texts in zip(operating_points, gain_cells, strict=True)
     ]  # fmt: skip
-    return TextTable("Gains of the schedule", header, tuple([True] * (len(header) - 1) + [False]), tuple(rows), "")
+    return plain_table(header, rows, flush_left=(-1,))
 
 
 def robustness_rows(tuning: Tuning) -> list[tuple[str, ...]]:
@@ -159,57 +214,23 @@ def bound_row(b: PerformanceBound) -> tuple[str, str, str, str, str]:
     return b.name, fixed(b.ratio, 2), rms, b.conditions, b.note
 
 
-def component_row(c: Component, gains: dict[str, float]) -> tuple[str | Markup, ...]:
-    """Return role, name, transfer function, gain and its value, source."""
-    value = exact(gains[c.gain], 5) if c.gain in gains else ""  # digits of the gains file
-    letter = gain_symbol(c.gain) if c.gain else ""
-    return c.role, c.name, Markup(inline(transfer_latex(c.num, c.den))), letter, value, c.source
+def component_table(components: Sequence[Component], gains: Mapping[str, float]) -> TextTable:
+    """Return role, name, transfer function, gain with its value, and source of each block."""
+    return table_of(
+        components,
+        words("Role", lambda c: c.role),
+        words("Block", lambda c: c.name),
+        formula("Transfer function", lambda c: Markup(inline(transfer_latex(c.num, c.den)))),
+        formula("Gain", lambda c: gain_symbol(c.gain) if c.gain else Markup("")),
+        number("value", lambda c: exact(gains[c.gain], 5) if c.gain in gains else ""),  # digits of the gains file
+        words("Source", lambda c: c.source),
+    )
 
 
 def transfer_latex(num: tuple[float, ...], den: tuple[float, ...]) -> str:
     """Return num(s) / den(s) as LaTeX; the denominator 1 is left out."""
     above, below = _polynomial_latex(num), _polynomial_latex(den)
     return above if below == "1" else f"\\frac{{{above}}}{{{below}}}"
-
-
-def _controller_row(c: Controller, gains: tuple[str, ...], tuning: Tuning) -> ControllerRow:
-    factors = [degree_unit(unit)[0] for unit in tuning.units]
-    of_output, of_actuator = channel_display_unit(tuning.output)[0], channel_display_unit(tuning.actuator)[0]
-    rms = [c.rms.get(key, math.nan) * factor for key, factor in
-           (("output", of_output), ("actuator", of_actuator), ("actuator_rate", of_actuator), ("motion", 1.0))
-           if key != "motion" or tuning.motion]  # fmt: skip
-    has_limits = [math.isfinite(limit) for limit in (tuning.constraints.limit, tuning.constraints.rate)]
-    return ControllerRow(
-        c.name,
-        gains,
-        tuple(significant(float(v) * f) for v, f in zip(c.objectives, factors, strict=False)),
-        tuple(significant(v, 3) for v in rms),
-        fixed(100.0 * c.reduction, 1),
-        (_ratio_text(c.Ms, 2), _ratio_text(c.gain_margin, 1), fixed(c.lower_gain_margin, 2),
-         _ratio_text(math.degrees(c.phase_margin), 0),
-         "∞" if math.isinf(c.delay_margin) else significant(c.delay_margin, 2), fixed(c.damping, 2),
-         significant(c.noise_gain, 3)),
-        _work_texts(c, tuning),
-        tuple(fixed(100.0 * share, 1) if known else DASH for share, known in
-              zip((c.saturation, c.rate_saturation), has_limits, strict=True)),
-        c.violated,
-    )  # fmt: skip
-
-
-def work_headings(tuning: Tuning) -> list[tuple[str, str]]:
-    """Return names and units of what the actuator does: energy and power where its inertia is known."""
-    heads = [("reversals", "1/h")]
-    return [*heads, ("energy of a reversal", "J"), ("mean power of the drive", "W")] if _has_energy(tuning) else heads
-
-
-def _has_energy(tuning: Tuning) -> bool:
-    return any(math.isfinite(c.energy) for c in tuning.compared)
-
-
-def _work_texts(c: Controller, tuning: Tuning) -> tuple[str, ...]:
-    texts = (significant(c.reversals, 3),)
-    energy = (significant(c.energy, 3), significant(c.power, 3))
-    return (*texts, *energy) if _has_energy(tuning) else texts
 
 
 def _ratio_text(value: float, decimals: int) -> str:

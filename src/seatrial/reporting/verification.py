@@ -16,9 +16,11 @@ from seatrial.core.values import Array
 from seatrial.core.values.notation import channel_meaning
 from seatrial.data.folder.gains_file import channel_display_unit
 from seatrial.reporting import verification_text
-from seatrial.reporting.document import page_text
+from seatrial.reporting.document import chapters_page
+from seatrial.reporting.finding_chapter import finding_section
 from seatrial.reporting.first_screen import FirstScreen
-from seatrial.reporting.tables import finding_groups
+from seatrial.reporting.model_chapter import version_text
+from seatrial.reporting.section import Level, Picture, Section, fact_table
 
 FOREST_CAPTION = (
     "Achieved over predicted, 95 % intervals of what was achieved; the vertical line is the prediction, its own "
@@ -55,27 +57,39 @@ _DIGITS = 5  # of gains; chosen
 _SIZE, _POINT, _HEIGHT, _COLUMNS = 3.2, 2.2, 150.0, 2  # px, px, px, panels side by side; chosen
 
 
+def sections(v: Verification) -> tuple[Section, ...]:
+    """Return the chapters of a verification that have content, in order."""
+    spectra = Picture(lambda: svg(spectra_chart(v)), SPECTRA_CAPTION)
+    courses = Picture(lambda: svg(changes_chart(v)), CHANGES_CAPTION)
+    method = Section(
+        "Method",
+        "method",
+        sentences=(CHANGES_METHOD if v.changes else METHOD,),
+        table=fact_table({"Plant": v.plant, "Versions": version_text(v.versions)}),
+        level=Level.PAGE,
+        is_folded=True,
+    )
+    chapters = (
+        verification_text.quantity_section(v),
+        verification_text.reduction_section(v),
+        verification_text.correction_section(v),
+        verification_text.leg_section(v, (spectra,) if v.legs else ()),
+        verification_text.change_section(v, (courses,) if v.changes else ()),
+        finding_section(v.findings),
+        method,
+    )
+    return tuple(chapter for chapter in chapters if chapter)
+
+
 def html(v: Verification) -> str:
-    """Return the page as text; sections without content are left out."""
-    findings, tables = finding_groups(v.findings), verification_text.tables(v)
-    headings = {key: table.title for key, table in tables.items()}
-    titles = ({"findings": "Findings"} if findings else {}) | headings | {"method": "Method and provenance"}
+    """Return the page as text; chapters without content are left out."""
     screen = FirstScreen(
         verification_text.verdict(v), verification_text.key_facts(v), Markup(svg(quantity_forest(v))),
-        CHANGES_FOREST_CAPTION if v.changes else FOREST_CAPTION,
+        CHANGES_FOREST_CAPTION if v.changes else FOREST_CAPTION, gains_title="Gains that were on",
+        gains=tuple((name, exact(value, _DIGITS)) for name, value in v.gains.items()),
     )  # fmt: skip
-    figures = {"legs": (spectra_chart(v), SPECTRA_CAPTION), "changes": (changes_chart(v), CHANGES_CAPTION)}
-    context = {
-        "verification": v,
-        "titles": titles,
-        "screen": screen,
-        "gains": [(name, exact(value, _DIGITS)) for name, value in v.gains.items()],
-        "findings": findings,
-        "tables": tables,
-        "figures": {key: (Markup(svg(chart)), caption) for key, (chart, caption) in figures.items() if chart},
-        "method": CHANGES_METHOD if v.changes else METHOD,
-    }
-    return page_text("verification.html", context)
+    name = f"{v.name[:1].upper()}{v.name[1:]}"
+    return chapters_page("Verified controller", name, screen, sections(v), title=f"{v.name}: verified")
 
 
 def quantity_forest(v: Verification) -> Chart:

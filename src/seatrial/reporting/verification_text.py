@@ -8,7 +8,7 @@ from seatrial.core.text.words import enumeration
 from seatrial.core.values import Severity, display_unit
 from seatrial.core.values.notation import channel_meaning
 from seatrial.reporting.first_screen import KeyFact
-from seatrial.reporting.text_tables import TextTable
+from seatrial.reporting.section import Picture, Section, plain_table
 
 _DIGITS = 3  # of values; chosen
 
@@ -70,23 +70,14 @@ def _extent_fact(v: Verification) -> KeyFact:
     return KeyFact("Legs", f"{on} with control, {len(v.legs) - on} without", "legs", is_enough)
 
 
-def tables(v: Verification) -> dict[str, TextTable]:
-    """Return the tables that have rows, by the key of their section."""
-    every = {
-        "quantities": quantity_table(v), "reductions": reduction_table(v), "model": correction_table(v),
-        "legs": leg_table(v), "changes": change_table(v),
-    }  # fmt: skip
-    return {key: table for key, table in every.items() if table.rows}
-
-
-def quantity_table(v: Verification) -> TextTable:
+def quantity_section(v: Verification) -> Section:
     """Return predicted and achieved values with their intervals."""
-    return TextTable(
+    header = ("", "unit", "predicted", "95 % interval", "achieved", "95 % interval", "")
+    return Section(
         "Predicted and achieved" if v.changes else "Predicted and achieved, legs with control",
-        ("", "unit", "predicted", "95 % interval", "achieved", "95 % interval", ""),
-        (False, False, True, True, True, True, False),
-        tuple(_quantity_row(q) for q in v.quantities),
-        _CHANGES_NOTE if v.changes else _LEGS_NOTE,
+        "quantities",
+        table=plain_table(header, map(_quantity_row, v.quantities), flush_left=(0, 1, -1)),
+        note=_CHANGES_NOTE if v.changes else _LEGS_NOTE,
     )
 
 
@@ -123,26 +114,25 @@ def _ends(lower: float, upper: float) -> str:
     return f"{significant(lower, _DIGITS)} to {significant(upper, _DIGITS)}"
 
 
-def reduction_table(v: Verification) -> TextTable:
+def reduction_section(v: Verification) -> Section:
     """Return the reduction by each way to correct for the sea."""
-    rows = tuple(
+    rows = [
         (r.method, fixed(100.0 * r.value, 1), f"{fixed(100.0 * r.lower, 1)} to {fixed(100.0 * r.upper, 1)}")
         for r in v.reductions
-    )
-    return TextTable(
-        "Reduction achieved, by how the sea is accounted for", ("", "%", "95 % interval"), (False, True, True), rows, ""
-    )
+    ]
+    title = "Reduction achieved, by how the sea is accounted for"
+    return Section(title, "reductions", table=plain_table(("", "%", "95 % interval"), rows))
 
 
-def correction_table(v: Verification) -> TextTable:
+def correction_section(v: Verification) -> Section:
     """Return the plant's properties before the log and with it."""
-    return TextTable(
+    header = ("", "unit", "model", "± before", "with the log", "95 % interval", "")
+    return Section(
         "The model before the log and with it",
-        ("", "unit", "model", "± before", "with the log", "95 % interval", ""),
-        (False, False, True, True, True, True, False),
-        tuple(_correction_row(c) for c in v.corrections),
-        f"Before: standard deviation, {_PRIOR_OF_CHANGES if v.changes else _PRIOR_OF_LEGS}. With the log: what was "
-        "known before is the prior. Moved: the model's value lies outside the interval.",
+        "model",
+        table=plain_table(header, map(_correction_row, v.corrections), flush_left=(0, 1, -1)),
+        note=f"Before: standard deviation, {_PRIOR_OF_CHANGES if v.changes else _PRIOR_OF_LEGS}. With the log: what "
+        "was known before is the prior. Moved: the model's value lies outside the interval.",
     )
 
 
@@ -155,17 +145,18 @@ def _correction_row(c: ModelCorrection) -> tuple[str, ...]:
     return c.name, unit, model, deviation, log, _ends(c.lower, c.upper), "moved" if c.is_moved else "held"
 
 
-def leg_table(v: Verification) -> TextTable:
+def leg_section(v: Verification, pictures: tuple[Picture, ...]) -> Section:
     """Return the legs with the sea that explains each."""
     (factor, unit), (actuator_factor, actuator_unit) = (_channel_unit(name) for name in (v.output, v.actuator))
-    return TextTable(
+    header = ("record", "from s", "to s", "control", "height m", "95 % interval", "peak s", "95 % interval",
+              f"{v.output} {unit}", f"{v.actuator} {actuator_unit}", "of its orders")  # fmt: skip
+    return Section(
         "Legs, and the sea that explains each",
-        ("record", "from s", "to s", "control", "height m", "95 % interval", "peak s", "95 % interval",
-         f"{v.output} {unit}", f"{v.actuator} {actuator_unit}", "of its orders"),
-        (False, True, True, False, True, True, True, True, True, True, True),
-        tuple(_leg_row(leg, factor, actuator_factor) for leg in v.legs),
-        "Last columns: rms, and what the actuator did over what the gains order of the output.",
-    )  # fmt: skip
+        "legs",
+        table=plain_table(header, [_leg_row(leg, factor, actuator_factor) for leg in v.legs], flush_left=(0, 3)),
+        note="Last columns: rms, and what the actuator did over what the gains order of the output.",
+        pictures=pictures,
+    )
 
 
 def _channel_unit(symbol: str) -> tuple[float, str]:
@@ -184,21 +175,23 @@ def _leg_row(leg: VerifiedLeg, factor: float, actuator_factor: float) -> tuple[s
     )  # fmt: skip
 
 
-def change_table(v: Verification) -> TextTable:
+def change_section(v: Verification, pictures: tuple[Picture, ...]) -> Section:
     """Return each change: overshoot and settling, predicted without weather and achieved."""
     factor, unit = _channel_unit(v.output)
-    rows = tuple(
+    rows = [
         (
             c.record, fixed(c.start, 0), significant(factor * c.change, _DIGITS),
             fixed(100.0 * c.predicted_overshoot, 1), fixed(100.0 * c.overshoot, 1),
             significant(c.predicted_settling, _DIGITS), significant(c.settling, _DIGITS),
         )
         for c in v.changes
-    )  # fmt: skip
-    return TextTable(
+    ]  # fmt: skip
+    header = ("record", "at s", f"change {unit}", "overshoot % predicted", "achieved", "settling s predicted",
+              "achieved")  # fmt: skip
+    return Section(
         "Changes one by one",
-        ("record", "at s", f"change {unit}", "overshoot % predicted", "achieved", "settling s predicted", "achieved"),
-        (False, True, True, True, True, True, True),
-        rows,
-        "Predicted by the model as it was, without weather.",
+        "changes",
+        table=plain_table(header, rows),
+        note="Predicted by the model as it was, without weather.",
+        pictures=pictures,
     )

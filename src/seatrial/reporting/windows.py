@@ -2,11 +2,8 @@
 
 from collections.abc import Sequence
 
-from seatrial.core.results import Fit, Prediction, WindowScore
-from seatrial.core.results.prediction import ChannelScore
-from seatrial.core.text.numbers import DASH, fixed, significant
-from seatrial.core.text.words import counted, enumeration, sentence
-from seatrial.reporting.text_tables import TextTable
+from seatrial.core.results import Fit, Prediction
+from seatrial.core.text.words import enumeration, sentence
 
 WINDOW_NOTE = (
     "Errors in windows: root-mean-square errors open loop, each window from the state estimated in its first seconds. "
@@ -14,49 +11,6 @@ WINDOW_NOTE = (
     "0 no better than the mean; in brackets R², one less the squares of the errors over those about the mean."
 )
 """How the tables of windows are to be read, once for all runs."""
-
-
-def window_tables(
-    prediction: Prediction, labels: dict[str, tuple[str, str]], factors: dict[str, float]
-) -> list[TextTable]:
-    """Return errors and fit for each length of windows; labels: score -> name, unit; factors: to that, 1 if absent."""
-    tables = []
-    for w in prediction.windows:
-        header = ("this fit", *(b.name for b in w.baselines))
-        tables += [_errors(w, header, labels, factors), _fits(w, header, labels)]
-    return tables
-
-
-def _scores(w: WindowScore, channel: str) -> list[ChannelScore | None]:
-    """Scores of the fit and of each baseline; None where it does not predict the channel."""
-    return [w.scores[channel], *(b.scores.get(channel) for b in w.baselines)]
-
-
-def _errors(
-    w: WindowScore, header: tuple[str, ...], labels: dict[str, tuple[str, str]], factors: dict[str, float]
-) -> TextTable:
-    rows = []
-    for name, own in w.scores.items():
-        texts = [DASH if s is None else significant(s.rms * factors.get(name, 1.0), 3) for s in _scores(w, name)]
-        share = DASH if own.inside_band is None else f"{fixed(100.0 * own.inside_band, 0)} %"
-        share += " (too wide to test)" if own.is_band_too_wide else ""
-        rows.append((f"{labels[name][0]}, {labels[name][1]}", *texts, share))
-    columns = ("", *header, "inside 95 % band")
-    lost = f"; {w.divergence_text}" if w.diverged else ""
-    title = f"{counted(w.count, 'window')} of {w.window}{lost}"
-    return TextTable(title, columns, (False, *(True for _ in columns[1:])), tuple(rows), "")
-
-
-def _fits(w: WindowScore, header: tuple[str, ...], labels: dict[str, tuple[str, str]]) -> TextTable:
-    rows = tuple(
-        (
-            labels[name][0],
-            *(DASH if s is None else f"{fixed(s.fit_percent, 1)} ({fixed(s.r_squared, 3)})" for s in _scores(w, name)),
-        )
-        for name in w.scores
-    )
-    numeric = (False, *(True for _ in header))
-    return TextTable(f"Fit in windows of {w.window}, % (R²)", ("", *header), numeric, rows, "")
 
 
 def shortest_judged(fit: Fit) -> float:

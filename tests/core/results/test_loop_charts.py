@@ -8,7 +8,7 @@ import pytest
 from tests.reporting.fabricated_tuning import fabricated_bare, fabricated_fin
 
 from seatrial.core.figures.marks import Line, Text
-from seatrial.core.results.loop_charts import nyquist_chart, sensitivity_chart, styled_controllers
+from seatrial.core.results.loop_charts import bode_chart, nyquist_chart, sensitivity_chart, styled_controllers
 
 
 def test_the_peak_allowed_is_drawn_where_there_is_one() -> None:
@@ -32,7 +32,8 @@ def test_sensitivity_and_complementary_sensitivity_belong_together() -> None:
 
 def test_without_a_loop_there_is_no_chart() -> None:
     bare = fabricated_bare()
-    assert styled_controllers(bare) == [] and sensitivity_chart(bare) is None and nyquist_chart(bare) is None
+    assert styled_controllers(bare) == []
+    assert all(draw(bare) is None for draw in (sensitivity_chart, nyquist_chart, bode_chart))
     assert len({stroke for _, stroke in styled_controllers(fabricated_fin())}) == len(
         styled_controllers(fabricated_fin())
     )

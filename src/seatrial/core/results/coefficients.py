@@ -196,28 +196,6 @@ class OffsetPopulation:
     ] = None
     slope_standard_error: Annotated[Number | None, Field(description="null as `slope`")] = None
 
-    @property
-    def sentence(self) -> str:
-        """Return mean, deviation and covariate as a sentence, angles in degrees."""
-        factor, unit = display_unit(self.unit)
-
-        def text(value: float) -> str:
-            return significant(factor * value, 2)
-
-        error = f" (standard error {text(self.standard_error)})" if self.standard_error > 0.0 else ", as declared"
-        sentence = (
-            f"{self.name} of a new session: {text(self.mean)} {unit} expected{error}; "
-            f"{text(self.deviation)} {unit} standard deviation between sessions"
-        )
-        if self.slope is None or self.slope_standard_error is None:
-            return f"{sentence}."
-        size = abs(self.slope) / self.slope_standard_error
-        word = "" if size > two_sided_quantile(STORED_LEVEL, math.inf) else ", which is no more than chance explains"
-        return (
-            f"{sentence}; it changes by {text(self.slope)} {unit} (standard error {text(self.slope_standard_error)}) "
-            f"for one standard deviation of the rms of {self.covariate}{word}."
-        )
-
 
 @dataclass(frozen=True)
 class Method:
