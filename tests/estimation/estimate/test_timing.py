@@ -9,6 +9,7 @@ from seatrial.core.values import Record
 from seatrial.data.trial import EstimateMethod, EstimateSettings
 from seatrial.estimation.estimate.assemble import (
     Runs,
+    is_course_open,
     output_error_problem,
     set_inputs,
     timing_nuisances,
@@ -90,6 +91,7 @@ def test_a_declaration_comes_before_the_steps(rng: np.random.Generator) -> None:
     straight = Record.from_dataframe(run.to_dataframe(), between={"delta": "straight"})
     assert with_held_inputs(nomoto(), [straight]).held == frozenset()
     assert with_held_inputs(nomoto(), [run.resampled(0.5)]).held == frozenset()  # a step lies anywhere in a sample
+    assert [is_course_open("delta", [r]) for r in (run, straight, run.resampled(0.5))] == [True, False, False]
 
 
 def test_segments_know_what_was_ordered_before_them(rng: np.random.Generator) -> None:

@@ -134,6 +134,12 @@ def _is_resampled(record: Record, name: str) -> bool:
     return 0.0 < source * _OWN_RATE < record.dt
 
 
+def is_course_open(name: str, records: Sequence[Record]) -> bool:
+    """Return whether no record says how an input runs between samples, and none was resampled, which hides it."""
+    present = [r for r in records if name in r]
+    return not any(r.channel(name).between or _is_resampled(r, name) for r in present)
+
+
 def timing_nuisances(model: Model, records: Sequence[Record], settings: EstimateSettings) -> tuple[Nuisance, ...]:
     """Return a delay for each set input that moves in the records and that the settings do not name.
 

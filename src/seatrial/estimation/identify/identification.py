@@ -1,6 +1,6 @@
 """One identification: records, choices of the user, the estimate, and the errors of instruments that it confirms."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cached_property
@@ -12,20 +12,25 @@ from seatrial.core.results import Symmetry
 from seatrial.core.text.numbers import significant
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Finding, InputError, Parameters, ProgressReporter, Record, Severity
+from seatrial.core.values.arrays import BETWEEN, Between
 from seatrial.data.check.phases import is_free_decay
 from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRecord
 from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, estimate_model
-from seatrial.estimation.estimate.assemble import training_runs
+from seatrial.estimation.estimate.assemble import UNIFORM, is_course_open, training_runs
 from seatrial.estimation.estimate.criterion_choice import WAVE_FORCES
 from seatrial.estimation.estimate.fit import moving_inputs, with_segment_seconds
+from seatrial.estimation.estimate.newton_refinement import approach_by_gradient
+from seatrial.estimation.estimate.point_estimate import PointEstimate
+from seatrial.estimation.estimate.process_noise import ProcessNoise
 from seatrial.estimation.estimate.settings import INITIAL_STATE_SHIP_LENGTHS, characteristic_time
 from seatrial.estimation.identify.identifiability import box_scale, stands_on_box
 from seatrial.estimation.identify.instruments import ErrorInformation, Suspect, detected_errors, instrument_errors
-from seatrial.estimation.identify.score_test import output_error_estimate
+from seatrial.estimation.identify.score_test import output_error_estimate, own_criterion
 from seatrial.estimation.identify.terms import standard_error_ratio
 from seatrial.estimation.information.symmetries import refuse_unidentifiable, structural_symmetries
 from seatrial.estimation.problem.segments import compared_outputs
 from seatrial.estimation.problem.static_forces import StaticForces
+from seatrial.numerics.optimise import levenberg_marquardt
 from seatrial.physics.sensors import Sensors, with_sensors
 from seatrial.physics.sensors.measured_outputs import without_sensors
 
@@ -165,6 +170,74 @@ class Identification:
     def _force_names(self) -> tuple[str, ...]:
         model = self.trial.model
         return tuple(name for points in self.trial.forces for name in StaticForces(model, points).force_names)
+
+
+# A task whose inputs run between samples as their delays say, where no record does.
+
+_NEARER = 0.25  # of a sample: a delay by more is nearer to that of the other course than to none
+_COURSE_STEPS = 6  # of a search by the gradient with the other course, which begins close to its optimum; chosen
+
+
+def with_likelier_courses(task: Identification) -> Identification:
+    """Return the task with inputs straight between samples that were taken as held, or held that were straight.
+
+    Held values come half a sample after straight lines, so that a delay by nearly as much speaks for the other course.
+    It is taken where the records are likelier with it, by the criterion and the noise of the task's own estimate.
+    """
+    estimate = own_criterion(task.estimation)
+    courses = _courses_by_delay(task.estimation.estimate, task.runs.records)
+    if not courses or not _are_likelier(estimate, courses):
+        return task
+    records = tuple(replace(r, record=_with_courses(r.record, courses)) for r in task.records)
+    others = tuple(f for f in task.findings if f.code != "stepped-input")
+    return replace(task, records=records, findings=(*others, _course_finding(courses)))
+
+
+def _with_courses(record: Record, courses: Mapping[str, Between]) -> Record:
+    for name in courses.keys() & record.channels.keys():
+        record = record.with_channel(name, replace(record.channel(name), between=courses[name]))
+    return record
+
+
+def _course_finding(courses: Mapping[str, Between]) -> Finding:
+    """The note on inputs whose delay says how they run between samples."""
+    names = {way: [n for n, course in courses.items() if course == way] for way in BETWEEN}
+    texts = [f"{enumeration(some, len(some))} {way}" for way, some in names.items() if some]
+    return Finding(
+        Severity.INFO, "stepped-input", f"between samples the records show {' and '.join(texts)}",
+        "the other way the records are less likely, and half a sample is left as a delay",
+        "declare between where you know it",
+    )  # fmt: skip
+
+
+def _courses_by_delay(estimate: PointEstimate, records: Sequence[Record]) -> dict[str, Between]:
+    """How inputs would run between samples by their delays, mean of all sessions: those whose records leave it open."""
+    problem, courses = estimate.problem, dict[str, Between]()
+    for j, nuisance in enumerate(problem.nuisances, start=len(problem.session_parameters)):
+        name, sample = nuisance.correction.input, UNIFORM * nuisance.prior.standard_deviation
+        if nuisance.correction.kind == "delay" and nuisance.is_spread_fixed and is_course_open(name, records):
+            late, is_held = float(np.mean(estimate.session_offsets[:, j])), name in problem.model.held
+            if (-late if is_held else late) > _NEARER * sample:
+                courses[name] = "straight" if is_held else "held"
+    return courses
+
+
+def _are_likelier(estimate: PointEstimate | ProcessNoise, courses: Mapping[str, Between]) -> bool:
+    """Whether the criterion of an estimate is less with these courses, where a search from its optimum leads."""
+    runs = estimate.problem.runs if isinstance(estimate, ProcessNoise) else estimate.problem
+    point = estimate.optimum.solution.point.copy()
+    own = point[len(runs.free) : runs.size].reshape(-1, runs.unknowns_per_session)
+    for j, nuisance in enumerate(runs.nuisances, start=len(runs.session_parameters)):
+        if (course := courses.get(nuisance.correction.input)) and nuisance.correction.kind == "delay":
+            half = 0.5 * UNIFORM * nuisance.prior.standard_deviation
+            own[:, j] += half if course == "straight" else -half
+    held = {n for n in runs.model.input_names if courses.get(n, "held" if n in runs.model.held else "") == "held"}
+    changed = replace(runs, model=runs.model.with_held(held))
+    if isinstance(estimate, ProcessNoise):
+        optimum, _ = approach_by_gradient(replace(estimate.problem, runs=changed), point, _COURSE_STEPS)
+    else:
+        optimum = levenberg_marquardt(changed, point, estimate.optimum.local)
+    return optimum.solution.value < estimate.optimum.solution.value
 
 
 # A task whose model has the errors of instruments that its records show, which the estimate with them confirms.

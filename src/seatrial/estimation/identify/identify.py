@@ -25,6 +25,7 @@ from seatrial.estimation.identify.identification import (
     Situation,
     situation_of,
     with_detected_sensor_errors,
+    with_likelier_courses,
 )
 from seatrial.estimation.identify.search import (
     check_search_settings,
@@ -182,7 +183,7 @@ def identify(
     if method.is_published:
         return _published(task, situation, report_progress)
     if situation is Situation.STEERED:
-        task = with_detected_sensor_errors(task)
+        task = with_detected_sensor_errors(with_likelier_courses(task))
     fit = STRATEGIES[situation](task)
     fit = replace(fit, method=replace(fit.method, name=method.value))
     if not compare or situation is Situation.UNKNOWN_WAVES:  # no input, so that there is nothing to regress on
