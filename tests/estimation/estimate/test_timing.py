@@ -16,6 +16,7 @@ from seatrial.estimation.estimate.assemble import (
     with_held_inputs,
 )
 from seatrial.estimation.estimate.fit import estimate_model
+from seatrial.estimation.problem.prediction_error import join_segments
 from seatrial.physics.models import heave_pitch, mmg, model_named, nomoto, waterjet
 
 K, T = 0.12, 9.0
@@ -107,3 +108,12 @@ def test_segments_know_what_was_ordered_before_them(rng: np.random.Generator) ->
     rows = np.concatenate([np.arange(a, a + n) for a, n in zip(
         cut.data.run_inputs.place[:, 0], np.diff(cut.data.offsets), strict=True)])  # type: ignore[union-attr]  # fmt: skip
     np.testing.assert_allclose(pieces, y[rows], atol=1e-12)
+
+
+def test_runs_whose_segments_are_joined_keep_their_inputs(rng: np.random.Generator) -> None:
+    runs = Runs.one_session_each(tuple(exact(rng, count=count) for count in (120, 90, 150)), 8.0)
+    cut = output_error_problem(nomoto(), runs, 26.0, EstimateSettings())
+    whole = output_error_problem(nomoto(), runs, np.inf, EstimateSettings())
+    joined, _ = join_segments(cut)
+    point, local = np.array([K, T, 0.5]), whole.measured_initial_states()
+    np.testing.assert_allclose(joined.simulated_outputs(point, local), whole.simulated_outputs(point, local))

@@ -389,5 +389,6 @@ def join_segments(problem: OutputError) -> tuple[OutputError, Index]:
         offsets=np.concatenate([[0], np.cumsum(rows)]).astype(np.int64), run=data.run[start],
         session=data.session[start], history=None if data.history is None else data.history.selected(start),
         beginnings=None if data.beginnings is None else data.beginnings.selected(start),
+        run_inputs=None if data.run_inputs is None else data.run_inputs.selected(start),
     )  # fmt: skip
     return replace(problem, data=whole, inflation=None), start
