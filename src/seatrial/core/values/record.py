@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from datetime import UTC, datetime
 from enum import StrEnum
+from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self
 
@@ -123,7 +124,7 @@ class Record(PickledByConstructor):
         """Seconds from first to last sample."""
         return float(self.time[-1] - self.time[0])
 
-    @property
+    @cached_property
     def is_uniform(self) -> bool:
         """Whether time increases in steps that agree within a thousandth."""
         steps = np.diff(self.time)

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import accumulate
 
 import numpy as np
 
@@ -123,9 +122,11 @@ def steady_turning_response(record: Record) -> tuple[float, float] | None:
 
 def _first_order_lag(values: Array, samples: float) -> Array:
     """First-order lag of the given number of samples, started at rest at the first value."""
+    from scipy.signal import lfilter
+
     a = 1.0 / (samples + 1.0)
-    late = accumulate(values.tolist(), lambda before, value: a * value - (a - 1.0) * before, initial=float(values[0]))
-    return np.array(list(late)[1:])
+    late, _ = lfilter([a], [1.0, a - 1.0], values, zi=[(1.0 - a) * values[0]])
+    return np.asarray(late, dtype=np.float64)
 
 
 def _yaw_rate_signal(record: Record) -> Array | None:

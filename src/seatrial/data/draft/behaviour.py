@@ -190,10 +190,11 @@ def checked_by_behaviour(
     """Return the guesses of the sources of one run with units, frames and signs as the motion shows them."""
     result = judged_guesses(surveys, guesses)
     named = {g.symbol: g.side for one in result for g in one if g.is_used and g.symbol.startswith("command_")}
+    record = run_record(surveys, result)
     for decide in (_over_ground, rest_of_commands, command_directions):
-        record = run_record(surveys, result)
-        if record is not None:
-            result = _changed(result, decide(record))
+        if record is not None and (changes := decide(record)):
+            result = _changed(result, changes)
+            record = run_record(surveys, result)
     if any(g.is_used and g.is_of_wind for one in result for g in one):
         record = run_record(surveys, result, has_wind=True)
         result = result if record is None else _changed(result, wind_readings(record))
