@@ -55,6 +55,15 @@ def test_rows_written_twice_are_dropped() -> None:
     assert [f.code for f in findings] == ["repeated-rows"] and len(rebuilt) == 40
 
 
+def test_rows_alike_by_rounding_are_kept() -> None:
+    """Towing tanks write three significant digits: beyond 100 s stamps come in whole seconds."""
+    exact = 0.13527 * np.arange(4000)
+    time = np.array([float(f"{t:.2E}") for t in exact])
+    rebuilt, findings = rebuild_time_base(run(time, np.round(10.0 * np.sin(0.02 * exact))))
+    assert [f.code for f in findings] == ["time-base"]
+    assert len(rebuilt) == 4000 and rebuilt.dt == pytest.approx(0.13527, rel=1e-4)
+
+
 def test_uneven_sampling_is_interpolated(rng: np.random.Generator) -> None:
     time = np.cumsum(rng.uniform(0.02, 0.2, 400))
     rebuilt, findings = rebuild_time_base(run(time))

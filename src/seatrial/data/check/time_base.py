@@ -478,12 +478,17 @@ def _fill_missing_stamps(record: Record) -> tuple[Record, tuple[Finding, ...]]:
 
 
 def _without_duplicates(record: Record) -> tuple[Record, tuple[Finding, ...]]:
-    """Rows dropped that repeat the stamp and every value of the row before."""
+    """Rows dropped that repeat the stamp and every value of the row before, unless the rows are even as they are.
+
+    Readings and stamps of few digits repeat by rounding: dropped, they would be missing.
+    """
     same = [(np.diff(c.values) == 0) | np.isnan(c.values[1:]) for c in record.channels.values()]
     repeat = np.concatenate([[False], (np.diff(record.time) == 0) & np.all(same, axis=0) & bool(same)])
     if not repeat.any():
         return record, ()
     keep = ~repeat
+    if _is_full(record.time) and not _is_full(record.time[keep]):
+        return record, ()
     channels = {s: c.with_values(c.values[keep]) for s, c in record.channels.items()}
     finding = Finding(
         Severity.WARNING,
@@ -494,6 +499,14 @@ def _without_duplicates(record: Record) -> tuple[Record, tuple[Finding, ...]]:
     )
     kept = replace(record, time=record.time[keep], channels=channels)
     return kept.with_step(f"{repeat.sum()} repeated rows dropped"), (finding,)
+
+
+def _is_full(time: Array) -> bool:
+    """Whether stamps are even, and no row is missing between them."""
+    if len(time) < 2:
+        return True
+    base = even_base(time)
+    return base.is_even and int(base.index[-1]) == len(time) - 1
 
 
 def _time_base_findings(record: Record, grid: EvenBase) -> tuple[Finding, ...]:
