@@ -107,3 +107,10 @@ def test_what_is_no_log_in_a_folder_is_left_out_and_named(tmp_path: Path) -> Non
     (tmp_path / "units.csv").rename(tmp_path / "none" / "units.csv")
     with pytest.raises(InputError, match=r"there is no log to draft a trial of: .*units\.csv"):
         draft_trial(tmp_path / "none")
+
+
+def test_files_that_each_hold_heading_and_rudder_are_runs(tmp_path: Path) -> None:
+    columns = BASE | {"rudder": TRUTH["delta"] / DEGREE}
+    write(tmp_path / "zigzag.csv", {key: values[:900] for key, values in columns.items()})
+    write(tmp_path / "circle.csv", {key: v[1300:2300] for key, v in columns.items()} | {"rpm": np.full(1000, 90.0)})
+    assert [(run.name, len(run.sources)) for run in draft_trial(tmp_path).runs] == [("circle", 1), ("zigzag", 1)]

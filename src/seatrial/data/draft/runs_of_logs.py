@@ -7,7 +7,9 @@ from datetime import UTC, datetime
 from itertools import pairwise, takewhile
 from pathlib import Path
 
+from seatrial.data.check.time_base import INPUT_CHANNELS
 from seatrial.data.draft.column_guess import ColumnGuess
+from seatrial.data.draft.guess import guess_columns
 from seatrial.data.draft.naming import StatedColumns, command_of_topic
 from seatrial.data.draft.ship_estimates import StatedSize, speed_in_header
 from seatrial.data.draft.survey import LogSurvey, TopicSummary
@@ -80,6 +82,7 @@ def _with_offset(topic: TopicSummary, offset: float) -> TopicSummary:
 
 _EPOCH_CLOCK_S = 1e8  # s beyond which a clock counts from 1970 or the like, three years; as in the parts of a run
 _SEPARATORS = "_-. /"
+_HEADINGS = frozenset({"psi", "psi_magnetic", "q_w"})  # channels that show the heading
 
 
 @dataclass(frozen=True)
@@ -101,8 +104,8 @@ def runs_of_logs(surveys: Sequence[LogSurvey]) -> list[LogRun]:
     Files of one kind (format, topics and columns) with clocks that start anew or do not overlap are runs; files of
     several kinds are sources of one run where their clocks, counting from 1970, overlap, where those of one kind are
     the commands of a craft's thrusters, or where their names are alike but for the kind. Where nothing of this groups
-    them, the files of one kind that lie in one folder are runs and the other kinds are left out; where there are none,
-    all are sources of one run.
+    them, files that each hold heading and input are runs, or else those of one kind that lie in one folder, and the
+    others are left out; where there are none, all are sources of one run.
     """
     if len({survey.path for survey in surveys}) < len(surveys):  # sheets of a workbook
         sheets = [next((topic.topic for topic in survey.topics), "") for survey in surveys]
@@ -123,6 +126,9 @@ def runs_of_logs(surveys: Sequence[LogSurvey]) -> list[LogRun]:
         return _named([together])
     if by_name := _by_name(groups):
         return _named(by_name)
+    complete = [survey for survey in surveys if _is_complete(survey)]
+    if len({survey.kind for survey in complete}) > 1:
+        return _named([[survey] for survey in complete])
     return [LogRun("", (survey,)) for survey in series] or _named([together])
 
 
@@ -142,6 +148,12 @@ def _overlapping(surveys: Sequence[LogSurvey]) -> list[list[LogSurvey]]:
             clusters.append([survey])
         end = max(end, stop)
     return clusters
+
+
+def _is_complete(survey: LogSurvey) -> bool:
+    """Whether a log holds a heading and an input, by the names of its columns: a run by itself."""
+    symbols = {guess.symbol for guess in guess_columns(survey) if guess.is_used}
+    return bool(symbols & _HEADINGS) and not symbols.isdisjoint(INPUT_CHANNELS)
 
 
 def _is_series(group: Sequence[LogSurvey]) -> bool:
