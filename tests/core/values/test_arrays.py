@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import frozen
-from seatrial.core.values.arrays import correlation_matrix, sentinel_value
+from seatrial.core.values.arrays import correlation_matrix, sentinel_value, smeared_wraps
 
 
 def test_correlation_of_a_covariance() -> None:
@@ -33,3 +33,17 @@ def test_north_is_next_to_a_heading_a_little_west_of_it() -> None:
     assert sentinel_value(headings, "rad") is None and sentinel_value(headings) == 0.0
     assert sentinel_value(np.append(headings[:50], np.radians([-999.0, -999.0])), "rad") == np.radians(-999.0)
     assert sentinel_value(np.append(headings[:50], [2.0, 2.0]), "rad") == 2.0
+
+
+def test_a_circle_in_a_long_log_is_no_averaged_heading() -> None:
+    rate = np.zeros(20_000)
+    rate[4000:4200] = np.radians(3.0)
+    assert smeared_wraps(np.mod(np.cumsum(rate), 2.0 * np.pi)) == []
+
+
+def test_a_heading_interpolated_as_a_number_runs_the_wrong_way_round() -> None:
+    time = np.arange(0.0, 100.0, 0.1)
+    second = np.mod(np.radians(25.0 * np.sin(time[::10] / 15.0)), 2.0 * np.pi)
+    smeared = smeared_wraps(np.interp(time, time[::10], second))
+    assert len(smeared) == np.count_nonzero(np.abs(np.diff(second)) > np.pi)
+    assert max(b - a for a, b in smeared) <= 30

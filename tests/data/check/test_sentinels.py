@@ -1,13 +1,14 @@
 """Readings that stand for none are empty cells; a clock that jumps by days is one sentence; counts agree with nouns."""
 
 from dataclasses import replace
+from itertools import accumulate
 
 import numpy as np
 import pytest
 from tests.data.check.ship import with_values, zigzag
 
-from seatrial.core.values import InputError, Record
-from seatrial.core.values.arrays import sentinel_value
+from seatrial.core.values import Array, InputError, Record, Severity
+from seatrial.core.values.arrays import sentinel_value, smeared_wraps
 from seatrial.data.check import examine, examined_record
 from seatrial.data.check.repair import without_sentinels
 
@@ -29,6 +30,23 @@ def test_what_a_craft_does_is_a_reading() -> None:
     assert sentinel_value(np.repeat([0.0, 1.0], 50)) is None  # a switch
     assert sentinel_value(np.append(np.linspace(0.0, 1.0, 50), 99.0)) is None  # a single wild sample
     assert sentinel_value(np.full(5, np.nan)) is None
+
+
+def averaged(psi: Array) -> Array:
+    """The angle after a low pass that knows of no whole turns."""
+    return np.array(list(accumulate(psi.tolist(), lambda before, now: before + 0.4 * (now - before))))
+
+
+@pytest.mark.parametrize("turn", [0.0, np.pi])
+def test_a_heading_averaged_across_north_is_an_error_and_empty_there(turn: float) -> None:
+    record = zigzag()
+    psi = np.mod(record["psi"] - np.radians(60.0), 2.0 * np.pi) - turn
+    assert smeared_wraps(psi) == []
+    examined = examined_record(with_values(record, psi=averaged(psi)))
+    (error,) = [f for f in examined.findings if f.code == "angle-wrap" and f.severity is Severity.ERROR]
+    assert "runs the wrong way round" in error.evidence
+    apart = np.angle(np.exp(1j * (examined.record["psi"] - psi)))
+    assert float(np.max(np.abs(apart))) < np.radians(10.0)
 
 
 def test_a_clock_that_jumps_by_years_is_one_sentence_with_the_edit() -> None:

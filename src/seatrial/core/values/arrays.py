@@ -38,6 +38,47 @@ def unwrapped(angle: Array) -> Array:
     return result
 
 
+# Angles that were averaged or interpolated as numbers where they jump by a whole turn: they run the wrong way round.
+
+# of a turn, from either end of the range: between them an angle runs the wrong way; chosen
+_END_SHARE = 1.0 / 6.0
+# quantile of the steps of an angle that its craft makes, and times it that it then runs at least; chosen
+_USUAL_QUANTILE, _TOO_FAST = 0.99, 5.0
+
+
+def smeared_wraps(angle: Array) -> list[tuple[int, int]]:
+    """Return first row and row after the last of each time an angle [rad], within one turn, runs the wrong way round.
+
+    It then goes from one end of its range to the other through all that lies between, much faster than it ever does:
+    359, 216, 130, 79, ... in place of 359, 1. What it needs to come to rest is part of it.
+    """
+    rows = np.flatnonzero(np.isfinite(angle))
+    values = angle[rows]
+    if values.size < 2 or float(np.ptp(values)) > math.tau:
+        return []
+    place = (values - (0.0 if values.min() >= 0.0 else -math.pi)) / math.tau
+    ends = np.flatnonzero((place < _END_SHARE) | (place > 1.0 - _END_SHARE))
+    first, last = ends[:-1], ends[1:]
+    is_across = (last - first > 1) & ((place[first] < 0.5) != (place[last] < 0.5))
+    passages = list(zip(first[is_across].tolist(), last[is_across].tolist(), strict=True))
+    steps = np.abs(np.diff(place))
+    if np.count_nonzero(steps > 1.0 - _END_SHARE) >= len(passages):  # a craft that turns on and on jumps in between
+        return []
+    steps = np.minimum(steps, 1.0 - steps)
+    is_outside = np.ones(steps.size, dtype=bool)
+    for a, b in passages:
+        is_outside[max(0, 2 * a - b) : 2 * b - a] = False
+    usual = float(np.quantile(steps[is_outside], _USUAL_QUANTILE)) if passages and is_outside.any() else math.inf
+    smeared = []
+    for a, b in passages:
+        if abs(place[b] - place[a]) > _TOO_FAST * usual * (b - a):
+            before, after = np.flatnonzero(steps[:a] <= usual), np.flatnonzero(steps[b:] <= usual)
+            start = int(before[-1]) + 1 if before.size else 0
+            rest = b + int(after[0]) if after.size else len(values) - 1
+            smeared.append((int(rows[start]) + 1, int(rows[min(2 * rest - a, len(values) - 1)])))
+    return smeared
+
+
 # How a channel runs between its samples: held until the next one, or straight to it.
 
 Kind = Literal["", "command", "measured"]

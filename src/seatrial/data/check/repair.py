@@ -2,13 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 
 from seatrial.core.text.words import counted
 from seatrial.core.values import Array, Channel, Finding, InputError, Record, Severity
-from seatrial.core.values.arrays import EMPTIED, sentinel_value, unwrapped
+from seatrial.core.values.arrays import EMPTIED, sentinel_value, smeared_wraps, unwrapped
 from seatrial.data.check.consequences import moment
 from seatrial.data.check.motion import RowIndices
 from seatrial.data.check.time_base import (
@@ -243,13 +242,15 @@ def _repair_position_jumps(record: Record) -> tuple[Record, tuple[Finding, ...]]
 def _without_gaps(rows: RowIndices) -> RowIndices:
     """Rows of readings, and those in which readings were due."""
     usual = round(usual_rows(rows))
-    due = [np.arange(a + usual, b, usual) for a, b in pairwise(rows.tolist()) if b - a > usual]
-    return np.unique(np.concatenate([rows, *due]))
+    holes = np.flatnonzero(np.diff(rows) > usual).tolist()
+    due = [np.arange(rows[k] + usual, rows[k + 1], usual) for k in holes]
+    return np.sort(np.concatenate([rows, *due])) if due else rows
 
 
 # Readings that stand for none, such as -999: one value far outside all others, again and again.
 
 _ADVICE = "no action needed for a few"
+_HEADINGS = ("psi", "psi_magnetic")
 
 
 def without_sentinels(record: Record) -> tuple[Record, tuple[Finding, ...]]:
@@ -261,6 +262,9 @@ def without_sentinels(record: Record) -> tuple[Record, tuple[Finding, ...]]:
     findings = [
         Finding(Severity.WARNING, "no-reading", f"record '{record.name}', {step}", "", _ADVICE) for step in emptied
     ]
+    for symbol in [s for s in _HEADINGS if s in record]:
+        record, smeared = _without_smeared_wraps(record, symbol)
+        findings += smeared
     for symbol in [s for s in record.channels if s not in INPUT_CHANNELS]:
         values = record[symbol]
         sentinel = sentinel_value(values, record.channel(symbol).unit)
@@ -279,6 +283,29 @@ def without_sentinels(record: Record) -> tuple[Record, tuple[Finding, ...]]:
         evidence += f"{rest.min():.4g} and {rest.max():.4g}"
         findings.append(Finding(Severity.WARNING, "no-reading", text, evidence, _ADVICE))
     return record, tuple(findings)
+
+
+def _without_smeared_wraps(record: Record, symbol: str) -> tuple[Record, list[Finding]]:
+    """Headings made empty where they run the wrong way round: averaged or interpolated as numbers across north."""
+    channel, is_smeared = record.channel(symbol), np.zeros(len(record), dtype=bool)
+    smeared = smeared_wraps(channel.values)
+    if not smeared:
+        return record, []
+    for a, b in smeared:
+        is_smeared[a:b] = True
+    emptied = channel.with_values(np.where(is_smeared, np.nan, channel.values))
+    count = counted(int(is_smeared.sum()), "reading")
+    finding = Finding(
+        Severity.ERROR,
+        "angle-wrap",
+        f"record '{record.name}': '{symbol}' was averaged or interpolated as a number where it jumps by a whole turn",
+        f"it runs the wrong way round {counted(len(smeared), 'time')}, first at {moment(record.time[smeared[0][0]])}; "
+        f"{count} made empty",
+        f"log '{symbol}' as the sensor gives it, or average its sine and cosine",
+    )
+    return record.with_channel(symbol, emptied, f"{count} of {symbol} that run the wrong way round made empty"), [
+        finding
+    ]
 
 
 # How much of a run its repair leaves: a repair never destroys quietly.
