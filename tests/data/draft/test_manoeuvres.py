@@ -13,14 +13,13 @@ from seatrial.core.values import Array, Record
 from seatrial.data.draft.manoeuvres import find_stretches, numbered
 from seatrial.data.draft.stretches import (
     LogStretch,
+    course_stretches,
     decays,
     elapsed,
     padded,
     smooth_speed,
     spirals,
     stops,
-    straight_runs,
-    turning_stretches,
 )
 from seatrial.physics.manoeuvres.measures import measures
 
@@ -43,9 +42,13 @@ def over(time: Array, start: float, stop: float) -> Array:
 TIME = STEP * np.arange(1600)
 
 
+def turning(record: Record) -> list[LogStretch]:
+    return [one for one in course_stretches(record) if one.kind != "straight"]
+
+
 def test_a_circle_with_a_pull_out_reaches_to_its_end() -> None:
     delta = 0.35 * over(TIME, 100.0, 400.0) - 0.35 * over(TIME, 550.0, 750.0)
-    first, second = turning_stretches(nomoto(delta, np.full(TIME.size, 4.0)))
+    first, second = turning(nomoto(delta, np.full(TIME.size, 4.0)))
     assert (first.name, second.name) == ("circle_starboard_with_pull_out_", "circle_port_with_pull_out_")
     assert first.start == pytest.approx(100.0, abs=5.0) and first.stop == pytest.approx(550.0, abs=5.0)
     assert second.start == pytest.approx(550.0, abs=5.0) and second.stop == pytest.approx(800.0, abs=5.0)
@@ -53,7 +56,7 @@ def test_a_circle_with_a_pull_out_reaches_to_its_end() -> None:
 
 def test_a_circle_that_goes_straight_into_the_next_has_no_pull_out() -> None:
     delta = 0.35 * over(TIME, 100.0, 400.0) - 0.35 * over(TIME, 400.0, 800.0)
-    assert [one.name for one in turning_stretches(nomoto(delta, np.full(TIME.size, 4.0)))] == [
+    assert [one.name for one in turning(nomoto(delta, np.full(TIME.size, 4.0)))] == [
         "circle_starboard_", "circle_port_",
     ]  # fmt: skip
 
@@ -61,7 +64,7 @@ def test_a_circle_that_goes_straight_into_the_next_has_no_pull_out() -> None:
 def test_a_turn_without_speed_is_a_spin() -> None:
     delta = 0.35 * over(TIME, 100.0, 300.0) + 0.35 * over(TIME, 500.0, 700.0)
     u = np.where(TIME < 320.0, 0.2, 4.0)
-    spin, circle = turning_stretches(nomoto(delta, u))
+    spin, circle = turning(nomoto(delta, u))
     assert spin.name == "spin_starboard_" and "on the spot" in spin.evidence
     assert circle.name.startswith("circle_starboard_")
 
@@ -126,7 +129,7 @@ def test_straight_runs_inside_a_zigzag_are_not_offered(tmp_path: Path) -> None:
     (stretches,) = draft_trial(write(tmp_path / "run.csv", columns)).stretches
     zigzag, straight = stretches
     assert zigzag.name == "zigzag1" and straight.start >= zigzag.stop
-    assert straight_runs(record)[-1].stop == pytest.approx(TIME[-1], abs=1.0)
+    assert course_stretches(record)[-1].stop == pytest.approx(TIME[-1], abs=1.0)
 
 
 def test_of_a_long_log_what_is_on_the_way_between_manoeuvres_is_left_out_first() -> None:

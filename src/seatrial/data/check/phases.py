@@ -12,6 +12,7 @@ from seatrial.data.check.consequences import moment
 from seatrial.data.check.motion import MIN_SAMPLES, sample_noise, smoothed, window_length
 from seatrial.physics.manoeuvres import ManoeuvreKind, recognise_manoeuvre
 from seatrial.physics.manoeuvres.track import speed
+from seatrial.physics.manoeuvres.turns import course_of
 
 # The part of a long record on which channels are compared with one another.
 
@@ -61,9 +62,8 @@ def _mean_of_groups(record: Record, group: int) -> Record:
 # The approach of a manoeuvre: whether a craft runs straight at a steady speed when the rudder is first put over.
 
 EXECUTION_FRACTION = 0.2  # of the record's largest rudder angle, from which on the rudder is put over; chosen
-# s before the execute over which the yaw rate is a mean and the speed is looked at, and share of the run at least;
-# chosen: some lengths of a model
-_RATE_S, _SPEED_S, _SPEED_SHARE = 1.0, 10.0, 0.1
+# s before the execute over which the speed is looked at, and share of the run at least; chosen: some lengths of a model
+_SPEED_S, _SPEED_SHARE = 10.0, 0.1
 # yaw rate at the execute over the largest, change of speed before it over the mean, and standard errors of that change,
 # up to which an approach is steady; chosen
 _TURNS, _CHANGES, _STANDARD_ERRORS = 0.2, 0.03, 4.0
@@ -110,22 +110,26 @@ def _is_manoeuvre(record: Record) -> bool:
 
 
 def _still_turns(record: Record, row: int) -> str:
-    """The yaw rate at the execute, where it is a fifth of the largest."""
-    turning = _yaw_rate(record)
-    if turning is None:
+    """The yaw rate before the execute, at the craft's own time scale, where it is a fifth of the largest."""
+    psi = _heading(record)
+    if psi is None:
         return ""
-    before = max(1, round(_RATE_S / record.dt))
-    rate = abs(float(np.mean(turning[max(0, row - before) : max(row, 1)])))
-    largest = float(np.max(np.abs(smoothed(turning, window_length(len(record))))))
-    if rate <= _TURNS * largest:
+    course = course_of(psi)
+    before = psi[max(0, row - 2 * course.scale) : row + 1]
+    if before.size <= course.scale:
         return ""
-    return f"it turns at {np.degrees(rate):.2g} deg/s there, and by {np.degrees(largest):.2g} deg/s at most in the run"
+    place = np.linspace(-0.5, 0.5, before.size) * (before.size - 1)
+    rate = abs(float(place @ before) / float(place @ place))
+    if rate <= _TURNS * course.rate:
+        return ""
+    here, largest = np.degrees(rate) / record.dt, np.degrees(course.rate) / record.dt
+    return f"it turns at {here:.2g} deg/s there, and by {largest:.2g} deg/s at most in the run"
 
 
-def _yaw_rate(record: Record) -> Array | None:
-    if "r" in record:
-        return record["r"]
-    return np.gradient(unwrapped(record["psi"]), record.dt) if "psi" in record else None
+def _heading(record: Record) -> Array | None:
+    if "psi" in record:
+        return unwrapped(record["psi"])
+    return np.cumsum(record["r"]) * record.dt if "r" in record else None
 
 
 def _speed_changes(record: Record, row: int) -> str:

@@ -1,6 +1,6 @@
 """Manoeuvres in a long log, cut where the mode of an autopilot changes; a log in parts."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -9,18 +9,18 @@ import numpy as np
 from seatrial.core.values import InputError, Record
 from seatrial.data.check.phases import approach_fault
 from seatrial.data.draft.stretches import (
+    COURSES,
     DECAY,
     MIN_SAMPLES,
     SHORTEST_STRAIGHT_S,
     STRAIGHT,
     LogStretch,
+    course_stretches,
     decays,
     elapsed,
     smooth_speed,
     spirals,
     stops,
-    straight_runs,
-    turning_stretches,
 )
 from seatrial.data.draft.survey import LogSurvey
 
@@ -83,10 +83,9 @@ def _mode_name(event: str) -> str:
 _FILLED = 0.7  # share of a run that its manoeuvres cover, from which on it is taken whole; chosen
 _CUT_TOLERANCE = 0.1  # of a log, by which a cut into thirds moves to where a manoeuvre begins; chosen
 # offered of one run; of what is on the way between manoeuvres the longest; chosen
-_MOST_STRETCHES, _ON_THE_WAY = 16, frozenset({"turn", STRAIGHT})
+_MOST_STRETCHES, _ON_THE_WAY = 16, frozenset({"turn", COURSES, STRAIGHT})
 # of a manoeuvre's time, and s at least, that its part shows of the approach: measures need the execute; chosen
 _APPROACH_SHARE, _APPROACH_S = 0.1, 10.0
-_FINDERS: tuple[Callable[[Record], list[LogStretch]], ...] = (turning_stretches, spirals, stops)
 
 
 def find_stretches(surveys: Sequence[LogSurvey], record: Record | None) -> tuple[LogStretch, ...]:
@@ -131,8 +130,9 @@ def offered_parts(
 
 
 def changes_course(stretches: Sequence[LogStretch]) -> bool:
-    """Return whether a run holds nothing but straight courses: what lies between them is what its rudder does."""
-    return len(stretches) > 1 and all(stretch.name.startswith(STRAIGHT) for stretch in stretches)
+    """Return whether a run holds nothing but straight courses and the changes from one to the next."""
+    kinds = {stretch.kind for stretch in stretches}
+    return COURSES in kinds and kinds <= {COURSES, STRAIGHT}
 
 
 def two_thirds_and_a_third(record: Record, stretches: Sequence[LogStretch], *, is_last: bool) -> tuple[LogStretch, ...]:
@@ -181,12 +181,11 @@ def is_decay(stretch: LogStretch) -> bool:
 def _manoeuvres_of(record: Record) -> list[LogStretch]:
     if len(record) < MIN_SAMPLES:
         return []
-    ordered = [one for finder in _FINDERS for one in finder(record)]
+    by_heading = course_stretches(record)
+    ordered = [*(part for part in by_heading if part.kind != STRAIGHT), *spirals(record), *stops(record)]
     manoeuvres = [*_with_approach(record, ordered), *decays(record)]
-    return [
-        *manoeuvres,
-        *(part for straight_run in straight_runs(record) for part in _outside(straight_run, manoeuvres)),
-    ]
+    straight = [part for part in by_heading if part.kind == STRAIGHT]
+    return [*manoeuvres, *(part for run in straight for part in _outside(run, manoeuvres))]
 
 
 def _with_approach(record: Record, manoeuvres: Sequence[LogStretch]) -> list[LogStretch]:

@@ -7,11 +7,13 @@ from itertools import pairwise
 
 import numpy as np
 
+from seatrial.core.text.words import counted
 from seatrial.core.values import Array, InputError, Record
-from seatrial.data.check.motion import Mask, mask_intervals, smoothed
+from seatrial.data.check.motion import mask_intervals, smoothed
 from seatrial.data.check.phases import HalfSwing, driven_swings, half_swings, is_in_waves, release_row
 from seatrial.physics.manoeuvres import ManoeuvreKind, ObservedManoeuvre, ordered_degrees
 from seatrial.physics.manoeuvres.track import speed
+from seatrial.physics.manoeuvres.turns import Course, HeadingTurn, course_of
 
 # A stretch of a log that is a manoeuvre, and the signals in which manoeuvres are sought.
 
@@ -69,12 +71,10 @@ def smooth_speed(record: Record) -> Array | None:
     return None if known is None else padded(record, known)
 
 
-# Straight runs, spirals, stops and roll decays in a log.
+# Spirals, stops and roll decays in a log.
 
-DECAY, STRAIGHT = "decay", "straight"  # kinds of a stretch
+DECAY, STRAIGHT, COURSES = "decay", "straight", "courses"  # kinds of a stretch
 SHORTEST_STRAIGHT_S = 20.0  # s, of the shortest straight run; chosen
-_STRAIGHT_HEADING = np.radians(5.0)  # rad, range of headings of a straight run; chosen
-_MOVES = 0.2  # of the largest speed, above which a craft moves; chosen
 # deg within which a rudder is held, and largest step between two holds; s of a hold; holds of a spiral; chosen
 _HOLD_DEG, _LARGEST_STEP_DEG, _HOLD_S, _SPIRAL_HOLDS = 1.0, 12.0, 20.0, 5
 _FAST, _STOPPED = 0.7, 0.1  # of the largest speed, between which a craft stops; chosen
@@ -86,30 +86,6 @@ _HALF_SWINGS, _SHRINKS, _PERIOD_SCATTER = 6, 2.0, 0.25
 _DISTURBED = 0.15
 _HELD = 1.5  # of the time of the half swings that follow, beyond which the first one was held; chosen
 _SMALLEST_ROLL = np.radians(2.0)  # rad, of the first swing of a decay; chosen
-
-
-def straight_runs(record: Record) -> list[LogStretch]:
-    """Return stretches over which the heading stays within five degrees while the craft moves."""
-    window = max(2, round(SHORTEST_STRAIGHT_S / record.dt))
-    if "psi" not in record or len(record) <= window:
-        return []
-    from scipy.ndimage import maximum_filter1d, minimum_filter1d
-
-    psi, time = np.unwrap(record["psi"]), elapsed(record)
-    even = maximum_filter1d(psi, window) - minimum_filter1d(psi, window) < _STRAIGHT_HEADING
-    flow = smooth_speed(record)
-    if flow is not None:
-        even &= flow > _MOVES * np.max(flow)
-    text = f"heading within {np.degrees(_STRAIGHT_HEADING):.0f} deg"
-    ends = mask_intervals(_widened(even, window // 2))
-    return [LogStretch(STRAIGHT, float(time[a]), float(time[b - 1]), text) for a, b in ends]
-
-
-def _widened(mask: Mask, half: int) -> Mask:
-    """The mask with the windows about its samples filled: stretches that overlap are one."""
-    from scipy.ndimage import maximum_filter1d
-
-    return np.asarray(maximum_filter1d(mask.astype(np.uint8), 2 * half + 1), dtype=bool)
 
 
 def spirals(record: Record) -> list[LogStretch]:
@@ -246,143 +222,147 @@ def _dies_out(chain: Sequence[HalfSwing]) -> bool:
     )
 
 
-# Turns by the heading: zigzags, turns, circles with or without the pull-out that follows, spins on the spot.
+# What the heading does: zigzags, turns, circles with or without the pull-out that follows, spins on the spot, changes
+# of course, and straight runs between them.
 
 _CIRCLE, _ZIGZAG_TURNS = np.radians(270.0), 3  # rad of a circle, and turns of a zigzag; chosen
-_SMALLEST_TURN, _LARGEST_ZIGZAG = np.radians(8.0), np.radians(120.0)  # rad of a turn of a zigzag; chosen
-_TURNING_SHARE = 0.1  # of the largest yaw rate: beyond, the ship turns; chosen
+_SMALLEST_SWING, _LARGEST_SWING = np.radians(8.0), np.radians(120.0)  # rad of a turn of a zigzag; chosen
+_MOVES = 0.2  # of the largest speed, above which a craft moves; chosen
 # share of the log's largest speed, and m of radius, below which a craft turns on the spot; chosen: less than any circle
 _SPIN_SPEED, _SPIN_RADIUS = 0.25, 0.5
 _OVER, _AMIDSHIPS = 0.5, 0.1  # of the rudder's angle in a turn: put over, and amidships; as in the recognition of runs
-_LULL = 0.1  # of the whole, the longest time in a turn in which the yaw rate is small; chosen
 _PULL_OUT_SHARE = 0.1  # of the time of the turn that the rudder is amidships after it; chosen
+_SETTLES = 6  # time scales of the craft after a change of course that show how it settles; chosen: a steady course's
 
 
-@dataclass(frozen=True)
-class _Turn:
-    """Rows first..last of a turn and the change of heading [rad], positive to starboard."""
+def course_stretches(record: Record) -> list[LogStretch]:
+    """Return the manoeuvres that the heading shows, and straight runs on which the craft moves; none without heading.
 
-    first: int
-    last: int
-    angle: float
-
-    @property
-    def side(self) -> str:
-        return "starboard" if self.angle > 0.0 else "port"
-
-
-def turning_stretches(record: Record) -> list[LogStretch]:
-    """Return turns, circles, spins and zigzags of a record; none without a heading.
-
-    A turn lasts while the yaw rate is over a tenth of its largest.
+    Turns are those at the craft's own time scale (`course_of`).
     """
     if "psi" not in record:
         return []
-    psi = np.unwrap(record["psi"])
-    rate = padded(record, np.gradient(psi, record.dt))
-    largest = float(np.max(np.abs(rate)))
-    ends = sorted(end for side in (1.0, -1.0) for end in mask_intervals(side * rate > _TURNING_SHARE * largest))
-    turns = [_Turn(a, b - 1, float(psi[b - 1] - psi[a])) for a, b in ends]
-    turns = _joined(record, [turn for turn in turns if abs(turn.angle) > _SMALLEST_TURN])
-    long = [turn for turn in turns if abs(turn.angle) > _LARGEST_ZIGZAG]
-    starts = [0, *((one.last + after.first) // 2 for one, after in pairwise(long))]
+    course, flow = course_of(np.unwrap(record["psi"])), smooth_speed(record)
+    long = [turn for turn in course.turns if abs(turn.angle) > _LARGEST_SWING]
+    chains = _chains(course.turns)
+    starts = [0, *((turn.last + after.first) // 2 for turn, after in pairwise(long))]
     stops = [*(after.first for after in long[1:]), len(record) - 1]
-    turned = [_turned(record, turn, limits) for turn, *limits in zip(long, starts, stops, strict=False)]
-    return turned + _zigzags(record, [turn for turn in turns if abs(turn.angle) < _LARGEST_ZIGZAG])
+    rudder = _zeroed_rudder(record) if "delta" in record else None
+    turned = [_turned(record, (flow, rudder), turn, limits) for turn, *limits in zip(long, starts, stops, strict=False)]
+    zigzags = [_stretch(record, "zigzag", chain, _zigzag_text(record, chain)) for chain in chains]
+    return [*turned, *zigzags, *_changes_of_course(record, course, chains), *_straight_runs(record, flow, course)]
 
 
-def _joined(record: Record, turns: list[_Turn]) -> list[_Turn]:
-    """Turns to one side that a short lull parts made one, unless the rudder was released in it."""
-    joined = list[_Turn]()
-    for turn in turns:
-        before = joined[-1] if joined else None
-        is_lull = before is not None and turn.first - before.last < _LULL * (turn.last - before.first)
-        if before is not None and is_lull and before.angle * turn.angle > 0.0 and _is_held(record, before, turn):
-            joined[-1] = _Turn(before.first, turn.last, before.angle + turn.angle)
-        else:
-            joined.append(turn)
-    return joined
-
-
-def _is_held(record: Record, before: _Turn, after: _Turn) -> bool:
-    """Whether the rudder stands over between two turns as it did in the first; so where it is not recorded."""
-    if "delta" not in record:
-        return True
-    delta = np.abs(record["delta"])
-    return float(np.min(delta[before.last : after.first + 1])) > _OVER * float(
-        np.median(delta[before.first : before.last])
-    )
-
-
-def _turned(record: Record, turn: _Turn, limits: list[int]) -> LogStretch:
-    """A turn to one side, with what belongs to it between two rows: half way from the turn before, to the one after."""
-    time, text = elapsed(record), f"heading changes by {np.degrees(abs(turn.angle)):.0f} deg to {turn.side}"
-    first, last, kind = turn.first, turn.last, "turn"
-    if _is_on_the_spot(record, turn):
-        kind, text = "spin", f"{text} on the spot"
-    elif abs(turn.angle) > _CIRCLE:
-        first, last, released = _with_rudder(record, turn, limits)
-        kind = "circle"
-        if released is not None:
-            name, text = f"circle_{turn.side}_with_pull_out_", f"{text}; then the rudder is amidships"
-            return LogStretch(name, float(time[first]), float(time[last]), text, float(time[released]))
-    return LogStretch(f"{kind}_{turn.side}_", float(time[first]), float(time[last]), text)
-
-
-def _is_on_the_spot(record: Record, turn: _Turn) -> bool:
-    flow = smooth_speed(record)
-    if flow is None:
-        return False
-    inside = flow[turn.first : turn.last + 1]
-    radius = float(np.sum(inside)) * record.dt / abs(turn.angle)
-    return float(np.mean(inside)) < _SPIN_SPEED * float(np.max(flow)) or radius < _SPIN_RADIUS
-
-
-def _with_rudder(record: Record, turn: _Turn, limits: list[int]) -> tuple[int, int, int | None]:
-    """First and last row from the order of the rudder to the end of the pull-out, and where that begins.
-
-    It ends with the next order, within the limits.
-    """
-    if "delta" not in record:
-        return turn.first, turn.last, None
-    delta = record["delta"] - float(np.median(record["delta"]) if _is_mostly_amidships(record) else 0.0)
-    held = float(np.median(delta[turn.first : turn.last + 1]))
-    over = np.abs(delta - held) < _OVER * abs(held)
-    pieces = [(a, b) for a, b in mask_intervals(over) if a <= turn.last and b >= turn.first]
-    if not pieces:
-        return turn.first, turn.last, None
-    first, released = max(min(pieces[0][0], turn.first), limits[0]), pieces[-1][1]
-    small = np.abs(delta) < max(_AMIDSHIPS * abs(held), np.finfo(float).tiny)
-    after = next(((a, b) for a, b in mask_intervals(small) if b > released and a <= turn.last), None)
-    if after is None or after[1] - max(after[0], released) < _PULL_OUT_SHARE * (released - first):
-        return first, max(turn.last, min(released - 1, limits[1])), None
-    return first, min(after[1] - 1, limits[1]), max(after[0], released)
-
-
-def _is_mostly_amidships(record: Record) -> bool:
-    """Whether the rudder is small for most of the log: its median is then its zero."""
-    delta = record["delta"]
-    return bool(abs(float(np.median(delta))) < _AMIDSHIPS * float(np.max(np.abs(delta))))
-
-
-def _zigzags(record: Record, turns: list[_Turn]) -> list[LogStretch]:
-    """Runs of at least three turns that alternate without a pause longer than themselves."""
-    chains: list[list[_Turn]] = []
-    for turn in turns:
+def _chains(turns: Sequence[HeadingTurn]) -> list[list[HeadingTurn]]:
+    """At least three turns each that alternate without a pause longer than themselves."""
+    chains: list[list[HeadingTurn]] = []
+    for turn in (t for t in turns if _SMALLEST_SWING < abs(t.angle) < _LARGEST_SWING):
         before = chains[-1][-1] if chains else None
         if before and turn.angle * before.angle < 0 and turn.first - before.last < turn.last - turn.first:
             chains[-1].append(turn)
         else:
             chains.append([turn])
-    time = elapsed(record)
+    return [chain for chain in chains if len(chain) >= _ZIGZAG_TURNS]
+
+
+def _changes_of_course(record: Record, course: Course, zigzags: Sequence[Sequence[HeadingTurn]]) -> list[LogStretch]:
+    """What lies from the first change of course to the last, between other manoeuvres."""
+    groups, is_going_on = list[list[HeadingTurn]](), False
+    for turn in course.turns:
+        is_change = abs(turn.angle) <= _LARGEST_SWING and not any(turn in chain for chain in zigzags)
+        if is_change and is_going_on:
+            groups[-1].append(turn)
+        elif is_change:
+            groups.append([turn])
+        is_going_on = is_change
+    stretches = []
+    for group in groups:
+        angles = sorted(np.degrees(abs(turn.angle)) for turn in group)
+        sizes = f"{angles[0]:.0f} to {angles[-1]:.0f}" if len(group) > 1 else f"{angles[0]:.0f}"
+        text = f"{counted(len(group), 'change')} of course by {sizes} deg"
+        after = min((t.first for t in course.turns if t.first > group[-1].last), default=len(record) - 1)
+        settled = HeadingTurn(group[-1].first, min(group[-1].last + _SETTLES * course.scale, after), group[-1].angle)
+        stretches.append(_stretch(record, COURSES, [*group, settled], text))
+    return stretches
+
+
+def _straight_runs(record: Record, flow: Array | None, course: Course) -> list[LogStretch]:
+    """Steady courses on which the craft moves."""
+    rows = np.zeros(len(record), dtype=bool)
+    for a, b in course.steady:
+        rows[a:b] = True
+    if flow is not None:
+        rows &= flow > _MOVES * np.max(flow)
+    psi = np.unwrap(record["psi"])
     return [
-        LogStretch("zigzag", float(time[chain[0].first]), float(time[chain[-1].last]), _zigzag_text(record, chain))
-        for chain in chains
-        if len(chain) >= _ZIGZAG_TURNS
+        LogStretch(STRAIGHT, *_seconds(record, a, b - 1), f"heading within {np.degrees(np.ptp(psi[a:b])):.2g} deg")
+        for a, b in mask_intervals(rows)
+        if record.time[b - 1] - record.time[a] >= SHORTEST_STRAIGHT_S
     ]
 
 
-def _zigzag_text(record: Record, chain: list[_Turn]) -> str:
+def _stretch(record: Record, name: str, turns: Sequence[HeadingTurn], text: str) -> LogStretch:
+    return LogStretch(name, *_seconds(record, turns[0].first, turns[-1].last), text)
+
+
+def _turned(
+    record: Record, signals: tuple[Array | None, Array | None], turn: HeadingTurn, limits: list[int]
+) -> LogStretch:  # fmt: skip
+    """A turn to one side, with what belongs to it between two rows: half way from the turn before, to the one after.
+
+    signals: speed and rudder.
+    """
+    text = f"heading changes by {np.degrees(abs(turn.angle)):.0f} deg to {turn.side}"
+    first, last, kind, (flow, rudder) = turn.first, turn.last, "turn", signals
+    if flow is not None and _is_on_the_spot(flow, record.dt, turn):
+        kind, text = "spin", f"{text} on the spot"
+    elif abs(turn.angle) > _CIRCLE:
+        kind = "circle"
+        first, last, released = (first, last, None) if rudder is None else _with_rudder(rudder, turn, limits)
+        if released is not None:
+            name, text = f"circle_{turn.side}_with_pull_out_", f"{text}; then the rudder is amidships"
+            return LogStretch(name, *_seconds(record, first, last), text, *_seconds(record, released))
+    return LogStretch(f"{kind}_{turn.side}_", *_seconds(record, first, last), text)
+
+
+def _seconds(record: Record, *rows: int) -> list[float]:
+    """The s since the first sample of rows."""
+    return [float(record.time[row] - record.time[0]) for row in rows]
+
+
+def _is_on_the_spot(flow: Array, dt: float, turn: HeadingTurn) -> bool:
+    inside = flow[turn.first : turn.last + 1]
+    radius = float(np.sum(inside)) * dt / abs(turn.angle)
+    return float(np.mean(inside)) < _SPIN_SPEED * float(np.max(flow)) or radius < _SPIN_RADIUS
+
+
+def _with_rudder(rudder: Array, turn: HeadingTurn, limits: list[int]) -> tuple[int, int, int | None]:
+    """First and last row from the order of the rudder to the end of the pull-out, and where that begins.
+
+    It ends with the next order, within the limits.
+    """
+    origin, end = min(limits[0], turn.first), max(limits[1], turn.last)
+    delta, begun, ended = rudder[origin : end + 1], turn.first - origin, turn.last - origin
+    held = float(np.median(delta[begun : ended + 1]))
+    pieces = [(a, b) for a, b in mask_intervals(np.abs(delta - held) < _OVER * abs(held)) if a <= ended and b >= begun]
+    if not pieces:
+        return turn.first, turn.last, None
+    first, released = min(pieces[0][0], begun), pieces[-1][1]
+    small = np.abs(delta) < max(_AMIDSHIPS * abs(held), np.finfo(float).tiny)
+    after = next(((a, b) for a, b in mask_intervals(small) if b > released and a <= ended), None)
+    if after is None or after[1] - max(after[0], released) < _PULL_OUT_SHARE * (released - first):
+        return origin + first, origin + max(ended, released - 1), None
+    return origin + first, origin + after[1] - 1, origin + max(after[0], released)
+
+
+def _zeroed_rudder(record: Record) -> Array:
+    """The rudder; about its median where it is small for most of the log: that is then its zero."""
+    delta = record["delta"]
+    median = float(np.median(delta))
+    return delta - median if abs(median) < _AMIDSHIPS * float(np.max(np.abs(delta))) else delta
+
+
+def _zigzag_text(record: Record, chain: Sequence[HeadingTurn]) -> str:
     """Turns and how far the heading swings; rudder and the heading of its switches, where recorded."""
     swing = float(np.median([abs(turn.angle) for turn in chain]))
     text = f"{len(chain)} turns to alternate sides, the heading swings over {np.degrees(swing):.0f} deg"
