@@ -20,7 +20,7 @@ import subprocess
 import sys
 import tempfile
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -94,15 +94,28 @@ def read_trials() -> tuple[list[GoldenTrial], list[dict[str, str]]]:
     return trials, document.get("difference", [])
 
 
-def run_trial(trial: GoldenTrial) -> tuple[Outcome, float]:
-    """Run the commands of a trial; return what is recorded of it, and its processor time [s]."""
+Execute = Callable[[str, list[str], Path], tuple[int, str]]
+
+
+def in_a_process(name: str, arguments: list[str], folder: Path) -> tuple[int, str]:
+    """Run a command in a folder; return its exit code and what it prints."""
+    program = [sys.executable, "-c", "from seatrial.cli import main; main()", name]
+    program = [*([sys.executable] if name == "python" else program), *arguments]
+    environment = {name: value for name, value in os.environ.items() if name != "COLUMNS"}
+    environment |= {"SEATRIAL_DATA": str(data_folder()), "NUMBA_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    done = subprocess.run(program, cwd=folder, env=environment, capture_output=True, check=False)
+    return done.returncode, (done.stdout + done.stderr).decode(errors="replace")
+
+
+def run_trial(trial: GoldenTrial, execute: Execute = in_a_process) -> tuple[Outcome, float]:
+    """Run the commands of a trial; return what is recorded of it, and its processor time [s] in other processes."""
     begin = _children_cpu()
     with tempfile.TemporaryDirectory() as out:
         if edit := trial.edited:
             text = (REPOSITORY / edit["file"]).read_text(encoding="utf-8")
             new = edit["by"].replace("{folder}", trial.path.as_posix())
             (Path(out) / "edited.toml").write_text(text.replace(edit["replaced"], new), encoding="utf-8")
-        steps = [_run_command(line.replace("{out}", out), trial.path, Path(out)) for line in trial.run]
+        steps = [_run_command(line.replace("{out}", out), trial.path, Path(out), execute) for line in trial.run]
         files = {name: _text_of(Path(out) / name) for name in trial.should.get("files", {})}  # type: ignore[attr-defined]
     outcome: Outcome = {"exits": [step.pop("exit") for step in steps]}
     outcome["files"] = files
@@ -118,7 +131,7 @@ def _children_cpu() -> float:
     return times.children_user + times.children_system
 
 
-def _run_command(line: str, folder: Path, out: Path) -> Outcome:
+def _run_command(line: str, folder: Path, out: Path, execute: Execute) -> Outcome:
     name, *arguments = shlex.split(line)
     document = out / "result.json"
     document.unlink(missing_ok=True)
@@ -127,14 +140,9 @@ def _run_command(line: str, folder: Path, out: Path) -> Outcome:
         arguments += ["--json", str(document)]
     if name in _WITH_FOLDER and "--out" not in arguments:
         arguments += ["--out", str(out / "results")]
-    program = [sys.executable, "-c", "from seatrial.cli import main; main()", name]
-    program = [*([sys.executable] if name == "python" else program), *arguments]
-    environment = {name: value for name, value in os.environ.items() if name != "COLUMNS"}
-    environment |= {"SEATRIAL_DATA": str(data_folder()), "NUMBA_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-    done = subprocess.run(program, cwd=folder, env=environment, capture_output=True, check=False)
-    text = (done.stdout + done.stderr).decode(errors="replace")
+    code, text = execute(name, arguments, folder)
     result = json.loads(document.read_text(encoding="utf-8")) if document.exists() else {}
-    outcome: Outcome = {"exit": done.returncode, "text": text} | _extracted(result, text)
+    outcome: Outcome = {"exit": code, "text": text} | _extracted(result, text)
     if name == "init" and "--out" in arguments:
         draft = Path(arguments[arguments.index("--out") + 1])
         draft = draft if draft.is_absolute() else folder / draft

@@ -1,7 +1,9 @@
 """Results are those recorded, by the class of their trial; reproducers are right, or marked as not right yet."""
 
 import json
+from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -9,8 +11,11 @@ from benchmarks.golden import (
     CLASSES,
     RECORDED,
     SUITE_CPU,
+    Execute,
     GoldenTrial,
+    data_folder,
     differences,
+    in_a_process,
     is_wanted,
     read_trials,
     recordable,
@@ -33,12 +38,28 @@ FIT: dict[str, Any] = {
 }
 
 
+@pytest.fixture
+def execute(
+    run_command: Callable[..., int], capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> Execute:
+    """Runs the commands of a trial in this process: each would import everything anew."""
+
+    def run(name: str, arguments: list[str], folder: Path) -> tuple[int, str]:
+        if name == "python":
+            return in_a_process(name, arguments, folder)
+        monkeypatch.chdir(folder)
+        monkeypatch.setenv("SEATRIAL_DATA", str(data_folder()))
+        return run_command(name, *arguments), "".join(capfd.readouterr())
+
+    return run
+
+
 @pytest.mark.parametrize("trial", QUICK, ids=lambda trial: trial.name)
-def test_a_quick_trial_gives_what_is_recorded(trial: GoldenTrial) -> None:
+def test_a_quick_trial_gives_what_is_recorded(trial: GoldenTrial, execute: Execute) -> None:
     if not trial.is_here:
         pytest.skip("its records or the reproducers are not here")
     tolerance = "redraw" if trial.tolerance == "move" else trial.tolerance  # bits depend on the machine
-    rows = rows_of(trial, run_trial(trial)[0], RESULTS, tolerance)
+    rows = rows_of(trial, run_trial(trial, execute)[0], RESULTS, tolerance)
     assert [row for row in rows if not is_wanted(row, WANTED)] == []
 
 

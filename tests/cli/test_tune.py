@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tests.control.loop_files import AUTOPILOT, FIN, model_file, nomoto, write_loop_file
+from tests.fits import example_fit
 from tests.reporting.fabricated_tuning import fabricated_autopilot, fabricated_bare, fabricated_fin
 
 from seatrial import api, cli
@@ -161,7 +162,7 @@ def test_the_example_asks_for_a_schedule_over_27_conditions(repository: Path) ->
 def test_from_a_decay_record_to_a_model_to_a_loop(repository: Path, tmp_path: Path) -> None:
     """Two commands: what identify writes is what tune reads."""
     examples = repository / "examples"
-    fit = api.identify(api.load_trial(examples / "fin_decay.toml"))
+    fit = example_fit("fin_decay")
     free = [c for c in fit.coefficients if not c.fixed and c.truth]
     assert len(free) == 4
     assert all(abs(c.estimate - c.truth) < 3.5 * c.standard_error for c in free)  # type: ignore[operator]

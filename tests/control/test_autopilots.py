@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from tests.fits import example_fit
 
 from seatrial.control.choice import choose
 from seatrial.control.controller import shortfall, simulate_manoeuvres
@@ -54,8 +55,8 @@ def demand_is_met(task: TuningTask, L_over_U: float) -> None:
         assert manoeuvre.settling < 10.0 * L_over_U
 
 
-def test_an_identified_waterjet_craft_changes_course(repository: Path) -> None:
-    fit = identify(load_trial(repository / "examples" / "waterjet.toml"))
+def test_an_identified_waterjet_craft_changes_course() -> None:
+    fit = example_fit("waterjet")
     ship = trim_ship(
         ModelFile(fit.model, fit.covariance, approach={"v_j": 1.866}), output="psi", actuator="delta"
     )  # fmt: skip

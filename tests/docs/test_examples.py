@@ -5,12 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.fits import example_fit
 
 import seatrial as st
 from seatrial.api import prepared_run
 from seatrial.data.folder.result_folder import save_result
-from seatrial.data.trial import load_trial
-from seatrial.estimation.identify import identify
 from seatrial.physics.models import model_from_file
 
 REPOSITORY = Path(__file__).parents[2]
@@ -49,7 +48,7 @@ def test_the_model_of_one_s_own_is_a_file_that_can_be_loaded(page: str, tmp_path
 
 @pytest.mark.parametrize("name", ["heave_pitch", "heave_pitch_forces", "heave_pitch_spectrum"])
 def test_the_examples_in_waves_give_their_coefficients_back(name: str) -> None:
-    fit = identify(load_trial(REPOSITORY / "examples" / f"{name}.toml"))
+    fit = example_fit(name)
     free = [c for c in fit.coefficients if not c.fixed]
     assert len(free) == 8
     assert all(abs(c.estimate - c.truth) < 3.5 * c.standard_error for c in free)  # type: ignore[operator]
@@ -57,7 +56,7 @@ def test_the_examples_in_waves_give_their_coefficients_back(name: str) -> None:
 
 def test_a_voyage_in_waves_is_replayed(tmp_path: Path) -> None:
     trial = REPOSITORY / "examples" / "heave_pitch.toml"
-    folder = save_result(identify(load_trial(trial)), tmp_path)
+    folder = save_result(example_fit("heave_pitch"), tmp_path)
     record = prepared_run(trial, "voyage_held_out")
     simulated = st.simulate(st.load_model(folder / "model.toml"), record)
     settled = slice(300, None)

@@ -6,8 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.fits import example_fit
 
-from seatrial.core.results import Fit, Prediction
+from seatrial.core.results import Prediction
+from seatrial.core.results.published_method import Search
 from seatrial.core.values import Array
 from seatrial.data.trial import (
     EstimateMethod,
@@ -19,7 +21,7 @@ from seatrial.data.trial import (
     load_trial,
 )
 from seatrial.estimation.identify import identify
-from seatrial.estimation.identify.search import search_candidates, simulated_starts
+from seatrial.estimation.identify.search import estimate_by_search, search_candidates, simulated_starts
 from seatrial.estimation.search import run_search, whole_record_fitness
 from seatrial.numerics.optimise import Box, FitnessMemory
 from seatrial.physics.simulate import record_of
@@ -60,9 +62,8 @@ def sea_record(data: SearchData):
     return record_of(data.model, "sea", time, states, outputs, inputs)
 
 
-def values_of(fit: Fit) -> Array:
-    assert fit.search is not None
-    return np.array([list(one.values.values()) for one in fit.search.restarts])
+def values_of(search: Search) -> Array:
+    return np.array([list(restart.values.values()) for restart in search.restarts])
 
 
 @pytest.mark.parametrize("algorithm", list(SearchAlgorithm))
@@ -76,7 +77,7 @@ def test_sample_by_sample_the_searches_of_qi2025_are_the_users(algorithm: Search
     assert [one.evaluations for one in fit.search.restarts] == list(study.evaluations)
     assert fit.search.history == tuple(study.best_fitness)
     np.testing.assert_array_equal(np.array(list(fit.search.trace.values())).T, study.trace)
-    np.testing.assert_array_equal(values_of(fit), study.points)
+    np.testing.assert_array_equal(values_of(fit.search), study.points)
     np.testing.assert_array_equal(list(fit.search.scatter.values()), np.std(study.points, axis=0, ddof=1))
 
 
@@ -105,13 +106,12 @@ def test_on_the_shipped_example_the_loop_of_the_studies_gives_the_users_bits(
 ) -> None:
     trial = load_trial(repository / "examples" / "heave_pitch.toml")
     search = SearchSettings(iterations=ITERATIONS, restarts=RESTARTS)
-    trial = replace(trial, estimate=EstimateSettings(method=method, search=search))
-    fit = identify(trial, seed=SEED)
-    assert fit.search is not None
-    own = identify(replace(trial, estimate=EstimateSettings()), seed=SEED)
+    trial, own = replace(trial, estimate=EstimateSettings(method=method, search=search)), example_fit("heave_pitch")
+    user = estimate_by_search(trial, own, SEED).search
+    assert user is not None
     runs = [p for p in own.predictions if p.role == "training"]
     candidates = search_candidates(trial, trial.model, [p.measured for p in runs], simulated_starts(trial.model, runs))
-    box = Box(*np.array(list(fit.search.bounds.values())).T)
+    box = Box(*np.array(list(user.bounds.values())).T)
     if method is EstimateMethod.IWHO:
         create = qi.optimisers(ITERATIONS, FitnessMemory.KEEP)[SearchAlgorithm.IWHO]
     else:
@@ -120,8 +120,8 @@ def test_on_the_shipped_example_the_loop_of_the_studies_gives_the_users_bits(
     study = repeat_searches(
         [sea] * RESTARTS, [box] * RESTARTS, create, partial(lambda *_, c: whole_record_fitness(c), c=candidates), SEED
     )
-    best = fit.search.restarts[0]
+    best = user.restarts[0]
     assert best.history == tuple(study.best_fitness)
-    assert [one.evaluations for one in fit.search.restarts] == list(study.evaluations)
-    np.testing.assert_array_equal(values_of(fit), study.points)
-    np.testing.assert_array_equal(list(fit.search.scatter.values()), np.std(study.points, axis=0, ddof=1))
+    assert [one.evaluations for one in user.restarts] == list(study.evaluations)
+    np.testing.assert_array_equal(values_of(user), study.points)
+    np.testing.assert_array_equal(list(user.scatter.values()), np.std(study.points, axis=0, ddof=1))

@@ -62,26 +62,30 @@ def test_a_rudder_that_does_less_is_named() -> None:
     assert not math.isnan(corrected.log)
 
 
-def test_the_model_is_estimated_by_the_log_almost_alone() -> None:
+@pytest.mark.parametrize(("logs", "least"), [(2, 1), pytest.param(8, 6, marks=pytest.mark.long)])
+def test_the_model_is_estimated_by_the_log_almost_alone(logs: int, least: int) -> None:
     """The prior leaves 50 %: logs come within 15 %, by intervals of a quarter at most.
 
     Of eight intervals of 95 % fewer than six hold the gain once in 170 such tests (binomial).
     """
     inside = []
-    for seed in range(3, 11):
+    for seed in range(3, 3 + logs):
         (gain, lag) = refitted_coefficients(ship(), [course_log(seed)], 40.0)
         assert (gain.name, lag.name) == ("K", "T")
         assert gain.log == pytest.approx(K, rel=0.15) and lag.log == pytest.approx(T, rel=0.2)
         assert gain.upper - gain.lower < 0.25 * K
         inside.append(gain.lower < K < gain.upper)
-    assert sum(inside) >= 6
+    assert sum(inside) >= least
 
 
-def test_what_changed_is_named_and_an_unchanged_ship_passes() -> None:
-    """The gain halved, the time constant doubled, other gains: each by its finding; four ships as modelled by none."""
+@pytest.mark.parametrize("seed", [40, *(pytest.param(seed, marks=pytest.mark.long) for seed in (41, 42, 43))])
+def test_of_an_unchanged_ship_nothing_is_named(seed: int) -> None:
+    assert verify(autopilot_task(), GAINS, [course_log(seed)]).findings == ()
+
+
+def test_what_changed_is_named() -> None:
+    """The gain halved, the time constant doubled, other gains: each by its finding."""
     task = autopilot_task()
-    for seed in range(4):
-        assert [f.code for f in verify(task, GAINS, [course_log(40 + seed)]).findings] == []
     assert "K" in verify(task, GAINS, [course_log(50, gain=0.5 * K)]).moved
     assert "T" in verify(task, GAINS, [course_log(51, lag=2.0 * T)]).moved
     others = {"KP": 2.0 * GAINS["KP"], "KD": 0.5 * GAINS["KD"]}

@@ -8,6 +8,7 @@ from scipy.integrate import solve_ivp
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Record
+from seatrial.data.trial import EstimateMethod, EstimateSettings
 from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
 from seatrial.estimation.estimate.settings import EstimatorOptions
@@ -55,14 +56,24 @@ def waterjet_run(name: str, degrees: float, period: float, cross: Mapping[str, f
     )
 
 
-def fitted_waterjet(cross: Mapping[str, float], model: Model | None = None) -> Estimation:
+def fitted_waterjet(
+    cross: Mapping[str, float], model: Model | None = None, method: EstimateMethod = EstimateMethod.AUTO
+) -> Estimation:
     sizes = ((10.0, 90.0), (20.0, 120.0), (35.0, 160.0), (30.0, 100.0))
     runs = [waterjet_run(f"run {i}", *size, cross, i) for i, size in enumerate(sizes)]
-    return estimate_model(model or waterjet(), Runs.one_session_each(runs, L), None, EstimatorOptions(workers=1))
+    return estimate_model(
+        model or waterjet(),
+        Runs.one_session_each(runs, L),
+        EstimateSettings(method=method),
+        EstimatorOptions(workers=1),
+    )
 
 
-def test_terms_that_the_waterjet_lacks_are_named() -> None:
-    (finding,) = held_couplings(fitted_waterjet(CROSS))
+@pytest.mark.parametrize(
+    "method", [EstimateMethod.OUTPUT_ERROR, pytest.param(EstimateMethod.AUTO, marks=pytest.mark.long)]
+)
+def test_terms_that_the_waterjet_lacks_are_named(method: EstimateMethod) -> None:
+    (finding,) = held_couplings(fitted_waterjet(CROSS, method=method))
     assert finding.code == "held-coupling"
     assert finding.text.split()[0] in CROSS
     assert "is no term of the model" in finding.text

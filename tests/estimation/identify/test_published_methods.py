@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.fits import example_fit
 
 from seatrial.core.results import Fit
 from seatrial.core.results.comparison import coefficient_comparison, cost_comparison
@@ -26,6 +27,7 @@ from seatrial.data.trial import (
 from seatrial.estimation.identify import baselines, identify
 from seatrial.estimation.identify import search as search_problem
 from seatrial.estimation.identify import search as search_strategy
+from seatrial.estimation.identify.identification import Situation
 from seatrial.estimation.regress import estimator_named
 
 FEW = SearchSettings(population=12, iterations=6, restarts=2)
@@ -37,8 +39,15 @@ def example(repository: Path, name: str, method: EstimateMethod, search: SearchS
 
 
 @pytest.fixture(scope="module")
-def own(repository: Path) -> Fit:
-    return identify(load_trial(repository / "examples" / "heave_pitch.toml"))
+def own() -> Fit:
+    return example_fit("heave_pitch")
+
+
+@pytest.fixture
+def kept_own(own: Fit, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The package's own estimate of the example in waves is not made anew."""
+    strategies = {**identify.__globals__["STRATEGIES"], Situation.RECORDED_WAVES: lambda _: own}
+    monkeypatch.setitem(identify.__globals__, "STRATEGIES", strategies)
 
 
 @pytest.fixture(scope="module")
@@ -110,6 +119,7 @@ def test_one_table_shows_both_estimates_with_effort_and_errors(horses: Fit) -> N
     assert {len(row) for row in cost.rows} == {len(cost.header)}
 
 
+@pytest.mark.usefixtures("kept_own")
 @pytest.mark.parametrize("method", [m for m in SEARCHES if m is not EstimateMethod.IWHO])
 def test_every_search_runs_on_the_shipped_example(repository: Path, method: EstimateMethod) -> None:
     fit = identify(example(repository, "heave_pitch", method, replace(FEW, restarts=1)))
@@ -142,6 +152,7 @@ def test_a_regression_gives_the_values_of_its_estimator_and_names_those_beyond_b
     assert fit.method.name == "ols"
 
 
+@pytest.mark.usefixtures("kept_own")
 def test_sample_by_sample_each_iteration_has_a_sample_of_its_own(repository: Path) -> None:
     settings = replace(FEW, fitness=SearchFitness.SAMPLE)
     fit = identify(example(repository, "heave_pitch", EstimateMethod.IWHO, settings))
@@ -153,6 +164,7 @@ def test_sample_by_sample_each_iteration_has_a_sample_of_its_own(repository: Pat
     assert {len(values) for values in search.trace.values()} == {6}
 
 
+@pytest.mark.usefixtures("kept_own")
 def test_finished_restarts_are_kept_when_the_user_interrupts(repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     run, calls = search_strategy.run_search, []
 
@@ -173,6 +185,7 @@ def test_finished_restarts_are_kept_when_the_user_interrupts(repository: Path, m
         identify(example(repository, "heave_pitch", EstimateMethod.DE))
 
 
+@pytest.mark.usefixtures("kept_own")
 def test_progress_names_search_and_iteration(repository: Path) -> None:
     lines: list[str] = []
     identify(
@@ -188,6 +201,7 @@ def free_bounds(trial: Trial, **bounds: tuple[float, float]) -> Trial:
     return replace(trial, model=model, estimate=replace(trial.estimate, search=search))
 
 
+@pytest.mark.usefixtures("kept_own")
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
@@ -220,6 +234,7 @@ def test_options_of_the_own_estimate_are_refused(repository: Path) -> None:
         identify(example(repository, "heave_pitch", EstimateMethod.IWHO), compare=True)
 
 
+@pytest.mark.usefixtures("kept_own")
 def test_a_comparison_in_waves_lists_the_searches_behind_the_own_fit(
     repository: Path, own: Fit, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -204,8 +204,7 @@ def residual_spread(problem: OutputError, residuals: Array) -> Array:
 def degrees_of_freedom_share(problem: OutputError) -> float:
     """Return the share of the measured samples that the unknowns leave free."""
     samples = int(np.isfinite(problem.data.measured).sum())
-    unknowns = problem.size + problem.data.count * len(problem.starts)
-    return max(1.0 - unknowns / max(samples, 1), 0.1)  # a tenth at least; chosen
+    return max(1.0 - (problem.size + problem.data.count * len(problem.starts)) / max(samples, 1), 0.1)  # least; chosen
 
 
 def rounding_level(problem: OutputError) -> Array:
@@ -222,7 +221,8 @@ def fit_output_error(
     *,
     rounds: int = _ROUNDS,
     colour_rounds: int = COLOUR_ROUNDS,
-    evaluations: int = 60,  # of the residuals, at most; chosen
+    evaluations: int = 60,  # of the residuals in one search, at most; chosen
+    further_searches: int = _ROUNDS,
     report_progress: ProgressReporter | None = None,
 ) -> PointEstimate:
     """Alternate short searches with estimates of the noise and the sessions' population until both settle.
@@ -233,6 +233,9 @@ def fit_output_error(
     residuals in the first `colour_rounds` rounds and are held after them, 0: as the problem has them. All further
     rounds then decrease one objective, the likelihood with the noise concentrated out (`ConcentratedLikelihood`):
     followed throughout, a worse fit is more correlated, counts less against the priors, and fits worse still.
+
+    Args:
+        further_searches: begun anew where the evaluations of the last one ran out, at most.
     """
     stated_noise = np.array([known_noise.get(o, np.nan) for o in problem.data.outputs])
     problem = replace(problem, noise=np.where(np.isfinite(stated_noise), stated_noise, problem.noise))
@@ -273,13 +276,13 @@ def fit_output_error(
         spent += estimate.optimum.solution.evaluations
         if settled:
             break
-    estimate, more = _searched_on(estimate, evaluations, report_progress)
+    estimate, more = _searched_on(estimate, further_searches, evaluations, report_progress)
     solution = replace(estimate.optimum.solution, evaluations=spent + more)
     return replace(estimate, optimum=replace(estimate.optimum, solution=solution), is_settled=settled)
 
 
 def _searched_on(
-    estimate: PointEstimate, evaluations: int, report_progress: ProgressReporter | None
+    estimate: PointEstimate, searches: int, evaluations: int, report_progress: ProgressReporter | None
 ) -> tuple[PointEstimate, int]:
     """Search on where the evaluations ran out until another search gains next to nothing; return its evaluations, too.
 
@@ -287,7 +290,7 @@ def _searched_on(
     that begins anew with small damping passes them. One that takes no step at all says nothing.
     """
     spent, gained = 0, np.inf
-    for _ in range(_ROUNDS):
+    for _ in range(searches):
         before = estimate.optimum
         if before.solution.status is not Status.EXHAUSTED or gained <= 0.0:
             break
@@ -309,8 +312,7 @@ def effective_inflation(inflation: Array) -> Array | None:
 def _is_settled(before: OutputError, after: OutputError) -> bool:
     """Noise within 2 %, effective numbers of samples and deviations between sessions within 10 %."""
     ratio = np.log(after.noise / before.noise)
-    ones = np.ones(len(before.noise))
-    colours = [ones if p.inflation is None else p.inflation for p in (before, after)]
+    colours = [np.ones(len(p.noise)) if p.inflation is None else p.inflation for p in (before, after)]
     deviations = [(p.population or p.declared_population).deviation for p in (before, after)]
     slow = np.concatenate([np.log(colours[1] / colours[0]), np.log(deviations[1] / deviations[0])])
     # noise settled to 2 %, its colour and what differs between sessions to 10 %; chosen

@@ -86,7 +86,7 @@ def _short_fit(task: Identification, reading: WaveReading) -> PointEstimate | No
         start = find_start(problem, runs.records, WEAK_FORM_SHIP_LENGTHS * task.characteristic_time)
         return fit_output_error(
             start.problem, start.common_parameters, start.initial_states, runs.noise,
-            rounds=_ROUNDS, evaluations=_EVALUATIONS,
+            rounds=_ROUNDS, evaluations=_EVALUATIONS, further_searches=0,
         )  # fmt: skip
 
 
