@@ -34,7 +34,7 @@ gc.set_threshold(cli.COLLECTION_THRESHOLD)
 # folders whose files take longest, run first, so that no worker of a parallel run waits for one of them at the end
 LONGEST_FIRST = {"studies", "cli", "reporting"}
 
-# of the tests marked long one in so many runs with the others, the next ones with SEATRIAL_SAMPLE=1 to 9; chosen
+# of files with tests marked long one in so many runs with the others, the next ones with SEATRIAL_SAMPLE=1 to 9; chosen
 LONG_SHARE = 10
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
@@ -46,13 +46,14 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     if config.option.markexpr or any("::" in argument for argument in config.args):
         return
     sample = int(os.environ.get("SEATRIAL_SAMPLE", "0")) % LONG_SHARE
-    left_out = [item for item in items if item.get_closest_marker("long") and _sample_of(item) != sample]
+    left_out = [item for item in items if item.get_closest_marker("long") and _sample_of(item.path) != sample]
     config.hook.pytest_deselected(items=left_out)
     items[:] = [item for item in items if item not in left_out]
 
 
-def _sample_of(item: pytest.Item) -> int:
-    return zlib.crc32(item.nodeid.encode()) % LONG_SHARE
+def _sample_of(path: Path) -> int:
+    """The sample that a file belongs to: what its long tests share is made once."""
+    return zlib.crc32(path.stem.encode()) % LONG_SHARE
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -8,9 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.fits import example_fit
 
 from seatrial.core.values import Ship
 from seatrial.data.folder.model_file import ModelFile, write_model
+from seatrial.data.folder.result_folder import save_result
 from seatrial.physics.models import model_named
 
 COMMANDS = ("check", "identify", "design", "simulate", "report", "demo", "reproduce")
@@ -147,8 +149,7 @@ def test_a_voyage_in_waves_is_replayed_beside_its_record(
     tmp_path: Path, run_command: Callable[..., int], capsys: pytest.CaptureFixture, repository: Path
 ) -> None:
     trial = repository / "examples" / "heave_pitch.toml"
-    assert run_command("identify", trial, "--out", tmp_path / "fit") == 0
-    model = tmp_path / "fit" / "model.toml"
+    model = save_result(example_fit("heave_pitch"), tmp_path / "fit") / "model.toml"
     replayed = ("--trial", trial, "--inputs", "voyage_held_out", "--out", tmp_path / "run.csv")
     assert run_command("simulate", model, *replayed, "--json", tmp_path / "run.json") == 0
     assert "against voyage_held_out: rms pitch" in capsys.readouterr().out

@@ -1,7 +1,6 @@
 """A model file with everything that exports repeat, and the compiler."""
 
 import shutil
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -26,12 +25,6 @@ def kvlcc2_file() -> ModelFile:
     )
     basis = IntervalBasis(np.diag([1e-4, 1e-5]), 100.0, 1.0, training_envelope=dict(ENVELOPE))
     return ModelFile(model, np.diag([1e-4, 1e-5]), provenance, ship, {"u": 1.1, "n": 10.2}, basis)
-
-
-@pytest.fixture(scope="session")
-def renamed_file(kvlcc2_file: ModelFile) -> ModelFile:
-    """The same without a ship or a range."""
-    return replace(kvlcc2_file, ship=None, interval_basis=None)
 
 
 @pytest.fixture(scope="session")

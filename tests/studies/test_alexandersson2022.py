@@ -26,7 +26,7 @@ from seatrial_studies.alexandersson2022.tables import left_out_table, left_out_t
 from seatrial_studies.alexandersson2022.window_bands import BandCoverage
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="module", params=[pytest.param("quick", marks=pytest.mark.long)])
 def quick(data_folder: Path) -> Iterator[Study]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SEATRIAL_DATA", str(data_folder))

@@ -25,7 +25,7 @@ from seatrial_studies.sign_test import is_smaller
 from seatrial_studies.swarm_search import simulate_search_data
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="module", params=[pytest.param("quick", marks=pytest.mark.long)])
 def study() -> Study:
     return meng2014.study(quick=True, seed=0, report_progress=None)
 

@@ -29,7 +29,7 @@ from seatrial_studies.swarm_search import (
 )
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="module", params=[pytest.param("quick", marks=pytest.mark.long)])
 def study() -> Study:
     return qi2025.study(quick=True, seed=0, report_progress=None)
 

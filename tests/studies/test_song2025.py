@@ -1,7 +1,6 @@
 """The study of Song et al. 2025 as a whole: what it prints holds together, and its checks can fail."""
 
 import json
-from functools import cache
 from types import SimpleNamespace
 from typing import Any
 
@@ -18,43 +17,43 @@ from seatrial_studies.song2025.reproduction import EstimatorResult
 from seatrial_studies.song2025.verdicts import checks
 
 
-@cache
-def made() -> Study:
+@pytest.fixture(scope="module", params=[pytest.param("quick", marks=pytest.mark.long)])
+def quick() -> Study:
     """The quick form, seed 3."""
     return study(quick=True, seed=3, report_progress=None)
 
 
-def test_checks_hold_in_another_series_of_noise() -> None:
+def test_checks_hold_in_another_series_of_noise(quick: Study) -> None:
     """Not only in the default seed's; those on one noise series have room for one."""
-    assert [c.name for c in made().checks if not c.holds] == []
-    assert len(made().checks) == 7
+    assert [c.name for c in quick.checks if not c.holds] == []
+    assert len(quick.checks) == 7
 
 
-def test_every_statement_is_judged() -> None:
+def test_every_statement_is_judged(quick: Study) -> None:
     """Nine statements; its improvement holds in its own setting, robustness is refuted."""
-    assert len(made().claims) == len(STATEMENTS)
-    verdicts = {c.claim.split(" (")[0]: c.verdict for c in made().claims}
+    assert len(quick.claims) == len(STATEMENTS)
+    verdicts = {c.claim.split(" (")[0]: c.verdict for c in quick.claims}
     assert verdicts[STATEMENTS["robust"].text] is Verdict.REFUTED
     assert verdicts[STATEMENTS["improved"].text] is Verdict.HOLDS_IN_OWN_SETTING
     assert verdicts[STATEMENTS["wider"].text] is Verdict.HOLDS_IN_OWN_SETTING
     assert verdicts[STATEMENTS["cleaning"].text] is Verdict.CONFIRMED
 
 
-def test_every_table_and_figure_of_the_paper_has_its_place() -> None:
+def test_every_table_and_figure_of_the_paper_has_its_place(quick: Study) -> None:
     """Tables 2 to 4; figures 2, 4 to 10."""
-    titles = " ".join([t.title for t in made().tables] + [f.title for f in made().figures])
+    titles = " ".join([t.title for t in quick.tables] + [f.title for f in quick.figures])
     for wanted in ("Table 2", "Table 3", "Table 4", "Figure 2", "Figures 4, 5", "Figure 6", "Figures 7, 8", "9, 10"):
         assert wanted in titles
-    assert sum(isinstance(f, Matrix) for f in made().figures) == 3
-    assert sum(isinstance(f, Bars) for f in made().figures) == 5
-    every = [t.title for t in made().tables] + [f.title for f in made().figures]
+    assert sum(isinstance(f, Matrix) for f in quick.figures) == 3
+    assert sum(isinstance(f, Bars) for f in quick.figures) == 5
+    every = [t.title for t in quick.tables] + [f.title for f in quick.figures]
     assert DECLARATIONS.missing_counterparts(every) == ()
-    assert every.index("What wrong coefficients cost a controller") == len(made().tables) - 1
+    assert every.index("What wrong coefficients cost a controller") == len(quick.tables) - 1
 
 
-def test_it_can_be_written_as_json() -> None:
+def test_it_can_be_written_as_json(quick: Study) -> None:
     """Numbers only where there are numbers."""
-    table = json.loads(strict_json(document(made())))
+    table = json.loads(strict_json(document(quick)))
     assert {"name", "tables", "claims", "checks"} <= set(table)
     assert table["name"] == "song2025"
 

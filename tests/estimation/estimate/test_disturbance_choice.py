@@ -63,16 +63,24 @@ def found_in(model: Model, seed: int, *, gust: float = 2e-3, memory: float = 0.0
     )
 
 
+@pytest.fixture(scope="module")
+def gusty(model: Model) -> DisturbanceChoice:
+    return choose_disturbance(found_in(model, 1, memory=6.0))
+
+
+@pytest.fixture(scope="module")
+def wandering(model: Model) -> DisturbanceChoice:
+    return choose_disturbance(found_in(model, 2, bias=0.1))
+
+
 def names(choice: DisturbanceChoice) -> list[str]:
     return [f.noise.disturbance_model for f in choice.fitted]
 
 
-def test_a_gust_with_a_memory(model: Model) -> None:
-    white = found_in(model, 1, memory=6.0)
-    choice = choose_disturbance(white)
-    best = choice.chosen.noise
+def test_a_gust_with_a_memory(gusty: DisturbanceChoice) -> None:
+    white, best = gusty.fitted[1].noise, gusty.chosen.noise
     assert not white.test.is_white
-    assert names(choice) == ["none", "white", "first-order Markov on r", _WITH_WAVES]
+    assert names(gusty) == ["none", "white", "first-order Markov on r", _WITH_WAVES]
     assert best.disturbance_model == "first-order Markov on r"
     assert best.test.is_white
     assert best.added_parameters["gust_memory_r"] == pytest.approx(6.0, rel=0.3)
@@ -85,8 +93,8 @@ def test_a_gust_with_a_memory(model: Model) -> None:
     assert estimate.residuals().shape == estimate.problem.data.measured.shape
 
 
-def test_wandering_positions(model: Model) -> None:
-    best = choose_disturbance(found_in(model, 2, bias=0.1)).chosen.noise
+def test_wandering_positions(wandering: DisturbanceChoice) -> None:
+    best = wandering.chosen.noise
     assert best.disturbance_model == "white and wandering biases of x0, y0"
     assert best.test.is_white
     assert set(best.process_intensities) == {"r"}
@@ -104,9 +112,8 @@ def test_white_noise_needs_no_more(model: Model) -> None:
     assert "twice its log-likelihood" in choice.summary
 
 
-def test_the_table_has_every_candidate(model: Model) -> None:
-    choice = choose_disturbance(found_in(model, 1, memory=6.0))
-    rows = choice.rows(is_used=True)
+def test_the_table_has_every_candidate(gusty: DisturbanceChoice) -> None:
+    rows = gusty.rows(is_used=True)
     none, white, markov, with_waves = rows
     assert [r.degrees_of_freedom for r in rows] == [0, 1, 2, 7]
     assert none.likelihood_ratio == 0.0 < white.likelihood_ratio < markov.likelihood_ratio
@@ -116,9 +123,8 @@ def test_the_table_has_every_candidate(model: Model) -> None:
     assert list(markov.parameters) == ["gust_memory_r"]
 
 
-def test_the_spread_holds_the_candidates_that_are_not_far_less_likely(model: Model) -> None:
-    all_of = choose_disturbance(found_in(model, 1, memory=6.0))
-    choice = replace(all_of, fitted=tuple(f for f in all_of.fitted if f.noise.disturbance_model != _WITH_WAVES))
+def test_the_spread_holds_the_candidates_that_are_not_far_less_likely(gusty: DisturbanceChoice) -> None:
+    choice = replace(gusty, fitted=tuple(f for f in gusty.fitted if f.noise.disturbance_model != _WITH_WAVES))
     _, white, markov = choice.fitted
     assert markov.log_likelihood - white.log_likelihood > 12.0
     point, other = markov.noise.common_parameters, white.noise.common_parameters
@@ -129,13 +135,12 @@ def test_the_spread_holds_the_candidates_that_are_not_far_less_likely(model: Mod
     np.testing.assert_allclose(likelier.spread(point), np.outer(other - point, other - point))
 
 
-def test_a_candidate_that_cannot_be_the_likeliest_is_left_near_its_optimum(model: Model) -> None:
+def test_a_candidate_that_cannot_be_the_likeliest_is_left_near_its_optimum(wandering: DisturbanceChoice) -> None:
     """Positions wander, so that gusts are far less likely than that, and no search leads so far."""
-    choice = choose_disturbance(found_in(model, 2, bias=0.1))
-    gusts = next(f for f in choice.fitted if f.noise.disturbance_model.startswith("first-order Markov on r"))
-    assert choice.chosen.is_searched
+    gusts = next(f for f in wandering.fitted if f.noise.disturbance_model.startswith("first-order Markov on r"))
+    assert wandering.chosen.is_searched
     assert not gusts.is_searched
-    assert gusts.log_likelihood < choice.chosen.log_likelihood
+    assert gusts.log_likelihood < wandering.chosen.log_likelihood
 
 
 def test_chance_gains_are_those_of_chi_squared() -> None:
@@ -143,9 +148,9 @@ def test_chance_gains_are_those_of_chi_squared() -> None:
     assert [critical_gain(k) for k in (1, 2, 5)] == pytest.approx([10.828, 13.816, 20.515], abs=1e-3)
 
 
-def test_intervals_have_room_for_what_was_added(model: Model) -> None:
+def test_intervals_have_room_for_what_was_added(gusty: DisturbanceChoice) -> None:
     """Unknowns more: the information of the coefficients is that of all, with the others eliminated."""
-    best = choose_disturbance(found_in(model, 1, memory=6.0)).chosen.noise
+    best = gusty.chosen.noise
     hessian = best.optimum.normal.hessian
     inside = best.optimum.solution.point > best.problem.lower
     whole = np.linalg.inv(hessian[np.ix_(inside, inside)])

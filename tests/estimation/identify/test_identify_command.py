@@ -11,16 +11,12 @@ from tests.estimation.identify.conftest import WriteTrial
 RUNS = {"a": 0.0, "b": 0.01, "c": -0.01, "d": 0.02, "e": -0.02, "v_f": 0.01}
 
 
-@pytest.fixture
-def folder(trial_of: WriteTrial, tmp_path: Path, run_command: Callable[..., int]) -> Path:
-    """A result folder with `fit.json` beside it: five zigzags train, one is kept out."""
-    trial, out = trial_of(RUNS), tmp_path / "out"
-    assert run_command("identify", trial, "--out", out, "--json", tmp_path / "fit.json") == 0
-    return out
-
-
-def test_identify_states_what_the_records_determine(folder: Path) -> None:
-    fit = json.loads((folder.parent / "fit.json").read_text())
+def test_identify_states_what_the_records_determine(
+    trial_of: WriteTrial, tmp_path: Path, run_command: Callable[..., int]
+) -> None:
+    """Five zigzags train, one is kept out."""
+    assert run_command("identify", trial_of(RUNS), "--out", tmp_path / "out", "--json", tmp_path / "fit.json") == 0
+    fit = json.loads((tmp_path / "fit.json").read_text())
     assert {"structural", "directions", "effective_parameters"} <= set(fit["identifiability"])
     assert all({"combination", "standard_deviation", "text"} <= set(d) for d in fit["identifiability"]["directions"])
     assert fit["identifiability"]["effective_parameters"] == 2
@@ -32,19 +28,13 @@ def test_identify_states_what_the_records_determine(folder: Path) -> None:
     assert all(m["lower"] <= m["simulated"] <= m["upper"] for m in bounded)
 
 
-def test_a_steered_manoeuvre_has_intervals_and_an_index(folder: Path, run_command: Callable[..., int]) -> None:
-    arguments = (
-        "--manoeuvre",
-        "zigzag:20/20",
-        "--out",
-        folder / "z.csv",
-        "--json",
-        folder / "z.json",
-        "--speed",
-        "2",
-    )
-    assert run_command("simulate", folder / "model.toml", *arguments) == 0
-    table = json.loads((folder / "z.json").read_text())
+def test_a_steered_manoeuvre_has_intervals_and_an_index(
+    trial_of: WriteTrial, tmp_path: Path, run_command: Callable[..., int]
+) -> None:
+    assert run_command("identify", trial_of({"a": 0.0}), "--out", tmp_path / "fit") == 0
+    options = ("--manoeuvre", "zigzag:20/20", "--out", tmp_path / "z.csv", "--json", tmp_path / "z.json")
+    assert run_command("simulate", tmp_path / "fit" / "model.toml", *options, "--speed", "2") == 0
+    table = json.loads((tmp_path / "z.json").read_text())
     low, high = table["intervals"]["overshoot_1_deg"]
     assert low < table["measures"]["overshoot_1_deg"] < high
     assert table["extrapolation_index"] > 1.0, "20 degrees of rudder after 17"

@@ -41,9 +41,26 @@ def fitted(alpha: float, *free: str) -> Fit:
     return identify(Trial(Ship("boat", {"L": 6.0}), tuple(map(TrialRun, runs, roles)), model, estimate=timing))
 
 
-def test_a_term_that_worsens_the_held_out_run_is_named_with_both_errors() -> None:
+@pytest.fixture(scope="module")
+def examined() -> tuple[Fit, Estimation, Sequence[Prediction]]:
+    """The fit with a term too many, and what it was examined for such terms by."""
+    examples = list[tuple[Estimation, Sequence[Prediction]]]()
+
+    def noted(estimation: Estimation, predictions: Sequence[Prediction], course: Stability | None) -> tuple:
+        assert course is None or not course.is_unstable
+        examples.append((estimation, predictions))
+        return needless_term_findings(estimation, predictions, course)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(assembled_fit, "needless_term_findings", noted)
+        return fitted(0.0, "alpha"), *examples[0]
+
+
+def test_a_term_that_worsens_the_held_out_run_is_named_with_both_errors(
+    examined: tuple[Fit, Estimation, Sequence[Prediction]],
+) -> None:
     """The error without it is that of a fit without it, as far as one step goes."""
-    fit = fitted(0.0, "alpha")
+    fit = examined[0]
     (finding,) = [f for f in fit.findings if f.code == "term-worsens-prediction"]
     assert finding.message == "held would be predicted better with alpha at 0"
     with_it, without = (float(number) for number in re.findall(r"([\d.]+) deg", finding.evidence))
@@ -53,19 +70,12 @@ def test_a_term_that_worsens_the_held_out_run_is_named_with_both_errors() -> Non
     assert finding.advice.startswith("do not fix it: the training runs determine it")
 
 
-def test_nothing_is_said_of_a_craft_whose_runs_leave_any_model(monkeypatch: pytest.MonkeyPatch) -> None:
-    seen = list[tuple[Estimation, Sequence[Prediction]]]()
-
-    def kept(estimation: Estimation, predictions: Sequence[Prediction], course: Stability | None) -> tuple[()]:
-        assert course is None or not course.is_unstable
-        seen.append((estimation, predictions))
-        return ()
-
-    monkeypatch.setattr(assembled_fit, "needless_term_findings", kept)
-    fitted(0.0, "alpha")
+def test_nothing_is_said_of_a_craft_whose_runs_leave_any_model(
+    examined: tuple[Fit, Estimation, Sequence[Prediction]],
+) -> None:
     unstable = Stability(index=-1.0, lower=-2.0, upper=-0.5, text="")
-    assert len(needless_term_findings(*seen[0])) == 1
-    assert needless_term_findings(*seen[0], unstable) == ()
+    assert len(needless_term_findings(*examined[1:])) == 1
+    assert needless_term_findings(*examined[1:], unstable) == ()
 
 
 def test_a_term_that_the_held_out_run_needs_is_not_named() -> None:

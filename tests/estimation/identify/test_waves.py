@@ -89,9 +89,10 @@ def test_a_sea_twice_as_high_as_it_was_is_refused(tmp_path: Path) -> None:
         identify(load_trial(path))
 
 
-def test_waves_that_nobody_measured_are_refused(tmp_path: Path) -> None:
+@pytest.mark.parametrize("duration", [60.0, pytest.param(200.0, marks=pytest.mark.long)])
+def test_waves_that_nobody_measured_are_refused(tmp_path: Path, duration: float) -> None:
     with pytest.raises(InputError, match="although no wave is recorded"):
-        identify(load_trial(write_wave_trial(tmp_path, [SeawayScenario(135)], FORCES[2:])))
+        identify(load_trial(write_wave_trial(tmp_path, [SeawayScenario(135, duration=duration)], FORCES[2:])))
 
 
 @pytest.mark.long
