@@ -122,11 +122,10 @@ def steady_turning_response(record: Record) -> tuple[float, float] | None:
 
 def _first_order_lag(values: Array, samples: float) -> Array:
     """First-order lag of the given number of samples, started at rest at the first value."""
-    from scipy.signal import lfilter
+    import pandas as pd
 
-    a = 1.0 / (samples + 1.0)
-    late, _ = lfilter([a], [1.0, a - 1.0], values, zi=[(1.0 - a) * values[0]])
-    return np.asarray(late, dtype=np.float64)
+    late = pd.Series(values).ewm(alpha=1.0 / (samples + 1.0), adjust=False).mean()
+    return late.to_numpy(dtype=np.float64)
 
 
 def _yaw_rate_signal(record: Record) -> Array | None:
