@@ -15,7 +15,6 @@ from seatrial.estimation.identify import identify
 REPOSITORY = Path(__file__).parents[1]
 KEPT = REPOSITORY / ".pytest_cache" / "fits"
 LAYERS = ("numerics", "core", "physics", "data", "estimation")  # all that `identify` may import
-LIBRARIES = ("numpy", "scipy", "numba", "sympy", "pandas")
 
 
 @cache
@@ -37,7 +36,7 @@ def example_fit(name: str) -> Fit:
 @cache
 def _digest() -> str:
     """The hash of the code, of all examples with their records, and of the versions of what computes."""
-    digest = hashlib.sha256(repr([sys.version, *map(version, LIBRARIES)]).encode())
+    digest = hashlib.sha256(repr([sys.version, *map(version, ("numpy", "scipy", "numba", "sympy", "pandas"))]).encode())
     folders = [*(REPOSITORY / "src" / "seatrial" / layer for layer in LAYERS), REPOSITORY / "examples"]
     for path in sorted(p for folder in folders for p in folder.rglob("*") if p.is_file() and p.suffix != ".pyc"):
         digest.update(f"{path.relative_to(REPOSITORY)}\n".encode() + path.read_bytes())

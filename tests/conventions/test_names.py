@@ -15,12 +15,14 @@ EMPTY_WORDS = frozenset(
 EMPTY_VARIABLES = EMPTY_WORDS | frozenset("begun shot some lost one met".split())  # noqa: SIM905
 
 # Folders whose variables are not counted yet.
-NOT_BEGUN = ("control", "estimation/estimate", "estimation/identify")
+NOT_BEGUN = ("estimation/estimate", "estimation/identify")
 # Folder -> how many of its variables are still such words. It may only fall.
 VARIABLES: dict[str, int] = {
     "seatrial/api": 13,
     "seatrial/campaigns": 13,
     "seatrial/cli": 15,
+    "seatrial/control": 174,
+    "seatrial/control/loopfile": 30,
     "seatrial/core/figures": 1,
     "seatrial/data": 8,
     "seatrial/data/check": 41,

@@ -246,8 +246,8 @@ def inverse_rows(craft: StationCraft, inverse: Array) -> Array:
     """Return an inverse (m, 3) with two rows for each thruster, (n, 6): zeros in the second of a fixed one."""
     rows = np.zeros((len(craft.thrusters), 2, 3))
     for i in range(len(craft.thrusters)):
-        own = [k for k, owner in enumerate(craft.owner) if owner == i]
-        rows[i, : len(own)] = inverse[own]
+        components = [k for k, owner in enumerate(craft.owner) if owner == i]
+        rows[i, : len(components)] = inverse[components]
     return rows.reshape(len(craft.thrusters), -1)
 
 
@@ -256,12 +256,12 @@ def share_given(craft: StationCraft, inverse: Array, forces: Array) -> Array:
     T = forces @ inverse.T
     share = np.full(len(forces), np.inf)
     for i, table in enumerate(craft.tables):
-        own = [k for k, owner in enumerate(craft.owner) if owner == i]
+        components = [k for k, owner in enumerate(craft.owner) if owner == i]
         with np.errstate(divide="ignore"):
             if craft.is_azimuth[i]:
-                given = table.most / np.linalg.norm(T[:, own], axis=1)
+                given = table.most / np.linalg.norm(T[:, components], axis=1)
             else:
-                given = np.where(T[:, own[0]] > 0.0, table.most, -table.least) / np.abs(T[:, own[0]])
+                given = np.where(T[:, components[0]] > 0.0, table.most, -table.least) / np.abs(T[:, components[0]])
         share = np.minimum(share, given)
     return share
 
@@ -276,35 +276,35 @@ def largest_force(craft: StationCraft, force: Array) -> tuple[float, tuple[str, 
     m, owner = len(craft.owner), craft.owner
     limits, bounds = [], []
     for i, table in enumerate(craft.tables):
-        own = [k for k, one in enumerate(owner) if one == i]
+        components = [k for k, index in enumerate(owner) if index == i]
         if not craft.is_azimuth[i]:
             bounds.append((table.least, table.most))
             continue
         bounds += [(None, None)] * 2
         for angle in 2.0 * np.pi * (np.arange(_SIDES) + 0.5) / _SIDES:
             row = np.zeros(m + 1)
-            row[own] = np.cos(angle), np.sin(angle)
+            row[components] = np.cos(angle), np.sin(angle)
             limits.append((row, table.most * np.cos(np.pi / _SIDES)))
     cost = np.zeros(m + 1)
     cost[m] = -1.0
     scale = np.array([1.0, 1.0, 1.0 / craft.lever])
     equal = scale[:, None] * np.column_stack([craft.configuration, -force])
-    found = linprog(
+    optimum = linprog(
         cost, A_ub=np.array([row for row, _ in limits]) if limits else None,
         b_ub=np.array([most for _, most in limits]) if limits else None,
         A_eq=equal, b_eq=np.zeros(3), bounds=[*bounds, (0.0, None)], method="highs",
     )  # fmt: skip
-    if found.x is None:
+    if optimum.x is None:
         return 0.0, ()
-    return float(found.x[m]), _at_limit(craft, found.x[:m])
+    return float(optimum.x[m]), _at_limit(craft, optimum.x[:m])
 
 
 def _at_limit(craft: StationCraft, T: Array) -> tuple[str, ...]:
     names = []
     for i, (thruster, table) in enumerate(zip(craft.thrusters, craft.tables, strict=True)):
-        own = T[[k for k, owner in enumerate(craft.owner) if owner == i]]
+        thrust = T[[k for k, owner in enumerate(craft.owner) if owner == i]]
         slack = _AT_LIMIT * (table.most - table.least)
-        size = float(np.linalg.norm(own)) if craft.is_azimuth[i] else float(own[0])
+        size = float(np.linalg.norm(thrust)) if craft.is_azimuth[i] else float(thrust[0])
         most = table.most * np.cos(np.pi / _SIDES) if craft.is_azimuth[i] else table.most
         if size >= most - slack or (not craft.is_azimuth[i] and size <= table.least + slack):
             names.append(thruster.name)

@@ -78,8 +78,8 @@ class StationPoint:
 
     def responses(self, omega: Array) -> tuple[Complex, Complex]:
         """Return P and P_w, (n, 3, 3) each, at omega [rad/s]."""
-        known = next((both for grid, both in zip(self.grids, self._on_grids, strict=True) if grid is omega), None)
-        return self._evaluated(omega) if known is None else known
+        tabulated = next((both for grid, both in zip(self.grids, self._on_grids, strict=True) if grid is omega), None)
+        return self._evaluated(omega) if tabulated is None else tabulated
 
     @cached_property
     def _on_grids(self) -> tuple[tuple[Complex, Complex], ...]:
@@ -202,16 +202,16 @@ class StationLoop:
             return math.inf
         low, high = omega[before], omega[before + 1]
         size_low, size_high = sizes[before, branch], sizes[before + 1, branch]
-        met, value = low, values[before, branch]
+        crossing, value = low, values[before, branch]
         for _ in range(_REFINEMENTS):
-            met = low * (high / low) ** np.clip(size_low / (size_low - size_high), _INSIDE, 1.0 - _INSIDE)
-            value = _sorted_eigenvalues(self.open_loop(met, 0.0))[np.arange(len(met)), branch]
+            crossing = low * (high / low) ** np.clip(size_low / (size_low - size_high), _INSIDE, 1.0 - _INSIDE)
+            value = _sorted_eigenvalues(self.open_loop(crossing, 0.0))[np.arange(len(crossing)), branch]
             size = np.log(np.abs(value))
             is_before = size * size_low > 0.0
-            low, size_low = np.where(is_before, met, low), np.where(is_before, size, size_low)
-            high, size_high = np.where(is_before, high, met), np.where(is_before, size_high, size)
+            low, size_low = np.where(is_before, crossing, low), np.where(is_before, size, size_low)
+            high, size_high = np.where(is_before, high, crossing), np.where(is_before, size_high, size)
         lags = (math.pi + np.angle(value)) % (2.0 * math.pi)
-        return float((lags / met).min())
+        return float((lags / crossing).min())
 
     @property
     def is_stable(self) -> bool:
@@ -234,8 +234,8 @@ class StationLoop:
 
 def _sorted_eigenvalues(matrices: Complex) -> Complex:
     """Return the eigenvalues of matrices (n, 3, 3), the smallest first, (n, 3)."""
-    found = np.linalg.eigvals(matrices)
-    return _complex(np.take_along_axis(found, np.argsort(np.abs(found), axis=1), axis=1))
+    eigenvalues = np.linalg.eigvals(matrices)
+    return _complex(np.take_along_axis(eigenvalues, np.argsort(np.abs(eigenvalues), axis=1), axis=1))
 
 
 def _complex(values: object) -> Complex:

@@ -86,9 +86,9 @@ class SlowPush:
 
     def series(self, dt: float, count: int, rng: np.random.Generator) -> DisturbanceSeries:
         """Return one realisation."""
-        made = np.array([rms * gauss_markov(self.bandwidth, dt, count, rng) if rms else np.zeros(count)
+        noise = np.array([rms * gauss_markov(self.bandwidth, dt, count, rng) if rms else np.zeros(count)
                          for rms in self.rms])  # fmt: skip
-        return DisturbanceSeries(dt * np.cumsum(made[:2], axis=1), made[3:])
+        return DisturbanceSeries(dt * np.cumsum(noise[:2], axis=1), noise[3:])
 
 
 @dataclass(frozen=True)
@@ -149,28 +149,28 @@ class WavePush:
         """Return frequencies (n,) [rad/s] and complex amplitudes (n, 6) of the waves of one realisation."""
         still = self._still
         lines = wave_components(still, rng, frequency_band(still, np.ones_like))
-        made = np.zeros((len(lines.omega), AXES), dtype=np.complex128)
+        unit = np.zeros((len(lines.omega), AXES), dtype=np.complex128)
         turning = YawAcceleration(self.hull.L, self.hull.T)
         for beta in np.unique(lines.direction):
             these = lines.direction == beta
             speed = still.effect.amplitude(lines.omega[these], 0.0, float(beta))
-            made[these, 0], made[these, 1] = speed * math.cos(beta), speed * math.sin(beta)
-            made[these, AXES - 1] = self.inertia * turning.amplitude(lines.omega[these], 0.0, float(beta))
-        return lines.omega, made * lines.amplitude[:, None]
+            unit[these, 0], unit[these, 1] = speed * math.cos(beta), speed * math.sin(beta)
+            unit[these, AXES - 1] = self.inertia * turning.amplitude(lines.omega[these], 0.0, float(beta))
+        return lines.omega, unit * lines.amplitude[:, None]
 
 
 def joined(spectra: Sequence[DisturbanceSpectrum]) -> DisturbanceSpectrum:
     """Return independent spectra as one."""
     return DisturbanceSpectrum(
-        np.concatenate([one.omega for one in spectra]), np.concatenate([one.shares for one in spectra])
+        np.concatenate([part.omega for part in spectra]), np.concatenate([part.shares for part in spectra])
     )
 
 
 def summed(series: Sequence[DisturbanceSeries], count: int) -> DisturbanceSeries:
     """Return what several disturbances do together."""
     drift, forces = np.zeros((2, count)), np.zeros((3, count))
-    for one in series:
-        drift, forces = drift + one.drift, forces + one.forces
+    for part in series:
+        drift, forces = drift + part.drift, forces + part.forces
     return DisturbanceSeries(drift, forces)
 
 
@@ -196,7 +196,7 @@ class StationSetting:
     def series(self, direction: float, dt: float, count: int, seed: int) -> DisturbanceSeries:
         """Return one realisation with the steady current from a direction."""
         rng = np.random.default_rng(seed)
-        varying = summed([one.series(dt, count, rng) for one in self.disturbances], count)
+        varying = summed([disturbance.series(dt, count, rng) for disturbance in self.disturbances], count)
         gone = -self.current * dt * np.arange(count)
         drift = varying.drift + np.outer([math.cos(direction), math.sin(direction)], gone)
         return replace(varying, drift=drift)
@@ -241,8 +241,8 @@ class StationSimulator:
                 f"station: in a current from {math.degrees(directions[worst]):.0f} deg off the bow the craft leaves "
                 "its station, as its thrusters do not reach; give a slower current or less gusts"
             )
-        drawn = draw_craft(self.loop.craft, draws, self.seed)
-        radii = [radius for radius in map_in_threads(self._drawn_radius, list(enumerate(drawn))) if radius < math.inf]
+        fleet = draw_craft(self.loop.craft, draws, self.seed)
+        radii = [radius for radius in map_in_threads(self._drawn_radius, list(enumerate(fleet))) if radius < math.inf]
         distance, heading, thrust, given = (
             np.concatenate([getattr(foot, name) for foot in feet])
             for name in ("distance", "heading", "thrust", "given")
@@ -256,7 +256,7 @@ class StationSimulator:
             cut=float(np.mean(given < 1.0)),
             used=np.sqrt(np.mean(thrust**2, axis=0)),
             record=self._record(runs[worst], float(directions[worst])),
-            draws=len(drawn),
+            draws=len(fleet),
             stable_draws=len(radii),
             worst_radius=max(radii, default=math.nan),
         )
@@ -275,7 +275,7 @@ class StationSimulator:
         """The longer of those of distance and heading by linear theory [s]; zero where nothing disturbs."""
         if not self.setting.disturbances:
             return 0.0
-        spectrum = joined([one.spectrum() for one in self.setting.disturbances])
+        spectrum = joined([disturbance.spectrum() for disturbance in self.setting.disturbances])
         by_force, by_water = self.loop.point.responses(spectrum.omega)
         pose = self.loop.sensitivity(spectrum.omega) @ np.concatenate([by_water, by_force], axis=2)
         energy = np.einsum("nij,njk,nik->in", pose, spectrum.shares, pose.conj()).real
@@ -356,10 +356,10 @@ def draw_craft(craft: StationCraft, draws: int, seed: int) -> list[StationCraft]
 def thrust_slopes(craft: StationCraft, nominal: StationCraft) -> Array:
     """Return the thrust of each component over that of another craft, both at the command of half its thrust, (m,)."""
     ratios = []
-    for own, known in zip(craft.tables, nominal.tables, strict=True):
-        half = 0.5 * known.most
-        share = float(np.interp(half, known.thrust, known.share))
-        ratios.append(float(np.interp(share, own.share, own.thrust)) / half)
+    for table, reference in zip(craft.tables, nominal.tables, strict=True):
+        half = 0.5 * reference.most
+        share = float(np.interp(half, reference.thrust, reference.share))
+        ratios.append(float(np.interp(share, table.share, table.thrust)) / half)
     return np.array(ratios)[list(craft.owner)]
 
 

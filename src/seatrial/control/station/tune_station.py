@@ -165,16 +165,16 @@ def choose_bandwidth(design: StationDesign) -> ChosenBandwidth:
         positions, headings = (np.exp(np.linspace(a, b, _POINTS)) for a, b in zip(low, high, strict=True))
         for place in np.stack(np.meshgrid(positions, headings), axis=-1).reshape(-1, 2).tolist():
             tried.append(_candidate(design, place[0], place[1], winner.rank[0]))
-            winner = min(winner, tried[-1], key=lambda one: one.rank)
+            winner = min(winner, tried[-1], key=lambda candidate: candidate.rank)
         best = np.log([winner.position, winner.heading])
         reach = (high - low) / (_POINTS - 1)
         low, high = np.maximum(best - reach, ends[0]), np.minimum(best + reach, ends[1])
-    kept = [one for one in tried if one.excess <= 1.0]
+    kept = [candidate for candidate in tried if candidate.excess <= 1.0]
     if not kept:
         _refuse(design, best)
     position, heading = np.exp(best).tolist()
     loops = design.loops(position, heading)
-    rows = np.array([(one.position, one.heading, one.error, one.thrust) for one in kept])
+    rows = np.array([(candidate.position, candidate.heading, candidate.error, candidate.thrust) for candidate in kept])
     front = _front(rows, len(tried))
     return ChosenBandwidth(position, heading, loops, design.precision(loops), front)
 
@@ -283,13 +283,13 @@ def station_disturbances(
         rms = (0.0, 0.0, 0.0, demand.gust_rms, demand.gust_rms, 0.0)
         text = f"gusts of {demand.gust_rms:.3g} {craft.force_unit} below {demand.gust_bandwidth:.3g} rad/s"
         pushes.append(SlowPush(text, rms, demand.gust_bandwidth))
-    for met in task.disturbances:
-        if isinstance(met, Seaway):
+    for disturbance in task.disturbances:
+        if isinstance(disturbance, Seaway):
             assert demand.hull is not None
-            pushes.append(WavePush(met, demand.hull, M_r))
+            pushes.append(WavePush(disturbance, demand.hull, M_r))
         else:
-            moment = M_r * _yaw_acceleration(task, met)
-            pushes.append(SlowPush(met.description, (0.0, 0.0, 0.0, 0.0, 0.0, moment), met.bandwidth))
+            moment = M_r * _yaw_acceleration(task, disturbance)
+            pushes.append(SlowPush(disturbance.description, (0.0, 0.0, 0.0, 0.0, 0.0, moment), disturbance.bandwidth))
     return tuple(pushes)
 
 
@@ -317,7 +317,7 @@ def tune_station(
     sample = task.sample_s or round_sample_time((float(craft.lags.max()) or _NO_LAG) / _SAMPLES_A_LAG)
     dead_time = demand.dead_time + craft.delay + 0.5 * sample
     report_progress("station: bandwidths of position and heading")
-    spectrum = joined([one.spectrum() for one in varying])
+    spectrum = joined([disturbance.spectrum() for disturbance in varying])
     frequencies = margin_frequencies(craft, dead_time)
     points = tuple(
         replace(station_point(craft, demand.current, direction, inverse), grids=(frequencies, spectrum.omega))
@@ -346,7 +346,7 @@ def tune_station(
         dead_time=dead_time,
         force_unit=craft.force_unit,
         current=demand.current,
-        disturbances=tuple(one.description for one in varying),
+        disturbances=tuple(disturbance.description for disturbance in varying),
         margins=_margins(chosen.loops),
         predicted=chosen.precision,
         front=chosen.front,
@@ -406,8 +406,8 @@ def _held_directions(holds: StationCapability, demand: StationDemand) -> Array:
 def _margins(loops: Sequence[StationLoop]) -> StationMargins:
     """Return the worst over the directions of the current."""
     finer = np.geomspace(loops[0].frequencies[0], loops[0].frequencies[-1], _MARGIN_SAMPLES)
-    surge, sway, yaw, joint = np.max([replace(one, frequencies=finer).peaks() for one in loops], axis=0).tolist()
-    return StationMargins(surge, sway, yaw, joint, min(one.tolerated_dead_time - one.dead_time for one in loops))
+    surge, sway, yaw, joint = np.max([replace(loop, frequencies=finer).peaks() for loop in loops], axis=0).tolist()
+    return StationMargins(surge, sway, yaw, joint, min(loop.tolerated_dead_time - loop.dead_time for loop in loops))
 
 
 def _thrusters(craft: StationCraft, inverse: Array) -> tuple[StationThruster, ...]:

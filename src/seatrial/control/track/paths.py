@@ -94,8 +94,8 @@ class HeadingLoop:
     def rudder_response(self, reach: Reach, guidance: Complex, omega: Array) -> Complex:
         """Return rudder for a unit of a disturbance with psi_d = -guidance y, (n,), at omega (n,) [rad/s]."""
         K = self.loop.gain_values @ self.loop.continuous.controller_terms(omega)
-        P, G = ((one.heading.frequency_response(omega), one.track.frequency_response(omega))
-                for one in (self.rudder, reach))  # fmt: skip
+        P, G = ((way.heading.frequency_response(omega), way.track.frequency_response(omega))
+                for way in (self.rudder, reach))  # fmt: skip
         return -K * (G[0] + guidance * G[1]) / (1.0 + K * (P[0] + guidance * P[1]))
 
 
@@ -150,21 +150,21 @@ class CornerTrial:
         without a trim does not.
         """
         track = self._track
-        own = self._run(self.heading.ship, track)
-        drawn = draw_parameters(self.heading.ship, draws, seed)
-        runs = [self._run_of(ship, track) for ship in drawn.ships if self._is_stable(ship, outer)]
+        nominal = self._run(self.heading.ship, track)
+        sample = draw_parameters(self.heading.ship, draws, seed)
+        runs = [self._run_of(ship, track) for ship in sample.ships if self._is_stable(ship, outer)]
         kept = [run is not None and self.is_kept(run) for run in runs]
         worst = [math.inf if run is None else self._overshoot(run) for run in runs]
         return CornerResponse(
             turn=self.demand.turn,
             acceptance=self.demand.acceptance,
             current=self.demand.current,
-            record=self._record(own, track),
-            overshoot=self._overshoot(own),
+            record=self._record(nominal, track),
+            overshoot=self._overshoot(nominal),
             worst_overshoot=max(worst, default=math.nan),
             stable_draws=sum(kept),
-            draws=drawn.draws,
-            is_kept=self.is_kept(own),
+            draws=sample.draws,
+            is_kept=self.is_kept(nominal),
         )
 
     @property
@@ -230,5 +230,5 @@ class CornerTrial:
         channels = {n: Channel.from_notation(n, frozen(np.ascontiguousarray(v[::every]))) for n, v in series.items()}
         channels[ERROR] = Channel(frozen(np.ascontiguousarray(run.error[::every])), "m", "body", "starboard")
         time = frozen(self._step * every * np.arange(len(run.error[::every])))
-        said = Provenance(f"line of sight around loop '{self.heading.loop.name}' at a corner")
-        return Record("corner", time, channels, RecordKind.SIMULATED, provenance=said)
+        provenance = Provenance(f"line of sight around loop '{self.heading.loop.name}' at a corner")
+        return Record("corner", time, channels, RecordKind.SIMULATED, provenance=provenance)

@@ -108,7 +108,7 @@ class TrackTrial:
 
         def counted(omega: Array) -> Array:
             return np.hypot(
-                *(np.abs(one) / rms for one, rms in zip(self._responses(met, omega), expected, strict=False))
+                *(np.abs(response) / rms for response, rms in zip(self._responses(met, omega), expected, strict=False))
             )
 
         def of_one(number: int) -> Array:
@@ -125,7 +125,7 @@ class TrackTrial:
         """Return the rms of distance, rudder and its rate by linear theory, (3,)."""
         spectrum = met.exposure(met.disturbed(self.outer))
         w = spectrum.omega_e
-        distance, rudder = (np.abs(one) ** 2 * spectrum.energy for one in self._responses(met, w))
+        distance, rudder = (np.abs(response) ** 2 * spectrum.energy for response in self._responses(met, w))
         return np.sqrt([distance.sum(), rudder.sum(), (w**2 * rudder).sum()])
 
     def _responses(self, met: Seaway | SlowDisturbance, omega: Array) -> tuple[Complex, Complex]:
@@ -148,11 +148,11 @@ class TrackTrial:
     def _mean_squares(self, run: ClosedLoop, series: Array, clock: DisturbanceClock, limits: ActuatorLimits) -> Array:
         """Return mean squares of distance, rudder and its rate, (3,); infinite where the limits let the craft go."""
         try:
-            made = follow_track(run, self.guidance, series, limits=limits)
+            path = follow_track(run, self.guidance, series, limits=limits)
         except DivergedError:
             return np.full(3, np.inf)
-        rate = actuator_rate(run, made.actuator[clock.first :])
-        return np.array([float(np.mean(x**2)) for x in (made.error[clock.first :], made.actuator[clock.first :], rate)])
+        rate = actuator_rate(run, path.actuator[clock.first :])
+        return np.array([float(np.mean(x**2)) for x in (path.error[clock.first :], path.actuator[clock.first :], rate)])
 
 
 # The outer loop of track keeping as a tuning of its own: from the distance to the heading order.
@@ -202,8 +202,8 @@ def track_disturbances(
         track.current, track.bandwidth, task.U, "m/s", "of current across the track", CURRENT.track
     )
     carried = (
-        replace(met, path=heading.disturbance_to_track(heading.waves if isinstance(met, Seaway) else heading.rudder))
-        for met in task.disturbances
+        replace(push, path=heading.disturbance_to_track(heading.waves if isinstance(push, Seaway) else heading.rudder))
+        for push in task.disturbances
     )
     return (current, *carried)
 
@@ -278,7 +278,7 @@ def tune_track(
     KP, KI = best.tolist()
     guidance = line_of_sight((KP, KI), rate)
     closed = outer.loop.with_gains(best)
-    found = margins(closed)
+    reserve = margins(closed)
     report_progress("track: simulated with the actuator's limits")
     trial = TrackTrial(heading, closed, guidance, limits)
     corner = CornerTrial(heading, guidance, limits, demand, task.U)
@@ -287,11 +287,11 @@ def tune_track(
         integral_gain=guidance.integral_gain,
         order_rate=guidance.rate,
         speed=task.U,
-        Ms=found.Ms,
-        gain_margin=found.gain,
-        phase_margin=found.phase,
-        delay_margin=found.delay,
-        disturbances=tuple(trial.simulate(met, seed) for met in outer.disturbances),
+        Ms=reserve.Ms,
+        gain_margin=reserve.gain,
+        phase_margin=reserve.phase,
+        delay_margin=reserve.delay,
+        disturbances=tuple(trial.simulate(disturbance, seed) for disturbance in outer.disturbances),
         corner=corner.respond(closed, draws, seed),
     )
 
@@ -341,9 +341,9 @@ def _best_lookahead(evaluator: GainEvaluator, sigma: Array) -> tuple[Array, Arra
         tried = np.linspace(low, high, _POINTS, axis=1)
         KP = np.exp(tried)
         judged = evaluator.evaluate(np.column_stack([KP.ravel(), (sigma[:, None] * KP**2).ravel()]))
-        found = np.where(judged.is_feasible, judged.objectives[:, 0], np.inf).reshape(tried.shape)
-        is_kept = np.isfinite(found).any(axis=1)
-        place = np.where(is_kept, np.argmin(found, axis=1), np.argmin(judged.Ms.reshape(tried.shape), axis=1))
-        u, values, reach = tried[rows, place], found[rows, place], (high - low) / (_POINTS - 1)
+        cost = np.where(judged.is_feasible, judged.objectives[:, 0], np.inf).reshape(tried.shape)
+        is_kept = np.isfinite(cost).any(axis=1)
+        place = np.where(is_kept, np.argmin(cost, axis=1), np.argmin(judged.Ms.reshape(tried.shape), axis=1))
+        u, values, reach = tried[rows, place], cost[rows, place], (high - low) / (_POINTS - 1)
         low, high = np.maximum(u - reach, ends[0]), np.minimum(u + reach, ends[1])
     return np.exp(u), values

@@ -192,10 +192,10 @@ def followed_gains(
     """
     pairs = [_order_and_motion(task, loop, change, stops) for change in changes]
     ordered, moved = (np.concatenate(rows) for rows in zip(*pairs, strict=True))
-    both, own, theirs = (float(np.sum(a * b)) for a, b in ((ordered, moved), (ordered, ordered), (moved, moved)))
-    if not own * theirs:
+    both, power, theirs = (float(np.sum(a * b)) for a, b in ((ordered, moved), (ordered, ordered), (moved, moved)))
+    if not power * theirs:
         return FollowedGains(0.0, 0.0)
-    return FollowedGains(both / own, abs(both) / float(np.sqrt(own * theirs)))
+    return FollowedGains(both / power, abs(both) / float(np.sqrt(power * theirs)))
 
 
 def _order_and_motion(
@@ -222,11 +222,11 @@ def _order_and_motion(
 
 def _within(order: Array, limit: float, step: float) -> Array:
     """Return an order as an actuator follows it from rest within its limits."""
-    made, now = np.empty(len(order)), float(order[0])
+    positions, now = np.empty(len(order)), float(order[0])
     for k, wanted in enumerate(np.clip(order, -limit, limit).tolist()):
         now += min(max(wanted - now, -step), step)
-        made[k] = now
-    return made
+        positions[k] = now
+    return positions
 
 
 def _mean(values: Array, width: int) -> Array:
@@ -279,23 +279,23 @@ def verify_changes(task: TuningTask, gains: Array, records: Sequence[Record], se
     logged = logged_changes(records, task.loop, demand)
     loop, followed = _loop_of_log(task, gains, logged)
     ship = task.trimmed_ship or plant_as_model(loop)
-    drawn = draw_parameters(ship, SHIPS, seed).ships
-    nominal = [_answer(task, ship, loop, gains, one) for one in logged]
+    ships = draw_parameters(ship, SHIPS, seed).ships
+    nominal = [_answer(task, ship, loop, gains, change) for change in logged]
     settling = [_judged(c, a, demand)[1] for c, a in zip(logged, nominal, strict=True)]
     backgrounds = (c.background(_SETTLED * s) for c, s in zip(logged, settling, strict=True))
-    weather = [one for one in backgrounds if len(one) >= _LEAST_BACKGROUND]
+    weather = [background for background in backgrounds if len(background) >= _LEAST_BACKGROUND]
     if not weather:
         longest = _SETTLED * max(settling)
         raise InputError(
             f"the changes end before they settle, so that nothing shows what weather does; log {longest:.0f} s and "
             "some minutes after each order"
         )
-    answers = [[_answer(task, one, loop, gains, change) for change in logged] for one in drawn] or [nominal]
+    answers = [[_answer(task, sister, loop, gains, change) for change in logged] for sister in ships] or [nominal]
     rng = np.random.default_rng(seed)
     repeats = math.ceil(SHIPS * WEATHERS / len(answers))
     sampled = np.array([
-        np.mean([_judged(c, _in_weather(a, weather, rng), demand) for c, a in zip(logged, some, strict=True)], axis=0)
-        for some in answers for _ in range(repeats)
+        np.mean([_judged(c, _in_weather(a, weather, rng), demand) for c, a in zip(logged, runs, strict=True)], axis=0)
+        for runs in answers for _ in range(repeats)
     ])  # fmt: skip
     achieved = np.array([_judged(c, _Answer(c.output, c.actuator), demand) for c in logged])
     mover = channel_unit(loop.actuator)
@@ -303,8 +303,8 @@ def verify_changes(task: TuningTask, gains: Array, records: Sequence[Record], se
     quantities = tuple(
         _quantity(name, unit, sampled[:, k], float(np.mean(achieved[:, k]))) for k, (name, unit) in enumerate(names)
     )
-    worn = (_worn(logged, some, weather, rng) for some in answers)
-    simulated = np.array([followed_gains(task, loop, one).statistics for one in worn])
+    worn = (_worn(logged, runs, weather, rng) for runs in answers)
+    simulated = np.array([followed_gains(task, loop, log).statistics for log in worn])
     changes = tuple(
         _verified_change(c, a, _judged(c, a, demand), row, loop)
         for c, a, row in zip(logged, nominal, achieved, strict=True)
@@ -316,8 +316,8 @@ def _worn(
     logged: Sequence[LoggedChange], answers: Sequence[_Answer], weather: Sequence[Array], rng: np.random.Generator
 ) -> list[LoggedChange]:
     """Return the changes of a log as a simulated ship would have made them in the log's weather."""
-    met = (_in_weather(one, weather, rng) for one in answers)
-    return [replace(c, output=a.output, actuator=a.actuator) for c, a in zip(logged, met, strict=True)]
+    disturbed = (_in_weather(answer, weather, rng) for answer in answers)
+    return [replace(c, output=a.output, actuator=a.actuator) for c, a in zip(logged, disturbed, strict=True)]
 
 
 def _gain_test(task: TuningTask, loop: TransferLoop, logged: Sequence[LoggedChange], declared: GainTest) -> GainTest:
@@ -338,9 +338,9 @@ def _gain_test(task: TuningTask, loop: TransferLoop, logged: Sequence[LoggedChan
 
 def _loop_of_log(task: TuningTask, gains: Array, logged: Sequence[LoggedChange]) -> tuple[TransferLoop, FollowedGains]:
     """Return the loop that was on, of those of the task with these gains: what the actuator follows best."""
-    alike = [one for one in (task.loop, *task.extended_structures) if one.gains.names == task.loop.gains.names]
-    loops = [one.with_gains(gains) for one in alike]
-    followed = [followed_gains(task, one, logged) for one in loops]
+    alike = [loop for loop in (task.loop, *task.extended_structures) if loop.gains.names == task.loop.gains.names]
+    loops = [loop.with_gains(gains) for loop in alike]
+    followed = [followed_gains(task, loop, logged) for loop in loops]
     best = max(range(len(loops)), key=lambda place: followed[place].coherence)
     return loops[best], followed[best]
 
@@ -352,19 +352,19 @@ def _answer(task: TuningTask, ship: TrimmedShip, loop: TransferLoop, gains: Arra
     moving = loop.closed_loop_poles if loop.sampling is None else loop.plant.poles
     dt = simulation_step(loop.sampling, min(change.dt, _STEP_SHARE / float(np.abs(moving).max())))
     every = 1 if loop.sampling is None else steps_a_sample(loop.sampling, dt)
-    at = change.dt * np.arange(len(change.order))
-    time = dt * np.arange(math.ceil(at[-1] / dt) + 1)
-    seen = time[::every]
+    order_time = change.dt * np.arange(len(change.order))
+    time = dt * np.arange(math.ceil(order_time[-1] / dt) + 1)
+    sample_time = time[::every]
     if change.is_step:
-        order = change.order[np.minimum(np.ceil(seen / change.dt - _ROUNDING).astype(int), len(at) - 1)]
+        order = change.order[np.minimum(np.ceil(sample_time / change.dt - _ROUNDING).astype(int), len(order_time) - 1)]
         motion = reference_model(order, every * dt, demand.time_constant, reference_rate(task, loop, demand))
         sampled, fed = motion.level, motion.fed_forward(feed_forward(loop, demand))
     else:
-        sampled, fed = np.interp(seen, at, change.order), np.zeros(len(seen))
-    level, fed = (np.repeat(one, every)[: len(time)] for one in (sampled, fed))
+        sampled, fed = np.interp(sample_time, order_time, change.order), np.zeros(len(sample_time))
+    level, fed = (np.repeat(signal, every)[: len(time)] for signal in (sampled, fed))
     limits = ActuatorLimits(task.constraints.limit, task.constraints.rate)
     output, moved = simulate_tracking(ship, loop, gains, limits, dt, level, fed)
-    return _Answer(np.interp(at, time, output - output[0]), np.interp(at, time, moved - moved[0]))
+    return _Answer(np.interp(order_time, time, output - output[0]), np.interp(order_time, time, moved - moved[0]))
 
 
 def _without_noise(loop: TransferLoop) -> TransferLoop:

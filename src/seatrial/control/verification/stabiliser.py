@@ -133,12 +133,12 @@ def _legs_of_record(
     lead, tail = (round(share * period / record.dt) for share in (_RUN_IN_PERIODS, 0.5 * _WINDOW_PERIODS))
     legs = []
     for first, last in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
-        begin, end = first + (lead if first else 0), last - (tail if last < len(state) else 0)
-        if state[first] < 0 or end - begin < 2:
+        start, end = first + (lead if first else 0), last - (tail if last < len(state) else 0)
+        if state[first] < 0 or end - start < 2:
             continue
-        speed = float(np.nanmean(record["u"][begin:end])) if "u" in record else U
+        speed = float(np.nanmean(record["u"][start:end])) if "u" in record else U
         legs.append(LoggedLeg(
-            record.name, float(record.time[begin]), record.dt, values[begin:end], bool(state[first]), speed,
+            record.name, float(record.time[start]), record.dt, values[start:end], bool(state[first]), speed,
         ))  # fmt: skip
     return legs
 
@@ -171,7 +171,7 @@ class LoopMoments:
 
 def mean_moments(moments: Sequence[LoopMoments]) -> LoopMoments:
     """Return the mean of legs of equal weight."""
-    rows = [(one.free, one.output, one.actuator, one.rate, one.acceleration) for one in moments]
+    rows = [(moment.free, moment.output, moment.actuator, moment.rate, moment.acceleration) for moment in moments]
     return LoopMoments(*np.mean(rows, axis=0).tolist())
 
 
@@ -302,7 +302,7 @@ def verify_stabiliser(task: TuningTask, gains: Array, records: Sequence[Record])
         InputError: no sea in the task, no leg with control, legs too short, or an actuator that does not follow the
             gains.
     """
-    seaway = next((met for met in task.disturbances if isinstance(met, Seaway)), None)
+    seaway = next((disturbance for disturbance in task.disturbances if isinstance(disturbance, Seaway)), None)
     if seaway is None:
         raise InputError(f"tuning '{task.name}' names no sea; add [[seas]] with the heading of the legs")
     if seaway.path is not None:
@@ -415,7 +415,7 @@ def _quantities(legs: Sequence[_Leg], fit: LegFit) -> tuple[VerifiedQuantity, ..
 
 def _reductions(legs: Sequence[_Leg], by_model: VerifiedQuantity) -> tuple[ReductionEstimate, ...]:
     """Return the reduction by the model, and where there are legs without control, by what the legs themselves show."""
-    made = [ReductionEstimate(BY_MODEL, by_model.achieved, by_model.lower, by_model.upper)]
+    estimates = [ReductionEstimate(BY_MODEL, by_model.achieved, by_model.lower, by_model.upper)]
     data, is_on = [products(leg.spectra) for leg in legs], [leg.logged.is_controlled for leg in legs]
 
     def estimate(method: str, value: Callable[[Complex, Complex], float]) -> ReductionEstimate:
@@ -428,7 +428,7 @@ def _reductions(legs: Sequence[_Leg], by_model: VerifiedQuantity) -> tuple[Reduc
         return ReductionEstimate(method, reduction, *normal_interval(reduction, jackknife_deviation(data, of_means)))
 
     if not all(is_on) and legs[0].logged.values.shape[1] > _WAVE_COLUMN:
-        made.append(estimate(BY_WAVES, reduction_by_waves))
+        estimates.append(estimate(BY_WAVES, reduction_by_waves))
     if not all(is_on):
-        made.append(estimate(AS_THEY_ARE, plain_reduction))
-    return tuple(made)
+        estimates.append(estimate(AS_THEY_ARE, plain_reduction))
+    return tuple(estimates)

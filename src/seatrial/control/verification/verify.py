@@ -109,7 +109,7 @@ def _corrections(free: Sequence[Parameter], prior: Array, fit: Fit) -> tuple[Mod
     judged = [k for k, p in enumerate(free) if p.name in after]
     tested = [k for k in judged if after[free[k].name].lower is not None]
     estimates = [after[free[k].name] for k in tested]
-    changes = np.array([one.estimate - free[k].value for one, k in zip(estimates, tested, strict=True)])
+    changes = np.array([estimate.estimate - free[k].value for estimate, k in zip(estimates, tested, strict=True)])
     places = [names.index(free[k].name) for k in tested]
     by_log = _log_covariance(estimates, fit.covariance[np.ix_(places, places)])
     moved = {tested[k] for k in moved_places(changes, prior[np.ix_(tested, tested)] + by_log)}
@@ -128,7 +128,7 @@ def _coefficient_correction(
 def _log_covariance(estimates: Sequence[Coefficient], covariance: Array) -> Array:
     """Return the covariance of estimates, scaled to their intervals, which hold what the covariance does not."""
     # an interval holds 95 % of a normal error
-    wide = [((one.upper or 0.0) - (one.lower or 0.0)) / (2.0 * float(ndtri(0.975))) for one in estimates]
+    wide = [((estimate.upper or 0.0) - (estimate.lower or 0.0)) / (2.0 * float(ndtri(0.975))) for estimate in estimates]
     scale = np.array(wide) / np.sqrt(np.diag(covariance))
     return np.asarray(scale[:, None] * covariance * scale, dtype=np.float64)
 
@@ -148,8 +148,8 @@ def moved_places(changes: Array, covariance: Array) -> list[int]:
         return float(changes @ pull - pull[places] @ np.linalg.solve(weight[np.ix_(places, places)], pull[places]))
 
     while len(moved) < len(changes) and unexplained(moved) > float(chdtri(len(changes) - len(moved), _CHANCE)):
-        others = [k for k in range(len(changes)) if k not in moved]
-        moved.append(min(others, key=lambda k: unexplained([*moved, k])))
+        candidates = [k for k in range(len(changes)) if k not in moved]
+        moved.append(min(candidates, key=lambda k: unexplained([*moved, k])))
     return moved
 
 
@@ -280,7 +280,7 @@ def _moved_findings(corrections: Sequence[ModelCorrection]) -> list[Finding]:
 
 def _leg_findings(task: TuningTask, log: StabiliserLog) -> list[Finding]:
     """Return what to warn of in the legs of a stabiliser."""
-    found = [
+    findings = [
         Finding(
             Severity.WARNING, "gains-differ",
             f"record '{leg.record}': from {leg.start:.0f} s on '{task.loop.actuator}' moves {leg.gain_ratio:.2f} times "
@@ -290,13 +290,13 @@ def _leg_findings(task: TuningTask, log: StabiliserLog) -> list[Finding]:
         for leg in log.legs if leg.is_controlled and abs(leg.gain_ratio - 1.0) > _GAIN_TOLERANCE
     ]  # fmt: skip
     if all(leg.is_controlled for leg in log.legs):
-        found.append(Finding(
+        findings.append(Finding(
             Severity.INFO, "no-leg-off", "no leg has the controller off: the reduction rests on the model alone", "",
             "log a leg of the same length without control, before or after",
         ))  # fmt: skip
     if not log.fit.is_converged:
-        found.append(Finding(
+        findings.append(Finding(
             Severity.WARNING, "not-converged", "the search for ship and seas did not converge", "",
             "look at the spectra of the legs: is the heading to the waves that of the loop file's first sea?",
         ))  # fmt: skip
-    return found
+    return findings
