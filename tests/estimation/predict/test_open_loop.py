@@ -60,6 +60,12 @@ def test_records_without_speed_take_their_time_scale_from_the_segments(rng: np.r
             ship_length_seconds([silent], 10.0, length)
 
 
+def test_positions_that_stay_for_most_rows_show_a_speed() -> None:
+    time = 0.2 * np.arange(500)
+    places = {"x0": np.floor(1.5 * time), "y0": np.zeros(500)}  # 1.5 m/s in whole metres
+    assert 10.0 / ship_length_seconds([Record.from_arrays("run", time, places)], 10.0) == pytest.approx(1.5, rel=0.2)
+
+
 UNSTABLE = {"alpha": -200.0}
 """Cubic coefficient [s^2/rad^2] with which r = K delta has no solution beyond |K delta| = 2/3 / sqrt(3 * 200)."""
 GENTLE, HARD = 0.1, 0.3  # rad: below and above that rudder angle, 0.18 rad at K = 0.15

@@ -81,7 +81,9 @@ def ship_length_seconds(records: Sequence[Record], length: float, segment_second
         if "u" in record:
             speeds.append(np.nanmedian(np.abs(record["u"])))
         elif {"x0", "y0"} <= set(record.channels):
-            speeds.append(np.median(np.hypot(np.diff(record["x0"]), np.diff(record["y0"]))) / record.dt)
+            moved = np.flatnonzero(np.append(True, np.hypot(np.diff(record["x0"]), np.diff(record["y0"])) != 0.0))
+            ways = np.hypot(np.diff(record["x0"][moved]), np.diff(record["y0"][moved]))  # between places that differ
+            speeds.append(np.median(ways / (record.dt * np.diff(moved))) if len(moved) > 1 else 0.0)
     if not speeds and segment_seconds is not None and np.isfinite(segment_seconds):
         return segment_seconds / SEGMENT_SHIP_LENGTHS
     if not speeds or np.median(speeds) <= 0:
