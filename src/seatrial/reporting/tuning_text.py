@@ -4,7 +4,14 @@ import math
 
 import numpy as np
 
-from seatrial.core.results.tuning import Controller, ManoeuvreResponse, PairedDifference, TrackKeeping, Tuning
+from seatrial.core.results.tuning import (
+    Controller,
+    ManoeuvreResponse,
+    PairedDifference,
+    SeawaySimulation,
+    TrackKeeping,
+    Tuning,
+)
 from seatrial.core.text.numbers import duration, exact, fixed, significant
 from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import Severity
@@ -95,6 +102,12 @@ def _motion(tuning: Tuning) -> str:
     moved += [quantity_text(tuning.actuator, rms["actuator_rate"], "/s")] if "actuator_rate" in rms else []
     effort = f", with {' and '.join(moved)} rms of the {channel_meaning(tuning.actuator)}" if moved else ""
     remaining = quantity_text(tuning.output, rms["output"]) if "output" in rms else ""
+    if has_reduction(tuning) and (simulated := _simulated(tuning)):
+        stalled = float(np.mean(simulated.stalled))
+        return (
+            f"Simulated in {counted(len(simulated.stalled), 'sea')} with all limits, these gains reduce the "
+            f"{motion_name(tuning)} by {percent(stalled)}; linear theory says {percent(c.reduction)}."
+        )
     if has_reduction(tuning):
         remaining = f"{significant(rms['motion'], 2)} m/s²" if tuning.motion else remaining
         to = f", to {remaining} rms" if remaining else ""
@@ -123,13 +136,19 @@ def _other_ships(tuning: Tuning) -> str:
     r = tuning.robustness[0]
     draws = [f"{r.stable_draws} of {r.draws} ships drawn from the fit"] if r.draws else []
     text = f"Stable: {enumeration([*draws, f'{r.stable_corners} of {r.corners} corners of the uncertainty'])}"
-    return (
-        f"{text}; Ms up to {fixed(r.corners_Ms, 2)} at {r.worst_corner}." if math.isfinite(r.corners_Ms) else f"{text}."
-    )
+    allowed = f" ({exact(tuning.constraints.Ms, 3)} allowed)" if math.isfinite(tuning.constraints.Ms) else ""
+    peak = f"; Ms up to {fixed(r.corners_Ms, 2)}{allowed} at {r.worst_corner}" if math.isfinite(r.corners_Ms) else ""
+    return f"{text}{peak}."
 
 
 def _holds_other_ships(tuning: Tuning) -> bool:
-    return all(r.stable_draws == r.draws and r.stable_corners == r.corners for r in tuning.robustness[:1])
+    """Return whether ships that differ are stable too, with no sensitivity peak above the largest allowed."""
+    return all(
+        r.stable_draws == r.draws
+        and r.stable_corners == r.corners
+        and not max(r.draws_Ms if r.draws else 0.0, r.corners_Ms) > tuning.constraints.Ms
+        for r in tuning.robustness[:1]
+    )
 
 
 def guidance_sentence(track: TrackKeeping) -> str:
@@ -171,11 +190,16 @@ def _violations(c: Controller) -> str:
     return f"It violates the constraints: {'; '.join(c.violated)}." if c.violated else ""
 
 
+def _simulated(tuning: Tuning) -> SeawaySimulation | None:
+    """Return the simulated seas of the chosen controller; None without any."""
+    chosen = (s for s in tuning.seaway_simulations if s.name == tuning.chosen.name and len(s.linear))
+    return next(chosen, None)
+
+
 def _simulation(tuning: Tuning) -> str:
-    chosen = [s for s in tuning.seaway_simulations if s.name == tuning.chosen.name]
-    if not chosen or not len(chosen[0].linear):
+    s = _simulated(tuning)
+    if s is None:
         return ""
-    s = chosen[0]
     linear, limited, stalled = (float(np.mean(x)) for x in (s.linear, s.limited, s.stalled))
     text = (
         f"Simulated in {counted(len(s.linear), 'sea')}, it reduces the {tuning.motion or 'motion'} by "
