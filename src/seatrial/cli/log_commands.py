@@ -170,6 +170,10 @@ def _after_draft(draft: "DraftTrial", out: Path) -> str:
     if draft.lacks_heading and draft.unrecognised:
         one = in_shell(f"{draft.unrecognised[0]}=psi")
         return f"no column is recognised as the heading: if one is, the same command with --overwrite --column {one}"
+    if draft.lacks_manoeuvre:
+        return (
+            "every run is one straight course, which shows nothing of the rudder: record a zigzag 10/10 to either side"
+        )
     steps += [f"name the column of rudder, thruster or roll angle in {out}"] if draft.lacks_input else []
     if steps:
         return f"{', '.join(steps)}, then seatrial check {in_shell(out)}"

@@ -227,7 +227,7 @@ def test_the_only_log_of_a_craft_with_thrusters_is_cut_in_two_and_nothing_is_lef
     (parts,) = draft.parts
     assert [one.name for one in parts] == ["first_part", "last_part"]
     assert parts[0].stop == parts[1].start and parts[0].start == 0.0
-    assert len(draft.held_out.names) == 1 and "a third of the log" in draft.held_out.why
+    assert len(draft.held_out.names) == 1 and "a third of the manoeuvres" in draft.held_out.why
     held = next(one for one in parts if one.name in draft.held_out.names)
     total = parts[1].stop
     assert (held.stop - held.start) / total == pytest.approx(1.0 / 3.0, abs=0.11)
@@ -247,3 +247,21 @@ def test_a_record_at_rest_before_its_release_has_a_decay_from_there(rng: np.rand
     phi = np.radians(np.round(swing + 0.03 * rng.standard_normal(len(time)), 1))
     (decay,) = decays(Record.from_arrays("run", time, {"phi": phi}))
     assert decay.start == pytest.approx(30.0, abs=1.0), "an eighth of a period"
+
+
+def course_changes(time: Array, orders: dict[float, float]) -> Array:
+    """The heading [deg] that follows changes of course, from s to deg, in small waves and whole degrees."""
+    psi = sum(angle * (1.0 - np.exp(-np.maximum(time - at, 0.0) / 6.0)) for at, angle in orders.items())
+    return np.mod(np.round(psi + 0.4 * np.sin(0.9 * time)), 360.0)
+
+
+def test_changes_of_course_are_used_whole_and_a_straight_log_asks_for_a_zigzag(tmp_path: Path) -> None:
+    orders = {60.0: 10.0, 160.0: -15.0, 260.0: 30.0, 380.0: 5.0, 460.0: -43.0, 600.0: 20.0}
+    rudder = sum(angle * np.exp(-((TIME - at) ** 2) / 20.0) for at, angle in orders.items())
+    columns = {"time": TIME, "heading [deg]": course_changes(TIME, orders), "rudder [deg]": rudder}
+    draft = draft_trial(write(tmp_path / "log.csv", columns), folder=tmp_path, length=20.0)
+    ((first, last),) = draft.parts
+    assert (first.start, first.stop, last.stop) == (0.0, last.start, pytest.approx(TIME[-1]))
+    assert not draft.lacks_manoeuvre and {one.kind for one in draft.stretches[0]} == {"courses", "straight"}
+    straight = columns | {"heading [deg]": course_changes(TIME, {-200.0: 30.0})}
+    assert draft_trial(write(tmp_path / "straight.csv", straight), folder=tmp_path, length=20.0).lacks_manoeuvre

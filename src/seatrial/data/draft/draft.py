@@ -64,7 +64,7 @@ from seatrial.data.draft.starting_model import (
     thinned_rate,
     with_wind,
 )
-from seatrial.data.draft.stretches import LogStretch, used_parts
+from seatrial.data.draft.stretches import STRAIGHT, LogStretch, used_parts
 from seatrial.data.draft.survey import LogSurvey, apart_by_sheet, survey_logs, with_common_ranges
 from seatrial.data.trial.plausibility import ESTIMATED
 from seatrial.data.trial.records import need_release
@@ -127,6 +127,12 @@ class DraftTrial:
         symbols = {g.symbol for part in self.guesses for g in part if g.is_used}
         steers = any(symbol == "delta" or symbol.startswith(("command_", "rpm_")) for symbol in symbols)
         return steers and not symbols & {"psi", "psi_magnetic", "q_w"}
+
+    @property
+    def lacks_manoeuvre(self) -> bool:
+        """Whether a rudder is recorded and all runs are straight courses, which show nothing of what it does."""
+        has_rudder = any(g.symbol == "delta" for part in self.guesses for g in part if g.is_used)
+        return has_rudder and all(self.stretches) and all(s.kind == STRAIGHT for run in self.stretches for s in run)
 
     @property
     def lacks_antenna(self) -> bool:
@@ -348,7 +354,7 @@ def _in_two(
         parts = (two_thirds_and_a_third(record, stretches, is_last=is_last),)
         name = parts[0][1 if is_last else 0].name
         if can_judge(model, name, _pieces(runs, [record], parts)):
-            held_out = HeldOutRuns((name,), "a third of the log; what is ordered in it the rest holds, too")
+            held_out = HeldOutRuns((name,), "a third of the manoeuvres; what is ordered in it the rest holds, too")
             return parts, held_out.timed(_pieces(runs, [record], parts))
     return None
 

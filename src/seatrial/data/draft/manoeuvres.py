@@ -23,6 +23,7 @@ from seatrial.data.draft.stretches import (
     stops,
 )
 from seatrial.data.draft.survey import LogSurvey
+from seatrial.physics.manoeuvres.turns import course_of
 
 # Modes of an autopilot in a log: when each began, and whether a controller was on.
 
@@ -136,17 +137,22 @@ def changes_course(stretches: Sequence[LogStretch]) -> bool:
 
 
 def two_thirds_and_a_third(record: Record, stretches: Sequence[LogStretch], *, is_last: bool) -> tuple[LogStretch, ...]:
-    """Return a log in two parts of which the last or the first is a third, cut where a manoeuvre begins if one does."""
-    share = 2.0 / 3.0 if is_last else 1.0 / 3.0
-    wanted, begins = (
-        share * record.duration,
-        [stretch.start for stretch in stretches if 0.0 < stretch.start < record.duration],
-    )
-    near = [start for start in begins if abs(start - wanted) < _CUT_TOLERANCE * record.duration]
-    cut = min(near, key=lambda start: abs(start - wanted)) if near else wanted
+    """Return a log in two parts of which the last or the first has a third of what lies between straight runs.
+
+    It is cut where a manoeuvre begins or amid a steady course if there is one near, and nothing is left out.
+    """
+    excited = [one for one in stretches if one.kind != STRAIGHT]
+    first = min((one.start for one in excited), default=0.0)
+    last = max((one.stop for one in excited), default=record.duration)
+    wanted = first + (2.0 if is_last else 1.0) / 3.0 * (last - first)
+    steady = course_of(np.unwrap(record["psi"])).steady if "psi" in record else ()
+    calm = [one.start for one in stretches if 0.0 < one.start < record.duration]
+    calm += [float(elapsed(record)[(a + b) // 2]) for a, b in steady]
+    near = [second for second in calm if abs(second - wanted) < _CUT_TOLERANCE * record.duration]
+    cut = min(near, key=lambda second: abs(second - wanted), default=wanted)
     sizes = ("the first two thirds", "the last third") if is_last else ("the first third", "the last two thirds")
     return (
-        LogStretch("first_part", 0.0, cut, f"{sizes[0]} of the log, nothing left out"),
+        LogStretch("first_part", 0.0, cut, f"{sizes[0]} of the manoeuvres, nothing left out"),
         LogStretch("last_part", cut, record.duration, sizes[1]),
     )
 

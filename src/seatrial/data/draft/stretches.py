@@ -266,10 +266,10 @@ def _chains(turns: Sequence[HeadingTurn]) -> list[list[HeadingTurn]]:
 
 
 def _changes_of_course(record: Record, course: Course, zigzags: Sequence[Sequence[HeadingTurn]]) -> list[LogStretch]:
-    """What lies from the first change of course to the last, between other manoeuvres."""
+    """What lies from the first change of a steady course to the last, between other manoeuvres."""
     groups, is_going_on = list[list[HeadingTurn]](), False
     for turn in course.turns:
-        is_change = abs(turn.angle) <= _LARGEST_SWING and not any(turn in chain for chain in zigzags)
+        is_change = abs(turn.angle) <= _LARGEST_SWING and not any(turn in chain for chain in zigzags) and course.steady
         if is_change and is_going_on:
             groups[-1].append(turn)
         elif is_change:

@@ -108,6 +108,7 @@ def _steady(psi: Array, window: int, band: float) -> list[tuple[int, int]]:
         return []
     half = window // 2
     is_inside: Mask = maximum_filter1d(psi, 2 * half + 1) - minimum_filter1d(psi, 2 * half + 1) < band
+    is_inside[:half] = is_inside[len(psi) - half :] = False  # windows that reach beyond the record
     is_steady = maximum_filter1d(is_inside.astype(np.uint8), 2 * half + 1)
     edges = np.flatnonzero(np.diff(is_steady, prepend=0, append=0))
     return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
