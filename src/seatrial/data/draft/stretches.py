@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -295,14 +295,14 @@ def _straight_runs(record: Record, flow: Array | None, course: Course) -> list[L
         rows &= flow > _MOVES * np.max(flow)
     psi = np.unwrap(record["psi"])
     return [
-        LogStretch(STRAIGHT, *_seconds(record, a, b - 1), f"heading within {np.degrees(np.ptp(psi[a:b])):.2g} deg")
+        _between(record, STRAIGHT, (a, b - 1), f"heading within {np.degrees(np.ptp(psi[a:b])):.2g} deg")
         for a, b in mask_intervals(rows)
         if record.time[b - 1] - record.time[a] >= SHORTEST_STRAIGHT_S
     ]
 
 
 def _stretch(record: Record, name: str, turns: Sequence[HeadingTurn], text: str) -> LogStretch:
-    return LogStretch(name, *_seconds(record, turns[0].first, turns[-1].last), text)
+    return _between(record, name, (turns[0].first, turns[-1].last), text)
 
 
 def _turned(
@@ -321,13 +321,16 @@ def _turned(
         first, last, released = (first, last, None) if rudder is None else _with_rudder(rudder, turn, limits)
         if released is not None:
             name, text = f"circle_{turn.side}_with_pull_out_", f"{text}; then the rudder is amidships"
-            return LogStretch(name, *_seconds(record, first, last), text, *_seconds(record, released))
-    return LogStretch(f"{kind}_{turn.side}_", *_seconds(record, first, last), text)
+            return replace(_between(record, name, (first, last), text), released=_second(record, released))
+    return _between(record, f"{kind}_{turn.side}_", (first, last), text)
 
 
-def _seconds(record: Record, *rows: int) -> list[float]:
-    """The s since the first sample of rows."""
-    return [float(record.time[row] - record.time[0]) for row in rows]
+def _between(record: Record, name: str, rows: tuple[int, int], text: str) -> LogStretch:
+    return LogStretch(name, _second(record, rows[0]), _second(record, rows[1]), text)
+
+
+def _second(record: Record, row: int) -> float:
+    return float(record.time[row] - record.time[0])
 
 
 def _is_on_the_spot(flow: Array, dt: float, turn: HeadingTurn) -> bool:

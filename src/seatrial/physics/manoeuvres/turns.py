@@ -77,6 +77,7 @@ def _time_scale(psi: Array, angle: float) -> int:
     """The fewest rows within which the heading changes by an angle; at most a share of all."""
     most = max(1, int(_LONGEST_SHARE * len(psi)))
     high = low = psi
+    widest = high, low
     length, span = 1, 0  # rows over which high and low are the extremes, and over which they were before
     while 2 * length <= most and float(np.max(high - low)) < angle:
         widest, span = (high, low), length
