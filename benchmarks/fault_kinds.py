@@ -22,7 +22,8 @@ class FaultKind:
     """A kind of fault: how it is planted, and by which code and words of a finding it is named.
 
     Attributes:
-        code, words: of the finding; also: another code with its words, where two readings are one.
+        code, words: of the finding, ... for what stands between them; also: another code with its words, where two
+            readings are one.
     """
 
     name: str
@@ -34,7 +35,8 @@ class FaultKind:
     def names(self, finding: Finding) -> bool:
         """Whether a finding names the fault."""
         pairs = [(self.code, self.words), *([self.also] if self.also else [])]
-        return any(code == finding.code and words in finding.message for code, words in pairs)
+        parts = ((code, words.split("...")) for code, words in pairs)
+        return any(code == finding.code and all(part in finding.message for part in words) for code, words in parts)
 
 
 def with_values(record: Record, **values: Array) -> Record:
@@ -152,23 +154,21 @@ def _still(record: Record, _: np.random.Generator) -> Record:
 
 
 KINDS = (
-    FaultKind("sign of the rudder", _scaled(delta=-1.0), "rudder-sign"),
-    FaultKind("sign of the heading", _scaled(psi=-1.0), "heading-sign"),
-    FaultKind("sign of the yaw rate", _scaled(r=-1.0), "yaw-rate", "opposite sign"),
-    FaultKind("sign of sway", _scaled(v=-1.0), "velocity-sign", "", ("closure", "v with the opposite sign")),
-    FaultKind("sign of y0", _scaled(y0=-1.0), "position-sign"),
-    FaultKind("x0 and y0 exchanged", _exchanged("x0", "y0"), "position-axes"),
-    FaultKind("u and v exchanged", _exchanged("u", "v"), "velocity-axes"),
-    FaultKind("earth-fixed called body-fixed", _earth_called_body, "velocity-frame", "earth-fixed"),
-    FaultKind(
-        "heading from east", lambda r, _: with_values(r, psi=np.pi / 2.0 - r["psi"]), "heading-zero", "from east"
-    ),
-    FaultKind("heading in degrees", _scaled(psi=TURN), "angle-unit", "psi"),
-    FaultKind("yaw rate in deg/s", _scaled(r=TURN), "angle-unit", "'r' is in degrees"),
-    FaultKind("yaw rate in deg/min", _scaled(r=60.0 * TURN), "angle-unit", "deg/min"),  # s of a minute
-    FaultKind("rudder in degrees", _scaled(delta=TURN), "angle-unit", "rudder"),
-    FaultKind("speed in knots", _scaled(u=1.0 / KNOT, v=1.0 / KNOT), "speed-unit", "in knots"),
-    FaultKind("heading off by 20 to 60 deg", _offset_heading(20.0, 60.0), "heading-zero", "off by"),
+    FaultKind("sign of the rudder", _scaled(delta=-1.0), "wrong-sign", "'delta'"),
+    FaultKind("sign of the heading", _scaled(psi=-1.0), "wrong-sign", "'psi'"),
+    FaultKind("sign of the yaw rate", _scaled(r=-1.0), "wrong-sign", "'r'"),
+    FaultKind("sign of sway", _scaled(v=-1.0), "closure", "v with the opposite sign"),
+    FaultKind("sign of y0", _scaled(y0=-1.0), "wrong-sign", "'y0'"),
+    FaultKind("x0 and y0 exchanged", _exchanged("x0", "y0"), "wrong-frame", "'x0'...are exchanged"),
+    FaultKind("u and v exchanged", _exchanged("u", "v"), "mislabelled", "'u'...'v'"),
+    FaultKind("earth-fixed called body-fixed", _earth_called_body, "wrong-frame", "earth-fixed"),
+    FaultKind("heading from east", lambda r, _: with_values(r, psi=np.pi / 2.0 - r["psi"]), "wrong-frame", "from east"),
+    FaultKind("heading in degrees", _scaled(psi=TURN), "wrong-unit", "'psi'... is in deg"),
+    FaultKind("yaw rate in deg/s", _scaled(r=TURN), "wrong-unit", "'r'... is in deg/s"),
+    FaultKind("yaw rate in deg/min", _scaled(r=60.0 * TURN), "wrong-unit", "'r'... is in deg/min"),  # s of a minute
+    FaultKind("rudder in degrees", _scaled(delta=TURN), "wrong-unit", "'delta'... is in deg"),
+    FaultKind("speed in knots", _scaled(u=1.0 / KNOT, v=1.0 / KNOT), "wrong-unit", "in kn"),
+    FaultKind("heading off by 20 to 60 deg", _offset_heading(20.0, 60.0), "wrong-zero", "'psi'...is off by"),
     FaultKind("heading off by 4 to 10 deg", _offset_heading(4.0, 10.0), "closure", "misalignment"),
     FaultKind("lever of 0.1 to 0.4 L", _lever, "closure", "point"),
     FaultKind("lever not turned", _unturned_lever, "closure", "not turned"),
@@ -183,7 +183,7 @@ KINDS = (
     FaultKind("a jump of 50 steps", _jump, "jump"),
     FaultKind("a gap of a minute", _gap, "time-gap"),
     FaultKind("fifty rows repeated", _repeated, "repeated-rows"),
-    FaultKind("yaw rate called roll rate", _mislabelled, "mislabelled"),
+    FaultKind("yaw rate called roll rate", _mislabelled, "mislabelled", "'p'"),
     FaultKind("rudder that never moves", _still, "no-excitation"),
 )
 """Those at even places serve to set thresholds, those at odd places are reported."""

@@ -345,7 +345,7 @@ def posed(craft: Craft, fault: Fault, seed: int) -> Trial:
     return Trial(Ship(craft.model, {"L": craft.length}), runs, model, settings)
 
 
-NAMING = ("sensor-error", "input-delay", "antenna-place", "yaw-rate", "not-white", "not-converged")
+NAMING = ("sensor-error", "input-delay", "antenna-place", "contradiction", "not-white", "not-converged")
 """Findings that a user may take for the cause, or that say that there is one."""
 
 

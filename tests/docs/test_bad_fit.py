@@ -68,7 +68,7 @@ def test_codes_of_helpers_and_of_names_are_seen() -> None:
         "closure",
         "small-closure",
         "not-read",
-        "velocity-frame",
+        "wrong-frame",
         "gain-on-bound",
         "course-unstable",
     } <= codes_of_source()

@@ -45,7 +45,7 @@ def test_quick_run_has_the_promised_keys(quick: Study) -> None:
 def test_the_headers_labels_are_refuted(quick: Study) -> None:
     claim = next(c for c in quick.claims if "u, v, p, r" in c.claim)
     assert claim.verdict is Verdict.REFUTED
-    assert "velocity-frame 13, yaw-rate 13, rudder-sign 13" in claim.evidence
+    assert "wrong-frame 13, mislabelled 13" in claim.evidence
 
 
 def test_nothing_is_fitted_on_the_validation_run(quick: Study) -> None:
@@ -193,7 +193,7 @@ def test_noise_is_blamed_only_where_there_is_some() -> None:
 
 
 def test_labels_are_refuted_only_where_every_run_speaks() -> None:
-    finding = [Finding(Severity.ERROR, c, "wrong", "1") for c in ("velocity-frame", "yaw-rate", "rudder-sign")]
+    finding = [Finding(Severity.ERROR, c, "wrong", "1") for c in ("wrong-frame", "mislabelled")]
     all_of_them = {"a": tuple(finding), "b": tuple(finding)}
     assert verdicts.column_labels_claim(replace(made(), label_findings=all_of_them)).verdict is Verdict.REFUTED
     assert (

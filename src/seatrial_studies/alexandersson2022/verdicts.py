@@ -140,9 +140,9 @@ def model_choice_claim(reproduction: BenchmarkReproduction) -> Claim:
 
 
 def column_labels_claim(reproduction: BenchmarkReproduction) -> Claim:
-    """Refuted where the checks find the velocities' frame, the yaw rate and the rudder's sign wrong in every run."""
+    """Refuted where the checks find the velocities' frame and the column of the yaw rate wrong in every run."""
     found = Counter(f.code for findings in reproduction.label_findings.values() for f in findings)
-    wanted = ("velocity-frame", "yaw-rate", "rudder-sign")
+    wanted = ("wrong-frame", "mislabelled")
     runs = len(reproduction.label_findings)
     refuted = runs > 0 and all(
         sum(c in {f.code for f in fs} for fs in reproduction.label_findings.values()) == runs for c in wanted

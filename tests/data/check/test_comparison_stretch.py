@@ -40,5 +40,5 @@ def test_of_quick_turning_the_liveliest_stretch_is_taken() -> None:
 def test_a_wrong_sign_in_a_long_record_is_found() -> None:
     record = long_zigzag(1.5, 60.0)
     wrong = with_values(record, psi=-record["psi"])
-    assert [f.code for f in examine(wrong) if f.severity is Severity.ERROR] == ["heading-sign"]
+    assert [f.code for f in examine(wrong) if f.severity is Severity.ERROR] == ["wrong-sign"]
     assert [f.code for f in examine(record) if f.severity is Severity.ERROR] == []

@@ -58,7 +58,7 @@ def test_noisy_records_pass_without_error_or_warning(clean: Record, seed: int) -
 def test_the_wrong_nozzle_sign_is_an_error(clean: Record) -> None:
     wrong = replace(clean.channel("delta"), positive="starboard")
     findings = examine(noisy(clean.with_channel("delta", wrong), 1))
-    assert [f.code for f in findings if f.severity is Severity.ERROR] == ["rudder-sign"]
+    assert [f.code for f in findings if f.severity is Severity.ERROR] == ["wrong-sign"]
 
 
 def test_position_noise_on_a_short_track_is_no_closure_error(clean: Record) -> None:

@@ -118,7 +118,7 @@ def test_a_direction_in_degrees_is_seen() -> None:
         "command_1": RECORDS[0]["command_1"], "alpha_1": 180.0 * RECORDS[0]["command_2"], "u": RECORDS[0]["u"],
     })  # fmt: skip
     (finding,) = thruster_findings(ThrusterLayout((pod,)), [degrees])
-    assert finding.code == "angle-unit"
+    assert finding.code == "wrong-unit"
     assert 'set unit = "deg" for alpha_1' in finding.advice
 
 

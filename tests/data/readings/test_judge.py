@@ -1,10 +1,12 @@
 """The judge of readings: what the columns of one motion show together is taken, what they leave open stays open."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from seatrial.core.values import Array
-from seatrial.data.readings import ColumnReading, NamedColumn, ReadingVerdict, Samples, judge
+from seatrial.data.readings import ColumnReading, NamedColumn, ReadingVerdict, Samples, judge, judge_statements
 
 DEGREE = np.pi / 180.0
 STEP = 0.2
@@ -109,3 +111,15 @@ def test_heave_is_positive_to_where_long_waves_lift_the_craft(is_up: bool) -> No
     heave = judged([column("zeta", WAVES)], [column("z", WAVES if is_up else -WAVES)])[1]
     assert heave.best.readings[0].positive == ("up" if is_up else "") and not heave.is_open
     assert judged([column("z", WAVES)])[0].is_open
+
+
+@pytest.mark.parametrize(("factor", "count"), [(1.0, 0), (1.0 / DEGREE, 1)])
+def test_a_stated_unit_is_refuted_by_the_heading_and_named(factor: float, count: int) -> None:
+    cells = {"x0": TRUTH["x0"], "y0": TRUTH["y0"], "psi": TRUTH["psi"], "r": factor * TRUTH["r"]}
+    units = {"x0": "m", "y0": "m", "psi": "rad", "r": "rad/s"}
+    columns = {s: replace(column(s, values, units[s]), is_stated=True) for s, values in cells.items()}
+    judged = judge_statements([[columns["x0"], columns["y0"]], [columns["psi"]], [columns["r"]]])
+    assert len(judged.refuted) == count
+    for entry in judged.refuted:
+        assert entry.best.readings[0].factor == pytest.approx(DEGREE)
+        assert entry.reason == "the rate of the heading" and entry.is_only and not judged.is_unexplained

@@ -48,10 +48,10 @@ def test_a_wrong_column_is_named(trial_file: Path) -> None:
 
 
 def test_errors_refuse_unless_accepted() -> None:
-    error = Finding(Severity.ERROR, "rudder-sign", "run a: the rudder turns the other way", "r 3 deg/s", "set positive")
-    with pytest.raises(InputError, match=r"rudder turns the other way.*set positive.*accept = \[\"rudder-sign\"\]"):
+    error = Finding(Severity.ERROR, "wrong-sign", "run a: the rudder turns the other way", "r 3 deg/s", "set positive")
+    with pytest.raises(InputError, match=r"rudder turns the other way.*set positive.*accept = \[\"wrong-sign\"\]"):
         refuse_errors((error,), ())
-    assert refuse_errors((error,), ("rudder-sign",))[0].severity is Severity.WARNING
+    assert refuse_errors((error,), ("wrong-sign",))[0].severity is Severity.WARNING
 
 
 def test_a_validation_run_that_cannot_be_read_is_a_finding(trial_folder: Path) -> None:

@@ -87,7 +87,7 @@ class Finding:
 
     Attributes:
         severity: how much it matters.
-        code: short stable identifier, e.g. ``velocity-frame``.
+        code: short stable identifier, e.g. ``wrong-frame``.
         message: one sentence naming the record and channel.
         evidence: the numbers it rests on.
         advice: what the user can do.

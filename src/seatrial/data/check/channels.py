@@ -176,16 +176,14 @@ def velocity_lag(motion: RecordedMotion | None) -> tuple[float, float] | None:
 
     A reference point d ahead (its lever is the turned yaw rate), a scale and a misalignment are fitted along, so that
     they do not pass for a lag.
-    None where positions are missing or the declared frame is refuted.
+    None where positions are missing or what is stated of them is refuted.
     """
-    if motion is None or motion.is_refuted:
+    if motion is None:
         return None
     length, psi, dt = motion.window_samples, motion.record["psi"], motion.record.dt
     levers, turning = (-np.sin(psi), np.cos(psi)), np.gradient(psi, dt)
     features, levered, scaled, target = [], [], [], []
-    for position, velocity, lever in zip(
-        motion.position_derivative, motion.velocity(motion.conventions[0]), levers, strict=True
-    ):
+    for position, velocity, lever in zip(motion.position_derivative, motion.velocity, levers, strict=True):
         features.append(smoothed_derivative(velocity, dt, length))
         levered.append(smoothed(turning * lever, length))
         scaled.append(smoothed(velocity, length))

@@ -1,6 +1,7 @@
 """Declared conventions compared with the data: frame, sign, unit, point, and the side of drift."""
 
 import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -12,12 +13,25 @@ from seatrial.core.values import Array, Channel, Finding, InputError, Record, Se
 from seatrial.core.values.arrays import unwrapped
 from seatrial.core.values.notation import COMMANDS, NOTATION, OPPOSITE, positive_direction
 from seatrial.data.check.consequences import REVERSED
+from seatrial.data.check.consistency import channel_name
 from seatrial.data.check.motion import (
-    DOUBTFUL_RATIO,
-    PositionReading,
+    MIN_SAMPLES,
     RecordedMotion,
-    VelocityConvention,
+    recorded_motion,
+    smoothed,
     smoothed_derivative,
+    window_length,
+)
+from seatrial.data.readings import (
+    OPEN_NATS,
+    ColumnReading,
+    JointReading,
+    JudgedStatements,
+    NamedColumn,
+    RefutedStatement,
+    Samples,
+    judge_statements,
+    mistaken_units,
 )
 
 # Declared conventions to the notation table's: sign, frame, reference point, unwrapped angles.
@@ -132,157 +146,6 @@ def _lever(symbol: str, record: Record) -> Array:
     return record["r"] if symbol == "v" else np.gradient(record["r"], record.time)
 
 
-# Velocities against the derivative of position: frame, sign, unit; the declared reading against the best.
-
-# factor by which another convention must reduce the misfit to be certain; chosen
-CERTAIN_RATIO = 3.0
-# rms difference from the track over rms speed that is acceptable, rough, and negligible; chosen
-ACCEPTABLE_MISFIT, ROUGH_MISFIT, NEGLIGIBLE_MISFIT = 0.3, 0.1, 0.03
-# misfit over that of the noise of the positions, up to which a slow craft shows nothing; chosen
-NOISE_FACTOR = 2.0
-# departure of a factor on the speed from another, relative, up to which they are the same; chosen: units differ by more
-SAME_SCALE = 0.1
-# heading [rad] by which psi must be off before that is said here; chosen: smaller ones show in closure
-LARGE_OFFSET = math.radians(15.0)
-# factor from the number in the file, taken as m/s, to the true m/s (SI brochure 2019; 1 kn = 1852 m/h), what to write
-_SPEED_UNITS = {
-    "in knots": (1852.0 / 3600.0, 'unit = "kn"'),
-    "in km/h": (1.0 / 3.6, 'unit = "km/h"'),
-    "in mm/s": (1e-3, "scale = 0.001"),
-    "in m/s although declared in knots": (3600.0 / 1852.0, 'unit = "m/s"'),
-    "in m/s although declared in km/h": (3.6, 'unit = "m/s"'),
-}
-
-
-def velocity_convention_findings(motion: RecordedMotion) -> tuple[Finding, ...]:
-    """Findings on u, v and psi of a record; none where it stays at one place."""
-    if np.ptp(motion.record["x0"]) + np.ptp(motion.record["y0"]) == 0:
-        return ()
-    best = motion.best_reading
-    comparison = _Comparison(motion, best, motion.misfit(motion.conventions[0]), motion.misfit(best))
-    return tuple(_comparison_findings(comparison))
-
-
-@dataclass(frozen=True)
-class _Comparison:
-    """The declared reading of a motion and the best one, with their misfits."""
-
-    motion: RecordedMotion
-    best: VelocityConvention
-    declared_misfit: float
-    best_misfit: float
-
-    def is_better_by(self, ratio: float, least: float) -> bool:
-        """Return whether the best reading departs from the declared one, which is worse than `least` and by `ratio`."""
-        return self.motion.is_refuted and self.declared_misfit > max(least, ratio * self.best_misfit)
-
-    def finding(
-        self, severity: Severity, code: str, text: str, advice: str, edits: tuple[TrialEdit, ...] = ()
-    ) -> Finding:
-        """Return a finding whose evidence are the misfits."""
-        evidence = (
-            f"rms misfit with the derivative of position {self.declared_misfit:.1%} as declared, "
-            f"{self.best_misfit:.1%} otherwise"
-        )
-        return Finding(severity, code, f"record '{self.motion.record.name}': {text}", evidence, advice, edits=edits)
-
-
-def _comparison_findings(comparison: _Comparison) -> list[Finding]:
-    best, motion = comparison.best, comparison.motion
-    angle, misfit = motion.heading_offset() if motion.frame == "body" else (0.0, np.inf)
-    if abs(angle) > LARGE_OFFSET and misfit * CERTAIN_RATIO < comparison.best_misfit:
-        return [_heading_offset_finding(comparison, angle, misfit)]
-    if comparison.best_misfit > max(ACCEPTABLE_MISFIT, NOISE_FACTOR * motion.noise_misfit):
-        text = "u, v fit the derivative of position in no frame"
-        advice = "check columns, units and noise of positions and velocities"
-        return [comparison.finding(Severity.WARNING, "velocity-frame", text, advice)]
-    findings = _speed_unit_findings(motion, best)
-    if comparison.is_better_by(CERTAIN_RATIO, NEGLIGIBLE_MISFIT):
-        return [*_contradiction_findings(comparison), *findings]
-    if comparison.is_better_by(DOUBTFUL_RATIO, ROUGH_MISFIT):
-        doubts = _contradiction_findings(comparison)
-        readings = "; ".join(doubt.message.partition(": ")[2] for doubt in doubts)
-        text = f"another reading fits the position better: {readings}"
-        advice = "check frame, sign and unit of u, v and psi"
-        return [comparison.finding(Severity.WARNING, doubts[0].code, text, advice), *findings]
-    return findings
-
-
-def _heading_offset_finding(comparison: _Comparison, angle: float, misfit: float) -> Finding:
-    turned = replace(comparison, best_misfit=misfit)
-    text = f"psi is off by {math.degrees(angle):+.1f} deg: a misaligned compass, a magnetic variation, or another zero"
-    edit = TrialEdit("channels.psi.offset", f"{angle:.6g}", "rad")
-    return turned.finding(Severity.ERROR, "heading-zero", text, "", (edit,))
-
-
-def _contradiction_findings(comparison: _Comparison) -> list[Finding]:
-    motion, best = comparison.motion, comparison.best
-    statements = (*_position_statements(best), *_velocity_statements(motion, best), *_heading_statements(best))
-    return [comparison.finding(Severity.ERROR, code, text, "", edits) for code, text, edits in statements]
-
-
-_Statement = tuple[str, str, tuple[TrialEdit, ...]]  # code, text, edits of a finding
-
-
-def _position_statements(best: VelocityConvention) -> list[_Statement]:
-    match best.position:
-        case PositionReading.EXCHANGED:
-            edit = TrialEdit("channels.x0", exchanged_with="channels.y0")
-            return [("position-axes", "x0 and y0 are exchanged (x0 counts to the east)", (edit,))]
-        case PositionReading.REVERSED_EAST:
-            return [("position-sign", "y0 has the opposite sign", (_reversed("y0"),))]
-        case _:
-            return []
-
-
-def _velocity_statements(motion: RecordedMotion, best: VelocityConvention) -> list[_Statement]:
-    record, statements = motion.record, list[_Statement]()
-    if best.is_exchanged:
-        edit = TrialEdit("channels.u", exchanged_with="channels.v")
-        statements.append(("velocity-axes", "u and v are exchanged", (edit,)))
-    if best.frame != motion.frame:
-        labels = ", ".join(f"'{record.channel(s).label or s}'" for s in ("u", "v"))
-        words = {"earth": "earth-fixed (north, east)", "body": "the ship's own (surge, sway)"}[best.frame]
-        text = f"u, v ({labels}) are {words} velocities, not '{motion.frame}' as declared"
-        edits = tuple(TrialEdit(f"channels.{s}.frame", f'"{best.frame}"') for s in ("u", "v"))
-        statements.append(("velocity-frame", text, edits))
-    if best.v_sign < 0:
-        statements.append(("velocity-sign", "v has the opposite sign", (_reversed("v"),)))
-    return statements
-
-
-def _heading_statements(best: VelocityConvention) -> list[_Statement]:
-    if best.psi_from_east:
-        edit = TrialEdit("channels.psi.frame", '"enu"')
-        return [("heading-zero", "psi counts from east, counter-clockwise, not from north", (edit,))]
-    if best.psi_factor == -1.0:
-        return [("heading-sign", "psi turns the other way", (_reversed("psi"),))]
-    if best.psi_factor != 1.0:
-        wrong, right = ("radians", "degrees") if best.psi_factor < 1.0 else ("degrees", "radians")
-        edit = TrialEdit("channels.psi.unit", f'"{right[:3]}"')
-        return [("angle-unit", f"psi is in {right}, not in {wrong}", (edit,))]
-    return []
-
-
-def _reversed(symbol: str) -> TrialEdit:
-    return TrialEdit(f"channels.{symbol}.positive", REVERSED)
-
-
-def _speed_unit_findings(motion: RecordedMotion, best: VelocityConvention) -> list[Finding]:
-    k = motion.speed_scale(best)
-    if k <= 0 or abs(k - 1.0) < SAME_SCALE:
-        return []
-    unit, (factor, key_value) = min(_SPEED_UNITS.items(), key=lambda item: abs(math.log(k / item[1][0])))
-    name, evidence = f"record '{motion.record.name}'", f"derivative of position is {k:.3g} times the velocity"
-    if abs(math.log(k / factor)) < SAME_SCALE:
-        key, value = key_value.split(" = ")
-        edits = tuple(TrialEdit(f"channels.{symbol}.{key}", value) for symbol in ("u", "v"))
-        return [Finding(Severity.ERROR, "speed-unit", f"{name}: u, v are {unit}", evidence, edits=edits)]
-    advice = "check units, the scale of the log, and whether the speed is through water"
-    text = f"{name}: u, v and the positions differ in scale"
-    return [Finding(Severity.WARNING, "speed-scale", text, evidence, advice)]
-
-
 # Drift in turns: a hull turns with its bow to the inside, and a record that has it outside is off somewhere.
 
 LEAST_TURN = float(np.radians(180.0))
@@ -358,3 +221,196 @@ def _body_velocities(motion: RecordedMotion) -> tuple[Array, Array]:
     if motion.frame == "body":
         return u, v
     return u * np.cos(psi) + v * np.sin(psi), v * np.cos(psi) - u * np.sin(psi)
+
+
+# What a trial file states of channels, against what the judge of readings makes of all of them together.
+
+_PAIRS = (("x0", "y0"), ("u", "v"))
+_LONE = ("psi", "r", "p", "phi", "theta", "z", "zeta", "delta", "n")
+_ANGLES = frozenset({"psi", "phi", "theta"})
+_EXCHANGEABLE = (("u", "v"), ("r", "p"), ("psi", "phi"))
+_RATES = {"the rate of the heading": ("psi", "r"), "the rate of roll": ("phi", "p")}
+_LEAST_RANGE = math.radians(2.0)  # rad, of an angle whose rate is compared; chosen: above the noise of a compass
+_EXCHANGED = 8.0  # nats against two columns that have changed places; chosen: rarer than another wrong statement
+_LARGE_OFFSET = math.radians(15.0)  # rad, of a heading; chosen: smaller ones show in `closure`
+_AXES = {"earth": "earth-fixed (north, east)", "body": "the ship's own (surge, sway)"}
+
+_Statement = tuple[str, str, tuple[TrialEdit, ...]]  # code, text and edits of a finding
+
+
+def statement_findings(record: Record) -> tuple[tuple[Finding, ...], frozenset[str]]:
+    """Return findings on what is stated of the channels of a clean record in standard signs, and the refuted symbols.
+
+    Unit, side, axes and zero of each, and two channels of one unit that have changed places.
+    """
+    if len(record) < MIN_SAMPLES:
+        return (), frozenset()
+    judged = judge_statements(_columns(record))
+    exchange, after = _exchange(record, judged)
+    findings = [_exchange_finding(record, exchange, judged, after)] if exchange else []
+    for one in after.refuted:
+        if not exchange or not {column.reading.symbol for column in one.columns} <= set(exchange):
+            findings += [_finding(record, one, statement) for statement in _statements(record, one.columns, one.best)]
+    symbols = {column.reading.symbol for one in after.refuted for column in one.columns}
+    return (*findings, *_unlike_rates(record, after)), frozenset(symbols | set(exchange))
+
+
+def _columns(record: Record) -> list[list[NamedColumn]]:
+    """The channels that are judged, those that are read together in one list."""
+    of_one_point = _at_positions(record)
+    groups = [
+        pair for pair in _PAIRS if {*pair} <= {*record.channels} and len({record.channel(s).frame for s in pair}) == 1
+    ]
+    groups += [(s,) for s in (*_LONE, "u") if s in record and not any(s in pair for pair in groups)]
+    return [[_column(of_one_point, symbol) for symbol in group] for group in groups if _moves(record, group)]
+
+
+def _moves(record: Record, symbols: Sequence[str]) -> bool:
+    """Whether something shows how channels are read; a constant velocity turns with the heading."""
+    return len(symbols) > 1 or float(np.ptp(record[symbols[0]])) > 0.0
+
+
+def _is_of_one_frame(record: Record, symbols: Sequence[str]) -> bool:
+    return len({record.channel(symbol).frame for symbol in symbols if symbol in record}) == 1
+
+
+def _column(record: Record, symbol: str) -> NamedColumn:
+    channel = record.channel(symbol)
+    samples = Samples(record.time, channel.values, symbol in _ANGLES)
+    offset = _heading_offset(record) if symbol == "psi" else 0.0
+    offsets = (offset,) if abs(offset) > _LARGE_OFFSET else ()
+    return NamedColumn(ColumnReading(symbol, channel.unit, channel.frame), samples, is_stated=True, offsets=offsets)
+
+
+def _heading_offset(record: Record) -> float:
+    """The angle [rad] to be added to psi with which body-fixed velocities fit the track best; 0: nothing shows it."""
+    motion = recorded_motion(record)
+    if motion is None or motion.frame != "body":
+        return 0.0
+    track, velocity = motion.smoothed_velocities
+    return float(np.angle(np.sum(track * np.conj(velocity))))
+
+
+def _at_positions(record: Record) -> Record:
+    """The record with velocities of the point whose positions are given (Fossen 2021, section 2.3)."""
+    motion = recorded_motion(record)
+    if motion is None or motion.reference_offset == 0.0:
+        return record
+    lever = motion.reference_offset * np.gradient(record["psi"], record.dt)
+    is_body = motion.frame == "body"
+    ahead = np.zeros_like(lever) if is_body else -lever * np.sin(record["psi"])
+    aside = lever if is_body else lever * np.cos(record["psi"])
+    values = {"u": record["u"] + ahead, "v": record["v"] + aside}
+    moved = {symbol: record.channel(symbol).with_values(array) for symbol, array in values.items()}
+    return replace(record, channels={**record.channels, **moved})
+
+
+def _exchange(record: Record, judged: JudgedStatements) -> tuple[tuple[str, ...], JudgedStatements]:
+    """The two channels that have changed places, with what is judged then; none where no such explain more."""
+    is_explained = not judged.refuted and not judged.is_unexplained
+    pairs = [pair for pair in _EXCHANGEABLE if {*pair} <= {*record.channels} and not is_explained]
+    pairs += [("p", "r")] if "r" not in record and "p" in record else []
+    best: tuple[tuple[str, ...], JudgedStatements] = ((), judged)
+    for pair in pairs:
+        if _is_of_one_frame(record, pair):
+            other = judge_statements(_columns(_with_exchanged(record, *pair)))
+            if other.nats - _EXCHANGED > best[1].nats + (0.0 if not best[0] else -_EXCHANGED):
+                best = (pair, other)
+    return best
+
+
+def _with_exchanged(record: Record, one: str, other: str) -> Record:
+    names = {one: other, other: one}
+    channels = {
+        names.get(symbol, symbol): Channel.from_notation(names[symbol], channel.values) if symbol in names else channel
+        for symbol, channel in record.channels.items()
+    }
+    return replace(record, channels=channels)
+
+
+def _exchange_finding(
+    record: Record, pair: Sequence[str], before: JudgedStatements, after: JudgedStatements
+) -> Finding:
+    one, other = (s for s in sorted(pair, key=lambda s: s not in record))
+    labels = [channel_name(record, symbol) for symbol in (one, other)]
+    refuted = [entry for entry in after.refuted if {c.reading.symbol for c in entry.columns} <= set(pair)]
+    statements = [text for entry in refuted for text in _statements(record, entry.columns, entry.best)]
+    text = f"{labels[0]} and {labels[1]} have changed places" if other in record else f"{labels[0]} is {labels[1]}"
+    text = "; ".join([text, *(words for _, words, _ in statements)])
+    gain = after.nats - _EXCHANGED - before.nats
+    edits = (TrialEdit(f"channels.{one}", exchanged_with=f"channels.{other}"), *(e for s in statements for e in s[2]))
+    return _with_odds(record, "mislabelled", text, gain, "", edits)
+
+
+def _finding(record: Record, refuted: RefutedStatement, statement: _Statement) -> Finding:
+    code, text, edits = statement
+    alternatives = [words for columns, best in refuted.instead for _, words, _ in _statements(record, columns, best)]
+    if not refuted.is_only and alternatives:
+        text = f"{text}, or {' and '.join(alternatives)}"
+    return _with_odds(record, code, text, refuted.gain, refuted.reason, edits if refuted.is_only else ())
+
+
+def _with_odds(record: Record, code: str, text: str, gain: float, reason: str, edits: tuple[TrialEdit, ...]) -> Finding:
+    evidence = f"exp({gain:.0f}) times as likely as what is stated, by {reason or 'all channels together'}"
+    severity = Severity.ERROR if gain >= OPEN_NATS else Severity.WARNING
+    advice = "correct the wrong one in the trial file"
+    return Finding(severity, code, f"record '{record.name}': {text}", evidence, advice, edits=edits)
+
+
+def _statements(record: Record, columns: Sequence[NamedColumn], best: JointReading) -> Iterator[_Statement]:
+    """What is wrong of columns that are read as best, key by key."""
+    stated = [column.reading for column in columns]
+    symbols = [reading.symbol for reading in stated]
+    names = ", ".join(channel_name(record, s) for s in symbols)
+    verb = "is" if len(symbols) == 1 else "are"
+    lead, read = stated[0], best.readings[0]
+    if read.factor != lead.factor:
+        yield _unit_statement(symbols, f"{names} {verb}", read.factor)
+    if read.frame != lead.frame:
+        yield _frame_statement(symbols, names, read.frame)
+    for reading, symbol in zip(best.readings, symbols, strict=True):
+        if reading.positive:
+            edit = TrialEdit(f"channels.{symbol}.positive", REVERSED)
+            yield (
+                "wrong-sign",
+                f"{channel_name(record, symbol) if symbol in record else symbol} has the opposite sign",
+                (edit,),
+            )
+        if reading.offset:
+            text = f"{names} is off by {math.degrees(reading.offset):+.0f} deg: another zero"
+            yield "wrong-zero", text, (TrialEdit(f"channels.{symbol}.offset", f"{reading.offset:.6g}", "rad"),)
+
+
+def _unit_statement(symbols: Sequence[str], subject: str, factor: float) -> _Statement:
+    stated, true, _ = next(key for key in mistaken_units(symbols[0]) if key[2] == factor)
+    if not true:
+        edits = tuple(TrialEdit(f"channels.{s}.scale", f"{factor:g}") for s in symbols)
+        return "wrong-unit", f"{subject} {1.0 / factor:g} times too large", edits
+    edits = tuple(TrialEdit(f"channels.{s}.unit", f'"{true}"') for s in symbols)
+    return "wrong-unit", f"{subject} in {true} although declared in {stated}", edits
+
+
+def _frame_statement(symbols: Sequence[str], names: str, frame: str) -> _Statement:
+    if symbols[0] == "psi":
+        text = f"{names} counts from east, counter-clockwise, not from north"
+        return "wrong-frame", text, (TrialEdit("channels.psi.frame", '"enu"'),)
+    if frame == "enu":
+        edit = TrialEdit(f"channels.{symbols[0]}", exchanged_with=f"channels.{symbols[1]}")
+        return "wrong-frame", f"{names} are exchanged ({symbols[0]} counts to the east)", (edit,)
+    edits = tuple(TrialEdit(f"channels.{s}.frame", f'"{frame}"') for s in symbols)
+    return "wrong-frame", f"{names} are {_AXES[frame]} velocities, not as declared", edits
+
+
+def _unlike_rates(record: Record, judged: JudgedStatements) -> Iterator[Finding]:
+    """An error for each rate that follows its angle in no reading."""
+    for relation, (angle, rate) in _RATES.items():
+        if judged.relations.get(relation, 0.0) > -OPEN_NATS:
+            continue
+        length = window_length(len(record))
+        if np.ptp(smoothed(record[angle], length)) < _LEAST_RANGE:
+            continue
+        turning = smoothed_derivative(record[angle], record.dt, length)
+        match = float(np.corrcoef(turning, smoothed(record[rate], length))[0, 1])
+        text = f"record '{record.name}': {channel_name(record, rate)} is not {relation} in any reading"
+        evidence, advice = f"correlation {match:.3f}", f"look for it in another column, or remove channels.{rate}"
+        yield Finding(Severity.ERROR, "contradiction", text, evidence, advice)

@@ -9,12 +9,12 @@ from seatrial.core.values import Finding, Record
 from seatrial.core.values.arrays import unwrapped
 from seatrial.data.check.channels import channel_findings, lag_findings, require_possible_sizes, resting_level_findings
 from seatrial.data.check.consequences import completed
-from seatrial.data.check.consistency import kinematic_consistency_findings, yaw_rate_findings
-from seatrial.data.check.conventions import drift_side_findings, velocity_convention_findings, with_standard_signs
+from seatrial.data.check.consistency import kinematic_consistency_findings
+from seatrial.data.check.conventions import drift_side_findings, statement_findings, with_standard_signs
 from seatrial.data.check.inputs import (
+    excitation_findings,
     feedback_findings,
     integration_step_findings,
-    rudder_findings,
     stepped_input_findings,
 )
 from seatrial.data.check.motion import recorded_motion
@@ -107,15 +107,18 @@ def without_repeats(record: Record) -> Record:
     return replace(record, channels={**record.channels, **channels})
 
 
+_MOTION = frozenset({"x0", "y0", "u", "v", "psi"})
+
+
 def _comparison_findings(record: Record) -> list[Finding]:
     """What channels say of one another, of a complete record with standard signs."""
-    motion = recorded_motion(record)
+    statements, refuted = statement_findings(record)
+    motion = None if refuted & _MOTION else recorded_motion(record)
     return [
-        *(() if motion is None else velocity_convention_findings(motion)),
+        *statements,
         *(() if motion is None else kinematic_consistency_findings(motion)),
         *(() if motion is None else drift_side_findings(motion)),
-        *yaw_rate_findings(record),
-        *rudder_findings(record),
+        *excitation_findings(record),
         *lag_findings(record, motion),
         *phase_findings(record),
         *approach_findings(record),

@@ -1,11 +1,9 @@
 """Signals of a record and its motion as declared: what the checks share."""
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from enum import StrEnum
+from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise, product
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -95,46 +93,6 @@ ComplexArray = NDArray[np.complex128]
 DEGREES_PER_RADIAN = 180.0 / math.pi
 # samples of a record from which on it is compared with itself; chosen: some windows of smoothing
 MIN_SAMPLES = 30
-# factor by which another convention must reduce the misfit to be possible; chosen
-DOUBTFUL_RATIO = 1.5
-# correlation of yaw rate and heading from which on their common sign counts; chosen
-_TURNS_TOGETHER = 0.6
-
-
-class PositionReading(StrEnum):
-    """How x0 and y0 may have been written down."""
-
-    DECLARED = "as declared"
-    EXCHANGED = "exchanged"
-    REVERSED_EAST = "y0 reversed"
-
-
-@dataclass(frozen=True)
-class VelocityConvention:
-    """One way to read the columns of a motion; `changes` counts departures from the declared way.
-
-    Attributes:
-        frame: ``body`` or ``earth``.
-        v_sign: factor on v.
-        psi_factor: factor on psi (-1: the heading turns the other way; 57.3 or its inverse: wrong unit).
-        changes: number of differences from the declaration, a yaw rate that then contradicts the heading among them.
-        is_exchanged: whether u and v have changed places.
-        psi_from_east: whether psi counts from east, counter-clockwise, as ROS has it.
-        position: how x0 and y0 are read.
-    """
-
-    frame: str
-    v_sign: float
-    psi_factor: float
-    changes: int
-    is_exchanged: bool = False
-    psi_from_east: bool = False
-    position: PositionReading = PositionReading.DECLARED
-
-    @property
-    def reverses_turning(self) -> bool:
-        """Whether the heading turns the other way than it was written down."""
-        return self.psi_factor < 0 or self.psi_from_east
 
 
 @dataclass(frozen=True)
@@ -165,148 +123,35 @@ class RecordedMotion:
         return north, east
 
     @property
-    def conventions(self) -> list[VelocityConvention]:
-        """The declared reading first, then all others.
-
-        Earth-fixed velocities do not show how the heading is written: it turns the lever between two points alone.
-        """
-        frames = (self.frame, "earth" if self.frame == "body" else "body")
-        factors = (1.0, -1.0, DEGREES_PER_RADIAN, 1.0 / DEGREES_PER_RADIAN)
-        return [VelocityConvention(frame, v_sign, factor, (frame != self.frame) + (v_sign < 0) + (factor != 1.0))
-                for frame, v_sign, factor in product(frames, (1.0, -1.0), factors)
-                if frame == "body" or factor == 1.0]  # fmt: skip
-
-    def velocity(self, convention: VelocityConvention) -> tuple[Array, Array]:
-        """Return the velocity of the position's reference point, north and east [m/s], as the reading has it."""
-        u, v, psi = self.record["u"], convention.v_sign * self.record["v"], convention.psi_factor * self.record["psi"]
+    def velocity(self) -> tuple[Array, Array]:
+        """The velocity of the position's reference point, north and east [m/s]."""
+        u, v, psi = (self.record[s] for s in ("u", "v", "psi"))
         c, s = np.cos(psi), np.sin(psi)
-        north, east = (u * c - v * s, u * s + v * c) if convention.frame == "body" else (u, v)
+        north, east = (u * c - v * s, u * s + v * c) if self.frame == "body" else (u, v)
         if self.reference_offset == 0.0:
             return north, east
         lever = self.reference_offset * np.gradient(psi, self.record.dt)
         return north - lever * s, east + lever * c
 
-    @cached_property
-    def readings(self) -> list[VelocityConvention]:
-        """The declared reading first, then all others: those of `conventions` with exchanged and reversed axes."""
-        axes = [
-            replace(
-                one, is_exchanged=exchanged, psi_from_east=from_east, position=position,
-                changes=one.changes + exchanged + from_east + (position is not PositionReading.DECLARED),
-            )
-            for position, exchanged, from_east, one in product(
-                PositionReading, (False, True), (False, True), self.conventions
-            )
-            if not (from_east and (one.psi_factor != 1.0 or one.frame == "earth"))
-        ]  # fmt: skip
-        return [replace(axis, changes=axis.changes + self._contradicts_yaw_rate(axis)) for axis in axes]
-
-    def _contradicts_yaw_rate(self, reading: VelocityConvention) -> bool:
-        return self.yaw_rate_sign == (1.0 if reading.reverses_turning else -1.0)
-
-    @cached_property
-    def yaw_rate_sign(self) -> float:
-        """1 where r turns as psi does, -1 where it turns against it, 0 where neither is clear or r is missing."""
-        if "r" not in self.record:
-            return 0.0
-        turning = smoothed_derivative(self.record["psi"], self.record.dt, self.window_samples)
-        r = smoothed(self.record["r"], self.window_samples)
-        size = float(np.sqrt(np.sum(turning**2) * np.sum(r**2)))
-        match = float(np.sum(turning * r)) / size if size > 0 else 0.0
-        return float(np.sign(match)) if abs(match) > _TURNS_TOGETHER else 0.0
-
-    def smoothed_track_velocity(self, reading: VelocityConvention) -> ComplexArray:
-        """Return the smoothed derivative of position as the reading has it, north + i east [m/s]."""
+    @property
+    def smoothed_velocities(self) -> tuple[ComplexArray, ComplexArray]:
+        """Derivative of position and `velocity`, smoothed, north + i east [m/s]."""
         north, east = self.position_derivative
-        match reading.position:
-            case PositionReading.EXCHANGED:
-                return east + 1j * north
-            case PositionReading.REVERSED_EAST:
-                return north - 1j * east
-            case _:
-                return north + 1j * east
+        ahead, aside = (smoothed(part, self.window_samples) for part in self.velocity)
+        return north + 1j * east, ahead + 1j * aside
 
-    def smoothed_velocity(self, reading: VelocityConvention) -> ComplexArray:
-        """Return `velocity` smoothed, north + i east [m/s], on the samples of `position_derivative`."""
-        surge, sway, lever = self._smoothed_parts(reading.frame, abs(reading.psi_factor))
-        if reading.frame == "body" and reading.reverses_turning:
-            surge, sway = np.conj(surge), np.conj(sway)
-        if reading.reverses_turning:
-            lever = -np.conj(lever)
-        if reading.is_exchanged:
-            surge, sway = sway, surge
-        velocity = surge + 1j * (reading.v_sign * sway + lever)
-        return np.asarray(1j * velocity if reading.psi_from_east else velocity, dtype=np.complex128)
-
-    def _smoothed_parts(self, frame: str, psi_factor: float) -> tuple[ComplexArray, ...]:
-        """u, v and the lever's velocity, turned by the heading where they are body-fixed, smoothed once."""
-        if (frame, psi_factor) not in self._parts:
-            turn: ComplexArray = np.exp(1j * psi_factor * self.record["psi"])
-            axes = turn if frame == "body" else np.ones_like(turn)
-            lever = self.reference_offset * np.gradient(self.record["psi"], self.record.dt)
-            products = (axes * self.record["u"], axes * self.record["v"], turn * lever.astype(np.complex128))
-            self._parts[frame, psi_factor] = tuple(_smoothed_complex(one, self.window_samples) for one in products)
-        return self._parts[frame, psi_factor]
-
-    @cached_property
-    def _parts(self) -> dict[tuple[str, float], tuple[ComplexArray, ...]]:
-        return {}
-
-    def speed_scale(self, reading: VelocityConvention) -> float:
-        """Return the least-squares factor from the reading's velocity to the position's."""
-        velocity, track = self.smoothed_velocity(reading), self.smoothed_track_velocity(reading)
+    @property
+    def misfit(self) -> float:
+        """The size of (derivative of position - velocity, scaled to fit) over that of the derivative."""
+        track, velocity = self.smoothed_velocities
         power = float(np.sum(np.abs(velocity) ** 2))
-        return float(np.sum((track * np.conj(velocity)).real)) / power if power > 0 else 0.0
-
-    def misfit(self, reading: VelocityConvention) -> float:
-        """Return the size of (derivative of position - scaled velocity) over the size of the derivative."""
-        velocity, track = self.smoothed_velocity(reading), self.smoothed_track_velocity(reading)
-        k = max(self.speed_scale(reading), 0.0)
-        return trimmed_rms(np.abs(track - k * velocity)) / max(trimmed_rms(np.abs(track)), 1e-12)  # never a zero
-
-    @property
-    def noise_misfit(self) -> float:
-        """Return the misfit that noise of the positions alone makes: of slopes over so many samples, by least squares.
-
-        Variance 12 s^2 / (n^3 dt^2) for noise s at each of n samples (Draper & Smith 1998, eq. (1.4.5), evenly spaced).
-        """
-        noise = np.hypot(sample_noise(self.record["x0"]), sample_noise(self.record["y0"]))
-        slope = noise * np.sqrt(12.0 / self.window_samples**3) / self.record.dt  # m/s, the formula above
-        track = self.smoothed_track_velocity(self.readings[0])
-        return float(slope / max(trimmed_rms(np.abs(track)), 1e-12))  # never a zero
-
-    @cached_property
-    def best_reading(self) -> VelocityConvention:
-        """The reading that fits best; each further change must pay with a misfit smaller by half."""
-        return self.best_of(self.readings)
-
-    def best_of(self, readings: Sequence[VelocityConvention]) -> VelocityConvention:
-        """Return the best of some readings, as `best_reading`."""
-        least = 1e-6  # misfit below which readings are alike; chosen: rounding
-        return min(readings, key=lambda r: max(self.misfit(r), least) * DOUBTFUL_RATIO**r.changes)
-
-    @property
-    def is_refuted(self) -> bool:
-        """Whether another reading than the declared one fits best."""
-        return self.best_reading is not self.readings[0]
-
-    def heading_offset(self) -> tuple[float, float]:
-        """Return the angle [rad] to be added to psi with which velocities fit the track best, and the misfit then."""
-        declared = self.conventions[0]
-        velocity, track = self.smoothed_velocity(declared), self.smoothed_track_velocity(declared)
-        product, power = complex(np.sum(track * np.conj(velocity))), float(np.sum(np.abs(velocity) ** 2))
-        factor = product / power if power > 0 else 0.0
-        size = max(trimmed_rms(np.abs(track)), 1e-12)  # never a zero
-        return float(np.angle(factor)), trimmed_rms(np.abs(track - factor * velocity)) / size
+        scale = max(float(np.sum((track * np.conj(velocity)).real)) / power, 0.0) if power > 0.0 else 0.0
+        return trimmed_rms(np.abs(track - scale * velocity)) / max(trimmed_rms(np.abs(track)), 1e-12)  # never a zero
 
     @property
     def path_length(self) -> float:
         """Length of the smoothed track [m]."""
         return float(cumulative_integral(np.hypot(*self.position_derivative), self.record.dt)[-1])
-
-
-def _smoothed_complex(values: ComplexArray, length: int) -> ComplexArray:
-    return smoothed(values.real, length) + 1j * smoothed(values.imag, length)
 
 
 def recorded_motion(record: Record) -> RecordedMotion | None:

@@ -204,7 +204,7 @@ def checked_by_behaviour(
 def _over_ground(record: Record) -> Changes:
     """Velocities that are the derivative of the position: over ground."""
     motion = recorded_motion(record)
-    if motion is None or motion.path_length == 0.0 or motion.misfit(motion.conventions[0]) > _TRACK_MISFIT:
+    if motion is None or motion.path_length == 0.0 or motion.misfit > _TRACK_MISFIT:
         return {}
     return dict.fromkeys(("u", "v"), lambda guess: replace(guess, follows_track=True))
 

@@ -162,8 +162,8 @@ def _are_of_antenna(records: Sequence[Record | None], antenna: float) -> bool:
         as_recorded = None if record is None else recorded_motion(record)
         moved = None if record is None or as_recorded is None else recorded_motion(_with_positions_at(record, antenna))
         if as_recorded is not None and moved is not None:
-            here += as_recorded.misfit(as_recorded.conventions[0])
-            midship += moved.misfit(moved.conventions[0])
+            here += as_recorded.misfit
+            midship += moved.misfit
     return here < midship
 
 

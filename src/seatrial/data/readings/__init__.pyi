@@ -1,5 +1,15 @@
-from seatrial.data.readings.candidates import NamedColumn, ColumnReading, is_impossible
+from seatrial.data.readings.candidates import ColumnReading, JointReading, NamedColumn, is_impossible, mistaken_units
 from seatrial.data.readings.grids import Samples
-from seatrial.data.readings.search import OPEN_NATS, ReadingVerdict, judge
+from seatrial.data.readings.search import (
+    OPEN_NATS,
+    JudgedStatements,
+    ReadingVerdict,
+    RefutedStatement,
+    judge,
+    judge_statements,
+)
 
-__all__ = ["OPEN_NATS", "ColumnReading", "NamedColumn", "ReadingVerdict", "Samples", "is_impossible", "judge"]
+__all__ = [
+    "OPEN_NATS", "ColumnReading", "JointReading", "JudgedStatements", "NamedColumn", "ReadingVerdict",
+    "RefutedStatement", "Samples", "is_impossible", "judge", "judge_statements", "mistaken_units",
+]  # fmt: skip

@@ -23,6 +23,7 @@ ROLES = {
 # nats against a unit or sign that the heading or the logger's documentation contradicts, and against a size beyond
 # what is possible, or numbers too coarse, or a wrap at another turn; chosen as in docs/logs.md
 CONTRADICTED, IMPOSSIBLE, COARSE, OTHER_TURN = 8.0, 14.0, 7.0, 16.0
+STATED = 5.0  # nats against a reading that a trial file contradicts: 1 statement in 150 is wrong; chosen
 SAME_TURN = 4.0  # nats for the unit in whose full turn an angle jumps; chosen
 _COARSEST = 0.05  # step from which numbers are degrees rather than radians; chosen
 _ROUNDING = 1e-3  # of a step, by which it may miss a round number; chosen
@@ -47,11 +48,15 @@ class NamedColumn:
     """A column with what its heading says of it; empty words are not said.
 
     is_documented: whether the documentation of its logger says so.
+    is_stated: whether a trial file states all of the reading, by which the numbers have come to SI units.
+    offsets: zeros that are tried beside the usual ones.
     """
 
     reading: ColumnReading
     samples: Samples
     is_documented: bool = False
+    is_stated: bool = False
+    offsets: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +88,7 @@ class JointReading:
 
 @dataclass(frozen=True, eq=False)
 class ColumnGroup:
-    """Columns that are read together, what they show, and their candidates."""
+    """Columns that are read together, what they show, and their candidates; first of them what a trial file states."""
 
     role: str
     columns: tuple[NamedColumn, ...]
@@ -107,10 +112,18 @@ def variable(columns: Sequence[NamedColumn], on: Sequence[Grid]) -> ColumnGroup:
     for readings, parts in _combined(role, columns):
         sizes = [_fit(entry, column.samples) for entry, column in zip(readings, columns, strict=True)]
         own_nats = {**parts, **{why: sum(size.get(why, 0.0) for size in sizes) for why in ("size", "turn", "step")}}
+        own_nats["stated"] = -STATED * _departures(columns, readings) if columns[0].is_stated else 0.0
         pairs = zip(columns, readings, strict=True)
         contradicts = next((text for pair in pairs if (text := _contradicted(*pair))), "")
         options.append(JointReading(readings, own_nats, _slots(role, readings, columns, on), contradicts))
     return ColumnGroup(role, tuple(columns), tuple(options))
+
+
+def _departures(columns: Sequence[NamedColumn], readings: _Readings) -> int:
+    """How many of unit, frame, side and zero are not as they are stated."""
+    pairs = [(column.reading, reading) for column, reading in zip(columns, readings, strict=True)]
+    keys = ("factor", "frame", "positive", "offset")
+    return sum(any(getattr(stated, key) != getattr(read, key) for stated, read in pairs) for key in keys)
 
 
 def is_impossible(reading: ColumnReading, samples: Samples) -> bool:
@@ -135,9 +148,9 @@ def _combined(role: str, columns: Sequence[NamedColumn]) -> Iterator[tuple[_Read
             for entry, column in zip(plain[1:], columns[1:], strict=True)
         ]  # fmt: skip
         for signed, sign_share in _signed(plain, columns):
-            for zeroed, zero_share in _zeroed(role, signed):
+            for zeroed, zero_share in _zeroed(role, signed, lead.offsets):
                 parts = {"unit": unit_share, "frame": frame_share, "sign": sign_share, "zero": zero_share}
-                yield tuple(zeroed), parts
+                yield zeroed, parts
 
 
 def _kind(symbol: str) -> str:
@@ -155,6 +168,9 @@ def _units(column: NamedColumn) -> list[tuple[str, float, float]]:
     """Unit, factor and nats; parts of a unit where the numbers are beyond all plain ones."""
     stated = column.reading
     usual = shares()["units"].get(_kind(stated.symbol), {_kind(stated.symbol): 1.0})
+    if column.is_stated:
+        mistaken = ((factor, math.log(share)) for (_, _, factor), share in mistaken_units(stated.symbol).items())
+        return [(stated.unit, 1.0, 0.0), *((stated.unit, *entry) for entry in mistaken)]
     if stated.unit:
         against = [(unit, stated.factor, -CONTRADICTED) for unit in usual if unit != stated.unit]
         options = [(stated.unit, stated.factor, 0.0), *(against if not column.is_documented else [])]
@@ -169,18 +185,29 @@ def _units(column: NamedColumn) -> list[tuple[str, float, float]]:
     return [*options, *scaled]
 
 
+def mistaken_units(symbol: str) -> dict[tuple[str, str, float], float]:
+    """Return (stated unit, true unit, factor from numbers by the first to those by the second) -> share among logs."""
+    usual = shares()["units"].get(_kind(symbol), {})
+    units = {
+        (stated, unit, si_unit(unit)[0] / si_unit(stated)[0]): share
+        for stated in usual for unit, share in usual.items() if stated != unit
+    }  # fmt: skip
+    scales = shares()["scales"]
+    return units | {(_kind(symbol), "", factor): scales["share"] for factor in scales.get(symbol, ())}
+
+
 def _frames(role: str, lead: NamedColumn) -> list[tuple[str, float]]:
     """Frames of a role with nats; empty: the one that is said."""
     stated, other = lead.reading, shares()["frames"]
     match role if not lead.is_documented else "":
         case "velocity" if stated.frame != "enu":
             first, second = ("earth", "body") if stated.frame == "earth" else ("body", "earth")
-            share = other["named velocity"] if stated.frame else other["velocity"]
+            share = other["named velocity" if stated.frame and not lead.is_stated else "velocity"]
             return [(first, math.log(1.0 - share)), (second, math.log(share))]
         case "place" | "heading" if stated.frame == "enu":
             return [("enu", 0.0), ("earth", 0.0)]  # of a pose of ROS, which recommends the first (REP 103)
         case "place":
-            share = other["named axes" if stated.frame else "axes"]
+            share = other["named axes" if stated.frame and not lead.is_stated else "axes"]
             return [(stated.frame, math.log(1.0 - share)), ("enu", math.log(share))]
         case "heading" if stated.symbol == "psi":
             return [("", math.log(1.0 - other["heading"])), ("enu", math.log(other["heading"]))]
@@ -193,7 +220,8 @@ def _signed(readings: Sequence[ColumnReading], columns: Sequence[NamedColumn]) -
     options: list[tuple[_Readings, float]] = [((), 0.0)]
     for reading, column in zip(readings, columns, strict=True):
         share = shares()["opposite"].get(reading.symbol, 0.0)
-        if reading.frame == "enu" or not share or reading.symbol not in NOTATION:
+        is_by_lever = column.is_stated and reading.symbol == "v"  # of another point sway turns round: `closure` decides
+        if reading.frame == "enu" or not share or reading.symbol not in NOTATION or is_by_lever:
             choices = [(reading, 0.0)]
         else:
             opposite = reversed_reading(reading)
@@ -210,15 +238,18 @@ def reversed_reading(reading: ColumnReading) -> ColumnReading:
     return replace(reading, positive="" if reading.positive == opposite else opposite)
 
 
-def _zeroed(role: str, readings: Sequence[ColumnReading]) -> list[tuple[Sequence[ColumnReading], float]]:
+def _zeroed(
+    role: str, readings: Sequence[ColumnReading], offsets: Sequence[float]
+) -> list[tuple[Sequence[ColumnReading], float]]:
     """The readings with each zero, with nats."""
     zeros = shares()["zeros"].get(readings[0].symbol, {}) if len(readings) == 1 else {}
     if not zeros or readings[0].frame == "enu" or role == "place":
         return [(readings, 0.0)]
     unit = si_unit("deg")[0] if readings[0].unit == "rad" else 1.0
-    offsets = [(float(zero) * unit, share) for zero, share in zeros.items()]
+    by_offset = [(float(zero) * unit, share) for zero, share in zeros.items()]
+    by_offset += [(offset, min(zeros.values())) for offset in offsets]
     plain = (readings, math.log(1.0 - sum(zeros.values())))
-    return [plain, *(([replace(readings[0], offset=offset)], math.log(share)) for offset, share in offsets)]
+    return [plain, *(((replace(readings[0], offset=offset),), math.log(share)) for offset, share in by_offset)]
 
 
 def _fit(reading: ColumnReading, samples: Samples) -> dict[str, float]:
@@ -238,8 +269,9 @@ def _fit(reading: ColumnReading, samples: Samples) -> dict[str, float]:
         turn = math.tau / factor / reading.factor
         if samples.turn:
             parts["turn"] = SAME_TURN if abs(samples.turn / turn - 1.0) < _TURN_SLACK - 1.0 else -OTHER_TURN
-        if samples.resolution and reading.unit in ("deg", "rad"):
-            is_other = samples.resolution >= _COARSEST if reading.unit == "rad" else _is_of_degrees(samples.resolution)
+        step = samples.resolution * reading.factor
+        if step and reading.unit in ("deg", "rad"):
+            is_other = step >= _COARSEST if reading.unit == "rad" else _is_of_degrees(step)
             parts["step"] = -COARSE if is_other else 0.0
     return parts
 

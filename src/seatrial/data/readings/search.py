@@ -92,6 +92,69 @@ def judge(groups: Sequence[Sequence[NamedColumn]]) -> list[ReadingVerdict]:
     return [search.verdict(best, k, rivals[k]) for k in range(len(variables))]
 
 
+@dataclass(frozen=True, eq=False)
+class RefutedStatement:
+    """What a trial file states of the columns of a variable, where another reading explains the records better.
+
+    Attributes:
+        columns: the columns.
+        best: how they are read.
+        gain, gap: nats by which it is better, everything else as it is best, and read as goes best with what is stated.
+        instead: variables that are read otherwise in that case, as (columns, reading).
+        reason: the relation that speaks most for it; empty: the sizes of the numbers.
+    """
+
+    columns: tuple[NamedColumn, ...]
+    best: JointReading
+    gain: float
+    gap: float
+    instead: tuple[tuple[tuple[NamedColumn, ...], JointReading], ...]
+    reason: str
+
+    @property
+    def is_only(self) -> bool:
+        """Whether no other reading of other columns explains the records nearly as well."""
+        return self.gap >= OPEN_NATS
+
+
+@dataclass(frozen=True)
+class JudgedStatements:
+    """What is stated of columns and refuted, and the nats of all.
+
+    relations: relation -> nats; is_unexplained: whether one shows something that no reading explains.
+    """
+
+    refuted: tuple[RefutedStatement, ...]
+    nats: float
+    relations: Mapping[str, float]
+    is_unexplained: bool
+
+
+def judge_statements(groups: Sequence[Sequence[NamedColumn]]) -> JudgedStatements:
+    """Return which readings that a trial file states, of columns that are read together, records refute."""
+    on = grids([column.samples for group in groups for column in group])
+    search = _Search([variable(group, on) for group in groups], Relations(tuple(grid.step for grid in on)))
+    stated = [0] * len(groups)
+    best = search.ascended(stated, by_pairs=False)
+    if best != stated or search.is_unexplained(best):
+        images = ([entry[k] for entry, k in zip(of_all, best, strict=True)] for of_all in search.images)
+        singly = (search.ascended(start, by_pairs=False) for start in (best, *images))
+        best = search.ascended(max(singly, key=search.total))
+    for _ in range(_SWEEPS):
+        rivals = [search.ascended(_as_stated(best, k), k) for k, number in enumerate(best) if number]
+        better = max([*rivals, best], key=search.total)
+        if search.total(better) <= search.total(best) + _ROUNDING:
+            break
+        best = better
+    refuted = tuple(search.refuted(best, k) for k, number in enumerate(best) if number)
+    return JudgedStatements(refuted, search.total(best), search.relations(best), search.is_unexplained(best))
+
+
+def _as_stated(choice: Sequence[int], place: int) -> list[int]:
+    """The choice with what is stated of one variable."""
+    return [*choice[:place], 0, *choice[place + 1 :]]
+
+
 class _Search:
     """The nats of choices of candidates, each relation computed once for the readings it depends on."""
 
@@ -128,6 +191,30 @@ class _Search:
                 slots |= {"place track": slots_of_variable["track"]} if is_pose else slots_of_variable
             self._memo[key] = term.nats(slots)
         return self._memo[key]
+
+    def relations(self, choice: Sequence[int]) -> dict[str, float]:
+        """Return relation -> nats of a choice."""
+        return {term.text: self.term_nats(number, choice) for number, (term, _) in enumerate(self.terms)}
+
+    def is_unexplained(self, choice: Sequence[int]) -> bool:
+        """Return whether a relation shows something that a choice does not explain."""
+        return any(0.0 != nats < _NO_EVIDENCE for nats in self.relations(choice).values())
+
+    def refuted(self, best: Sequence[int], place: int) -> RefutedStatement:
+        """Return what is found of a variable whose best reading is not the stated one, its first."""
+        changed = _as_stated(best, place)
+        rival = self.ascended(changed, place)
+        instead = tuple(
+            (self.variables[k].columns, self.variables[k].candidates[number])
+            for k, number in enumerate(rival) if number not in (best[k], 0)
+        )  # fmt: skip
+        nats = self._differences(best, changed)
+        reason = max(nats, key=lambda text: nats[text], default="")
+        entry, total = self.variables[place], self.total(best)
+        return RefutedStatement(
+            entry.columns, entry.candidates[best[place]], total - self.total(changed), total - self.total(rival),
+            instead, reason if reason and nats[reason] > _NO_EVIDENCE else "",
+        )  # fmt: skip
 
     def _family(self, choice: Sequence[int]) -> float:
         systems = [entry.candidates[k].system for entry, k in zip(self.variables, choice, strict=True)]

@@ -17,11 +17,10 @@ _CAP, _LEAST = 15.0, -10.0  # nats that one relation counts for softly, and that
 _DISAGREEING, _PROVING = 0.08, 0.04
 _HALF = 0.5  # share of the difference from which on two signals are unlike; chosen
 _DISAGREEMENT = 6.0  # nats for each e-fold of the share beyond that; chosen
-_MEANS = {"rate": 4.0, "ahead": 8.0, "aside": 2.0}  # nats' weight of means that agree; chosen
+_MEANS = {"rate": 4.0, "ahead": 8.0, "aside": 2.0, "over ground": 5.0}  # nats' weight of means that agree; chosen
 _CURRENT, _CURRENT_M_S = 0.12, 0.05  # of the speed, and m/s, by which a current may explain a mean; chosen
 # sd of drift and compass errors [rad], share of logs that have them, numbers that directions count for; chosen
 _COURSE_SD, _COURSE_SHARE, _COURSE_NUMBERS = math.radians(10.0), 0.9, 14.0
-_BESIDE_SURGE = 0.25  # share that the course counts beside velocities, which are the same evidence; chosen
 _SLOW = 0.3  # of the fastest speed, below which a craft has no course; chosen
 _TURNING_CAP, _WAVES, _WAVES_SURE = 12.0, 6.0, 0.5  # nats, nats, share in phase from which a sign is sure; chosen
 _LONG_WAVES = 0.5  # share of the waves' energy up to which they count as long; chosen
@@ -55,8 +54,11 @@ def softly(nats: float, cap: float = _CAP) -> float:
     return nats if nats <= cap else cap + 2.0 * math.log1p(0.5 * (nats - cap))
 
 
-def identity(first: Signal, second: Signal, means: float, most: float = _MOST_NUMBERS) -> float:
-    """Return the nats for two signals being the same, (n,) each; negative where both move and disagree."""
+def identity(first: Signal, second: Signal, means: float, noise: float = 0.0) -> float:
+    """Return the nats for two signals being the same, (n,) each; negative where both move and disagree.
+
+    means: nats' weight of means that agree; noise: variance of their difference that is no disagreement.
+    """
     finite = np.isfinite(first) & np.isfinite(second)
     a, b = first[finite], second[finite]
     if a.size < 2 * max(_LAGS):
@@ -65,17 +67,18 @@ def identity(first: Signal, second: Signal, means: float, most: float = _MOST_NU
     scale = float(np.mean(a**2) + np.mean(b**2))
     if total <= _FLOOR * scale or scale == 0.0:
         return 0.0
-    share = float(np.var(a - b)) / total + _FLOOR
+    difference = float(np.var(a - b))
+    share, disagreement = difference / total + _FLOOR, max(difference - noise, 0.0) / total + _FLOOR
     nats = _CAP * max(1.0 - 2.0 * share, 0.0) ** 2
     if share <= _HALF:
-        count = min(independent_numbers(b), independent_numbers(a), most)
+        count = min(independent_numbers(b), independent_numbers(a))
         proof = -0.5 * count * math.log(share)
         nats = proof if share <= _PROVING else min(proof, nats)
-    if share > _DISAGREEING:
-        nats -= _DISAGREEMENT * math.log(share / _DISAGREEING)
-    elif means:
+    nats -= max(_DISAGREEMENT * math.log(disagreement / _DISAGREEING), 0.0)
+    if means:
+        alike = min(max((_HALF - disagreement) / (_HALF - _DISAGREEING), 0.0), 1.0)
         off = float(np.mean(a - b)) ** 2 / (float(np.mean(a) ** 2 + np.mean(b) ** 2) + _FLOOR * scale)
-        nats -= 0.5 * means * math.log(off + _PROVING)
+        nats -= 0.5 * means * alike * math.log(off + _PROVING)
     return max(softly(nats), _LEAST)
 
 
@@ -141,16 +144,28 @@ class Relations:
         for k, step in enumerate(self.steps):
             for lag in _LAGS[::2]:
                 velocity = (slots["along the hull"] if is_hull else slots["over ground"])[k]
-                axes = np.exp(1j * slots["psi"][k])
-                turned = velocity * axes if is_hull else velocity
-                mean = _integral(turned, lag) / lag
+                axes = np.exp(1j * slots["psi"][k]) if is_hull else np.ones(len(velocity))
+                mean = _integral(velocity * axes, lag) / lag
                 rate = (slots["track"][k][lag:] - slots["track"][k][:-lag]) / (lag * step)
                 turn = np.conj(_midway(axes, lag))
                 off = _less_current(rate - mean, mean)
-                ahead = identity(((mean + off) * turn).real, (mean * turn).real, _MEANS["ahead"])
-                aside = identity(((mean + off) * turn).imag, (mean * turn).imag, _MEANS["aside"])
+                noise = 2.0 * self._place_variance(slots["track"][-1], step) / (lag * step) ** 2  # of a difference
+                means = (_MEANS["ahead"], _MEANS["aside"]) if is_hull else (_MEANS["over ground"],) * 2
+                ahead = identity(((mean + off) * turn).real, (mean * turn).real, means[0], noise)
+                aside = identity(((mean + off) * turn).imag, (mean * turn).imag, means[1], noise)
                 results.append(ahead + aside)
         return max(results, default=0.0)
+
+    def _place_variance(self, fine: Signal, step: float) -> float:
+        """Variance [m^2] of white noise of a coordinate in bins of a width [s], from third differences of fine bins.
+
+        The variance of a third difference is 20 times that of the noise (Gasser et al. 1986, Biometrika 73, 625-633).
+        """
+        length = _LAGS[1]  # bins that are averaged: narrower ones than the samples hold no noise of their own
+        means = np.mean(fine[: len(fine) // length * length].reshape(-1, length), axis=1)
+        squares = np.abs(np.diff(means, 3)) ** 2
+        noise = float(np.nanmean(squares)) / 40.0 if np.any(np.isfinite(squares)) else 0.0  # 20, of two coordinates
+        return noise * length * self.steps[-1] / step
 
     def _speed(self, slots: Slots) -> float:
         """A speed against that of the track."""
@@ -167,8 +182,7 @@ class Relations:
 
     def _course(self, slots: Slots) -> float:
         """Where the craft points against where it goes."""
-        share = _BESIDE_SURGE if {"track", "along the hull"} <= set(slots) else 1.0
-        return share * max((_alike(v, psi) for v, psi in self._courses(slots)), key=abs, default=0.0)
+        return max((_alike(v, psi) for v, psi in self._courses(slots)), key=abs, default=0.0)
 
     def _courses(self, slots: Slots) -> Iterator[tuple[Signal, Signal]]:
         psi = slots["psi"]
