@@ -238,9 +238,7 @@ def reversed_reading(reading: ColumnReading) -> ColumnReading:
     return replace(reading, positive="" if reading.positive == opposite else opposite)
 
 
-def _zeroed(
-    role: str, readings: Sequence[ColumnReading], offsets: Sequence[float]
-) -> list[tuple[Sequence[ColumnReading], float]]:
+def _zeroed(role: str, readings: _Readings, offsets: Sequence[float]) -> list[tuple[_Readings, float]]:
     """The readings with each zero, with nats."""
     zeros = shares()["zeros"].get(readings[0].symbol, {}) if len(readings) == 1 else {}
     if not zeros or readings[0].frame == "enu" or role == "place":
