@@ -28,6 +28,7 @@ TASK = DesignTask(
         held={"v_j": 1.866},
         drift=math.radians(30.0),
         sea_room=400.0,
+        every_ship=False,
     ),
 )
 TEN = np.full(10, 1.0)

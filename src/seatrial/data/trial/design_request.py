@@ -114,7 +114,7 @@ class DesignRequest:
     prior_percent: Annotated[float, Field(gt=0, lt=100)] = 30.0
     drift: PositiveAngle | None = None
     sea_room: PositiveLength | None = None
-    every_ship: bool = False
+    every_ship: bool = True
 
     @cached_property
     def actuators(self) -> tuple[Actuator, ...]:

@@ -62,9 +62,10 @@ def refuse_violated_limits(task: DesignTask, designed: ManoeuvrePrecision) -> No
     else:
         excess = f"{room:.3g} m from the start, {limits.sea_room:.3g} m are allowed"
     whom = "some ship of the prior reaches" if every else "the ship reaches"
+    less = ", or bind the ship as assumed only: design.every_ship = false" if every else ""
     raise InputError(
         f"[design] cannot be kept: under the best of all orders tried {whom} {excess}; widen that limit, shorten the "
-        "trial, or narrow the inputs' ranges"
+        f"trial, or narrow the inputs' ranges{less}"
     )
 
 
