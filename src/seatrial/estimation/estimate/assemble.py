@@ -135,9 +135,9 @@ def _is_resampled(record: Record, name: str) -> bool:
 
 
 def is_course_open(name: str, records: Sequence[Record]) -> bool:
-    """Return whether no record says how an input runs between samples, and none was resampled, which hides it."""
-    present = [r for r in records if name in r]
-    return not any(r.channel(name).between or _is_resampled(r, name) for r in present)
+    """Return whether no record says how an input runs between samples, as of a command, or was resampled."""
+    present = [(r, r.channel(name)) for r in records if name in r]
+    return not any(c.between or c.is_command or _is_resampled(r, name) for r, c in present)
 
 
 def timing_nuisances(model: Model, records: Sequence[Record], settings: EstimateSettings) -> tuple[Nuisance, ...]:
