@@ -73,7 +73,7 @@ def test_the_lines_name_what_is_used_how_and_the_assumption_that_matters_most(fi
     one = replace(fit, coefficients=(PLAIN, vague, held), identifiability=known)
     sentences = meaning_sentences(one, known, coefficient_uses(one.coefficients, known))
     assert sentences[1:] == (
-        "a is known to better than 10 %. v has an open sign.",
+        "a is known, with standard errors below 10 %. v has an open sign.",
         "No manoeuvre identifies m apart from the others. Changing k by +10 % would change a by −20 %.",
     )
     assert len(meaning_sentences(fit, Identifiability((), (), 1.0, 1.0), ())) == 1

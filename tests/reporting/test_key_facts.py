@@ -29,10 +29,20 @@ def with_windows(fit: Fit, own: float, other: float, inside: float = 0.96) -> Fi
     return replace(fit, predictions=runs)
 
 
-def test_there_are_five_rows_and_what_is_missing_each_with_its_section(fit: Fit) -> None:
+def test_there_are_six_rows_and_what_is_missing_each_with_its_section(fit: Fit) -> None:
     facts = key_facts(fit)
-    assert len(facts) == 6 and facts[-2].name == "Not in the training runs"
-    assert {f.section for f in facts} <= {"prediction", "identifiability", "findings", "", "method"}
+    assert len(facts) == 7 and facts[-2].name == "Not in the training runs"
+    assert {f.section for f in facts} <= {"prediction", "identifiability", "coefficients", "findings", "", "method"}
+
+
+def test_known_values_outside_their_intervals_are_named(fit: Fit) -> None:
+    first, *others = fit.coefficients
+    assert rows(fit)["Known values"].is_good
+    moved = replace(first, truth=2.0 * first.estimate)
+    fact = rows(replace(fit, coefficients=(moved, *others)))["Known values"]
+    assert fact.is_good is False and fact.text.endswith(f"; outside: {first.name}")
+    unknown = tuple(replace(c, truth=None) for c in fit.coefficients)
+    assert "Known values" not in rows(replace(fit, coefficients=unknown))
 
 
 def test_a_baseline_that_is_better_is_a_warning(fit: Fit) -> None:

@@ -99,7 +99,7 @@ def meaning_sentences(fit: Fit, content: Identifiability, uses: Sequence[Coeffic
 def _single_values(uses: Sequence[CoefficientUse]) -> str:
     names = {use: [row.name for row in uses if row.use is use] for use in Use}
     sentences = {
-        Use.BY_ITSELF: "{} {are} known to better than 10 %.",
+        Use.BY_ITSELF: "{} {are} known, with standard errors below 10 %.",
         Use.VAGUELY: "{} {are} known vaguely, with standard errors above 10 %.",
         Use.AS_A_SET: "{} {are} known together only: their errors depend on one another.",
         Use.FROM_PRIOR: "{} {are} as good as the prior: the records add next to nothing.",

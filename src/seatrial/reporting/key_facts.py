@@ -56,7 +56,7 @@ def first_screen(fit: Fit, length: float) -> FirstScreen:
 def key_facts(fit: Fit) -> tuple[KeyFact, ...]:
     """Return the rows; a search that did not converge comes first; what the fit does not contain is said to be so."""
     rows = (_score(fit), *_training_score(fit), *course_facts(fit), _baseline(fit), _coverage(fit),
-            _identifiability(fit))  # fmt: skip
+            _identifiability(fit), *_known_values(fit))  # fmt: skip
     rows = (*rows, *gap_facts(fit))
     return (*rows, _warnings(fit)) if has_converged(fit) else (_warnings(fit), *rows)
 
@@ -225,6 +225,15 @@ def whole_run_share(fit: Fit) -> float | None:
     return float(np.mean(samples)) if len(samples) else None
 
 
+def _known_values(fit: Fit) -> tuple[KeyFact, ...]:
+    """How many known values lie inside the intervals, and which do not; no row where none is known."""
+    known = [c for c in fit.coefficients if not c.fixed and c.truth is not None and c.lower is not None]
+    outside = [c.name for c in known if not (c.lower or 0.0) <= (c.truth or 0.0) <= (c.upper or 0.0)]
+    text = f"{len(known) - len(outside)} of {len(known)} inside their 95 % intervals"
+    names = f"; outside: {enumeration(outside, MAX_NAMES)}" if outside else ""
+    return (KeyFact("Known values", f"{text}{names}", "coefficients", not outside),) if known else ()
+
+
 def _identifiability(fit: Fit) -> KeyFact:
     """How many coefficients the records determine, whose sign they leave open, and the least certain of the others."""
     content, free = fit.identifiability, [c for c in fit.coefficients if not c.fixed]
@@ -242,7 +251,11 @@ def _identifiability(fit: Fit) -> KeyFact:
     clauses = [
         text,
         *([f"sign open: {enumeration(vague, MAX_NAMES)}"] if vague else []),
-        *([f"least certain: {widest} ± {significant(100.0 * widths[widest], 2)} %"] if widest else []),
+        *(
+            [f"least certain{' of the others' if vague else ''}: {widest} ± {significant(100.0 * widths[widest], 2)} %"]
+            if widest
+            else []
+        ),
         *([] if has_converged(fit) else ["the search did not converge"]),
     ]
     is_good = is_complete and not vague and has_converged(fit)

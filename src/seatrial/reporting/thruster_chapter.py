@@ -29,7 +29,7 @@ _PROGRAMME_TEXTS = {
     "turning-circle": "a circle with a steering angle of 35 deg and full command, in still water",
     "stop": "full astern at full speed",
 }
-FAR_NOTE = "* beyond the training runs: read the interval as a lower limit."
+FAR_NOTE = "Extrapolated: beyond the training runs, its interval is a lower limit."
 _PER_MASS = (
     "No thrust is known in newtons, so that only ratios to m + m_x are determined: M, D and thrusts are those on each "
     "kilogram of it. Multiply all of them by m + m_x."
@@ -100,7 +100,7 @@ def _measures(measures: Mapping[str, CraftMeasure]) -> TextTable:
     rows = [(label, measures[name]) for name, label in MEASURE_LABELS.items() if name in measures]
     return table_of(
         rows,
-        words("", lambda row: f"{row[0]}{' *' if is_extrapolated(row[1]) else ''}"),
+        words("", lambda row: f"{row[0]}{', extrapolated' if is_extrapolated(row[1]) else ''}"),
         number("estimate", lambda row: _text(row[1]).value),
         number("95 % from", lambda row: _text(row[1]).lower),
         number("to", lambda row: _text(row[1]).upper),

@@ -341,10 +341,12 @@ def output_error_choice(estimate: PointEstimate, criterion: str) -> CriterionCho
     p = f"Ljung-Box, p {whiteness.smallest:.2g}"
     text = f"the residuals {where} are white ({p})"
     if not whiteness.is_white:
-        effect = f"their correlation inflates variances by {np.max(inflation):.3g}"
-        text = f"the residuals {where} are not white ({p}): {effect}"
+        text = f"the residuals {where} are not white ({p})"
     if np.max(inflation) > WHITE_INFLATION:
-        text += ", and correlated samples count as their effective number, so that priors keep their weight"
+        text += (
+            f", their correlation inflates variances by {np.max(inflation):.3g}, and correlated samples count as their "
+            "effective number, so that priors keep their weight"
+        )
     return CriterionChoice(estimate, residuals, inflation, rho, whiteness, criterion, (text,))
 
 

@@ -430,7 +430,9 @@ def detected_errors(information: ErrorInformation, widening: float) -> list[Susp
                 prior = np.diag(np.where([name in tried for name in names], variances, 0.0))
                 values, covariance, gain = information.test.joint(prior)
                 sizes = dict(zip(names, values.tolist(), strict=True))
-                spread = dict(zip(names, (widening * np.sqrt(np.diag(covariance))).tolist(), strict=True))
+                variance = np.diag(covariance)  # below 0 by rounding where nothing shows an error
+                deviations = widening * np.sqrt(np.where(variance > 0.0, variance, np.inf))
+                spread = dict(zip(names, deviations.tolist(), strict=True))
                 gains[k] = gain - before if one.matters(sizes, spread) else 0.0
         best = max(gains, key=lambda k: gains[k])
         if gains[best] < _LIKELIER * widening**2:

@@ -105,6 +105,7 @@
       this.root.querySelectorAll(".views, .legend").forEach(place => place.replaceChildren());
       const away = this.deviation(), isAble = away <= this.document.agreement;
       this.controls.forEach(one => one.begin(isAble));
+      this.root.querySelectorAll(".sliders, .reset").forEach(part => { part.hidden = !isAble; });
       if (!isAble) {
         this.state.textContent = `This run cannot be simulated here: it would differ from the prediction above by ${digits(away, 2)} of its range.`;
         return;
