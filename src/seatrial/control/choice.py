@@ -28,7 +28,7 @@ from seatrial.physics.loops import delay_margin
 
 # The choice of a stabiliser: candidates along the fronts and with more margin, all through the same seas.
 
-CANDIDATE_COUNT = 8  # gains of a front that are simulated; chosen
+CANDIDATE_COUNT = 16  # gains of a front that are simulated; chosen
 MAX_SATURATION_LOSS = 0.03  # reduction lost to the actuator's limits, as a share of one; chosen
 # seas of the selection, and their distance from the seeds of the final simulations; chosen
 _SELECTION_SEEDS, _SELECTION_SEED_OFFSET = 8, 100_000
