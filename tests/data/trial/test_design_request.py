@@ -77,7 +77,7 @@ def test_what_it_does_not_say_is_free(planned: Path) -> None:
     planned.write_text(text)
     request = load_trial(planned).design_request
     assert request is not None
-    assert request.limits == TrialLimits()
+    assert request.limits == TrialLimits(for_every_ship=True)
     assert request.actuators[0] == Actuator("delta", math.radians(-35), math.radians(30), math.inf, 4.0)
     assert request.speed is None
 
