@@ -12,13 +12,6 @@ from seatrial.cli.summary_output import print_summary
 if TYPE_CHECKING:
     from seatrial.core.results import Extrapolation, Fit
 
-# index of extrapolation beyond which intervals are lower limits; chosen, as in the report
-EXTRAPOLATION_LIMIT = 1.2
-EXTRAPOLATION_NOTE = ": beyond the training runs, read its intervals as lower limits"
-NOT_DETERMINED = "not determined"
-# measures and held-out runs that stand in the tables without --verbose; chosen, one screen
-MAX_MEASURES, MAX_RUNS = 8, 4
-
 
 def print_fit(fit: "Fit") -> None:
     """Print the verdict with its key figures, the chapters of the fit, and findings; with --verbose details, too."""
@@ -49,18 +42,6 @@ def _print_summary(fit: "Fit") -> None:
     print_summary(heading, verdict(fit), key_facts(fit))
 
 
-def _print_extrapolation(e: "Extrapolation") -> None:
-    from seatrial.core.text.numbers import fixed
-
-    note = EXTRAPOLATION_NOTE if e.index > EXTRAPOLATION_LIMIT else ""
-    largest = next((name for name, ratio in e.ratios.items() if ratio == e.index), "")
-    side = largest if largest.startswith("rudder to ") else ""
-    reason = "by the drift angle that the model has" if largest == "drift" else f"no run trained so much {side}"
-    source = f" ({reason})" if note and (side or largest == "drift") else ""
-    kind = f"; no training run is a {e.untrained_kind.replace('-', ' ')}: extrapolated" if e.untrained_kind else ""
-    print_lines([f"extrapolation index {fixed(e.index, 2)}{source}{note}{kind}"], "  ")
-
-
 def print_measures(
     measures: Mapping[str, float],
     intervals: Mapping[str, tuple[float, float] | None],
@@ -81,13 +62,16 @@ def print_measures(
         head = ["", "", "95 % from", "to"] if intervals else ["", ""]
         print_table([head, *(row[: len(head)] for row in rows)], indent="  ")
     if extrapolation is not None:
-        _print_extrapolation(extrapolation)
+        from seatrial.reporting.measures import extrapolation_text
+
+        print_lines([f"Extrapolation index {extrapolation_text(extrapolation)}"], "  ")
 
 
 def _simulated_measure(
     name: str, value: float, is_judged: bool, pair: Iterable[float] | None, label: Callable[[str], str]
 ) -> list[str]:
     from seatrial.core.text.numbers import exact
+    from seatrial.reporting.measures import NOT_DETERMINED
 
     ends = [exact(end, 4) for end in pair] if pair is not None else [NOT_DETERMINED if is_judged else "", ""]
     return [label(name), exact(value, 4), *ends]

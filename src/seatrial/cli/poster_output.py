@@ -2,7 +2,6 @@
 
 from typing import TYPE_CHECKING
 
-from seatrial.cli.fit_output import NOT_DETERMINED
 from seatrial.cli.run_errors import corrected_label, quantity_label, simulated_label
 from seatrial.cli.screen import print_heading, print_lines, print_table
 
@@ -16,7 +15,7 @@ DIGITS = 4
 def print_poster(poster: "Poster") -> None:
     """Print each manoeuvre with its quantities, intervals and what they rest on."""
     from seatrial.core.text.numbers import exact
-    from seatrial.reporting.measures import manoeuvre_name
+    from seatrial.reporting.measures import NOT_DETERMINED, manoeuvre_name
     from seatrial.reporting.poster import measured_words, rudder_rate_text
 
     for m in poster.manoeuvres:

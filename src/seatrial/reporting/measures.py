@@ -131,6 +131,7 @@ def interval_verdict(name: str, m: Measure) -> IntervalVerdict:
     return IntervalVerdict.TOO_WIDE if is_wide else IntervalVerdict.INSIDE
 
 
+NOT_DETERMINED = "not determined"
 # index up to which a run lies inside the training runs, and up to which at their edge
 INSIDE_INDEX, EDGE_INDEX = 1.05, 1.2
 _COMMAND = "command "  # what names of a thruster's ranges begin with (`estimation.information.extrapolation`)

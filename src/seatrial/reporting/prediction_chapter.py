@@ -13,6 +13,7 @@ from seatrial.core.values import Record
 from seatrial.core.values.record_chart import has_track
 from seatrial.reporting.grades import GRADE_NOTE
 from seatrial.reporting.measures import (
+    NOT_DETERMINED,
     IntervalVerdict,
     extrapolation_text,
     extrapolation_zone,
@@ -36,7 +37,6 @@ from seatrial.reporting.windows import WINDOW_NOTE, baseline_sentence, shortest_
 # measures of a run, and held-out runs, that are shown unfolded; chosen, one screen
 MAX_MEASURES, MAX_RUNS = 8, 4
 _ERROR_DIGITS = 3  # significant ones; chosen
-NOT_DETERMINED = "not determined"
 _FLOOR_NOTE = "Process noise: error that the disturbance as estimated would leave by itself, model error in it."
 _TIED_NOTE = "Tied models: standard deviation over the models that the records do not distinguish."
 _ZONES = {"edge": "just beyond", "beyond": "beyond", "inside": "inside"}

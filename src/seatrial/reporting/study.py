@@ -19,6 +19,7 @@ from seatrial.reporting.prediction_chapter import run_section, score_table
 from seatrial.reporting.runs import reading_note
 from seatrial.reporting.section import (
     Cell,
+    Level,
     Picture,
     Section,
     TextTable,
@@ -43,17 +44,18 @@ def sections(study: Study) -> tuple[Section, ...]:
     figures = [Section(f.title, pictures=(Picture(partial(_drawing, f), f.note),)) for f in study.figures[1:]]
     facts = {"Seed": str(study.seed), "Elapsed": duration(study.elapsed_s)}
     chapters = (
-        Section("The answer in full", "answer", study.answer[1:]),
+        Section("The answer in full", "answer", study.answer[1:], level=Level.PAGE),
         Section("Claims", "claims", table=_claims(study)),
         Section("Checks", "checks", table=_checks(study)),
-        Section("Tables", "tables", parts=tuple(map(result_section, study.tables))),
-        Section("Figures", "figures", parts=tuple(figures)),
+        Section("Tables", "tables", parts=tuple(map(result_section, study.tables)), level=Level.DETAIL),
+        Section("Figures", "figures", parts=tuple(figures), level=Level.PAGE),
         Section(
             "Runs",
             "runs",
             table=score_table(study.predictions, 0.0) if run_parts else None,
             note=reading_note(study.predictions),
             parts=tuple(replace(part, is_folded=True) for part in run_parts),
+            level=Level.DETAIL,
         ),
         finding_section(study.findings),
         version_section(study.versions, facts),

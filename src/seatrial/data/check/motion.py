@@ -1,6 +1,5 @@
 """Signals of a record and its motion as declared: what the checks share."""
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -90,7 +89,6 @@ def mask_intervals(mask: Mask) -> list[tuple[int, int]]:
 # Velocities, heading and position side by side, as declared: what the comparisons work on.
 
 ComplexArray = NDArray[np.complex128]
-DEGREES_PER_RADIAN = 180.0 / math.pi
 # samples of a record from which on it is compared with itself; chosen: some windows of smoothing
 MIN_SAMPLES = 30
 

@@ -78,7 +78,7 @@ def in_english(plain: str) -> str:
 
 # What a column may be, by its name: the messages of known loggers first, then the names that people use.
 
-_SCALED_DEGREE, _CENTI = 1e-7, 1e-2  # MAVLink and PX4: degrees as integers of 1e-7, centidegrees and cm/s
+_SCALED_DEGREE = 1e-7  # MAVLink and PX4: degrees as integers
 
 _ENGINE = "rate of the engine: to use it, write it as channels.n with scale = propeller turns over engine turns"
 _AUXILIARY = "command_{} of AUX"  # the outputs of PX4's second bank, which are counted on from those of the first

@@ -10,8 +10,6 @@ from seatrial.core.values.record_chart import PLAIN, has_track, record_track
 
 # channels and records of one figure at most
 MAX_COLUMNS, MAX_ROWS = 8, 16
-# ratio of two durations or ranges from which on they do not share an axis
-DISSIMILAR = 0.25
 # tracks in a row: square ones, and strips; free room above, between and beside them [px]
 COLUMNS, STRIP_COLUMNS = 4, 2
 TOP, ROW_GAP, LEFT, RIGHT = 22.0, 56.0, 52.0, 12.0  # px, chosen
