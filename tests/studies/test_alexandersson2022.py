@@ -79,7 +79,7 @@ def test_the_command_writes_report_and_json_and_prints_what_fails(
     monkeypatch.setattr("seatrial._plugins.entry_points", lambda group: [installed])  # noqa: ARG005
     code = run_command("reproduce", "bare", "--out", tmp_path / "out", "--json", tmp_path / "bare.json")
     said = capsys.readouterr().out
-    assert code == 0 and re.search(r"FAILS +35 deg turn to port, advance \[L\]: 3\.701 \(limit 3\.01 to 3\.28\)", said)
+    assert code == 0 and re.search(r"35 deg turn to port, advance \[L\] +3\.7 +3\.01 to 3\.28 +fails", said)
     printed, stored = (json.loads(p.read_text()) for p in (tmp_path / "bare.json", tmp_path / "out" / "study.json"))
     assert printed.items() <= stored.items() and (tmp_path / "out" / "report.html").exists()
 

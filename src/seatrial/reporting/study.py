@@ -87,8 +87,8 @@ def _checks(study: Study) -> TextTable:
     return table_of(
         study.checks,
         words("Check", lambda c: c.name),
-        number("value", lambda c: exact(c.value, _CHECK_DIGITS)),
-        number("limit", lambda c: c.limit if isinstance(c.limit, str) else exact(c.limit, _CHECK_DIGITS)),
+        number("Value", lambda c: exact(c.value, _CHECK_DIGITS)),
+        number("Limit", lambda c: c.limit if isinstance(c.limit, str) else exact(c.limit, _CHECK_DIGITS)),
         words("Verdict", lambda c: Cell(c.status.value, tone=_TONES.get(c.status, ""))),
         words("Reason", lambda c: c.remark),
     )
