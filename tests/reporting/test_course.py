@@ -77,7 +77,7 @@ def test_windows_decide_the_verdict_of_an_unstable_craft_that_leaves_its_run(fit
 
 def test_of_several_runs_windows_decide_too(fit: Fit) -> None:
     text = verdict(with_course(leaving(fit, 0.2, runs=2), unstable(2.0)))
-    assert text == "Predicts 2 held-out runs well or better: 0.29° in heading at worst over 5 s."
+    assert text == "Predicts 2 held-out runs well or better, zigzag_25_25 worst: 0.29° in heading over 5 s."
     assert verdict(with_course(leaving(fit, 1.2, runs=2), unstable(2.0))).startswith("Does not predict 2 of 2 held-out")
 
 

@@ -9,6 +9,8 @@ from tests.reporting.fabricated import zigzag
 
 from seatrial.core.results import Divergence, Fit, Prediction
 from seatrial.core.values import Record, Severity
+from seatrial.reporting.grades import graded_errors
+from seatrial.reporting.key_facts import first_screen
 from seatrial.reporting.verdict import error_text, extrapolation_limit, run_name, verdict, worst_errors
 
 ANGLE = math.radians(20.0)
@@ -78,9 +80,9 @@ def test_of_several_runs_those_that_are_missed_are_named(fit: Fit) -> None:
     )
     missed = with_share(first, 1.2)
     text = verdict(with_runs(fit, missed, replace(missed, record="two")))
-    assert text.startswith("Does not predict 2 of 2 held-out runs (one and two): ")
+    assert text.startswith("Does not predict 2 of 2 held-out runs (one and two), one worst: ")
     both = verdict(with_runs(fit, second, replace(second, record="one")))
-    assert both.startswith("Predicts 2 held-out runs well or better: ")
+    assert both.startswith("Predicts 2 held-out runs well or better, two worst: ")
 
 
 def test_a_repeat_of_a_fitted_run_is_called_one(fit: Fit) -> None:
@@ -92,12 +94,15 @@ def test_a_repeat_of_a_fitted_run_is_called_one(fit: Fit) -> None:
     assert both.endswith("; 1 repeats a fitted manoeuvre.")
 
 
-def test_of_several_runs_the_worst_counts(fit: Fit) -> None:
+def test_sentence_row_and_picture_show_the_errors_of_one_run(fit: Fit) -> None:
     p = held(fit)
     worse = replace(p, record="other", rms=p.rms | {"psi_deg": 9.87, "position_m": 0.01})
-    text = verdict(with_runs(fit, p, worse))
-    assert text.startswith("Predicts 2 held-out runs roughly or better: 9.9° in heading and ")
-    assert text.endswith(f"{error_text('position_m', p.rms['position_m'])} in position at worst.")
+    several = with_runs(fit, p, worse)
+    assert verdict(several) == (
+        "Predicts 2 held-out runs roughly or better, other worst: 9.9° in heading and 0.010 m in position."
+    )
+    assert graded_errors(several).startswith("9.9° of ") and "and 0.010 m of " in graded_errors(several)
+    assert first_screen(several, 10.0).caption.startswith("The worst held-out run, other: ")
 
 
 def test_a_run_that_diverges_is_not_predicted(fit: Fit) -> None:

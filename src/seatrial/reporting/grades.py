@@ -153,11 +153,20 @@ def judged_share(p: Prediction, longest: float | None) -> ErrorShare | None:
     return max(judged_shares(p, longest), key=lambda share: share.share, default=None)
 
 
+def worst_run(runs: Sequence[Prediction], longest: float | None = None) -> Prediction:
+    """Return the run that diverges, or misses the largest share of its motion; longest: as `longest_judged`."""
+
+    def size(p: Prediction) -> float:
+        share = judged_share(p, longest)
+        return math.inf if p.divergence is not None else 0.0 if share is None else share.share
+
+    return max(runs, key=size)
+
+
 def worst_share(fit: Fit) -> ErrorShare | None:
     """Return the largest of all errors by which held-out runs are judged; None where none can be compared."""
     longest = longest_judged(fit)
-    shares = [share for p in fit.validation if (share := judged_share(p, longest)) is not None]
-    return max(shares, key=lambda share: share.share, default=None)
+    return judged_share(worst_run(fit.validation, longest), longest) if fit.validation else None
 
 
 def is_missed(fit: Fit) -> bool:
@@ -168,15 +177,12 @@ def is_missed(fit: Fit) -> bool:
 
 
 def graded_errors(fit: Fit) -> str:
-    """Return the largest errors of their motions, and the grade: ``2.3° of 14° in heading: well``; empty: unknown."""
-    longest = longest_judged(fit)
-    every = [share for p in fit.validation for share in judged_shares(p, longest)]
-    worst = max(every, key=lambda error: error.share, default=None)
+    """Return the errors of the worst run of its motions: ``2.3° of 14° in heading: well``; empty: unknown."""
+    longest, worst = longest_judged(fit), worst_share(fit)
     if worst is None:
         return ""
-    largest = [max((error for error in every if error.name == name), key=lambda error: error.share)
-               for name in MOTIONS if any(error.name == name for error in every)]  # fmt: skip
+    shares = judged_shares(worst_run(fit.validation, longest), longest)
     texts = [f"{error_text(error.name, error.rms)} of {error_text(error.name, error.spread)} in "
-             f"{ERROR_LABELS[error.name][0]}" for error in largest]  # fmt: skip
+             f"{ERROR_LABELS[error.name][0]}" for error in shares]  # fmt: skip
     over = f", over {worst.window}" if worst.window else ""
     return f"{enumeration(texts)}{over}: {worst.grade}"

@@ -15,11 +15,19 @@ from seatrial.core.values import Severity
 from seatrial.reporting.coefficient_uses import relative_half_width
 from seatrial.reporting.course import course_facts, unstable_course
 from seatrial.reporting.first_screen import FirstScreen, KeyFact
-from seatrial.reporting.grades import Grade, graded_errors, is_disturbed, largest_error_share, worst_share
+from seatrial.reporting.grades import (
+    Grade,
+    graded_errors,
+    is_disturbed,
+    largest_error_share,
+    longest_judged,
+    worst_run,
+    worst_share,
+)
 from seatrial.reporting.measures import IntervalVerdict, interval_verdict
 from seatrial.reporting.operators import operators_sentence
 from seatrial.reporting.record_gaps import gap_facts
-from seatrial.reporting.runs import ERROR_LABELS, badness, error_text
+from seatrial.reporting.runs import ERROR_LABELS, error_text
 from seatrial.reporting.time_figures import run_figure
 from seatrial.reporting.verdict import has_converged, verdict, worst_errors
 from seatrial.reporting.windows import shortest_judged
@@ -42,7 +50,7 @@ def first_screen(fit: Fit, length: float) -> FirstScreen:
     held = fit.validation or fit.predictions
     if not held:
         return FirstScreen(verdict(fit), key_facts(fit), lead=operators_sentence(fit))
-    p = max(held, key=badness)
+    p = worst_run(held, longest_judged(fit))
     view = headline_view(p, length, fit.model.input_names)
     which = "The held-out run" if len(fit.validation) == 1 else (
         "The worst held-out run" if fit.validation else "The worst training run")  # fmt: skip

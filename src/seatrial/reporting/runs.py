@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from seatrial.core.results import Fit, Prediction
 from seatrial.core.results.fit_charts import has_band
-from seatrial.core.results.prediction import estimated_current
+from seatrial.core.results.prediction import estimated_current, largest_share
 from seatrial.core.text.numbers import fixed, significant
 from seatrial.core.text.words import sentence
 from seatrial.core.values import InputError, Record
@@ -67,15 +67,8 @@ def drawn_predictions(predictions: Sequence[Prediction]) -> list[Prediction]:
         return list(predictions)
     kept: list[Prediction] = []
     for role in ("validation", "training"):
-        kept += sorted((p for p in predictions if p.role == role), key=badness, reverse=True)[:WORST_DRAWN]
+        kept += sorted((p for p in predictions if p.role == role), key=largest_share, reverse=True)[:WORST_DRAWN]
     return [p for p in predictions if any(p is one for one in kept)]
-
-
-def badness(p: Prediction) -> float:
-    """Return the main error of a run; infinite where the simulation diverges."""
-    if p.divergence is not None:
-        return math.inf
-    return next((p.rms[name] for name in ERROR_LABELS if name in p.rms and math.isfinite(p.rms[name])), 0.0)
 
 
 def hidden_runs_sentence(predictions: Sequence[Prediction]) -> str:

@@ -16,7 +16,7 @@ from seatrial.physics.manoeuvres import (
     ordered_degrees,
     to_starboard,
 )
-from seatrial.reporting.grades import Grade, judged_share, judging_window, longest_judged
+from seatrial.reporting.grades import Grade, judged_share, judging_window, longest_judged, worst_run
 from seatrial.reporting.repeats import MAX_NAMES, repeated_runs
 from seatrial.reporting.runs import ERROR_LABELS, error_text
 
@@ -81,7 +81,7 @@ def _one_run_clause(p: Prediction, predictions: Sequence[Prediction], longest: f
     run = f"the held-out {run_name(p)}"
     if p.divergence is not None:
         return f"Does not predict {run}: the simulation diverges after {duration(p.divergence.seconds)}"
-    largest, errors = judged_share(p, longest), _judged_errors([p], longest)
+    largest, errors = judged_share(p, longest), _judged_errors(p, longest)
     if largest is not None and largest.grade is Grade.NOT:
         return f"Does not predict {run}: {errors}"
     grade = "" if largest is None else f" {largest.grade}"
@@ -89,17 +89,22 @@ def _one_run_clause(p: Prediction, predictions: Sequence[Prediction], longest: f
     return f"Predicts {run}{grade}{f': {errors}' if errors else ''}{repeat}"
 
 
-def _judged_errors(held: Sequence[Prediction], longest: float | None) -> str:
-    """The largest errors by which runs are judged; where windows judge them, in those."""
-    worst = " at worst" if len(held) > 1 else ""
-    if longest is None:
-        errors = worst_errors(held)
-        return f"{errors}{worst}" if errors else ""
-    windows = [w for p in held if (w := judging_window(p, longest)) is not None]
-    names = [n for n in _MAIN_ERRORS if any(n in w.scores for w in windows)][:MAX_ERRORS]
-    worst_of = {n: max(w.scores[n].rms for w in windows if n in w.scores) for n in names}
-    errors = enumeration([f"{error_text(n, rms)} in {ERROR_LABELS[n][0]}" for n, rms in worst_of.items()])
-    return f"{errors}{worst} over {enumeration(list(dict.fromkeys(w.window for w in windows)))}"
+def _judged_errors(p: Prediction, longest: float | None) -> str:
+    """The errors by which a run is judged; where windows judge it, in those."""
+    window = None if longest is None else judging_window(p, longest)
+    if window is None:
+        return worst_errors([p])
+    names = [name for name in _MAIN_ERRORS if name in window.scores][:MAX_ERRORS]
+    errors = enumeration([f"{error_text(n, window.scores[n].rms)} in {ERROR_LABELS[n][0]}" for n in names])
+    return f"{errors} over {window.window}"
+
+
+def _worst_errors(held: Sequence[Prediction], longest: float | None) -> str:
+    """The errors of the worst of several runs, with its name: ``, R35 worst: 5.3° in heading``."""
+    worst = worst_run(held, longest)
+    errors = _judged_errors(worst, longest)
+    name = f", {worst.record} worst" if len(held) > 1 else ""
+    return f"{name}: {errors}" if errors else ""
 
 
 def _several_runs_clause(held: Sequence[Prediction], predictions: Sequence[Prediction], longest: float | None) -> str:
@@ -120,12 +125,10 @@ def _several_runs_clause(held: Sequence[Prediction], predictions: Sequence[Predi
         graded = _graded([grades.get(p.record) for p in others])
         remainder = f"; the other{'s' if len(others) > 1 else ''}{graded}" if graded else ""
         which = f"{len(names)} of {len(held)} held-out runs ({enumeration(names, MAX_NAMES)})"
-        return f"{verb} {which}: {_judged_errors(missed, longest)}{remainder}"
+        return f"{verb} {which}{_worst_errors(missed, longest)}{remainder}"
     repeats = sum(bool(repeated_runs(p, predictions)) for p in held)
     repeat = f"; {repeats} {'repeats' if repeats == 1 else 'repeat'} a fitted manoeuvre" if repeats else ""
-    errors = _judged_errors(held, longest)
-    graded = _graded(list(grades.values()))
-    return f"Predicts {len(held)} held-out runs{graded}{f': {errors}' if errors else ''}{repeat}"
+    return f"Predicts {len(held)} held-out runs{_graded(list(grades.values()))}{_worst_errors(held, longest)}{repeat}"
 
 
 def _worst(grades: Iterable[Grade | None]) -> Grade | None:
