@@ -306,8 +306,8 @@ def _record(name: str, dt: float, series: dict[str, Array], loop: TransferLoop, 
 
 # One set of gains in words a control engineer knows.
 
-# relative excess over a limit that rounding explains; far below any margin that matters, our choice
-_ROUNDING = 1e-9
+# relative excess over a limit that a search against it leaves; chosen: below the digits in which limits are stated
+_LEAST_EXCESS = 1e-4
 
 _RMS_NAMES = ("output", "actuator", "actuator_rate", "motion")  # in the order of an evaluation's variances
 _POINTS = 400  # frequencies of the curves in the result, evenly in the logarithm; chosen
@@ -374,11 +374,11 @@ def violated_restrictions(evaluator: GainEvaluator, evaluation: GainEvaluation) 
         return ("stability: the closed loop is unstable",)
     limits, worst = evaluator.task.constraints, evaluation.variances[0].max(axis=0)
     broken = []
-    if evaluation.excess[0, 0] > _ROUNDING:
+    if evaluation.excess[0, 0] > _LEAST_EXCESS:
         broken.append(f"Ms {evaluation.Ms[0]:.3g} where {limits.Ms:.3g} is allowed")
     amplitudes = (("angle", limits.limit, limits.saturation), ("rate", limits.rate, limits.rate_saturation))
     for i, (kind, limit, share) in enumerate(amplitudes, start=1):
-        if evaluation.excess[0, i] > _ROUNDING:
+        if evaluation.excess[0, i] > _LEAST_EXCESS:
             beyond = 100.0 * exceedance_share(limit, float(worst[i]))
             broken.append(f"{beyond:.0f} % of the actuator's {kind} amplitudes beyond its limit "
                           f"where {100.0 * share:.0f} % are allowed")  # fmt: skip

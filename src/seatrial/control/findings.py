@@ -143,7 +143,7 @@ def _simulation_findings(
                               _advice("set a lower limit on saturation", method)))  # fmt: skip
     for pair in comparisons:
         if pair.lower <= 0.0:
-            found.append(_warning("not-better", f"over {pair.seeds} seas the chosen gains do not surely beat "
+            found.append(_warning("not-better", f"over {pair.seeds} realisations the chosen gains do not surely beat "
                                   f"'{pair.baseline}' {pair.stage}: {100.0 * pair.mean:+.1f} points, interval "
                                   f"{100.0 * pair.lower:+.1f} to {100.0 * pair.upper:+.1f}", "keep those, or give more "
                                   "freedom"))  # fmt: skip

@@ -53,7 +53,7 @@ _NYQUIST_CAPTION = (
     "allowed draws about −1; grey: unit circle."
 )
 _DIFFERENCE_CAPTION = (
-    "Reduction by the chosen gains minus that by others on the same seas, with 95 % intervals; right of zero the "
+    "Reduction by the chosen gains minus that by others on the same waves, with 95 % intervals; right of zero the "
     "chosen ones are better."
 )
 _CONVERGENCE_CAPTION = (
@@ -203,7 +203,7 @@ def _simulation(tuning: Tuning) -> Section:
         (s.name, *(fixed(100.0 * float(np.mean(getattr(s, stage))), 1) for stage in _STAGES.values())) for s in runs
     ]
     seeds = len(runs[0].linear)
-    seas = "1 sea" if seeds == 1 else f"{seeds} seas, the same for every controller"
+    seas = f"{tuning_text.realisations(tuning, seeds)}{'' if seeds == 1 else ', the same for every controller'}"
     pictures = [
         Picture(lambda: _reductions_figure(tuning), f"Reduction of the rms against no control, mean over {seas}.")
     ]

@@ -104,9 +104,10 @@ def _motion(tuning: Tuning) -> str:
     remaining = quantity_text(tuning.output, rms["output"]) if "output" in rms else ""
     if has_reduction(tuning) and (simulated := _simulated(tuning)):
         stalled = float(np.mean(simulated.stalled))
+        mean = "" if len(tuning.seas) == 1 else f" over the {len(tuning.seas)} seas tuned in"
         return (
-            f"Simulated in {counted(len(simulated.stalled), 'sea')} with all limits, these gains reduce the "
-            f"{motion_name(tuning)} by {percent(stalled)}; linear theory says {percent(c.reduction)}."
+            f"Simulated with all limits in {realisations(tuning, len(simulated.stalled))}, these gains reduce the "
+            f"{motion_name(tuning)} by {percent(stalled)}; linear theory{mean} says {percent(c.reduction)}."
         )
     if has_reduction(tuning):
         remaining = f"{significant(rms['motion'], 2)} m/s²" if tuning.motion else remaining
@@ -190,6 +191,11 @@ def _violations(c: Controller) -> str:
     return f"It violates the constraints: {'; '.join(c.violated)}." if c.violated else ""
 
 
+def realisations(tuning: Tuning, count: int) -> str:
+    """Return in what was simulated: ``20 realisations of the first sea``, where the gains were tuned in several."""
+    return f"{counted(count, 'realisation')} of the {'first ' if len(tuning.seas) > 1 else ''}sea"
+
+
 def _simulated(tuning: Tuning) -> SeawaySimulation | None:
     """Return the simulated seas of the chosen controller; None without any."""
     chosen = (s for s in tuning.seaway_simulations if s.name == tuning.chosen.name and len(s.linear))
@@ -202,7 +208,7 @@ def _simulation(tuning: Tuning) -> str:
         return ""
     linear, limited, stalled = (float(np.mean(x)) for x in (s.linear, s.limited, s.stalled))
     text = (
-        f"Simulated in {counted(len(s.linear), 'sea')}, it reduces the {tuning.motion or 'motion'} by "
+        f"Simulated in {realisations(tuning, len(s.linear))}, it reduces the {tuning.motion or 'motion'} by "
         f"{percent(linear)} without limits and by {percent(limited)} with those of angle and rate: they cost "
         f"{percent_points(s.saturation_loss)}"
     )
@@ -215,8 +221,8 @@ def comparison_sentence(pair: PairedDifference) -> str:
     """Return one paired difference; not significant where the interval contains zero."""
     stage = _SIMULATION_LABELS.get(pair.stage, pair.stage)
     ends = f"95 % interval {fixed(100.0 * pair.lower, 1)} to {fixed(100.0 * pair.upper, 1)}"
-    tail = f"({ends}, {counted(pair.seeds, 'sea')})"
-    start = f"Over the same seas, {stage}, it"
+    tail = f"({ends}, {counted(pair.seeds, 'realisation')})"
+    start = f"On the same waves, {stage}, it"
     if pair.lower <= 0.0 <= pair.upper:
         change = f"does not differ significantly from ‘{pair.baseline}’: {percent_points(pair.mean)}"
     else:
