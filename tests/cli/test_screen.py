@@ -12,7 +12,7 @@ from seatrial.core.values import Finding, Severity
 LONG = "a sentence of many words " * 6
 FINDINGS = (
     Finding(Severity.INFO, "constant", "channel 'n' is constant", advice="its effect is that of a constant force"),
-    Finding(Severity.ERROR, "rudder-sign", "the rudder turns the other way", "r 0.9", consequence="signs are wrong"),
+    Finding(Severity.ERROR, "wrong-sign", "the rudder turns the other way", "r 0.9"),
     Finding(Severity.WARNING, "gap", "a gap of 3 s"),
     Finding(Severity.WARNING, "gap", "a gap of 4 s"),
 )
@@ -46,10 +46,11 @@ def test_a_command_to_be_copied_is_never_cut(
 def test_findings_stand_by_severity_with_their_count(capsys: pytest.CaptureFixture[str]) -> None:
     print_findings(FINDINGS, 1)
     lines = capsys.readouterr().out.splitlines()
-    assert [line[:7].strip() for line in lines] == ["ERROR", "", "warning", "", "note", "", "1 error"]
-    assert lines[0] == "ERROR   [rudder-sign] the rudder turns the other way (r 0.9)"
-    assert lines[1].strip() == "consequence: signs are wrong"
-    assert lines[3].strip() == "... and 1 more of this kind; --all shows them"
+    assert [line[:7].strip() for line in lines] == ["ERROR", "", "", "warning", "", "note", "", "1 error"]
+    assert lines[0] == "ERROR   [wrong-sign] the rudder turns the other way (r 0.9)"
+    assert lines[1].strip().startswith("consequence: coefficients get the wrong sign")
+    assert lines[2].strip() == "advice: seatrial check --fix"
+    assert lines[4].strip() == "... and 1 more of this kind; --all shows them"
     assert count_sentence(FINDINGS) == "1 error, 2 warnings, 1 note"
     assert lines[-1] == f"{count_sentence(FINDINGS)}; codes in brackets: docs/bad-fit.md"
 
@@ -58,7 +59,7 @@ def test_quiet_leaves_errors_and_verbose_shows_all(capsys: pytest.CaptureFixture
     with printing(Detail.QUIET):
         print_findings(FINDINGS, 1)
         print_heading("Findings")
-    assert capsys.readouterr().out == "ERROR [rudder-sign] the rudder turns the other way (r 0.9)\n"
+    assert capsys.readouterr().out == "ERROR [wrong-sign] the rudder turns the other way (r 0.9)\n"
     with printing(Detail.VERBOSE):
         print_findings(FINDINGS, 1)
     assert "a gap of 4 s" in capsys.readouterr().out

@@ -10,7 +10,7 @@ from tests.reporting.fabricated_design import fabricated_design
 from tests.reporting.test_page import HOSTILE, parsed
 
 from seatrial.core.results import Actuator, Design, TimedOrder, TrialLimits
-from seatrial.reporting.design import html, minutes_seconds, order_columns, percent_text
+from seatrial.reporting.design import html, minutes_seconds, order_table, percent_text, sections
 from seatrial.reporting.design_text import actuator_text, key_facts, order_warnings, verdict
 from seatrial.reporting.first_screen import KeyFact
 from seatrial.reporting.measures import manoeuvre_name
@@ -81,8 +81,8 @@ def test_a_design_that_leaves_the_limits_says_so_where_the_orders_stand(design: 
     fact = rows(straying)["Limits"]
     assert "leaves the limits: it reaches" in fact.text and fact.is_good is False
     assert any("leaves the limits: it reaches" in text for text in order_warnings(straying))
-    card = html(straying).partition('<div class="card">')[2].partition("<section>")[0]
-    assert "leaves the limits: it reaches" in card and "<table>" in card
+    card = next(chapter for chapter in sections(straying) if chapter.key == "orders")
+    assert any("leaves the limits: it reaches" in text for text in card.sentences) and card.table
     assert order_warnings(replace(design, findings=())) == []
 
 
@@ -126,16 +126,18 @@ def test_times_are_read_off_a_stopwatch() -> None:
 
 
 def test_orders_stand_side_by_side_in_their_order(design: Design) -> None:
-    columns = order_columns(design)
-    assert len(columns) == 2
-    assert [line[0] for column in columns for line in column] == [minutes_seconds(o.time) for o in design.orders]
-    assert columns[0][0][1] == "−29"
+    table = order_table(design)
+    assert [heading.title for heading in table.headings] == ["time", "delta", "time", "delta"]
+    lines = [[cell.text for cell in row.cells] for row in table.rows]
+    times = [line[k] for k in (0, 2) for line in lines]
+    assert times[: len(design.orders)] == [minutes_seconds(o.time) for o in design.orders]
+    assert lines[0][1] == "−29"
 
 
 def test_an_order_that_leaves_an_input_alone_has_a_dash(design: Design) -> None:
     two = (*design.actuators, Actuator("v_j", 0.0, 3.0, math.inf, 6.0))
     changed = replace(design, actuators=two, orders=(TimedOrder(0.0, {"v_j": 1.5}),))
-    assert order_columns(changed) == [[["0:00", "–", "1.5"]]]
+    assert [[cell.text for cell in row.cells] for row in order_table(changed).rows] == [["0:00", "–", "1.5"]]
 
 
 def test_numbers_are_people_s() -> None:

@@ -12,7 +12,8 @@ from seatrial.core.figures.marks import Stroke
 from seatrial.core.figures.run import RunView
 from seatrial.core.figures.tracks import Track
 from seatrial.core.results import Fit
-from seatrial.reporting.document import environment, page_text
+from seatrial.reporting.document import chapters_page, environment
+from seatrial.reporting.first_screen import FirstScreen
 from seatrial.reporting.time_figures import run_figure
 
 
@@ -46,9 +47,7 @@ def test_every_colour_of_figures_and_plots_has_one_for_the_dark(page: Path) -> N
 
 
 def test_a_page_without_time_series_carries_no_plotting_code() -> None:
-    context = {"title": "t", "verdict": "", "titles": {}, "rows": [], "open_count": "", "runs": [], "unfolded": 0,
-               "has_left_out": False}  # fmt: skip
-    text = page_text("draft.html", context | {"titles": {"columns": "Columns", "runs": "Runs"}})
+    text = chapters_page("kind", "heading", FirstScreen("verdict", ()), ())
     assert "uPlot=" not in text and text.count("<script>") == 1
     assert environment() is environment()
 

@@ -174,7 +174,9 @@ def test_the_extrapolation_index_names_what_it_compares(fit: Fit) -> None:
 
 def test_a_search_that_did_not_converge_comes_first(fit: Fit) -> None:
     stalled = replace(fit, solution=replace(fit.solution, status=Status.STALLED))
-    assert key_facts(stalled)[0].name == "Warnings" and key_facts(stalled)[0].text.startswith("not-converged")
+    assert key_facts(stalled)[0].name == "Warnings" and key_facts(stalled)[0].text.startswith(
+        "begin with not-converged"
+    )
     assert first_screen(stalled, 9.8).verdict.startswith("Do not use the coefficients: the search did not converge")
     assert rows(stalled)["Identifiability"].is_good is False
 

@@ -332,23 +332,20 @@ def store_findings(
 ) -> Iterator[Finding]:
     """Yield what is odd about a store: tasks left or failed, mixed arithmetic, damage, results that differ."""
     if status.remaining:
-        yield Finding(Severity.WARNING, "incomplete", f"{status.remaining} of {status.total} tasks are not done yet",
-                      "", "run the campaign's command again; it goes on where it stopped")  # fmt: skip
+        yield Finding(Severity.WARNING, "incomplete", f"{status.remaining} of {status.total} tasks are not done yet")
     if status.failed:
         yield Finding(Severity.INFO, "failed-tasks", f"{status.failed} of {status.total} tasks failed", "",
                       f"'seatrial campaign retry {store.folder}' does them again")  # fmt: skip
     if len(processors) > 1 or len(algebra) > 1:
         kinds = ", ".join((*processors, *algebra))
         yield Finding(Severity.INFO, "mixed-arithmetic", "tasks ran on different processors or linear algebra: last "
-                      "digits may differ from those of a single machine", kinds,
-                      "the columns processor and linear_algebra say which row comes from which")  # fmt: skip
+                      "digits may differ from those of a single machine", kinds)  # fmt: skip
     if status.damaged_places:
-        yield Finding(Severity.WARNING, "damaged-journal", f"journals are damaged in {status.damaged_places} places",
-                      "", "the tasks that stood there count as not done; check the disk")  # fmt: skip
+        yield Finding(Severity.WARNING, "damaged-journal", f"journals are damaged in {status.damaged_places} places")
     different = sum(_differs(body_of(first), body_of(second)) for first, second in store.repeated())
     if different:
         text = f"{different} tasks that were done twice on one kind of processor have different results"
-        yield Finding(Severity.WARNING, "not-reproduced", text, "", "report it: results are meant to be reproducible")
+        yield Finding(Severity.WARNING, "not-reproduced", text)
 
 
 def _differs(first: bytes, second: bytes) -> bool:

@@ -21,7 +21,7 @@ def print_findings(
 ) -> None:
     """Print findings by kind, errors first; of each kind the first few (all with --verbose), and where the rest is.
 
-    Without notes, which --verbose shows all the same, these are only counted.
+    Without notes, which --verbose shows all the same, these are only counted, and what follows is not printed.
     """
     if is_quiet():
         _print_errors(findings)
@@ -38,7 +38,7 @@ def print_findings(
             print_finding(severity, f"[{finding.code}] {finding.text}")
         if len(alike) > len(shown):
             print_verbatim([f"{_INDENT}... and {len(alike) - len(shown)} more of this kind; {rest}"])
-        if alike[0].consequence:
+        if alike[0].consequence and has_notes:
             print_lines([f"consequence: {alike[0].consequence}"], _INDENT)
         if alike[0].advice:
             print_lines([f"advice: {alike[0].advice}"], _INDENT)
@@ -65,12 +65,12 @@ def exit_if_errors(findings: "Sequence[Finding]") -> None:
 
 
 def print_warnings(findings: "Sequence[Finding]", rest: str = "the report lists them") -> None:
-    """Print errors and warnings of a result, the latest codes first, under a heading; with --verbose notes, too."""
+    """Print errors and warnings of a result, causes first, under a heading; with --verbose notes, too."""
+    from seatrial.core.values import worst_first
+
     if findings:
-        print_heading("Findings")
-        latest = {f.code: place for place, f in enumerate(findings)}
-        ordered = sorted(findings, key=lambda f: -latest[f.code])  # of one code in their order, the strongest first
-        print_findings(ordered, 1, rest, has_notes=is_verbose())
+        print_heading("Findings, causes first")
+        print_findings(worst_first(findings), 1, rest, has_notes=is_verbose())
 
 
 def print_finding(severity: str, text: str) -> None:

@@ -61,11 +61,10 @@ def findings(
     """Return everything to warn of, the gravest first; advice is such as the `method` can follow."""
     found = list[Finding]()
     if checks.is_interrupted:
-        found.append(_warning("interrupted", "the work was interrupted; what follows the last step shown is missing",
-                              "let it finish before the gains are used"))  # fmt: skip
+        found.append(_warning("interrupted", "the work was interrupted; what follows the last step shown is missing"))
     ship = evaluator.task.trimmed_ship
     found += [
-        _warning("warned-fit", f"of the fit whose model this is: {text}", "correct the fit before the gains are used")
+        _warning("warned-fit", f"of the fit whose model this is: {text}")
         for text in (ship.warnings if ship is not None else ())
     ]
     found += _gain_findings(evaluator, chosen, method)
@@ -83,31 +82,29 @@ def findings(
     found += _station_findings(checks.station)
     if front.hypervolume < _LEAST_COVERAGE:
         found.append(_warning("coarse-front", f"the front covers {100.0 * front.hypervolume:.1f} % of what a grid of "
-                              "all gains does", "give it another seed"))  # fmt: skip
+                              "all gains does"))  # fmt: skip
     points, between = checks.schedule.points, checks.schedule.check
     if wanting := [point for point in points if not point.is_feasible]:
         first = wanting[0]
         lacks = f": at {first.U:.3g} m/s, {math.degrees(first.beta):.0f} deg, {'; '.join(first.lacks)}"
         found.append(_warning("schedule-infeasible", f"in {len(wanting)} of {len(points)} conditions the gains do not "
-                              f"keep all that is asked{lacks if first.lacks else ''}",
-                              "slow down or turn there"))  # fmt: skip
+                              f"keep all that is asked{lacks if first.lacks else ''}"))  # fmt: skip
     if points and between is None:
         found.append(_warning("schedule-not-smooth", "no one set of gains keeps the restrictions in all conditions, so "
-                              "that each has its own and neighbours may differ by any step",
-                              "schedule fewer speeds or heights, or allow more Ms"))  # fmt: skip
+                              "that each has its own and neighbours may differ by any step"))  # fmt: skip
     if between is not None and between.feasible < between.conditions:
-        found.append(_warning("schedule-between", f"with interpolated gains {between.conditions - between.feasible} of "
-                              f"{between.conditions} conditions on and between the schedule's break the restrictions",
-                              "add conditions to [schedule]"))  # fmt: skip
+        found.append(_warning("schedule-infeasible", f"with interpolated gains {between.conditions - between.feasible} "
+                              f"of {between.conditions} conditions on and between the schedule's break the "
+                              "restrictions"))  # fmt: skip
     found += [
-        Finding(Severity.INFO, "rival-breaks-limits", f"controller '{rival.name}' does not keep: {broken}", "", "")
+        Finding(Severity.INFO, "breaks-limits", f"controller '{rival.name}' does not keep: {broken}")
         for rival in baselines
         for broken in rival.violated
     ]
     return tuple(found)
 
 
-def _warning(code: str, text: str, advice: str) -> Finding:
+def _warning(code: str, text: str, advice: str = "") -> Finding:
     return Finding(Severity.WARNING, code, text, "", advice)
 
 
@@ -126,7 +123,7 @@ def _gain_findings(evaluator: GainEvaluator, chosen: Controller, method: TuningM
     for gain in loop.gains.free:
         if gain.lower == 0.0 and abs(chosen.gains[gain.name]) <= ON_BOUND * gain.upper:
             found.append(Finding(Severity.INFO, "gain-at-zero", f"gain {gain.name} ends at zero: its term is not "
-                                 "needed", "", "leave the term out"))  # fmt: skip
+                                 "needed"))  # fmt: skip
     if chosen.violated:
         found.append(_warning("breaks-limits", f"the chosen gains do not keep: {'; '.join(chosen.violated)}",
                               _advice("try more", method)))  # fmt: skip
@@ -145,8 +142,7 @@ def _simulation_findings(
         if pair.lower <= 0.0:
             found.append(_warning("not-better", f"over {pair.seeds} realisations the chosen gains do not surely beat "
                                   f"'{pair.baseline}' {pair.stage}: {100.0 * pair.mean:+.1f} points, interval "
-                                  f"{100.0 * pair.lower:+.1f} to {100.0 * pair.upper:+.1f}", "keep those, or give more "
-                                  "freedom"))  # fmt: skip
+                                  f"{100.0 * pair.lower:+.1f} to {100.0 * pair.upper:+.1f}"))  # fmt: skip
     return found
 
 
@@ -157,15 +153,13 @@ def _noise_findings(evaluator: GainEvaluator, chosen: Controller) -> list[Findin
         return found
     if ringing := ringing_blocks(loop, loop.sampling.sample_s):
         found.append(_warning("rings", f"at samples of {loop.sampling.sample_s:g} s {', '.join(ringing)} rings: by "
-                              "Tustin's rule its output changes sign at every sample",
-                              "sample faster, or give a slower filter"))  # fmt: skip
+                              "Tustin's rule its output changes sign at every sample"))  # fmt: skip
     if loop.sampling.noise_variance and math.isfinite(chosen.Ms):
         _, rms_rate = calm_actuator(loop)
         share = rms_rate / evaluator.task.constraints.rate
         if share > MAX_CALM_RATE:
             found.append(_warning("works-in-calm", f"in calm water the sensor's errors alone move the actuator at "
-                                  f"{100.0 * share:.0f} % of its largest rate (rms)",
-                                  "give a slower derivative_filter, or a lower limits.rate_saturation"))  # fmt: skip
+                                  f"{100.0 * share:.0f} % of its largest rate (rms)"))  # fmt: skip
     return found
 
 
@@ -175,17 +169,17 @@ def _track_findings(track: TrackKeeping | None) -> list[Finding]:
     found, corner = [], track.corner
     if not corner.is_kept:
         text = "the craft does not settle on the track behind the corner: it swings beyond the acceptance to the end"
-        found.append(_warning("track-not-settled", text, "a longer demand.time_constant, or a larger acceptance"))
+        found.append(_warning("not-settled", text))
     if corner.stable_draws < corner.draws or math.isinf(corner.worst_overshoot):
         lost = f"{corner.draws - corner.stable_draws} of {corner.draws} ships that the fit allows"
         text = f"{lost} do not keep a track under this guidance, or run away at the corner"
-        found.append(_warning("track-lost", text, "more trials, or more margin (less Ms)"))
+        found.append(_warning("unstable-draws", text))
     free, held = (
         math.hypot(*(getattr(s, stage)["output"] for s in track.disturbances)) for stage in ("unlimited", "limited")
     )
     if held > MAX_LIMITED_RATIO * free:
         text = f"the distance from the track is {held / free:.2g} times as large with the actuator's limits as without"
-        found.append(_warning("track-lost-to-limits", text, "allow the actuator more, or less Ms"))
+        found.append(_warning("lost-to-limits", text))
     return found
 
 
@@ -195,16 +189,16 @@ def _station_findings(station: StationKeeping | None) -> list[Finding]:
     found, trial = [], station.trial
     if trial.stable_draws < trial.draws:
         text = f"{trial.draws - trial.stable_draws} of {trial.draws} craft that the fit allows do not keep the station"
-        found.append(_warning("station-lost", text, "more trials, or more margin (less Ms)"))
+        found.append(_warning("unstable-draws", text))
     if len(trial.directions) < STATION_DIRECTIONS:
         text = (
             f"the station was tried in a current from {len(trial.directions)} of {STATION_DIRECTIONS} directions: from "
             "the others the thrusters do not hold its strongest"
         )
-        found.append(_warning("station-not-held", text, "turn the bow into the current, or give a slower one"))
+        found.append(_warning("station-not-held", text))
     if trial.cut > MAX_STATION_CUT:
         text = f"the thrusters' limits cut the force ordered {100.0 * trial.cut:.2g} % of the time on station"
-        found.append(_warning("station-limited", text, "a slower current, or more of full command (station.limit)"))
+        found.append(_warning("lost-to-limits", text))
     return found
 
 
@@ -215,16 +209,15 @@ def _demand_findings(demand: Demand | None, manoeuvres: tuple[ManoeuvreResponse,
     first = manoeuvres[0]
     if not first.overshoot <= demand.overshoot:
         found.append(_warning("overshoot", f"the demand is overshot by {100.0 * first.overshoot:.1f} % where "
-                              f"{100.0 * demand.overshoot:.1f} % are allowed", "slow the reference down"))  # fmt: skip
+                              f"{100.0 * demand.overshoot:.1f} % are allowed"))  # fmt: skip
     if first.is_to_settle and math.isnan(first.settling):
         found.append(_warning("not-settled", f"the {first.name} does not settle within 5 % in the "
-                              f"{demand.duration:.3g} s that are simulated",
-                              "give demand.duration more time, or less noise and slower references"))  # fmt: skip
+                              f"{demand.duration:.3g} s that are simulated"))  # fmt: skip
     if first.settling > demand.settling:
         found.append(_warning("slow", f"the demand takes {first.settling:.3g} s to settle, {demand.settling:.3g} s are "
-                              "allowed", "shorten demand.time_constant, or allow more actuator"))  # fmt: skip
+                              "allowed"))  # fmt: skip
     if first.stable_draws < first.draws:
         lost = first.draws - first.stable_draws
         found.append(_warning("unstable-draws", f"{lost} of {first.draws} ships that the fit allows are not stable "
-                              "under these gains", "more trials, or more margin (less Ms)"))  # fmt: skip
+                              "under these gains"))  # fmt: skip
     return found

@@ -1,14 +1,14 @@
 """The page of a designed manoeuvre: its precision compared with standard ones, its orders, its track."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 from markupsafe import Markup
 
 from seatrial.core.equations.latex import latex_symbol
 from seatrial.core.figures.run import RunView
 from seatrial.core.figures.svg_text import svg
-from seatrial.core.results import Actuator, Design, ManoeuvrePrecision
+from seatrial.core.results import Design, ManoeuvrePrecision
 from seatrial.core.results.design import (
     best_baseline,
     criterion_error,
@@ -18,93 +18,181 @@ from seatrial.core.results.design import (
     ranked_baselines,
     sampled_criterion_errors,
 )
-from seatrial.core.text.numbers import DASH, exact, fixed, significant
-from seatrial.core.values import NOTATION, Record
+from seatrial.core.text.numbers import DASH, duration, exact, fixed, significant
+from seatrial.core.values import Record
 from seatrial.core.values.notation import reading_order
 from seatrial.core.values.record_chart import channel_panels, is_constant
 from seatrial.data.folder.gains_file import channel_display_unit, order_cells
 from seatrial.reporting import design_text
 from seatrial.reporting.design_text import LARGEST_SHOWN_ERROR
-from seatrial.reporting.document import page_text
+from seatrial.reporting.document import chapters_page
 from seatrial.reporting.figures.designed_manoeuvre import order_view, track_chart
 from seatrial.reporting.figures.relative_errors import FILLED, OPEN, TICK, ErrorSeries, error_chart
 from seatrial.reporting.finding_chapter import finding_section
 from seatrial.reporting.first_screen import FirstScreen
 from seatrial.reporting.mathml import inline
 from seatrial.reporting.measures import manoeuvre_name
+from seatrial.reporting.section import (
+    Cell,
+    Column,
+    Heading,
+    Kind,
+    Level,
+    Picture,
+    Row,
+    Section,
+    TextTable,
+    fact_table,
+    formula,
+    name,
+    number,
+    table_of,
+    words,
+)
 from seatrial.reporting.time_figures import run_figure
 
-TITLES = {
-    "orders": "Orders: the helmsman’s card",
-    "manoeuvres": "Compared with standard manoeuvres",
-    "coefficients": "Precision of each coefficient",
-    "ships": "Ships that differ from the assumed one",
-    "confirmation": "Simulated trials",
-    "findings": "Findings",
-    "method": "Method and provenance",
-}
 # columns of orders side by side, rows from which there is a second one, baselines in the table
 MAX_COLUMNS, MIN_COLUMN_ROWS, MAX_BASELINES = 4, 12, 3
-
-
-@dataclass(frozen=True)
-class ManoeuvreRow:
-    """One manoeuvre as text, errors in per cent."""
-
-    name: str
-    worst: str
-    mean: str
-    worst_over_draws: str
-    drift: str
-    distance: str
-    is_designed: bool
-    is_within_limits: bool
-
-
-@dataclass(frozen=True)
-class DesignCoefficientRow:
-    """One coefficient: relative standard errors [%] of design and baselines; error of simulated fits and its bound."""
-
-    symbol: Markup
-    name: str
-    value: str
-    spread: str
-    designed: str
-    baselines: tuple[str, ...]
-    simulated_error: str
-    predicted_error: str
+_BOUND_NOTE = (
+    "Standard errors over the magnitude of the coefficients, as the sensors' noise allows at best (Cramér-Rao bound); "
+    "mean: root mean square over the coefficients. {} from the start: largest for the ship as assumed."
+)
+_ERRORS_CAPTION = (
+    "Relative standard errors with the ship as assumed. Filled: the designed manoeuvre. Open: the best standard one."
+)
+_SHIPS_CAPTION = (
+    "The design's criterion for each manoeuvre. Open: ships drawn from the prior. Tick: the ship as assumed."
+)
 
 
 def html(design: Design) -> str:
     """Return the page as text; sections without content are left out."""
+    return chapters_page(
+        "Designed manoeuvre", f"A manoeuvre for {design.ship}", _first_screen(design), sections(design),
+        title=f"{design.ship}: a designed manoeuvre", question=design.question,
+    )  # fmt: skip
+
+
+def sections(design: Design) -> list[Section]:
+    """Return the chapters: orders, standard manoeuvres, precision, drawn ships, simulated trials, findings, method."""
     baselines = ranked_baselines(design)
-    has_content = {
-        "ships": bool(len(design.designed.sampled_relative_error)),
-        "confirmation": design.confirmation is not None,
-        "findings": bool(design.findings),
-    }
-    context: dict[str, object] = {
-        "design": design,
-        "titles": {key: title for key, title in TITLES.items() if has_content.get(key, True)},
-        "screen": _first_screen(design),
-        "order_warnings": design_text.order_warnings(design),
-        "facts": design_text.facts(design),
-        "settings": design_text.settings(design),
-        "manoeuvres": [_manoeuvre_row(w, design) for w in (design.designed, *baselines)],
-        "heads": order_headings(design.actuators),
-        "meanings": order_meanings(design.actuators),
-        "order_columns": order_columns(design),
-        "channels": _all_channels(design.designed.executed),
-        "has_track": has_track(design),
-        "has_drift": has_track(design) and has_drift(design),
-        "baselines": [manoeuvre_name(w.name) for w in baselines[:MAX_BASELINES]],
-        "coefficients": _coefficient_rows(design, baselines[:MAX_BASELINES]),
-        "speed": _speed_option(design),
-        "errors": Markup(_errors_figure(design)),
-        "ships": Markup(_drawn_ships_figure(design, baselines)),
-        "findings": finding_section(design.findings),
-    }
-    return page_text("design.html", context)
+    method = fact_table({**dict(design_text.facts(design)), **dict(design_text.settings(design))})
+    every = (
+        _orders(design),
+        _manoeuvres(design, baselines),
+        _coefficients(design, baselines[:MAX_BASELINES]),
+        _drawn_ships(design, baselines),
+        _confirmation(design),
+        finding_section(design.findings),
+        Section("Method and provenance", "method", table=method, level=Level.PAGE),
+    )
+    return [chapter for chapter in every if chapter]
+
+
+def _orders(design: Design) -> Section:
+    """The helmsman's card: what to set when, with what must be known beside it."""
+    meanings = [f"{a.name}: {design_text.order_meaning(a.name)}." for a in design.actuators]
+    channels = Section(
+        "All channels", pictures=(Picture(lambda: _all_channels(design.designed.executed), "The ship as assumed."),),
+        is_folded=True, level=Level.PAGE,
+    )  # fmt: skip
+    files = (
+        "The same stands in orders.csv; plan.csv has the inputs at every sample, for seatrial simulate model.toml "
+        f"--inputs plan.csv{_speed_option(design)} --out run.csv."
+    )
+    return Section(
+        f"Orders: the helmsman’s card, {duration(design.duration)}",
+        "orders",
+        sentences=(*design_text.order_warnings(design), *meanings, "Set at each time what its line says, and hold it."),
+        table=order_table(design),
+        note=files,
+        parts=(channels,),
+    )
+
+
+def _manoeuvres(design: Design, baselines: Sequence[ManoeuvrePrecision]) -> Section:
+    """The designed manoeuvre beside those one would run."""
+    is_tracked = has_track(design)
+    is_drifting = is_tracked and has_drift(design)
+    table = table_of(
+        (design.designed, *baselines),
+        words("Manoeuvre", lambda w: manoeuvre_name(w.name)),
+        number("worst", lambda w: percent_text(w.worst), "%"),
+        number("mean", lambda w: percent_text(w.mean), "%"),
+        number("worst, drawn ships", lambda w: percent_text(w.worst_sampled_error), "%"),
+        number("drift angle", lambda w: fixed(math.degrees(w.drift), 1) if is_drifting else "", "deg"),
+        number("distance", lambda w: significant(w.distance, 3) if is_tracked else "", "m"),
+        words("", lambda w: "" if is_within_limits(w, design.limits) else Cell("leaves the limits", tone="bad")),
+        is_marked=lambda w: w is design.designed,
+    )
+    reach = "Drift angle and distance" if is_drifting else "Distance"
+    note = _BOUND_NOTE.format(reach) if is_tracked else _BOUND_NOTE.partition(" {}")[0]
+    return Section("Compared with standard manoeuvres", "manoeuvres", table=table, note=note)
+
+
+def _coefficients(design: Design, baselines: Sequence[ManoeuvrePrecision]) -> Section:
+    """How precise each coefficient becomes."""
+    parameters = design.model.parameters
+    table = table_of(
+        range(len(design.coefficients)),
+        *_coefficient_columns(design),
+        number("assumed value", lambda i: significant(parameters[design.coefficients[i]].value, 4)),
+        number("may differ by", lambda i: percent_text(float(design.relative_spread[i])), "± %"),
+        number("designed", lambda i: percent_text(float(design.designed.relative_error[i])), "%"),
+        *(number(manoeuvre_name(w.name), lambda i, w=w: percent_text(float(w.relative_error[i])), "%")
+          for w in baselines),
+    )  # fmt: skip
+    pictures = (Picture(lambda: _errors_figure(design), _ERRORS_CAPTION),)
+    return Section("Precision of each coefficient", "coefficients", table=table, pictures=pictures, level=Level.PAGE)
+
+
+def _coefficient_columns(design: Design) -> tuple[Column[int], Column[int]]:
+    """Symbol and name of a coefficient by its place."""
+    names, parameters = design.coefficients, design.model.parameters
+    return (
+        formula("", lambda i: Markup(inline(parameters[names[i]].latex or latex_symbol(names[i])))),
+        name("Coefficient", lambda i: names[i]),
+    )
+
+
+def _drawn_ships(design: Design, baselines: Sequence[ManoeuvrePrecision]) -> Section:
+    """What the orders are worth on ships that differ from the one assumed."""
+    if not len(design.designed.sampled_relative_error):
+        return Section("")
+    return Section(
+        "Ships that differ from the assumed one",
+        "ships",
+        sentences=(
+            "The coefficients are not known before the trial. Each dot is a ship drawn from the prior, steered with "
+            "the same orders.",
+        ),
+        pictures=(Picture(lambda: _drawn_ships_figure(design, baselines), _SHIPS_CAPTION),),
+        level=Level.PAGE,
+    )
+
+
+def _confirmation(design: Design) -> Section:
+    """Errors of fits of simulated trials beside those predicted."""
+    done = design.confirmation
+    if done is None:
+        return Section("")
+    table = table_of(
+        range(len(design.coefficients)),
+        *_coefficient_columns(design),
+        number("error of the fits", lambda i: percent_text(float(done.error[i])), "%"),
+        number("predicted", lambda i: percent_text(float(done.bound[i])), "%"),
+    )
+    return Section(
+        "Simulated trials",
+        "confirmation",
+        sentences=(
+            "Trials were simulated with the designed manoeuvre, sensor noise added, and the coefficients fitted: "
+            f"{done.converged_runs} of {done.runs} fits succeeded.",
+        ),
+        table=table,
+        note="Root mean squares over the fits that succeeded, over the magnitude of the coefficient.",
+        level=Level.PAGE,
+    )
 
 
 def _first_screen(design: Design) -> FirstScreen:
@@ -123,7 +211,7 @@ def _first_screen(design: Design) -> FirstScreen:
 
 def _all_channels(executed: Record) -> Markup:
     """Every channel that moves, over time."""
-    names = [name for name in reading_order(list(executed.channels)) if not is_constant(executed, name)]
+    names = [channel for channel in reading_order(list(executed.channels)) if not is_constant(executed, channel)]
     return run_figure(RunView("all channels", channel_panels(executed, names))) if names else Markup()
 
 
@@ -140,65 +228,26 @@ def minutes_seconds(seconds: float) -> str:
     return f"{int(minutes)}:{exact(rest, 4).rjust(2, '0') if rest >= 10 else '0' + exact(rest, 4)}"
 
 
-def order_headings(actuators: tuple[Actuator, ...]) -> list[tuple[Markup, str]]:
-    """Return symbol and unit of each column of the helmsman's table after the time."""
-    return [(Markup(inline(_latex(a.name))), channel_display_unit(a.name)[1]) for a in actuators]
-
-
-def order_meanings(actuators: tuple[Actuator, ...]) -> list[tuple[Markup, str]]:
-    """Return symbol and meaning of each input, with its positive direction."""
-    return [(Markup(inline(_latex(a.name))), design_text.order_meaning(a.name)) for a in actuators]
-
-
-def _latex(name: str) -> str:
-    return NOTATION[name].latex if name in NOTATION else latex_symbol(name)
-
-
-def order_columns(design: Design) -> list[list[list[str]]]:
-    """Return the helmsman's table cut into columns that stand side by side: minutes and seconds, then the orders."""
+def order_table(design: Design) -> TextTable:
+    """Return the helmsman's table, its parts side by side: minutes and seconds, then the orders."""
     rows = []
     for order in design.orders:
         cells = [cell.replace("-", "−") or DASH for cell in order_cells(order, design.actuators)[1:]]
         rows.append([minutes_seconds(order.time), *cells])
     count = min(MAX_COLUMNS, max(1, math.ceil(len(rows) / MIN_COLUMN_ROWS)))
-    each = math.ceil(len(rows) / count) if rows else 1
-    return [rows[k : k + each] for k in range(0, len(rows), each)]
+    each = math.ceil(len(rows) / count)
+    units = [(a.name, channel_display_unit(a.name)[1]) for a in design.actuators]
+    heads = [Heading("time", "min:s", Kind.NUMBER), *(Heading(n, "" if u == "1" else u, Kind.NUMBER) for n, u in units)]
+    empty = [""] * len(heads)
+    parts = [rows[k : k + each] for k in range(0, len(rows), each or 1)]
+    lines = ([cell for part in parts for cell in (part[i] if i < len(part) else empty)] for i in range(each))
+    return TextTable(tuple(heads) * count, tuple(Row(tuple(map(Cell, line))) for line in lines))
 
 
 def _speed_option(design: Design) -> str:
     """The option of `simulate` that starts a replay as the design did; empty for a model without surge."""
     executed = design.designed.executed
     return f" --speed {float(executed['u'][0]):.7g}" if design.model.has_speed and "u" in executed else ""
-
-
-def _manoeuvre_row(manoeuvre: ManoeuvrePrecision, design: Design) -> ManoeuvreRow:
-    return ManoeuvreRow(
-        manoeuvre_name(manoeuvre.name),
-        percent_text(manoeuvre.worst),
-        percent_text(manoeuvre.mean),
-        percent_text(manoeuvre.worst_sampled_error),
-        fixed(math.degrees(manoeuvre.drift), 1) if math.isfinite(manoeuvre.drift) else DASH,
-        significant(manoeuvre.distance, 3),
-        manoeuvre is design.designed,
-        is_within_limits(manoeuvre, design.limits),
-    )
-
-
-def _coefficient_rows(design: Design, baselines: tuple[ManoeuvrePrecision, ...]) -> list[DesignCoefficientRow]:
-    confirmation = design.confirmation
-    return [
-        DesignCoefficientRow(
-            Markup(inline(design.model.parameters[name].latex or latex_symbol(name))),
-            name,
-            significant(design.model.parameters[name].value, 4),
-            percent_text(float(design.relative_spread[i])),
-            percent_text(float(design.designed.relative_error[i])),
-            tuple(percent_text(float(w.relative_error[i])) for w in baselines),
-            percent_text(float(confirmation.error[i])) if confirmation else "",
-            percent_text(float(confirmation.bound[i])) if confirmation else "",
-        )
-        for i, name in enumerate(design.coefficients)
-    ]
 
 
 def _errors_figure(design: Design) -> str:
@@ -211,7 +260,7 @@ def _errors_figure(design: Design) -> str:
     return svg(error_chart(design.coefficients, series, "relative standard error, per cent of the coefficient"))
 
 
-def _drawn_ships_figure(design: Design, baselines: tuple[ManoeuvrePrecision, ...]) -> str:
+def _drawn_ships_figure(design: Design, baselines: Sequence[ManoeuvrePrecision]) -> str:
     """A row for each manoeuvre, a dot for each ship drawn from the prior."""
     manoeuvres, criterion = (design.designed, *baselines), design.criterion
     sampled = [[100.0 * x for x in sampled_criterion_errors(w, criterion)] for w in manoeuvres]

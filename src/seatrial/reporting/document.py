@@ -44,9 +44,9 @@ def chapters_page(
     """
     context = {
         "kind": kind, "heading": heading, "screen": screen, "chapters": chapters, "title": title or heading,
-        "question": question, "about": about, "titles": {chapter.key: chapter.title for chapter in chapters},
+        "question": question, "about": about,
     }  # fmt: skip
-    return page_text("chapters.html", context)
+    return page_text("page.html", context)
 
 
 @cache

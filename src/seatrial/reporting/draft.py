@@ -1,63 +1,29 @@
 """The page of a drafted trial: what each column is taken for, and every run with its manoeuvres."""
 
-from dataclasses import dataclass
-
-from markupsafe import Markup
-
 from seatrial.core.text.words import counted
 from seatrial.core.values import Record
 from seatrial.data.draft import ColumnGuess, DraftTrial, LogRun, LogStretch
-from seatrial.reporting.document import page_text
+from seatrial.reporting.document import chapters_page
 from seatrial.reporting.figures.log_parts import log_view
+from seatrial.reporting.first_screen import FirstScreen
+from seatrial.reporting.section import Cell, Picture, Section, name, number, table_of, words
 from seatrial.reporting.time_figures import run_figure
 
-TITLES = {"columns": "Columns", "runs": "Runs and their manoeuvres"}
 _OPEN_RUNS = 3  # runs whose drawing is unfolded; chosen: what one scrolls through
-
-
-@dataclass(frozen=True)
-class ColumnRow:
-    """A column as text."""
-
-    symbol: str
-    source: str
-    meaning: str
-    evidence: str
-    other_reading: str
-
-
-@dataclass(frozen=True)
-class DrawnRun:
-    """A run: its name, what was found, its parts, the drawing."""
-
-    key: str
-    name: str
-    note: str
-    parts: tuple[LogStretch, ...]
-    figure: Markup
+_LEFT_OUT = (
+    "Parts that stand behind a # in the trial file are left out: remove the # to use them, or put one before a part "
+    "that is not to be used."
+)
 
 
 def html(draft: DraftTrial, title: str) -> str:
     """Return the self-contained page; title: the name of the trial file beside it."""
-    rows = [_column_row(g) for part in draft.guesses for g in part if g.is_used]
-    sections = [
-        _run_section(number, run, record, offered or stretches)
-        for number, (run, record, stretches, offered) in enumerate(
-            zip(draft.runs, draft.records, draft.stretches, draft.parts, strict=True)
-        )
-        if record is not None
-    ]
-    context = {
-        "title": title,
-        "verdict": verdict(draft),
-        "titles": TITLES,
-        "rows": rows,
-        "open_count": counted(len(draft.open_questions), "column") if draft.open_questions else "",
-        "runs": sections,
-        "has_left_out": any(part.is_left_out for offered in draft.parts for part in offered),
-        "unfolded": _OPEN_RUNS,
-    }
-    return page_text("draft.html", context)
+    return chapters_page("drafted trial", title, FirstScreen(verdict(draft), ()), sections(draft))
+
+
+def sections(draft: DraftTrial) -> list[Section]:
+    """Return the chapters: columns with what they are read as, runs with their parts."""
+    return [_columns([g for part in draft.guesses for g in part if g.is_used]), _runs(draft)]
 
 
 def verdict(draft: DraftTrial) -> str:
@@ -70,13 +36,49 @@ def verdict(draft: DraftTrial) -> str:
     )
 
 
-def _column_row(guess: ColumnGuess) -> ColumnRow:
-    words = (guess.unit, guess.frame, f"positive {guess.positive}" if guess.positive else "")
-    meaning = ", ".join(word for word in words if word)
-    return ColumnRow(guess.symbol, str(guess.source), meaning, "; ".join(guess.evidence), guess.other_reading)
+def _columns(guesses: list[ColumnGuess]) -> Section:
+    table = table_of(
+        guesses,
+        words("Channel", lambda g: g.symbol),
+        name("Column", lambda g: str(g.source)),
+        words("Read as", _meaning),
+        words("Because", lambda g: "; ".join(g.evidence)),
+        words("Or", lambda g: Cell(g.other_reading, tone="bad")),
+    )
+    is_open = any(g.other_reading for g in guesses)
+    return Section(
+        "Columns", "columns", ("To decide: the readings of the last column.",) if is_open else (), table=table
+    )
 
 
-def _run_section(number: int, run: LogRun, record: Record, parts: tuple[LogStretch, ...]) -> DrawnRun:
-    name = run.name or run.sources[0].path.name
-    figure = run_figure(*log_view(record, parts))
-    return DrawnRun(f"run-{number}", name, counted(len(parts), "part"), parts, figure)
+def _meaning(guess: ColumnGuess) -> str:
+    parts = (guess.unit, guess.frame, f"positive {guess.positive}" if guess.positive else "")
+    return ", ".join(part for part in parts if part)
+
+
+def _runs(draft: DraftTrial) -> Section:
+    drawn = [
+        (run, record, offered or stretches)
+        for run, record, stretches, offered in zip(draft.runs, draft.records, draft.stretches, draft.parts, strict=True)
+        if record is not None
+    ]
+    is_left_out = any(part.is_left_out for offered in draft.parts for part in offered)
+    parts = tuple(_run(number, *run) for number, run in enumerate(drawn))
+    return Section("Runs and their manoeuvres", "runs", (_LEFT_OUT,) if is_left_out else (), parts=parts)
+
+
+def _run(place: int, run: LogRun, record: Record, parts: tuple[LogStretch, ...]) -> Section:
+    table = table_of(
+        enumerate(parts, start=1),
+        words("Part", lambda item: f"{item[0]} {item[1].name}"),
+        number("from", lambda item: f"{item[1].start:.4g}", "s"),
+        number("to", lambda item: f"{item[1].stop:.4g}", "s"),
+        words("Because", lambda item: item[1].evidence),
+    )
+    return Section(
+        f"{run.name or run.sources[0].path.name}, {counted(len(parts), 'part')}",
+        f"run-{place}",
+        table=table,
+        pictures=(Picture(lambda: run_figure(*log_view(record, parts))),),
+        is_folded=place >= _OPEN_RUNS,
+    )

@@ -1,13 +1,12 @@
-"""The chapter on findings: grouped by code and advice, the most severe first."""
+"""The chapter on findings: grouped by code and advice, the most severe first, causes before what they cause."""
 
 from collections.abc import Sequence
 
 from markupsafe import Markup
 
-from seatrial.core.values import Finding, Severity
+from seatrial.core.values import Finding, worst_first
 from seatrial.reporting.section import Level, Section
 
-_SEVERITIES = (Severity.ERROR, Severity.WARNING, Severity.INFO)
 # findings of a group that are shown unfolded
 MAX_UNFOLDED = 3
 _TITLE = Markup('<span class="severity {}">{}</span><code>{}</code>')
@@ -15,10 +14,10 @@ _TITLE = Markup('<span class="severity {}">{}</span><code>{}</code>')
 
 def finding_section(findings: Sequence[Finding]) -> Section:
     """Return the chapter on the findings of a result, on the page; empty where there are none."""
-    groups: dict[tuple[int, str, str], list[Finding]] = {}
-    for f in findings:
-        groups.setdefault((_SEVERITIES.index(f.severity), f.code, f.advice), []).append(f)
-    parts = tuple(_group(group) for _, group in sorted(groups.items(), key=lambda item: item[0][0]))
+    groups: dict[tuple[str, str, str], list[Finding]] = {}
+    for f in worst_first(findings):
+        groups.setdefault((f.severity, f.code, f.advice), []).append(f)
+    parts = tuple(_group(group) for group in groups.values())
     return Section("Findings", "findings", parts=parts, level=Level.PAGE)
 
 
@@ -26,9 +25,10 @@ def _group(findings: Sequence[Finding]) -> Section:
     """Findings of one code with the same advice: the first few, the others behind a fold."""
     first, texts = findings[0], [f.text for f in findings]
     more = Section(f"{len(texts) - MAX_UNFOLDED} more", points=tuple(texts[MAX_UNFOLDED:]), is_folded=True)
-    advice = (Section("", sentences=(f"Advice: {first.advice}.",)),) if first.advice else ()
+    said = [("What follows", first.consequence), ("Advice", first.advice)]
+    advice = Section("", sentences=tuple(f"{name}: {text}." for name, text in said if text))
     return Section(
         _TITLE.format(first.severity.value, first.severity.value, first.code),
         points=tuple(texts[:MAX_UNFOLDED]),
-        parts=(more, *advice),
+        parts=(more, advice),
     )

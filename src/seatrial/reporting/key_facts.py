@@ -11,7 +11,7 @@ from seatrial.core.results.fit_charts import has_band, headline_view
 from seatrial.core.results.prediction import ChannelScore
 from seatrial.core.text.numbers import fixed, significant
 from seatrial.core.text.words import counted, enumeration
-from seatrial.core.values import Severity
+from seatrial.core.values import Severity, worst_first
 from seatrial.reporting.coefficient_uses import relative_half_width
 from seatrial.reporting.course import course_facts, unstable_course
 from seatrial.reporting.first_screen import FirstScreen, KeyFact
@@ -271,9 +271,11 @@ def _identifiability(fit: Fit) -> KeyFact:
 
 
 def _warnings(fit: Fit) -> KeyFact:
-    codes = list(dict.fromkeys(f.code for f in fit.findings if f.severity is not Severity.INFO))
+    codes = list(dict.fromkeys(f.code for f in worst_first(fit.findings) if f.severity is not Severity.INFO))
     if not has_converged(fit):
         codes = [NOT_CONVERGED, *(code for code in codes if code != NOT_CONVERGED)]
     if not codes:
         return KeyFact("Warnings", "none", "findings" if fit.findings else "", is_good=True)
-    return KeyFact("Warnings", enumeration(codes, MAX_NAMES), "findings" if fit.findings else "method", is_good=False)
+    others = f"; then {enumeration(codes[1:], MAX_NAMES - 1)}" if codes[1:] else ""
+    text = f"{'begin with ' if others else ''}{codes[0]}{others}"
+    return KeyFact("Warnings", text, "findings" if fit.findings else "method", is_good=False)

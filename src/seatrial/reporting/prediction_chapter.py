@@ -306,8 +306,7 @@ def _measures(p: Prediction) -> TextTable:
         words("Measure", lambda row: ", ".join(part for part in measure_label(row[0]) if part)),
         number(p.reference_word, lambda row: _value(row[0], row[1], row[1].measured)),
         number(p.model_word, _simulated),
-        number("95 % interval", lambda row: _interval(*row)),
-        words("", _verdict),
+        number("95 % interval", _interval),
         number("tied models", lambda row: _spread(p.tied_spread.get(row[0]))),
         unfolded=MAX_MEASURES,
     )
@@ -325,14 +324,14 @@ def _simulated(row: tuple[str, Measure]) -> str:
     return _value(*row, row[1].simulated) if row[1].is_determined else NOT_DETERMINED
 
 
-def _interval(name: str, m: Measure) -> str:
-    return interval(m.lower, m.upper, measure_decimals(measure_label(name)[1], m)) if m.is_determined else ""
-
-
-def _verdict(row: tuple[str, Measure]) -> Cell:
-    verdict = interval_verdict(*row)
+def _interval(row: tuple[str, Measure]) -> Cell:
+    """The interval, and whether the measured value lies in it."""
+    (name, m), verdict = row, interval_verdict(*row)
+    if not m.is_determined:
+        return Cell()
     is_outside = verdict is IntervalVerdict.OUTSIDE
-    return Cell(verdict.upper() if is_outside else verdict.value, tone="bad" if is_outside else "")
+    ends = interval(m.lower, m.upper, measure_decimals(measure_label(name)[1], m))
+    return Cell(ends, verdict.upper() if is_outside else verdict.value, "bad" if is_outside else "")
 
 
 def _unread_manoeuvre(p: Prediction) -> tuple[str, ...]:

@@ -17,7 +17,7 @@ def block(*symbols: str) -> RecordsTable:
 def test_a_receivers_velocities_are_a_warning_with_the_edit() -> None:
     (finding,) = ground_velocity_findings(abkowitz(), None, [block("psi"), block("sog", "cog")])
     assert finding.code == "velocity-over-ground"
-    assert '[sensors] velocity = "ground"' in finding.advice and "current" in finding.consequence
+    assert 'velocity = "ground" under [sensors]' in finding.advice and "current" in finding.consequence
 
 
 @pytest.mark.parametrize(

@@ -62,7 +62,7 @@ def test_coefficients_that_cannot_be_stated_are_named() -> None:
     relative, drawn = GOOD.relative_error.copy(), GOOD.sampled_relative_error.copy()
     relative[2], drawn[3, 6] = 1.2, 3.0
     worth = replace(GOOD, relative_error=relative, sampled_relative_error=drawn)
-    assert codes(worth) == ["not-identifiable", "not-identifiable-drawn"]
+    assert codes(worth) == ["not-identifiable", "not-identifiable"]
     first, second = findings(TASK, worth, None, is_interrupted=False)
     assert "X_rr" in first.text and "Y_vr" in second.text
 

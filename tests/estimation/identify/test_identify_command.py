@@ -50,7 +50,7 @@ def test_every_kind_of_interval_can_be_had(
     fit = json.loads((tmp_path / "fit.json").read_text())
     errors = {c["name"]: c for c in fit["coefficients"] if not c["fixed"]}
     assert all(c["lower"] < c["estimate"] < c["upper"] for c in errors.values())
-    unjudged = [f["text"] for f in fit["findings"] if f["code"] == "no-family"]
+    unjudged = [f["text"] for f in fit["findings"] if f["code"] == "no-comparison"]
     assert len(unjudged) == (kind == "jackknife"), "these records have no position by which windows are judged"
     assert bool(fit["identifiability"]["profiles"]) == (kind == "profile")
 

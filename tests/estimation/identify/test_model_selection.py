@@ -127,7 +127,7 @@ def test_the_trials_own_model_stays_where_none_is_a_crafts(found: Estimation) ->
     ]
     rows = rank_candidates(members, choose=True)
     assert [r.is_chosen for r in rows] == [True, False]
-    assert [f.severity for f in _choice_findings(members, rows) if f.code == "unphysical-models"] == [Severity.WARNING]
+    assert [f.severity for f in _choice_findings(members, rows) if f.code == "unphysical-values"] == [Severity.WARNING]
 
 
 def test_structures_that_gain_are_joined_and_the_gain_is_reported(

@@ -193,7 +193,7 @@ def _of_changes(task: TuningTask, gains: Array, records: Sequence[Record]) -> Ve
         corrections = refitted_coefficients(task.trimmed_ship, records, length)
     except InputError as error:
         text = f"the model was not estimated anew from the log: {error}"
-        findings = (Finding(Severity.INFO, "model-as-it-was", text, "", "identify it from a trial of its own"),)
+        findings = (Finding(Severity.INFO, "model-as-it-was", text),)
     followed = _followed_findings(task, log.gains)
     return _verification(
         task, gains, log.quantities, corrections, (*findings, *followed, *_moved_findings(corrections)),
@@ -272,7 +272,7 @@ def _moved_findings(corrections: Sequence[ModelCorrection]) -> list[Finding]:
     return [
         Finding(
             Severity.WARNING, "model-moved", f"the log moves the {c.name} from {c.model:.3g} to {c.log:.3g}",
-            f"95 % interval {c.lower:.3g} to {c.upper:.3g}", "tune again with the corrected value",
+            f"95 % interval {c.lower:.3g} to {c.upper:.3g}",
         )
         for c in corrections if c.is_moved
     ]  # fmt: skip
@@ -285,14 +285,12 @@ def _leg_findings(task: TuningTask, log: StabiliserLog) -> list[Finding]:
             Severity.WARNING, "gains-differ",
             f"record '{leg.record}': from {leg.start:.0f} s on '{task.loop.actuator}' moves {leg.gain_ratio:.2f} times "
             "as much as these gains order", f"coherence {leg.correlation:.2f}",
-            "check that these gains were on, and whether the actuator was at its limits",
         )
         for leg in log.legs if leg.is_controlled and abs(leg.gain_ratio - 1.0) > _GAIN_TOLERANCE
     ]  # fmt: skip
     if all(leg.is_controlled for leg in log.legs):
         findings.append(Finding(
-            Severity.INFO, "no-leg-off", "no leg has the controller off: the reduction rests on the model alone", "",
-            "log a leg of the same length without control, before or after",
+            Severity.INFO, "no-leg-off", "no leg has the controller off: the reduction rests on the model alone",
         ))  # fmt: skip
     if not log.fit.is_converged:
         findings.append(Finding(

@@ -278,7 +278,7 @@ class MissingParts:
             self.findings.append(
                 Finding(
                     Severity.WARNING, "part-missing", f"the result is without {name}, which could not be computed",
-                    _reason(error), "the rest of the result stands; correct what it names, and repeat",
+                    _reason(error),
                 )
             )  # fmt: skip
             return otherwise

@@ -100,7 +100,7 @@ def channel_findings(record: Record) -> tuple[Finding, ...]:
     if wraps:
         text = f"record '{record.name}': readings of {', '.join(wraps)} jump by a whole turn; they are unwrapped"
         evidence = ", ".join(f"{symbol} {count} times" for symbol, count in wraps.items())
-        findings.append(Finding(Severity.INFO, "angle-wrap", text, evidence, "no action needed"))
+        findings.append(Finding(Severity.INFO, "angle-wrap", text, evidence))
     return tuple(findings)
 
 
@@ -108,9 +108,9 @@ def _constant_finding(record: Record, symbol: str, value: float) -> Finding:
     evidence = f"{value:.6g} {record.channel(symbol).unit} throughout"
     if symbol in OUTPUT_CHANNELS:
         text = f"record '{record.name}': channel '{symbol}' is dead, it never changes"
-        return Finding(Severity.WARNING, "dead-channel", text, evidence, "leave the channel out or repair the sensor")
+        return Finding(Severity.WARNING, "dead-channel", text, evidence)
     text = f"record '{record.name}': channel '{symbol}' is constant"
-    return Finding(Severity.INFO, "constant", text, evidence, "its effect is that of a constant force")
+    return Finding(Severity.INFO, "dead-channel", text, evidence)
 
 
 def _stuck_findings(record: Record, symbol: str, values: Array) -> list[Finding]:
@@ -127,11 +127,11 @@ def _stuck_findings(record: Record, symbol: str, values: Array) -> list[Finding]
     if step is not None and stay >= COARSE_SAMPLES and last - first < COARSE_STAYS * stay:
         text = f"record '{record.name}': channel '{symbol}' comes in steps of {step:.4g} {record.channel(symbol).unit}"
         evidence = f"a value stays for {stay:.0f} samples"
-        return [Finding(Severity.INFO, "resolution", text, evidence, "give more digits if the logger has them")]
+        return [Finding(Severity.INFO, "resolution", text, evidence)]
     text = f"record '{record.name}': channel '{symbol}' is stuck for {last - first + 1} samples"
     end = record.time[min(last, len(values) - 1)]
     evidence = f"{values[first]:.6g} from {moment(record.time[first], end)}"
-    return [Finding(Severity.WARNING, "stuck", text, evidence, "look whether the sensor stopped or the ship lay still")]
+    return [Finding(Severity.WARNING, "stuck", text, evidence)]
 
 
 def _step(values: Array) -> float | None:

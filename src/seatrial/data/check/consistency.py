@@ -107,7 +107,7 @@ def kinematic_consistency_findings(motion: RecordedMotion) -> tuple[Finding, ...
         advice = (
             f"no action needed: it is below {SMALL_SPEED_ERROR:.0%} of the speed, and a good log may have twice that"
         )
-        return (Finding(Severity.INFO, "small-closure", message, evidence, advice),)
+        return (Finding(Severity.INFO, "closure", message, evidence, advice),)
     is_distinct = second.residual_rms > DOUBTFUL_GAIN * best.residual_rms
     is_certain = best.name in ("point", "sway") and gain > CERTAIN_GAIN and is_distinct
     severity = Severity.ERROR if is_certain else Severity.WARNING

@@ -185,7 +185,6 @@ def drift_side_findings(motion: RecordedMotion) -> tuple[Finding, ...]:
         "where the velocities are said to be",
         "if the antenna is ahead of midship, state it: antenna = { x = ..., y = ... } under [[records]]; else check "
         "the signs of v, of heading and of course",
-        "sway is that of another motion, and so are all coefficients of sway",
     ),)  # fmt: skip
 
 

@@ -120,7 +120,7 @@ def _command_findings(thruster: Thruster, records: Sequence[Record]) -> list[Fin
     if np.ptp(orders) < _STILL:
         return [Finding(
             Severity.WARNING, "dead-thruster", f"{where}: its command '{channel}' never moves in any run",
-            f"{orders[0]:.3g} of full throughout", "leave the thruster out, or name the channel that drives it",
+            f"{orders[0]:.3g} of full throughout",
         )]  # fmt: skip
     worst = float(np.max(np.abs(orders)))
     if worst <= _SPAN_MARGIN:
@@ -129,7 +129,6 @@ def _command_findings(thruster: Thruster, records: Sequence[Record]) -> list[Fin
         Severity.ERROR, "command-range", f"{where}: '{channel}' goes to {worst:.3g} of full command",
         f"readings {np.min(readings):.6g} to {np.max(readings):.6g}, zero {thruster.command.zero:g}, span "
         f"{thruster.command.span:g}",
-        "correct unit, zero and span of its command (us: 1500 and 400; percent: 0 and 100)",
     )]  # fmt: skip
 
 
@@ -356,7 +355,6 @@ def feedback_findings(record: Record) -> tuple[Finding, ...]:
             "output error would take disturbances that are answered for the ship's own response; identify uses "
             "prediction error with a disturbance model",
             f"cross-correlation {t.correlation:.2f}, output {t.lag:.2g} s before input, {p_value(t.p)}",
-            "a stretch of rudder steps that do not depend on the motion identifies the coefficients better",
         )
         for t in feedback_tests(record)
         if t.has_feedback

@@ -293,7 +293,6 @@ def release_findings(record: Record) -> tuple[Finding, ...]:
         Finding(
             Severity.WARNING, "held-roll", f"record '{record.name}': the roll angle is {what} before it is released",
             evidence,
-            "from_release = true under [[records]] drops what lies before the release",
         ),
     )  # fmt: skip
 

@@ -313,7 +313,7 @@ def _cell_findings(bridge: BridgedRecord) -> list[Finding]:
     named = ", ".join(f"{s} {n}" for s, n in bridge.filled.items())
     text = f"record '{record.name}': {counted(total, 'cell')} empty beside others; what lies between is interpolated"
     evidence = f"{named}; holes of up to {bridge.longest} samples"
-    return [Finding(Severity.WARNING, "empty-cells", text, evidence, "no action needed for a few")]
+    return [Finding(Severity.WARNING, "empty-cells", text, evidence)]
 
 
 def _hole_findings(record: Record, parts: tuple[Record, ...]) -> list[Finding]:
@@ -368,7 +368,6 @@ def without_empty_ends(record: Record) -> tuple[Record, tuple[Finding, ...]]:
         "empty-rows",
         f"record '{record.name}' {where} with {counted(count, 'empty row')}, cut off",
         f"{counted(cells, 'empty cell')}, {last - first} of {len(record)} rows remain",
-        "nothing to do if the run ended there; otherwise look for the lost samples",
     )
     return record.rows(slice(first, last)).with_step(f"{counted(count, 'empty row')} cut off"), (finding,)
 
@@ -495,7 +494,6 @@ def _without_duplicates(record: Record) -> tuple[Record, tuple[Finding, ...]]:
         "repeated-rows",
         f"record '{record.name}': {counted(int(repeat.sum()), 'row')} dropped: stamp and values of the row before",
         f"first at {moment(record.time[repeat][0])}",
-        "see whether the logger wrote twice",
     )
     kept = replace(record, time=record.time[keep], channels=channels)
     return kept.with_step(f"{repeat.sum()} repeated rows dropped"), (finding,)

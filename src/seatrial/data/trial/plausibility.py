@@ -31,9 +31,7 @@ def ground_velocity_findings(
         return ()
     return (Finding(
         Severity.WARNING, "velocity-over-ground",
-        "u and v are a receiver's, over ground, and fitted as if through the water", "",
-        '[sensors] velocity = "ground" in the trial file; with it a current no longer counts as drift',
-        "a current ends in the coefficients, and a run under another one is missed",
+        "u and v are a receiver's, over ground, and fitted as if through the water",
     ),)  # fmt: skip
 
 
@@ -81,7 +79,7 @@ def _gyradius_finding(name: str, inertia: float, mass: float, length: float) -> 
 
 
 def _finding(message: str, advice: str) -> Finding:
-    return Finding(Severity.WARNING, "hull-values", message, "", advice, "coefficients scale with stated inertias")
+    return Finding(Severity.WARNING, "hull-values", message, "", advice)
 
 
 # Values that a trial file marks as estimated: the fit rests on them, and says so.
@@ -138,8 +136,6 @@ def _estimated_finding(names: list[str]) -> Finding:
     return Finding(
         Severity.WARNING, ESTIMATED_VALUES, f"{listed} {'is' if is_one else 'are'} {NOT_MEASURED}",
         f"marked {ESTIMATED} in the trial file",
-        "write what you can measure in place of the estimate, and remove the mark",
-        f"coefficients and intervals are right only as far as {'this value is' if is_one else 'these values are'}",
     )  # fmt: skip
 
 

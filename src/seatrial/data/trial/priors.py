@@ -118,7 +118,6 @@ def prior_range_findings(names: Sequence[str], ship: Ship) -> tuple[Finding, ...
                     Severity.WARNING, "prior-range",
                     f"ship '{ship.name}' lies outside the range of '{name}' ({estimate.source})",
                     f"{form_text}; fitted to {estimate.limits}",
-                    "widen prior_sd_percent, or take another source",
                 ))  # fmt: skip
     return tuple(findings)
 

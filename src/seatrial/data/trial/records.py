@@ -249,7 +249,7 @@ def _answered(finding: Finding, trial: Trial) -> Finding:
     if finding.advice != ESTIMATE_CURRENT or not trial.estimate.current:
         return finding
     advice = "no action needed: [estimate] current estimates one for each run"
-    return replace(finding, severity=Severity.INFO, advice=advice, consequence="")
+    return replace(finding, severity=Severity.INFO, advice=advice)
 
 
 def _load_unless_bad(run: TrialRun, reference_point: float) -> tuple[TrialRecord | Finding, ...]:
@@ -283,8 +283,7 @@ def _one_course_findings(trial: Trial, records: tuple[TrialRecord, ...]) -> tupl
     return (Finding(
         Severity.WARNING, "velocity-over-ground",
         "speed through the water was not recorded, and one course alone does not separate a current from it",
-        f"sessions {enumeration(lone)}", "record a run on the opposite course, or the speed through the water; runs of "
-        'one outing share its current: session = "all"', "a current ends in the coefficients of surge",
+        f"sessions {enumeration(lone)}",
     ),)  # fmt: skip
 
 

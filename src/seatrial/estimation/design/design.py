@@ -75,10 +75,9 @@ def findings(
     """Return everything worth a warning, the gravest first."""
     findings = list[Finding]()
     if is_interrupted:
-        findings.append(_warning("interrupted", "the work was interrupted; this is the best so far",
-                              "let it finish for a better manoeuvre"))  # fmt: skip
+        findings.append(_warning("interrupted", "the work was interrupted; this is the best so far"))  # fmt: skip
         if not is_within_limits(designed, task.request.limits):
-            findings.append(_warning("leaves-limits", "these orders leave the limits", "let the search finish"))
+            findings.append(_warning("leaves-limits", "these orders leave the limits"))
     return (
         *findings,
         *_unidentifiable(task, designed),
@@ -87,7 +86,7 @@ def findings(
     )
 
 
-def _warning(code: str, text: str, advice: str) -> Finding:
+def _warning(code: str, text: str, advice: str = "") -> Finding:
     return Finding(Severity.WARNING, code, text, "", advice)
 
 
@@ -102,14 +101,16 @@ def _unidentifiable(task: DesignTask, designed: ManoeuvrePrecision) -> list[Find
     findings = []
     if by_model.any():
         listed = ", ".join(n for n, bad in zip(names, by_model, strict=True) if bad)
-        findings.append(_warning("not-identifiable",
-                              f"even this manoeuvre does not identify {listed}: the standard error exceeds the value",
-                              "better sensors, a longer trial, wider limits, or give a prior for them"))  # fmt: skip
+        findings.append(
+            _warning(
+                "not-identifiable",
+                f"even this manoeuvre does not identify {listed}: the standard error exceeds the value",
+            )
+        )
     if some.any():
         listed = ", ".join(n for n, bad in zip(names, some, strict=True) if bad)
-        findings.append(_warning("not-identifiable-drawn",
-                              f"for some ship of the prior this manoeuvre does not identify {listed}",
-                              "design again after a first trial, with --from and its model file"))  # fmt: skip
+        findings.append(_warning("not-identifiable",
+                              f"for some ship of the prior this manoeuvre does not identify {listed}"))  # fmt: skip
     return findings
 
 
@@ -120,12 +121,10 @@ def _limit_violations(task: DesignTask, designed: ManoeuvrePrecision) -> list[Fi
         severity = Severity.WARNING if straying > _MANY_LEAVING * count else Severity.INFO
         findings.append(Finding(severity, "straying", f"{straying} of {count} ships drawn from the prior leave the "
                              f"limits under these orders, with up to {_drift_text(farthest)}"
-                             f"{max(designed.sampled_distance.tolist()):.0f} m from the start", "",
-                             "watch both and abort there; design.every_ship = true binds them, too"))  # fmt: skip
+                             f"{max(designed.sampled_distance.tolist()):.0f} m from the start"))  # fmt: skip
     elif farthest > _FAR_DRIFT:
         findings.append(_warning("drift", f"the manoeuvre reaches a drift angle of {math.degrees(farthest):.0f} deg "
-                              "for some ship of the prior", "few models hold so far; give a smaller design.drift, or "
-                              "abort there"))  # fmt: skip
+                              "for some ship of the prior"))  # fmt: skip
     return findings
 
 
@@ -141,7 +140,6 @@ def _confirmation_findings(designed: ManoeuvrePrecision, confirmation: Confirmat
                 "lost",
                 f"{lost} of {len(designed.sampled_relative_error)} ships drawn from the prior cannot be simulated "
                 "under these orders",
-                "narrow the prior or the inputs' ranges",
             )
         )
     if confirmation is not None and confirmation.converged_runs < _ENOUGH_CONVERGED * confirmation.runs:
@@ -150,7 +148,6 @@ def _confirmation_findings(designed: ManoeuvrePrecision, confirmation: Confirmat
                 "unconfirmed",
                 f"only {confirmation.converged_runs} of {confirmation.runs} simulated trials "
                 "could be fitted, so that the errors predicted are not confirmed",
-                "narrow the prior, measure more channels, or lengthen the trial",
             )
         )
     return findings

@@ -189,7 +189,7 @@ def finding_with_effects(finding: Finding, effects: Sequence[EstimatedValueEffec
     worst = [e for e in effects if e.matters]
     if not worst:
         text = f"none of them matters much: {effects[0].sentence}" if effects else "the model itself holds none of them"
-        return replace(finding, severity=Severity.INFO, evidence=text, consequence="")
+        return replace(finding, severity=Severity.INFO, evidence=text)
     rest = [e.name for e in effects if not e.matters]
     parts = [
         "; ".join(e.sentence for e in worst[:MAX_NAMED]),
@@ -198,7 +198,7 @@ def finding_with_effects(finding: Finding, effects: Sequence[EstimatedValueEffec
     ]
     return replace(
         finding, evidence="; ".join(parts),
-        consequence="the intervals of coefficients hold these errors, those of predictions do not",
+
         advice=f"measure {worst[0].name} first, write it in place of the estimate, and remove the mark",
     )  # fmt: skip
 
@@ -240,8 +240,6 @@ def box_force_findings(
     return (Finding(
         Severity.WARNING, ESTIMATED_VALUES, f"the wave forces are those of a box, {NOT_MEASURED}",
         lost if undetermined else "every coefficient keeps its sign where they are wrong by as much as of a hull",
-        'give the hull\'s own forces: [excitation] source = "table" or "capytaine"',
-        "intervals of coefficients hold what the forces may be wrong by; predictions in such waves hardly change",
     ),)  # fmt: skip
 
 
@@ -296,8 +294,6 @@ class DifferingDecays:
         return Finding(
             Severity.WARNING, "decays-differ", f"the decays do not share one {self.name}, and no single number holds",
             f"{self.name} in {unit}: {listed}",
-            "fit the decays of each speed and loading by themselves",
-            f"the interval of {self.name} holds what one decay differs from another by",
         )  # fmt: skip
 
 

@@ -39,7 +39,7 @@ def with_baselines(
         estimators = available_estimators(seconds, svr)
         return replace(fit, baselines=compare_estimators(fit, train, estimators, report_progress))
     except InputError as error:
-        said = Finding(Severity.INFO, NO_COMPARISON, f"{_NO_COMPARISON_TEXT}{error}", "")
+        said = Finding(Severity.INFO, NO_COMPARISON, f"{_NO_COMPARISON_TEXT}{error}")
         return replace(fit, findings=(*fit.findings, said))
 
 

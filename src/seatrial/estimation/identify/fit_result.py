@@ -243,13 +243,10 @@ def unconverged(estimation: Estimation) -> list[Finding]:
     status, findings = estimation.estimate.optimum.solution.status, []
     if not status.is_success:
         how = status.value.partition(";")[0]  # what an optimiser's user may do follows
-        findings.append(Finding(Severity.WARNING, NOT_CONVERGED, "the search did not converge", how,
-                        "give start values nearer the ship's under [model.start], priors under [model.priors], or fix "
-                        "coefficients that trade against one another; do not use the coefficients before"))  # fmt: skip
+        findings.append(Finding(Severity.WARNING, NOT_CONVERGED, "the search did not converge", how))  # fmt: skip
     if not estimation.estimate.is_settled:
         findings.append(Finding(Severity.WARNING, "noise-not-settled", "the noise levels still change from round to "
-                        "round, and with them the weights of the channels", "",
-                        "state the sensors' noise under [noise], or leave out a channel that the model cannot follow"
+                        "round, and with them the weights of the channels"
                         ))  # fmt: skip
     return findings
 
@@ -342,12 +339,12 @@ def findings(first: Fit, second: Fit) -> tuple[Finding, ...]:
         warnings.append(Finding(
             Severity.WARNING, "shared-records", "both fits use the same records, so that their errors are not "
             "independent: intervals of the differences hold for independent ones and are mostly too wide here",
-            f"{len(shared)} of {len(_training_records(second))} training runs", "compare fits of different records",
+            f"{len(shared)} of {len(_training_records(second))} training runs",
         ))  # fmt: skip
     if first.model.name != second.model.name:
         warnings.append(Finding(
             Severity.INFO, "other-model", f"a {first.model.name} and a {second.model.name} model have no coefficients "
-            "in common; manoeuvres are compared alone", "", "identify both with one model",
+            "in common; manoeuvres are compared alone",
         ))  # fmt: skip
     return tuple(warnings)
 

@@ -181,8 +181,6 @@ def course_finding(model: Model, course: Stability | None, approach: Mapping[str
         Severity.INFO, COURSE_UNSTABLE, course.text,
         _index_text(course)
         + _turn_text(model, approach, course.speed),
-        "steer it in a simulation by a helmsman or an autopilot, and judge predictions by windows",
-        "without steering it leaves a straight course, and errors of open-loop predictions grow at that rate",
     ),)  # fmt: skip
 
 

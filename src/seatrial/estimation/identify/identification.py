@@ -206,7 +206,6 @@ def _course_finding(courses: Mapping[str, Between]) -> Finding:
     return Finding(
         Severity.INFO, "stepped-input", f"between samples the records show {' and '.join(texts)}",
         "the other way the records are less likely, and half a sample is left as a delay",
-        "declare between where you know it",
     )  # fmt: skip
 
 
@@ -290,5 +289,4 @@ def _confirmed(estimation: Estimation, detected: Sequence[Suspect]) -> Finding |
         f"the records show errors of instruments, which are estimated: {names}",
         "; ".join(sizes).replace(" 1 (", " ("),
         f"state what is so under [sensors] ({lines}), and correct in the log what is not",
-        "held at none they go into the coefficients",
     )  # fmt: skip

@@ -60,10 +60,7 @@ def antenna_findings(predictions: Sequence[Prediction], length: float) -> tuple[
     return (Finding(
         Severity.WARNING, "antenna-place", f"the recorded sway velocity differs from the model's in step with the yaw "
         f"rate, as if it were measured {significant(abs(place), 2)} m {side} of where the file says",
-        f"this would explain {percent(share)} % of the difference", "state where the antenna stands, antenna = "
-        "{ x = ..., y = ... } under [[records]], in m forward of midship and to starboard; where it stands as stated, "
-        "the model's sway is wrong: free more of its terms",
-        "drift angles, and the coefficients of sway, count on it",
+        f"this would explain {percent(share)} % of the difference",
     ),)  # fmt: skip
 
 
@@ -169,8 +166,6 @@ def _finding(name: str, delays: dict[str, float], sample: float, remedy: _Lag | 
     return Finding(
         Severity.WARNING, "input-delay", f"{name} acts more than a sample {way} its record",
         f"{sizes}; a sample every {significant(sample, 2)} s" + (f"; {remedy.sentence}" if remedy else ""),
-        "compare the clocks of the recorders; with one clock, model the lag of the machinery or of a sensor",
-        "the recorder's stamps are off, or the model lacks a lag; coefficients absorb the rest of it",
     )  # fmt: skip
 
 

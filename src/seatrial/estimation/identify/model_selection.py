@@ -105,7 +105,7 @@ def select_model(
         if choose:
             raise
         what = "intervals are without the spread of tied models: the family of models cannot be compared"
-        return SelectedModel(estimation, (), (), (Finding(Severity.INFO, "no-family", what, str(error)),))
+        return SelectedModel(estimation, (), (), (Finding(Severity.INFO, "no-comparison", what, str(error)),))
     rows = rank_candidates(fitted, choose=choose)
     used = selected_estimation(estimation, fitted, rows, runs, settings, options, report_progress)
     findings = _choice_findings(fitted, rows) if choose else _better_candidate_warning(rows)
@@ -130,7 +130,7 @@ def _choice_findings(fitted: Sequence[FittedVariant], rows: Sequence[CandidateMo
             if is_every
             else "models whose values no craft has were not taken"
         )
-        findings.append(Finding(severity, "unphysical-models", what, "; ".join(refused), advice))
+        findings.append(Finding(severity, "unphysical-values", what, "; ".join(refused), advice))
     return tuple(findings)
 
 
@@ -143,7 +143,7 @@ def _better_candidate_warning(candidates: Sequence[CandidateModel]) -> tuple[Fin
     best = min(judged, key=lambda r: r.heading_deg or 0.0)
     what = f"the runs left out are predicted better by another member of the family, '{best.name}'"
     evidence = f"heading {best.heading_deg:.3g} deg against {used.heading_deg:.3g} deg in windows"
-    return (Finding(Severity.WARNING, "better-model", what, evidence, "--choose takes the best member"),)
+    return (Finding(Severity.WARNING, "better-model", what, evidence),)
 
 
 def variants(model: Model, family: ModelFamily | None, is_segmented: bool) -> tuple[ModelVariant, ...]:

@@ -82,7 +82,6 @@ def sampling_findings(posterior: Posterior) -> list[Finding]:
         Severity.WARNING, "not-sampled-enough", f"the chains of the sampling {cause}",
         f"R-hat up to {worst.r_hat:.3f}, of {worst.name}; at least "
         f"{min(c.effective_size for c in posterior.coefficients):.0f} independent draws",
-        "take the intervals that stand next to the credible ones, or fix what the records do not determine",
     )]  # fmt: skip
 
 

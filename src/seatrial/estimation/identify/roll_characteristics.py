@@ -79,7 +79,6 @@ def gyradius_findings(ship: Ship, gyradius: IntervalEstimate | None) -> tuple[Fi
         f"{significant(share, 2)} of the breadth, ships have {_range_text(GYRADIUS_OVER_BREADTH, 1.0)}", "",
         f"check GM, B and the loading of the tests: with {GYRADIUS_OVER_BREADTH[1]:g} of the breadth GM would be "
         f"{significant(height * (usual / gyradius.value) ** 2, 2)} m",
-        "the radius, and moments in newton metres, follow the stated GM",
     ),)  # fmt: skip
 
 
@@ -133,7 +132,6 @@ def one_speed_finding(roll: RollCharacteristics | None, records: Sequence[Record
             "one-speed",
             f"the runs are {where}: they do not identify b(U), how damping depends on speed",
             f"{len(records)} of the training runs",
-            "use the damping at this speed only; record decays at three speeds and fit each by itself",
         ),
     )
 

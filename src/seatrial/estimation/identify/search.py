@@ -268,7 +268,7 @@ def _outside_bounds(model: Model) -> list[Finding]:
     return [
         Finding(
             Severity.WARNING, "outside-bounds", f"the method puts coefficient {p.name} outside its bounds",
-            f"{p.value:g}, bounds {p.lower:g} to {p.upper:g}", "take the package's own estimate, which stays within",
+            f"{p.value:g}, bounds {p.lower:g} to {p.upper:g}",
         )
         for p in model.parameters.free
         if not p.lower <= p.value <= p.upper
@@ -284,7 +284,7 @@ def _predictions(reference: Fit, model: Model) -> tuple[tuple[Prediction, ...], 
             simulated = replay(model, p.simulated)
         except DivergedError as error:
             text = f"with the coefficients of the method run '{p.record}' cannot be simulated"
-            findings.append(Finding(Severity.WARNING, "diverged", text, str(error), "do not use them"))
+            findings.append(Finding(Severity.WARNING, "diverged", text, str(error)))
             continue
         measures = compare_measures(p.measured, simulated, length) if is_steered(p.measured, model) else {}
         predictions.append(
@@ -467,7 +467,7 @@ def search_findings(search: Search, point: Array, required: int) -> tuple[Findin
     ]  # fmt: skip
     if search.is_interrupted:
         text = f"the search was interrupted after {len(search.restarts)} of {required} restarts"
-        findings.append(Finding(Severity.WARNING, "interrupted", text, "", "run it again to have them all"))
+        findings.append(Finding(Severity.WARNING, "interrupted", text))
     return tuple(findings)
 
 

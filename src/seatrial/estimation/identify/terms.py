@@ -82,7 +82,6 @@ def needless_term_findings(
         Severity.WARNING, "term-worsens-prediction", f"{runs} would be predicted better with {best} at 0",
         f"{'; '.join(texts)}; the other coefficients moved with it to first order",
         _advice(is_needed=_is_needed(estimation, best)),
-        "it follows the training runs and leads away from others",
     ),)  # fmt: skip
 
 
@@ -216,7 +215,6 @@ def held_couplings(
             f"{sizes[name]:.0f} standard errors", f"in one step it would move {text}" if text else "",
             f"free {named[0]}{', the strongest, first' if len(named) > 1 else ''} and compare the held-out runs: under "
             f"[model] write {wider}free = [{advised}]",
-            "intervals of the coefficients that stand in for it do not hold their true values",
         ))  # fmt: skip
     return tuple(findings)
 
@@ -321,8 +319,6 @@ def drifting_thrust_finding(estimation: Estimation, records: Sequence[Record]) -
     return (Finding(
         Severity.WARNING, "thrust-drifts", f"the thrust at one order {way} from the start of the runs to their end, by "
         f"{percent(abs(change))} %", f"{abs(score):.0f} standard errors; it moves most {enumeration(most)}",
-        "record the battery's voltage or the propellers' rate, or train on shorter runs",
-        "the intervals of the coefficients that stand in for it do not hold their true values",
     ),)  # fmt: skip
 
 

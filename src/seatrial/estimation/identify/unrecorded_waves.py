@@ -282,7 +282,7 @@ def _linear_equivalent_finding(record: Record) -> Finding:
     rms = float(np.degrees(np.std(record["phi"])))
     what = f"b_1 and c_1 are the linear equivalent of roll in this sea, {rms:.2g} deg rms"
     evidence = "other coefficients held at zero; the sea is taken to have one peak (JONSWAP) and to fall off with depth"
-    return Finding(Severity.INFO, "equivalent-linear", what, evidence, "a decay shows damping over amplitude")
+    return Finding(Severity.INFO, "equivalent-linear", what, evidence)
 
 
 def _unused_prior_findings(model: Model) -> list[Finding]:

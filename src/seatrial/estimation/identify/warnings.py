@@ -48,13 +48,11 @@ def _contradictions(loop: FeedbackEvidence) -> Iterator[Finding]:
     if loop.reference_p is not None and loop.reference_p < REFERENCE_LEVEL:
         yield Finding(Severity.WARNING, "reference-residual", "the innovations follow earlier changes of the "
                       "reference, as those of a true model do not: model error, which the intervals do not cover",
-                      p_value(loop.reference_p), "free more coefficients, allow for a delay of the input under "
-                      "[estimate] delays, or take a richer model")  # fmt: skip
+                      p_value(loop.reference_p))  # fmt: skip
     agreement = loop.controller_correlation
     if agreement is not None and agreement < LEAST_AGREEMENT:
         yield Finding(Severity.WARNING, "controller-mismatch", f"'{loop.input}' is not what the declared controller "
-                      "orders", f"correlation {significant(agreement, 2)}", "correct sign, gains or reference under "
-                      "[feedback], or name the runs in which it was on with runs = [...]")  # fmt: skip
+                      "orders", f"correlation {significant(agreement, 2)}")  # fmt: skip
 
 
 # A warning where the estimated disturbance moves a state by more than the state moves at all: no sea does that.
@@ -105,7 +103,6 @@ def misfit_disturbance(
         findings.append(Finding(
             Severity.WARNING, EXCEEDS_MOTION, "the estimated disturbance moves the craft by more than it moves in the "
             "runs: the model's misfit, not the sea, is likely", "; ".join(one.text(seconds) for one in misfit),
-            "free more coefficients, correct a channel, or take a richer model",
         ))  # fmt: skip
     if undetermined:
         names = enumeration([one.state for one in undetermined])
@@ -113,7 +110,6 @@ def misfit_disturbance(
             Severity.WARNING, EXCEEDS_MOTION, f"the estimated disturbance of {names} cannot be: the model without it "
             "misses far less, so that its size is not determined", "; ".join(one.text(seconds) for one in undetermined),
             f"state the sensors' noise of {names} under [noise], so that the filter does not choose it",
-            "intervals and bands that rest on it are too wide",
         ))  # fmt: skip
     return tuple(findings)
 
@@ -156,9 +152,6 @@ def narrow_band_findings(predictions: Sequence[Prediction]) -> tuple[Finding, ..
             Severity.WARNING, "narrow-band",
             "held-out samples lie outside their 95 % band more often than chance explains",
             f"inside are {enumeration(outside)}",
-            "take the intervals of predictions and coefficients for too narrow; exchange the runs that are fitted and "
-            "held out and compare, look for what differed between them, and fit four runs or more: their spread then "
-            "makes the intervals",
         ),
     )  # fmt: skip
 
@@ -192,7 +185,6 @@ def other_optima(estimation: Estimation) -> list[Finding]:
                 Severity.WARNING, "equal-optimum", f"other coefficients explain the records as well: {name} = "
                 f"{attempt.values[name]:.3g} instead of {point[worst]:.3g}",
                 f"search from {attempt.origin}: loss {attempt.loss:.2g} above the lowest",
-                "give a prior or a bound by what is known of the craft, or a manoeuvre that distinguishes them",
             ))  # fmt: skip
     return findings
 
@@ -221,9 +213,6 @@ def refuted_prior_findings(estimation: Estimation) -> tuple[Finding, ...]:
         Severity.WARNING, "prior-refuted",
         f"the records contradict the priors of {counted(len(off), 'coefficient')}",
         f"prior standard deviations from their means: {', '.join(sizes)}{more}",
-        "check that the priors' source is of this ship, loading and scale, widen them under [model.priors], or free "
-        "the term whose effect these coefficients may have taken; until then do not read them one by one",
-        "intervals count each such prior as wrong by as much",
     ),)  # fmt: skip
 
 
@@ -241,9 +230,7 @@ def response_findings(responses: Sequence[FrequencyResponse]) -> tuple[Finding, 
         return ()
     return (Finding(
         Severity.WARNING, "frequency-response", f"the model lies outside the 95 % region of the records in "
-        f"{enumeration(texts, len(texts))} frequencies", "",
-        "look at which frequencies it misses: coefficients that change with frequency, or forces of the wrong size",
-        "intervals of coefficients do not cover this error",
+        f"{enumeration(texts, len(texts))} frequencies",
     ),)  # fmt: skip
 
 
@@ -271,8 +258,6 @@ def short_time_constant_findings(estimation: Estimation) -> tuple[Finding, ...]:
     return (Finding(
         Severity.INFO, "short-time-constant", f"{names} {verb} below the step of the records",
         f"{sizes}; a sample every {significant(step, 2)} s",
-        "take it as shorter than a sample; where a controller needs more, log commands and motion at a higher rate",
-        "it is not distinguishable from a delay of the logged commands",
     ),)  # fmt: skip
 
 
@@ -338,8 +323,7 @@ def with_unexcited_thrust_held(model: Model, records: Sequence[Record]) -> tuple
         findings.append(
             Finding(
                 Severity.WARNING, "no-thrust-astern", f"no training run has an order astern of {names}: "
-                f"{enumeration(held)} are held where they start", "",
-                "train on a run with orders astern, or simulate none with this model",
+                f"{enumeration(held)} are held where they start",
             )
         )  # fmt: skip
     return model, tuple(findings)
@@ -372,8 +356,6 @@ def _single_order(side: _Side, thrusters: str, names: Sequence[str], order: floa
         Severity.WARNING, "single-order", f"the training runs hold orders {side.name} of {thrusters} only near "
         f"{percent(order)} % of full command: {scale} and {exponent} together give the thrust there, neither by itself",
         "", f"record a second order {side.name}, or fix {exponent} under [model.fixed]",
-        f"thrust {side.name} at any other order is a guess: full command is {significant(1.0 / order, 2)} times that "
-        "order",
     )  # fmt: skip
 
 
@@ -418,7 +400,6 @@ def abandoned_criterion_finding(estimation: Estimation, records: Sequence[Record
         Severity.WARNING, "search-abandoned",
         f"{estimation.abandoned}: these runs contradict the model from sample to sample, and the estimate is that of "
         "output error over whole runs", "; ".join(evidence), f"{', or '.join(ways)}",
-        "coefficients are a compromise between runs that differ by more than their intervals",
     ),)  # fmt: skip
 
 

@@ -273,7 +273,6 @@ def frequency_range_finding(ranges: Mapping[str, tuple[float, float]]) -> Findin
         f"they "
         "extrapolate, for added mass and damping change with frequency",
         f"{100 * POWER_SHARE:.0f} % of the power: {ranges_text}",
-        "for another range, record other headings or speeds, or another sea, and fit them apart",
     )
 
 

@@ -111,7 +111,6 @@ def not_predicted_finding(record: Record, error: InputError) -> Finding:
         "not-predicted",
         f"validation run '{record.name}' is not predicted: {error}",
         f"{len(record)} samples",
-        "correct the run, or leave it out; the fit does not rest on it",
     )
 
 

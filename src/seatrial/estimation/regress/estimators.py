@@ -183,8 +183,6 @@ def _zero_weights_finding(system: RegressionSystem, tube: float, reach: float) -
         "tube-too-wide",
         f"support vector regression of the {system.title} equation returns zeros only: its tube of {tube:g} is wider "
         f"than its target, which reaches {reach:.2g}",
-        "",
-        "scale the target to unit size, or give a tube of a few per cent of it",
     )
 
 

@@ -200,8 +200,7 @@ def _candidate_findings(coefficients: Mapping[str, float]) -> tuple[Finding, ...
         return ()
     said = ", ".join(f"{name} = {value:.4g}" for name, value in coefficients.items())
     return (
-        Finding(Severity.INFO, "candidate-kept", f"Lasso keeps terms that the model does not have: {said}", "",
-                "its runs are simulated with them; candidates = false under [compare.svr] leaves them out"),
+        Finding(Severity.INFO, "candidate-kept", f"Lasso keeps terms that the model does not have: {said}"),
     )  # fmt: skip
 
 

@@ -309,8 +309,7 @@ def _dropped_findings(system: RegressionSystem, is_kept: Array) -> tuple[Finding
     if not names:
         return ()
     return (
-        Finding(Severity.INFO, "lasso-dropped", f"Lasso drops {', '.join(names)} from the {system.title} equation", "",
-                "dropped is not small: Lasso drops what the other coefficients can stand for"),
+        Finding(Severity.INFO, "lasso-dropped", f"Lasso drops {', '.join(names)} from the {system.title} equation"),
     )  # fmt: skip
 
 
