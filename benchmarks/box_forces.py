@@ -13,8 +13,7 @@ from measure import Line, machine
 
 from seatrial.core.values import Array
 from seatrial.physics.hydro.excitation import BoxHull, G
-from seatrial_studies.section2d.lewis import LewisForm
-from seatrial_studies.section2d.multipoles import RHO, SectionMotion, section_hydrodynamics
+from seatrial_studies.section2d.theory import RHO, LewisForm, SectionMotion, section_hydrodynamics
 
 LENGTH, STATIONS = 1.0, 24  # m of all hulls, as errors do not depend on it; stations at the middles of slices
 SPEEDS = (0.0, 0.15, 0.3)  # Froude numbers of ships, at rest to fast

@@ -19,7 +19,7 @@ from seatrial.estimation.estimate import estimate_model
 from seatrial.estimation.estimate.assemble import training_runs
 from seatrial.estimation.information.discrepancy import GROWTH_POWER, HoldoutError
 from seatrial.estimation.predict.windows import HoldoutProtocol
-from seatrial_studies.alexandersson2022.window_bands import MissedWindows, band_coverage, holdout_windows
+from seatrial_studies.alexandersson2022.reproduction import MissedWindows, band_coverage, holdout_windows
 
 TRIAL = Path(__file__).parents[1] / "examples" / "kvlcc2_hsva.toml"
 LIMITS, POWERS, WINDOW_S = (10, 15, 20, 25), (0.0, 1.0, 2.0, 3.0), 30.0

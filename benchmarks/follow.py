@@ -29,8 +29,13 @@ from seatrial.estimation.problem.segments import cut_segments
 from seatrial.numerics.optimise import ImprovedHerdSettings, ImprovedWildHorse, search
 from seatrial.physics.models.published import QI2025_SHIP
 from seatrial.problems import off_centre_box
-from seatrial_studies import swarm_search
-from seatrial_studies.output_error_fit import with_physics_start
+from seatrial_studies.heave_pitch_search import (
+    STEP,
+    PitchUnit,
+    one_sample_objective,
+    simulate_search_data,
+    with_physics_start,
+)
 from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE, SeawayRun, SeawayScenario, ship, simulate_seaway_run
 
 Array = NDArray[np.float64]
@@ -226,19 +231,19 @@ def compare_with_wild_horses(seas: int) -> Iterator[Line]:
     theirs, ours = [], []
     for run in range(seas):
         rng = np.random.default_rng([135, run, 4])
-        data = swarm_search.simulate_search_data(135, rng, noise=(HEAVE_NOISE, PITCH_NOISE))
+        data = simulate_search_data(135, rng, noise=(HEAVE_NOISE, PITCH_NOISE))
         box = off_centre_box(data.truth, 0.5, rng)
         settings = ImprovedHerdSettings(iterations=len(data.measured) - 2)
         horses = ImprovedWildHorse(box, np.random.default_rng(run), settings)
-        found = search(horses, swarm_search.one_sample_objective(data, horses, swarm_search.PitchUnit.RADIANS)).point
+        found = search(horses, one_sample_objective(data, horses, PitchUnit.RADIANS)).point
         theirs.append(np.mean(np.abs(found / data.truth - 1.0)))
         columns = dict(zip(("F3", "M5"), -data.forces.T, strict=True)) | dict(
             zip(("z", "theta"), data.measured.T, strict=True)
         )
         made = {n: Channel.from_notation(n, np.ascontiguousarray(v)) for n, v in columns.items()}
-        when = np.arange(len(data.measured), dtype=np.float64) * swarm_search.STEP
+        when = np.arange(len(data.measured), dtype=np.float64) * STEP
         record = Record("sea", when, made)
-        stream = Stream(source=StreamSource.STDIN, layout=layout(tuple(columns)), rate=1.0 / swarm_search.STEP)
+        stream = Stream(source=StreamSource.STDIN, layout=layout(tuple(columns)), rate=1.0 / STEP)
         trial = Trial(ship=QI2025_SHIP, runs=(), model=with_physics_start(data.model), noise=NOISE, stream=stream)
         ours.append(follow_stream(trial, record, data.truth).mean[-1])
     what = f"135 deg, {seas} seas of 200 s"

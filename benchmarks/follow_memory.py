@@ -17,7 +17,7 @@ from seatrial.data.trial.settings import Stream, StreamSource
 from seatrial.data.trial.trial import Trial
 from seatrial.estimation.identify.online import OnlineEstimator
 from seatrial.physics.models.published import QI2025_SHIP
-from seatrial_studies.output_error_fit import with_physics_start
+from seatrial_studies.heave_pitch_search import with_physics_start
 from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE, SeawayScenario, simulate_seaway_run
 
 CHANNELS = ("F3", "M5", "delta_f1", "z", "theta")

@@ -23,7 +23,7 @@ from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.models.published import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
 from seatrial.physics.models.published import physical_start_values
 from seatrial.problems import off_centre_box
-from seatrial_studies import swarm_search
+from seatrial_studies.heave_pitch_search import simulate_search_data, whole_record_objective
 from seatrial_studies.seaway import SeawayScenario, simulate_seaway_run
 
 HEADINGS, NOISY_HEADINGS = (45, 90, 135, 180), (90, 135, 180)
@@ -90,10 +90,10 @@ def exact_fit_lines(seas: int, *, has_fin: bool) -> list[Line]:
     for heading in HEADINGS:
         for sea in range(seas):
             rng = np.random.default_rng([heading, sea])
-            data = swarm_search.simulate_search_data(heading, rng, has_fin=has_fin)
+            data = simulate_search_data(heading, rng, has_fin=has_fin)
             problem = problem_from_rest(data)
             start = physics_start_point(problem)
-            box = around_physics(start, swarm_search.whole_record_objective(data))
+            box = around_physics(start, whole_record_objective(data))
             found = multistart(problem, start, box, rng, TAKEN, local=problem.given_initial_states())
             errors.append(
                 largest_relative_error(found.solution.point, data.truth) if found.solution.status.is_success else np.inf
@@ -114,9 +114,9 @@ def restart_lines(starts: int) -> list[Line]:
     for heading in HEADINGS:
         for k in range(starts):
             rng = np.random.default_rng([heading, k, 5])
-            data = swarm_search.simulate_search_data(heading, rng)
+            data = simulate_search_data(heading, rng)
             low, high = np.sort(np.stack([0.2 * data.truth, 5.0 * data.truth]), axis=0)
-            problem, box = problem_from_rest(data), ScreenedBox(low, high, swarm_search.whole_record_objective(data))
+            problem, box = problem_from_rest(data), ScreenedBox(low, high, whole_record_objective(data))
             first = Box(low, high).random_points(rng, 1)[0]
             found = multistart(problem, first, box, rng, TAKEN, local=problem.given_initial_states())
             made.append((found, largest_relative_error(found.solution.point, data.truth)))
@@ -208,14 +208,14 @@ def from_continuous_truth(heading: int, repeats: int) -> Iterator[Line]:
 
 def compare_with_wild_horses() -> list[Line]:
     """One fit from the physics start and one search of the improved wild horse optimiser, as published, same data."""
-    data = swarm_search.simulate_search_data(135, np.random.default_rng(135))
+    data = simulate_search_data(135, np.random.default_rng(135))
     box = off_centre_box(data.truth, 0.5, np.random.default_rng(136))
     problem, settings = problem_from_rest(data), ImprovedHerdSettings()
     start = physics_start_point(problem)
 
     def herd() -> Solution:
         horses = ImprovedWildHorse(box, np.random.default_rng(0), settings)
-        return search(horses, swarm_search.whole_record_objective(data))
+        return search(horses, whole_record_objective(data))
 
     ours, theirs = fastest(lambda: fitted(problem, start), 50), fastest(herd, 3)
     return [

@@ -21,15 +21,16 @@ from seatrial.estimation.estimate.intervals import estimate_uncertainty
 from seatrial.estimation.estimate.settings import IntervalMethod
 from seatrial.estimation.identify.identify import identify
 from seatrial.estimation.predict.windows import HoldoutProtocol
-from seatrial_studies.alexandersson2022.prediction_coverage import (
+from seatrial_studies.alexandersson2022.reproduction import (
     HALF_WIDTH_LIMIT,
     HELD_OUT_SHARE,
     SHARE_LIMITS,
+    SIDES,
     WINDOW_S,
+    band_coverage,
+    holdout_windows,
     simulated_turn_intervals,
 )
-from seatrial_studies.alexandersson2022.published import SIDES
-from seatrial_studies.alexandersson2022.window_bands import band_coverage, holdout_windows
 
 TRIAL = Path(__file__).parents[1] / "examples" / "kvlcc2_hsva.toml"
 SECONDS = 60.0

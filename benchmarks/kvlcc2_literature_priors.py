@@ -21,8 +21,7 @@ from seatrial.estimation.estimate import EstimatorOptions, estimate_model, train
 from seatrial.physics.manoeuvres.measures import measures
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.simulate.steer import SOLAS_SLEW_RATE, manoeuvre
-from seatrial_studies.alexandersson2022.leave_one_out import leave_one_out
-from seatrial_studies.alexandersson2022.published import MEASURED_TURNS, SIDES, Turn
+from seatrial_studies.alexandersson2022.reproduction import MEASURED_TURNS, SIDES, Turn, leave_one_out
 
 PERCENT = 10.0
 INTERACTION = (*RUDDER, "t_R", "x_H_prime")

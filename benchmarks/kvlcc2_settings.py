@@ -14,7 +14,7 @@ from measure import machine
 
 from seatrial.core.values import Prior
 from seatrial.data.trial import Role, Trial, load_records, load_trial
-from seatrial_studies.alexandersson2022.leave_one_out import leave_one_out
+from seatrial_studies.alexandersson2022.reproduction import leave_one_out
 
 TRIAL = Path(__file__).parents[1] / "examples" / "kvlcc2_hsva.toml"
 PUBLISHED_THRUST = {"k_0": 0.2931, "k_1": -0.2753, "k_2": -0.1385}

@@ -27,7 +27,7 @@ from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs
 from seatrial.estimation.predict import HoldoutProtocol, session_offsets, simulate_open_loop
 from seatrial.estimation.predict.open_loop import rms_errors
 from seatrial.estimation.predict.session_offsets import updated_by_start
-from seatrial_studies.alexandersson2022.window_bands import band_coverage, holdout_windows
+from seatrial_studies.alexandersson2022.reproduction import band_coverage, holdout_windows
 from seatrial_studies.cross_validation import (
     CrossValidation,
     Fold,

@@ -23,8 +23,8 @@ from seatrial.estimation.problem.segments import Segments
 from seatrial.numerics.optimise import Box, NormalEquations, levenberg_marquardt
 from seatrial.physics.simulate.population import fitness, trajectories
 from seatrial.problems import off_centre_box
+from seatrial_studies.heave_pitch_search import STEP, SearchData, candidate_matrices, simulate_search_data
 from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE
-from seatrial_studies.swarm_search import STEP, SearchData, candidate_matrices, simulate_search_data
 
 Array = NDArray[np.float64]
 HERE = Path(__file__).parent

@@ -1,22 +1,53 @@
-"""A ship of known coefficients in a known sea: records whose truth is continuous, not the fitted discretisation.
-
-Waves act through their exact harmonic response, the fin holds its angle between commands; noise comes last.
-"""
+"""The ship of Qi et al. 2025 and Meng et al. 2014 in a known sea: records whose truth is continuous."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.values import Array, Channel, Provenance, Record, RecordKind, frozen
+from seatrial.core.values import Array, Channel, InputError, Provenance, Record, RecordKind, frozen
 from seatrial.data.example_series import write_csv
 from seatrial.physics.hydro import BoxHull
-from seatrial.physics.models import heave_pitch
+from seatrial.physics.models import PARAMETER_SETS, ParameterSet, heave_pitch, parameter_set
 from seatrial.physics.sea import DEFAULT_COMPONENTS, Spacing, WaveComponents, harmonic_sum, ittc, realise
 from seatrial.physics.simulate import LinearBatch, harmonic_motion, linear_system
-from seatrial_studies.published_ship import SHIP, SIGNIFICANT_HEIGHT, SPEED, theoretical_coefficients
+
+# The ship of Qi et al. 2025 and Meng et al. 2014: its speed, sea and coefficients at the headings of the tables.
+
+_SET_PREFIX = "qi2025-"
+SPEED = 18.0 * 1852.0 / 3600.0
+"""Speed of the ship, m/s: 18 kn (Qi et al. 2025, section 4)."""
+SIGNIFICANT_HEIGHT = 2.27
+"""Significant height of the sea, m (Qi et al. 2025, section 4)."""
+HEADINGS = tuple(int(name.removeprefix(_SET_PREFIX)) for name in PARAMETER_SETS if name.startswith(_SET_PREFIX))
+"""Headings to the waves of tables 2 to 4, degrees; 180 is head sea."""
+B53_NOTE = "b53 is negative; its magnitude is shown, as the paper prints it."
+"""What a table or figure with b53 by magnitude says below it."""
+SHIP = parameter_set(f"{_SET_PREFIX}{HEADINGS[0]}").ship
+
+
+def theoretical_coefficients(heading: int, *, printed_sign: bool = False) -> ParameterSet:
+    """Return the theoretical coefficients at a heading of the tables; b53 negative unless `printed_sign`.
+
+    Args:
+        heading: degrees.
+        printed_sign: take b53 positive, as the tables print it.
+
+    Raises:
+        InputError: the paper gives none at this heading.
+    """
+    if heading not in HEADINGS:
+        raise InputError(f"Qi et al. 2025 give no theoretical values at {heading} degrees; known are 90, 135, 180")
+    published = parameter_set(f"{_SET_PREFIX}{heading}")
+    if not printed_sign:
+        return published
+    values = {**published.values, "b53": -published.values["b53"]}
+    return replace(published, values=values, note="b53 positive as printed")
+
+
+# A ship of known coefficients in a known sea: records whose truth is continuous, not the fitted discretisation.
 
 # assumed, printed nowhere: lift slope rho/2 U^2 A C_L_alpha with 6 m^2 and 3/rad, 25 m aft, +-10 degrees for 1 s each
 FIN = {"lift_1": 0.5 * 1025.0 * SPEED**2 * 6.0 * 3.0, "x_f1": -25.0}

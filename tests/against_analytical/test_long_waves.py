@@ -13,8 +13,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Array
 from seatrial.physics.hydro.excitation import G, encounter_frequency
 from seatrial.physics.simulate.linear import Complex, frequency_response, linear_system
-from seatrial_studies.published_ship import SPEED
-from seatrial_studies.seaway import box_hull, ship
+from seatrial_studies.seaway import SPEED, box_hull, ship
 
 everywhere = pytest.mark.parametrize("heading", [0, 30, 60, 90, 120, 150, 180])
 at_all_speeds = pytest.mark.parametrize("U", [0.0, 5.0, SPEED])

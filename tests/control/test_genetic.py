@@ -21,7 +21,7 @@ from seatrial.core.results.tuning import ControllerConstraints, TuningMethod
 from seatrial.core.values import InputError
 from seatrial.numerics.optimise import Box, GeneticSettings, Normaliser
 from seatrial.physics.loops import Preamplifier
-from seatrial_studies.yu2014.published_loop import performance
+from seatrial_studies.yu2014.published import performance
 from seatrial_studies.yu2014.searches import GeneticSearchSetting, search_over_seeds
 
 SMALL = GeneticTuning(population=20, generations=10, seeds=3)

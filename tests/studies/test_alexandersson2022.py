@@ -16,14 +16,22 @@ from seatrial import api
 from seatrial.core.results import CandidateModel, CheckStatus, Study, Verdict
 from seatrial.core.values import Finding, InputError, Record, Severity
 from seatrial.data.folder.document import document, strict_json
-from seatrial_studies.alexandersson2022 import published, verdicts
-from seatrial_studies.alexandersson2022.leave_one_out import LeftOutRun, jackknife_error
-from seatrial_studies.alexandersson2022.prediction_coverage import PredictionCoverage, TurnInterval
-from seatrial_studies.alexandersson2022.prediction_coverage import tables as margin_tables
-from seatrial_studies.alexandersson2022.published import MEASURED_TURNS, PREDICTED_TURNS, SIDES, percent_deviation
-from seatrial_studies.alexandersson2022.reproduction import BenchmarkReproduction, median_noise
-from seatrial_studies.alexandersson2022.tables import left_out_table, left_out_turn_table
-from seatrial_studies.alexandersson2022.window_bands import BandCoverage
+from seatrial_studies.alexandersson2022 import verdicts
+from seatrial_studies.alexandersson2022.reproduction import (
+    MEASURED_TURNS,
+    PREDICTED_TURNS,
+    SIDES,
+    BandCoverage,
+    BenchmarkReproduction,
+    LeftOutRun,
+    PredictionCoverage,
+    TurnInterval,
+    jackknife_error,
+    median_noise,
+    percent_deviation,
+    published_range,
+)
+from seatrial_studies.alexandersson2022.tables import coverage_tables, left_out_table, left_out_turn_table
 
 
 @pytest.fixture(scope="module", params=[pytest.param("quick", marks=pytest.mark.long)])
@@ -100,7 +108,7 @@ def test_the_paper_s_errors_follow_from_its_table() -> None:
     }
     assert errors["advance"] == pytest.approx([-1.8, -2.0], abs=0.05)
     assert errors["diameter"] == pytest.approx([6.2, 3.1], abs=0.05)
-    assert published.published_range("advance") == pytest.approx((3.009, 3.283), abs=1e-3)
+    assert published_range("advance") == pytest.approx((3.009, 3.283), abs=1e-3)
 
 
 def made(heading: float = 8.0, position: float = 4.0, factor: float = 1.0, warm: float = 1.0) -> BenchmarkReproduction:
@@ -129,10 +137,10 @@ def test_full_refits_and_the_family_are_judged_and_shown_where_they_were_made() 
     )
     with_tied = replace(margins(), tied_turn_intervals=wide, family=members)
     assert held(replace(made(), coverage=with_tied))[8:] == [True, True, False, False, True, True]
-    shown, _, family = margin_tables(with_tied)
+    shown, _, family = coverage_tables(with_tied)
     assert [row[1] for row in shown.rows] == ["one-step jackknife"] * 2 + ["jackknife, tied models"] * 2
     assert [row[-1] for row in family.rows] == ["the trial's", "tied"]
-    assert len(margin_tables(margins())) == 2
+    assert len(coverage_tables(margins())) == 2
     evidence = verdicts.uncertainty_claim(replace(certain(), coverage=with_tied)).evidence
     assert evidence.count("hold 2 of 2") == 2 and "tied models" in evidence
 

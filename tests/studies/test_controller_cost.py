@@ -14,10 +14,12 @@ from seatrial_studies.controller_cost import (
     ControlTask,
     controller_cost_table,
     controller_costs,
+    pitch_control_task,
+    pitch_controller_cost_table,
+    pitch_controller_costs,
     tuned_gains,
 )
-from seatrial_studies.pitch_control import pitch_control_task, pitch_controller_cost_table, pitch_controller_costs
-from seatrial_studies.swarm_search import simulate_search_data
+from seatrial_studies.heave_pitch_search import simulate_search_data
 
 WEIGHT = 0.5
 

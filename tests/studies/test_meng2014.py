@@ -9,20 +9,19 @@ from seatrial.core.results import CheckStatus, Figure, Study, Verdict
 from seatrial.numerics.optimise import CloudSettings
 from seatrial.physics.models import HEAVE_PITCH_STIFFNESSES
 from seatrial_studies import meng2014
-from seatrial_studies.meng2014.cloud_weight import inertia_weight
-from seatrial_studies.meng2014.declarations import DECLARATIONS
-from seatrial_studies.meng2014.search_claims import iterations_verdict
-from seatrial_studies.meng2014.unknowns import (
+from seatrial_studies.controller_cost import CONTROLLER_COST_TITLE
+from seatrial_studies.heave_pitch_search import is_smaller, simulate_search_data
+from seatrial_studies.meng2014.reproduction import (
     BEAM_WAVES,
     ONE_FIN,
     WAVES_AND_FIN,
+    inertia_weight,
     twelve_unknown_problem,
     twelve_unknowns,
     undetected_change,
 )
-from seatrial_studies.pitch_control import CONTROLLER_COST_TITLE
-from seatrial_studies.sign_test import is_smaller
-from seatrial_studies.swarm_search import simulate_search_data
+from seatrial_studies.meng2014.tables import DECLARATIONS
+from seatrial_studies.meng2014.verdicts import iterations_verdict
 
 
 @pytest.fixture(scope="module", params=[pytest.param("quick", marks=pytest.mark.long)])

@@ -10,23 +10,21 @@ from seatrial.numerics.optimise import HerdSettings, WildHorse, search
 from seatrial.physics.models.published import QI2025_HEADINGS
 from seatrial.problems import centred_box, off_centre_box
 from seatrial_studies import qi2025
-from seatrial_studies.controller_cost import TRUTH
-from seatrial_studies.pitch_control import CONTROLLER_COST_TITLE
-from seatrial_studies.published_ship import B53_NOTE
-from seatrial_studies.qi2025.ablation import HerdVariant
-from seatrial_studies.qi2025.audit import audit
-from seatrial_studies.qi2025.declarations import DECLARATIONS
-from seatrial_studies.qi2025.model_state_objective import model_state_objective
-from seatrial_studies.qi2025.published import SearchAlgorithm, misprinted_errors, recomputed_error
-from seatrial_studies.qi2025.reproduction import SearchSetting
-from seatrial_studies.qi2025.search_claims import judged_in_settings
-from seatrial_studies.qi2025.ten_runs import FAMILY_PROBABILITY, RUNS, TenRuns
-from seatrial_studies.qi2025.tracking import Tracking, relative_error, tracked_states
-from seatrial_studies.swarm_search import (
-    one_sample_objective,
-    repeat_searches,
-    simulate_search_data,
+from seatrial_studies.controller_cost import CONTROLLER_COST_TITLE, TRUTH
+from seatrial_studies.heave_pitch_search import one_sample_objective, repeat_searches, simulate_search_data
+from seatrial_studies.qi2025.evidence import Tracking, relative_error, tracked_states
+from seatrial_studies.qi2025.published import SearchAlgorithm, audit, misprinted_errors, recomputed_error
+from seatrial_studies.qi2025.reproduction import (
+    FAMILY_PROBABILITY,
+    RUNS,
+    HerdVariant,
+    SearchSetting,
+    TenRuns,
+    model_state_objective,
 )
+from seatrial_studies.qi2025.search_claims import judged_in_settings
+from seatrial_studies.qi2025.tables import DECLARATIONS
+from seatrial_studies.seaway import B53_NOTE
 
 
 @pytest.fixture(scope="module", params=[pytest.param("quick", marks=pytest.mark.long)])

@@ -26,11 +26,7 @@ from seatrial.estimation.search import run_search, whole_record_fitness
 from seatrial.numerics.optimise import Box, FitnessMemory
 from seatrial.physics.simulate import record_of
 from seatrial.problems import centred_box
-from seatrial_studies.meng2014 import reproduction as meng
-from seatrial_studies.published_ship import SHIP
-from seatrial_studies.qi2025 import reproduction as qi
-from seatrial_studies.qi2025.published import SearchAlgorithm
-from seatrial_studies.swarm_search import (
+from seatrial_studies.heave_pitch_search import (
     STEP,
     PitchUnit,
     SearchData,
@@ -39,6 +35,10 @@ from seatrial_studies.swarm_search import (
     simulate_search_data,
     whole_record_objective,
 )
+from seatrial_studies.meng2014 import reproduction as meng
+from seatrial_studies.qi2025 import reproduction as qi
+from seatrial_studies.qi2025.published import SearchAlgorithm
+from seatrial_studies.seaway import SHIP
 
 SEED, RESTARTS, ITERATIONS = 4, 2, 12
 DEGREES = {"z": 1.0, "theta": PitchUnit.DEGREES.value}

@@ -11,9 +11,9 @@ from seatrial.core.results import Bars, Matrix, Study, Verdict
 from seatrial.data.folder.document import document, strict_json
 from seatrial.physics.models import waterjet, with_candidate_terms
 from seatrial_studies.song2025 import study
-from seatrial_studies.song2025.declarations import DECLARATIONS
 from seatrial_studies.song2025.published import DROPPED_COEFFICIENTS, STATEMENTS
 from seatrial_studies.song2025.reproduction import EstimatorResult
+from seatrial_studies.song2025.tables import DECLARATIONS
 from seatrial_studies.song2025.verdicts import checks
 
 

@@ -12,28 +12,33 @@ from seatrial.physics.loops.structures import Preamplifier
 from seatrial.physics.sea.spectrum import ittc
 from seatrial_studies import yu2014
 from seatrial_studies.yu2014.audit import audit
-from seatrial_studies.yu2014.declarations import DECLARATIONS
-from seatrial_studies.yu2014.histories import rms_variation, simulate_histories
-from seatrial_studies.yu2014.improved_gains import (
-    FIVE_FREE,
-    HELD_OUT_SEAS,
-    MS_LIMIT,
-    compare_with_published,
-    five_gain_Ms,
-    minimise_roll,
-)
-from seatrial_studies.yu2014.published import DESIGN_ROW, HEIGHT, PUBLISHED_VALUES, TABLE_1, TARGET, ControllerResult
-from seatrial_studies.yu2014.published_loop import (
+from seatrial_studies.yu2014.published import (
+    DESIGN_ROW,
     DESIGN_SEA,
+    HEIGHT,
     HULL_FACTOR,
+    PUBLISHED_VALUES,
+    TABLE_1,
+    TARGET,
+    ControllerResult,
     FinObjective,
     SeaCondition,
     objective_values,
     performance,
     roll_response,
 )
-from seatrial_studies.yu2014.searches import GeneticSearchSetting, search_over_seeds
-from seatrial_studies.yu2014.table_1_fit import fit_table_1
+from seatrial_studies.yu2014.reproduction import fit_table_1, rms_variation, simulate_histories
+from seatrial_studies.yu2014.searches import (
+    FIVE_FREE,
+    HELD_OUT_SEAS,
+    MS_LIMIT,
+    GeneticSearchSetting,
+    compare_with_published,
+    five_gain_Ms,
+    minimise_roll,
+    search_over_seeds,
+)
+from seatrial_studies.yu2014.tables import DECLARATIONS
 
 PRINTED, WASHOUT = Preamplifier.PRINTED, Preamplifier.WASHOUT
 

@@ -6,21 +6,29 @@ import numpy as np
 import pytest
 
 from seatrial.physics.loops import Preamplifier, reversals_per_hour
-from seatrial_studies.yu2014.declarations import DECLARATIONS
-from seatrial_studies.yu2014.energy import (
+from seatrial_studies.yu2014.published import (
+    INERTIA,
+    PUBLISHED_VALUES,
+    TABLE_1,
+    TARGET,
+    SeaCondition,
+    performance,
+    regulator_settings,
+    roll_response,
+    sea_regulator,
+    speed_regulator,
+)
+from seatrial_studies.yu2014.reproduction import (
     EFFICIENCY,
     compare_energy,
     fin_drag_power,
     fin_energy,
+    fit_table_1,
     lift_slope,
     work,
 )
-from seatrial_studies.yu2014.joint_search import joint_optimum
-from seatrial_studies.yu2014.published import INERTIA, PUBLISHED_VALUES, TABLE_1, TARGET
-from seatrial_studies.yu2014.published_loop import SeaCondition, performance, roll_response
-from seatrial_studies.yu2014.regulators import regulator_settings, sea_regulator, speed_regulator
-from seatrial_studies.yu2014.table_1_fit import fit_table_1
-from seatrial_studies.yu2014.time_domain_search import wave_slope_record
+from seatrial_studies.yu2014.searches import joint_optimum, wave_slope_record
+from seatrial_studies.yu2014.tables import DECLARATIONS
 
 WASHOUT = Preamplifier.WASHOUT
 

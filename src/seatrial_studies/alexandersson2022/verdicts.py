@@ -4,13 +4,54 @@ import math
 from collections import Counter
 from collections.abc import Sequence
 
+import numpy as np
+
 from seatrial.core.results import Check, Claim, Verdict
-from seatrial_studies.alexandersson2022 import prediction_coverage, published
-from seatrial_studies.alexandersson2022.leave_one_out import jackknife_error
-from seatrial_studies.alexandersson2022.published import MEASURED_TURNS, SIDES, percent_deviation, published_range
-from seatrial_studies.alexandersson2022.reproduction import BenchmarkReproduction
+from seatrial_studies.alexandersson2022.reproduction import (
+    _LIMITED_MEASURES,
+    HALF_WIDTH_LIMIT,
+    HELD_OUT_SHARE,
+    MEASURED_TURNS,
+    RERUN_HEADING,
+    RERUN_POSITION,
+    SHARE_LIMITS,
+    SIDES,
+    BenchmarkReproduction,
+    PredictionCoverage,
+    jackknife_error,
+    percent_deviation,
+    published_range,
+)
 from seatrial_studies.alexandersson2022.tables import validation_prediction
 from seatrial_studies.declarations import TIME_IS_NO_VERDICT
+
+# What the intervals are worth: the turns' beside MARIN's circles, the bands of 30 s windows beside the records.
+
+
+def coverage_checks(coverage: PredictionCoverage) -> tuple[Check, ...]:
+    """Return the half widths of the tactical diameters, shares inside the bands."""
+    low, high = SHARE_LIMITS
+    widths = [(m.side, m.half_width) for m in coverage.turn_intervals if m.measure in _LIMITED_MEASURES]
+    held = float(np.mean([c.shares["psi"] for c in coverage.held_out_coverage]))
+    widths += [
+        (f"{m.side}, with tied models", m.half_width)
+        for m in coverage.tied_turn_intervals
+        if m.measure in _LIMITED_MEASURES
+    ]
+    return (
+        *(
+            Check(f"tactical diameter to {side}, half width [%]", width, HALF_WIDTH_LIMIT, width <= HALF_WIDTH_LIMIT)
+            for side, width in widths
+        ),
+        Check(
+            "headings inside their band, runs left out",
+            coverage.heading_share,
+            f"{low:g} to {high:g}",
+            low <= coverage.heading_share <= high,
+        ),
+        Check("headings inside their band, Z_35_05", held, f"{HELD_OUT_SHARE:g} or more", held >= HELD_OUT_SHARE),
+    )
+
 
 NEEDS_FULL_VERSION = "needs one run left out at a time: repeat without --quick"
 # per cent that the paper accepts; least ratio at which records count as quiet, ours; the normal 97.5 % point
@@ -64,12 +105,12 @@ def turning_claim(reproduction: BenchmarkReproduction) -> Claim:
 def zigzag_claim(reproduction: BenchmarkReproduction) -> Claim:
     """Confirmed where neither error exceeds the larger one of the published code; a worse model refutes nothing."""
     rms = validation_prediction(reproduction).rms
-    good = rms["psi_deg"] <= published.RERUN_HEADING[1] and rms["position_m"] <= published.RERUN_POSITION[1]
+    good = rms["psi_deg"] <= RERUN_HEADING[1] and rms["position_m"] <= RERUN_POSITION[1]
     return Claim(
         "A model of zigzags with smaller angles predicts the 35/5 zigzag",
         Verdict.CONFIRMED if good else Verdict.UNKNOWABLE,
         f"ours, open loop from rudder and propeller rate: {rms['psi_deg']:.1f} deg and {rms['position_m']:.1f} m rms; "
-        f"the published code {_range_text(published.RERUN_HEADING)} deg, {_range_text(published.RERUN_POSITION)} m",
+        f"the published code {_range_text(RERUN_HEADING)} deg, {_range_text(RERUN_POSITION)} m",
     )
 
 
@@ -192,7 +233,7 @@ def checks(reproduction: BenchmarkReproduction) -> tuple[Check, ...]:
         *(check.withdrawn(TIME_IS_NO_VERDICT) for check in times),
         *(Check.at_most(name, value, limit) for name, value, limit in windows),
         *turned,
-        *prediction_coverage.checks(reproduction.coverage),
+        *coverage_checks(reproduction.coverage),
     )
 
 

@@ -1,33 +1,194 @@
-"""The numbers of the study, in the order in which they are made; what is frozen before periods held out are scored."""
+"""Everything the verdicts rest on: modes, guide, springs, and the instruments compared with one another."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 from pathlib import Path
 
 import numpy as np
 
-from seatrial.core.values import Finding, ProgressReporter
+from seatrial.core.results import Table
+from seatrial.core.values import Array, Finding, ProgressReporter, Record, Severity
 from seatrial.data.check import with_standard_signs
-from seatrial_studies.section2d.guide import Guide, fit_guide_damping
-from seatrial_studies.section2d.instrument_comparison import (
-    InstrumentComparison,
-    compare_instruments,
-    dead_channel_findings,
+from seatrial_studies.section2d.modes import (
+    HEAVE,
+    ROLL,
+    Mode,
+    ModeFit,
+    SwayStiffness,
+    fit_mode,
+    jackknife_error,
+    observation,
+    split_periods,
+    sway_stiffness,
+    untied_mass_error,
 )
-from seatrial_studies.section2d.modes import HEAVE, ROLL, Mode, ModeFit, fit_mode, observation, split_periods
 from seatrial_studies.section2d.responses import (
+    CAMERA,
+    FIRST_PROBE_TO_MODEL,
+    HEIGHTS,
+    PROBES,
+    STEADY_TIMING,
+    SWAY_STIFFNESS,
+    FlumeRun,
+    Probes,
     SectionResponse,
+    SeparatedWaves,
+    Timing,
     calibrate_probes,
+    harmonics,
     measure_response,
+    read_runs,
     relative_difference,
+    steady_samples,
     waves_at_model,
 )
-from seatrial_studies.section2d.runs import STEADY_TIMING, FlumeRun, Timing, read_runs
-from seatrial_studies.section2d.separability import untied_mass_error
-from seatrial_studies.section2d.springs import SwayStiffness, sway_stiffness
-from seatrial_studies.section2d.tank import CAMERA
-from seatrial_studies.section2d.wave_separation import Probes, SeparatedWaves
+
+# The sway guide: what its force has in phase with the sway velocity, run by run, and how that goes with velocity.
+
+
+@dataclass(frozen=True)
+class Friction:
+    """One run.
+
+    Attributes:
+        velocity: amplitude of sway velocity, m/s.
+        damping: force against velocity over velocity, N s/m: linear damping of equal work.
+        force: amplitude of that force, N.
+        third_harmonic_ratio: third harmonic of the holding force over its first; 1/3 for dry friction alone.
+    """
+
+    run: str
+    velocity: float
+    damping: float
+    force: float
+    third_harmonic_ratio: float
+
+
+@dataclass(frozen=True)
+class Guide:
+    """All runs; damping goes with exp(level) velocity^exponent: 0 linear, -1 dry friction, 1 quadratic."""
+
+    runs: tuple[Friction, ...]
+    exponent: float
+    level: float
+    error: float
+
+    def velocity_at_damping(self, damping: float) -> float:
+        """m/s at which the damping is that many N s/m."""
+        return float(np.exp((np.log(damping) - self.level) / self.exponent))
+
+
+def fit_guide_damping(runs: Sequence[FlumeRun], stiffness: float) -> Guide:
+    """Of runs that sway freely.
+
+    Args:
+        stiffness: of the springs, N/m.
+
+    Raises:
+        InputError: a run's steady stretch holds no whole wave period.
+    """
+    made = tuple(f for f in (guide_friction(r, stiffness) for r in runs if r.scenario in (3, 4)) if f.damping > 0.0)
+    if len(made) < 3:
+        return Guide(made, float("nan"), float("nan"), float("nan"))
+    points = np.log(np.array([(f.velocity, f.damping) for f in made]))
+    left = [_fit_line(np.delete(points, k, axis=0))[0] for k in range(len(made))]
+    return Guide(made, *_fit_line(points), jackknife_error(left))
+
+
+def guide_friction(run: FlumeRun, stiffness: float) -> Friction:
+    """One run's steady stretch.
+
+    Raises:
+        InputError: the stretch holds no whole wave period.
+    """
+    rows, record = steady_samples(run), run.record
+    time = record.time[rows]
+    sway = harmonics(time, (record["S_1"] - record["S_2"])[rows], run.omega).first / stiffness
+    force = harmonics(time, record["F_y"][rows], run.omega)
+    velocity = 1j * run.omega * sway
+    damping = -(force.first / velocity).real
+    third = float(abs(force.amplitudes[2]) / abs(force.first))
+    return Friction(run.name, abs(velocity), damping, damping * abs(velocity), third)
+
+
+def _fit_line(points: Array) -> tuple[float, float]:
+    slope, level = np.polyfit(points[:, 0], points[:, 1], 1)
+    return float(slope), float(level)
+
+
+# Instruments against one another: channels that never move, delay, gain and clock between two of the same motion.
+
+MIN_CHANGES = 3
+
+
+@dataclass(frozen=True)
+class InstrumentComparison:
+    """One instrument against another in a steady regular wave.
+
+    Attributes:
+        delay: s by which the first lags the second at the window's middle, modulo the wave period, within half of it.
+        clock_drift: s per s; a clock that runs slow by 1 % drifts by 0.01.
+        gain: amplitude of the second over that of the first, median over windows.
+        delay_scatter: s, scatter of the delay about its line.
+    """
+
+    delay: float
+    clock_drift: float
+    gain: float
+    delay_scatter: float
+
+
+def dead_channel_findings(record: Record, symbols: Iterable[str] | None = None) -> tuple[Finding, ...]:
+    """Channels that hold (nearly) one value throughout while the record lasts; one finding each."""
+    made = []
+    for symbol in symbols if symbols is not None else record.channels:
+        values = record[symbol]
+        changes = int(np.count_nonzero(np.diff(values)))
+        if changes < MIN_CHANGES:
+            made.append(
+                Finding(
+                    Severity.ERROR,
+                    "dead-channel",
+                    f"{record.name}: channel '{symbol}' ({record.channel(symbol).label}) does not move",
+                    f"{changes} changes in {len(record)} samples",
+                    "leave the channel of this record out",
+                )
+            )
+    return tuple(made)
+
+
+def compare_instruments(
+    time: Array, first: Array, second: Array, omega: float, periods: float = 2.0
+) -> InstrumentComparison:
+    """Delay, drift and gain between two channels of one motion from their phases in sliding windows.
+
+    Args:
+        time, first, second: (n,), a stretch of regular waves in which both move.
+        omega: rad/s.
+        periods: length of a window.
+    """
+    dt = float(time[1] - time[0])
+    length = max(8, round(periods * 2.0 * np.pi / omega / dt))
+    turning = np.exp(-1j * omega * time)
+    kernel = np.hanning(length + 2)[1:-1]
+    one, two = (np.convolve((x - x.mean()) * turning, kernel / kernel.sum(), "valid") for x in (first, second))
+    middle = time[length // 2 : length // 2 + len(one)]
+    phase = np.unwrap(np.angle(two * one.conj()))
+    delays = phase / omega
+    centre = 0.5 * (time[0] + time[-1])
+    slope, offset = np.polyfit(middle - centre, delays, 1) if len(middle) > 2 else (0.0, float(delays.mean()))
+    period = 2.0 * np.pi / omega
+    left = delays - offset - slope * (middle - centre)
+    return InstrumentComparison(
+        float((offset + 0.5 * period) % period - 0.5 * period),
+        float(slope),
+        float(np.median(np.abs(two) / np.maximum(np.abs(one), 1e-300))),
+        float(np.std(left)),
+    )
+
+
+# The numbers of the study, in the order in which they are made; what is frozen before periods held out are scored.
 
 ALTERNATIVE_TIMINGS = (Timing(0.5, 0.5), Timing(0.5, 1.5), Timing(1.5, 1.5), Timing(2.5, 2.5), Timing(2.5, 3.5))
 POLYNOMIAL_ORDERS = (0, 1, 2)
@@ -193,3 +354,170 @@ def _largest_deviations(values: Sequence[complex]) -> tuple[float, float]:
 def _example_waves(runs: Sequence[FlumeRun], probes: Probes) -> tuple[FlumeRun, SeparatedWaves]:
     chosen = next((r for r in runs if r.scenario == HEAVE.scenario), runs[0])
     return chosen, waves_at_model(chosen, probes)
+
+
+# What the instruments say of one another: findings, and the tables of clocks, springs and probes.
+
+TableRow = tuple[str | float | None, ...]
+DRIFT_LIMIT, LEAST_PERIOD_S = 0.001, 0.9
+
+
+def camera_gain(analysis: SectionAnalysis) -> tuple[float, float, float]:
+    """Median, smallest, largest ratio of accelerometers' to camera's heave, periods from 0.9 s on; NaN without."""
+    long = {r.name for r in analysis.runs if r.period >= LEAST_PERIOD_S}
+    gains = [c.gain for name, c in analysis.clocks.items() if name in long]
+    return (float(np.median(gains)), min(gains), max(gains)) if gains else (np.nan, np.nan, np.nan)
+
+
+def instrument_findings(analysis: SectionAnalysis) -> tuple[Finding, ...]:
+    """Dead channels, a camera clock that drifts, a gain between camera and accelerometers."""
+    drifting = {name: c for name, c in analysis.clocks.items() if abs(c.clock_drift) > DRIFT_LIMIT}
+    drifts = [1e3 * c.clock_drift for c in drifting.values()]
+    median, least, most = camera_gain(analysis)
+    clock = Finding(
+        Severity.WARNING,
+        "clock-drift",
+        f"the camera's clock runs apart from the accelerometers' in {len(drifting)} of {len(analysis.clocks)} runs",
+        f"{min(drifts):+.1f} to {max(drifts):+.1f} ms per s" if drifts else "",
+        "take phases from the accelerometers, from the camera amplitudes only",
+    )
+    gain = Finding(
+        Severity.WARNING,
+        "instrument-gain",
+        "heave by the accelerometers exceeds heave by the camera",
+        f"factor {median:.3f}, from {least:.3f} to {most:.3f} over runs with periods from 0.9 s on",
+        "estimate one gain along with the coefficients",
+    )
+    return (
+        *analysis.dead_channel_findings,
+        *((clock,) if drifting else ()),
+        *((gain,) if np.isfinite(median) else ()),
+        *_short_stretch_findings(analysis),
+    )
+
+
+def _short_stretch_findings(analysis: SectionAnalysis) -> list[Finding]:
+    return [
+        Finding(
+            Severity.INFO,
+            "no-steady-stretch",
+            f"{r.name}: less than one wave period lies between the ramp and the beach's reflection",
+            f"period {r.period:.3f} s",
+            "such waves need a shorter ramp or a longer flume; the run gives no response",
+        )
+        for r in analysis.runs
+        if not is_long_enough(r)
+    ]
+
+
+def clock_table(analysis: SectionAnalysis) -> Table:
+    """Return the camera run by run."""
+    rows: list[TableRow] = [
+        (name, 1e3 * c.delay, 1e3 * c.clock_drift, 1e3 * c.delay_scatter, c.gain) for name, c in analysis.clocks.items()
+    ]
+    rows += [
+        (name, None, None, None, None)
+        for name in sorted({f.message.split(":")[0] for f in analysis.dead_channel_findings})
+    ]
+    return Table(
+        "The camera against the accelerometers, in heave",
+        ("run", "delay of the camera [ms]", "drift [ms/s]", "scatter [ms]", "accelerometers / camera"),
+        tuple(rows),
+        "From the phase at the wave frequency in sliding windows of two periods, delays modulo the period; dashes: "
+        "the camera is dead. Phases are therefore taken from the accelerometers.",
+    )
+
+
+def spring_table(analysis: SectionAnalysis) -> Table:
+    """Sway stiffness run by run."""
+    springs = analysis.sway_stiffness
+    rows: list[TableRow] = [
+        (s.run, s.lower, s.upper, s.explained_share, 1e3 * s.delay, 1e3 * s.drift) for s in springs.runs
+    ]
+    rows.append(("mean of the runs used", springs.mean, None, None, None, None))
+    rows.append(("standard error", springs.error, None, None, None, None))
+    return Table(
+        "Sway stiffness: difference of both spring tensions over the camera's sway",
+        ("run", "tension on sway [N/m]", "sway on tension [N/m]", "explained", "delay [ms]", "drift [ms/s]"),
+        tuple(rows),
+        f"Documented {SWAY_STIFFNESS[0]:g} to {SWAY_STIFFNESS[1]:g} N/m. Used are runs with more than nine "
+        "tenths explained; noise on the camera lowers the first regression and not the second, so the mean is that of "
+        "their geometric means.",
+    )
+
+
+def guide_table(analysis: SectionAnalysis) -> Table:
+    """Return the force in the sway guide run by run."""
+    rows: list[TableRow] = [
+        (f.run, f.velocity, f.damping, f.force, f.third_harmonic_ratio)
+        for f in sorted(analysis.guide.runs, key=lambda f: -f.velocity)
+    ]
+    return Table(
+        "The sway guide: holding force in phase with sway velocity",
+        ("run", "velocity [m/s]", "as linear damping [N s/m]", "force [N]", "third harmonic / first"),
+        tuple(rows),
+        f"The damping goes with velocity to the power {analysis.guide.exponent:.2f} "
+        f"±{1.96 * analysis.guide.error:.2f} (95 %, "
+        "runs left out): 0 would be linear, -1 is dry friction, whose third harmonic is a third of the first. Sway is "
+        "taken from the springs.",
+    )
+
+
+def probe_table(analysis: SectionAnalysis) -> Table:
+    """Places and gains."""
+    probes = analysis.probes
+    rows: list[TableRow] = [
+        (f"WP_{name[-1]}", float(x), float(g))
+        for name, x, g in zip(PROBES, probes.positions, probes.gains, strict=True)
+    ]
+    rows.append(
+        (
+            "model (the distance fitted with heave included)",
+            FIRST_PROBE_TO_MODEL + _place_correction(analysis),
+            None,
+        )
+    )
+    return Table(
+        "Wave probes",
+        ("probe", "place [m beyond WP_1]", "gain"),
+        tuple(rows),
+        "Not documented: places and gains are those that let one wave onward and one back explain the probes, ramps "
+        f"and all, in the runs that train heave; {100.0 * probes.misfit:.1f} % of the amplitude remain.",
+    )
+
+
+def wave_table(analysis: SectionAnalysis) -> Table:
+    """Waves at the model, run by run."""
+    rows: list[TableRow] = [
+        (
+            r.run.name,
+            r.run.period,
+            r.period_count,
+            2e3 * r.wave_amplitude,
+            2e3 * r.wave_amplitude / (1e3 * HEIGHTS[r.run.height_index]),
+            r.paddle_ratio,
+            r.reflected_ratio,
+            r.transmitted_ratio,
+        )
+        for r in analysis.responses
+        if r.run.height_index in HEIGHTS
+    ]
+    return Table(
+        "Waves at the model",
+        (
+            "run",
+            "period [s]",
+            "periods used",
+            "height [mm]",
+            "/ nominal",
+            "amplitude / stroke",
+            "back / onward",
+            "beyond / onward",
+        ),
+        tuple(rows),
+        "The onward wave is what excites the model; the nominal heights are 0.024 and 0.040 m.",
+    )
+
+
+def _place_correction(analysis: SectionAnalysis) -> float:
+    return analysis.heave.half_of_periods.oscillator.distance

@@ -1,14 +1,25 @@
-"""Tables of the study."""
+"""Tables and figures of the study."""
+
+from collections.abc import Callable
 
 import numpy as np
 
-from seatrial.core.results import Table
-from seatrial_studies.section2d import tank
-from seatrial_studies.section2d.analysis import SectionAnalysis
-from seatrial_studies.section2d.instruments import clock_table, guide_table, probe_table, spring_table, wave_table
-from seatrial_studies.section2d.modes import HEAVE, ModeFit, observation, theory_of_model
-from seatrial_studies.section2d.multipoles import haskind_damping
-from seatrial_studies.section2d.runs import STEADY_TIMING
+from seatrial.core.results import Curve, Figure, Table
+from seatrial.core.values import Array
+from seatrial.physics.hydro import wavenumber
+from seatrial_studies.section2d.analysis import (
+    SectionAnalysis,
+    clock_table,
+    guide_table,
+    probe_table,
+    spring_table,
+    wave_table,
+)
+from seatrial_studies.section2d.modes import HEAVE, MeasuredResponse, ModeFit, observation, theory_of_model
+from seatrial_studies.section2d.responses import DEPTH, HEIGHTS, LENGTH, RIG_DAMPING, STEADY_TIMING, SWAY_STIFFNESS
+from seatrial_studies.section2d.theory import haskind_damping
+
+# Tables of the study.
 
 TableRow = tuple[str | float | None, ...]
 UNITS = {
@@ -39,7 +50,7 @@ COEFFICIENT_MEANINGS = {
     "quadratic_damping": "quadratic damping",
     "stiffness": "stiffness",
 }
-DOCUMENTED_DAMPING = {"heave": f"{tank.RIG_DAMPING:g} (rig)", "roll": None}
+DOCUMENTED_DAMPING = {"heave": f"{RIG_DAMPING:g} (rig)", "roll": None}
 # the normal distribution's 97.5 % point
 TWO_SIDED_95 = 1.96
 LEAST_CAMERA_SWAY = 1e-6
@@ -150,7 +161,7 @@ def coefficient_table(analysis: SectionAnalysis) -> Table:
             )
             label = f"{first}{COEFFICIENT_MEANINGS[key]}, freed as well [{units[key]}]"
             rows.append(_coefficient_row(label, getattr(free.oscillator, key), None, free.errors[key], documented))
-    low, high = tank.SWAY_STIFFNESS
+    low, high = SWAY_STIFFNESS
     rows.append(
         _coefficient_row(
             "sway: stiffness of the springs [N/m]",
@@ -197,7 +208,7 @@ def period_table(fit: ModeFit) -> Table:
         seen.add(run.period_index)
         one, shaped = observation(fit.mode, s.response), fit.all_periods.oscillator
         excitation = abs(one.theory.excitation)
-        haskind = haskind_damping(excitation / tank.LENGTH, run.omega) * tank.LENGTH
+        haskind = haskind_damping(excitation / LENGTH, run.omega) * LENGTH
         rows.append(
             (run.period, one.theory.added_mass + shaped.extra_added_mass, one.theory.damping, haskind,
              shaped.extra_equivalent_damping(one.theory, run.omega, s.response.wave_amplitude), excitation,
@@ -305,3 +316,71 @@ def largest_errors(fit: ModeFit, shortest: float = 0.9) -> tuple[float, float]:
     if not held:
         return float("nan"), float("nan")
     return max(abs(s.amplitude_error) for s in held), max(abs(s.phase_error) for s in held)
+
+
+# Figures of the study: responses over the wave period, and the two waves of one run.
+
+POINTS, MARKER_SIZE = 60, 0.012
+
+
+def figures(analysis: SectionAnalysis) -> tuple[Figure, ...]:
+    """Amplitude and phase of heave and roll, and the waves of one run."""
+    return (*response_figures(analysis.heave), *response_figures(analysis.roll), wave_figure(analysis))
+
+
+def response_figures(fit: ModeFit) -> tuple[Figure, Figure]:
+    """Amplitude and phase; the curve is computed in waves of the smaller nominal height."""
+    what = motion_name(fit).capitalize()
+    note = "Curve: trained on half of the periods. Phase against the onward wave at the model, positive leads."
+    size = _response_curves(fit, f"{what} over the wave period", "amplitude [m/m]", lambda r: float(abs(r)))
+    angle = _response_curves(fit, f"{what}: phase", "phase [deg]", lambda r: float(np.degrees(np.angle(r))))
+    return Figure(*size, note), Figure(*angle, note)
+
+
+def wave_figure(analysis: SectionAnalysis) -> Figure:
+    """Onward and back, with the steady stretch."""
+    run, parts = analysis.example_waves
+    start, stop = run.steady_window(STEADY_TIMING)
+    edge = 1.1 * float(np.max(np.abs(parts.incident)))
+    frame = Curve("steady stretch", np.array([start, start, stop, stop]), 1e3 * np.array([-edge, edge, edge, -edge]))
+    time = run.record.time
+    return Figure(
+        f"Waves at the model, run {run.name}",
+        "time [s]",
+        "elevation [mm]",
+        (Curve("onward", time, 1e3 * parts.incident), Curve("back", time, 1e3 * parts.reflected), frame),
+        "Separated over the whole record from four probes.",
+    )
+
+
+def _response_curves(
+    fit: ModeFit, title: str, y_label: str, component: Callable[[complex], float]
+) -> tuple[str, str, str, tuple[Curve, ...]]:
+    periods = np.array([s.response.run.period for s in fit.scores])
+    smooth = np.linspace(periods.min(), periods.max(), POINTS)
+    computed = np.array([component(_computed_response(fit, float(p))) for p in smooth])
+    measured = np.array([component(fit.mode.measured_response(s.response)) for s in fit.scores])
+    trained = np.array([s.is_training for s in fit.scores])
+    room = (MARKER_SIZE * float(np.ptp(smooth)), 1.6 * MARKER_SIZE * float(np.ptp(computed)))
+    marks = (
+        _marker_curve("trained", periods[trained], measured[trained], room),
+        _marker_curve("held out", periods[~trained], measured[~trained], room),
+    )
+    return title, "wave period [s]", y_label, (Curve("computed", smooth, computed), *marks)
+
+
+def _computed_response(fit: ModeFit, period: float) -> complex:
+    omega = 2.0 * np.pi / period
+    theory = theory_of_model(fit.mode.motion, omega, fit.mode.sign)
+    wave = 0.5 * min(HEIGHTS.values())
+    return fit.half_of_periods.oscillator.measured_response(
+        MeasuredResponse(omega, float(wavenumber(omega, DEPTH)), wave, 1.0, 1.0, theory)
+    )
+
+
+def _marker_curve(label: str, x: Array, y: Array, marker_size: tuple[float, float]) -> Curve:
+    """A diamond about each point."""
+    gap = np.full(len(x), np.nan)
+    across = np.stack([x - marker_size[0], x, x + marker_size[0], x, x - marker_size[0], gap], axis=1).ravel()
+    upward = np.stack([y, y + marker_size[1], y, y - marker_size[1], y, gap], axis=1).ravel()
+    return Curve(label, across, upward)

@@ -4,10 +4,22 @@ import numpy as np
 
 from seatrial.core.results import Check, Claim, Verdict
 from seatrial.physics.hydro import wavenumber
-from seatrial_studies.section2d import tank
-from seatrial_studies.section2d.analysis import SectionAnalysis
-from seatrial_studies.section2d.instruments import camera_gain
+from seatrial_studies.section2d.analysis import SectionAnalysis, camera_gain
 from seatrial_studies.section2d.modes import ModeFit, theory_of_model
+from seatrial_studies.section2d.responses import (
+    AREA_COEFFICIENT,
+    BEAM,
+    DEPTH,
+    DRAUGHT,
+    FORM,
+    GM,
+    HEIGHTS,
+    KG,
+    MASS,
+    RIG_DAMPING,
+    SWAY_STIFFNESS,
+    G,
+)
 from seatrial_studies.section2d.tables import TWO_SIDED_95, largest_errors, motion_name
 
 AMPLITUDE_LIMIT, PHASE_LIMIT, PERIOD_LIMIT = 1.5, 1.5, 1.0
@@ -45,7 +57,7 @@ def natural_period_claim(fit: ModeFit) -> Claim:
 
 def sway_stiffness_claim(analysis: SectionAnalysis) -> Claim:
     """Confirmed where the 95 % interval meets the documented range; undecidable without two usable runs."""
-    low, high = tank.SWAY_STIFFNESS
+    low, high = SWAY_STIFFNESS
     mean, half = analysis.sway_stiffness.mean, TWO_SIDED_95 * analysis.sway_stiffness.error
     used = [s for s in analysis.sway_stiffness.runs if s.explained_share > 0.9]
     if not np.isfinite(mean):
@@ -62,19 +74,19 @@ def sway_stiffness_claim(analysis: SectionAnalysis) -> Claim:
 def rig_damping_claim(analysis: SectionAnalysis) -> Claim:
     """Refuted as one number where the damping's exponent of velocity is not 0 within its 95 % interval."""
     found, half = analysis.guide, TWO_SIDED_95 * analysis.guide.error
-    claim = f"The rig damps sway with {tank.RIG_DAMPING:g} N s/m"
+    claim = f"The rig damps sway with {RIG_DAMPING:g} N s/m"
     if not np.isfinite(found.exponent):
         return Claim(claim, Verdict.UNKNOWABLE, "fewer than three runs sway freely")
     dampings, forces = [f.damping for f in found.runs], [f.force for f in found.runs]
     steady = abs(found.exponent) <= half
-    inside = min(dampings) <= tank.RIG_DAMPING <= max(dampings)
+    inside = min(dampings) <= RIG_DAMPING <= max(dampings)
     return Claim(
         claim,
         Verdict.REFUTED if not steady else Verdict.CONFIRMED if inside else Verdict.REFUTED,
         f"the holding force in phase with sway velocity is {min(forces):.2f} to {max(forces):.2f} N (median "
         f"{np.median(forces):.2f}), as linear damping {min(dampings):.1f} to {max(dampings):.0f} N s/m: it goes with "
         f"velocity to the power {found.exponent:.2f} ±{half:.2f} (95 %), dry friction (-1) rather than one coefficient "
-        f"(0). The documented value is met at about {found.velocity_at_damping(tank.RIG_DAMPING):.3f} m/s",
+        f"(0). The documented value is met at about {found.velocity_at_damping(RIG_DAMPING):.3f} m/s",
     )
 
 
@@ -102,19 +114,19 @@ def lewis_form_claim(analysis: SectionAnalysis) -> Claim:
     return Claim(
         "The section is a Lewis form with the documented beam, draught and mass",
         Verdict.CONFIRMED if worst_share < SHAPE_LIMIT else Verdict.REFUTED,
-        f"correction of its computed added mass: {', '.join(texts)}; area coefficient {tank.AREA_COEFFICIENT:.3f}",
+        f"correction of its computed added mass: {', '.join(texts)}; area coefficient {AREA_COEFFICIENT:.3f}",
     )
 
 
 def metacentric_height_claim(analysis: SectionAnalysis) -> Claim:
     """Refuted where GM of the form with the documented KG is off by more than 5 %."""
     gm, roll = form_metacentric_height(), analysis.roll.extended_fits["stiffness"]
-    weight = tank.MASS * tank.G
+    weight = MASS * G
     seen, half = roll.oscillator.stiffness / weight, TWO_SIDED_95 * roll.errors["stiffness"] / weight
     return Claim(
-        f"GM of {tank.GM:g} m goes with the documented beam, draught and KG",
-        Verdict.CONFIRMED if abs(gm / tank.GM - 1.0) <= 0.05 else Verdict.REFUTED,
-        f"with KG {tank.KG:g} m they give {gm:.4f} m for the Lewis form; freed, the roll runs give {seen:.4f} "
+        f"GM of {GM:g} m goes with the documented beam, draught and KG",
+        Verdict.CONFIRMED if abs(gm / GM - 1.0) <= 0.05 else Verdict.REFUTED,
+        f"with KG {KG:g} m they give {gm:.4f} m for the Lewis form; freed, the roll runs give {seen:.4f} "
         f"±{half:.4f} m (95 %), too wide to judge, for they show little more than stiffness over inertia. The "
         "documented GM is kept, and the fitted inertia goes with it",
     )
@@ -124,16 +136,16 @@ def form_metacentric_height() -> float:
     """GM [m] of the Lewis form with the documented centre of gravity: KB + BM - KG."""
     nodes, weights = np.polynomial.legendre.leggauss(60)
     theta, weights = 0.25 * np.pi * (nodes + 1.0), 0.25 * np.pi * weights
-    (x, y), (_, dy) = tank.FORM.points(theta), tank.FORM.tangents(theta)
+    (x, y), (_, dy) = FORM.points(theta), FORM.tangents(theta)
     area = -2.0 * float(np.sum(weights * x * dy))
     depth = -2.0 * float(np.sum(weights * x * y * dy)) / area
-    return tank.DRAUGHT - depth + tank.BEAM**3 / 12.0 / area - tank.KG
+    return DRAUGHT - depth + BEAM**3 / 12.0 / area - KG
 
 
 def wave_heights_claim(analysis: SectionAnalysis) -> Claim:
     """Confirmed where the mean of each nominal height is met within 5 %, periods from 0.85 s on."""
     texts, good = [], True
-    for key, nominal in tank.HEIGHTS.items():
+    for key, nominal in HEIGHTS.items():
         off = [
             100.0 * (2.0 * r.wave_amplitude / nominal - 1.0)
             for r in analysis.responses
@@ -154,13 +166,13 @@ def wave_heights_claim(analysis: SectionAnalysis) -> Claim:
 def wavenumbers_claim(analysis: SectionAnalysis) -> Claim:
     """Refuted where a listed wave number is off by more than 1 % at the flume's depth."""
     rows = sorted({(r.nominal.omega, r.nominal.wavenumber) for r in analysis.runs})
-    off = {2.0 * np.pi / w: 100.0 * (k / float(wavenumber(w, tank.DEPTH)) - 1.0) for w, k in rows}
+    off = {2.0 * np.pi / w: 100.0 * (k / float(wavenumber(w, DEPTH)) - 1.0) for w, k in rows}
     worst_first = sorted(off.items(), key=lambda item: -abs(item[1]))
     texts = " and ".join(f"{error:+.1f} % at {period:.2f} s" for period, error in worst_first[:2])
     return Claim(
         "The wave numbers listed with the periods hold in the flume",
         Verdict.REFUTED if abs(worst_first[0][1]) > WAVENUMBER_LIMIT else Verdict.CONFIRMED,
-        f"they are omega^2/g; at {tank.DEPTH:g} m depth they are off by {texts}, less at shorter periods",
+        f"they are omega^2/g; at {DEPTH:g} m depth they are off by {texts}, less at shorter periods",
     )
 
 
@@ -188,7 +200,7 @@ def checks(analysis: SectionAnalysis) -> tuple[Check, ...]:
             (f"{motion_name(fit)}, held-out periods from 0.9 s on, phase [deg]", phase, PHASE_LIMIT),
             (f"{motion_name(fit)}, natural period off the documented [%]", off, PERIOD_LIMIT),
         ]
-    low, high = tank.SWAY_STIFFNESS
+    low, high = SWAY_STIFFNESS
     half = TWO_SIDED_95 * analysis.sway_stiffness.error
     meets = bool(analysis.sway_stiffness.mean - half <= high and analysis.sway_stiffness.mean + half >= low)
     dead = {f.message.split(":")[0] for f in analysis.dead_channel_findings}

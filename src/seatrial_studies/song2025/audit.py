@@ -1,38 +1,550 @@
 """What the paper's own equations and numbers say when they are worked through again: every misprint with evidence."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
-from seatrial_studies.song2025.assumed_parameters import AssumedParameters, SignCheck, check_signs
-from seatrial_studies.song2025.audited_equations import (
-    Equation14Fit,
-    Equation27Readings,
-    ForceDimensions,
-    Thrust,
-    balancing_thrust,
-    equation_14_fits,
-    equation_27_readings,
-    force_dimensions,
-    parenthesis_factors,
+import numpy as np
+import sympy as sp
+
+from seatrial.core.equations import Model
+from seatrial.core.values import Array, Record
+from seatrial.estimation.regress import (
+    DIFFERENCED_AND_CENTRED,
+    DerivativeOperator,
+    Euler,
+    RegressionMotion,
+    build_systems,
+    features,
 )
-from seatrial_studies.song2025.audited_motions import (
-    PortStarboardAsymmetry,
-    ReversedTurn,
-    UndampedSway,
-    port_starboard_asymmetry,
-    reversed_turn,
-    undamped_sway,
+from seatrial.physics.models import waterjet
+from seatrial.physics.simulate import inputs_of
+from seatrial_studies.song2025.generalisation import prediction_accuracy
+from seatrial_studies.song2025.published import (
+    APPROACH_SPEED,
+    BEAM,
+    BLOCK,
+    CORRECTED,
+    DRAUGHT,
+    LENGTH,
+    MASS,
+    TABLE_3,
+    TABLE_4,
+    TRUTH,
+    Accuracy,
+    CoefficientSet,
+    MotionEquation,
+    PublishedManoeuvre,
+    Table2Column,
+    drift_angle,
+    manoeuvre_record,
+    printed_coefficients,
+    reference_record,
+    replay_inputs,
+    simulate_manoeuvre,
+    symbol,
+    with_expressions,
 )
-from seatrial_studies.song2025.audited_tables import (
-    FeatureConditions,
-    Table1Mass,
-    Table4Implication,
-    feature_conditions,
-    table_1_mass,
-    table_4_implications,
-)
-from seatrial_studies.song2025.craft_models import reference_record
-from seatrial_studies.song2025.published import MotionEquation, PublishedManoeuvre
+
+# Misprints that show when the equations are worked through: dimensions, equations (1), (14), (27), thrust.
+
+# powers of kg, m, s
+Dimension = tuple[int, int, int]
+FORCE_DIMENSION: Dimension = (1, 1, -2)
+_Q_DIMENSION: Dimension = (1, -1, 0)
+_SPEED_DIMENSION: Dimension = (0, 1, -1)
+_FORCE_LETTERS = {MotionEquation.SURGE: "X", MotionEquation.SWAY: "Y", MotionEquation.YAW: "N"}
+
+
+@dataclass(frozen=True)
+class ForceDimensions:
+    """Powers of kg, m, s: a force, Y_vv |v| of eq. (2) as printed, Y_vv v|v| (coefficients times rho L d / 2)."""
+
+    force: Dimension
+    printed: Dimension
+    corrected: Dimension
+
+
+def force_dimensions() -> ForceDimensions:
+    """Y_rr |r| and N_rr |r| go the same way, with L r for v."""
+    return ForceDimensions(
+        FORCE_DIMENSION,
+        _product(_Q_DIMENSION, _SPEED_DIMENSION),
+        _product(_product(_Q_DIMENSION, _SPEED_DIMENSION), _SPEED_DIMENSION),
+    )
+
+
+def _product(a: Dimension, b: Dimension) -> Dimension:
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+
+
+def parenthesis_factors() -> dict[MotionEquation, float]:
+    """How often the rate of each equation comes out too large if 1/m + m_x is read as eq. (1) prints it, in SI units.
+
+    For the reciprocal of the sum, (1/m + m_x)(m + m_x) is 1; so for m_y and for I_zz, J_zz.
+    """
+    p = TRUTH.craft().parameters
+    pairs = {MotionEquation.SURGE: ("m", "m_x"), MotionEquation.SWAY: ("m", "m_y"), MotionEquation.YAW: ("I_z", "J_z")}
+    return {
+        equation: (1.0 / p[own].value + p[added].value) * (p[own].value + p[added].value)
+        for equation, (own, added) in pairs.items()
+    }
+
+
+@dataclass(frozen=True, eq=False)
+class Equation14System:
+    """One equation of (14) along a record: features (n, k) times coefficients (k,) = target (n,), all in m^2/s^2."""
+
+    names: tuple[str, ...]
+    matrix: Array
+    target: Array
+
+    def solve(self) -> dict[str, float]:
+        """Return the least-squares solution by coefficient."""
+        scale = np.sqrt(np.mean(self.matrix**2, axis=0))
+        found = np.linalg.lstsq(self.matrix / scale, self.target)[0] / scale
+        return dict(zip(self.names, map(float, found), strict=True))
+
+
+def equation_14_systems(record: Record) -> dict[MotionEquation, Equation14System]:
+    """Eq. (14) corrected, from the model, with exact accelerations in place of differences.
+
+    Rates times total inertia over rho L d / 2 (yaw: over rho L^2 d / 2).
+    """
+    craft = TRUTH.craft()
+    at = features(craft, RegressionMotion.from_record(craft, record))
+    p = craft.parameters
+    theta = np.array([item.value for item in p.free])
+    q = 0.5 * p["rho"].value * LENGTH * DRAUGHT
+    inertias = {
+        MotionEquation.SURGE: (p["m"].value + p["m_x"].value) / q,
+        MotionEquation.SWAY: (p["m"].value + p["m_y"].value) / q,
+        MotionEquation.YAW: (p["I_z"].value + p["J_z"].value) / (q * LENGTH),
+    }
+    made = {}
+    for equation, inertia in inertias.items():
+        state = craft.states.index(equation)
+        columns = [j for j, n in enumerate(p.free_names) if n[0] == _FORCE_LETTERS[equation]]
+        matrix = inertia * at.slope[:, state][:, columns]
+        made[equation] = Equation14System(tuple(p.free_names[j] for j in columns), matrix, matrix @ theta[columns])
+    return made
+
+
+@dataclass(frozen=True)
+class Equation14Fit:
+    """What least squares on noise-free data and exact accelerations makes of one reading of eq. (14).
+
+    Attributes:
+        errors: coefficient -> error in per cent of the truth.
+        residual: rms of what is left over rms of the target.
+    """
+
+    variant: str
+    errors: dict[str, float]
+    residual: float
+
+
+def equation_14_fits(record: Record) -> tuple[Equation14Fit, ...]:
+    """Eq. (14) corrected, then each misprint alone: [u^2, v^2, r^2] L^2, the sign of u r, L^3 in yaw."""
+    corrected = equation_14_systems(record)
+    surge, sway, yaw = (corrected[e] for e in MotionEquation)
+    L, p = LENGTH, TRUTH.craft().parameters
+    q = 0.5 * p["rho"].value * L * DRAUGHT
+    ur = (p["m"].value + p["m_x"].value) / q * record["u"] * record["r"]
+    r_dot = (p["I_z"].value + p["J_z"].value) / (q * L) * _yaw_acceleration(record)
+    return (
+        *(_equation_14_fit(f"{_FORCE_LETTERS[e]}, corrected", corrected[e]) for e in MotionEquation),
+        _equation_14_fit("X, [u^2, v^2, r^2] L^2", replace(surge, matrix=surge.matrix * np.array([L**2, L**2, 1.0]))),
+        _equation_14_fit("Y, - (m' + m_x') L u r", replace(sway, target=sway.target - 2.0 * ur)),
+        _equation_14_fit("N, (I' + J') L^3 dr/dt", replace(yaw, target=yaw.target + (L - 1.0) * r_dot)),
+    )
+
+
+def _yaw_acceleration(record: Record) -> Array:
+    craft = TRUTH.craft()
+    at = features(craft, RegressionMotion.from_record(craft, record))
+    theta = np.array([item.value for item in craft.parameters.free])
+    return (at.known_rates + at.slope @ theta)[:, craft.states.index(MotionEquation.YAW)]
+
+
+def _equation_14_fit(variant: str, system: Equation14System) -> Equation14Fit:
+    found = system.solve()
+    p = TRUTH.craft().parameters
+    errors = {name: 100.0 * (value / p[name].value - 1.0) for name, value in found.items()}
+    left = system.target - system.matrix @ np.array(list(found.values()))
+    return Equation14Fit(variant, errors, float(np.linalg.norm(left) / np.linalg.norm(system.target)))
+
+
+@dataclass(frozen=True)
+class Equation27Readings:
+    """Readings of eq. (27) for a correlation matrix A, 2-norms.
+
+    Attributes:
+        with_inverse: |A| |A^-1|.
+        by_singular_values: largest over smallest singular value, eq. (28): the same.
+        without_inverse: |A| |A|, if the inverse is left out.
+    """
+
+    with_inverse: float
+    by_singular_values: float
+    without_inverse: float
+
+
+def equation_27_readings(correlation: Array) -> Equation27Readings:
+    """Return the readings of eq. (27) for a correlation matrix (k, k)."""
+    size = float(np.linalg.norm(correlation, 2))
+    values = np.linalg.svd(correlation, compute_uv=False)
+    return Equation27Readings(
+        size * float(np.linalg.norm(np.linalg.inv(correlation), 2)), float(values[0] / values[-1]), size**2
+    )
+
+
+@dataclass(frozen=True)
+class Thrust:
+    """Jet velocity [m/s] that balances resistance at the stated speed, eq. (2), (3), and the thrust [N]."""
+
+    jet_velocity: float
+    thrust: float
+
+
+def balancing_thrust() -> Thrust:
+    """Root of rho A_j v_j (v_j - alpha u) = rho L d / 2 |X_uu| u^2 at 0.8 m/s; the density cancels in the velocity."""
+    p = TRUTH.craft().parameters
+    half = 0.5 * p["alpha"].value * APPROACH_SPEED
+    per_density = 0.5 * LENGTH * DRAUGHT * -printed_coefficients(Table2Column.CFD)["X_uu"] * APPROACH_SPEED**2
+    return Thrust(half + math.sqrt(half**2 + per_density / p["A_j"].value), p["rho"].value * per_density)
+
+
+# Tables 1, 3 and 4 against our own series: condition numbers under either labelling, errors beside correlations.
+
+LABELS_EXCHANGED = {
+    MotionEquation.SURGE: MotionEquation.SWAY,
+    MotionEquation.SWAY: MotionEquation.SURGE,
+    MotionEquation.YAW: MotionEquation.YAW,
+}
+
+
+@dataclass(frozen=True)
+class Table1Mass:
+    """Density [kg/m^3], mass of the block rho C_b L B d [kg], and m' = m / (rho L^2 d / 2) with the printed mass."""
+
+    density: float
+    block: float
+    nondimensional: float
+
+
+def table_1_mass(density: float) -> Table1Mass:
+    """Return what table 1's mass implies with a density."""
+    return Table1Mass(density, density * BLOCK * LENGTH * BEAM * DRAUGHT, MASS / (0.5 * density * LENGTH**2 * DRAUGHT))
+
+
+@dataclass(frozen=True, eq=False)
+class FeatureConditions:
+    """Condition numbers of the correlation matrices of each equation's features, table 3.
+
+    Yaw's features v U, r U, r|r| are three of sway's five. Eigenvalues of a principal submatrix lie between those of
+    the whole (Cauchy's interlacing theorem): sway's condition number is never below yaw's, whatever the record.
+
+    Attributes:
+        printed: as labelled; labels_exchanged: labels of surge and sway exchanged.
+        plain: ours, features of eq. (14); improved: ours, differenced and centred, eq. (17), (18).
+        correlations: ours, plain, each (k, k).
+        is_possible: whether sway's is at least yaw's, as printed and swapped.
+    """
+
+    printed: dict[MotionEquation, float]
+    labels_exchanged: dict[MotionEquation, float]
+    plain: dict[MotionEquation, float]
+    improved: dict[MotionEquation, float]
+    correlations: dict[MotionEquation, Array]
+    is_possible: tuple[bool, bool]
+
+
+def feature_conditions(series: Record) -> FeatureConditions:
+    """Of the consecutive zigzags, noise-free, at the record's own rate."""
+    plain, improved = feature_correlations(series, Euler()), feature_correlations(series, DIFFERENCED_AND_CENTRED)
+    swapped = {equation: TABLE_3[LABELS_EXCHANGED[equation]] for equation in MotionEquation}
+    return FeatureConditions(
+        dict(TABLE_3),
+        swapped,
+        {e: float(np.linalg.cond(a)) for e, a in plain.items()},
+        {e: float(np.linalg.cond(a)) for e, a in improved.items()},
+        plain,
+        (_is_nested(TABLE_3), _is_nested(swapped)),
+    )
+
+
+def feature_correlations(series: Record, operator: DerivativeOperator) -> dict[MotionEquation, Array]:
+    """Return the correlation matrices (k, k) of the features of each equation."""
+    craft = waterjet()
+    made = build_systems(craft, [RegressionMotion.from_record(craft, series)], operator)
+    return {MotionEquation(s.equations[0]): np.asarray(np.corrcoef(s.matrix, rowvar=False)) for s in made}
+
+
+def _is_nested(numbers: dict[MotionEquation, float]) -> bool:
+    return numbers[MotionEquation.SWAY] >= numbers[MotionEquation.YAW]
+
+
+@dataclass(frozen=True)
+class Table4Implication:
+    """What a cell of table 4 says together with the reference's own motion.
+
+    Attributes:
+        deviation: standard deviation of the reference motion, m/s or rad/s; largest: its largest magnitude.
+        least_rmse: smallest root mean square error that the printed CC allows, deviation sqrt(1 - CC^2).
+        amplitude_ratio: ratio of standard deviations, predicted over reference, that CC and RMSE imply
+            where the mean has no error, which would explain some of the RMSE; NaN where no prediction has both.
+    """
+
+    run: PublishedManoeuvre
+    channel: str
+    deviation: float
+    largest: float
+    least_rmse: float
+    amplitude_ratio: float
+
+
+def table_4_implications() -> tuple[Table4Implication, ...]:
+    """Every cell: RMSE^2 = s^2 + s0^2 - 2 CC s s0 + (error of the mean)^2, s and s0 the standard deviations."""
+    references = {run: reference_record(run) for run in TABLE_4}
+    return tuple(_table_4_implication(run, c, references[run][c]) for run, said in TABLE_4.items() for c in said.cc)
+
+
+def _table_4_implication(run: PublishedManoeuvre, channel: str, values: Array) -> Table4Implication:
+    cc, deviation = TABLE_4[run].cc[channel], float(np.std(values))
+    inner = cc**2 - 1.0 + (TABLE_4[run].rmse[channel] / deviation) ** 2
+    amplitude = cc + math.sqrt(inner) if inner >= 0.0 else math.nan
+    largest = float(np.max(np.abs(values)))
+    return Table4Implication(run, channel, deviation, largest, deviation * math.sqrt(1.0 - cc**2), amplitude)
+
+
+# Misprints that show when the craft is simulated as printed: signs of table 2, equations (2) and (3).
+
+# deg, nozzle angles of the zigzags and of the turn
+ZIGZAGS, TURN_ANGLE = (10, 20, 35), 20
+
+
+@dataclass(frozen=True)
+class ReversedTurn:
+    """What the sign of N_v does, CFD column.
+
+    Attributes:
+        yaw_rates: deg/s at the end of a turn with 20 deg to starboard, N_v corrected and as printed.
+        completed_zigzags: zigzags of 10, 20 and 35 deg that come to their end, corrected and as printed.
+    """
+
+    yaw_rates: tuple[float, float]
+    completed_zigzags: tuple[int, int]
+
+
+def reversed_turn() -> ReversedTurn:
+    """Steady turn and zigzags of the CFD column with N_v negative and as printed."""
+    readings = (TRUTH, CoefficientSet(Table2Column.CFD))
+    rates = [
+        math.degrees(_final_value(manoeuvre_record(r.craft(), f"turning-circle:{TURN_ANGLE}"), "r")) for r in readings
+    ]
+    finished = [sum(simulate_manoeuvre(r.craft(), f"zigzag:{a}/{a}").is_completed for a in ZIGZAGS) for r in readings]
+    return ReversedTurn((rates[0], rates[1]), (finished[0], finished[1]))
+
+
+@dataclass(frozen=True)
+class UndampedSway:
+    """What the sign of the improved column's Y_vv does, N_v corrected, on the truth's nozzle history.
+
+    Attributes:
+        divergence_times: run -> s after which the motion leaves all bounds, as printed; infinite where it does not.
+        corrected_accuracy: run -> accuracy with Y_vv negative.
+        critical_drift: deg beyond which Y_v + Y_vv |v|/U is positive, so that sway is driven, as printed.
+        largest_drifts: run -> largest drift of the truth, deg.
+    """
+
+    divergence_times: dict[PublishedManoeuvre, float]
+    corrected_accuracy: dict[PublishedManoeuvre, Accuracy]
+    critical_drift: float
+    largest_drifts: dict[PublishedManoeuvre, float]
+
+
+def undamped_sway() -> UndampedSway:
+    """Return the 20/20 and 35/35 zigzags and the 35 deg turn with the improved column's Y_vv of either sign."""
+    printed, corrected = CoefficientSet(Table2Column.IMPROVED, ("N_v",)).craft(), CORRECTED[2].craft()
+    references = {
+        run: reference_record(run)
+        for run in (PublishedManoeuvre.ZIGZAG_20, PublishedManoeuvre.ZIGZAG_35, PublishedManoeuvre.TURN_35)
+    }
+    values = printed_coefficients(Table2Column.IMPROVED)
+    return UndampedSway(
+        {run: _divergence_time(printed, record) for run, record in references.items()},
+        {run: prediction_accuracy(record, replay_inputs(corrected, record)) for run, record in references.items()},
+        math.degrees(math.asin(-values["Y_v"] / values["Y_vv"])),
+        {run: float(np.max(np.abs(drift_angle(record)))) for run, record in references.items()},
+    )
+
+
+@dataclass(frozen=True)
+class PortStarboardAsymmetry:
+    """What alpha v in place of alpha u in Y_P, eq. (3), and |v|, |r| in Y_H, N_H, eq. (2), do to a symmetric craft.
+
+    Attributes:
+        force_asymmetry: binding -> rms of the force plus that of the mirrored state, over the force's rms, along the
+            20/20 zigzag, corrected and as printed. A symmetric craft has 0, an even force 2.
+        jet_yaw_rates: deg/s of yaw at the end of a 20 deg turn to starboard and to port, eq. (3) as printed.
+        jet_drifts: deg of drift there.
+        corrected_yaw_rates: deg/s of yaw with alpha u.
+        hull_divergence_times: s after which the motion leaves all bounds on the nozzle history of these turns, eq. (2)
+            as printed; infinite where it does not.
+    """
+
+    force_asymmetry: dict[str, tuple[float, float]]
+    jet_yaw_rates: tuple[float, float]
+    jet_drifts: tuple[float, float]
+    corrected_yaw_rates: tuple[float, float]
+    hull_divergence_times: tuple[float, float]
+
+
+def port_starboard_asymmetry() -> PortStarboardAsymmetry:
+    """Return forces at mirrored states, and turns to either side."""
+    craft = TRUTH.craft()
+    jet, hull = jet_as_printed(craft), hull_as_printed(craft)
+    record = manoeuvre_record(craft, PublishedManoeuvre.ZIGZAG_20)
+    asymmetries = {
+        name: (force_asymmetry(craft, record, name), force_asymmetry(printed, record, name))
+        for name, printed in (("Y_P", jet), ("Y_H", hull), ("N_H", hull))
+    }
+    sides = (f"turning-circle:{TURN_ANGLE}", f"turning-circle:{TURN_ANGLE}:port")
+    turns, corrected = (
+        [manoeuvre_record(jet, side) for side in sides],
+        [manoeuvre_record(craft, side) for side in sides],
+    )
+    return PortStarboardAsymmetry(
+        asymmetries,
+        _pair([math.degrees(_final_value(turn, "r")) for turn in turns]),
+        _pair([float(drift_angle(turn)[-1]) for turn in turns]),
+        _pair([math.degrees(_final_value(turn, "r")) for turn in corrected]),
+        _pair([_divergence_time(hull, turn) for turn in corrected]),
+    )
+
+
+def jet_as_printed(craft: Model) -> Model:
+    """Return the side force of the jet with alpha v, eq. (3)."""
+    rho, A_j, v_j, alpha, v, delta = (symbol(n) for n in ("rho", "A_j", "v_j", "alpha", "v", "delta"))
+    return with_expressions(
+        craft, "waterjet_jet_as_printed", {"Y_P": rho * A_j * v_j * (v_j - alpha * v) * sp.sin(delta)}
+    )
+
+
+def hull_as_printed(craft: Model) -> Model:
+    """Y_H and N_H with |v| and |r| where v|v| and r|r| are meant, eq. (2)."""
+    q, L, U, v, r_L = (symbol(n) for n in ("q", "L", "U", "v", "r_L"))
+    Y_v, Y_r, Y_vv, Y_vr, Y_rr, N_v, N_r, N_rr = (symbol(n) for n in craft.parameters.free_names[3:])
+    Y_H = q * (Y_v * v * U + Y_r * r_L * U + Y_vv * sp.Abs(v) + Y_rr * sp.Abs(r_L) + Y_vr * sp.Abs(v) * r_L)
+    N_H = q * L * (N_v * v * U + N_r * r_L * U + N_rr * sp.Abs(r_L))
+    return with_expressions(craft, "waterjet_hull_as_printed", {"Y_H": Y_H, "N_H": N_H})
+
+
+def force_asymmetry(craft: Model, record: Record, binding: str) -> float:
+    """Rms of F(v, r, delta) + F(-v, -r, -delta) over that of F along a record; 0 where port and starboard are alike."""
+    states, inputs = record.matrix(craft.states), inputs_of(craft, record)
+    turned_states = states * np.array([-1.0 if s in ("v", "r", "psi", "y0") else 1.0 for s in craft.states])
+    turned_inputs = inputs * np.array([-1.0 if name == "delta" else 1.0 for name in craft.input_names])
+    here, there = craft.forces(states, inputs)[binding], craft.forces(turned_states, turned_inputs)[binding]
+    return _rms(here + there) / _rms(here)
+
+
+def _divergence_time(craft: Model, record: Record) -> float:
+    again = replay_inputs(craft, record)
+    return math.inf if len(again) == len(record) else float(again.time[-1])
+
+
+def _final_value(record: Record, channel: str) -> float:
+    return float(record[channel][-1])
+
+
+def _pair(values: list[float]) -> tuple[float, float]:
+    return values[0], values[1]
+
+
+def _rms(values: Array) -> float:
+    return float(np.sqrt(np.mean(values**2)))
+
+
+# Whether the signs of table 2 are misprints under other values of what the paper leaves open.
+
+TURN_PROGRAMME = "turning-circle:20"
+FRESH_WATER = 1000.0
+
+
+@dataclass(frozen=True)
+class AssumedParameters:
+    """Values of parameters that table 1 does not give."""
+
+    label: str
+    values: Mapping[str, float] = field(default_factory=dict)
+
+
+def assumed_parameter_sets() -> tuple[AssumedParameters, ...]:
+    """Our own; fresh water; each of the others a third less and more (the nozzle 0.05 L farther and nearer).
+
+    J_z acts in sum with I_z alone.
+    """
+    p = waterjet().parameters
+    made = [AssumedParameters("ours"), AssumedParameters("fresh water", {"rho": FRESH_WATER})]
+    for name in ("m_x", "m_y", "I_z", "A_j"):
+        made += [AssumedParameters(f"{name} {f:.2f} times", {name: f * p[name].value}) for f in (2.0 / 3.0, 4.0 / 3.0)]
+    made += [AssumedParameters(f"x_T {f:.2f} L", {"x_T": f * p["L"].value}) for f in (-0.5, -0.4)]
+    return tuple(made)
+
+
+@dataclass(frozen=True)
+class SignCheck:
+    """What the signs do under one choice.
+
+    Attributes:
+        yaw_rates: deg/s at the end of a 20 deg turn to starboard, CFD column, N_v corrected and as printed.
+        completes_zigzag: whether the 20/20 zigzag is completed, N_v corrected and as printed.
+        divergence_time: s in the 35/35 zigzag on the truth's nozzle history, improved column, N_v corrected;
+            infinite where the motion stays bounded.
+        corrected_cc: the same with the sign of Y_vv changed, against the CFD column under the same choice.
+    """
+
+    assumption: str
+    yaw_rates: tuple[float, float]
+    completes_zigzag: tuple[bool, bool]
+    divergence_time: float
+    corrected_cc: dict[str, float]
+
+    @property
+    def confirms_misprints(self) -> bool:
+        """The printed N_v reverses the turn and stops the zigzag, the printed Y_vv diverges; corrected, neither."""
+        corrected, printed = self.yaw_rates
+        return (
+            corrected > 0.0 > printed and self.completes_zigzag == (True, False) and math.isfinite(self.divergence_time)
+        )
+
+
+def check_signs(assumption: AssumedParameters) -> SignCheck:
+    """Return what the signs do under one choice (some 0.4 s)."""
+    readings = (TRUTH, CoefficientSet(Table2Column.CFD), CoefficientSet(Table2Column.IMPROVED, ("N_v",)), CORRECTED[2])
+    corrected, printed, driven, improved = (r.craft().with_values(assumption.values) for r in readings)
+    zigzag = manoeuvre_record(corrected, PublishedManoeuvre.ZIGZAG_35)
+    again = replay_inputs(driven, zigzag)
+    return SignCheck(
+        assumption.label,
+        (
+            _degrees_per_second(manoeuvre_record(corrected, TURN_PROGRAMME)["r"][-1]),
+            _degrees_per_second(manoeuvre_record(printed, TURN_PROGRAMME)["r"][-1]),
+        ),
+        (
+            simulate_manoeuvre(corrected, PublishedManoeuvre.ZIGZAG_20).is_completed,
+            simulate_manoeuvre(printed, PublishedManoeuvre.ZIGZAG_20).is_completed,
+        ),
+        math.inf if len(again) == len(zigzag) else float(again.time[-1]),
+        prediction_accuracy(zigzag, replay_inputs(improved, zigzag)).cc,
+    )
+
+
+def _degrees_per_second(radians: float) -> float:
+    return math.degrees(float(radians))
+
 
 # kg/m^3, customary densities
 FRESH_WATER_DENSITY, SALT_WATER_DENSITY = 1000.0, 1025.0

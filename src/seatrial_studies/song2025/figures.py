@@ -4,17 +4,17 @@ import numpy as np
 
 from seatrial.core.results import Bars, Curve, Figure, Matrix, Prediction
 from seatrial.physics.models import WATERJET_COEFFICIENTS as COEFFICIENTS
-from seatrial_studies.song2025.craft_models import TRUTH
-from seatrial_studies.song2025.evidence import SupportVectorEvidence
 from seatrial_studies.song2025.generalisation import CHANNELS, RunComparison, hull_and_jet_forces
 from seatrial_studies.song2025.published import (
     CALLED_SENSITIVE,
     DROPPED_COEFFICIENTS,
+    TRUTH,
     MotionEquation,
     PublishedManoeuvre,
     Table2Column,
 )
 from seatrial_studies.song2025.reproduction import EstimatorResult, true_coefficients
+from seatrial_studies.song2025.verdicts import SupportVectorEvidence
 
 _FIGURE_RUNS = (PublishedManoeuvre.ZIGZAG_20, PublishedManoeuvre.ZIGZAG_35, PublishedManoeuvre.TURN_35)
 _FIGURE_NUMBERS = {

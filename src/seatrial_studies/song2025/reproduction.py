@@ -24,8 +24,10 @@ from seatrial.estimation.regress import (
     RegressionEstimate,
     RegressionEstimator,
     RegressionMotion,
+    RegressionSystem,
     SupportVectors,
     Weak,
+    ablations,
     blocks,
     build_systems,
     shuffled_split,
@@ -34,10 +36,47 @@ from seatrial.estimation.regress import (
 from seatrial.physics.manoeuvres import programme
 from seatrial.physics.models import WATERJET_COEFFICIENTS as COEFFICIENTS
 from seatrial.physics.models import waterjet, with_candidate_terms
-from seatrial.physics.simulate import manoeuvre
-from seatrial_studies.song2025.craft_models import TRUTH, reference_record
-from seatrial_studies.song2025.printed_regressors import lasso_choice
-from seatrial_studies.song2025.published import PublishedManoeuvre
+from seatrial.physics.simulate import forces, manoeuvre
+from seatrial_studies.song2025.published import TRUTH, MotionEquation, PublishedManoeuvre, reference_record
+
+# Lasso on the regressors as section 1.3.1 prints them: raw products of u, v, r on the forces X_H, Y_H, N_H.
+
+_TERMS = {
+    MotionEquation.SURGE: ("X_uu", "X_vv", "X_rr"),
+    MotionEquation.SWAY: ("Y_v", "Y_r", "Y_vv", "Y_vr", "Y_rr"),
+    MotionEquation.YAW: ("N_v", "N_r", "N_rr", "N_vvr", "N_vrr"),
+}
+_FORCES = {MotionEquation.SURGE: "X_H", MotionEquation.SWAY: "Y_H", MotionEquation.YAW: "N_H"}
+
+
+def printed_systems(record: Record) -> tuple[RegressionSystem, ...]:
+    """Return X_H, Y_H, N_H against [u², v², r²], [v, r, v|v|, |v|r, r|r|] and [v, r, r|r|, v²r, vr²].
+
+    None of the products has the speed U of eq. (14) beside it.
+    """
+    u, v, r = (record[c] for c in "uvr")
+    columns: dict[MotionEquation, tuple[Array, ...]] = {
+        MotionEquation.SURGE: (u**2, v**2, r**2),
+        MotionEquation.SWAY: (v, r, v * np.abs(v), np.abs(v) * r, r * np.abs(r)),
+        MotionEquation.YAW: (v, r, r * np.abs(r), v**2 * r, v * r**2),
+    }
+    hull = forces(with_candidate_terms(TRUTH.craft()), record)
+    return tuple(
+        RegressionSystem((equation,), _TERMS[equation], np.stack(columns[equation], axis=1), hull[_FORCES[equation]])
+        for equation in MotionEquation
+    )
+
+
+def lasso_choice(record: Record, *, is_scaled: bool) -> tuple[tuple[str, ...], tuple[str, ...], dict[str, float]]:
+    """Return the terms kept, those taken out, and the penalty by equation."""
+    kept, dropped, penalties = list[str](), list[str](), dict[str, float]()
+    for system in printed_systems(record):
+        solved = Lasso(is_scaled=is_scaled).solve(system)
+        penalties[system.title] = solved.settings["penalty"]
+        for name, value in zip(system.names, solved.coefficients, strict=True):
+            (kept if value != 0.0 else dropped).append(name)
+    return tuple(kept), tuple(dropped), penalties
+
 
 # s, windows of the weak form; series of noise; our choice
 WINDOW_S, NOISE_SERIES = 20.0, 6
@@ -325,3 +364,88 @@ def _output_error(measured: Record) -> tuple[EstimatorResult, EstimatorResult, A
         _relative_result("output error, sensor noise", rows[1]),
         errors,
     )
+
+
+# Conclusion 2: what each step of the pipeline is worth, on the simulated series and on one with planted bad data.
+
+BAD_SHARE = 0.01  # share of the samples that are spoiled; our choice
+SPIKE = 10.0  # size of a planted outlier in standard deviations of its channel; our choice
+VELOCITIES = ("u", "v", "r")
+
+
+@dataclass(frozen=True, eq=False)
+class PlantedResult:
+    """The improved pipeline on a series with one kind of bad data: with all its steps, and without cleaning."""
+
+    kind: str
+    spoiled: int
+    cleaned: EstimatorResult
+    uncleaned: EstimatorResult
+
+
+@dataclass(frozen=True, eq=False)
+class CleaningAblation:
+    """Attributes:
+    steps: the improved pipeline and each step left out, on the series as it is.
+    planted: with bad data planted, one kind at a time and all together.
+    """
+
+    steps: tuple[EstimatorResult, ...]
+    planted: tuple[PlantedResult, ...]
+
+
+def cleaning_ablation(series: Record, *, quick: bool, seed: int) -> CleaningAblation:
+    """Run the pipeline without each step, then on planted outliers, dropouts and duplicates."""
+    improved = Pipeline()
+    without_cleaning = ablations(improved)[0]
+    spoiled = {
+        "outliers": with_outliers(series, np.random.default_rng([seed, 1])),
+        "dropouts": with_dropouts(series, np.random.default_rng([seed, 2])),
+        "duplicates": with_duplicates(series, np.random.default_rng([seed, 3])),
+    }
+    planted = tuple(
+        PlantedResult(
+            kind, round(BAD_SHARE * len(series)), estimator_result(improved, record),
+            estimator_result(without_cleaning, record),
+        )
+        for kind, record in list(spoiled.items())[: 1 if quick else None]
+    )  # fmt: skip
+    steps = (improved, *ablations(improved))
+    return CleaningAblation(tuple(estimator_result(step, series) for step in steps[: 2 if quick else None]), planted)
+
+
+def with_outliers(record: Record, generator: np.random.Generator) -> Record:
+    """Return the record with spikes of ten standard deviations in u, v and r, at the same samples."""
+    rows, signs = _rows(record, generator), generator.choice([-1.0, 1.0], len(VELOCITIES))
+
+    def spiked(values: Array, sign: float) -> Array:
+        out = values.copy()
+        out[rows] += sign * SPIKE * float(np.std(values))
+        return out
+
+    changed = {c: spiked(record[c], sign) for c, sign in zip(VELOCITIES, signs, strict=True)}
+    return _with_values(record, changed)
+
+
+def with_dropouts(record: Record, generator: np.random.Generator) -> Record:
+    """Return the record with samples in which u, v and r read zero, as a sensor that drops out does."""
+    rows = _rows(record, generator)
+    changed = {c: np.where(np.isin(np.arange(len(record)), rows), 0.0, record[c]) for c in VELOCITIES}
+    return _with_values(record, changed)
+
+
+def with_duplicates(record: Record, generator: np.random.Generator) -> Record:
+    """Return the record with samples that repeat the one before in every channel, as a frozen logger does."""
+    source = np.arange(len(record))
+    rows = np.sort(_rows(record, generator))
+    source[rows] = rows - 1
+    return _with_values(record, {c: channel.values[source] for c, channel in record.channels.items()})
+
+
+def _rows(record: Record, generator: np.random.Generator) -> np.ndarray:
+    return 1 + generator.choice(len(record) - 2, round(BAD_SHARE * len(record)), replace=False)
+
+
+def _with_values(record: Record, values: dict[str, Array]) -> Record:
+    channels = {c: record.channel(c).with_values(v) for c, v in values.items()}
+    return replace(record, channels={**record.channels, **channels})

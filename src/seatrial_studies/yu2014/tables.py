@@ -1,17 +1,278 @@
-"""Tables of the study: table 1, fitted quantities, the search over seeds, what beats it, misprints, choices."""
+"""What the page declares of the paper, its tables and its figures."""
 
 from collections.abc import Sequence
 
-from seatrial.core.results import Table
+import numpy as np
+
+from seatrial.core.results import Bars, Curve, Figure, Table
 from seatrial.physics.loops import FREQUENCIES_AND_DAMPINGS, Preamplifier
-from seatrial_studies.yu2014.declarations import declaration_tables
-from seatrial_studies.yu2014.energy_tables import energy_tables, joint_table, regulator_table, time_domain_table
-from seatrial_studies.yu2014.evidence import FinGainEvidence
-from seatrial_studies.yu2014.improved_gains import FiveGainComparison
-from seatrial_studies.yu2014.misprints import misprint_table
-from seatrial_studies.yu2014.published import GAIN_NAMES, PUBLISHED_VALUES, TABLE_1, ControllerResult
-from seatrial_studies.yu2014.published_loop import PREAMPLIFIER_LABELS
-from seatrial_studies.yu2014.searches import BITS, BOX, TIMES_TITLE, FinGainSearches
+from seatrial_studies.declarations import Assumption, Declarations, Deviation, FigureCounterpart, Symbol
+from seatrial_studies.yu2014.audit import misprint_table
+from seatrial_studies.yu2014.published import (
+    ASPECT,
+    CHORD,
+    DENSITY,
+    GAIN_NAMES,
+    INERTIA,
+    PREAMPLIFIER_LABELS,
+    PUBLISHED_VALUES,
+    SPAN,
+    TABLE_1,
+    THICKNESS,
+    ControllerResult,
+    FinObjective,
+)
+from seatrial_studies.yu2014.reproduction import (
+    BLOCK_COEFFICIENT,
+    EFFICIENCY,
+    GYRADIUS_SHARE,
+    WATTS_PER_KILOWATT,
+    EnergyComparison,
+)
+from seatrial_studies.yu2014.searches import BITS, BOX, TIMES_TITLE, FinGainSearches, FiveGainComparison
+from seatrial_studies.yu2014.verdicts import FinGainEvidence
+
+# What the page declares of the paper: its symbols, what is assumed, what deviates from the print, its figures.
+
+_SYMBOLS = (
+    Symbol("Gr(s)", "rate gyro", "deg s/deg", "400 s / (s² + 80 s + 4000)"),
+    Symbol("Gq(s), Kq", "preamplifier and its gain", "1", "Kq / ((30 s + 1)(0.056 s + 1)); Kq adjustable"),
+    Symbol("G_PID(s); KP, KI, KD", "controller, eq. (1), and its gains", "1", "GA: 11.053, 0.428, 32.736"),
+    Symbol("Gh(s), Gl(s)", "regulators for sea state and speed", "1", "1; as functions in a table here"),
+    Symbol("Gs(s)", "servo", "1", "550 / (s² + 15 s + 225)"),
+    Symbol("Kαw", "wave slope to which a fin angle is equivalent", "1", "0.256 at a largest fin angle of 22°"),
+    Symbol("Gφ(s)", "roll by wave slope", "1", "1 / (1.43242 s² + 0.3796 s + 1)"),
+    Symbol("φ, αw", "roll angle; equivalent wave slope", "deg", "input and output of the loop"),
+    Symbol("Φ, Φα, Φsα", "wave slope to roll, fin angle, fin rate", "1, 1, 1/s", "closed loop; section 2"),
+    Symbol("Sφ, Sα, Ssα, Sαw", "spectra of roll, fin angle, fin rate, wave slope", "deg² s, deg²/s", "section 2"),
+    Symbol("σφ², σα²", "variances of roll and fin angle", "deg²", "target of the fins 150.31"),
+    Symbol("p, αmax", "share of fin amplitudes beyond the largest, Rayleigh", "1, deg", "at most 0.2; 22"),
+    Symbol("W', W", "work of one fin, of two over the efficiency, eq. (3)", "J", "I ∫ Ssα dω / η"),
+    Symbol("η", "efficiency of the fin drive", "1", "not printed"),
+    Symbol("I, m0, mq, R", "inertia about the stock, masses with and without water, lever", "kg m², kg, kg, m",
+           "791.1611, 4086.576, 3064.932, 0.44"),
+    Symbol("J1, J2, J3, J", "objectives, eqs. (2) to (5), their weighted sum, eq. (7)", "deg², deg⁴, J, 1",
+           "minimised"),
+    Symbol("λ1, λ2, λ3; r", "random weights, eq. (6); random positive integers", "1", "drawn anew each generation"),
+    Symbol("σφmax², σαmax², Wmax", "normalisers of eq. (7), from the first generation", "as above", "see Assumed"),
+    Symbol("f, pi, fmin", "fitness 1/J, selection probability, worst fitness", "1", "eq. (8) and below"),
+    Symbol("Pc, Pm", "probabilities of crossover and mutation", "1", "0.8, 0.01"),
+    Symbol("ω, ωe", "frequency of the waves, and as the ship meets them", "rad/s", "no conversion printed"),
+    Symbol("ρ, V", "density and volume of the fin", "kg/m³, m³", f"{DENSITY:g}; span times chord times thickness here"),
+    Symbol("b, span, aspect, thickness", "of the fin: chord, span, span over chord, thickness", "m, m, 1, m",
+           f"{CHORD:g}, {SPAN:g}, {ASPECT:g}, {THICKNESS:g}"),
+    Symbol("γ", "heading to the waves", "deg", "45, 90, 135"),
+)  # fmt: skip
+_ASSUMPTIONS = (
+    Assumption("Kq of the preamplifier", "“adjustable”",
+               "fitted: the GA's gains reduce the roll by 75.92 % at 18 / 90"),
+    Assumption("wave spectrum", "not printed", "one-parameter ITTC; short-crested cos² where the table is fitted"),
+    Assumption("length, breadth, draught", "not printed", "a box of 100 x 10.5 x 3.4 m for the effective wave slope"),
+    Assumption("Kαw and speed", "0.256, taken as constant", "grows with the square of the speed from 18 kn"),
+    Assumption("sense of the heading", "not printed", "0° following, and both senses where the table is fitted"),
+    Assumption("sea of the search", "not printed", "18 kn, 90°, 3.3 m; all six conditions in the joint search"),
+    Assumption("gains of the traditional PID", "not printed", "fitted to its column"),
+    Assumption("bits of the codes", "not printed", "17, the fewest that hold the printed gains"),
+    Assumption("when the weights are drawn", "before choosing the individuals to cross", "once for each generation"),
+    Assumption("the random integers r", "positive", "1 to 100"),
+    Assumption("the one answer of the last generation", "not said", "the fittest under equal weights"),
+    Assumption("roll and fin rate of table 1", "rms or significant not said", "rms"),
+    Assumption("η of the fin drive", "not printed", f"{EFFICIENCY:g}; shares saved do not depend on it"),
+    Assumption("mass and metacentric height", "not printed",
+               f"block coefficient {BLOCK_COEFFICIENT:g}; GM from the roll "
+               f"period with a gyradius of {GYRADIUS_SHARE:g} B; for the estimate of roll's loss alone"),
+    Assumption("loss of the main engine", "named in the introduction, no formula",
+               "fin drag by Whicker & Fehlner 1958; roll by the energy of its damping, an upper bound (Himeno 1981)"),
+)  # fmt: skip
+_DEVIATIONS = (
+    Deviation("section 1, lag of 30 s", "a low-pass", "as printed, and as a washout 30 s / (30 s + 1)",
+              "printed, P acts on the roll angle and Ms is 5.45; rate-gyro loops have a washout"),
+    Deviation("section 2.2, fin rate", "fin angle times 1/s", "times s", "1/s sums an angle up; its unit is no rate"),
+    Deviation("section 2.1, Φ", "open-loop transfer function", "the closed loop", "else no gain would matter"),
+    Deviation("section 2.3, W without 1 / 2π", "as J1 has it", "neither has it", "eq. (7) divides it out"),
+    Deviation("section 3, selection probability", "sum over 3", "sum over the population",
+              "else they do not add up to 1"),
+    Deviation("eq. (7), normaliser", "symbol: max; words: the fittest", "max; the fittest beside",
+              "the print has both"),
+    Deviation("section 3, records of 1000 s at 0.1 s", "each individual simulated",
+              "variances from the spectrum; the search by records made once beside it",
+              "no sampling error, and a classical Runge-Kutta step of 0.1 s diverges at the gyro's poles"),
+)  # fmt: skip
+_FIGURES = (
+    FigureCounterpart("Figure 1", "block diagram of the loop",
+                      reason="not drawn: a schematic; its blocks are in Symbols"),
+    FigureCounterpart("Figure 2", "principle of the search: sea, loop, objectives, GA",
+                      reason="not drawn: a schematic; what it finds is in The published search over seeds"),
+    FigureCounterpart("Figure 3", "roll without fins over time", ("Figure 3: roll without fins",)),
+    FigureCounterpart("Figure 4", "roll under the PID", ("Figure 4: roll under the traditional PID (fitted)",)),
+    FigureCounterpart("Figure 5", "roll under the GA's gains", ("Figure 5: roll under the GA's gains",)),
+    FigureCounterpart("Figure 6", "fin rate, PID", ("Figure 6: fin rate under the traditional PID (fitted)",)),
+    FigureCounterpart("Figure 7", "fin rate, GA", ("Figure 7: fin rate under the GA's gains",)),
+)  # fmt: skip
+DECLARATIONS = Declarations(_SYMBOLS, _ASSUMPTIONS, _DEVIATIONS, _FIGURES)
+
+
+def declaration_tables() -> tuple[Table, ...]:
+    """Return the tables of symbols, assumptions, deviations and figures."""
+    return DECLARATIONS.tables("Absolute levels of the motions do not match with any of these; nothing hangs on them.")
+
+
+# Tables of the paper's point and of its context: energy, regulators, the joint search, the search by records.
+
+
+def energy_tables(evidence: FinGainEvidence) -> tuple[Table, ...]:
+    """Return fin rates and work, then what propulsion loses and how the fins wear."""
+    return _work(evidence), _losses(evidence)
+
+
+def _work(evidence: FinGainEvidence) -> Table:
+    rows = [
+        (
+            e.row,
+            e.printed_rate_ratio,
+            e.fitted_rate_ratio,
+            *(part.work for part in e.printed),
+            EnergyComparison.saved(e.printed),
+            *(part.work for part in e.fitted),
+            EnergyComparison.saved(e.fitted),
+        )
+        for e in evidence.energy
+    ]
+    return Table(
+        "Energy: fin rate of the GA over the PID's, and W of eq. (3)",
+        (
+            "kn / °",
+            "rate GA/PID: paper",
+            "ours",
+            "W PID, J: paper",
+            "W GA",
+            "saved %",
+            "W PID, J: ours",
+            "W GA",
+            "saved %",
+        ),
+        tuple(rows),
+        f"W = I var(fin rate) / η with I = {INERTIA} kg m² and η = {EFFICIENCY:g} assumed: the mean kinetic "
+        "energy of both fins' turning, over η, no energy of a voyage. Paper: from its fin rates, taken as rms. Ours: "
+        "the loop, sea and "
+        "baseline fitted to table 1, the better reading",
+    )
+
+
+def _losses(evidence: FinGainEvidence) -> Table:
+    kW = WATTS_PER_KILOWATT
+    rows = [
+        (
+            e.row,
+            *(part.fin_power / kW for part in e.fitted),
+            *(part.roll_power / kW for part in e.fitted),
+            *(part.reversals for part in e.fitted),
+        )
+        for e in evidence.energy
+    ]
+    return Table(
+        "Estimates: what propulsion loses, and how often the fins turn back",
+        ("kn / °", "fin drag, kW: PID", "GA", "roll, kW at most: PID", "GA", "reversals an hour: PID", "GA"),
+        tuple(rows),
+        "Ours, fitted. Drag of both fins by C_D = 0.0065 + C_L² / (0.9 π a_e) (Whicker & Fehlner 1958, as later "
+        "texts quote it). Roll: the "
+        "power that "
+        "its damping dissipates (Himeno 1981), which waves feed, so that the engine loses this at most. Reversals: "
+        "two for "
+        "each zero up-crossing of the fin rate (Rice 1945); bearings and seals wear with them",
+    )
+
+
+def regulator_table(evidence: FinGainEvidence, preamplifier: Preamplifier) -> Table:
+    """Return Gh and Gl as functions, with what they do."""
+    rows = [(s.speed, s.height, s.Gl, s.Gh, *s.reductions, *s.fins, *s.Ms) for s in evidence.regulators[preamplifier]]
+    return Table(
+        f"Gh and Gl as functions, beam sea, preamplifier {PREAMPLIFIER_LABELS[preamplifier]}",
+        (
+            "kn",
+            "h1/3 m",
+            "Gl",
+            "Gh",
+            "reduction %: with",
+            "without",
+            "fin ° rms: with",
+            "without",
+            "Ms: with",
+            "without",
+        ),
+        tuple(rows),
+        "The paper sets both to 1. Gl = (18 / U)² keeps the loop gain where lift grows with U². Gh: the factor on "
+        "all gains, "
+        "at most 1, at which the fin variance meets the paper's target of 150.31 deg²",
+    )
+
+
+def joint_table(evidence: FinGainEvidence) -> Table:
+    """Return one set of gains for all six conditions beside the paper's."""
+    rows = []
+    for joint in evidence.joint_optima.values():
+        label = PREAMPLIFIER_LABELS[joint.preamplifier]
+        rows += [
+            (label, row.name, float(roll), float(fin), float(rate), float(Ms))
+            for row, (roll, fin, rate), Ms in zip(TABLE_1, joint.ratios, joint.Ms, strict=True)
+        ]
+    gains = "; ".join(
+        f"{PREAMPLIFIER_LABELS[j.preamplifier]}: "
+        + ", ".join(f"{n} {v:.2f}" for n, v in zip(GAIN_NAMES, j.gains, strict=True))
+        + "; the published algorithm on the six at once, by seed: worst ratio "
+        + ", ".join(f"{v:.3g}" for v in j.genetic_worst_ratios)
+        + " at Ms "
+        + ", ".join(f"{v:.3g}" for v in j.genetic_Ms)
+        for j in evidence.joint_optima.values()
+    )
+    return Table(
+        "One set of gains for all six conditions: variances over the paper's",
+        ("preamplifier", "kn / °", "roll", "fin angle", "fin rate", "Ms"),
+        tuple(rows),
+        f"Long-crested, in the paper's box, Ms at most 2 or the paper's own. {gains}",
+    )
+
+
+def time_domain_table(evidence: FinGainEvidence) -> Table:
+    """Return the search by records of 1000 s beside that by the spectrum; a sentence where it was left out."""
+    title = "The search by records of 1000 s at 0.1 s, made once"
+    header = ("objectives by", *GAIN_NAMES, "reduction %", "fin rate °/s", "Ms", "CPU s")
+    made = evidence.time_domain
+    if made is None:
+        return Table(title, header, (), "Left out of the quick version; it takes some 10 s of CPU time.")
+    rows = [
+        (label, *(float(g) for g in gains), response.reduction, response.rate, response.Ms, cpu_s)
+        for label, gains, response, cpu_s in zip(
+            ("records of one sea", "its spectrum"), made.gains, made.responses, made.cpu_s, strict=True
+        )
+    ]
+    return Table(
+        title,
+        header,
+        tuple(rows),
+        f"{PREAMPLIFIER_LABELS[made.preamplifier]}, the same random numbers; {made.evaluations:,} records of one "
+        "realised sea "
+        "by a compiled loop, exact hold. Reduction, rate and Ms of both by the spectrum. Two searches of one seed "
+        "part with "
+        "the first individual whose order the sampling error of a record changes; the scatter over seeds is as large",
+    )
+
+
+def fin_rate_ratios(evidence: FinGainEvidence) -> Bars:
+    """Return the ratio of fin rates as bars, paper and ours."""
+    return Bars(
+        "Fin rate of the GA over the PID's",
+        tuple(e.row for e in evidence.energy),
+        {
+            "paper": tuple(e.printed_rate_ratio for e in evidence.energy),
+            "ours, fitted": tuple(e.fitted_rate_ratio for e in evidence.energy),
+        },
+        "rms fin rate, GA / PID",
+        "Below 1 the GA's fins are slower. W goes with its square.",
+    )
+
+
+# Tables of the study: table 1, fitted quantities, the search over seeds, what beats it, misprints, choices.
 
 ResultCells = tuple[float, float, float]
 _HEADER = (
@@ -262,4 +523,97 @@ def _comparison_row(comparison: FiveGainComparison, kind: str) -> tuple[str | fl
         comparison.rate_ratio,
         comparison.paper_reduction,
         comparison.reduction,
+    )
+
+
+# Figures of the study: table 1, figures 3 to 7, answers over seeds, roll against fin rate.
+
+
+def figures(evidence: FinGainEvidence) -> tuple[Figure | Bars, ...]:
+    """Return all figures in the order of the page."""
+    return (
+        fin_rate_ratios(evidence),
+        _reductions(evidence),
+        *_histories(evidence),
+        *(_search_bars(evidence, r) for r in Preamplifier),
+        _sensitivity_peaks(evidence),
+        _roll_against_rate(evidence),
+    )
+
+
+def _reductions(evidence: FinGainEvidence) -> Bars:
+    series = {"paper, GA": tuple(row.genetic.reduction for row in TABLE_1)}
+    for reading in Preamplifier:
+        series[f"{PREAMPLIFIER_LABELS[reading]}, K_q fitted"] = tuple(
+            m.reduction for m in evidence.table_1_responses[reading]
+        )
+    return Bars(
+        "Table 1: roll reduction with the GA's gains",
+        tuple(row.name for row in TABLE_1),
+        series,
+        "reduction [%]",
+        "Long-crested sea, K_q fitted to 18 / 90 alone; K_alpha grows with the square of the speed.",
+    )
+
+
+def _histories(evidence: FinGainEvidence) -> list[Figure]:
+    h, fit = evidence.histories, evidence.best_fit
+    note = (
+        f"One realisation, 18 kn, 90°; {PREAMPLIFIER_LABELS[fit.preamplifier]}, short-crested, K_q and the "
+        "level fitted to table 1, "
+        "the traditional PID's gains fitted to its column."
+    )
+    drawn = (
+        ("Figure 3: roll without fins", "roll [°]", h.uncontrolled),
+        ("Figure 4: roll under the traditional PID (fitted)", "roll [°]", h.pid[0]),
+        ("Figure 5: roll under the GA's gains", "roll [°]", h.genetic[0]),
+        ("Figure 6: fin rate under the traditional PID (fitted)", "fin rate [°/s]", h.pid[1]),
+        ("Figure 7: fin rate under the GA's gains", "fin rate [°/s]", h.genetic[1]),
+    )
+    return [
+        Figure(title, "time [s]", label, (Curve(f"rms {np.std(y):.2f}", h.time, y),), note) for title, label, y in drawn
+    ]
+
+
+def _search_bars(evidence: FinGainEvidence, preamplifier: Preamplifier) -> Bars:
+    found = evidence.searches_with(preamplifier)
+    shares = 100.0 * (found.gains - BOX.lower) / BOX.width
+    return Bars(
+        f"Answers of the published search by seed, preamplifier {PREAMPLIFIER_LABELS[preamplifier]}",
+        tuple(str(k + 1) for k in range(len(shares))),
+        {name: tuple(float(v) for v in shares[:, i]) for i, name in enumerate(GAIN_NAMES)},
+        "share of the searched range [%]",
+        "The paper's answer: 11.1, 0.9 and 32.7 %.",
+    )
+
+
+def _sensitivity_peaks(evidence: FinGainEvidence) -> Bars:
+    series = {}
+    for reading in Preamplifier:
+        for fins in FinObjective:
+            series[f"{PREAMPLIFIER_LABELS[reading]}, {fins.value}"] = tuple(
+                float(v) for v in evidence.searches_with(reading, fins).Ms
+            )
+    count = len(evidence.searches[0].Ms)
+    return Bars(
+        "Sensitivity peak of these answers",
+        tuple(str(k + 1) for k in range(count)),
+        series,
+        "Ms",
+        "A stabiliser should not exceed 2.",
+        is_logarithmic=True,
+    )
+
+
+def _roll_against_rate(evidence: FinGainEvidence) -> Figure:
+    made = evidence.five_gain_design
+    names = {3: "three gains", 5: "five gains"}
+    curves = [Curve(names[count], made.rate_ratios, roll) for count, roll in made.roll_ratios.items()]
+    paper = (np.array([0.97, 1.03, 1.0, 1.0, 1.0]), np.array([1.0, 1.0, 1.0, 0.97, 1.03]))
+    return Figure(
+        "Roll against fin rate, washout, Ms at most 2",
+        "fin-rate variance allowed / paper's",
+        "roll variance / paper's",
+        (*curves, Curve("paper's gains", *paper)),
+        "The worse of long- and short-crested ITTC seas of 3.3 m. KP, KI, KD in the box of the paper.",
     )

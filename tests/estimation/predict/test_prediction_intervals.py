@@ -14,7 +14,7 @@ from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.simulate import replay
 from seatrial.physics.simulate.steer import manoeuvre
-from seatrial_studies.alexandersson2022.window_bands import band_coverage, holdout_windows
+from seatrial_studies.alexandersson2022.reproduction import band_coverage, holdout_windows
 
 K, T, RUNS, REPEATS, ZERO = 0.15, 8.0, 7, 9, 0.01
 ANGLES = (10, 12, 14, 16, 18, 20, 15)

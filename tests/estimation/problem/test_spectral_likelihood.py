@@ -12,14 +12,7 @@ from seatrial.physics.hydro.excitation import encounter_frequency
 from seatrial.physics.models.published import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
 from seatrial.physics.sea.realise import Spacing
 from seatrial.physics.sea.spectrum import WaveEncounter, ittc
-from seatrial_studies.seaway import (
-    HEAVE_NOISE,
-    PITCH_NOISE,
-    SPEED,
-    SeawayScenario,
-    box_hull,
-    simulate_seaway_run,
-)
+from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE, SPEED, SeawayScenario, box_hull, simulate_seaway_run
 
 NONE = np.zeros((0, 0))
 

@@ -8,7 +8,7 @@ from seatrial.estimation.search import JudgedRun, LinearCandidates, one_sample_f
 from seatrial.numerics.optimise import Box, ParticleSwarm, SwarmSettings
 from seatrial.physics.models import heave_pitch
 from seatrial.physics.simulate import Forcing, LinearBatch
-from seatrial_studies.published_ship import theoretical_coefficients
+from seatrial_studies.seaway import theoretical_coefficients
 
 SAMPLES, DT, SUBSTEPS = 40, 0.2, 8
 NAMES = ("a33", "a35", "b33", "b53", "lift_1")

@@ -13,11 +13,17 @@ from seatrial import api
 from seatrial.core.results import Verdict
 from seatrial.core.values import InputError
 from seatrial.data.folder.document import document, strict_json
-from seatrial_studies.section2d import tank, verdicts
+from seatrial_studies.section2d import study, verdicts
 from seatrial_studies.section2d.analysis import SectionAnalysis, analyse_records
 from seatrial_studies.section2d.modes import jackknife_error, split_periods
-from seatrial_studies.section2d.runs import STEADY_TIMING, read_periods
-from seatrial_studies.section2d.study import study
+from seatrial_studies.section2d.responses import (
+    HEAVE_PERIOD,
+    HEIGHTS,
+    ROLL_PERIOD,
+    STEADY_TIMING,
+    SWAY_STIFFNESS,
+    read_periods,
+)
 from seatrial_studies.section2d.tables import largest_errors, tables
 
 
@@ -38,8 +44,8 @@ def test_periods_held_out_between_trained_ones_are_predicted(made: SectionAnalys
 
 
 def test_natural_periods_are_the_documented_ones(made: SectionAnalysis) -> None:
-    assert made.heave.period == pytest.approx(tank.HEAVE_PERIOD, rel=0.01)
-    assert made.roll.period == pytest.approx(tank.ROLL_PERIOD, rel=0.01)
+    assert made.heave.period == pytest.approx(HEAVE_PERIOD, rel=0.01)
+    assert made.roll.period == pytest.approx(ROLL_PERIOD, rel=0.01)
 
 
 def test_nothing_of_a_held_out_period_trains(made: SectionAnalysis) -> None:
@@ -54,7 +60,7 @@ def test_nothing_of_a_held_out_period_trains(made: SectionAnalysis) -> None:
 
 
 def test_sway_stiffness_meets_the_documented_range(made: SectionAnalysis) -> None:
-    low, high = tank.SWAY_STIFFNESS
+    low, high = SWAY_STIFFNESS
     assert (
         made.sway_stiffness.mean - 2.0 * made.sway_stiffness.error <= high
         and made.sway_stiffness.mean + 2.0 * made.sway_stiffness.error >= low
@@ -76,7 +82,7 @@ def test_dead_camera_channels_are_found_and_no_others(made: SectionAnalysis) -> 
 
 
 def test_the_waves_have_their_nominal_height(made: SectionAnalysis) -> None:
-    ratios = [2.0 * r.wave_amplitude / tank.HEIGHTS[r.run.height_index] for r in made.responses if r.run.period > 0.85]
+    ratios = [2.0 * r.wave_amplitude / HEIGHTS[r.run.height_index] for r in made.responses if r.run.period > 0.85]
     assert np.mean(ratios) == pytest.approx(1.0, abs=0.03) and np.ptp(ratios) < 0.06
 
 
@@ -91,7 +97,7 @@ def test_the_stretch_lies_between_ramp_and_reflection(made: SectionAnalysis) -> 
 
 
 def test_accelerometers_and_camera_differ_by_the_known_gain(made: SectionAnalysis) -> None:
-    from seatrial_studies.section2d.instruments import camera_gain
+    from seatrial_studies.section2d.analysis import camera_gain
 
     assert camera_gain(made)[0] == pytest.approx(1.13, abs=0.03)
 
@@ -129,7 +135,7 @@ def test_the_jackknife_of_a_mean_is_its_standard_error(rng: np.random.Generator)
 
 
 def test_the_command_writes_a_page(made: SectionAnalysis, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    module = importlib.import_module("seatrial_studies.section2d.study")
+    module = importlib.import_module("seatrial_studies.section2d")
     monkeypatch.setattr(module, "data_folder", lambda: tmp_path)
     monkeypatch.setattr(module, "analyse_records", lambda *_, **__: made)
     done = study(quick=True, seed=0, report_progress=None)

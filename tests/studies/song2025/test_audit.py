@@ -5,13 +5,21 @@ import math
 import pytest
 
 from seatrial.data.example_series.series import JET_VELOCITY
-from seatrial_studies.song2025 import audited_equations as equations
-from seatrial_studies.song2025 import audited_motions as motions
-from seatrial_studies.song2025 import audited_tables as tables
-from seatrial_studies.song2025.assumed_parameters import assumed_parameter_sets
-from seatrial_studies.song2025.audit import audit
-from seatrial_studies.song2025.craft_models import TRUTH, reference_record
-from seatrial_studies.song2025.published import APPROACH_SPEED, TABLE_3, MotionEquation, PublishedManoeuvre
+from seatrial_studies.song2025.audit import (
+    assumed_parameter_sets,
+    audit,
+    equation_14_systems,
+    force_asymmetry,
+    table_1_mass,
+)
+from seatrial_studies.song2025.published import (
+    APPROACH_SPEED,
+    TABLE_3,
+    TRUTH,
+    MotionEquation,
+    PublishedManoeuvre,
+    reference_record,
+)
 
 
 @pytest.fixture(scope="module")
@@ -124,16 +132,16 @@ def test_table_4_s_yaw_error_in_the_35_zigzag_exceeds_the_yaw_rate(seen):
 
 def test_a_symmetric_craft_has_no_asymmetry_at_any_state():
     record = reference_record(PublishedManoeuvre.TURN_35)
-    assert motions.force_asymmetry(TRUTH.craft(), record, "Y_sum") == pytest.approx(0.0, abs=1e-12)
-    assert motions.force_asymmetry(TRUTH.craft(), record, "X_sum") == pytest.approx(2.0, abs=1e-12)
+    assert force_asymmetry(TRUTH.craft(), record, "Y_sum") == pytest.approx(0.0, abs=1e-12)
+    assert force_asymmetry(TRUTH.craft(), record, "X_sum") == pytest.approx(2.0, abs=1e-12)
 
 
 def test_identifications_hold_with_any_motion():
-    for of in equations.equation_14_systems(reference_record(PublishedManoeuvre.TURN_35)).values():
+    for of in equation_14_systems(reference_record(PublishedManoeuvre.TURN_35)).values():
         found = of.solve()
         truth = TRUTH.craft().parameters
         assert found == pytest.approx({n: truth[n].value for n in found}, rel=1e-6)
 
 
 def test_mass_is_in_proportion_to_density():
-    assert tables.table_1_mass(2.0).block == pytest.approx(2.0 * tables.table_1_mass(1.0).block)
+    assert table_1_mass(2.0).block == pytest.approx(2.0 * table_1_mass(1.0).block)

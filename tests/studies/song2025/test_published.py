@@ -4,12 +4,14 @@ import pytest
 
 from seatrial.physics.models.waterjet import TABLE_2, waterjet
 from seatrial.physics.models.waterjet import WATERJET_COEFFICIENTS as COEFFICIENTS
-from seatrial_studies.song2025.craft_models import CORRECTED, PRINTED, TRUTH
 from seatrial_studies.song2025.published import (
+    CORRECTED,
     DRAUGHT,
     LENGTH,
     MASS,
     MISPRINTED_SIGNS,
+    PRINTED,
+    TRUTH,
     Table2Column,
     printed_coefficients,
     printed_differences,
