@@ -9,8 +9,7 @@ import tempfile
 import numpy as np
 from measure import Line, at_most, fastest
 
-from seatrial.numerics.kernels.integrate import evaluate
-from seatrial.numerics.kernels.sensitivity import evaluate_tangent
+from seatrial.numerics.kernels.integrate import evaluate, evaluate_tangent
 from seatrial.physics.models.mmg import mmg
 from seatrial.physics.models.published import kvlcc2_l7
 

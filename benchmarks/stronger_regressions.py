@@ -18,7 +18,7 @@ from seatrial.core.values import Record
 from seatrial.data.example_series.series import SENSOR_NOISE
 from seatrial.estimation.regress.estimators import RegressionEstimate, RegressionEstimator
 from seatrial.estimation.regress.operators import RegressionMotion, window_function
-from seatrial.numerics.kernels.sensitivity import evaluate_tangent
+from seatrial.numerics.kernels.integrate import evaluate_tangent
 from seatrial.physics.simulate.replay import replay
 
 Array = NDArray[np.float64]

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import seatrial as st
-from seatrial.core.figures.tracks import hull_outline
+from seatrial.core.figures.run import hull_outline
 from seatrial.core.results import Prediction
 from seatrial.core.values import Record
 

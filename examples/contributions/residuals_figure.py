@@ -2,8 +2,19 @@
 
 import numpy as np
 
-from seatrial.core.figures.chart import WIDTH, Axis, Chart, LegendEntry, Panel, Region
-from seatrial.core.figures.marks import ACCENT, SECOND, Line, Rule, Stroke
+from seatrial.core.figures.chart import (
+    ACCENT,
+    SECOND,
+    WIDTH,
+    Axis,
+    Chart,
+    LegendEntry,
+    Line,
+    Panel,
+    Region,
+    Rule,
+    Stroke,
+)
 from seatrial.core.values import Array
 
 PANEL = Region(64.0, 20.0, WIDTH - 84.0, 220.0)  # [px] leaves room for the numbers of both axes; chosen by eye

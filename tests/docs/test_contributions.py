@@ -12,7 +12,7 @@ from tests.estimation.regress.linear import zigzags
 from tests.installed_package import install
 
 from seatrial import testing
-from seatrial.core.figures.marks import Rule
+from seatrial.core.figures.chart import Rule
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Verdict
 from seatrial.core.values import InputError, Record

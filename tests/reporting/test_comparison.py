@@ -5,7 +5,7 @@ from dataclasses import replace
 from tests.reporting.fabricated_comparison import fabricated_comparison
 from tests.reporting.section_text import cells
 
-from seatrial.core.figures.marks import Line
+from seatrial.core.figures.chart import Line
 from seatrial.reporting.comparison import (
     difference_forest,
     difference_table,

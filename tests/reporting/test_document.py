@@ -8,9 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from seatrial.core.figures.marks import Stroke
-from seatrial.core.figures.run import RunView
-from seatrial.core.figures.tracks import Track
+from seatrial.core.figures.chart import Stroke
+from seatrial.core.figures.run import RunView, Track
 from seatrial.core.results import Fit
 from seatrial.reporting.document import chapters_page, environment
 from seatrial.reporting.first_screen import FirstScreen

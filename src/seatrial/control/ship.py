@@ -17,8 +17,8 @@ from seatrial.core.values.record import froude_factor
 from seatrial.data.folder.model_file import ModelFile
 from seatrial.estimation.information.stability import lateral_states
 from seatrial.estimation.predict.draws import square_root
+from seatrial.numerics.kernels.integrate import evaluate_tangent
 from seatrial.numerics.kernels.loop import is_hurwitz
-from seatrial.numerics.kernels.sensitivity import evaluate_tangent
 from seatrial.physics.hydro.free_roll import equivalent_damping
 from seatrial.physics.loops import Block, TransferLoop
 from seatrial.physics.models.thrust_orders import YAW

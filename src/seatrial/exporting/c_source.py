@@ -28,7 +28,7 @@ from seatrial.exporting.source import (
     state_variables,
     stored_text,
 )
-from seatrial.numerics.kernels.trigonometry import COSINE_SERIES, HALF_PI, SINE_SERIES
+from seatrial.numerics.kernels.integrate import COSINE_SERIES, HALF_PI, SINE_SERIES
 
 
 def export_c(source: ExportSource, name: str) -> Export:

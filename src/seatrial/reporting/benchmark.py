@@ -5,9 +5,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from seatrial.core.figures.chart import WIDTH, Axis, Chart, LegendEntry, Panel, Region
-from seatrial.core.figures.curves import HEIGHT, LEFT, STROKES
-from seatrial.core.figures.marks import GREY, Line, Mark, Rule, Stroke
+from seatrial.core.figures.chart import GREY, WIDTH, Axis, Chart, LegendEntry, Line, Mark, Panel, Region, Rule, Stroke
+from seatrial.core.figures.panels import HEIGHT, LEFT, STROKES
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results.campaign import Benchmark, CheckedClaim, MethodScore, PairedTest, ProblemScore
 from seatrial.core.text.numbers import DASH, fixed, p_value, significant

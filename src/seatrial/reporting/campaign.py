@@ -6,10 +6,26 @@ from collections.abc import Sequence
 import numpy as np
 from markupsafe import Markup
 
-from seatrial.core.figures.chart import Axis, Chart, LegendEntry, Panel, Region, tiles
-from seatrial.core.figures.heat_map import heat_map
-from seatrial.core.figures.marks import ACCENT, INK, SECOND, Line, Mark, Marker, Points, Rectangle, Rule, Shape, Stroke
-from seatrial.core.figures.rows import row_panel
+from seatrial.core.figures.chart import (
+    ACCENT,
+    INK,
+    SECOND,
+    Axis,
+    Chart,
+    LegendEntry,
+    Line,
+    Mark,
+    Marker,
+    Panel,
+    Points,
+    Rectangle,
+    Region,
+    Rule,
+    Shape,
+    Stroke,
+    tiles,
+)
+from seatrial.core.figures.panels import heat_map, row_panel
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results.campaign import (
     ERROR_BINS,

@@ -8,7 +8,7 @@ from markupsafe import Markup
 
 from seatrial.core.equations import Model
 from seatrial.core.equations.latex import latex_symbol
-from seatrial.core.figures.heat_map import heat_map
+from seatrial.core.figures.panels import heat_map
 from seatrial.core.figures.run import NARROW
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Coefficient, Fit

@@ -6,11 +6,23 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from markupsafe import Markup
 
-from seatrial.core.figures.chart import Axis, Chart, LegendEntry
-from seatrial.core.figures.marks import ACCENT, SECOND, Line, Mark, Marker, Points, Rule, Shape, Stroke
-from seatrial.core.figures.rows import row_panel
+from seatrial.core.figures.chart import (
+    ACCENT,
+    SECOND,
+    Axis,
+    Chart,
+    LegendEntry,
+    Line,
+    Mark,
+    Marker,
+    Points,
+    Rule,
+    Shape,
+    Stroke,
+    span,
+)
+from seatrial.core.figures.panels import row_panel
 from seatrial.core.figures.svg_text import svg
-from seatrial.core.figures.ticks import span
 from seatrial.core.results import Comparison, Difference, ManoeuvreDifferences
 from seatrial.core.text.numbers import DASH, exact, p_value, significant
 from seatrial.core.text.words import counted, enumeration, sentence

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
-from seatrial.core.figures.night import night_colour
+from seatrial.core.figures.svg_text import night_colour
 from seatrial.core.pages import shell
 from seatrial.core.text.numbers import duration, significant
 from seatrial.reporting.first_screen import FirstScreen

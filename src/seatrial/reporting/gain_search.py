@@ -5,9 +5,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from seatrial.core.figures.bars import bars_chart
 from seatrial.core.figures.chart import Chart
-from seatrial.core.figures.curves import NamedCurve, curves_chart
+from seatrial.core.figures.panels import NamedCurve, bars_chart, curves_chart
 from seatrial.core.results.front_chart import degree_unit
 from seatrial.core.results.tuning import Controller, GainSearch, Tuning
 from seatrial.core.text.numbers import DASH, exact, fixed, significant

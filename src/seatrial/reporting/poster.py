@@ -8,10 +8,9 @@ from dataclasses import dataclass, replace
 
 from markupsafe import Markup
 
-from seatrial.core.figures.chart import Chart, LegendEntry, Region
-from seatrial.core.figures.marks import ACCENT, SECOND, Stroke
+from seatrial.core.figures.chart import ACCENT, SECOND, Chart, LegendEntry, Region, Stroke
+from seatrial.core.figures.run import track_panel
 from seatrial.core.figures.svg_text import svg
-from seatrial.core.figures.tracks import track_panel
 from seatrial.core.results.poster import Basis, Poster, PosterManoeuvre, PosterQuantity
 from seatrial.core.text.numbers import DASH, exact, exponent, fixed, significant
 from seatrial.core.text.words import counted, enumeration

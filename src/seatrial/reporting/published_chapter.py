@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 
 from seatrial.core.figures.chart import Chart
-from seatrial.core.figures.curves import NamedCurve, curves_chart
+from seatrial.core.figures.panels import NamedCurve, curves_chart
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Fit, ReferenceEstimate, Search, SearchTrack
 from seatrial.core.results.comparison import (

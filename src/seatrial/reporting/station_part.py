@@ -5,7 +5,7 @@ import math
 import numpy as np
 from markupsafe import Markup
 
-from seatrial.core.figures.curves import NamedCurve, curves_chart
+from seatrial.core.figures.panels import NamedCurve, curves_chart
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results.station import StationKeeping
 from seatrial.core.text.numbers import exact, fixed, significant

@@ -6,13 +6,10 @@ from collections.abc import Sequence
 import numpy as np
 from markupsafe import Markup
 
-from seatrial.core.figures.chart import Chart, LegendEntry
-from seatrial.core.figures.marks import text_width
-from seatrial.core.figures.run import NARROW, ChannelPanel, RunView, track_chart
+from seatrial.core.figures.chart import Chart, LegendEntry, text_width, thinned
+from seatrial.core.figures.run import NARROW, ChannelPanel, RunView, is_slender, track_chart
 from seatrial.core.figures.svg_text import svg
-from seatrial.core.figures.ticks import thinned
 from seatrial.core.figures.time_plot import BAND_POINTS, TimeSpan, packed, plot_document
-from seatrial.core.figures.tracks import is_slender
 from seatrial.core.text.numbers import duration, significant
 
 # px that an entry of a legend is wider than estimated; chosen

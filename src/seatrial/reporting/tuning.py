@@ -5,7 +5,7 @@ from functools import partial
 import numpy as np
 from markupsafe import Markup
 
-from seatrial.core.figures.bars import bars_chart
+from seatrial.core.figures.panels import bars_chart
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results.front_chart import front_chart
 from seatrial.core.results.loop_charts import bode_chart, nyquist_chart, sensitivity_chart, styled_controllers

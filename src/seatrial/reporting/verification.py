@@ -5,11 +5,26 @@ import math
 import numpy as np
 from markupsafe import Markup
 
-from seatrial.core.figures.chart import Axis, Chart, LegendEntry, Panel, Region, tiles
-from seatrial.core.figures.marks import ACCENT, SECOND, Line, Mark, Marker, Points, Rule, Shape, Stroke
-from seatrial.core.figures.rows import row_panel
+from seatrial.core.figures.chart import (
+    ACCENT,
+    SECOND,
+    Axis,
+    Chart,
+    LegendEntry,
+    Line,
+    Mark,
+    Marker,
+    Panel,
+    Points,
+    Region,
+    Rule,
+    Shape,
+    Stroke,
+    span,
+    tiles,
+)
+from seatrial.core.figures.panels import row_panel
 from seatrial.core.figures.svg_text import svg
-from seatrial.core.figures.ticks import span
 from seatrial.core.results.verification import Verification, VerifiedLeg, VerifiedQuantity
 from seatrial.core.text.numbers import exact, fixed
 from seatrial.core.values import Array

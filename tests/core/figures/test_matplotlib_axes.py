@@ -5,8 +5,23 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from seatrial.core.figures.chart import Axis, Chart, LegendEntry, Panel, Region, row_axis
-from seatrial.core.figures.marks import Area, Line, Marker, Points, Rectangle, Rule, Shape, Stroke, Text
+from seatrial.core.figures.chart import (
+    Area,
+    Axis,
+    Chart,
+    LegendEntry,
+    Line,
+    Marker,
+    Panel,
+    Points,
+    Rectangle,
+    Region,
+    Rule,
+    Shape,
+    Stroke,
+    Text,
+    row_axis,
+)
 from seatrial.core.figures.matplotlib_axes import matplotlib_figure
 
 STROKE = Stroke("#123456", 1.0, "5 2")

@@ -1,12 +1,31 @@
-"""The channels of a run stand beside its track, or below it where it is a strip."""
+"""Runs: tracks, channels over time, and bands about both."""
 
 import numpy as np
+import pytest
 
-from seatrial.core.figures.bands import BAND
-from seatrial.core.figures.chart import Region
-from seatrial.core.figures.marks import Area, Stroke
-from seatrial.core.figures.run import NARROW, ChannelPanel, RunView, TimeCurve, channel_panel, run_chart, track_chart
-from seatrial.core.figures.tracks import Track
+from seatrial.core.figures.chart import Area, Region, Stroke
+from seatrial.core.figures.run import (
+    BAND,
+    NARROW,
+    WIDEST_ENVELOPE,
+    ChannelPanel,
+    RunView,
+    TimeCurve,
+    Track,
+    band,
+    channel_panel,
+    extents,
+    hull_outline,
+    is_slender,
+    run_chart,
+    strip_height,
+    track_chart,
+    track_envelope,
+    track_panel,
+    visible_edges,
+)
+
+# The channels of a run stand beside its track, or below it where it is a strip.
 
 TIME = np.linspace(0.0, 100.0, 300)
 STROKE = Stroke("#000000", 1.0)
@@ -49,3 +68,82 @@ def test_a_strip_is_made_for_a_telephone_with_letters_of_the_same_size() -> None
     wide, narrow = track_chart(view), track_chart(view, NARROW)
     assert wide is not None and narrow is not None and narrow.width <= NARROW
     assert narrow.panels[0].tick_size == wide.panels[0].tick_size
+
+
+# Tracks keep their shape, lie on their side where they are long, and hulls point where they head.
+
+SHARE = np.linspace(0.0, 1.0, 50)
+NORTHERLY = Track(300.0 * SHARE, 20.0 * SHARE, None, STROKE)
+SQUARE = Track(90.0 * SHARE, 80.0 * SHARE, SHARE, STROKE)
+
+
+@pytest.mark.parametrize("track", [NORTHERLY, SQUARE])
+def test_a_track_keeps_its_shape_and_stays_inside(track: Track) -> None:
+    panel = track_panel([track], 10.0, Region(0.0, 0.0, 400.0, 90.0))
+    across, along = (panel.x.ends[1] - panel.x.ends[0]) / 400.0, (panel.y.ends[1] - panel.y.ends[0]) / 90.0
+    assert across == pytest.approx(along)
+    assert panel.x.ends[0] < 0.0 and panel.x.ends[1] > (300.0 if track is NORTHERLY else 80.0)
+
+
+def test_a_northerly_track_lies_on_its_side() -> None:
+    lying, standing = (track_panel([t], 0.0, Region(0.0, 0.0, 100.0, 100.0)) for t in (NORTHERLY, SQUARE))
+    assert lying.is_y_down and lying.x.name.startswith("x₀, north")
+    assert not standing.is_y_down and standing.x.name.startswith("y₀, east")
+
+
+def test_hulls_stand_along_a_track_whose_heading_is_known() -> None:
+    def hulls(track: Track, length: float) -> int:
+        return sum(isinstance(m, Area) for m in track_panel([track], length, Region(0.0, 0.0, 100.0, 100.0)).marks)
+
+    assert hulls(SQUARE, 5.0) == 7 and hulls(SQUARE, 0.0) == 0 == hulls(NORTHERLY, 5.0)
+
+
+def test_slender_tracks_become_strips() -> None:
+    assert extents([NORTHERLY, SQUARE]) == (300.0, 80.0)
+    assert is_slender([NORTHERLY]) and not is_slender([SQUARE])
+    assert strip_height([NORTHERLY], 620.0, 10.0) == pytest.approx(60.0)
+
+
+def test_a_ship_heading_east_points_east() -> None:
+    outline = hull_outline(0.0, 0.0, np.pi / 2, 10.0)
+    assert np.isclose(outline[:, 1].max(), 5.0) and np.abs(outline[:, 0]).max() < 1.0
+
+
+def test_positions_of_a_national_grid_are_counted_from_a_round_number() -> None:
+    far = Track(5_312_370.0 + 40.0 * SHARE, 351_160.0 + 50.0 * SHARE, None, STROKE)
+    panel = track_panel([far], 0.0, Region(0.0, 0.0, 300.0, 300.0))
+    assert (panel.x.name, panel.y.name) == ("y₀, east of 351\u202f100 [m]", "x₀, north of 5\u202f312\u202f300 [m]")
+    for axis, base in ((panel.x, 351_100.0), (panel.y, 5_312_300.0)):
+        assert len(axis.tick_list()) >= 3
+        assert all(float(tick.text) == pytest.approx(tick.value - base) for tick in axis.tick_list())
+
+
+# Bands enclose their curve, and along a track have the half width to its side.
+
+
+def test_a_band_runs_along_one_edge_and_back_along_the_other() -> None:
+    x = np.arange(4.0)
+    area = band(x, x - 1.0, np.array([1.0, 2.0, np.nan, 4.0]))
+    assert area.x == pytest.approx([0.0, 1.0, 3.0, 3.0, 1.0, 0.0])
+    assert area.y == pytest.approx([-1.0, 0.0, 2.0, 4.0, 2.0, 1.0])
+
+
+def test_axes_follow_a_band_no_further_than_the_curves_span() -> None:
+    low, high = visible_edges([np.array([0.0, 2.0])], np.array([-9.0, -1.0]), np.array([1.0, 50.0]))
+    assert low.min() == -2.0 and high.max() == 4.0
+    assert visible_edges([np.full(3, np.nan)], low, high) == []
+
+
+def test_an_envelope_has_the_half_width_to_the_side_of_the_track() -> None:
+    """North at 3 m to the sides (east), whatever the half width along the track."""
+    east, north = np.zeros(50), np.linspace(10.0, 90.0, 50)
+    area = track_envelope(east, north, np.full(50, 3.0), np.full(50, 20.0))
+    assert area is not None and (area.x.min(), area.x.max()) == pytest.approx((-3.0, 3.0))
+    assert track_envelope(east[:2], north[:2], east[:2], east[:2]) is None
+
+
+def test_an_envelope_ends_where_it_would_hide_the_track() -> None:
+    east, north = np.zeros(50), np.linspace(0.0, 100.0, 50)
+    area = track_envelope(east, north, np.linspace(0.0, 50.0, 50), np.zeros(50))
+    assert area is not None and area.x.max() <= WIDEST_ENVELOPE * 100.0 and area.y.max() == pytest.approx(49.0, abs=2.0)
+    assert track_envelope(east, north, np.full(50, 50.0), np.zeros(50)) is None

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from seatrial.core.figures.marks import Array, Rule, Stroke
+from seatrial.core.figures.chart import Array, Rule, Stroke
 from seatrial.core.figures.run import ChannelPanel, TimeCurve
 from seatrial.core.figures.time_plot import GAP_CODE, LARGEST_CODE, POINTS, TimeSpan, grid_values, packed, plot_document
 

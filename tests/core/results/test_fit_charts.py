@@ -8,7 +8,7 @@ from matplotlib import pyplot
 from tests.reporting.complete_fit import complete_fit
 from tests.reporting.fabricated import fabricated_fit
 
-from seatrial.core.figures.marks import Area, Points
+from seatrial.core.figures.chart import Area, Points
 from seatrial.core.results import Fit
 from seatrial.core.results.fit_charts import (
     coefficients_chart,

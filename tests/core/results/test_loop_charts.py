@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from tests.reporting.fabricated_tuning import fabricated_bare, fabricated_fin
 
-from seatrial.core.figures.marks import Line, Text
+from seatrial.core.figures.chart import Line, Text
 from seatrial.core.results.loop_charts import bode_chart, nyquist_chart, sensitivity_chart, styled_controllers
 
 

@@ -5,8 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.numerics.kernels.integrate import replay
-from seatrial.numerics.kernels.sensitivity import DELAY, GAIN, OFFSET, replay_tangent
+from seatrial.numerics.kernels.integrate import DELAY, GAIN, OFFSET, replay, replay_tangent
 
 Index = np.ndarray
 

@@ -1,8 +1,14 @@
-"""Parts of the linear controller: its size, its limits, and what stall leaves of an angle."""
+"""A command in the loop: linear controllers, and a track followed."""
 
+import math
+
+import numpy as np
 import pytest
 
-from seatrial.numerics.kernels.feedback import clamp, controller_size, effective_angle
+from seatrial.numerics.kernels import feedback
+from seatrial.numerics.kernels.feedback import clamp, controller_size, effective_angle, track_follower
+
+# Parts of the linear controller: its size, its limits, and what stall leaves of an angle.
 
 
 def test_a_controller_of_order_n_takes_its_matrices() -> None:
@@ -19,3 +25,33 @@ def test_a_value_is_cut_on_both_sides(value: float, cut: float) -> None:
 @pytest.mark.parametrize(("angle", "effect"), [(0.2, 0.2), (0.4, 0.25), (-0.4, -0.25), (1.0, 0.0)])
 def test_beyond_stall_the_lift_falls_to_nothing(angle: float, effect: float) -> None:
     assert effective_angle(angle, stall=0.3, loss=0.5) == pytest.approx(effect)
+
+
+# Line of sight: the block of a track behind the series of the controller, and the order of one step.
+
+
+@pytest.mark.parametrize(("north", "error", "course"), [(0.0, 10.0, 0.0), (99.0, 1.0, math.pi / 2)])
+def test_the_order_aims_at_a_point_ahead_on_the_leg(north: float, error: float, course: float) -> None:
+    """A corner to the east at 100 m, taken 5 m before it; 10 m to the east of the first leg."""
+    count, delta = 2, 10.0
+    series = feedback.HEAD_SIZE + 2 * feedback.controller_size(0) + 1
+    block = series + 4 * count + 3  # behind reference, disturbance, feed-forward and angles
+    memory = np.zeros(block + feedback.TRACK_HEAD + count)
+    head = {feedback.COUNT: count, feedback.SERIES: series, feedback.DISTURBED_INPUT: -1, feedback.EFFECT: 1.0}
+    unlimited = (feedback.LIMIT, feedback.SLEW, feedback.STALL)
+    memory[[*head, *unlimited]] = [*head.values(), *[math.inf] * 3]
+    track = {
+        feedback.NORTH: 1,
+        feedback.EAST: 2,
+        feedback.LOOKAHEAD: delta,
+        feedback.ORDER_STEP: math.inf,
+        feedback.CORNER: 100.0,
+        feedback.TURN: math.pi / 2,
+        feedback.ACCEPTANCE: 5.0,
+        feedback.INTERVAL: 0.1,
+    }
+    memory[[block + place for place in track]] = list(track.values())
+    track_follower(0.0, np.array([0.0, north, 10.0]), memory, np.zeros(1))
+    assert memory[block + feedback.TRACK_HEAD] == pytest.approx(error)
+    assert memory[series] == pytest.approx(course - math.atan(error / delta))
+    assert memory[block + feedback.INTEGRAL] == pytest.approx(0.1 * delta * error / (error**2 + delta**2))

@@ -1,17 +1,21 @@
-"""The integrator against the matrix exponential, and what it does at the edges."""
+"""Runs and their sensitivities by Runge-Kutta, splines, sines."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from numba import njit
+from scipy.interpolate import CubicSpline
 from scipy.linalg import expm
 from tests.numerics.kernels.case import KernelCase
 
 from seatrial.core.equations import Model, Sheet
 from seatrial.numerics.kernels.feedback import steer
+from seatrial.numerics.kernels.integrate import DELAY, correct, sincos, spline_points, spline_slopes
 from seatrial.numerics.kernels.kernel import COMMAND_SIGNATURE
-from seatrial.numerics.kernels.sensitivity import DELAY, correct
+
+# The integrator against the matrix exponential, and what it does at the edges.
 
 K, C, B = 1.5, 0.3, 0.8
 
@@ -160,3 +164,105 @@ def test_a_held_input_acts_at_once_and_whole() -> None:
     case = KernelCase(sheet.model(), np.array([[1.0], [3.0], [3.0]]), (0, 3), 0.5, np.zeros((1, 1)), np.ones((1, 1)))
     np.testing.assert_allclose(replace(case, held=(0,)).run()[0][:, 0], [0.0, 0.5, 2.0])
     np.testing.assert_allclose(case.run()[0][:, 0], [0.0, 1.0, 2.5])
+
+
+# Sensitivities against central differences of the computed trajectory, column by column.
+
+
+def moved(case: KernelCase, kind: str, i: int, step: float) -> KernelCase:
+    if kind in ("p", "start"):
+        changed = getattr(case, kind).copy()
+        changed[:, i] += step
+        return replace(case, **{kind: changed})
+    row = list(getattr(case, kind))
+    row[i] += step
+    return replace(case, **{kind: tuple(row)})
+
+
+@pytest.fixture(scope="module")
+def case(nonlinear: Model) -> KernelCase:
+    rng = np.random.default_rng(5)
+    inputs = np.array([0.2, 0.8]) + np.cumsum(rng.normal(0.0, 0.03, (60, 2)), axis=0)
+    start = np.array([[0.3, -0.2], [0.5, 0.1]])
+    p = nonlinear.parameters.values * np.array([[1.0, 1.0, 1.0], [1.1, 0.9, 1.05]])
+    return KernelCase(nonlinear, inputs, (0, 25, 60), 0.1, start, p, 2, (1.1, 0.9), (0.03, -0.02), (0.037, 0.113))
+
+
+def test_every_column_equals_central_differences(case: KernelCase) -> None:
+    _, s, failed = case.run_tangent()
+    assert (failed == -1).all()
+    for k, (kind, i) in enumerate(case.columns()):
+        step = 1e-6
+        upper, lower = moved(case, kind, i, step).run()[0], moved(case, kind, i, -step).run()[0]
+        differences = (upper - lower) / (2 * step)
+        scale = np.abs(differences).max()
+        assert scale > 1e-3, f"column {kind} {i} has no effect: the test would not see an error"
+        np.testing.assert_allclose(s[:, :, k], differences, atol=2e-8 * max(scale, 1.0), err_msg=f"{kind} {i}")
+
+
+def test_the_trajectory_is_the_plain_one(case: KernelCase) -> None:
+    np.testing.assert_allclose(case.run_tangent()[0], case.run()[0], rtol=1e-13, atol=1e-14)
+
+
+def test_initial_states_start_from_unity(case: KernelCase) -> None:
+    s = case.run_tangent()[1]
+    for first in case.offsets[:-1]:
+        np.testing.assert_array_equal(s[first, :2, -2:], np.eye(2))
+        np.testing.assert_array_equal(s[first, :2, :-2], 0.0)
+
+
+def test_a_diverging_segment_is_flagged_and_the_next_one_is_not_harmed(explosive: Model) -> None:
+    case = KernelCase(explosive, np.zeros((80, 1)), (0, 40, 80), 0.1, np.array([[1.0], [0.1]]), np.ones((2, 1)))
+    y, s, failed = case.run_tangent()
+    assert 10 <= failed[0] <= 14 and failed[1] == -1
+    assert np.isnan(s[failed[0] : 40]).all() and np.isnan(y[failed[0] : 40]).all()
+    assert np.isfinite(s[40:]).all() and np.isfinite(y[40:]).all()
+
+
+# Slopes of a spline against scipy's.
+
+
+@pytest.mark.parametrize("count", [2, 3, 4, 5, 40])
+def test_slopes_are_those_of_the_not_a_knot_spline(count: int, rng: np.random.Generator) -> None:
+    u, place = rng.standard_normal((count, 3)), np.arange(count)
+    np.testing.assert_allclose(spline_slopes(u), CubicSpline(place, u)(place, 1), rtol=1e-10, atol=1e-12)
+
+
+@pytest.mark.parametrize("count", [2, 3, 4, 5, 40])
+def test_points_are_those_of_the_not_a_knot_spline(count: int, rng: np.random.Generator) -> None:
+    u, place = rng.standard_normal((count, 3)), np.linspace(0.0, count - 1.0, 97)
+    value, rise = spline_points(u, spline_slopes(u), place)
+    exact = CubicSpline(np.arange(count), u)
+    np.testing.assert_allclose(value, exact(place), rtol=1e-10, atol=1e-12)
+    np.testing.assert_allclose(rise, exact(place, 1), rtol=1e-10, atol=1e-12)
+
+
+def test_one_sample_has_no_slope() -> None:
+    np.testing.assert_array_equal(spline_slopes(np.ones((1, 2))), [[0.0, 0.0]])
+    value, rise = spline_points(np.ones((1, 2)), np.zeros((1, 2)), np.zeros(3))
+    np.testing.assert_array_equal(value, np.ones((3, 2)))
+    np.testing.assert_array_equal(rise, np.zeros((3, 2)))
+
+
+def test_what_comes_later_is_felt_by_the_stated_factor(rng: np.random.Generator) -> None:
+    u = rng.standard_normal((30, 1))
+    bent = u.copy()
+    bent[20:] += 1.0
+    felt = np.abs(spline_slopes(bent) - spline_slopes(u))[:, 0]
+    np.testing.assert_allclose(felt[12:18] / felt[13:19], 2.0 - np.sqrt(3.0), rtol=1e-6)
+
+
+# Sine and cosine together agree with the C library to the last bits, in every quadrant.
+
+
+def test_it_agrees_with_the_library(rng: np.random.Generator) -> None:
+    for angle in np.concatenate([rng.uniform(-10.0, 10.0, 500), rng.uniform(-1e5, 1e5, 500)]):
+        sine, cosine = sincos(angle)
+        assert sine == pytest.approx(math.sin(angle), abs=3e-16)
+        assert cosine == pytest.approx(math.cos(angle), abs=3e-16)
+
+
+def test_zero_and_signs_are_exact() -> None:
+    assert sincos(0.0) == (0.0, 1.0)
+    for angle in (0.3, 1.2, 2.9, 6.0):
+        assert sincos(-angle) == (-sincos(angle)[0], sincos(angle)[1])

@@ -10,7 +10,7 @@ from tests.reporting.fabricated_design import fabricated_design
 from tests.reporting.fabricated_tuning import fabricated_fin
 from tests.reporting.test_roll_chapter import KNOWN
 
-from seatrial.core.figures.marks import Area, Line, Points, Text
+from seatrial.core.figures.chart import Area, Line, Points, Text
 from seatrial.core.results import Bars, Curve, Figure, Fit, Matrix, TrialLimits
 from seatrial.reporting.figures.designed_manoeuvre import drift_angle, order_view, track_chart
 from seatrial.reporting.figures.directions import profile_chart

@@ -2,7 +2,7 @@
 
 import math
 
-from seatrial.core.figures.marks import Points, Shape, Text
+from seatrial.core.figures.chart import Points, Shape, Text
 from seatrial.core.results import Direction
 from seatrial.reporting.figures.directions import combination_text, direction_chart
 

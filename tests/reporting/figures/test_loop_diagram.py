@@ -2,7 +2,7 @@
 
 import pytest
 
-from seatrial.core.figures.marks import Rectangle
+from seatrial.core.figures.chart import Rectangle
 from seatrial.core.results.tuning import Component
 from seatrial.reporting.figures.loop_diagram import loop_diagram, signal_order
 

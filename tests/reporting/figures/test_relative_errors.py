@@ -2,7 +2,7 @@
 
 import math
 
-from seatrial.core.figures.marks import Points, Text
+from seatrial.core.figures.chart import Points, Text
 from seatrial.reporting.figures.relative_errors import (
     FILLED,
     OPEN,

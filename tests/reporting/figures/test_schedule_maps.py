@@ -6,8 +6,7 @@ from dataclasses import replace
 import pytest
 from tests.reporting.fabricated_tuning import fabricated_fin
 
-from seatrial.core.figures.chart import Panel
-from seatrial.core.figures.marks import Line, Rectangle, Text
+from seatrial.core.figures.chart import Line, Panel, Rectangle, Text
 from seatrial.core.results.tuning import OperatingPoint
 from seatrial.reporting.figures.schedule_maps import schedule_chart
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tests.reporting.published_fit import published
 
-from seatrial.core.figures.marks import Points
+from seatrial.core.figures.chart import Points
 from seatrial.core.results import Fit, SearchTrack
 from seatrial.reporting.figures.search_charts import (
     restart_chart,

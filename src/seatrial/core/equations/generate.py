@@ -278,7 +278,7 @@ _HEADER = '''"""Generated from the equations of model {name!r}; do not edit."""
 import math
 from seatrial.numerics.kernels.kernel import kernel
 from seatrial.numerics.kernels.kernel import FUNCTION_SIGNATURE, LEAN, TANGENT_SIGNATURE
-from seatrial.numerics.kernels.trigonometry import sincos
+from seatrial.numerics.kernels.integrate import sincos
 
 '''
 

@@ -1,12 +1,230 @@
-"""A figure: panels, each a pair of axes in a box with marks, below a legend."""
+"""A figure: panels, each a pair of axes in a box with marks in data coordinates, below a legend."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import StrEnum
+from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
-from seatrial.core.figures.marks import TEXT_SIZE, Array, Mark, Marker, Stroke, text_width
-from seatrial.core.figures.ticks import Tick, decade_ticks, linear_ticks
+from seatrial.core.text.numbers import exact
+
+# Marks of a figure in data coordinates, and their styles.
+
+Array = NDArray[np.float64]
+
+ACCENT, GREY, INK, SECOND = "#1b4f72", "#b2b2b2", "#222222", "#a33022"
+# mean width of a letter over the size of the font, of Arial in mixed text
+LETTER_WIDTH = 0.56
+# size of the font of names and titles [px]
+TEXT_SIZE = 11.0
+
+
+def text_width(words: str, size: float = TEXT_SIZE) -> float:
+    """Return the estimated width of words in px at a font size in px."""
+    return LETTER_WIDTH * size * len(words)
+
+
+class Anchor(StrEnum):
+    """Which end of a text stands at its position; the values are those of SVG."""
+
+    START = "start"
+    MIDDLE = "middle"
+    END = "end"
+
+
+class Shape(StrEnum):
+    """Outline of a marker."""
+
+    CIRCLE = "circle"
+    CROSS = "cross"
+    PLUS = "plus"
+    DIAMOND = "diamond"
+    SQUARE = "square"
+    UP = "up"
+    DOWN = "down"
+    RIGHT = "right"
+    UPRIGHT = "upright"
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """Style of a line: colour, width in px, dash lengths in px separated by spaces as in SVG."""
+
+    colour: str
+    width: float
+    dash: str = ""
+
+
+@dataclass(frozen=True)
+class Marker:
+    """Style of a point; `size` is half its width in px, `edge_width` in px."""
+
+    shape: Shape
+    size: float
+    edge: str
+    fill: str = "none"
+    edge_width: float = 1.2  # px, chosen
+
+
+@dataclass(frozen=True)
+class Line:
+    """Line through points in data coordinates; NaN leaves a gap."""
+
+    x: Array
+    y: Array
+    stroke: Stroke
+
+
+@dataclass(frozen=True)
+class Points:
+    """Markers at points in data coordinates; points outside the panel and NaN are left out."""
+
+    x: Array
+    y: Array
+    marker: Marker
+
+
+@dataclass(frozen=True)
+class Area:
+    """Closed outline in data coordinates, filled; points with NaN are left out."""
+
+    x: Array
+    y: Array
+    fill: str
+    stroke: Stroke | None = None
+
+
+@dataclass(frozen=True)
+class Rectangle:
+    """Filled rectangle between two corners in data coordinates; `gap` px are left free at its right and lower edge."""
+
+    left: float
+    bottom: float
+    right: float
+    top: float
+    fill: str
+    gap: float = 0.0
+    edge: Stroke | None = None
+
+
+@dataclass(frozen=True)
+class Rule:
+    """Straight line across the panel at a value of y, or of x where it is vertical."""
+
+    value: float
+    stroke: Stroke
+    is_vertical: bool = False
+
+
+@dataclass(frozen=True)
+class Text:
+    """Words at a point in data coordinates, moved by (dx, dy) px to the right and down; `turn` in degrees clockwise."""
+
+    x: float
+    y: float
+    words: str
+    anchor: Anchor = Anchor.START
+    size: float = TEXT_SIZE
+    colour: str = INK
+    dx: float = 0.0
+    dy: float = 0.0
+    turn: float = 0.0
+
+
+Mark = Line | Points | Area | Rectangle | Rule | Text
+
+
+# Round numbers along an axis, ranges about values, and fewer points of a curve without a visible difference.
+
+# share of the range that stays free at either end of an axis
+MARGIN = 0.06
+# a value below this share of the axis' largest is rounding, not a number
+ROUNDING = 1e-9
+
+
+@dataclass(frozen=True)
+class Tick:
+    """A value of an axis and its text."""
+
+    value: float
+    text: str
+
+
+def linear_ticks(low: float, high: float, count: int) -> tuple[Tick, ...]:
+    """Return about `count` ticks within a range, at steps of 1, 2 or 5 times a power of ten."""
+    if not high > low:
+        return (Tick(low, exact(low)),)
+    power = 10.0 ** math.floor(math.log10((high - low) / max(1, count)))
+    choices = [_multiples(low, high, m * power) for m in (0.5, 1.0, 2.0, 5.0, 10.0)]  # px, chosen
+    values = min(choices, key=lambda choice: (len(choice) < 2, abs(len(choice) - count)))
+    largest = max(abs(low), abs(high))
+    return tuple(Tick(v, "0" if abs(v) < ROUNDING * largest else exact(v)) for v in values)
+
+
+def _multiples(low: float, high: float, step: float) -> list[float]:
+    first, last = math.ceil(low / step - ROUNDING), math.floor(high / step + ROUNDING)
+    return [k * step + 0.0 for k in range(first, last + 1)]
+
+
+def decade_ticks(low: float, high: float, count: int) -> tuple[Tick, ...]:
+    """Return about `count` ticks of a logarithmic axis: powers of ten, with 3, or 2 and 5, times them where few."""
+    powers = range(math.floor(math.log10(low) - ROUNDING), math.ceil(math.log10(high) + ROUNDING) + 1)
+    stride = 1 + len(powers) // (2 * count)
+    choices = [[10.0**power for power in powers if power % stride == 0]]
+    # px, chosen
+    choices += [[step * 10.0**power for power in powers for step in steps] for steps in ((1, 3), (1, 2, 5))]
+    inside = [[v for v in choice if low * (1.0 - ROUNDING) <= v <= high * (1.0 + ROUNDING)] for choice in choices]
+    values = min(inside, key=lambda some: (len(some) < 2, abs(len(some) - count)))
+    return tuple(Tick(v, exact(v, 2)) for v in values)
+
+
+def span(arrays: Sequence[NDArray[np.float64]], margin: float = MARGIN) -> tuple[float, float]:
+    """Return a range about all finite values, wider by a share `margin` of it at either end.
+
+    About a constant it is wide enough to show that it is one; without finite values it is 0 to 1.
+    """
+    finite = np.concatenate([a[np.isfinite(a)] for a in arrays]) if arrays else np.empty(0)
+    if finite.size == 0:
+        return 0.0, 1.0
+    low, high = float(finite.min()), float(finite.max())
+    # px, chosen
+    free = margin * (high - low) if high - low > ROUNDING * max(abs(low), abs(high)) else 0.05 * abs(low) or 1.0
+    return low - free, high + free
+
+
+def whole_decades(values: Sequence[float], least: tuple[float, float]) -> tuple[float, float]:
+    """Return whole powers of ten about positive values, at least from `least[0]` to `least[1]`."""
+    low = math.floor(math.log10(min([*values, least[0]])) + ROUNDING)
+    high = math.ceil(math.log10(max([*values, least[1]])) - ROUNDING)
+    return 10.0**low, 10.0**high
+
+
+# points of a curve: more than a panel of a page has pixels for extremes
+POINTS = 400
+
+
+def decimated(x: Array, y: Array, points: int = POINTS) -> tuple[Array, Array]:
+    """Return a curve of at most about `points` points that keeps the extremes of every stretch; NaN stays NaN."""
+    if len(x) <= points:
+        return x, y
+    edges = np.linspace(0, len(x), points // 2 + 1).astype(int)
+    low, high = np.where(np.isnan(y), np.inf, y), np.where(np.isnan(y), -np.inf, y)
+    kept: list[int] = []
+    for first, last in pairwise(edges):
+        kept += sorted({first + int(np.argmin(low[first:last])), first + int(np.argmax(high[first:last]))})
+    return x[kept], y[kept]
+
+
+def thinned(x: Array, y: Array, points: int = POINTS) -> tuple[Array, Array]:
+    """Return evenly chosen points of a curve, its ends among them."""
+    kept = np.unique(np.linspace(0, len(x) - 1, min(points, len(x))).astype(int))
+    return x[kept], y[kept]
+
+
+# A figure: panels, each a pair of axes in a box with marks, below a legend.
 
 # width of a figure on a page [px]: the text column of the report's style sheet less its padding
 WIDTH = 864.0

@@ -4,14 +4,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from seatrial.core.figures.chart import Chart, LegendPosition, Panel
-from seatrial.core.figures.marks import (
+from seatrial.core.figures.chart import (
     TEXT_SIZE,
     Area,
     Array,
+    Chart,
+    LegendPosition,
     Line,
     Mark,
     Marker,
+    Panel,
     Points,
     Rectangle,
     Rule,
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
+
 
 # pixels of a chart for an inch of paper
 DPI = 100.0

@@ -1,7 +1,6 @@
 """Time series for a page that draws them itself: one grid for all curves, few points that keep every extreme, 16 bits.
 
-The page's script (`seatrial/reporting/templates/plots.js`) reads what `plot_document` returns.
-"""
+The page's script (`seatrial/reporting/templates/plots.js`) reads what `plot_document` returns."""
 
 import base64
 import math
@@ -12,10 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from seatrial.core.figures.bands import visible_edges
-from seatrial.core.figures.marks import Array, Stroke
-from seatrial.core.figures.run import ChannelPanel, TimeCurve
-from seatrial.core.figures.ticks import span
+from seatrial.core.figures.chart import Array, Stroke, span
+from seatrial.core.figures.run import ChannelPanel, TimeCurve, visible_edges
 
 # points of a curve: as many as a panel of a page has pixels for extremes; of a band's edge, which is smooth
 POINTS, BAND_POINTS = 500, 120

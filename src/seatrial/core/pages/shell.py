@@ -9,7 +9,7 @@ import re
 from functools import cache
 from typing import TYPE_CHECKING
 
-from seatrial.core.figures.night import night_rules
+from seatrial.core.figures.svg_text import night_rules
 
 if TYPE_CHECKING:
     from jinja2 import Environment

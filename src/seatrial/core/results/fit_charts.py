@@ -5,13 +5,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from seatrial.core.figures.bands import BAND
-from seatrial.core.figures.chart import WIDTH, Axis, Chart, LegendEntry, tiles
-from seatrial.core.figures.marks import (
+from seatrial.core.figures.chart import (
     ACCENT,
     GREY,
     SECOND,
+    WIDTH,
     Anchor,
+    Axis,
+    Chart,
+    LegendEntry,
     Line,
     Mark,
     Marker,
@@ -20,9 +22,10 @@ from seatrial.core.figures.marks import (
     Shape,
     Stroke,
     Text,
+    tiles,
 )
-from seatrial.core.figures.rows import row_panel
-from seatrial.core.figures.run import ChannelPanel, RunView, TimeCurve, channel_panel, run_chart
+from seatrial.core.figures.panels import row_panel
+from seatrial.core.figures.run import BAND, ChannelPanel, RunView, TimeCurve, channel_panel, run_chart
 from seatrial.core.results.coefficients import Coefficient
 from seatrial.core.results.prediction import Prediction
 from seatrial.core.values import Record, display_unit

@@ -5,9 +5,22 @@ from itertools import combinations
 
 import numpy as np
 
-from seatrial.core.figures.chart import WIDTH, Axis, Chart, LegendEntry, Panel, tiles
-from seatrial.core.figures.marks import ACCENT, INK, SECOND, Array, Marker, Points, Shape
-from seatrial.core.figures.ticks import span
+from seatrial.core.figures.chart import (
+    ACCENT,
+    INK,
+    SECOND,
+    WIDTH,
+    Array,
+    Axis,
+    Chart,
+    LegendEntry,
+    Marker,
+    Panel,
+    Points,
+    Shape,
+    span,
+    tiles,
+)
 from seatrial.core.results.tuning import Controller, Tuning
 from seatrial.core.text.numbers import raised
 

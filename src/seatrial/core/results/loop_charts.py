@@ -4,9 +4,7 @@ import math
 
 import numpy as np
 
-from seatrial.core.figures.chart import Axis, Chart, LegendEntry, Panel, Region, tiles
-from seatrial.core.figures.curves import STROKES
-from seatrial.core.figures.marks import (
+from seatrial.core.figures.chart import (
     ACCENT,
     GREY,
     INK,
@@ -14,15 +12,22 @@ from seatrial.core.figures.marks import (
     Anchor,
     Area,
     Array,
+    Axis,
+    Chart,
+    LegendEntry,
     Line,
     Mark,
     Marker,
+    Panel,
     Points,
+    Region,
     Rule,
     Shape,
     Stroke,
     Text,
+    tiles,
 )
+from seatrial.core.figures.panels import STROKES
 from seatrial.core.results.tuning import Controller, Tuning
 
 # loops drawn at most

@@ -4,10 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from seatrial.core.figures.chart import Chart
-from seatrial.core.figures.marks import INK, Stroke
-from seatrial.core.figures.run import ChannelPanel, RunView, TimeCurve, run_chart
-from seatrial.core.figures.tracks import Track
+from seatrial.core.figures.chart import INK, Chart, Stroke
+from seatrial.core.figures.run import ChannelPanel, RunView, TimeCurve, Track, run_chart
 from seatrial.core.values.notation import POSITIONS, channel_label, display_values, reading_order
 from seatrial.core.values.record import Record
 

@@ -12,7 +12,7 @@ from seatrial.estimation.estimate.point_estimate import PointEstimate, fit_outpu
 from seatrial.estimation.estimate.settings import WEAK_FORM_SHIP_LENGTHS
 from seatrial.estimation.estimate.start import find_start
 from seatrial.estimation.identify.identification import Identification
-from seatrial.numerics.kernels.sensitivity import evaluate_tangent
+from seatrial.numerics.kernels.integrate import evaluate_tangent
 from seatrial.physics.sea.wave_forces import with_wave_forces
 
 _SHARES = (0.05, 0.1, 0.2, 0.3, 0.4, 0.6, 0.8)  # of the ship's length, of the probe to either side; chosen

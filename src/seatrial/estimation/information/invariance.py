@@ -8,7 +8,7 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.equations.model import MEASURED
 from seatrial.core.values import NOTATION, Array, Index, InputError
-from seatrial.numerics.kernels.sensitivity import evaluate_tangent
+from seatrial.numerics.kernels.integrate import evaluate_tangent
 
 # Null spaces of matrices whose columns have unit norm, and sparse bases of them.
 

@@ -14,7 +14,7 @@ from seatrial.core.results import Stability
 from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
 from seatrial.core.text.numbers import significant
 from seatrial.core.values import Array
-from seatrial.numerics.kernels.sensitivity import evaluate_tangent
+from seatrial.numerics.kernels.integrate import evaluate_tangent
 from seatrial.physics.simulate.states import settled_actuators
 
 _STEP = 1e-4  # of a coefficient's characteristic size, for central differences

@@ -14,7 +14,7 @@ from seatrial.data.trial.model_table import COMMON_PARTICULARS
 from seatrial.estimation.predict.draws import StartStates
 from seatrial.estimation.predict.windows import Windows, simulate_windows, start_states
 from seatrial.estimation.problem.output_error import OutputError
-from seatrial.numerics.kernels.sensitivity import evaluate_tangent
+from seatrial.numerics.kernels.integrate import evaluate_tangent
 from seatrial.physics.manoeuvres import ObservedManoeuvre, measures
 from seatrial.physics.manoeuvres.measures import ORDERED_MEASURE
 from seatrial.physics.simulate.replay import first_row_outside, inputs_of, record_of, require_bounded, state_limits

@@ -19,8 +19,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import NOTATION, Array, ForceContent, ForcePoints, InputError
 from seatrial.core.values.ship import FORCES
 from seatrial.estimation.problem.output_error import Contribution
-from seatrial.numerics.kernels.integrate import evaluate
-from seatrial.numerics.kernels.sensitivity import evaluate_tangent
+from seatrial.numerics.kernels.integrate import evaluate, evaluate_tangent
 
 _SUFFIX = {
     ForceContent.HULL: "H",

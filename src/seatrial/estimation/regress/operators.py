@@ -10,8 +10,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError, Record
-from seatrial.numerics.kernels.integrate import DIVERGED
-from seatrial.numerics.kernels.sensitivity import evaluate_tangent
+from seatrial.numerics.kernels.integrate import DIVERGED, evaluate_tangent
 from seatrial.numerics.local_polynomials import smoothed_locally
 from seatrial.numerics.optimise import NormalEquations
 from seatrial.physics.simulate.replay import inputs_of

@@ -18,9 +18,8 @@ import math
 import numpy as np
 from numba import njit
 
-from seatrial.numerics.kernels.integrate import DIVERGED
+from seatrial.numerics.kernels.integrate import DIVERGED, propagate_tangent
 from seatrial.numerics.kernels.kernel import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, TABLE, TANGENT, VECTOR, kernel
-from seatrial.numerics.kernels.sensitivity import propagate_tangent
 
 PHI, NOISE, SQUARED_FREQUENCY = 0, 12, 21
 """Columns of a pair: its transition matrix and derivatives by frequency and damping, four each; the variance that it

@@ -12,8 +12,7 @@ from numba import njit
 
 from seatrial.numerics.kernels.integrate import DIVERGED
 from seatrial.numerics.kernels.kernel import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, TANGENT, VECTOR, kernel
-from seatrial.numerics.kernels.linear import _affine_matrices
-from seatrial.numerics.kernels.propagate import MAX_HALVINGS, SERIES_NORM, SERIES_TERMS
+from seatrial.numerics.kernels.linear import MAX_HALVINGS, SERIES_NORM, SERIES_TERMS, _affine_matrices
 from seatrial.numerics.kernels.simd import LANES, add_scaled, aligned_scratch, broadcast
 
 _BLOCKS = 7  # matrices of A's size that `_propagate` keeps: A, E, P, R, power, new, newer

@@ -13,7 +13,7 @@ import math
 from numba import njit, void
 
 from seatrial.numerics.kernels.kernel import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, VECTOR, kernel
-from seatrial.numerics.kernels.propagate import MAX_HALVINGS, SERIES_NORM, SERIES_TERMS
+from seatrial.numerics.kernels.linear import MAX_HALVINGS, SERIES_NORM, SERIES_TERMS
 from seatrial.numerics.kernels.simd import (
     LANES,
     add_squared_difference,

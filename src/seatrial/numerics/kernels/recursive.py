@@ -4,9 +4,8 @@ import math
 
 from numba import njit
 
-from seatrial.numerics.kernels.integrate import DIVERGED
+from seatrial.numerics.kernels.integrate import DIVERGED, rk4_tangent_step
 from seatrial.numerics.kernels.kernel import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, TABLE, TANGENT, VECTOR, kernel
-from seatrial.numerics.kernels.sensitivity import rk4_tangent_step
 from seatrial.numerics.kernels.simd import LANES
 
 # A Gaussian estimate kept as a square root: covariance P = R R', R square, not triangular.

@@ -194,8 +194,7 @@ def _is_cached(name: str) -> bool:
 
 
 def _load_integrators(*, is_affine: bool) -> None:
-    from seatrial.numerics.kernels import integrate, linear, propagate, sensitivity
+    from seatrial.numerics.kernels import integrate, linear
     from seatrial.numerics.kernels.kernel import load_kernels
 
-    for module in (linear, propagate) if is_affine else (integrate, sensitivity):
-        load_kernels(module)
+    load_kernels(linear if is_affine else integrate)

@@ -8,9 +8,8 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index
-from seatrial.numerics.kernels.integrate import replay
+from seatrial.numerics.kernels.integrate import DELAY, GAIN, OFFSET, replay, replay_tangent
 from seatrial.numerics.kernels.kernel import TangentPointer
-from seatrial.numerics.kernels.sensitivity import DELAY, GAIN, OFFSET, replay_tangent
 
 # How many Runge-Kutta steps a sample takes: as many as the craft's own time scale needs, found by halving the step.
 

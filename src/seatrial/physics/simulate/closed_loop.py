@@ -9,11 +9,9 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, DivergedError, InputError, Provenance, Record, frozen, spelling_hint
-from seatrial.numerics.kernels import feedback as kernel
-from seatrial.numerics.kernels.feedback import steer
-from seatrial.numerics.kernels.linear import replay
-from seatrial.numerics.kernels.propagate import propagators
-from seatrial.numerics.kernels.sampled import sampled_controller
+from seatrial.numerics.kernels import feedback
+from seatrial.numerics.kernels.feedback import sampled_controller, steer
+from seatrial.numerics.kernels.linear import propagators, replay
 from seatrial.physics.loops import Block, TransferLoop
 from seatrial.physics.loops.discrete import difference_equation, holding_terms
 from seatrial.physics.loops.loop import Sampling, controllable_form, held_step, in_series, straight_step
@@ -161,24 +159,24 @@ def sampled_body(
     ]
     blocks = np.concatenate([*terms, *(_block(block, T, 1.0, 0.0) for block in loop.filters)])
     queue = round(loop.sampling.dead_time / dt)
-    servo_at = kernel.HEAD_SIZE + len(sensor)
+    servo_at = feedback.HEAD_SIZE + len(sensor)
     blocks_at = servo_at + len(servo)
     queue_at = blocks_at + len(blocks)
     body = np.concatenate([sensor, servo, blocks, np.zeros(queue), noise])
     values = {
-        kernel.EVERY: every,
-        kernel.SENSOR: kernel.HEAD_SIZE,
-        kernel.SENSOR_ORDER: sensor_order,
-        kernel.SERVO: servo_at,
-        kernel.SERVO_ORDER: servo_order,
-        kernel.BLOCKS: blocks_at,
-        kernel.TERM_COUNT: len(loop.terms),
-        kernel.FILTER_COUNT: len(loop.filters),
-        kernel.QUEUE: queue_at,
-        kernel.QUEUE_SIZE: queue,
-        kernel.NOISE: queue_at + queue,
-        kernel.RESOLUTION: loop.sampling.resolution,
-        kernel.SAMPLE_SLEW: rate * T,
+        feedback.EVERY: every,
+        feedback.SENSOR: feedback.HEAD_SIZE,
+        feedback.SENSOR_ORDER: sensor_order,
+        feedback.SERVO: servo_at,
+        feedback.SERVO_ORDER: servo_order,
+        feedback.BLOCKS: blocks_at,
+        feedback.TERM_COUNT: len(loop.terms),
+        feedback.FILTER_COUNT: len(loop.filters),
+        feedback.QUEUE: queue_at,
+        feedback.QUEUE_SIZE: queue,
+        feedback.NOISE: queue_at + queue,
+        feedback.RESOLUTION: loop.sampling.resolution,
+        feedback.SAMPLE_SLEW: rate * T,
     }
     return body, values
 
@@ -369,11 +367,11 @@ class ClosedLoop:
     @property
     def command(self) -> Callable[..., None]:
         """Return what steers: the controller in continuous time, or the sampled one."""
-        return kernel.linear_controller if self.loop.sampling is None else sampled_controller
+        return feedback.linear_controller if self.loop.sampling is None else sampled_controller
 
     def _angles(self, memory: Array, count: int) -> slice:
         """Return where the actuator's angles at the samples stand."""
-        first = int(memory[kernel.SERIES]) + 3 * count + 2
+        first = int(memory[feedback.SERIES]) + 3 * count + 2
         return slice(first, first + count)
 
     def controller_memory(
@@ -391,27 +389,27 @@ class ClosedLoop:
         count = len(disturbance)
         if self.loop.sampling is None:
             n, laws = self._controller_laws
-            body, own = np.concatenate([laws, np.zeros(2 * n)]), {kernel.CONTROLLER_ORDER: float(n)}
+            body, own = np.concatenate([laws, np.zeros(2 * n)]), {feedback.CONTROLLER_ORDER: float(n)}
         else:
             samples = -(-count // steps_a_sample(self.loop.sampling, self.dt))
             heard = sample_noise(self.loop.sampling, samples, _NOISE_SEED) if noise is None else noise[:samples]
             body, own = sampled_body(self.loop, self.gains, self.dt, limits.rate, heard)
         place, disturbed = self._input_index(self.actuator), self._input_index(self.disturbance_input)
         values = {
-            kernel.COUNT: count,
-            kernel.OUTPUT: self.model.states.index(self.output),
-            kernel.ACTUATOR: place,
-            kernel.DISTURBED_INPUT: disturbed,
-            kernel.TRIM: self.inputs[place],
-            kernel.EFFECT: self._sign(place) * self.effectiveness,
-            kernel.LIMIT: limits.limit,
-            kernel.SLEW: limits.rate * self.dt,
-            kernel.STALL: limits.stall,
-            kernel.LOSS: limits.loss,
-            kernel.SERIES: kernel.HEAD_SIZE + len(body),
+            feedback.COUNT: count,
+            feedback.OUTPUT: self.model.states.index(self.output),
+            feedback.ACTUATOR: place,
+            feedback.DISTURBED_INPUT: disturbed,
+            feedback.TRIM: self.inputs[place],
+            feedback.EFFECT: self._sign(place) * self.effectiveness,
+            feedback.LIMIT: limits.limit,
+            feedback.SLEW: limits.rate * self.dt,
+            feedback.STALL: limits.stall,
+            feedback.LOSS: limits.loss,
+            feedback.SERIES: feedback.HEAD_SIZE + len(body),
             **own,
         }
-        head = np.zeros(kernel.HEAD_SIZE)
+        head = np.zeros(feedback.HEAD_SIZE)
         head[list(values)] = list(values.values())
         trim = self.inputs[disturbed] if disturbed not in (-1, place) else 0.0
         met = trim + self._sign(disturbed) * hold_equivalent(np.asarray(disturbance, dtype=np.float64))

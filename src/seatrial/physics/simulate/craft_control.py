@@ -8,7 +8,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, DivergedError
-from seatrial.numerics.kernels import guidance as guidance_kernel
+from seatrial.numerics.kernels import feedback
 from seatrial.numerics.kernels import station as keeper
 from seatrial.numerics.kernels.feedback import clamp, steer
 from seatrial.numerics.kernels.kernel import COMMAND_SIGNATURE, OPTIONS, kernel
@@ -124,31 +124,31 @@ def follow_track(
     count, model = len(disturbance), closed.model
     heading = float(closed.start[model.states.index(closed.output)])
     memory = closed.controller_memory(disturbance, limits, np.full(count, heading), np.zeros(count))
-    head = np.zeros(guidance_kernel.TRACK_HEAD)
+    head = np.zeros(feedback.TRACK_HEAD)
     interval = closed.dt if closed.loop.sampling is None else closed.loop.sampling.sample_s
     values = {
-        guidance_kernel.NORTH: model.states.index("x0" if math.isfinite(track.corner) else "y0"),
-        guidance_kernel.EAST: model.states.index("y0"),
-        guidance_kernel.LOOKAHEAD: guidance.lookahead,
-        guidance_kernel.INTEGRAL_GAIN: guidance.integral_gain,
-        guidance_kernel.ORDER: heading,
-        guidance_kernel.ORDER_STEP: guidance.rate * interval,
-        guidance_kernel.CORNER: track.corner,
-        guidance_kernel.TURN: track.turn,
-        guidance_kernel.ACCEPTANCE: track.acceptance,
-        guidance_kernel.INTERVAL: interval,
+        feedback.NORTH: model.states.index("x0" if math.isfinite(track.corner) else "y0"),
+        feedback.EAST: model.states.index("y0"),
+        feedback.LOOKAHEAD: guidance.lookahead,
+        feedback.INTEGRAL_GAIN: guidance.integral_gain,
+        feedback.ORDER: heading,
+        feedback.ORDER_STEP: guidance.rate * interval,
+        feedback.CORNER: track.corner,
+        feedback.TURN: track.turn,
+        feedback.ACCEPTANCE: track.acceptance,
+        feedback.INTERVAL: interval,
     }
     head[list(values)] = list(values.values())
     memory = np.concatenate([memory, head, np.zeros(count)])
     states, inputs = np.empty((count, len(model.states))), np.empty((count, len(model.inputs)))
     diverged = steer(
-        model.compiled.rates, guidance_kernel.track_follower, closed.start.copy(), closed.inputs.copy(),
+        model.compiled.rates, feedback.track_follower, closed.start.copy(), closed.inputs.copy(),
         model.parameters.values, memory, closed.dt, states, inputs,
     )  # fmt: skip
     if diverged >= 0:
         raise DivergedError(f"loop '{closed.loop.name}' on a track runs away at {diverged * closed.dt:g} s")
-    behind = len(memory) - count - guidance_kernel.TRACK_HEAD
-    begun = int(memory[behind + guidance_kernel.NEW_LEG])
+    behind = len(memory) - count - feedback.TRACK_HEAD
+    begun = int(memory[behind + feedback.NEW_LEG])
     error = memory[len(memory) - count :]
     return TrackRun(states, memory[behind - count - 1 : behind - 1], error, begun if begun > 0 else count)
 

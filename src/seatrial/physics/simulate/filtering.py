@@ -7,8 +7,8 @@ import numpy as np
 
 from seatrial.core.equations.model import channel_of
 from seatrial.core.values import Array, Index
+from seatrial.numerics.kernels.integrate import correct
 from seatrial.numerics.kernels.kernel import TangentPointer
-from seatrial.numerics.kernels.sensitivity import correct
 from seatrial.physics.sensors.wave_motion import STILL, WaveMotion
 from seatrial.physics.simulate.batch import SegmentBatch
 from seatrial.physics.simulate.linear import batch_class

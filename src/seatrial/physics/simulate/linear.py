@@ -9,10 +9,8 @@ from numpy.typing import NDArray
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index, InputError
-from seatrial.numerics.kernels.linear import affine_matrices, replay, replay_tangent
-from seatrial.numerics.kernels.propagate import propagators
-from seatrial.numerics.kernels.sensitivity import DELAY, GAIN
-from seatrial.numerics.kernels.spline import spline_points, spline_slopes
+from seatrial.numerics.kernels.integrate import DELAY, GAIN, spline_points, spline_slopes
+from seatrial.numerics.kernels.linear import affine_matrices, propagators, replay, replay_tangent
 from seatrial.physics.simulate.batch import INPUT_KINDS, SegmentBatch
 
 # Affine models by exact propagators: what `SegmentBatch` gives, without the error of a Runge-Kutta step.

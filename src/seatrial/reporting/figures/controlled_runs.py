@@ -5,11 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from seatrial.core.figures.bands import BAND
-from seatrial.core.figures.chart import LegendEntry
-from seatrial.core.figures.marks import ACCENT, GREY, INK, SECOND, Rule, Stroke
-from seatrial.core.figures.run import ChannelPanel, RunView, TimeCurve
-from seatrial.core.figures.ticks import span
+from seatrial.core.figures.chart import ACCENT, GREY, INK, SECOND, LegendEntry, Rule, Stroke, span
+from seatrial.core.figures.run import BAND, ChannelPanel, RunView, TimeCurve
 from seatrial.core.results.tuning import ManoeuvreResponse, Tuning
 from seatrial.core.text.words import counted
 from seatrial.core.values import Record, display_unit

@@ -4,10 +4,33 @@ import math
 
 import numpy as np
 
-from seatrial.core.figures.chart import WIDTH, Chart, LegendEntry, Panel, Region
-from seatrial.core.figures.marks import ACCENT, GREY, INK, SECOND, Anchor, Array, Mark, Rule, Stroke, Text
-from seatrial.core.figures.run import TRACK_SIDE, ChannelPanel, RunView, TimeCurve
-from seatrial.core.figures.tracks import Track, is_slender, strip_height, track_panel
+from seatrial.core.figures.chart import (
+    ACCENT,
+    GREY,
+    INK,
+    SECOND,
+    WIDTH,
+    Anchor,
+    Array,
+    Chart,
+    LegendEntry,
+    Mark,
+    Panel,
+    Region,
+    Rule,
+    Stroke,
+    Text,
+)
+from seatrial.core.figures.run import (
+    TRACK_SIDE,
+    ChannelPanel,
+    RunView,
+    TimeCurve,
+    Track,
+    is_slender,
+    strip_height,
+    track_panel,
+)
 from seatrial.core.results import Actuator, Design
 from seatrial.core.results.design import has_drift
 from seatrial.core.values import Record, display_unit

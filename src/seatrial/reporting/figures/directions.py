@@ -5,24 +5,28 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from seatrial.core.figures.chart import Axis, Chart, Panel, Region, tiles
-from seatrial.core.figures.marks import (
+from seatrial.core.figures.chart import (
     ACCENT,
     GREY,
     INK,
     SECOND,
     Anchor,
+    Axis,
+    Chart,
     Line,
     Mark,
     Marker,
+    Panel,
     Points,
     Rectangle,
+    Region,
     Rule,
     Shape,
     Stroke,
     Text,
+    tiles,
 )
-from seatrial.core.figures.rows import SMALL, decades_axis, no_information, row_panel
+from seatrial.core.figures.panels import SMALL, decades_axis, no_information, row_panel
 from seatrial.core.results import Direction, Profile
 from seatrial.core.text.numbers import MINUS, fixed
 from seatrial.core.values import display_unit

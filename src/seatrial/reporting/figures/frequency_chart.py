@@ -4,9 +4,25 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from seatrial.core.figures.chart import WIDTH, Axis, Chart, LegendEntry, Panel, Region
-from seatrial.core.figures.marks import ACCENT, INK, SECOND, Array, Line, Mark, Marker, Points, Shape, Stroke
-from seatrial.core.figures.ticks import span
+from seatrial.core.figures.chart import (
+    ACCENT,
+    INK,
+    SECOND,
+    WIDTH,
+    Array,
+    Axis,
+    Chart,
+    LegendEntry,
+    Line,
+    Mark,
+    Marker,
+    Panel,
+    Points,
+    Region,
+    Shape,
+    Stroke,
+    span,
+)
 from seatrial.core.results.ship_motions import FrequencyResponse
 from seatrial.core.values import display_unit
 from seatrial.core.values.notation import channel_letter, channel_unit

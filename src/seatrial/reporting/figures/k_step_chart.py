@@ -2,9 +2,25 @@
 
 import numpy as np
 
-from seatrial.core.figures.chart import Axis, Chart, LegendEntry, Panel, Region, tiles
-from seatrial.core.figures.marks import ACCENT, GREY, INK, Array, Line, Mark, Marker, Points, Shape, Stroke
-from seatrial.core.figures.ticks import whole_decades
+from seatrial.core.figures.chart import (
+    ACCENT,
+    GREY,
+    INK,
+    Array,
+    Axis,
+    Chart,
+    LegendEntry,
+    Line,
+    Mark,
+    Marker,
+    Panel,
+    Points,
+    Region,
+    Shape,
+    Stroke,
+    tiles,
+    whole_decades,
+)
 from seatrial.core.results.prediction import KStepErrors
 from seatrial.core.values import display_unit
 from seatrial.core.values.notation import channel_label

@@ -5,11 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from seatrial.core.figures.chart import LegendEntry
-from seatrial.core.figures.marks import GREY, Stroke
-from seatrial.core.figures.run import RunView
+from seatrial.core.figures.chart import GREY, LegendEntry, Stroke
+from seatrial.core.figures.run import RunView, Track
 from seatrial.core.figures.time_plot import TimeSpan
-from seatrial.core.figures.tracks import Track
 from seatrial.core.values import InputError, Record
 from seatrial.core.values.notation import reading_order
 from seatrial.core.values.record_chart import channel_panels, has_track, is_constant, record_track

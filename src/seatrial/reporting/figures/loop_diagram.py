@@ -5,17 +5,21 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from seatrial.core.figures.chart import WIDTH, Axis, Chart, Panel, Region
-from seatrial.core.figures.marks import (
+from seatrial.core.figures.chart import (
     ACCENT,
     INK,
+    WIDTH,
     Anchor,
     Area,
+    Axis,
+    Chart,
     Line,
     Mark,
     Marker,
+    Panel,
     Points,
     Rectangle,
+    Region,
     Shape,
     Stroke,
     Text,

@@ -4,10 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from seatrial.core.figures.chart import Axis, Chart
-from seatrial.core.figures.marks import ACCENT, Line, Mark, Marker, Points, Rule, Shape, Stroke, Text
-from seatrial.core.figures.rows import SMALL, row_panel
-from seatrial.core.figures.ticks import span
+from seatrial.core.figures.chart import ACCENT, Axis, Chart, Line, Mark, Marker, Points, Rule, Shape, Stroke, Text, span
+from seatrial.core.figures.panels import SMALL, row_panel
 from seatrial.core.results.tuning import PairedDifference
 from seatrial.core.text.numbers import fixed
 from seatrial.core.text.words import counted

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from seatrial.core.figures.chart import Axis, Chart, Panel, Region, tiles
-from seatrial.core.figures.marks import ACCENT, SECOND, Line, Stroke
+from seatrial.core.figures.chart import ACCENT, SECOND, Axis, Chart, Line, Panel, Region, Stroke, tiles
 from seatrial.core.results import CredibleInterval, Posterior
 from seatrial.core.values import Array, display_unit
 from seatrial.core.values.notation import unit_text

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from seatrial.core.figures.chart import WIDTH, Chart, Panel, Region
-from seatrial.core.figures.tracks import Track, is_slender, strip_height, track_panel
+from seatrial.core.figures.run import Track, is_slender, strip_height, track_panel
 from seatrial.core.text.words import common_prefix
 from seatrial.core.values import Record
 from seatrial.core.values.record_chart import PLAIN, has_track, record_track

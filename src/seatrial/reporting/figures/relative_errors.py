@@ -6,9 +6,22 @@ from statistics import median
 
 import numpy as np
 
-from seatrial.core.figures.chart import Chart, LegendEntry
-from seatrial.core.figures.marks import ACCENT, GREY, INK, SECOND, Line, Mark, Marker, Points, Shape, Stroke, Text
-from seatrial.core.figures.rows import decades_axis, no_information, row_panel
+from seatrial.core.figures.chart import (
+    ACCENT,
+    GREY,
+    INK,
+    SECOND,
+    Chart,
+    LegendEntry,
+    Line,
+    Mark,
+    Marker,
+    Points,
+    Shape,
+    Stroke,
+    Text,
+)
+from seatrial.core.figures.panels import decades_axis, no_information, row_panel
 
 # per cent from which on a dot says no more than that there is no information
 NO_INFORMATION = 1e4

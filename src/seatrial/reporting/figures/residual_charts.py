@@ -6,10 +6,24 @@ from dataclasses import replace
 import numpy as np
 from markupsafe import Markup
 
-from seatrial.core.figures.chart import Axis, Chart, Panel, Region, tiles
-from seatrial.core.figures.marks import ACCENT, INK, SECOND, Array, Line, Mark, Rectangle, Rule, Stroke
+from seatrial.core.figures.chart import (
+    ACCENT,
+    INK,
+    SECOND,
+    Array,
+    Axis,
+    Chart,
+    Line,
+    Mark,
+    Panel,
+    Rectangle,
+    Region,
+    Rule,
+    Stroke,
+    decimated,
+    tiles,
+)
 from seatrial.core.figures.run import ChannelPanel, RunView, TimeCurve
-from seatrial.core.figures.ticks import decimated
 from seatrial.core.results import Residuals
 from seatrial.core.values import display_unit
 from seatrial.core.values.notation import channel_label, channel_letter, channel_unit

@@ -2,10 +2,23 @@
 
 import numpy as np
 
-from seatrial.core.figures.bands import band
-from seatrial.core.figures.chart import Axis, Chart, LegendEntry, Panel, Region, tiles
-from seatrial.core.figures.marks import INK, Array, Line, Marker, Points, Shape, Stroke
-from seatrial.core.figures.ticks import span
+from seatrial.core.figures.chart import (
+    INK,
+    Array,
+    Axis,
+    Chart,
+    LegendEntry,
+    Line,
+    Marker,
+    Panel,
+    Points,
+    Region,
+    Shape,
+    Stroke,
+    span,
+    tiles,
+)
+from seatrial.core.figures.run import band
 from seatrial.core.results import RollCharacteristics
 
 # how far the axis follows the band, in spans of model and swings

@@ -6,9 +6,21 @@ from dataclasses import replace
 
 import numpy as np
 
-from seatrial.core.figures.chart import WIDTH, Chart, Panel, Region, row_axis
-from seatrial.core.figures.heat_map import colour, colour_key
-from seatrial.core.figures.marks import INK, Anchor, Line, Mark, Rectangle, Stroke, Text
+from seatrial.core.figures.chart import (
+    INK,
+    WIDTH,
+    Anchor,
+    Chart,
+    Line,
+    Mark,
+    Panel,
+    Rectangle,
+    Region,
+    Stroke,
+    Text,
+    row_axis,
+)
+from seatrial.core.figures.panels import colour, colour_key
 from seatrial.core.results.tuning import OperatingPoint
 from seatrial.core.text.numbers import DASH, exact, fixed
 

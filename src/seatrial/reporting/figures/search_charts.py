@@ -4,11 +4,23 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from seatrial.core.figures.bars import bars_chart
-from seatrial.core.figures.chart import Axis, Chart, LegendEntry
-from seatrial.core.figures.curves import NamedCurve, curves_chart
-from seatrial.core.figures.marks import ACCENT, GREY, INK, SECOND, Line, Mark, Marker, Points, Rule, Shape, Stroke
-from seatrial.core.figures.rows import row_panel
+from seatrial.core.figures.chart import (
+    ACCENT,
+    GREY,
+    INK,
+    SECOND,
+    Axis,
+    Chart,
+    LegendEntry,
+    Line,
+    Mark,
+    Marker,
+    Points,
+    Rule,
+    Shape,
+    Stroke,
+)
+from seatrial.core.figures.panels import NamedCurve, bars_chart, curves_chart, row_panel
 from seatrial.core.results import Coefficient, ReferenceEstimate, Search, SearchAttempt, SearchTrack
 from seatrial.core.results.comparison import OWN_NAME
 from seatrial.core.text.numbers import power_of_ten

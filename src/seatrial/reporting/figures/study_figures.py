@@ -1,9 +1,7 @@
 """Figures of a study: curves, bars, matrices."""
 
-from seatrial.core.figures.bars import bars_chart
 from seatrial.core.figures.chart import Chart
-from seatrial.core.figures.curves import NamedCurve, curves_chart
-from seatrial.core.figures.heat_map import heat_map
+from seatrial.core.figures.panels import NamedCurve, bars_chart, curves_chart, heat_map
 from seatrial.core.results import Bars, Figure, Matrix
 
 

@@ -4,10 +4,23 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from seatrial.core.figures.bands import band, visible_edges
-from seatrial.core.figures.chart import Axis, Chart, LegendEntry, Panel, tiles
-from seatrial.core.figures.marks import ACCENT, INK, Array, Line, Mark, Rectangle, Rule, Stroke
-from seatrial.core.figures.ticks import span
+from seatrial.core.figures.chart import (
+    ACCENT,
+    INK,
+    Array,
+    Axis,
+    Chart,
+    LegendEntry,
+    Line,
+    Mark,
+    Panel,
+    Rectangle,
+    Rule,
+    Stroke,
+    span,
+    tiles,
+)
+from seatrial.core.figures.run import band, visible_edges
 from seatrial.core.results.ship_motions import CommandCurve, CompassCurve, QuadrantMap
 
 COLUMNS, HEIGHT = 2, 230.0  # panels in a row; px, chosen

@@ -9,10 +9,9 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index, InputError
+from seatrial.numerics.kernels.integrate import spline_slopes, step_scratch, step_tables
 from seatrial.numerics.kernels.kernel import TangentPointer
 from seatrial.numerics.kernels.recursive import filter_linear, filter_runge_kutta
-from seatrial.numerics.kernels.sensitivity import step_scratch, step_tables
-from seatrial.numerics.kernels.spline import spline_slopes
 from seatrial.physics.simulate.batch import SegmentBatch
 from seatrial.physics.simulate.linear import SUBSTEPS, DiscreteMatrices, discrete_matrices
 
