@@ -10,6 +10,7 @@ from seatrial.api import draft_trial
 from seatrial.core.values import InputError
 from seatrial.data.draft.naming import guess_by_name, in_english, stated_columns, without_accents
 from seatrial.data.draft.survey import survey_log
+from seatrial.data.readings import name_table
 
 
 @pytest.mark.parametrize(
@@ -20,7 +21,9 @@ from seatrial.data.draft.survey import survey_log
      ("Drehgeschwindigkeit [°/min]", "r", "deg/min"), ("Vitesse fond (kn)", "sog", "kn"),
      ("Angle de barre [deg]", "delta", "deg"), ("Ángulo de timón [deg]", "delta", "deg"),
      ("Giri elica [rpm]", "n", "rpm"),
-     ("Propellervarvtal [rpm]", "n", "rpm"), ("Krängning [deg]", "phi", "deg"), ("Roulis [deg]", "phi", "deg")],
+     ("Propellervarvtal [rpm]", "n", "rpm"), ("Krängning [deg]", "phi", "deg"), ("Roulis [deg]", "phi", "deg"),
+     ("Ruderwinkel BB [°]", "delta", "deg"), ("Roerhoek stuurboord", "delta", ""),
+     ("Vindhastighet [m/s]", "wind_speed", "m/s"), ("Sollkurs [°]", "psi_ref", "deg")],
 )  # fmt: skip
 def test_a_heading_is_known_in_its_language(heading: str, symbol: str, unit: str) -> None:
     guess = guess_by_name("", heading, "")
@@ -30,7 +33,13 @@ def test_a_heading_is_known_in_its_language(heading: str, symbol: str, unit: str
 def test_letters_lose_their_accents_and_other_words_stay() -> None:
     assert without_accents("Rør Längd Größe Ángulo") == "ror langd grosse angulo"
     assert in_english("klokkeslett") == "time" and in_english("battery") == "battery"
+    assert in_english("ror_babord") == "rudder_angle_babord" and in_english("data_ora") == "date_time"
     assert in_english("stamp") == "stamp" and in_english("balance") == "balance"
+
+
+@pytest.mark.parametrize("quantity", sorted({"time", "date", "speed"} ^ set(name_table()["languages"]["danish"])))
+def test_every_quantity_of_a_language_is_one_that_logs_hold(quantity: str) -> None:
+    assert guess_by_name("", quantity, "") is not None
 
 
 def log(path: Path, headings: str) -> Path:

@@ -1,4 +1,11 @@
-from seatrial.data.readings.candidates import ColumnReading, JointReading, NamedColumn, is_impossible, mistaken_units
+from seatrial.data.readings.candidates import (
+    ColumnReading,
+    JointReading,
+    NamedColumn,
+    is_impossible,
+    mistaken_units,
+    name_table,
+)
 from seatrial.data.readings.grids import Samples
 from seatrial.data.readings.search import (
     OPEN_NATS,
@@ -11,5 +18,5 @@ from seatrial.data.readings.search import (
 
 __all__ = [
     "OPEN_NATS", "ColumnReading", "JointReading", "JudgedStatements", "NamedColumn", "ReadingVerdict",
-    "RefutedStatement", "Samples", "is_impossible", "judge", "judge_statements", "mistaken_units",
+    "RefutedStatement", "Samples", "is_impossible", "judge", "judge_statements", "mistaken_units", "name_table",
 ]  # fmt: skip

@@ -104,6 +104,12 @@ def shares() -> Mapping[str, Mapping]:
     return tomllib.loads(Path(__file__).with_name("shares.toml").read_text(encoding="utf-8"))
 
 
+@cache
+def name_table() -> Mapping[str, Mapping]:
+    """Return the table of names."""
+    return tomllib.loads(Path(__file__).with_name("names.toml").read_text(encoding="utf-8"))
+
+
 def variable(columns: Sequence[NamedColumn], on: Sequence[Grid]) -> ColumnGroup:
     """Return columns that are read together with all their candidates."""
     symbols = tuple(entry.reading.symbol for entry in columns)
