@@ -7,6 +7,7 @@ import numpy as np
 from tests.data.draft.test_draft import write
 from tests.onboard.sentences import sentence
 
+from seatrial.api import draft_trial
 from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.draft_text import thruster_tables
 from seatrial.data.draft.guess import guess_columns, with_turned_thruster
@@ -30,8 +31,9 @@ def test_the_only_shaft_is_the_propellers(tmp_path: Path) -> None:
     assert found["n"].unit == "rps" and any("the only shaft" in one for one in found["n"].evidence)
 
 
-def test_two_shafts_are_those_of_two_propellers_and_an_engine_is_none(tmp_path: Path) -> None:
-    assert {"rpm_1", "rpm_2"} <= set(guesses(tmp_path / "twin.nmea", "S,1", "S,2"))
+def test_two_shafts_beside_a_rudder_are_half_their_sum_and_an_engine_is_none(tmp_path: Path) -> None:
+    twin = guesses(tmp_path / "twin.nmea", "S,1", "S,2")
+    assert (twin["n"].source, twin["n"].twin) == ("RPM/S1", "RPM/S2") and "rpm_1" not in twin
     assert not {"n", "rpm_1"} & set(guesses(tmp_path / "engine.nmea", "E,1"))
 
 
@@ -58,7 +60,30 @@ def test_two_shafts_by_their_sides_are_thrusters_where_no_rudder_steers(tmp_path
     assert (found["rpm_1"].side, found["rpm_2"].side) == ("port", "starboard")
     write(tmp_path / "ship.csv", columns | {"rudder_deg": 10.0 * np.sin(time)})
     found = {one.symbol: one for one in guess_columns(survey_log(tmp_path / "ship.csv")) if one.is_used}
-    assert found["n"].source == "rpm_left" and "rpm_1" not in found
+    assert (found["n"].source, found["n"].twin) == ("rpm_left", "rpm_right") and "rpm_1" not in found
+
+
+def test_two_rudders_are_half_their_sum_and_their_difference_is_said(tmp_path: Path) -> None:
+    time = np.arange(0.0, 120.0, 0.5)
+    rudder, generator = 10.0 * np.sign(np.sin(0.1 * time)), np.random.default_rng(2)
+    columns = {"time": time, "heading [deg]": np.degrees(np.cumsum(np.cumsum(0.0002 * rudder)))}
+    columns |= {"Ruder BB [deg]": rudder + generator.normal(0.0, 0.1, time.size), "Ruder StB [deg]": 0.9 * rudder - 1.0}
+    write(tmp_path / "ferry.csv", columns)
+    draft = draft_trial(tmp_path / "ferry.csv", length=100.0)
+    assert 'channels.delta = { column = "Ruder BB [deg]", twin = "Ruder StB [deg]", unit = "deg" }' in draft.text
+    assert "difference is 1 deg (spread 1" in draft.text and "not used: Ruder" not in draft.text
+    (record,) = draft.records
+    assert record is not None
+    np.testing.assert_allclose(np.degrees(record["delta"]), 0.95 * rudder - 0.5, atol=0.3)
+
+
+def test_a_rudder_that_turns_the_other_way_is_a_question(tmp_path: Path) -> None:
+    time = np.arange(0.0, 120.0, 0.5)
+    rudder = 10.0 * np.sign(np.sin(0.1 * time))
+    columns = {"time": time, "heading [deg]": np.degrees(np.cumsum(np.cumsum(0.0002 * rudder)))}
+    write(tmp_path / "ferry.csv", columns | {"rudder port [deg]": rudder, "rudder stbd [deg]": 0.5 - rudder})
+    (question,) = draft_trial(tmp_path / "ferry.csv", length=100.0).open_questions
+    assert question.symbol == "delta" and "'rudder stbd [deg]' turns the other way" in question.other_reading
 
 
 def test_rates_of_thrusters_whose_commands_are_recorded_are_not_two_more_thrusters(tmp_path: Path) -> None:

@@ -25,6 +25,7 @@ class ColumnGuess:
         evidence: why.
         other_reading: what it may be instead; empty: it is assigned outright.
         side: of the craft on which the motion or a name shows a thruster or shaft, port or starboard; empty: not shown.
+        twin: the column of the other of two rudders, nozzles or shafts, of which half the sum is taken; empty: none.
         reference_point: m forward of midship to which it refers; 0: midship, or not examined.
         follows_track: whether the motion shows a velocity to be the derivative of the position, over ground.
         is_used: whether it is the one chosen for its symbol.
@@ -54,6 +55,13 @@ class ColumnGuess:
     is_documented: bool = False
     is_assumed: bool = False
     offset: float = 0.0
+    twin: str | int = ""
+
+    @property
+    def topic(self) -> str:
+        """The topic before the name of the column, with its stroke; empty for a plain table."""
+        match = _TOPIC.match(str(self.source))
+        return match[0] if match else ""
 
     @property
     def is_open(self) -> bool:
@@ -79,6 +87,7 @@ class ColumnGuess:
             span=self.span,
             factor=self.scale,
             offset=self.offset,
+            twin=self.twin,
             kind="command" if self.kind == "command" or self.symbol.startswith("command_") else "",
         )
 

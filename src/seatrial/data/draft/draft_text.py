@@ -504,7 +504,7 @@ def _column_names(topic: TopicSummary) -> list[str]:
 
 def _unused_lines(survey: LogSurvey, guesses: Sequence[ColumnGuess]) -> list[str]:
     """Columns that are not used: those that are recognised with the reason, the others by name."""
-    named = {str(guess.source) for guess in guesses if guess.is_used}
+    named = {str(source) for guess in guesses if guess.is_used for source in (guess.source, guess.twin)}
     columns = [name for topic in survey.topics for name in _column_names(topic)]
     reasons = {str(g.source): f"{g.symbol}, {g.unused_because}" for g in guesses if g.unused_because}
     recognised = [f"{name} ({reasons[name]})" for name in columns if name in reasons and name not in named]
@@ -518,7 +518,8 @@ def _unused_lines(survey: LogSurvey, guesses: Sequence[ColumnGuess]) -> list[str
 
 
 def _channel_table(guess: ColumnGuess) -> str:
-    parts = [f"column = {quoted(guess.source)}", f"unit = {quoted(guess.unit or '1')}"]
+    twin = [f"twin = {quoted(guess.twin)}"] if guess.twin else []
+    parts = [f"column = {quoted(guess.source)}", *twin, f"unit = {quoted(guess.unit or '1')}"]
     words = (("frame", guess.frame), ("positive", guess.positive), ("kind", guess.kind))
     parts += [f"{key} = {quoted(value)}" for key, value in words if value]
     numbers = (

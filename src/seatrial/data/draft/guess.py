@@ -269,6 +269,9 @@ def _with_direction(effect: ThrusterEffect, guess: ColumnGuess) -> ColumnGuess:
 _TURNED = re.compile("steer|outboard|azimuth", re.IGNORECASE)
 # headings of the rate of a propeller or its shaft, which no gear stands before
 _SHAFT = re.compile("prop|shaft|welle|aksel|arbre|helice|hélice|elica", re.IGNORECASE)
+_TWINS = 2  # rudders, nozzles or shafts of which half the sum is one input
+# what such an input means for a model; thrust goes with D^4 at one rate and advance
+_OF_TWINS = {"delta": "A_R is the area of both", "n": "a propeller of 1.19 times D_P stands for two"}
 _PLACE_OR_SPEED = frozenset({"lat", "x0", "u", "v", "sog", "stw"})
 _HEADING_OF_PHONES = "azimuth"  # of the triple azimuth, pitch, roll (Android, SensorManager.getOrientation)
 _FOLDERS_READ = 3  # folders above a file whose names may be those of a topic; chosen
@@ -390,7 +393,7 @@ def _first_guess(survey: LogSurvey, topic: TopicSummary, column: ColumnSummary, 
         scale=rule.scale,
         evidence=(f"by {named.evidence}{': ' if rule.note else ''}{rule.note}",),
         unused_because=rule.unused_because,
-        side=named.side if named.symbol == "n" else "",
+        side="" if column.is_constant else named.side,
         is_documented=rule.logger not in ("", "ROS"),
     )
     if named.symbol.startswith("command_"):
@@ -408,7 +411,7 @@ def without_conflicts(parts: Sequence[Sequence[ColumnGuess]]) -> list[tuple[Colu
     """Return the guesses of the sources of a run with one source for each channel, what is measured before the rest."""
     used: set[str] = set()
     first = []
-    for part in _with_propeller(_with_two_shafts(parts)):
+    for part in _with_twins(_with_propeller(_with_two_shafts(parts))):
         first.append([_unused(g, f"another source has {g.symbol}") if g.symbol in used else g for g in part])
         used |= {g.symbol for g in first[-1] if g.is_used}
     reasons = _superfluous(used)
@@ -437,17 +440,42 @@ def _as_thruster(rate: ColumnGuess) -> ColumnGuess:
     return replace(rate, symbol=symbol, is_used=True, unused_because="", evidence=(because, *rate.evidence[1:]))
 
 
-def _with_propeller(parts: Sequence[Sequence[ColumnGuess]]) -> list[Sequence[ColumnGuess]]:
-    """The guesses, where beside a rudder one shaft alone turns: its rate as that of the propeller."""
-    used = {one.symbol for part in parts for one in part if one.is_used}
-    shafts = {one for one in used if one.startswith("rpm_")}
-    if "delta" not in used or "n" in used or len(shafts) != 1:
-        return list(parts)
-    text = "the only shaft, beside a rudder: the propeller's"
-    return [
-        [replace(one, symbol="n").with_evidence(text) if one.symbol in shafts else one for one in part]
-        for part in parts
-    ]
+def _with_propeller(parts: Sequence[Sequence[ColumnGuess]]) -> list[list[ColumnGuess]]:
+    """The guesses, where beside a rudder a shaft or two turn: their rate as that of the propeller."""
+    used = {guess.symbol for part in parts for guess in part if guess.is_used}
+    shafts = sorted(symbol for symbol in used if symbol.startswith("rpm_"))
+    if "delta" not in used or "n" in used or not 0 < len(shafts) <= _TWINS:
+        return [list(part) for part in parts]
+    text = "the only shaft, beside a rudder: the propeller's" if len(shafts) == 1 else "of a shaft, beside a rudder"
+    sides = dict(zip(shafts, ("port", "starboard"), strict=False))
+
+    def of_propeller(guess: ColumnGuess) -> ColumnGuess:
+        rate = replace(guess, symbol="n", side=sides[guess.symbol], is_used=guess.symbol == shafts[0])
+        return rate.with_evidence(text)
+
+    return [[of_propeller(guess) if guess.symbol in shafts else guess for guess in part] for part in parts]
+
+
+def _with_twins(parts: Sequence[list[ColumnGuess]]) -> Sequence[list[ColumnGuess]]:
+    """The guesses, where two rudders, nozzles or shafts of one table are recorded: half their sum as the one input."""
+    for part in parts:
+        for k, guess in enumerate(part):
+            twins = [place for place, other in enumerate(part) if _are_twins(guess, other)]
+            if len(twins) == 1:
+                other, why = part[twins[0]], f"half the sum with '{guess.source}' is taken"
+                part[k] = replace(guess, twin=other.source).with_evidence(_OF_TWINS[guess.symbol])
+                part[twins[0]] = replace(other, unused_because=why)
+    return parts
+
+
+def _are_twins(used: ColumnGuess, other: ColumnGuess) -> bool:
+    """Whether a column is that of the other side of one that is used, in the same topic and unit."""
+    is_left_out = not other.unused_because or other.unused_because == f"'{used.source}' is taken"
+    return (
+        (used.is_used and not other.is_used and is_left_out)
+        and (used.symbol == other.symbol and used.unit == other.unit and used.topic == other.topic)
+        and {used.side, other.side} == {"port", "starboard"}
+    )
 
 
 def with_turned_thruster(parts: Sequence[Sequence[ColumnGuess]]) -> tuple[tuple[ColumnGuess, ...], ...]:

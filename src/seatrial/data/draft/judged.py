@@ -9,7 +9,7 @@ import numpy as np
 from seatrial.core.values import Array, si_unit
 from seatrial.core.values.notation import positive_direction
 from seatrial.data.draft.column_guess import ColumnGuess
-from seatrial.data.draft.survey import ColumnSummary, LogSurvey, TopicSummary, column_values
+from seatrial.data.draft.survey import ColumnSummary, LogSurvey, column_values, columns_by_source
 from seatrial.data.read.clock import stamps
 from seatrial.data.readings import ColumnReading, NamedColumn, ReadingVerdict, Samples, is_impossible, judge
 
@@ -25,12 +25,13 @@ Parts = list[list[ColumnGuess]]
 
 @dataclass(frozen=True, eq=False)
 class _Place:
-    """A guess among those of a run, and its column."""
+    """A guess among those of a run, and its column; of twins the numbers of each."""
 
     part: int
     row: int
     column: ColumnSummary
     named: NamedColumn
+    twins: tuple[Array, Array] | None = None
 
 
 def judged_guesses(surveys: Sequence[LogSurvey], guesses: Sequence[Sequence[ColumnGuess]]) -> Parts:
@@ -49,7 +50,7 @@ def judged_guesses(surveys: Sequence[LogSurvey], guesses: Sequence[Sequence[Colu
 def _places(surveys: Sequence[LogSurvey], parts: Parts) -> Iterator[_Place]:
     """The columns that are judged: those that are used, and fixes beside a pose."""
     for k, (survey, part) in enumerate(zip(surveys, parts, strict=True)):
-        columns = dict(_columns(survey))
+        columns = columns_by_source(survey)
         clocks: dict[str, Array] = {}
         for row, guess in enumerate(part):
             is_judged = (guess.is_used and not guess.symbol.startswith(_COMMAND)) or guess.symbol in ("lat", "lon")
@@ -59,22 +60,16 @@ def _places(surveys: Sequence[LogSurvey], parts: Parts) -> Iterator[_Place]:
             table = next(one for one in survey.log.tables if one.topic == topic.topic)
             if topic.topic not in clocks and topic.time is not None:
                 clocks[topic.topic] = stamps(table, topic.time).seconds
-            cells = column_values(table, column.number - 1)
-            if cells is None:
+            sources = (guess.source, guess.twin) if guess.twin else (guess.source,)
+            sides = [column_values(table, columns[source][1].number - 1) for source in sources]
+            pair = [cells for cells in sides if cells is not None]
+            if not pair or len(pair) < len(sides):
                 continue
+            cells = table.numbers(guess.column)
             reading = ColumnReading(guess.symbol, guess.unit, guess.frame, guess.positive, 0.0, guess.scale)
             samples = Samples(clocks[topic.topic], cells, guess.symbol in _ANGLES)
-            yield _Place(k, row, column, NamedColumn(reading, samples, guess.is_documented))
-
-
-def _columns(survey: LogSurvey) -> Iterator[tuple[str | int, tuple[TopicSummary, ColumnSummary]]]:
-    """Source as a guess has it -> topic and column, of topics with a time."""
-    for topic in (one for one in survey.topics if one.time is not None):
-        for column in topic.columns:
-            source = f"{topic.topic}/{column.name}" if topic.topic else column.name
-            yield source, (topic, column)
-            if not topic.topic:
-                yield column.number, (topic, column)
+            named = NamedColumn(reading, samples, guess.is_documented)
+            yield _Place(k, row, column, named, (pair[0], pair[1]) if guess.twin else None)
 
 
 def _grouped(places: Sequence[_Place]) -> list[list[_Place]]:
@@ -106,11 +101,23 @@ def _decided(guess: ColumnGuess, place: _Place, verdict: ReadingVerdict, k: int)
         read = read.with_evidence(text if "unit" in other or best.unit in reasons else f"{text}: {word}")
     for relation in dict.fromkeys(reasons.values()):
         read = read.with_evidence(f"{', '.join(w for w, r in reasons.items() if r == relation)} by {relation}")
+    if place.twins is not None:
+        read, contradiction = _with_difference(read, *place.twins)
+        other = contradiction or other
     zeros = [one.offset for one in (best, rival) if one is not None and one.offset and (one is best or other)]
     read = read.with_evidence(_zero_text(best, zeros[0])) if zeros else read
     # an unknown unit of wind comes before whose wind it is; which of two columns is meant comes before its unit
     both = (other, guess.other_reading) if guess.is_of_wind else (guess.other_reading, other)
     return replace(read, other_reading=both[0] or both[1], is_assumed=verdict.is_assumed)
+
+
+def _with_difference(guess: ColumnGuess, first: Array, second: Array) -> tuple[ColumnGuess, str]:
+    """The guess with what its twins differ by, and what it may be where one turns as the other turns back."""
+    difference = first - second
+    mean, spread = float(np.nanmean(difference)), float(np.nanstd(difference))
+    text = f"half the sum of two, whose difference is {mean:.2g} {guess.unit} (spread {spread:.2g})"
+    is_against = spread > float(np.nanstd(first + second))
+    return guess.with_evidence(text), f"the first alone: '{guess.twin}' turns the other way" if is_against else ""
 
 
 def _instead(best: ColumnReading, place: _Place) -> str:

@@ -61,8 +61,9 @@ class NameRule:
     """A pattern of a name, or of ``topic/field`` of a logger, and what it names; an empty unit is found by behaviour.
 
     unused_because: why a column of this name is not taken by itself. note: what else is to be known of one.
-    other_reading: what it may be as well. first: added to the number in the name. is_sided: whether the name may say
-    the side of the craft besides. reason, beside: why it is not needed, and channels of which one is then used.
+    other_reading: what it may be as well. first: added to the number in the name. side: of the craft on which it is.
+    is_sided: whether the name may say the side besides. reason, beside: why it is not needed, and channels of which
+    one is then used.
     """
 
     pattern: str
@@ -76,6 +77,7 @@ class NameRule:
     logger: str = ""
     other_reading: str = ""
     first: int = 0
+    side: str = ""
     is_sided: bool = False
     reason: str = ""
     beside: Sequence[str] = field(default_factory=tuple)
@@ -242,9 +244,12 @@ def _guess(rule: NameRule, match: re.Match[str], unit: str, evidence: str, side:
         if not rule.logger and {si_unit(unit)[1], expected} <= _MOTION_UNITS:
             return None  # ``Gyro X (deg/s)`` is no position, although it ends in x
         unit = ""
+    side = rule.side or side
     if symbol.startswith(_COMMAND):
-        side = named_side(match.string) or next((one for one in _SIDES if _has_letter(match.string, one)), "")
-    return NameGuess(rule, symbol, unit, evidence, side if rule.is_sided or symbol.startswith(_COMMAND) else "")
+        side = named_side(match.string) or next((word for word in _SIDES if _has_letter(match.string, word)), "")
+    return NameGuess(
+        rule, symbol, unit, evidence, side if rule.side or rule.is_sided or symbol.startswith(_COMMAND) else ""
+    )
 
 
 def _has_letter(plain: str, side: str) -> bool:

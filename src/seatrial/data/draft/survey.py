@@ -324,6 +324,16 @@ class LogSurvey:
         return (self.layout.format, *(table.names for table in self.log.tables))
 
 
+def columns_by_source(survey: LogSurvey) -> dict[str | int, tuple[TopicSummary, ColumnSummary]]:
+    """Return source as a guess has it -> topic and column, of topics with a time."""
+    columns = dict[str | int, tuple[TopicSummary, ColumnSummary]]()
+    for topic in survey.topics:
+        for column in topic.columns if topic.time is not None else ():
+            columns[f"{topic.topic}/{column.name}" if topic.topic else column.name] = topic, column
+            columns |= {} if topic.topic else {column.number: (topic, column)}
+    return columns
+
+
 def survey_log(path: Path, stated: StatedColumns = NOTHING_STATED) -> LogSurvey:
     """Read a log of any format and summarise its topics; stated: what a person says of its columns.
 

@@ -59,6 +59,7 @@ class ColumnSpec:
         reference_point: metres forward of midship, at the scale of the file.
         label: the name to keep; empty: the file's own, or ``column k``.
         zero, span, factor, offset: the number in `unit` is (cell - zero) / span * factor + offset.
+        twin: column of the other of two rudders, nozzles or shafts: the channel is half the sum; empty: there is none.
         kind: who set it: an order (``command``), a sensor (``measured``), or nobody says.
         between: how it runs between samples, ``held`` or ``straight``; empty: a command is held.
         declared: what the trial file declares a channel of its own to be; None: the notation table has it.
@@ -75,6 +76,7 @@ class ColumnSpec:
     span: float = 1.0
     factor: float = 1.0
     offset: float = 0.0
+    twin: str | int = ""
     kind: Kind = ""
     between: Between = ""
     declared: Quantity | None = None
@@ -226,5 +228,8 @@ class Layout:
     @property
     def has_named_columns(self) -> bool:
         """Whether some column is wanted by name; a number in quotes is one of a column."""
-        sources = [column.source for column in (self.time, *self.columns)]
+        sources = [
+            self.time.source,
+            *(name for column in self.columns for name in (column.source, column.twin) if name),
+        ]
         return any(isinstance(source, str) and not source.isdecimal() for source in sources)

@@ -365,6 +365,7 @@ def _column(symbol: str, column: ChannelColumn, where: str, declared: DeclaredQu
         span=column.span,
         factor=column.scale,
         offset=column.offset,
+        twin=column.twin or "",
         kind=column.kind or usual,
         between=column.between or ("" if declared is None else declared.between),
         declared=None if declared is None else declared.quantity,
@@ -399,6 +400,8 @@ def stream_of(
             "follow.waves.sea: a sea known by its spectrum alone cannot be followed sample by sample; record the "
             "elevation zeta, or run 'seatrial identify' on the whole record"
         )
+    if twins := [symbol for symbol, column in table.channels.items() if column.twin]:
+        raise InputError(f"follow.channels.{twins[0]}: half the sum of twins is read from a file; follow one of both")
     if not _HOST_PATTERN.fullmatch(table.host):
         raise InputError(f"follow.host = '{table.host}' is no address; give one such as 127.0.0.1")
     file = None if table.file is None else data_folder / expand_variables(str(table.file))

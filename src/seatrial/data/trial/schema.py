@@ -158,7 +158,8 @@ class TimeColumn(StrictTable):
 class ChannelColumn(StrictTable):
     """Where a channel stands and what its numbers mean; frame and sign default to the notation table's.
 
-    The number in `unit` is (cell - zero) / span * scale + offset. A command is held until the next one.
+    The number in `unit` is (cell - zero) / span * scale + offset. A command is held until the next one. Of two rudders,
+    nozzles or shafts `twin` is the other column: the channel is half the sum.
     """
 
     column: str | Annotated[int, Field(ge=1)]
@@ -171,6 +172,7 @@ class ChannelColumn(StrictTable):
     span: NonZero = 1.0
     scale: NonZero = 1.0
     offset: float = 0.0
+    twin: str | Annotated[int, Field(ge=1)] | None = None
     kind: Literal["command", "measured"] | None = None
     between: Literal["held", "straight"] | None = None
 
@@ -212,11 +214,11 @@ class ColumnsTable:
     def _one_channel_a_column(self) -> Self:
         owner: dict[str | int, str] = {self.time.column: "time"}
         for symbol, channel in self.channels.items():
-            if channel.column in owner:
-                raise ValueError(
-                    f"column {channel.column!r} is named for '{owner[channel.column]}' and '{symbol}'; keep one"
-                )
-            owner[channel.column] = symbol
+            for column in (channel.column, channel.twin):
+                if column in owner:
+                    raise ValueError(f"column {column!r} is named for '{owner[column]}' and '{symbol}'; keep one")
+                if column is not None:
+                    owner[column] = symbol
         return self
 
 
