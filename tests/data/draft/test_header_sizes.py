@@ -2,10 +2,12 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from seatrial.api import draft_trial
 from seatrial.data.draft.draft_text import wave_lines
-from seatrial.data.draft.ship_estimates import UNSTATED, StatedSize, sizes_in_header, speed_in_header
+from seatrial.data.draft.ship_estimates import UNSTATED, StatedSize, header_statements, sizes_in_header, speed_in_header
 from seatrial.data.draft.survey import LogSurvey, survey_log
 
 TANK = "# Free-running model, feeder 1:40\n# LPP 3.400 m  B 580 mm  T 0.210 m  displacement 0.265 t  LCG -0.027 m"
@@ -40,6 +42,33 @@ def test_the_speed_of_a_carriage_is_that_of_the_run(tmp_path: Path) -> None:
     assert speed_in_header(log(tmp_path / "d.txt", "# model 12\n# V = 0.810 m/s")) == 0.81
     assert speed_in_header(log(tmp_path / "e.txt", "# model 12\n# run V 2 m/s")) is None
     assert wave_lines(1.2)[-1].startswith("speed = 1.2 ") and "ASSUMED" in wave_lines(None)[-1]
+
+
+PROSE = """# Wave probe 1.95 m fwd of midship; heave positive up, pitch bow down positive
+# +ve rudder to port. AIS/GPS antenna 34 m aft of midship.
+# ROT in degrees per minute, positive to starboard (clockwise)"""
+
+
+def test_sentences_above_a_table_say_sides_and_places(tmp_path: Path) -> None:
+    said = header_statements(log(tmp_path / "a.txt", PROSE))
+    assert {symbol: one.positive for symbol, one in said.items() if one.positive} == {
+        "z": "up", "theta": "bow down", "delta": "port", "r": "starboard"
+    }  # fmt: skip
+    assert (said["zeta"].place, said["antenna"].place, said["z"].place) == (1.95, -34.0, None)
+    assert [one.option for one in sizes_in_header(log(tmp_path / "b.txt", PROSE), UNSTATED)] == ["--antenna -34"]
+    assert header_statements(log(tmp_path / "c.txt", "# positive results, 3 m ahead")) == {}
+
+
+@pytest.mark.parametrize(("side", "is_open"), [("starboard", False), ("port", True)])
+def test_a_side_that_the_turn_contradicts_is_a_question(side: str, is_open: bool, tmp_path: Path) -> None:
+    time = np.arange(0.0, 200.0, 0.5)
+    rudder = 10.0 * np.sign(np.sin(0.1 * time))
+    psi = np.degrees(np.cumsum(np.cumsum(0.0002 * rudder)))
+    rows = "".join(f"{t};{a:.3f};{b:.2f}\n" for t, a, b in zip(time, psi, rudder, strict=True))
+    (tmp_path / "zz.csv").write_text(f"Zigzag\nrudder positive to {side}\n\ntime;heading [deg];rudder [deg]\n{rows}")
+    draft = draft_trial(tmp_path / "zz.csv", length=50.0)
+    (rudder_guess,) = [g for part in draft.guesses for g in part if g.symbol == "delta"]
+    assert rudder_guess.is_open is is_open and ("positive" in rudder_guess.other_reading) is is_open
 
 
 @pytest.mark.parametrize(

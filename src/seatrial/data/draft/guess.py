@@ -271,7 +271,7 @@ _TURNED = re.compile("steer|outboard|azimuth", re.IGNORECASE)
 _SHAFT = re.compile("prop|shaft|welle|aksel|arbre|helice|hélice|elica", re.IGNORECASE)
 _TWINS = 2  # rudders, nozzles or shafts of which half the sum is one input
 # what such an input means for a model; thrust goes with D^4 at one rate and advance
-_OF_TWINS = {"delta": "A_R is the area of both", "n": "a propeller of 1.19 times D_P stands for two"}
+_OF_TWINS = {"delta": "in mmg A_R is the area of both", "n": "a propeller of 1.19 times D_P stands for two"}
 _PLACE_OR_SPEED = frozenset({"lat", "x0", "u", "v", "sog", "stw"})
 _HEADING_OF_PHONES = "azimuth"  # of the triple azimuth, pitch, roll (Android, SensorManager.getOrientation)
 _FOLDERS_READ = 3  # folders above a file whose names may be those of a topic; chosen

@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from seatrial.core.values import Array, si_unit
-from seatrial.core.values.notation import positive_direction
+from seatrial.core.values.notation import NOTATION, OPPOSITE, positive_direction
 from seatrial.data.draft.column_guess import ColumnGuess
+from seatrial.data.draft.ship_estimates import HeaderStatement, header_statements
 from seatrial.data.draft.survey import ColumnSummary, LogSurvey, column_values, columns_by_source
 from seatrial.data.read.clock import stamps
 from seatrial.data.readings import ColumnReading, NamedColumn, ReadingVerdict, Samples, is_impossible, judge
@@ -36,8 +37,12 @@ class _Place:
 
 def judged_guesses(surveys: Sequence[LogSurvey], guesses: Sequence[Sequence[ColumnGuess]]) -> Parts:
     """Return the guesses of the sources of one run with units, frames, signs and zeros as all columns show them."""
-    parts = [list(part) for part in guesses]
-    places = list(_places(surveys, parts))
+    statements = [header_statements(survey) for survey in surveys]
+    parts = [
+        [_as_header_says(guess, statement.get(guess.symbol)) for guess in part]
+        for part, statement in zip(guesses, statements, strict=True)
+    ]
+    places = list(_places(surveys, parts, statements))
     groups = _grouped(places)
     verdicts = judge([[place.named for place in group] for group in groups])
     for group, verdict in zip(groups, verdicts, strict=True):
@@ -47,14 +52,31 @@ def judged_guesses(surveys: Sequence[LogSurvey], guesses: Sequence[Sequence[Colu
     return parts
 
 
-def _places(surveys: Sequence[LogSurvey], parts: Parts) -> Iterator[_Place]:
-    """The columns that are judged: those that are used, and fixes beside a pose."""
+def _as_header_says(guess: ColumnGuess, statement: HeaderStatement | None) -> ColumnGuess:
+    """The guess with the side and the place of a wave probe that sentences above the table say."""
+    if statement is None or not guess.is_used:
+        return guess
+    if statement.place and guess.symbol == "zeta":
+        place = replace(guess, reference_point=statement.place, evidence=(guess.evidence[0].partition(":")[0],))
+        guess = place.with_evidence(f"{statement.place:g} m forward of midship as its header says")
+    if not statement.positive or guess.symbol not in NOTATION or guess.frame == "enu":
+        return guess
+    usual = positive_direction(guess.symbol, guess.frame)
+    if statement.positive not in (usual, OPPOSITE[usual]):
+        return guess
+    return replace(guess, positive="" if statement.positive == usual else statement.positive)
+
+
+def _places(
+    surveys: Sequence[LogSurvey], parts: Parts, statements: Sequence[Mapping[str, HeaderStatement]]
+) -> Iterator[_Place]:
+    """The columns that are judged: those that are used, and fixes beside a pose; no waves met elsewhere."""
     for k, (survey, part) in enumerate(zip(surveys, parts, strict=True)):
         columns = columns_by_source(survey)
         clocks: dict[str, Array] = {}
         for row, guess in enumerate(part):
             is_judged = (guess.is_used and not guess.symbol.startswith(_COMMAND)) or guess.symbol in ("lat", "lon")
-            if not is_judged or guess.source not in columns or guess.span != 1.0:
+            if not is_judged or guess.source not in columns or guess.span != 1.0 or guess.reference_point:
                 continue
             topic, column = columns[guess.source]
             table = next(one for one in survey.log.tables if one.topic == topic.topic)
@@ -68,7 +90,8 @@ def _places(surveys: Sequence[LogSurvey], parts: Parts) -> Iterator[_Place]:
             cells = table.numbers(guess.column)
             reading = ColumnReading(guess.symbol, guess.unit, guess.frame, guess.positive, 0.0, guess.scale)
             samples = Samples(clocks[topic.topic], cells, guess.symbol in _ANGLES)
-            named = NamedColumn(reading, samples, guess.is_documented)
+            statement = statements[k].get(guess.symbol, HeaderStatement())
+            named = NamedColumn(reading, samples, guess.is_documented, is_side_said=bool(statement.positive))
             yield _Place(k, row, column, named, (pair[0], pair[1]) if guess.twin else None)
 
 
@@ -96,6 +119,8 @@ def _decided(guess: ColumnGuess, place: _Place, verdict: ReadingVerdict, k: int)
     if verdict.best.contradicts:
         other = f"{_differences(best, place.named.reading)} as its heading says"
     reasons = _reasons(guess, best, {} if other else verdict.reasons)
+    if place.named.is_side_said and not other and not any(word.startswith("positive") for word in reasons):
+        read = read.with_evidence(f"positive {_to(best)} as its header says")
     if not guess.unit:
         word = _WORDS.get(best.unit, best.unit) if best.factor == 1.0 else f"in {best.factor:g} {best.unit}"
         read = read.with_evidence(text if "unit" in other or best.unit in reasons else f"{text}: {word}")

@@ -9,6 +9,7 @@ import numpy as np
 
 from seatrial.core.values import InputError, si_unit
 from seatrial.data.draft.column_guess import ColumnGuess
+from seatrial.data.draft.naming import guess_by_name
 from seatrial.data.draft.survey import LogSurvey
 from seatrial.data.read.formats.text import decoded_text
 from seatrial.data.trial.plausibility import ESTIMATED
@@ -284,8 +285,9 @@ _NAMES = {
 }
 _UNITS = {"m": "mm|cm|m", "kg": "kg|t"}
 # the speed of a carriage or craft, as headers have it
-_SPEED = re.compile(r"(?:(?i:speed)|(?<![\w.])V(?=[ \t]*[=:]))[ \t]*[=:]?[ \t]*(\d+(?:\.\d+)?)[ \t]*(m/s|kn)\b")
-_SCALE = re.compile(r"(?<![\d:])1\s?:\s?(\d+(?:\.\d+)?)(?![\d:])")
+_DECIMAL = r"\d+(?:\.\d+)?"
+_SPEED = re.compile(rf"(?:(?i:speed)|(?<![\w.])V(?=[ \t]*[=:]))[ \t]*[=:]?[ \t]*({_DECIMAL})[ \t]*(m/s|kn)\b")
+_SCALE = re.compile(rf"(?<![\d:])1\s?:\s?({_DECIMAL})(?![\d:])")
 
 
 @dataclass(frozen=True)
@@ -300,7 +302,14 @@ def sizes_in_header(survey: LogSurvey, size: StatedSize) -> tuple[HeaderSize, ..
     """Return what the header of a text log says of the craft's size and what is not stated; nothing of other logs."""
     header = _header(survey)
     stated = {field.name for field in fields(size) if getattr(size, field.name)}
-    return tuple(one for name, one in _sizes(header).items() if name not in stated)
+    sizes = tuple(one for name, one in _sizes(header).items() if name not in stated)
+    place = header_statements(survey).get("antenna", HeaderStatement()).place
+    if place is None or size.antenna is not None:
+        return sizes
+    return (
+        *sizes,
+        HeaderSize(f"antenna {abs(place):g} m {'forward' if place > 0.0 else 'aft'}", f"--antenna {place:g}"),
+    )
 
 
 def speed_in_header(survey: LogSurvey) -> float | None:
@@ -310,6 +319,74 @@ def speed_in_header(survey: LogSurvey) -> float | None:
         return None
     number, unit = matches[0]
     return float(number) * si_unit(unit)[0]
+
+
+# a side to which a quantity is positive, in words; a place forward or aft of midship
+_TO_SIDE = {
+    "bow up": r"(?:bow|nose)\W+up", "bow down": r"(?:bow|nose)\W+down", "up": r"up(?:wards?)?",
+    "down": r"down(?:wards?)?", "port": r"port|left|counter-?clockwise|anti-?clockwise|ccw",
+    "starboard": r"starboard|stbd|right|clockwise|cw",
+}  # fmt: skip
+_POSITIVE = r"(?:positive|pos\.|\+ve|\+)"
+_ANTENNA = re.compile(r"antenna|receiver", re.IGNORECASE)
+_PLACE = re.compile(
+    rf"({_DECIMAL})\s*(mm|cm|m)\s+(?:(fwd|forward|ahead|before)|aft|abaft|behind|astern)", re.IGNORECASE
+)
+_LONGEST_SUBJECT, _SHORTEST_SUBJECT = 3, 3  # words, and letters, of a quantity in a sentence; ours
+
+
+@dataclass(frozen=True)
+class HeaderStatement:
+    """What the header of a text log says of a quantity.
+
+    Attributes:
+        positive: the side to which it counts; empty: it is not said.
+        place: where it is measured, m forward of midship; None: it is not said.
+    """
+
+    positive: str = ""
+    place: float | None = None
+
+
+def header_statements(survey: LogSurvey) -> dict[str, HeaderStatement]:
+    """Return symbol -> what the sentences above the table of a text log say of it; ``antenna`` for that of a receiver.
+
+    A clause without a quantity goes on about that of the clause before it.
+    """
+    statements = dict[str, HeaderStatement]()
+    for sentence in re.split(r"[;\n]|\.\s", _header(survey)):
+        symbol = ""
+        for clause in sentence.split(","):
+            symbol = _subject(clause) or symbol
+            known = statements.get(symbol, HeaderStatement())
+            place = _PLACE.search(clause)
+            forward = float(place[1]) * si_unit(place[2])[0] * (1.0 if place[3] else -1.0) if place else known.place
+            statement = HeaderStatement(_positive_side(clause) or known.positive, forward)
+            statements |= {symbol: statement} if symbol and statement != HeaderStatement() else {}
+    return statements
+
+
+def _subject(clause: str) -> str:
+    """The symbol of the longest name of a quantity in a clause; empty where there is none."""
+    if _ANTENNA.search(clause):
+        return "antenna"
+    words = re.findall(r"[^\W\d_]+", clause)
+    for count in range(_LONGEST_SUBJECT, 0, -1):
+        for first in range(len(words) - count + 1):
+            name = " ".join(words[first : first + count])
+            guess = guess_by_name("", name, "") if len(name) >= _SHORTEST_SUBJECT else None
+            if guess is not None:
+                return guess.symbol
+    return ""
+
+
+def _positive_side(clause: str) -> str:
+    """The side to which a clause says that a quantity is positive; empty where it says none."""
+    for side, words in _TO_SIDE.items():
+        behind = rf"{_POSITIVE}\W+(?:\w+\W+){{0,3}}?(?:{words})\b"
+        if re.search(rf"{behind}|\b(?:{words})\W+(?:is\W+)?{_POSITIVE}", clause, re.IGNORECASE):
+            return side
+    return ""
 
 
 def _header(survey: LogSurvey) -> str:

@@ -48,6 +48,7 @@ class NamedColumn:
     """A column with what its heading says of it; empty words are not said.
 
     is_documented: whether the documentation of its logger says so.
+    is_side_said: whether sentences above the table say the side.
     is_stated: whether a trial file states all of the reading, by which the numbers have come to SI units.
     offsets: zeros that are tried beside the usual ones.
     """
@@ -55,6 +56,7 @@ class NamedColumn:
     reading: ColumnReading
     samples: Samples
     is_documented: bool = False
+    is_side_said: bool = False
     is_stated: bool = False
     offsets: tuple[float, ...] = ()
 
@@ -139,6 +141,8 @@ def is_impossible(reading: ColumnReading, samples: Samples) -> bool:
 
 def _contradicted(column: NamedColumn, reading: ColumnReading) -> str:
     stated = column.reading
+    if column.is_side_said and stated.positive != reading.positive:
+        return f'positive = "{stated.positive}"'
     return f'unit = "{stated.unit}"' if stated.unit and stated.unit != reading.unit else ""
 
 
@@ -232,6 +236,7 @@ def _signed(readings: Sequence[ColumnReading], columns: Sequence[NamedColumn]) -
         else:
             opposite = reversed_reading(reading)
             share = shares()["opposite"]["of stated"] if column.reading.positive else share
+            share = shares()["opposite"]["of sentences"] if column.is_side_said else share
             share = math.exp(-CONTRADICTED) if column.is_documented else share
             choices = [(reading, math.log(1.0 - share)), (opposite, math.log(share))]
         options = [((*before, entry), nats + more) for before, nats in options for entry, more in choices]
