@@ -39,14 +39,18 @@ class Relation:
     nats: Callable[[Slots], float]
 
 
-def independent_numbers(values: Signal) -> float:
-    """Return for how many independent numbers a signal counts: 2 (sum S)^2 / sum S^2 of its spectrum S.
+def independent_numbers(values: Signal, beside: Signal | None = None) -> float:
+    """Return for how many independent numbers a product of two signals counts: 2 sum S sum B / sum S B of spectra S, B.
 
-    Degrees of freedom of a spectrum's sum (Priestley 1981, Spectral Analysis and Time Series, section 6.2.3).
+    Bartlett 1946 (Journal of the Royal Statistical Society, Supplement 8, 27-41): the variance of a correlation of two
+    independent series; of a signal with itself the degrees of freedom of a spectrum's sum (Priestley 1981, Spectral
+    Analysis and Time Series, section 6.2.3).
+
+    beside: the other signal; None: the signal itself.
     """
-    power = np.abs(np.fft.rfft(values - np.mean(values))) ** 2
-    total = float(np.sum(power**2))
-    return min(2.0 * float(np.sum(power)) ** 2 / total, _MOST_NUMBERS) if total > 0.0 else 0.0
+    power, other = (np.abs(np.fft.rfft(v - np.mean(v))) ** 2 for v in (values, values if beside is None else beside))
+    total = float(np.sum(power * other))
+    return min(2.0 * float(np.sum(power)) * float(np.sum(other)) / total, _MOST_NUMBERS) if total > 0.0 else 0.0
 
 
 def softly(nats: float, cap: float = _CAP) -> float:
@@ -269,10 +273,12 @@ def _signed_nats(answer: Signal, cause: Signal, beside: Signal | None, lag: int)
     power = np.sum(residuals**2, axis=0)
     if np.min(power) <= _FLOOR * np.sum(table[:, -1] ** 2) or np.min(power) == 0.0:
         return 0.0
-    correlation = float(residuals[:, 0] @ residuals[:, 1] / math.sqrt(power[0] * power[1]))
+    product = float(residuals[:, 0] @ residuals[:, 1])
+    correlation = product / math.sqrt(power[0] * power[1])
     if correlation**2 < _PROVING:
         return 0.0
-    count = independent_numbers(residuals[:, 0])
+    unexplained = residuals[:, 1] - residuals[:, 0] * product / power[0]
+    count = independent_numbers(residuals[:, 0], unexplained)
     return math.copysign(0.5 * max(count - 1.0, 0.0) * -math.log1p(-min(correlation**2, 1.0 - _FLOOR)), correlation)
 
 
