@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seatrial.numerics.resolution import resolution
+from seatrial.numerics.resolution import local_resolution, resolution
 
 
 @pytest.mark.parametrize("step", [1.0, 0.25, 0.1, 1e-3, np.radians(0.1), 1.0 / 3600.0])
@@ -32,3 +32,16 @@ def test_a_few_interpolated_values_do_not_hide_it(rng: np.random.Generator) -> N
     values = 0.5 * np.round(20.0 * rng.normal(size=400))
     values[7] = values[6] + 0.17
     assert resolution(values) == pytest.approx(0.5)
+
+
+def test_the_step_of_numbers_of_three_digits_grows_with_them(rng: np.random.Generator) -> None:
+    values = np.array([float(f"{value:.3g}") for value in np.linspace(0.1, 900.0, 20000)])
+    steps = local_resolution(values)
+    for low, high, step in ((2.0, 9.0, 0.01), (20.0, 90.0, 0.1), (200.0, 800.0, 1.0)):
+        inside = (values > low) & (values < high)
+        assert np.median(steps[inside]) == pytest.approx(step, rel=0.01) or step == 0.01
+    degrees = np.radians(np.round(rng.normal(size=3000) * 20.0))
+    np.testing.assert_allclose(local_resolution(degrees), np.radians(1.0), rtol=1e-6)
+    noise = rng.normal(size=3000)
+    assert np.median(local_resolution(noise)) < 1e-3 * np.median(np.abs(np.diff(noise)))
+    assert np.isnan(local_resolution(np.array([np.nan, 1.0]))[0]) and not local_resolution(np.full(3, 2.0)).any()

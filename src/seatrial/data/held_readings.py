@@ -6,6 +6,7 @@ import numpy as np
 
 from seatrial.core.values import Array
 from seatrial.core.values.arrays import Mask
+from seatrial.numerics.resolution import local_resolution
 
 _TOGETHER = (("lat", "lon"), ("x0", "y0"), ("u", "v"), ("sog", "cog"), ("q_w", "q_x", "q_y", "q_z"))
 _ALONE = ("stw", "r", "p", "psi", "psi_magnetic", "phi", "theta", "z", "u_dot", "v_dot")
@@ -19,7 +20,6 @@ _FROZEN_ROWS, _CATCHES_UP = 5, 3.0
 _USUAL = 0.98  # quantile of steps and stays that are usual; chosen: few are of a frozen channel
 _LOST = 1.5  # steps of the table, above which a row is missing; chosen
 _SAME_ROWS = 0.5  # share of the steps of the rarer of two channels in rows where the other steps too; chosen
-_SAME = 64.0 * float(np.finfo(float).eps)  # of the largest value, by which steps that are one differ; representation
 
 
 def slower_channels(values: Mapping[str, Array], time: Array) -> dict[str, Mask]:
@@ -138,23 +138,10 @@ def _usual_step(values: Array) -> float:
 
 
 def _step_sizes(values: Array, steps: np.ndarray) -> Array:
-    """The steps of a column in its resolutions, which may grow with the size of its values."""
-    sizes, scale = np.abs(np.diff(values))[steps - 1], float(np.max(np.abs(values)))
-    size = np.maximum(np.abs(values[steps]), np.abs(values[steps - 1]))
-    decade = np.floor(np.log10(np.maximum(size, _SAME * max(scale, 1e-300))))  # above zero, for a logarithm
-    result = np.zeros(len(steps))
-    for one in np.unique(decade):
-        rows = (decade == one) & (sizes > 0.0)
-        if rows.any():
-            result[rows] = sizes[rows] / _resolution(sizes[rows], scale)
-    return result
-
-
-def _resolution(sizes: Array, scale: float) -> float:
-    """The least difference among steps and nothing, of those that differ."""
-    tolerance = _SAME * max(scale, 1e-300)  # above zero, for a division
-    different = np.diff(np.concatenate([[0.0], np.sort(sizes)]))
-    return float(np.min(different[different > tolerance], initial=float(np.max(sizes))))
+    """The steps of a column in the resolution of its numbers before and after them, the coarser one."""
+    step = local_resolution(values)
+    sizes, coarser = np.abs(np.diff(values))[steps - 1], np.maximum(step[steps], step[steps - 1])
+    return np.divide(sizes, coarser, out=np.zeros(len(steps)), where=coarser > 0.0)
 
 
 def _with_unchanged(moments: Array, steps: np.ndarray) -> np.ndarray:

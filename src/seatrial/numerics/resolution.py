@@ -8,6 +8,7 @@ _LEVELS = 3  # gaps, gaps between gaps, and theirs: stamps of milliseconds 200 m
 _AGREEMENT = 1e-3  # of a step, within which a gap counts as so many whole steps; chosen, above what conversions round
 _NEAR = 0.1  # of a step, within which a gap helps to measure the step; chosen
 _ROUNDING = 8.0 * float(np.finfo(np.float64).eps)  # of the largest value: what conversions of units leave; chosen
+_NEIGHBOURS = 4  # gaps above a value, and below it, by which its own step goes; chosen
 _LEAST_SHARE = 0.95  # of the gaps that are whole steps: a few values may have been interpolated; chosen
 
 
@@ -47,3 +48,27 @@ def _gaps(ordered: NDArray[np.float64], rounding: float) -> NDArray[np.float64]:
     """Return the distances of neighbouring values, in order, without those that rounding makes."""
     gaps = np.sort(np.diff(ordered))
     return gaps[gaps > rounding]
+
+
+def local_resolution(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the step in which numbers as large as each value were written, in their unit, (n,); NaN for a NaN.
+
+    Of numbers of three digits it grows with them. It is the least distance of neighbouring values, or difference of
+    such distances, among the nearest above or below; of numbers with all digits it is far below what they move by.
+
+    Args:
+        values: (n,).
+    """
+    result = np.full(len(values), np.nan)
+    is_finite = np.isfinite(values)
+    distinct, place = np.unique(values[is_finite], return_inverse=True)
+    if distinct.size < 2:
+        return np.where(is_finite, 0.0, np.nan)
+    gaps, rounding = np.diff(distinct), _ROUNDING * float(np.max(np.abs(distinct)))
+    least = np.minimum(gaps, np.append(np.where((apart := np.abs(np.diff(gaps))) > rounding, apart, np.inf), np.inf))
+    count = min(_NEIGHBOURS, gaps.size)
+    padded = np.pad(np.where(least > rounding, least, np.inf), count, constant_values=np.nan)
+    windows = np.minimum.reduce([padded[k : k + distinct.size + count] for k in range(count)])
+    steps = np.fmax(windows[: distinct.size], windows[count:])  # where a decade begins the coarser one counts
+    result[is_finite] = np.minimum(steps, distinct[-1] - distinct[0])[place]
+    return result

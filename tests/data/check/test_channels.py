@@ -1,8 +1,11 @@
 """Positions of few digits come in steps; a sensor that stopped does not."""
 
 import numpy as np
+import pytest
 from tests.data.check.ship import with_values, zigzag
 
+from seatrial.core.values import Array, Severity
+from seatrial.data.check import examine
 from seatrial.data.check.channels import channel_findings
 
 STEP = 10.0  # m
@@ -21,3 +24,20 @@ def test_a_coarse_sensor_that_stops_is_stuck() -> None:
     coarse[1000:2000] = coarse[1000]
     codes = {f.code for f in channel_findings(with_values(record, x0=coarse)) if "'x0'" in f.message}
     assert codes == {"stuck"}
+
+
+def digits(values: Array) -> Array:
+    return np.array([float(f"{value:.3g}") for value in values])
+
+
+def whole_degrees(values: Array) -> Array:
+    return np.radians(np.round(np.degrees(values)))
+
+
+@pytest.mark.parametrize("symbols", [("psi", "delta"), ("x0", "y0", "psi", "u", "v", "r", "delta")])
+def test_coarse_readings_are_neither_stuck_nor_repeated_nor_jumps(symbols: tuple[str, ...]) -> None:
+    record = zigzag(noise=1.0)
+    write = whole_degrees if len(symbols) == 2 else digits
+    coarse = with_values(record, **{symbol: write(record[symbol]) for symbol in symbols})
+    codes = {f.code for f in examine(coarse) if f.severity is not Severity.INFO}
+    assert codes <= {f.code for f in examine(record)}

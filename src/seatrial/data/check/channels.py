@@ -14,6 +14,7 @@ from seatrial.data.check.motion import (
     window_length,
 )
 from seatrial.data.check.time_base import INPUT_CHANNELS
+from seatrial.numerics.resolution import local_resolution
 
 # Readings that no ship can show, such as 1e150 m/s: refused before anything is computed from them.
 
@@ -75,9 +76,7 @@ def _of_motion(record: Record, name: str) -> tuple[Finding, ...]:
 OUTPUT_CHANNELS = ("x0", "y0", "psi", "u", "v", "r", "phi", "p", "theta", "z", "u_dot", "v_dot")
 # a channel sticks where it repeats a value for so many samples and this share of the record, ours
 STUCK_SAMPLES, STUCK_FRACTION = 20, 0.02
-# coarse: a value usually stays for so many samples, and all steps are multiples of the smallest; it sticks beyond so
-# many usual stays; chosen
-COARSE_SAMPLES, COARSE_STAYS, STEP_ROUNDING = 5, 10, 1e-6
+_STEPS = 1.5  # resolutions, by which a channel moves on at most that was never stuck; chosen, between one and two
 # a lag is reported beyond so many standard errors and so many samples, ours
 LAG_STANDARD_ERRORS, LAG_SAMPLES = 4.0, 1.5
 
@@ -114,35 +113,26 @@ def _constant_finding(record: Record, symbol: str, value: float) -> Finding:
 
 
 def _stuck_findings(record: Record, symbol: str, values: Array) -> list[Finding]:
-    """The longest run of one repeated value, where it lasts over twenty samples and a fiftieth of the record; of a
-    channel in coarse steps its resolution, and a run only beyond ten usual ones.
+    """The longest stay at one value over twenty samples and a fiftieth of the record that its resolution does not
+    explain; of one that ends with a step of the resolution how coarse the channel is.
     """
-    first, last = max(mask_intervals(np.diff(values) == 0), key=lambda ends: ends[1] - ends[0], default=(0, 0))
-    longest = max(STUCK_SAMPLES, STUCK_FRACTION * len(values))
-    if last - first < longest:
+    known = np.flatnonzero(np.isfinite(values))
+    moves, step = np.diff(values[known]), local_resolution(values[known])
+    stays = [
+        (a, b) for a, b in mask_intervals(moves == 0.0) if b - a >= max(STUCK_SAMPLES, STUCK_FRACTION * len(known))
+    ]
+    stuck = [(a, b) for a, b in stays if abs(moves[b if b < len(moves) else a - 1]) > _STEPS * max(step[a], step[b])]
+    if not stays:
         return []
-    changes = np.flatnonzero(np.diff(values[np.isfinite(values)]))
-    stay = float(np.median(np.diff(changes))) if changes.size > 2 else 1.0  # samples; two stays at least
-    step = _step(values)
-    if step is not None and stay >= COARSE_SAMPLES and last - first < COARSE_STAYS * stay:
-        text = f"record '{record.name}': channel '{symbol}' comes in steps of {step:.4g} {record.channel(symbol).unit}"
-        evidence = f"a value stays for {stay:.0f} samples"
-        return [Finding(Severity.INFO, "resolution", text, evidence)]
-    text = f"record '{record.name}': channel '{symbol}' is stuck for {last - first + 1} samples"
-    end = record.time[min(last, len(values) - 1)]
-    evidence = f"{values[first]:.6g} from {moment(record.time[first], end)}"
+    first, last = max(stuck or stays, key=lambda ends: ends[1] - ends[0])
+    count = last - first + 1
+    if not stuck:
+        size = f"{step[first]:.4g} {record.channel(symbol).unit}"
+        text = f"record '{record.name}': channel '{symbol}' comes in steps of {size}"
+        return [Finding(Severity.INFO, "resolution", text, f"a value stays for up to {count} samples")]
+    text = f"record '{record.name}': channel '{symbol}' is stuck for {count} samples"
+    evidence = f"{values[known[first]]:.6g} from {moment(*record.time[known[[first, last]]])}"
     return [Finding(Severity.WARNING, "stuck", text, evidence)]
-
-
-def _step(values: Array) -> float | None:
-    """The smallest step of a channel, where all its steps are multiples of it."""
-    steps = np.abs(np.diff(values[np.isfinite(values)]))
-    steps = steps[steps > 0.0]
-    if steps.size == 0:
-        return None
-    smallest = float(steps.min())
-    counts = steps / smallest
-    return smallest if np.all(np.abs(counts - np.rint(counts)) < STEP_ROUNDING * counts) else None
 
 
 def lag_findings(record: Record, motion: RecordedMotion | None) -> tuple[Finding, ...]:

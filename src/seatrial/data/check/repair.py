@@ -16,9 +16,11 @@ from seatrial.data.check.time_base import (
     bridged,
     complete_parts,
     lost_sample_findings,
+    run_on,
     usual_rows,
     without_empty_ends,
 )
+from seatrial.numerics.resolution import local_resolution
 
 # Jumps of position (held and catching up, or staying) and single wild samples.
 
@@ -26,12 +28,13 @@ from seatrial.data.check.time_base import (
 HALF_WINDOW = 15
 # a step is a jump beyond these multiples of the mean and of the median step, ours
 STEP_RATIO, MEDIAN_STEP_RATIO = 4.0, 6.0
+_STEPS = 1.5  # resolutions that a step may be which is no jump; chosen, between one and two
 # a position is held where it moves by less than this share of the mean step, for so many samples at most, ours
 HELD_RATIO, LONGEST_HOLD = 0.35, 50
 # a jump matches the distance missed while the position was held between these shares of it; chosen
 MATCHING = (0.3, 2.5)
-# least step of a wild sample: over the quantile of all steps, and over the smallest (quantisation); chosen
-STEP_QUANTILE, OVER_QUANTILE, OVER_SMALLEST = 0.95, 3.0, 5.0
+# least step of a wild sample: over the quantile of all steps, and over the resolution; chosen
+STEP_QUANTILE, OVER_QUANTILE, OVER_STEP = 0.95, 3.0, 5.0
 # a sample is wild where it leaves and returns by this multiple of the largest of so many neighbouring steps, ours
 SPIKE_RATIO, NEIGHBOURS = 4.0, 8
 _NO_ROWS: RowIndices = np.empty(0, dtype=np.intp)
@@ -53,17 +56,18 @@ class Jumps:
 
 
 def track_jumps(x: Array, y: Array) -> Jumps:
-    """Return steps of more than four times the mean step around them and six times the median step of the run.
+    """Return steps of more than four times the mean step around them, six times the median step and two resolutions.
 
     x, y: shape (n,), no NaN. A receiver that holds its last position and then catches up shows small steps first.
     """
     steps = np.hypot(np.diff(x), np.diff(y))
+    coarse = _STEPS * np.hypot(*(np.maximum(step[1:], step[:-1]) for step in map(local_resolution, (x, y))))
     rows = np.arange(len(steps))
     first, last = np.maximum(rows - HALF_WINDOW, 0), np.minimum(rows + 1 + HALF_WINDOW, len(x) - 1)
     mean = np.hypot(x[last] - x[first], y[last] - y[first]) / np.maximum(last - first, 1)
     moving = steps[steps > 0]
     typical = float(np.median(moving)) if moving.size else 0.0
-    jumped = np.flatnonzero((steps > STEP_RATIO * mean) & (steps > MEDIAN_STEP_RATIO * typical))
+    jumped = np.flatnonzero((steps > STEP_RATIO * mean) & (steps > np.maximum(MEDIAN_STEP_RATIO * typical, coarse)))
     held = [_held_before(j, steps, mean) for j in jumped.tolist()]
     return Jumps(jumped + 1, steps[jumped], np.unique(np.concatenate([*held, _NO_ROWS])))
 
@@ -83,16 +87,16 @@ def spike_rows(values: Array) -> RowIndices:
     """Return rows of single samples that leave and return in steps over four times any other within eight samples.
 
     values: shape (n,), no NaN. The step must also exceed three times the record's 95 % step, and five times its
-    smallest (quantisation).
+    resolution.
     """
     steps = np.diff(values)
     sizes = np.abs(steps)
     moving = sizes[sizes > 0]
     if moving.size == 0 or len(values) < 2 * NEIGHBOURS:
         return _NO_ROWS
-    floor = max(OVER_QUANTILE * float(np.quantile(sizes, STEP_QUANTILE)), OVER_SMALLEST * float(moving.min()))
+    floor = np.maximum(OVER_QUANTILE * float(np.quantile(sizes, STEP_QUANTILE)), OVER_STEP * local_resolution(values))
     both = np.minimum(sizes[:-1], sizes[1:])
-    candidates = np.flatnonzero((steps[:-1] * steps[1:] < 0) & (both > floor))
+    candidates = np.flatnonzero((steps[:-1] * steps[1:] < 0) & (both > floor[1:-1]))
     spikes = []
     for c in candidates.tolist():
         before, after = sizes[max(0, c - NEIGHBOURS) : c], sizes[c + 2 : c + 2 + NEIGHBOURS]
@@ -169,15 +173,10 @@ def _with_steps(record: Record, bridge: BridgedRecord, parts: tuple[Record, ...]
 
 def interpolate_rows(channel: Channel, rows: RowIndices) -> Channel:
     """Return the channel with the given rows interpolated linearly (angles along the shorter arc)."""
-    is_angle = channel.unit == "rad"
-    smooth = unwrapped(channel.values) if is_angle else channel.values
-    finite = np.setdiff1d(np.flatnonzero(np.isfinite(smooth)), rows)
     values = np.array(channel.values)
-    values[rows] = np.interp(rows, finite, smooth[finite])
-    if is_angle:
-        left = finite[np.clip(np.searchsorted(finite, rows) - 1, 0, len(finite) - 1)]
-        values[rows] += channel.values[left] - smooth[left]
-    return channel.with_values(values)
+    values[rows] = np.nan
+    straight = run_on(channel.with_values(values))
+    return channel.with_values(np.where(np.isin(np.arange(len(values)), rows), straight, channel.values))
 
 
 def _require_values(record: Record) -> None:

@@ -10,6 +10,7 @@ from seatrial.core.values.arrays import Mask, unwrapped
 from seatrial.core.values.notation import COMMANDS, REFERENCES
 from seatrial.data.check.consequences import moment
 from seatrial.data.check.motion import RowIndices, mask_intervals
+from seatrial.numerics.resolution import local_resolution
 
 # The even time base behind rounded stamps: its step, and the place of each sample on it.
 
@@ -23,10 +24,6 @@ LARGEST_JITTER, LARGEST_ROUNDING = 0.6, 1.01
 # distance of a step of the clock from a whole number of the usual one, in steps, up to which samples between are lost;
 # chosen: ten standard deviations of stamps that jitter by 3 ms at 10 Hz
 _WHOLE_STEPS = 0.3
-# significant digits that a logger may round its stamps to, fewest first; more cannot be distinguished from noise
-_DIGITS = range(2, 7)
-# share of a rounding by which a stamp may differ from a multiple of it, and of stamps that may be zero; representation
-_REPRESENTATION = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +59,7 @@ def even_base(time: Array) -> EvenBase:
         return counted
     repeated = int(np.sum(steps == 0))
     quantum = float(np.min(steps[steps > 0], initial=np.inf)) if repeated else 0.0
-    rounding = np.maximum(_significant_rounding(time), quantum) if repeated else np.zeros(len(time))
+    rounding = np.maximum(local_resolution(time), quantum) if repeated else np.zeros(len(time))
     gapless = _base(time, np.empty(0, dtype=np.intp), rounding, repeated)
     if repeated and gapless.is_even:
         return gapless
@@ -124,20 +121,6 @@ def _nominal_step(time: Array, quantum: float) -> float:
     return nominal
 
 
-def _significant_rounding(time: Array) -> Array:
-    """Rounding of each stamp [s] to as many significant digits as all of them have, shape (n,); zero beyond six."""
-    size = np.abs(time)
-    known = size > 0
-    for digits in _DIGITS:
-        quantum = 10.0 ** (np.floor(np.log10(size[known])) + 1 - digits)  # decimal places of the leading digit
-        ratio = size[known] / quantum
-        if np.all(np.abs(ratio - np.round(ratio)) < _REPRESENTATION * np.maximum(ratio, 1.0)):
-            rounding = np.zeros(len(time))
-            rounding[known] = quantum
-            return rounding
-    return np.zeros(len(time))
-
-
 # Samples that are missing: channels run on where the craft has not forgotten what went before; other holes are cut.
 
 INPUT_CHANNELS = ("delta", "n", "v_j", *COMMANDS, *REFERENCES)
@@ -188,7 +171,7 @@ def bridged(record: Record) -> BridgedRecord:
             is_hole |= is_missing
         else:
             unread.append(is_missing)
-        channels[symbol] = _run_on(symbol, channel, known)
+        channels[symbol] = _run_on(symbol, channel)
         count = int(np.sum(np.isnan(channel.values) & ~is_empty))
         if count and usual_rows(known) < SLOWER:
             filled[symbol] = count
@@ -247,8 +230,7 @@ def _memory_rows(record: Record) -> int:
     symbol = next((s for s in _MOTION if s in record and np.isfinite(record[s]).sum() > _SHORTEST_PART), "")
     if not symbol:
         return 0
-    channel = record.channel(symbol)
-    motion = _run_on(symbol, channel, np.flatnonzero(np.isfinite(channel.values))).values
+    motion = run_on(record.channel(symbol))
     motion = np.gradient(unwrapped(motion)) if symbol in _RATES_OF else motion
     spectrum = np.abs(np.fft.rfft(motion - motion.mean(), 2 * len(motion))) ** 2
     correlation = np.fft.irfft(spectrum)[: len(motion)]
@@ -258,21 +240,25 @@ def _memory_rows(record: Record) -> int:
     return least + int(np.argmax(correlation[least:] < _FORGOTTEN * correlation[least]))
 
 
-def _run_on(symbol: str, channel: Channel, readings: RowIndices) -> Channel:
-    """The channel without NaN: angles along the shorter arc, commands held, the ends as the nearest reading."""
-    rows = np.arange(len(channel.values))
+def run_on(channel: Channel) -> Array:
+    """Return values without NaN: angles along the shorter arc, commands held, the ends as the nearest reading."""
+    is_known = np.isfinite(channel.values)
+    readings, missing = np.flatnonzero(is_known), np.flatnonzero(~is_known)
+    before = readings[np.clip(np.searchsorted(readings, missing) - 1, 0, None)]
+    values = np.array(channel.values)
+    values[missing] = channel.values[before]
+    if not channel.is_command:
+        smooth = unwrapped(channel.values) if channel.unit == "rad" else channel.values
+        values[missing] += np.interp(missing, readings, smooth[readings]) - smooth[before]
+    return values
+
+
+def _run_on(symbol: str, channel: Channel) -> Channel:
+    """The channel without NaN; of one that is measured, where it was."""
     is_known = np.isfinite(channel.values)
     if is_known.all():
         return channel
-    if channel.is_command:
-        before = np.clip(np.searchsorted(readings, rows, side="right") - 1, 0, None)
-        return channel.with_values(channel.values[readings[before]])
-    values = np.array(channel.values)
-    smooth = unwrapped(channel.values) if channel.unit == "rad" else channel.values
-    missing = np.flatnonzero(~is_known)
-    before = readings[np.clip(np.searchsorted(readings, missing) - 1, 0, None)]
-    values[missing] = np.interp(missing, readings, smooth[readings]) + channel.values[before] - smooth[before]
-    whole = channel.with_values(values)
+    whole = channel.with_values(run_on(channel))
     if _is_input(symbol, channel):
         return whole
     return whole.with_measured(is_known if channel.is_measured is None else is_known & channel.is_measured)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from seatrial.core.values import Array
 from seatrial.core.values.arrays import sentinel_value
+from seatrial.numerics.resolution import resolution
 
 Signal = NDArray[Any]
 """What a reading shows on a grid, (n,): real, or in the plane as north + i east or ahead + i aside."""
@@ -22,8 +23,6 @@ _TURNS = (360.0, math.tau, 36000.0, 3600.0)  # full turns as numbers: deg, rad, 
 _JUMP, _JUMPS = 0.62, 0.34
 _TURN_SLACK = 1.02  # of a full turn, to which rounded numbers may reach; chosen
 _LEAST_FILLED = 0.5  # share of bins with a reading below which readings are taken one by one; chosen
-_LEAST_STEPS = 8  # different steps from which a resolution is estimated; chosen
-_MULTIPLE = 1e-3  # of a resolution, by which steps may miss its multiples; chosen: rounding
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,13 +63,9 @@ class Samples:
 
     @cached_property
     def resolution(self) -> float:
-        """The step of which all steps are multiples; 0: none shows."""
-        steps = np.unique(np.round(np.abs(np.diff(self.readings[1])), 9))  # decimals, beyond those of logs
-        steps = steps[steps > 0.0]
-        if not steps.size > 1 or (steps.size < _LEAST_STEPS and steps.size > self.readings[1].size / 2):
-            return 0.0
-        ratio = steps / steps[0]
-        return float(steps[0]) if np.max(np.abs(ratio - np.round(ratio))) < _MULTIPLE * np.max(ratio) else 0.0
+        """The step in which the numbers were written; 0: none shows, as of two orders."""
+        cells = self.readings[1]
+        return resolution(cells) if np.unique(cells).size > 2 else 0.0
 
 
 @dataclass(frozen=True, eq=False)
