@@ -57,13 +57,13 @@ def _meaning(guess: ColumnGuess) -> str:
 
 
 def _runs(draft: DraftTrial) -> Section:
-    drawn = [
+    readable = [
         (run, record, offered or stretches)
         for run, record, stretches, offered in zip(draft.runs, draft.records, draft.stretches, draft.parts, strict=True)
         if record is not None
     ]
     is_left_out = any(part.is_left_out for offered in draft.parts for part in offered)
-    parts = tuple(_run(number, *run) for number, run in enumerate(drawn))
+    parts = tuple(_run(number, *run) for number, run in enumerate(readable))
     return Section("Runs and their manoeuvres", "runs", (_LEFT_OUT,) if is_left_out else (), parts=parts)
 
 

@@ -25,8 +25,8 @@ def _group(findings: Sequence[Finding]) -> Section:
     """Findings of one code with the same advice: the first few, the others behind a fold."""
     first, texts = findings[0], [f.text for f in findings]
     more = Section(f"{len(texts) - MAX_UNFOLDED} more", points=tuple(texts[MAX_UNFOLDED:]), is_folded=True)
-    said = [("What follows", first.consequence), ("Advice", first.advice)]
-    advice = Section("", sentences=tuple(f"{name}: {text}." for name, text in said if text))
+    statements = [("What follows", first.consequence), ("Advice", first.advice)]
+    advice = Section("", sentences=tuple(f"{name}: {text}." for name, text in statements if text))
     return Section(
         _TITLE.format(first.severity.value, first.severity.value, first.code),
         points=tuple(texts[:MAX_UNFOLDED]),

@@ -276,6 +276,6 @@ def _warnings(fit: Fit) -> KeyFact:
         codes = [NOT_CONVERGED, *(code for code in codes if code != NOT_CONVERGED)]
     if not codes:
         return KeyFact("Warnings", "none", "findings" if fit.findings else "", is_good=True)
-    others = f"; then {enumeration(codes[1:], MAX_NAMES - 1)}" if codes[1:] else ""
-    text = f"{'begin with ' if others else ''}{codes[0]}{others}"
+    consequences = f"; then {enumeration(codes[1:], MAX_NAMES - 1)}" if codes[1:] else ""
+    text = f"{'begin with ' if consequences else ''}{codes[0]}{consequences}"
     return KeyFact("Warnings", text, "findings" if fit.findings else "method", is_good=False)
