@@ -49,11 +49,16 @@ def key_facts(tuning: Tuning) -> tuple[KeyFact, ...]:
                 tuning.track is None or tuning.track.corner.stable_draws == tuning.track.corner.draws),
         KeyFact("Station", precision_sentence(tuning.station) if tuning.station else "", "station",
                 tuning.station is None or tuning.station.trial.stable_draws == tuning.station.trial.draws),
-        KeyFact("Schedule", _schedule(tuning), "schedule", all(s.is_feasible for s in tuning.schedule)),
+        KeyFact("Schedule", _schedule(tuning), "schedule", _is_schedule_kept(tuning)),
     )  # fmt: skip
     text = " ".join(_on_bounds(tuning)) or enumeration(warned) or "none"
     warnings = KeyFact("Warnings", text, "findings" if tuning.findings else "", not warned)
     return (*(row for row in rows if row.text and row.text != verdict(tuning)), warnings)
+
+
+def _is_schedule_kept(tuning: Tuning) -> bool:
+    check = tuning.schedule_check
+    return all(s.is_feasible for s in tuning.schedule) and (check is None or check.feasible == check.conditions)
 
 
 def _on_bounds(tuning: Tuning) -> list[str]:
@@ -89,9 +94,9 @@ def percent(share: float) -> str:
     return f"{fixed(100.0 * share, 1) if abs(share) >= 0.01 else significant(100.0 * share, 1)} %"
 
 
-def percent_points(share: float) -> str:
+def percent_points(share: float, decimals: int = 1) -> str:
     """Return a difference of reductions in percentage points."""
-    return f"{fixed(100.0 * share, 1)} points"
+    return f"{fixed(100.0 * share, decimals)} points"
 
 
 def _motion(tuning: Tuning) -> str:
@@ -220,14 +225,16 @@ def _simulation(tuning: Tuning) -> str:
 def comparison_sentence(pair: PairedDifference) -> str:
     """Return one paired difference; not significant where the interval contains zero."""
     stage = _SIMULATION_LABELS.get(pair.stage, pair.stage)
-    ends = f"95 % interval {fixed(100.0 * pair.lower, 1)} to {fixed(100.0 * pair.upper, 1)}"
+    width = 100.0 * (pair.upper - pair.lower)
+    decimals = max(1, -math.floor(math.log10(width))) if width > 0.0 else 1  # so many that the ends differ
+    ends = f"95 % interval {fixed(100.0 * pair.lower, decimals)} to {fixed(100.0 * pair.upper, decimals)}"
     tail = f"({ends}, {counted(pair.seeds, 'realisation')})"
     start = f"On the same waves, {stage}, it"
     if pair.lower <= 0.0 <= pair.upper:
-        change = f"does not differ significantly from ‘{pair.baseline}’: {percent_points(pair.mean)}"
+        change = f"does not differ significantly from ‘{pair.baseline}’: {percent_points(pair.mean, decimals)}"
     else:
         word = "better" if pair.mean > 0.0 else "worse"
-        change = f"is {word} than ‘{pair.baseline}’ by {percent_points(abs(pair.mean))}"
+        change = f"is {word} than ‘{pair.baseline}’ by {percent_points(abs(pair.mean), decimals)}"
     return f"{start} {change} {tail}."
 
 
@@ -292,7 +299,9 @@ def _schedule(tuning: Tuning) -> str:
     comparisons = [_other_gains_text(name, costs) for name, costs in baseline_costs.items()]
     text += f", where {enumeration(comparisons)}" if comparisons else ""
     kept = sum(s.is_feasible for s in slots)
-    return f"{text}; the constraints are kept in {'all' if kept == len(slots) else f'{kept} of {len(slots)}'}."
+    check = tuning.schedule_check
+    between = f" and, with gains interpolated, in {check.feasible} of {check.conditions}" if check else ""
+    return f"{text}; the constraints are kept in {'all' if kept == len(slots) else f'{kept} of {len(slots)}'}{between}."
 
 
 def _other_gains_text(name: str, costs: list[float]) -> str:

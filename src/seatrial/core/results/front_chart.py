@@ -1,6 +1,7 @@
 """Pareto fronts of a tuning: a panel for each pair of objectives, the chosen controller and the baselines marked."""
 
 import re
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -24,8 +25,8 @@ from seatrial.core.figures.chart import (
 from seatrial.core.results.tuning import Controller, Tuning
 from seatrial.core.text.numbers import raised
 
-# points drawn of a front; panels in a row
-POINTS, COLUMNS = 400, 3
+# points drawn of a front; panels in a row: two, above which the name of an objective fits
+POINTS, COLUMNS = 400, 2
 # ratio of largest to smallest from which on an axis of positive numbers is logarithmic
 WIDE = 12.0
 CHOSEN = Marker(Shape.DIAMOND, 5.4, "#ffffff", SECOND)  # px, chosen
@@ -66,11 +67,12 @@ def front_chart(tuning: Tuning) -> Chart | None:
     columns = min(COLUMNS, len(pairs))
     right = 8.0 if columns > 1 else WIDTH - 584.0  # one panel alone is 520 px wide
     # px, chosen
-    boxes = tiles(len(pairs), columns, 200.0 if columns > 1 else 300.0, left=64.0, right=right, gap=52.0, top=6.0)
+    boxes = tiles(len(pairs), columns, 200.0 if columns > 1 else 300.0, left=44.0, right=right, gap=52.0, top=22.0)
     panels = tuple(
-        Panel(box, axes[i], axes[j], tuple(Points(p[:, i], p[:, j], marker) for p, marker in styled))
+        Panel(box, axes[i], replace(axes[j], name=""), tuple(Points(p[:, i], p[:, j], m) for p, m in styled),
+              axes[j].name)
         for box, (i, j) in zip(boxes, pairs, strict=True)
-    )
+    )  # fmt: skip
     legend = [LegendEntry(f"front, {f.name}", FRONTS[k % len(FRONTS)]) for k, f in enumerate(fronts)]
     legend += [LegendEntry(c.name, marker) for c, marker in reversed(_marked_controllers(tuning))]
     return Chart("front of the objectives", panels, tuple(legend))

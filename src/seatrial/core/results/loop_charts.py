@@ -41,6 +41,8 @@ REAL, IMAGINARY, NYQUIST_HEIGHT = (-2.4, 1.4), (-1.9, 1.9), 380.0
 CUT, LEAST_TOP = 2.5, 1.15
 # dB, below which a size is cut off; dB a factor of ten, by definition
 LEAST_SIZE_DB, DECIBELS = -80.0, 20.0
+# dB, size below which a phase is not drawn; chosen: no change of gain that one would make brings it to 0 dB
+PHASE_SIZE_DB = -40.0
 
 
 def styled_controllers(tuning: Tuning) -> list[tuple[Controller, Stroke]]:
@@ -87,6 +89,8 @@ def bode_chart(tuning: Tuning) -> Chart | None:
         sizes = [np.maximum(DECIBELS * np.log10(np.abs(c.open_loop)), LEAST_SIZE_DB) for c, _ in styled]
     phases = [np.degrees(np.unwrap(np.angle(c.open_loop))) for c, _ in styled]
     phases = [phase - 360.0 * np.round(np.median(phase) / 360.0) for phase in phases]
+    phases = [np.where(size < min(PHASE_SIZE_DB, size.max()), math.nan, phase)
+              for phase, size in zip(phases, sizes, strict=True)]  # fmt: skip
     panels = []
     for box, title, curves, mark in zip(
         tiles(2, 2, 220.0, left=58.0, right=12.0),  # px, chosen
@@ -96,7 +100,7 @@ def bode_chart(tuning: Tuning) -> Chart | None:
         strict=True,
     ):
         lines = [Line(c.omega, curve, stroke) for (c, stroke), curve in zip(styled, curves, strict=True)]
-        low, high = min(float(c.min()) for c in curves), max(float(c.max()) for c in curves)
+        low, high = min(float(np.nanmin(c)) for c in curves), max(float(np.nanmax(c)) for c in curves)
         pad = 0.05 * max(high - low, 1.0)  # above and below the curves, chosen
         y = Axis((min(low, mark) - pad, max(high, mark) + pad))
         panels.append(Panel(box, x, y, (*reversed(lines), Rule(mark, LIMIT)), title))
