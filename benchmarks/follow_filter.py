@@ -15,7 +15,7 @@ from measure import Line, at_least, at_most, machine
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array
-from seatrial.estimation.estimate.online.change_detection import ChangeDetector
+from seatrial.estimation.estimate.online.carried_information import ChangeDetector
 from seatrial.estimation.estimate.online.recursive import GaussianState, RecursiveFilter
 from seatrial.estimation.estimate.online.window import gaussian_state_from_fit
 from seatrial.estimation.problem.output_error import OutputError

@@ -20,7 +20,7 @@ from measure import Line, at_least, machine
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Channel, InputError, Record, RecordKind, frozen
-from seatrial.estimation.identify.unrecorded_waves import transfer_functions
+from seatrial.estimation.identify.waves import transfer_functions
 from seatrial.estimation.information.frequency_response import frequency_range
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import cut_segments

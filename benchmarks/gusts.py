@@ -25,7 +25,7 @@ from seatrial.data.trial import EstimateSettings
 from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.fit import estimate_model
 from seatrial.estimation.estimate.settings import EstimatorOptions
-from seatrial.estimation.identify.profile import default_profiles
+from seatrial.estimation.identify.nonlinear_intervals import default_profiles
 from seatrial.numerics.workers import map_in_processes
 from seatrial.problems.disturbed_craft import SECONDS, Disturbance, independent_nomoto, limit_of, records
 

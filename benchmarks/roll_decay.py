@@ -21,7 +21,7 @@ from seatrial.core.values import Record
 from seatrial.data.check.motion import sample_noise
 from seatrial.data.trial import Trial, load_records, load_trial
 from seatrial.estimation.estimate import Estimation, Runs, estimate_model
-from seatrial.estimation.identify.selection import halves, roll_structures
+from seatrial.estimation.identify.model_selection import halves, roll_structures
 from seatrial.estimation.predict.open_loop import rms_errors, simulate_open_loop
 
 TRIAL = HERE.parent / "examples" / "kvlcc2_rolldecay.toml"

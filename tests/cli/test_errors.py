@@ -12,7 +12,7 @@ from seatrial import InputError, api
 from seatrial.cli import INPUT_EXIT_CODE, INTERNAL_EXIT_CODE, INTERRUPT_EXIT_CODE
 from seatrial.cli.errors import is_of_input
 from seatrial.core.values import Finding, Severity
-from seatrial.data.trial.correction import Correction
+from seatrial.data.trial.load import Correction
 
 
 @pytest.fixture

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from seatrial.data.draft import DraftTrial, LogSurvey, SurveyedLogs
     from seatrial.data.folder.model_file import ModelFile
     from seatrial.data.trial import Trial
-    from seatrial.data.trial.correction import Correction
+    from seatrial.data.trial.load import Correction
     from seatrial.data.trial.priors import EarlierResult
     from seatrial.onboard.follow import FollowResult
     from seatrial.onboard.sources import SampleSource
@@ -111,7 +111,7 @@ def correct_trial(trial: "str | Path") -> "Correction":
     Raises:
         InputError: the file or its records cannot be read.
     """
-    from seatrial.data.trial.correction import corrected_trial
+    from seatrial.data.trial.load import corrected_trial
 
     return corrected_trial(trial)
 

@@ -10,7 +10,7 @@ from seatrial.cli.screen import in_shell, print_file, print_lines, print_next
 
 if TYPE_CHECKING:
     from seatrial.core.values import Finding
-    from seatrial.data.trial.correction import Correction
+    from seatrial.data.trial.load import Correction
 
 
 def write_correction(correction: "Correction", trial: Path, findings: "tuple[Finding, ...]", per_code: int) -> None:
@@ -24,7 +24,7 @@ def write_correction(correction: "Correction", trial: Path, findings: "tuple[Fin
     """
     from seatrial.core.values import InputError
     from seatrial.core.values.files import write_atomically
-    from seatrial.data.trial.correction import change_lines
+    from seatrial.data.trial.load import change_lines
 
     fixed = trial.with_name(f"{trial.stem}.fixed.toml")
     print_lines(change_lines(correction))

@@ -8,7 +8,7 @@ from tests.data.check.ship import in_earth_axes, zigzag
 
 from seatrial.core.values import Record, Severity
 from seatrial.data.trial import corrected_trial
-from seatrial.data.trial.correction import change_lines
+from seatrial.data.trial.load import change_lines
 
 UNITS = {"x0": "m", "y0": "m", "psi": "rad", "u": "m/s", "v": "m/s", "r": "rad/s", "delta": "rad"}
 

@@ -7,7 +7,7 @@ import pytest
 
 from seatrial.core.values import InputError, Record
 from seatrial.data.trial import ControllerGains, Feedback, load_trial
-from seatrial.data.trial.feedback_table import refuse_unusable_feedback
+from seatrial.data.trial.craft_tables import refuse_unusable_feedback
 
 TIME = 0.1 * np.arange(200)
 RECORD = Record.from_arrays(

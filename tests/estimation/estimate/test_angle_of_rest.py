@@ -8,7 +8,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Array, Record
 from seatrial.estimation.estimate import EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.estimate.fit import Estimation
-from seatrial.estimation.estimate.process_noise_interval import with_slow_forces
+from seatrial.estimation.estimate.intervals import with_slow_forces
 from seatrial.physics.models.roll import roll
 from seatrial.physics.simulate.replay import trajectory
 

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.signal import lfilter
 
-from seatrial.estimation.estimate.disturbance_screen import HINT, spectral_hint
+from seatrial.estimation.estimate.disturbance_tests import HINT, spectral_hint
 
 ROWS = 3000
 

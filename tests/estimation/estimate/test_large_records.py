@@ -5,7 +5,7 @@ import pytest
 from scipy.signal import lfilter
 
 from seatrial.core.values import Record
-from seatrial.estimation.estimate import large_records
+from seatrial.estimation.estimate import fit
 from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
 from seatrial.estimation.estimate.settings import EstimatorOptions
@@ -39,9 +39,9 @@ def estimated(record: Record) -> Estimation:
 def test_one_step_from_stretches_is_the_estimate_of_all(gust: float, monkeypatch: pytest.MonkeyPatch) -> None:
     record = steered(gust)
     whole = estimated(record)
-    monkeypatch.setattr(large_records, "MOST_SAMPLES", 8000)
-    monkeypatch.setattr(large_records, "CHOICE_SAMPLES", 4500)
-    monkeypatch.setattr(large_records, "PIECE_SAMPLES", 3000)
+    monkeypatch.setattr(fit, "MOST_SAMPLES", 8000)
+    monkeypatch.setattr(fit, "CHOICE_SAMPLES", 4500)
+    monkeypatch.setattr(fit, "PIECE_SAMPLES", 3000)
     filtered = rows_filtered(monkeypatch)
     few = estimated(record)
     assert sum(rows >= ROWS for rows in filtered) <= 20 * few.estimate.problem.data.count
@@ -71,24 +71,24 @@ def test_steps_over_growing_parts_lead_to_the_optimum_of_all(monkeypatch: pytest
     """Three steps from 1000 of 9000 samples: a fourth one moves the coefficients by less than 0.2 standard errors."""
     limits = {"MOST_SAMPLES": 8000, "CHOICE_SAMPLES": 1000, "PIECE_SAMPLES": 3000, "_MOST_GROWTH": 2.5}
     for name, value in limits.items():
-        monkeypatch.setattr(large_records, name, value)
+        monkeypatch.setattr(fit, name, value)
     few = estimated(steered(np.radians(1.2)))
     noise = few.process_noise
     assert noise is not None
-    again = large_records.newton_optimum(noise.problem, noise.optimum, 1.0)[0].solution.point
+    again = fit.newton_optimum(noise.problem, noise.optimum, 1.0)[0].solution.point
     moved = (again - noise.optimum.solution.point)[:2] / few.interval.standard_error[:2]
     assert np.all(np.abs(moved) < 0.2), moved
 
 
 def test_short_records_are_taken_whole() -> None:
     record = steered(0.0)
-    assert large_records.choice_runs(Runs.one_session_each([record], 50.0)) is None
+    assert fit.choice_runs(Runs.one_session_each([record], 50.0)) is None
 
 
 def test_stretches_of_a_run_keep_its_session(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(large_records, "MOST_SAMPLES", 8000)
-    monkeypatch.setattr(large_records, "CHOICE_SAMPLES", 3000)
-    some = large_records.choice_runs(Runs.one_session_each([steered(0.0)], 50.0))
+    monkeypatch.setattr(fit, "MOST_SAMPLES", 8000)
+    monkeypatch.setattr(fit, "CHOICE_SAMPLES", 3000)
+    some = fit.choice_runs(Runs.one_session_each([steered(0.0)], 50.0))
     assert some is not None
     assert [len(r) for r in some.records] == [1000, 1000, 1000]
     assert set(some.sessions) == {"run"}

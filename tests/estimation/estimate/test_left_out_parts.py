@@ -7,8 +7,7 @@ import pytest
 
 from seatrial.core.values import Record
 from seatrial.estimation.estimate.assemble import Runs
-from seatrial.estimation.estimate.fit import estimate_model
-from seatrial.estimation.estimate.left_out_parts import (
+from seatrial.estimation.estimate.criterion_choice import (
     Parts,
     WindowSeconds,
     innovation_points,
@@ -16,6 +15,7 @@ from seatrial.estimation.estimate.left_out_parts import (
     left_out_errors,
     output_error_points,
 )
+from seatrial.estimation.estimate.fit import estimate_model
 from seatrial.estimation.estimate.point_estimate import PointEstimate, fit_output_error
 from seatrial.estimation.estimate.process_noise import fit_prediction_error
 from seatrial.estimation.estimate.settings import EstimatorOptions

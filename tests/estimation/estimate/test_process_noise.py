@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Record
-from seatrial.estimation.estimate.likelihood_ratio import boundary_quantile
+from seatrial.estimation.estimate.disturbance_tests import boundary_quantile
 from seatrial.estimation.estimate.plausibility import own_starts
 from seatrial.estimation.estimate.point_estimate import PointEstimate, fit_output_error
 from seatrial.estimation.estimate.process_noise import ProcessNoise, fit_prediction_error, has_noise

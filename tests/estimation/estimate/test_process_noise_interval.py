@@ -8,9 +8,9 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Record
 from seatrial.data.trial import EstimateMethod, EstimateSettings
 from seatrial.estimation.estimate import EstimatorOptions, Runs, estimate_model
+from seatrial.estimation.estimate.intervals import MEANING, process_noise_interval
 from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.estimate.process_noise import NoiseEvidence, ProcessNoise, implied_process_noise
-from seatrial.estimation.estimate.process_noise_interval import MEANING, process_noise_interval
 from seatrial.physics.models.roll import roll
 
 DT, ROWS, FINE = 0.05, 1200, 4

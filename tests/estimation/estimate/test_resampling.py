@@ -7,15 +7,15 @@ import pytest
 from tests.estimation.estimate.test_intervals import made
 
 from seatrial.core.values import InputError
-from seatrial.estimation.estimate.intervals import estimate_uncertainty
-from seatrial.estimation.estimate.point_estimate import PointEstimate
-from seatrial.estimation.estimate.process_noise_interval import (
+from seatrial.estimation.estimate.intervals import (
     bootstrap_fits,
+    estimate_uncertainty,
     fits_without,
     full_jackknife,
     one_step_by_run,
     one_step_jackknife,
 )
+from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.estimate.settings import IntervalMethod
 from seatrial.estimation.information.covariance import jackknife
 from seatrial.physics.models.nomoto import nomoto

@@ -5,12 +5,8 @@ from tests.estimation.estimate.test_process_noise_interval import START, B, C, d
 
 from seatrial.core.values import Array, Record
 from seatrial.estimation.estimate import EstimatorOptions, Runs, estimate_model
+from seatrial.estimation.estimate.intervals import MEANING, process_noise_interval, with_whole_run_intensity
 from seatrial.estimation.estimate.process_noise import NoiseEvidence, implied_process_noise
-from seatrial.estimation.estimate.process_noise_interval import (
-    MEANING,
-    process_noise_interval,
-    with_whole_run_intensity,
-)
 
 STEP, ROWS, MEMORY = 0.02, 1200, 0.3  # s
 FORCE = 0.02  # rad/s^2, rms

@@ -13,7 +13,7 @@ from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.identify import EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.identify.identifiability import consequences, identifiability, sensitivities
-from seatrial.estimation.identify.profile import CHI_SQUARED_LIMIT, profiles
+from seatrial.estimation.identify.nonlinear_intervals import CHI_SQUARED_LIMIT, profiles
 from seatrial.estimation.information.covariance import directions, inverse
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import cut_segments

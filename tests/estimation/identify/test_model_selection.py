@@ -9,7 +9,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Prior, Record, Severity
 from seatrial.data.trial import EstimateMethod, EstimateSettings, ModelFamily
 from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, estimate_model
-from seatrial.estimation.estimate.process_noise_interval import fits_without, one_step_jackknife
+from seatrial.estimation.estimate.intervals import fits_without, one_step_jackknife
 from seatrial.estimation.identify.model_selection import (
     FittedVariant,
     ModelVariant,

@@ -20,7 +20,7 @@ from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
 from seatrial.estimation.estimate.settings import EstimatorOptions
 from seatrial.estimation.identify import identify
-from seatrial.estimation.identify.posterior import sample_posterior, sampling_findings
+from seatrial.estimation.identify.nonlinear_intervals import sample_posterior, sampling_findings
 from seatrial.numerics.sampling import ChainSettings
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.problems.disturbed_craft import Disturbance, independent_nomoto

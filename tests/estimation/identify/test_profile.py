@@ -12,8 +12,8 @@ from seatrial.core.results.coefficients import FeedbackEvidence
 from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.fit import estimate_model
 from seatrial.estimation.estimate.settings import EstimatorOptions
-from seatrial.estimation.identify import profile as short_records
-from seatrial.estimation.identify.profile import default_profiles, short_record_findings
+from seatrial.estimation.identify import nonlinear_intervals
+from seatrial.estimation.identify.nonlinear_intervals import default_profiles, short_record_findings
 from seatrial.problems.disturbed_craft import Disturbance, independent_nomoto
 
 PROFILE = Profile("K", (0.1, 0.2), (0.0, 4.0), None, 0.19)
@@ -55,7 +55,7 @@ def test_vague_coefficients_have_profiles(
     share: float, count: int, profiles: tuple[Profile, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Standard errors of a fifth of the estimates, of a few coefficients."""
-    monkeypatch.setattr(short_records, "innovation_profiles", lambda *_: (PROFILE,))
+    monkeypatch.setattr(nonlinear_intervals, "innovation_profiles", lambda *_: (PROFILE,))
     one = estimation(5.0)
     one.process_noise, one.has_process_noise = object(), True
     one.interval = SimpleNamespace(standard_error=share * np.ones(count))

@@ -7,7 +7,7 @@ import pytest
 
 from seatrial.core.results.ship_motions import IntervalEstimate
 from seatrial.core.values import Prior, Record, Severity, Ship
-from seatrial.estimation.identify.roll_characteristics import (
+from seatrial.estimation.identify.characteristics import (
     gyradius_findings,
     objections,
     one_speed_finding,

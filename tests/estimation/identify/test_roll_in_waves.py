@@ -13,7 +13,7 @@ from seatrial.data.trial import load_trial
 from seatrial.estimation.estimate import EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.identify import identify
 from seatrial.estimation.identify.identification import is_unforced_roll
-from seatrial.estimation.identify.unrecorded_waves import maximum_likelihood, roll_interval, spectral_problem
+from seatrial.estimation.identify.waves import maximum_likelihood, roll_interval, spectral_problem
 from seatrial.physics.models.roll import roll
 from seatrial.physics.sea.spectrum import Spectrum, bretschneider, jonswap
 

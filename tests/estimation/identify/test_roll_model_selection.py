@@ -9,8 +9,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Record
 from seatrial.data.trial import EstimateSettings, ModelFamily
 from seatrial.estimation.estimate import EstimatorOptions, Runs, estimate_model
-from seatrial.estimation.identify.model_selection import SelectedModel
-from seatrial.estimation.identify.selection import roll_structures, select_roll_model
+from seatrial.estimation.identify.model_selection import SelectedModel, roll_structures, select_roll_model
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.roll import roll
 from seatrial.physics.simulate.replay import trajectory

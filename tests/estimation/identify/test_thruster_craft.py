@@ -8,7 +8,7 @@ import pytest
 from seatrial.core.equations import Model
 from seatrial.core.results import IntervalBasis
 from seatrial.core.values import Record
-from seatrial.estimation.identify.thruster_craft import craft_measures, thruster_craft
+from seatrial.estimation.identify.characteristics import craft_measures, thruster_craft
 from seatrial.estimation.predict.draws import perturbed_models
 from seatrial.physics.models import model_named
 

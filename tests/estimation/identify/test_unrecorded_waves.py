@@ -7,7 +7,7 @@ import pytest
 
 from seatrial.core.values import Record
 from seatrial.data.trial import Role, TrialRecord
-from seatrial.estimation.identify.unrecorded_waves import recorded_sea, seakeeping
+from seatrial.estimation.identify.waves import recorded_sea, seakeeping
 from seatrial.physics.hydro.excitation import BoxHull
 from seatrial.physics.models import model_named
 from seatrial.physics.sea.realise import realise, wave_record

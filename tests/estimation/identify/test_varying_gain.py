@@ -8,7 +8,7 @@ from seatrial.data.trial import Trial, TrialRun, load_records
 from seatrial.estimation.estimate import EstimatorOptions
 from seatrial.estimation.estimate.assemble import training_runs
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
-from seatrial.estimation.estimate.process_noise_interval import one_step_by_run
+from seatrial.estimation.estimate.intervals import one_step_by_run
 from seatrial.estimation.identify.terms import varying_gain_finding
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto

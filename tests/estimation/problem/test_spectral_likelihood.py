@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Array, Record
-from seatrial.estimation.identify.unrecorded_waves import wave_spectrum_problem as spectral_problem
+from seatrial.estimation.identify.waves import wave_spectrum_problem as spectral_problem
 from seatrial.estimation.problem.spectral_likelihood import SpectralLikelihood
 from seatrial.physics.hydro.excitation import encounter_frequency
 from seatrial.physics.models.published import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS

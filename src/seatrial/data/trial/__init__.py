@@ -1,8 +1,7 @@
 """Trials: ship, runs and their roles, model and settings, from a trial file or made in Python."""
 
-from seatrial.data.trial.correction import corrected_trial
-from seatrial.data.trial.feedback_table import ControllerGains, Feedback
-from seatrial.data.trial.load import load_runs, load_trial, parse_tables, trial_of_tables
+from seatrial.data.trial.craft_tables import ControllerGains, Feedback
+from seatrial.data.trial.load import corrected_trial, load_runs, load_trial, parse_tables, trial_of_tables
 from seatrial.data.trial.records import (
     CheckedRecords,
     TrialRecord,

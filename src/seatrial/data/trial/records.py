@@ -149,8 +149,6 @@ def _swing_count(values: Array, size: float) -> int:
     return int(np.sum(sides[1:] != sides[:-1]))
 
 
-# From the runs of a trial to checked records in standard frames, signs and units.
-
 # speed at the end of an acceleration run over the speed at the first rudder execution; largest standard deviation of
 # a sensor over the largest value recorded: chosen
 _ACCELERATED_FRACTION, _LARGEST_NOISE = 0.9, 1000.0

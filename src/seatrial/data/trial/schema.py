@@ -21,8 +21,8 @@ from seatrial.data.trial.amounts import (
     StrictTable,
     Unit,
 )
+from seatrial.data.trial.craft_tables import Feedback, ThrusterTable
 from seatrial.data.trial.design_request import DesignRequest
-from seatrial.data.trial.feedback_table import Feedback
 from seatrial.data.trial.run_data import valid_session
 from seatrial.data.trial.settings import (
     CompareSettings,
@@ -31,7 +31,6 @@ from seatrial.data.trial.settings import (
     ProposalSettings,
     StreamSettings,
 )
-from seatrial.data.trial.thruster_table import ThrusterTable
 from seatrial.physics.models.thruster_layout import Damping
 from seatrial.physics.sea.spectrum import Spectrum, bretschneider, ittc, ittc_two_parameter, jonswap, sea_state
 from seatrial.physics.sensors import Sensors
@@ -86,9 +85,6 @@ def _with_key(where: str, make: Callable[[], Spectrum]) -> Spectrum:
         return make()
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
-
-
-# The tables of a trial file: strict pydantic models; `seatrial.data.trial.amounts` words what they refuse.
 
 
 def _as_tuple(value: object) -> object:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Finding, ForcePoints, Record, RecordKind, Ship
+from seatrial.data.trial.craft_tables import Feedback
 from seatrial.data.trial.design_request import DesignRequest
-from seatrial.data.trial.feedback_table import Feedback
 from seatrial.data.trial.priors import JointPrior
 from seatrial.data.trial.run_data import RecordFile, RecordSources
 from seatrial.data.trial.settings import CompareSettings, EstimateSettings, ModelFamily, ProposalSettings, Stream

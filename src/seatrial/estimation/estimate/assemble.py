@@ -10,9 +10,9 @@ from seatrial.core.equations import Model
 from seatrial.core.values import NOTATION, ForcePoints, InputError, Parameters, Prior, Record
 from seatrial.core.values.arrays import Travel, travel
 from seatrial.data.trial import EstimateSettings, Feedback, Role, Trial, TrialRecord
-from seatrial.data.trial.feedback_table import refuse_unusable_feedback
+from seatrial.data.trial.craft_tables import refuse_unusable_feedback
 from seatrial.data.trial.priors import JointPrior
-from seatrial.estimation.estimate.online.marginal_prior import MarginalPrior
+from seatrial.estimation.estimate.online.carried_information import MarginalPrior
 from seatrial.estimation.information.covariance import inverse
 from seatrial.estimation.problem.output_error import DataTerm, Nuisance, OutputError
 from seatrial.estimation.problem.segments import compared_outputs, cut_segments

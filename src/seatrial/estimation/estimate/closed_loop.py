@@ -17,7 +17,7 @@ from scipy.special import chdtrc
 from seatrial.core.results.coefficients import FeedbackEvidence, WithoutDisturbance
 from seatrial.core.values import Array, Record
 from seatrial.data.check.inputs import FeedbackTest, feedback_tests
-from seatrial.data.trial.feedback_table import Feedback
+from seatrial.data.trial.craft_tables import Feedback
 from seatrial.estimation.estimate.disturbance_choice import DisturbanceChoice
 from seatrial.estimation.estimate.process_noise import ProcessNoise
 

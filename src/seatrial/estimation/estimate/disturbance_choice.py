@@ -25,7 +25,7 @@ from seatrial.estimation.estimate.disturbance_models import (
     wave_motion,
     white_intensities,
 )
-from seatrial.estimation.estimate.likelihood_ratio import CONFIDENCE_LEVEL, likelihood_ratio_test
+from seatrial.estimation.estimate.disturbance_tests import CONFIDENCE_LEVEL, likelihood_ratio_test
 from seatrial.estimation.estimate.newton_refinement import refine_by_newton
 from seatrial.estimation.estimate.plausibility import is_lost
 from seatrial.estimation.estimate.point_estimate import PointEstimate

@@ -25,7 +25,7 @@ from seatrial.core.equations.augment import (
 from seatrial.core.results import Waves
 from seatrial.core.values import Array, Index, InputError, ProgressReporter, spelling_hint
 from seatrial.data.check.motion import sample_noise
-from seatrial.estimation.estimate.likelihood_ratio import (
+from seatrial.estimation.estimate.disturbance_tests import (
     ProcessNoiseTest,
     innovation_correlation,
     likelihood_ratio_test,

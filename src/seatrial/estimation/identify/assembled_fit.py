@@ -22,6 +22,13 @@ from seatrial.estimation.identify.assumed_values import (
     with_effects,
     with_estimated_values,
 )
+from seatrial.estimation.identify.characteristics import (
+    gyradius_findings,
+    one_speed_finding,
+    roll_characteristics,
+    thruster_craft,
+    unphysical_finding,
+)
 from seatrial.estimation.identify.identifiability import course_finding, identifiability, stands_on_box
 from seatrial.estimation.identify.identification import Identification
 from seatrial.estimation.identify.instruments import (
@@ -32,13 +39,13 @@ from seatrial.estimation.identify.instruments import (
     with_undetected_sensor_errors,
 )
 from seatrial.estimation.identify.model_selection import HOLDOUT_WINDOW_SHIP_LENGTHS, SelectedModel, with_model_spread
-from seatrial.estimation.identify.posterior import sample_posterior, sampling_findings
-from seatrial.estimation.identify.profile import default_profiles, innovation_profiles, profiles, short_record_findings
-from seatrial.estimation.identify.roll_characteristics import (
-    gyradius_findings,
-    one_speed_finding,
-    roll_characteristics,
-    unphysical_finding,
+from seatrial.estimation.identify.nonlinear_intervals import (
+    default_profiles,
+    innovation_profiles,
+    profiles,
+    sample_posterior,
+    sampling_findings,
+    short_record_findings,
 )
 from seatrial.estimation.identify.score_test import output_error_estimate, own_criterion
 from seatrial.estimation.identify.terms import (
@@ -47,8 +54,6 @@ from seatrial.estimation.identify.terms import (
     needless_term_findings,
     varying_gain_finding,
 )
-from seatrial.estimation.identify.thruster_craft import thruster_craft
-from seatrial.estimation.identify.unrecorded_waves import seakeeping
 from seatrial.estimation.identify.warnings import (
     abandoned_criterion_finding,
     closed_loop_findings,
@@ -60,6 +65,7 @@ from seatrial.estimation.identify.warnings import (
     short_time_constant_findings,
     untrained_manoeuvre_findings,
 )
+from seatrial.estimation.identify.waves import seakeeping
 from seatrial.estimation.information.frequency_response import frequency_responses
 from seatrial.estimation.predict.predict_runs import RunPredictions, predict_runs
 from seatrial.estimation.predict.session_offsets import horizon_list, k_step_errors

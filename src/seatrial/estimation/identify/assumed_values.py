@@ -13,9 +13,9 @@ from seatrial.core.values import NOT_MEASURED, Array, Finding, Parameter, Severi
 from seatrial.data.trial import TrialRecord
 from seatrial.data.trial.plausibility import ESTIMATED_VALUES
 from seatrial.estimation.estimate.fit import Estimation
-from seatrial.estimation.estimate.process_noise_interval import one_step_by_run
+from seatrial.estimation.estimate.intervals import one_step_by_run
+from seatrial.estimation.identify.characteristics import DAMPING_NAMES, RESTORING_NAMES
 from seatrial.estimation.identify.identifiability import RELATIVE_CHANGE
-from seatrial.estimation.identify.roll_characteristics import DAMPING_NAMES, RESTORING_NAMES
 from seatrial.estimation.identify.score_test import (
     Candidate,
     added_input,

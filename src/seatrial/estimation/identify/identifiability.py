@@ -203,8 +203,6 @@ def _turn_text(model: Model, approach: Mapping[str, float], speed: float | None)
     return f"; at equal orders it ends in a turn of {significant(turn, 2)} deg/s"
 
 
-# What the records determine of a fitted model and what they do not, put together for the report.
-
 # change of a value whose consequences are shown, ours
 RELATIVE_CHANGE = 0.1
 # shown in a report, ours

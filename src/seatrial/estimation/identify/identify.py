@@ -27,6 +27,7 @@ from seatrial.estimation.identify.identification import (
     with_detected_sensor_errors,
     with_likelier_courses,
 )
+from seatrial.estimation.identify.model_selection import selected_model
 from seatrial.estimation.identify.search import (
     check_search_settings,
     estimate_by_regression,
@@ -35,10 +36,8 @@ from seatrial.estimation.identify.search import (
     published_fit,
     refuse_options,
 )
-from seatrial.estimation.identify.selection import selected_model
-from seatrial.estimation.identify.unrecorded_waves import identify_by_wave_spectrum, identify_in_unknown_waves
 from seatrial.estimation.identify.warnings import single_order_findings, with_unexcited_thrust_held
-from seatrial.estimation.identify.wave_readings import contradicted_waves
+from seatrial.estimation.identify.waves import contradicted_waves, identify_by_wave_spectrum, identify_in_unknown_waves
 from seatrial.estimation.information.frequency_response import frequency_range, frequency_range_finding
 from seatrial.estimation.predict.session_offsets import horizon_list
 
@@ -119,8 +118,6 @@ def identify_with_static_forces(task: Identification) -> Fit:
     selected = selected_model(task)
     return assembled_fit(task, selected, force_consistency(selected.estimation.estimate))
 
-
-# A trial in, a fit out: records read and checked, their situation recognised, its strategy followed.
 
 STRATEGIES: Mapping[Situation, Callable[[Identification], Fit]] = MappingProxyType({
     Situation.STEERED: identify_steered,

@@ -9,10 +9,14 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index, InputError, Prior, Record
 from seatrial.estimation.estimate.fit import Estimation
-from seatrial.estimation.estimate.intervals import RUNS_FOR_JACKKNIFE
+from seatrial.estimation.estimate.intervals import (
+    RUNS_FOR_JACKKNIFE,
+    fits_without,
+    inverse_variances,
+    one_step_jackknife,
+)
 from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.estimate.process_noise import ProcessNoise
-from seatrial.estimation.estimate.process_noise_interval import fits_without, inverse_variances, one_step_jackknife
 from seatrial.estimation.information.covariance import estimate_shifts, inverse
 from seatrial.estimation.predict.prediction_intervals import holdout_model
 from seatrial.estimation.predict.windows import HoldoutProtocol, split_windows, window_errors

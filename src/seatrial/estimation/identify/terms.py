@@ -14,10 +14,9 @@ from seatrial.core.text.numbers import percent, significant
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, Finding, InputError, Parameter, Record, Severity
 from seatrial.estimation.estimate.fit import Estimation
-from seatrial.estimation.estimate.intervals import RUNS_FOR_JACKKNIFE
+from seatrial.estimation.estimate.intervals import RUNS_FOR_JACKKNIFE, one_step_by_run
 from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.estimate.process_noise import ProcessNoise
-from seatrial.estimation.estimate.process_noise_interval import one_step_by_run
 from seatrial.estimation.identify.score_test import (
     Candidate,
     added_input,

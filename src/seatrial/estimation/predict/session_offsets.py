@@ -15,8 +15,7 @@ from seatrial.data.check import sample_noise
 from seatrial.data.trial import Role, TrialRecord
 from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.criterion_choice import is_coarsely_sampled
-from seatrial.estimation.estimate.fit import Estimation
-from seatrial.estimation.estimate.large_records import choice_runs
+from seatrial.estimation.estimate.fit import Estimation, choice_runs
 from seatrial.estimation.estimate.point_estimate import PointEstimate, with_steps_of_start
 from seatrial.estimation.estimate.process_noise import initial_problem, third_difference_noise
 from seatrial.estimation.estimate.settings import INITIAL_STATE_SHIP_LENGTHS, characteristic_time

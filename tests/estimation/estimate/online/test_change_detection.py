@@ -8,7 +8,7 @@ from tests.estimation.estimate.online.streams import DT, NAMES, NOISE, SeaStream
 from seatrial.core.equations import Model
 from seatrial.core.results.online import CoefficientChange
 from seatrial.core.values import InputError
-from seatrial.estimation.estimate.online.change_detection import (
+from seatrial.estimation.estimate.online.carried_information import (
     ChangeDetector,
     GaussianEstimate,
     independent_change,

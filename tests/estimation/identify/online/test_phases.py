@@ -7,7 +7,7 @@ import pytest
 from tests.estimation.identify.online.streams import samples, sea_stream, window_of
 
 from seatrial.core.results.online import EstimatorPhase
-from seatrial.estimation.estimate.online.change_detection import ChangeDetector
+from seatrial.estimation.estimate.online.carried_information import ChangeDetector
 from seatrial.estimation.identify.online import phases as search
 from seatrial.estimation.identify.online.phases import (
     BLOCK_SAMPLES,

@@ -275,8 +275,6 @@ def stepper_for(model: Model, names: tuple[str, ...], outputs: tuple[str, ...], 
     return (ExactStepper if model.is_affine else RungeKuttaStepper)(model, names, outputs, dt, substeps)
 
 
-# The recursive filter: the information of a fit carried on, sample by sample, in bounded memory.
-
 _HISTORY_SAMPLES = 12  # inputs kept before the sample in work, for the spline; chosen
 _FORGETTING_STEPS = 200  # forgetting acts so many times in a time constant; chosen
 

@@ -10,7 +10,7 @@ from seatrial.data.read.assemble import record_from_values
 from seatrial.data.trial import Role, Trial, TrialRun
 from seatrial.data.trial.records import load_run
 from seatrial.data.trial.runs import require_stream
-from seatrial.estimation.estimate.online.change_detection import ChangeDetector
+from seatrial.estimation.estimate.online.carried_information import ChangeDetector
 from seatrial.estimation.estimate.online.window import SampleRows, WindowEstimate
 from seatrial.estimation.identify.online.phases import (
     CHANGE_TEST_INTERVAL,

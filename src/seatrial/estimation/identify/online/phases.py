@@ -15,8 +15,7 @@ from seatrial.data.trial import FitCriterion, Trial
 from seatrial.data.trial.settings import Stream
 from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.fit import estimate_model, with_segment_seconds
-from seatrial.estimation.estimate.online.change_detection import ChangeDetector
-from seatrial.estimation.estimate.online.marginal_prior import MarginalPrior, marginalise
+from seatrial.estimation.estimate.online.carried_information import ChangeDetector, MarginalPrior, marginalise
 from seatrial.estimation.estimate.online.recursive import Forgetting
 from seatrial.estimation.estimate.online.window import (
     LINEAR_ENOUGH,

@@ -1,1 +1,0 @@
-"""One strategy of `identify` for each situation: from an identification to a fit."""
