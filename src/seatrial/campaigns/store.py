@@ -96,16 +96,10 @@ class JournalEntry:
     stop: int
 
 
-@dataclass(frozen=True)
-class JournalContent:
-    """The whole entries of a journal, and in how many places something between or behind them is damaged."""
+def read_journal(path: Path) -> tuple[tuple[JournalEntry, ...], int]:
+    """Return the whole entries of a journal, and in how many places something between or behind them is damaged.
 
-    entries: tuple[JournalEntry, ...]
-    damaged_places: int
-
-
-def read_journal(path: Path) -> JournalContent:
-    """Return the whole entries of a journal; a torn end is that of a process that was killed, or is writing now.
+    A torn end is that of a process that was killed, or is writing now.
 
     Raises:
         InputError: it cannot be read, is no journal of a campaign, or one of a newer version.
@@ -114,7 +108,7 @@ def read_journal(path: Path) -> JournalContent:
         with path.open("rb") as file:
             header = file.read(len(_HEADER))
             if len(header) < len(_HEADER) and _HEADER.startswith(header):  # its writer was killed at once
-                return JournalContent((), 0)
+                return (), 0
             _check_header(header, path)
             with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
                 return _parsed(content, path)
@@ -137,7 +131,7 @@ def _check_header(header: bytes, path: Path) -> None:
     raise InputError(f"'{path}' is no journal of a campaign; remove it from the store")
 
 
-def _parsed(content: mmap.mmap, path: Path) -> JournalContent:
+def _parsed(content: mmap.mmap, path: Path) -> tuple[tuple[JournalEntry, ...], int]:
     entries, damaged, end = list[JournalEntry](), 0, len(_HEADER)
     for frame in whole_frames(content, end, _payload_size):
         tag, length, identity, seconds = _HEAD.unpack_from(content, frame.start)
@@ -145,7 +139,7 @@ def _parsed(content: mmap.mmap, path: Path) -> JournalContent:
         entries.append(JournalEntry(path, tag == _FAILED, identity, seconds, body, body + length))
         damaged += frame.start > end
         end = frame.stop
-    return JournalContent(tuple(entries), damaged)
+    return tuple(entries), damaged
 
 
 def _payload_size(content: bytes | mmap.mmap, offset: int) -> int:
@@ -203,9 +197,9 @@ class Store:
         failed: dict[bytes, JournalEntry] = {}
         damaged = 0
         for path in sorted((self.folder / _JOURNALS).glob(f"*{SUFFIX}")):
-            content = read_journal(path)
-            damaged += content.damaged_places
-            for entry in content.entries:
+            entries, damaged_places = read_journal(path)
+            damaged += damaged_places
+            for entry in entries:
                 kept = failed if entry.is_failure else done
                 first = kept.get(entry.identity)
                 kept[entry.identity] = entry if first is None else min(first, entry, key=body_of)
@@ -215,7 +209,7 @@ class Store:
         """Yield pairs of outcomes of one task that was done more than once."""
         first: dict[bytes, JournalEntry] = {}
         for path in sorted((self.folder / _JOURNALS).glob(f"*{SUFFIX}")):
-            for entry in read_journal(path).entries:
+            for entry in read_journal(path)[0]:
                 if not entry.is_failure and first.setdefault(entry.identity, entry) is not entry:
                     yield first[entry.identity], entry
 

@@ -116,9 +116,9 @@ def _advice(advice: str, method: TuningMethod) -> str:
 def _gain_findings(evaluator: GainEvaluator, chosen: Controller, method: TuningMethod) -> list[Finding]:
     loop = evaluator.loop
     found = [
-        _warning("gain-on-bound", f"gain {g.name} ends on the {g.end} bound {g.bound:g} of the search: a better one "
-                 "may lie beyond", f"widen it: [controller.gains.{g.name}] {g.end} in the loop file")
-        for g in gains_on_bound(loop, np.array([chosen.gains[name] for name in loop.gains.names]))
+        _warning("gain-on-bound", f"gain {name} ends on the {end} bound {bound:g} of the search: a better one "
+                 "may lie beyond", f"widen it: [controller.gains.{name}] {end} in the loop file")
+        for name, end, bound in gains_on_bound(loop, np.array([chosen.gains[gain] for gain in loop.gains.names]))
     ]  # fmt: skip
     for gain in loop.gains.free:
         if gain.lower == 0.0 and abs(chosen.gains[gain.name]) <= ON_BOUND * gain.upper:

@@ -261,15 +261,6 @@ class NamedGains:
     gains: Array
 
 
-@dataclass(frozen=True)
-class GainOnBound:
-    """A gain that ends on the `end` ("lower", "upper") of what the search may take."""
-
-    name: str
-    end: str
-    bound: float
-
-
 @dataclass(frozen=True, eq=False)
 class GainChoice:
     """The evaluator of the chosen loop, its gains (g,), the name of the front they come from, why, and what else."""
@@ -281,14 +272,14 @@ class GainChoice:
     designs: tuple[NamedGains, ...] = ()
 
 
-def gains_on_bound(loop: TransferLoop, gains: Array) -> tuple[GainOnBound, ...]:
-    """Return the free gains (g,) that lie on a bound of the search which is not zero."""
+def gains_on_bound(loop: TransferLoop, gains: Array) -> tuple[tuple[str, str, float], ...]:
+    """Return name, end ("lower", "upper") and bound of free gains (g,) on a bound of the search which is not zero."""
     found = []
     for gain in loop.gains.free:
         value = float(gains[loop.gains.names.index(gain.name)])
         for end, bound in (("lower", gain.lower), ("upper", gain.upper)):
             if bound and abs(value - bound) <= ON_BOUND * (gain.upper - gain.lower):
-                found.append(GainOnBound(gain.name, end, bound))
+                found.append((gain.name, end, bound))
     return tuple(found)
 
 

@@ -13,7 +13,6 @@ from seatrial.physics.models.thruster_layout import (
     AngleInput,
     CommandInput,
     Rudder,
-    SteeringAngle,
     ThrustCurve,
     Thruster,
     ThrusterLayout,
@@ -31,18 +30,18 @@ def pod(k: int, x: float, channel: str = "") -> Thruster:
 
 def test_thrust_astern_turns_to_the_other_side_and_amidships_to_none() -> None:
     layout = ThrusterLayout((pod(1, 2.0), pod(2, 0.0), pod(3, -2.0)))
-    assert steering_angles(layout) == (SteeringAngle("alpha_1", 1.0), SteeringAngle("alpha_3", -1.0))
+    assert steering_angles(layout) == {"alpha_1": 1.0, "alpha_3": -1.0}
     assert order_text(layout) == "alpha_1 = delta, alpha_3 = -delta"
-    assert steering_angles(CATAMARAN) == () and steering_angles(ThrusterLayout((pod(1, 0.0),))) == ()
+    assert steering_angles(CATAMARAN) == {} and steering_angles(ThrusterLayout((pod(1, 0.0),))) == {}
 
 
 def test_two_outboards_on_one_bar_are_one_angle_and_rudders_are_positive_to_starboard() -> None:
-    assert steering_angles(ThrusterLayout((pod(1, -2.0), pod(2, -2.0, "alpha_1")))) == (SteeringAngle("alpha_1", -1.0),)
+    assert steering_angles(ThrusterLayout((pod(1, -2.0), pod(2, -2.0, "alpha_1")))) == {"alpha_1": -1.0}
     screw = Thruster(
         "screw", -2.0, 0.0, CommandInput("rpm_1"), curve=ThrustCurve.OPEN_WATER, diameter=0.3,
         rudder=Rudder("delta", -2.2, 0.05, 0.3),
     )  # fmt: skip
-    assert steering_angles(ThrusterLayout((screw,))) == (SteeringAngle("delta", 1.0),)
+    assert steering_angles(ThrusterLayout((screw,))) == {"delta": 1.0}
     assert order_text(ThrusterLayout((screw,))) == ""
 
 

@@ -66,25 +66,19 @@ def margin_frequencies(craft: StationCraft, dead_time: float) -> Array:
     return np.geomspace(_SLOWEST * top / _REACH, top * _REACH, _SAMPLES)
 
 
-@dataclass(frozen=True)
-class StationLimits:
-    """Largest Ms of each loop with the others closed, and of all together: the largest singular value of S."""
-
-    Ms: float
-    joint: float
-
-
 @dataclass(frozen=True, eq=False)
 class StationDesign:
     """What every candidate has: points it has to hold at, inverse (m, 3), dead time [s], limits, what disturbs.
 
+    Ms, joint_Ms: largest of each loop with the others closed, and of all together, the largest singular value of S.
     frequencies: of margins [rad/s], `margin_frequencies`.
     """
 
     points: tuple[StationPoint, ...]
     inverse: Array
     dead_time: float
-    limits: StationLimits
+    Ms: float
+    joint_Ms: float
     spectrum: DisturbanceSpectrum
     frequencies: Array
 
@@ -117,7 +111,7 @@ class StationDesign:
             delay = loop.tolerated_dead_time
             slack = least / delay if delay > 0.0 else math.inf
             peaks = loop.peaks()
-            worst = max(worst, float(peaks[:3].max()) / self.limits.Ms, float(peaks[3]) / self.limits.joint, slack)
+            worst = max(worst, float(peaks[:3].max()) / self.Ms, float(peaks[3]) / self.joint_Ms, slack)
             if worst > enough:
                 break
         return worst
@@ -225,12 +219,12 @@ def _front(rows: Array, evaluations: int) -> StationFront:
 def _refuse(design: StationDesign, best: Array) -> None:
     position, heading = np.exp(best).tolist()
     loops = design.loops(position, heading)
-    worst, limits = np.max([loop.peaks() for loop in loops], axis=0), design.limits
+    worst = np.max([loop.peaks() for loop in loops], axis=0)
     delay = min(loop.tolerated_dead_time for loop in loops)
     raise InputError(
         f"station: no bandwidth keeps the limits in this current: at best Ms is {worst[:3].max():.3g} (allowed "
-        f"{limits.Ms:g}), of all loops together {worst[3]:.3g} ({limits.joint:g}), and {delay:.3g} s of dead time are "
-        f"tolerated ({(1.0 + _DELAY_SHARE) * design.dead_time:.3g} s required); give a slower current, allow more "
+        f"{design.Ms:g}), of all loops together {worst[3]:.3g} ({design.joint_Ms:g}), and {delay:.3g} s of dead time "
+        f"are tolerated ({(1.0 + _DELAY_SHARE) * design.dead_time:.3g} s required); give a slower current, allow more "
         "(limits.Ms, station.joint_Ms), or quicken thrusters and dead time"
     )
 
@@ -323,8 +317,8 @@ def tune_station(
         replace(station_point(craft, demand.current, direction, inverse), grids=(frequencies, spectrum.omega))
         for direction in directions.tolist()
     )
-    limits = StationLimits(task.constraints.Ms, demand.joint_Ms)
-    chosen = choose_bandwidth(StationDesign(points, inverse, dead_time, limits, spectrum, frequencies))
+    Ms, joint_Ms = task.constraints.Ms, demand.joint_Ms
+    chosen = choose_bandwidth(StationDesign(points, inverse, dead_time, Ms, joint_Ms, spectrum, frequencies))
     report_progress("station: kept by the nonlinear craft")
     compass = task.loop.sampling or Sampling(sample)
     sampling = Sampling(sample, demand.dead_time, compass.noise, compass.resolution)

@@ -65,7 +65,7 @@ def with_orders(model: Model) -> Model:
         )
     layout = layout_of(model)
     # places are parameters, which the equations' hash does not hold, and decide who turns the craft to which side
-    key = (model.equation_hash, "orders", work_shares(layout), steering_angles(layout))
+    key = (model.equation_hash, "orders", work_shares(layout), tuple(steering_angles(layout).items()))
     equations = stored_equations(key, lambda: _ordered(model, layout), (Path(__file__).parent,))
     return replace(model, equations=equations)
 
@@ -81,7 +81,7 @@ def _ordered(model: Model, layout: ThrusterLayout) -> ModelEquations:
         f"order_{t.name}": share.ahead * ahead + share.yaw * yaw
         for t, share in zip(layout.thrusters, work_shares(layout), strict=True)
     }
-    steers = {angle.channel: angle.sign * sp.Symbol(ORDER, real=True) for angle in steering_angles(layout)}
+    steers = {channel: sign * sp.Symbol(ORDER, real=True) for channel, sign in steering_angles(layout).items()}
     turned = {sp.Symbol(name, real=True): steers.get(name, sp.Integer(0)) for name in {*angles, *steers}}
 
     def rewritten(binding: Binding) -> Binding:

@@ -259,26 +259,17 @@ _NO_ARM = 0.05
 _ABEAM = 0.5 * math.pi + 1e-6  # rad: thrust across the craft, and rounding
 
 
-@dataclass(frozen=True)
-class SteeringAngle:
-    """A channel of angles that steer a craft, and its sign: the angle over the order to starboard, +1 or -1."""
+def steering_angles(layout: ThrusterLayout) -> dict[str, float]:
+    """Return the channels of angles that steer a craft with their signs, the angle over the order to starboard.
 
-    channel: str
-    sign: float
-
-
-def steering_angles(layout: ThrusterLayout) -> tuple[SteeringAngle, ...]:
-    """Return the angles that steer a craft, each channel once; empty where all thrusters are fixed.
-
+    Empty where all thrusters are fixed.
     A channel that turns several thrusters has the sign of the sum of their arms.
     """
     arms: dict[str, float] = {}
     for channel, arm in _arms(layout):
         arms[channel] = arms.get(channel, 0.0) + arm
     longest = max(map(abs, arms.values()), default=0.0)
-    return tuple(
-        SteeringAngle(channel, math.copysign(1.0, arm)) for channel, arm in arms.items() if abs(arm) > _NO_ARM * longest
-    )
+    return {channel: math.copysign(1.0, arm) for channel, arm in arms.items() if abs(arm) > _NO_ARM * longest}
 
 
 def _arms(layout: ThrusterLayout) -> Iterator[tuple[str, float]]:
@@ -298,8 +289,8 @@ def layout_of(model: Model) -> ThrusterLayout:
 def order_text(layout: ThrusterLayout) -> str:
     """Return what an order stands for: ``alpha_1 = -delta``; empty where the order is the angle itself."""
     signs = {1.0: "", -1.0: "-"}
-    angles = [angle for angle in steering_angles(layout) if (angle.channel, angle.sign) != (ORDER, 1.0)]
-    return ", ".join(f"{angle.channel} = {signs[angle.sign]}{ORDER}" for angle in angles)
+    angles = [angle for angle in steering_angles(layout).items() if angle != (ORDER, 1.0)]
+    return ", ".join(f"{channel} = {signs[sign]}{ORDER}" for channel, sign in angles)
 
 
 def with_steering_order(record: Record, layout: ThrusterLayout) -> Record:
@@ -309,9 +300,9 @@ def with_steering_order(record: Record, layout: ThrusterLayout) -> Record:
     abeam, where it is no rudder any more, is returned as it is.
     """
     angles = steering_angles(layout)
-    if not angles or ORDER in record or any(angle.channel not in record for angle in angles):
+    if not angles or ORDER in record or any(channel not in record for channel in angles):
         return record
-    turned = [angle.sign * _to_starboard(record.channel(angle.channel)) for angle in angles]
+    turned = [sign * _to_starboard(record.channel(channel)) for channel, sign in angles.items()]
     if np.nanmax(np.abs(turned), initial=0.0) > _ABEAM:
         return record
     return record.with_channel(ORDER, Channel.from_notation(ORDER, np.mean(turned, axis=0)))

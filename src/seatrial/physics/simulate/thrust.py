@@ -358,15 +358,15 @@ def _by_angle(
     layout = layout_of(model)
     angles = steering_angles(layout)
     ahead = require_share(given.pop(AHEAD, DEFAULT_AHEAD))
-    further = undriven_inputs(model, layout, orders.text, given, driven=[angle.channel for angle in angles])
+    further = undriven_inputs(model, layout, orders.text, given, driven=list(angles))
     ordered = manoeuvre(
         with_orders(model), orders, dt=STEP_S, duration=duration, slew_rate=slew_rate, length=layout.length,
         inputs={ORDER_AHEAD: ahead, YAW: 0.0, **further},
     )  # fmt: skip
     run = straight_by_thrusters(model, ahead, further)
     used = np.tile(run.inputs, (len(ordered), 1))
-    for angle in angles:
-        used[:, model.input_names.index(angle.channel)] = angle.sign * ordered[ORDER]
+    for channel, sign in angles.items():
+        used[:, model.input_names.index(channel)] = sign * ordered[ORDER]
     states, outputs = trajectory(model, used, ordered.dt, run.state(model))
     record = with_steering_order(record_of(model, orders.text, ordered.time, states, outputs, used), layout)
     source = f"manoeuvre '{orders.text}' of model '{model.name}'"
