@@ -1,11 +1,12 @@
 """Texts are in the plain English of the field: retired words stand in no page and in no text of the packages."""
 
+import ast
 import re
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from tests.conventions.source_tree import PACKAGES, REPOSITORY, source_files
+from tests.conventions.source_tree import PACKAGES, REPOSITORY, SourceFile, source_files
 
 # docs/glossary.md gives the plain word for each.
 RETIRED = re.compile(
@@ -85,3 +86,31 @@ def test_what_counts_as_a_retired_word_or_a_bare_decimal() -> None:
     assert list(_retired("ask and tell; intelligence; headings")) == []
     assert BARE_DECIMAL.search("a share of .28") and BARE_DECIMAL.search("(.5)") and BARE_DECIMAL.search("| -.2 |")
     assert not any(map(BARE_DECIMAL.search, ("0.28", "{:.1%}", "fig.2", "a .csv file", "eq. .5a")))
+
+
+MOST_WORDS = 40  # of a sentence on a screen; chosen
+# A formula, an edit or a table of a file, which is read by its signs.
+FORMULA = re.compile(r"(?:^|\s)[=:]=?\s|\[\[|'' ")
+SENTENCE_END = re.compile(r"(?<=[.?!])\s+")
+
+
+def _screen_texts(file: SourceFile) -> Iterator[str]:
+    """Texts that are printed, values in their places as a letter; docstrings and texts of attributes left out."""
+    explained = {id(n.value) for n in file.nodes if isinstance(n, ast.Expr)}
+    parts = {id(part) for n in file.nodes if isinstance(n, ast.JoinedStr) for part in n.values}
+    for node in file.nodes:
+        if isinstance(node, ast.JoinedStr):
+            yield "".join(str(part.value) if isinstance(part, ast.Constant) else "X" for part in node.values)
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in explained | parts:
+            yield node.value
+
+
+def test_no_sentence_of_a_screen_has_more_than_forty_words() -> None:
+    sentences = [
+        (file, sentence)
+        for file in source_files(PACKAGES[0])
+        for text in _screen_texts(file)
+        for sentence in SENTENCE_END.split(text)
+        if len(sentence.split()) > MOST_WORDS and not FORMULA.search(sentence)
+    ]
+    assert [f"{file.folder}: {sentence[:100]}" for file, sentence in sentences] == []

@@ -104,9 +104,9 @@ def choose_by_simulation(
         report_progress(f"choice of gains: {front.name}, {len(safer)} with more margin simulated")
     best = _best_candidate(tried)
     reasons = (
-        f"Of {len(tried)} controllers along the fronts none surely reduces the motion more when simulated within the "
-        f"actuator's limits, with and without stall, whose law is assumed (mean {100.0 * best.reduction:.1f} % on "
-        f"{_SELECTION_SEEDS} seas kept for the choice, compared in pairs); of equals it has the most margin.",
+        f"Of {len(tried)} controllers along the fronts none surely reduces the motion more within the limits, "
+        f"with and without stall: mean {100.0 * best.reduction:.1f} % on {_SELECTION_SEEDS} realisations kept for the "
+        "choice. Of equals it has the most margin. The law of stall is assumed.",
         f"It loses {100.0 * best.saturation_loss:.1f} points of reduction to angle and rate limits there; a loss of "
         f"{100.0 * MAX_SATURATION_LOSS:.0f} points or more is not recommended.",
     )

@@ -22,7 +22,7 @@ HIGH_CORRELATION = 0.9
 _TITLE = "Other estimators on the same records"
 _RUN_NOTE = (
     "Root mean square of simulated minus measured over all runs of that kind, open loop from the recorded inputs and "
-    "from the initial state that the fit gave each run; CC: Pearson’s correlation of measured and simulated, mean over "
+    "from the initial state that the fit gave each run. CC: Pearson’s correlation of measured and simulated, mean over "
     "the runs. Good trajectories and correlations prove nothing about coefficients."
 )
 _TEST_NOTE = (

@@ -90,10 +90,10 @@ def search_sentences(tuning: Tuning) -> tuple[str, ...]:
     )
     cost = (
         f"One search took {fixed(search.cpu_s, 3)} s of CPU time for {exact(search.evaluations, 12)} controllers, each "
-        f"judged in {counted(len(tuning.seas), 'sea')}. With one record of 1000 s in steps of 0.1 s "
-        f"for each controller it would take {exact(search.compiled_ratio, 2)} times as long by a compiled scalar "
-        f"loop ({significant(1e3 * search.compiled_record_s, 2)} ms a record) and {exact(search.lsim_ratio, 2)} times "
-        f"by scipy.signal.lsim ({significant(1e3 * search.lsim_record_s, 2)} ms), measured on this machine."
+        f"judged in {counted(len(tuning.seas), 'sea')}. In time, with a record of 1000 s in "
+        f"steps of 0.1 s each, it would take {exact(search.compiled_ratio, 2)} times as long by a compiled loop "
+        f"({significant(1e3 * search.compiled_record_s, 2)} ms a record), {exact(search.lsim_ratio, 2)} times by "
+        f"scipy.signal.lsim ({significant(1e3 * search.lsim_record_s, 2)} ms), on this machine."
     )
     return tuple(text for text in (covered, cost) if text)
 

@@ -16,7 +16,7 @@ from seatrial.reporting.section import Level, Picture, Section, plain_table
 AXES = ("surge", "sway", "yaw")
 FOOTPRINT_CAPTION = (
     "Where the craft is for five minutes, north up and the station in the middle, with the current from the direction "
-    "in which it moves most; dashed: the circle that holds it 95 % of the time over all directions and minutes."
+    "in which it moves most. Dashed: the circle that holds it 95 % of the time over all directions and minutes."
 )
 FRONT_CAPTION = (
     "Rms error at the ends of the hull over rms thrust, by linear theory, of the bandwidths that keep the limits of Ms "
@@ -38,8 +38,8 @@ def station_section(station: StationKeeping | None) -> Section:
     head = ("thruster", f"full astern, {unit}", f"full ahead, {unit}", "used, rms, %")
     note = (
         "τ = −K_p Rᵀe − K_i Rᵀ∫e dt − K_d v in body axes, e the pose less that ordered, v = Rᵀ de/dt behind a filter "
-        f"(Fossen 2021, Algorithm 15.2), every {exact(station.sample_s, 3)} s; shared out by a generalised inverse "
-        "that is weighted with the thrusters’ largest thrusts, all reduced alike where one would exceed its limit. "
+        f"(Fossen 2021, Algorithm 15.2), every {exact(station.sample_s, 3)} s. A generalised inverse, weighted "
+        "with the thrusters’ largest thrusts, shares it out; all are reduced alike where one would exceed its limit. "
         f"Varying besides the steady current: {enumeration(station.disturbances)}. Drift forces of waves are left out."
     )
     pictures = (

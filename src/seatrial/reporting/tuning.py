@@ -35,10 +35,10 @@ MAX_UNFOLDED_CONDITIONS = 40
 
 
 _MAPS_CAPTION = (
-    "Share of the motion that remains (rms over that without control) in every condition (heading to the waves, 0 "
-    "following, over speed, for each wave height): with the schedule, whose gains change little from one condition to "
-    "the next, and with others. Underlined: no gains are feasible there. The other gains are shown whether or not they "
-    "keep the constraints; where they do not, they may reduce more than the schedule."
+    "Share of the motion that remains (rms over that without control) over heading to the waves (0 following) and "
+    "speed, for each wave height. Gains of the schedule change little from one condition to the next. Underlined: no "
+    "gains are feasible there. The other gains are shown whether or not they keep the constraints; where they do not, "
+    "they may reduce more than the schedule."
 )
 _SENSITIVITY_CAPTION = (
     "Left: share of the disturbance that remains; below 1 the controller helps, above 1 it harms. Right: what of noise "

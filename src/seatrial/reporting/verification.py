@@ -49,10 +49,10 @@ CHANGES_CAPTION = (
 )
 CHANGES_METHOD = (
     "Changes are found in the channel of what was ordered. Each is simulated by the nonlinear model within the "
-    "actuator's limits, and by ships drawn from the covariance of the fit; what weather does is taken from the log, "
-    "from when the changes had settled on, and laid over the simulations from random moments on. Motions are averaged "
-    "over half of the reference's time constant before overshoot and settling are read, of predictions too. The model "
-    "is estimated anew from the log by the estimator of identify, with its covariance as prior."
+    "actuator's limits, and by ships drawn from the covariance of the fit. What weather does is taken from the log, "
+    "where the changes had settled, and laid over the simulations. Motions are averaged over half of the reference's "
+    "time constant before overshoot and settling are read, of predictions too. The model is estimated anew from the "
+    "log by the estimator of identify, with its covariance as prior."
 )
 SPECTRA_CAPTION = (
     "Density of the motion over the frequency of encounter: points as logged, line by the model as it was in the sea "
@@ -60,8 +60,8 @@ SPECTRA_CAPTION = (
 )
 METHOD = (
     "Each leg is cut into half-overlapping segments of twelve natural periods (Welch 1967). Ship and seas are those of "
-    "the largest likelihood of the legs' spectra (Whittle), in closed loop as the legs themselves show it, with what "
-    "was known of the ship before as prior; heights and periods of neighbouring legs are expected within 10 and 5 %. "
+    "the largest likelihood of the legs' spectra (Whittle) in closed loop, with what was known of the ship as prior. "
+    "Heights and periods of neighbouring legs are expected within 10 and 5 %. "
     "The reduction compares the motion with that less the actuator's effect by the model as the log corrects it, so "
     "that the sea of a leg is compared with itself. Intervals join what chance makes of the segments (jackknife) with "
     "the errors of ship and seas."

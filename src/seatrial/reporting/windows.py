@@ -8,7 +8,7 @@ from seatrial.core.text.words import enumeration, sentence
 WINDOW_NOTE = (
     "Errors in windows: root-mean-square errors open loop, each window from the state estimated in its first seconds. "
     "Fit in windows: 100 % less the error over the spread about the mean (NRMSE, as MATLAB's compare): 100 is perfect, "
-    "0 no better than the mean; in brackets R², one less the squares of the errors over those about the mean."
+    "0 no better than the mean. In brackets R², one less the squares of the errors over those about the mean."
 )
 """How the tables of windows are to be read, once for all runs."""
 

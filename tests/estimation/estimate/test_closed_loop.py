@@ -98,7 +98,6 @@ def test_a_disturbance_model_needs_fifty_samples() -> None:
     with pytest.raises(InputError) as caught:
         refuse_short_runs([recorded(1).rows(slice(0, 49))])
     assert str(caught.value) == (
-        "a disturbance model needs a run of at least 50 samples, and the longest one, 'run', has 49: the disturbance's "
-        "memory is sought between 5 samples and a tenth of the run; record longer, or write "
-        'method = "output-error" under [estimate]'
+        "a disturbance model needs a run of at least 50 samples, and the longest one, 'run', has 49; record longer, or "
+        'write method = "output-error" under [estimate]'
     )

@@ -69,9 +69,8 @@ def test_a_lost_search_is_one_sentence_with_what_to_try(
     with pytest.raises(InputError) as caught:
         refuse_implausible(estimate, errors)
     assert str(caught.value) == (
-        f"the search ended outside physics: {named}; either the runs do not show these apart: fix some under "
-        "[model.fixed] or give priors under [model.priors]; or no values repeat all runs: leave out those that differ "
-        "most in speed or orders, or take a model with what they differ by"
+        f"the search ended outside physics: {named}; fix some of these under [model.fixed], give priors under "
+        "[model.priors], or leave out the runs that differ most in speed or orders"
     )
 
 
@@ -114,7 +113,7 @@ def estimated(record: Record, method: EstimateMethod) -> Estimation:
 
 
 def test_output_error_that_leaves_its_basin_is_refused(gusty_minute: Record) -> None:
-    with pytest.raises(InputError, match=r"the search ended outside physics: K .*, T .*; either the runs"):
+    with pytest.raises(InputError, match=r"the search ended outside physics: K .*, T .*; fix some"):
         estimated(gusty_minute, EstimateMethod.MULTIPLE_SHOOTING)
 
 

@@ -219,9 +219,8 @@ def refuse_under_actuated(craft: StationCraft) -> None:
     missing = _AXES[int(np.argmax(np.abs(axes[:, 2])))]
     names = ", ".join(f"'{t.name}'" for t in craft.thrusters)
     raise InputError(
-        f"station: thrusters {names} give no {missing} of their own: a position and a heading are kept by forces ahead "
-        "and to the side and a moment, each alone; such a craft can keep a heading, a speed and a track; leave "
-        "[station] out, or add a thruster that pushes sideways (tunnel, azimuth, or one set at an angle)"
+        f"station: thrusters {names} give no {missing} of their own, and so keep heading, speed and track, but no "
+        "position; leave [station] out, or add one that pushes sideways (tunnel, azimuth, or set at an angle)"
     )
 
 

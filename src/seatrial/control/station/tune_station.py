@@ -222,10 +222,10 @@ def _refuse(design: StationDesign, best: Array) -> None:
     worst = np.max([loop.peaks() for loop in loops], axis=0)
     delay = min(loop.tolerated_dead_time for loop in loops)
     raise InputError(
-        f"station: no bandwidth keeps the limits in this current: at best Ms is {worst[:3].max():.3g} (allowed "
-        f"{design.Ms:g}), of all loops together {worst[3]:.3g} ({design.joint_Ms:g}), and {delay:.3g} s of dead time "
-        f"are tolerated ({(1.0 + _DELAY_SHARE) * design.dead_time:.3g} s required); give a slower current, allow more "
-        "(limits.Ms, station.joint_Ms), or quicken thrusters and dead time"
+        f"station: no bandwidth keeps the limits in this current (Ms {worst[:3].max():.3g} for {design.Ms:g}, joint Ms "
+        f"{worst[3]:.3g} for {design.joint_Ms:g}, dead time {delay:.3g} s for "
+        f"{(1.0 + _DELAY_SHARE) * design.dead_time:.3g} s); give a slower current, more limits.Ms and "
+        "station.joint_Ms, or quicker thrusters"
     )
 
 

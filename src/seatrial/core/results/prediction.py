@@ -191,9 +191,9 @@ class Extrapolation:
         dict[str, Number],
         Field(
             description="yaw_rate, drift, rudder, fastest speed of the run over those of the training runs, and their "
-            "slowest speed over the run's; command NAME ahead or astern, also by the direction of motion: 1 and the "
-            "distance beyond the training runs as a share of the whole range; rudder to port or starboard: the same, "
-            "as a share of their largest angle, where that side was used less"
+            "slowest speed over the run's. Of a command NAME ahead or astern, by the direction of motion: 1 and the "
+            "distance beyond the training runs as a share of the whole range. Of the rudder to the side that was used "
+            "less: the same, as a share of their largest angle"
         ),
     ]
     untrained_kind: Annotated[

@@ -234,9 +234,7 @@ def refuse_short_runs(records: Sequence[Record]) -> None:
     if len(longest) < FEWEST_SAMPLES:
         raise InputError(
             f"a disturbance model needs a run of at least {FEWEST_SAMPLES} samples, and the longest one, "
-            f"'{longest.name}', has {len(longest)}: the disturbance's memory is sought between "
-            f"{_FEWEST_MEMORY_SAMPLES:.0f} samples and a tenth of the run; record longer, or write "
-            'method = "output-error" under [estimate]'
+            f"'{longest.name}', has {len(longest)}; record longer, or write method = \"output-error\" under [estimate]"
         )
 
 

@@ -144,9 +144,9 @@ def refuse_implausible(estimate: PointEstimate, standard_error: Array) -> None:
     lost = implausible_coefficients(estimate, standard_error)
     if lost:
         raise OutsidePhysicsError(
-            f"the search ended outside physics: {lost}; either the runs do not show these apart: fix some under "
-            "[model.fixed] or give priors under [model.priors]; or no values repeat all runs: leave out those that "
-            f"differ most in speed or orders, or take a model with what they differ by{_without_velocity(estimate)}"
+            f"the search ended outside physics: {lost}; fix some of these under [model.fixed], give priors under "
+            "[model.priors], or leave out the runs that differ most in speed or orders"
+            f"{_without_velocity(estimate)}"
         )
 
 

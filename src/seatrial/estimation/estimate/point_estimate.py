@@ -333,9 +333,9 @@ def refuse_unstarted(estimate: PointEstimate) -> None:
     segment = int(np.searchsorted(data.offsets, row, side="right")) - 1
     seconds = data.dt * (row - int(data.offsets[segment]))
     raise InputError(
-        f"the search cannot begin: with the start values, model '{problem.model.name}' diverges in run "
-        f"'{data.runs[data.run[segment]]}', {seconds:.3g} s after the start of a segment of it; give start values "
-        "nearer the craft's under [model.start], priors or other fixed values, or leave that run out"
+        f"the search cannot begin: with the start values, model '{problem.model.name}' diverges within {seconds:.3g} s "
+        f"in run '{data.runs[data.run[segment]]}'; give start values nearer the craft's under [model.start], priors or "
+        "other fixed values, or leave that run out"
     )
 
 

@@ -86,9 +86,9 @@ class BoxScale:
         sums = (f"{own} + {name}" for name, own in _OWN_INERTIA.items() if name in change)
         alone = [n for n in self.resisting if n in HEAVE_PITCH_COEFFICIENTS and n not in _OWN_INERTIA]
         text = (
-            f"{join_names([*self.stiffness, *sums, *alone])} can all be scaled together by one common factor, and the "
-            f"wave forces of the box with them, without any change of {join_names(outputs, 'or')}: the stated "
-            "stiffness sets the size of every coefficient; state it from the hydrostatics of the hull"
+            f"{join_names([*self.stiffness, *sums, *alone])} can all be scaled by one factor, and the wave forces "
+            f"of the box with them, without any change of {join_names(outputs, 'or')}. The stated stiffness sets the "
+            "size of every coefficient; state it from the hydrostatics of the hull"
         )
         return Symmetry(tuple(change), text, change)
 

@@ -46,9 +46,9 @@ class HerdSettings:
         groups = self.groups
         if groups < 3 or self.population < 2 * groups:
             raise SearchError(
-                "The wild horse optimiser needs 3 groups or more with a foal each, but a population of "
-                f"{self.population} with a share of {self.stallions:g} leaders makes {groups} groups and "
-                f"{self.population - groups} foals; raise the population, or take a share between 0.1 and 0.5."
+                f"The wild horse optimiser needs 3 groups or more with a foal each, but has {groups} groups and "
+                f"{self.population - groups} foals (population {self.population}, share of leaders "
+                f"{self.stallions:g}); raise the population, or take a share between 0.1 and 0.5."
             )
         if not 0 <= self.crossover <= 1:
             raise SearchError(f"The crossover probability lies between 0 and 1, not at {self.crossover}.")
