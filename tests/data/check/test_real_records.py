@@ -8,7 +8,9 @@ import pytest
 
 from seatrial.core.values import Finding, Record, Severity
 from seatrial.data.check import canonical_record, examine, examined_record
+from seatrial.data.draft.manoeuvres import find_stretches
 from seatrial.data.read import ColumnSpec, Layout, read_record
+from seatrial.physics.manoeuvres import recognise_manoeuvre
 
 HSVA_FILES, ESSO_FILES = 13, 23
 
@@ -104,6 +106,19 @@ def test_esso_osaka_rudder_sign(data_folder: Path) -> None:
         f.severity for record in esso_records(data_folder, "port") for f in examine(record) if "'delta'" in f.message
     )
     assert (severities[Severity.ERROR], severities.total()) == (ESSO_FILES, ESSO_FILES)
+
+
+def test_zigzags_and_turns_in_whole_degrees_show_by_rudder_and_by_heading(data_folder: Path) -> None:
+    for record in [*hsva_records(data_folder, naive=False), *esso_records(data_folder, "starboard")]:
+        wanted = "circle" if "turn" in record.name else "zigzag"
+        if "berthing" not in record.name:
+            clean = canonical_record(examined_record(record).record)
+            for symbol in ("psi", "delta"):
+                degrees = np.radians(np.round(np.degrees(clean[symbol])))
+                clean = clean.with_channel(symbol, clean.channel(symbol).with_values(degrees))
+            coarse = clean.resampled(5.0)
+            assert wanted in recognise_manoeuvre(coarse), record.name
+            assert wanted in {stretch.kind for stretch in find_stretches((), coarse)}, record.name
 
 
 def test_esso_osaka_empty_rows_are_reported_and_cut(data_folder: Path) -> None:

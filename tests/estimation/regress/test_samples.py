@@ -19,7 +19,6 @@ from seatrial.estimation.regress.samples import (
     folds,
     manoeuvre_seconds,
     record_folds,
-    reversals,
     shuffled_split,
     standard_scores,
     training_rows,
@@ -388,16 +387,6 @@ def test_every_fold_of_a_record_holds_a_manoeuvre_or_the_advice_helps(seconds: f
             assert record.duration < 2.1 * longest
         assert f"shortest of {count} folds would be" in str(refusal)
         assert f"longest manoeuvre in the record, {longest:.4g} s" in str(refusal)
-
-
-@given(swings=st.lists(st.floats(2.5, 9.0), min_size=3, max_size=12), up=st.booleans())
-def test_reversals_are_the_corners_of_a_zigzag(swings: list[float], up: bool) -> None:
-    signs = (1.0 if up else -1.0) * (-1.0) ** np.arange(len(swings))
-    corners = np.concatenate([[0.0], np.cumsum(signs * np.array(swings))])
-    fine = np.interp(np.arange(10 * len(swings) + 1) / 10.0, np.arange(len(corners)), corners)
-    ripple = 0.4 * np.where(np.arange(len(fine)) % 2 == 1, 1.0, 0.0)
-    np.testing.assert_array_equal(reversals(fine, 2.0), 10 * np.arange(1, len(swings)))
-    assert len(reversals(fine + ripple, 2.0)) == len(swings) - 1
 
 
 @pytest.mark.parametrize("share", [0.0, 1.0, -0.2, 1.5, float("nan")])

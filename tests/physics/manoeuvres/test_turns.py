@@ -4,9 +4,11 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from seatrial.core.values import Array
-from seatrial.physics.manoeuvres.turns import course_of
+from seatrial.physics.manoeuvres.turns import course_of, reversals
 
 STEP = 0.2  # s
 
@@ -55,3 +57,13 @@ def test_what_hardly_turns_is_one_steady_course() -> None:
     psi = in_waves(np.zeros(2000))
     assert (course_of(psi).turns, course_of(psi).steady) == ((), ((0, 2000),))
     assert course_of(np.zeros(1)).steady == ((0, 1),)
+
+
+@given(swings=st.lists(st.floats(2.5, 9.0), min_size=3, max_size=12), up=st.booleans())
+def test_reversals_are_the_corners_of_a_zigzag(swings: list[float], up: bool) -> None:
+    signs = (1.0 if up else -1.0) * (-1.0) ** np.arange(len(swings))
+    corners = np.concatenate([[0.0], np.cumsum(signs * np.array(swings))])
+    fine = np.interp(np.arange(10 * len(swings) + 1) / 10.0, np.arange(len(corners)), corners)
+    ripple = 0.4 * np.where(np.arange(len(fine)) % 2 == 1, 1.0, 0.0)
+    np.testing.assert_array_equal(reversals(fine, 2.0)[2:-2], 10 * np.arange(1, len(swings)))
+    assert len(reversals(fine + ripple, 2.0)[2:-2]) == len(swings) - 1

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 
@@ -33,6 +32,7 @@ from seatrial.data.readings import (
     judge_statements,
     mistaken_units,
 )
+from seatrial.physics.manoeuvres.turns import course_of
 
 # Declared conventions to the notation table's: sign, frame, reference point, unwrapped angles.
 
@@ -197,13 +197,10 @@ def _turns(motion: RecordedMotion) -> list[_Turn]:
     rate = np.pad(inner, (margin, len(psi) - len(inner) - margin), mode="edge")
     ahead, aside = _body_velocities(motion)
     aside = aside - rate * record.channel("v").reference_point
-    edges = [0, *(np.flatnonzero(np.diff(np.sign(rate)) != 0) + 1).tolist(), len(psi)]
-    turns = []
-    for first, last in pairwise(edges):
-        if last - first < 2 or abs(psi[last - 1] - psi[first]) < LEAST_TURN:
-            continue
-        later = slice(first + int(np.searchsorted(_turned(psi[first:last]), 0.5)), last)
-        u, v, r = (np.nanmean(values[later]) for values in (ahead, aside, rate))
+    course, turns = course_of(psi), []
+    for turn in (one for one in course.turns if abs(one.angle) >= LEAST_TURN):
+        first = turn.first + int(np.searchsorted(_turned(psi[turn.first : turn.last + 1]), 0.5))
+        u, v, r = (np.nanmean(values[first : turn.last - course.scale]) for values in (ahead, aside, rate))
         if u > _SLOW * np.nanmax(ahead) and r != 0.0:
             turns.append(_Turn(bool(r > 0.0), float(np.sign(r) * np.arctan2(v, u)), float(v / r)))
     return turns

@@ -1,5 +1,6 @@
 """Stretches of a log that are manoeuvres: straight runs, turns, zigzags, circles, spirals, stops, roll decays."""
 
+import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -75,11 +76,8 @@ def smooth_speed(record: Record) -> Array | None:
 
 DECAY, STRAIGHT, COURSES = "decay", "straight", "courses"  # kinds of a stretch
 SHORTEST_STRAIGHT_S = 20.0  # s, of the shortest straight run; chosen
-# deg within which a rudder is held, and largest step between two holds; s of a hold; holds of a spiral; chosen
-_HOLD_DEG, _LARGEST_STEP_DEG, _HOLD_S, _SPIRAL_HOLDS = 1.0, 12.0, 20.0, 5
 _FAST, _STOPPED = 0.7, 0.1  # of the largest speed, between which a craft stops; chosen
 _FALLING = 0.9  # share of a stop's samples at which the speed falls; chosen
-_LOOK_S = 0.5  # s between two looks at the rudder; chosen: short against a hold
 # half swings of a roll decay, factor by which they shrink in all, scatter of their time; chosen
 _HALF_SWINGS, _SHRINKS, _PERIOD_SCATTER = 6, 2.0, 0.25
 # of the first swing, by which later ones grow where slow forces disturb a decay, and no more than a tail is; chosen
@@ -90,40 +88,20 @@ _SMALLEST_ROLL = np.radians(2.0)  # rad, of the first swing of a decay; chosen
 
 def spirals(record: Record) -> list[LogStretch]:
     """Return stretches in which the rudder stands at one angle after the other from one side to the other."""
-    if "delta" not in record:
-        return []
-    holds = _rudder_holds(record)
-    time, stretches, chain = elapsed(record), list[LogStretch](), list[tuple[int, int, float]]()
-    for hold in [*holds, (len(record), len(record), np.inf)]:
-        if chain and not _goes_on(chain, hold):
-            angles = [angle for _, _, angle in chain]
-            if len(chain) >= _SPIRAL_HOLDS and min(angles) < 0.0 < max(angles):
-                text = f"rudder held at {len(chain)} angles from {angles[0]:.0f} to {angles[-1]:.0f} deg"
-                stretches.append(LogStretch("spiral", float(time[chain[0][0]]), float(time[chain[-1][1] - 1]), text))
-            chain = chain[-1:] if chain and abs(hold[2] - chain[-1][2]) <= _LARGEST_STEP_DEG else []
-        chain.append(hold)
+    run, stretches = _steered(record), list[LogStretch]()
+    for chain in run.spirals if run is not None else ():
+        angles = [math.degrees(hold.angle) for hold in chain]
+        text = f"rudder held at {len(chain)} angles from {angles[0]:.0f} to {angles[-1]:.0f} deg"
+        stretches.append(_between(record, "spiral", (chain[0].first, chain[-1].last - 1), text))
     return stretches
 
 
-def _rudder_holds(record: Record) -> list[tuple[int, int, float]]:
-    """First row, row after the last, and angle [deg] of the stretches in which the rudder stays within a degree."""
-    stride = max(1, round(_LOOK_S / record.dt))
-    degrees = np.degrees(padded(record, record["delta"]))[::stride].tolist()
-    holds, first = list[tuple[int, int, float]](), 0
-    for row in range(1, len(degrees) + 1):
-        if row < len(degrees) and abs(degrees[row] - degrees[first]) <= _HOLD_DEG:
-            continue
-        if (row - first) * stride * record.dt >= _HOLD_S:
-            holds.append((first * stride, min(row * stride, len(record)), float(np.median(degrees[first:row]))))
-        first = row
-    return holds
-
-
-def _goes_on(chain: list[tuple[int, int, float]], hold: tuple[int, int, float]) -> bool:
-    """Whether a hold continues a chain: one step further to the same side."""
-    step = hold[2] - chain[-1][2]
-    direction = np.sign(chain[-1][2] - chain[0][2])
-    return 0.0 < abs(step) <= _LARGEST_STEP_DEG and (direction == 0.0 or np.sign(step) == direction)
+def _steered(record: Record) -> ObservedManoeuvre | None:
+    """What a run shows by rudder and heading; None of one without them."""
+    try:
+        return ObservedManoeuvre.from_record(record)
+    except InputError:
+        return None
 
 
 def stops(record: Record) -> list[LogStretch]:
@@ -244,7 +222,7 @@ def course_stretches(record: Record) -> list[LogStretch]:
         return []
     course, flow = course_of(np.unwrap(record["psi"])), smooth_speed(record)
     long = [turn for turn in course.turns if abs(turn.angle) > _LARGEST_SWING]
-    chains = _chains(course.turns)
+    chains = _chains(course.turns) or _chain_of_executes(record, course)
     starts = [0, *((turn.last + after.first) // 2 for turn, after in pairwise(long))]
     stops = [*(after.first for after in long[1:]), len(record) - 1]
     rudder = _zeroed_rudder(record) if "delta" in record else None
@@ -265,11 +243,21 @@ def _chains(turns: Sequence[HeadingTurn]) -> list[list[HeadingTurn]]:
     return [chain for chain in chains if len(chain) >= _ZIGZAG_TURNS]
 
 
+def _chain_of_executes(record: Record, course: Course) -> list[list[HeadingTurn]]:
+    """The turns from execute to execute of a zigzag too short for turns of the heading; none beside a steady course."""
+    run = None if course.steady else _steered(record)
+    if run is None or run.kind is not ManoeuvreKind.ZIGZAG:
+        return []
+    rows = [*np.searchsorted(record.time, run.executes).tolist(), run.holds[-1].last - 1]
+    return [[HeadingTurn(a, b, float(run.psi[b] - run.psi[a])) for a, b in pairwise(rows)]]
+
+
 def _changes_of_course(record: Record, course: Course, zigzags: Sequence[Sequence[HeadingTurn]]) -> list[LogStretch]:
     """What lies from the first change of a steady course to the last, between other manoeuvres."""
     groups, is_going_on = list[list[HeadingTurn]](), False
     for turn in course.turns:
-        is_change = abs(turn.angle) <= _LARGEST_SWING and not any(turn in chain for chain in zigzags) and course.steady
+        is_zigzag = any(chain[0].first <= turn.last and turn.first <= chain[-1].last for chain in zigzags)
+        is_change = abs(turn.angle) <= _LARGEST_SWING and not is_zigzag and course.steady
         if is_change and is_going_on:
             groups[-1].append(turn)
         elif is_change:
@@ -369,11 +357,8 @@ def _zigzag_text(record: Record, chain: Sequence[HeadingTurn]) -> str:
     """Turns and how far the heading swings; rudder and the heading of its switches, where recorded."""
     swing = float(np.median([abs(turn.angle) for turn in chain]))
     text = f"{len(chain)} turns to alternate sides, the heading swings over {np.degrees(swing):.0f} deg"
-    try:
-        manoeuvre = ObservedManoeuvre.from_record(record.rows(slice(chain[0].first, chain[-1].last + 1)))
-    except InputError:
-        return text
-    if manoeuvre.kind is not ManoeuvreKind.ZIGZAG or len(manoeuvre.executes) < _ZIGZAG_TURNS:
+    manoeuvre = _steered(record.rows(slice(chain[0].first, chain[-1].last + 1)))
+    if manoeuvre is None or manoeuvre.kind is not ManoeuvreKind.ZIGZAG or len(manoeuvre.executes) < _ZIGZAG_TURNS:
         return text
     rudder = float(np.median([abs(hold.angle) for hold in manoeuvre.holds]))
     psi = [manoeuvre.psi_at(execute) for execute in manoeuvre.executes[1:]]

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from seatrial.core.values import Array, Index, InputError, Record
 from seatrial.physics.manoeuvres.recognition import ManoeuvreKind, ObservedManoeuvre
+from seatrial.physics.manoeuvres.turns import reversals
 
 # Samples left out of a record before a regression: outliers, repetitions, holes, small values.
 
@@ -246,33 +247,11 @@ def manoeuvre_seconds(record: Record) -> float:
     if not np.isfinite(record.time).all():
         raise InputError(f"record '{record.name}': stamps are missing; rebuild its time base or use without_missing")
     seen = ObservedManoeuvre.from_record(record)
-    at = record.time[reversals(seen.psi, max(MIN_REVERSAL, REVERSAL_SHARE * float(np.ptp(seen.psi))))]
+    at = record.time[reversals(seen.psi, max(MIN_REVERSAL, REVERSAL_SHARE * float(np.ptp(seen.psi))))[2:-2]]
     times = [np.diff(seen.executes), at[2:] - at[:-2]]
     if seen.kind in (ManoeuvreKind.TURNING_CIRCLE, ManoeuvreKind.PULL_OUT):
         times.append(np.array([_turn_seconds(seen)]))
     return float(np.max(np.concatenate(times), initial=0.0))
-
-
-def reversals(values: Array, least: float) -> Index:
-    """Rows of the extremes of a course of values, shape (n,), after each of which it goes back by `least` or more.
-
-    Maxima and minima alternate; the ends are none, nor is the first extreme unless it was approached by `least`.
-    """
-    found: list[int] = []
-    low = high = top = 0
-    side = 0
-    for row, value in enumerate(values.tolist()):
-        if side == 0:
-            low = row if value < values[low] else low
-            high = row if value > values[high] else high
-            if values[high] - values[low] >= least:
-                side, top = (1, high) if high > low else (-1, low)
-        elif side * (value - values[top]) > 0.0:
-            top = row
-        elif side * (values[top] - value) >= least:
-            found.append(top)
-            side, top = -side, row
-    return np.array(found, dtype=np.int64)
 
 
 def _turn_seconds(observed: ObservedManoeuvre) -> float:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatrial.core.values import Array, InputError, Record
+from seatrial.physics.manoeuvres.turns import course_of, means_of
 
 # Motion of the craft itself in a record that was simulated by a model with sensors.
 
@@ -36,14 +37,15 @@ REACH_PERCENTILE = 99.5
 MINIMUM_RUDDER = float(np.radians(0.5))
 # rad; a longest hold that turns the ship less is no turning circle; chosen
 TURN_HEADING_CHANGE = float(np.radians(135.0))
-# course keeping before the first execute: off the common level by a quarter, and the heading less than 8 deg away after
-ANGLE_TOLERANCE, COURSE_TOLERANCE = 0.25, float(np.radians(8.0))
+ANGLE_TOLERANCE = 0.25  # of the common level, by which a hold may differ from it; chosen
 # shares: of an angle that is amidships, of samples there that make a stop, of the largest rate that is a slew; of a
 # slew from which its beginning is extrapolated; chosen
 _AMIDSHIPS, _STOP, _SLEWING, _SLEW_PART = 0.1, 0.3, 0.2, (0.25, 0.75)
 _REACHED = 0.95  # of the angle of the holds, at which a rudder that turns back at once was put over; chosen
 _CHECKED_SHARE = 0.8  # of executes at which a zigzag's heading lies to the side steered from; chosen
-_FEWEST_ANGLES, _STANDING = 6, 0.02  # rudder angles of a spiral, and share of the samples at each; chosen
+# deg within which a rudder stands, and largest step between two angles of a spiral; of how long it stands at least, s
+# and share of the record; angles of a spiral; s between two looks at the rudder; chosen
+_HOLD_DEG, _LARGEST_STEP_DEG, _HOLD_S, _HOLD_PART, _SPIRAL_ANGLES, _LOOK_S = 1.0, 12.0, 20.0, 0.02, 5, 0.5
 # stretches of rudder to one side from which on a record is a programme of random orders, not a manoeuvre; chosen
 _MOST_STRETCHES = 1000
 _ROWS_LOOKED_BACK = 64  # at first, for the beginning of a slew; chosen
@@ -117,8 +119,7 @@ class ObservedManoeuvre:
             return ()
         shortest = SHORTEST_HOLD * float(np.median([h.last - h.first for h in held.values()]))
         long = {k: h for k, h in held.items() if h.last - h.first >= max(shortest, 2.0)}
-        turned_back = self._turned_back(pieces, long)
-        return self._without_course_keeping([one for _, one in sorted((long | turned_back).items())])
+        return self._without_course_keeping([h for _, h in sorted((long | self._turned_back(pieces, long)).items())])
 
     def _turned_back(self, pieces: list[tuple[int, int]], holds: dict[int, Hold]) -> dict[int, Hold]:
         """Holds of a row where the rudder is put over to the other side as it arrives: 30/10 of a ship that turns fast.
@@ -138,9 +139,15 @@ class ObservedManoeuvre:
         return peaks
 
     def _without_course_keeping(self, holds: list[Hold]) -> tuple[Hold, ...]:
+        """The holds from the one on that turns the craft by more than the smallest turn of its heading.
+
+        One at the common level stays where one at that level to the other side follows: a zigzag of few degrees.
+        """
         level = _median_angle(holds) if holds else 0.0
-        while len(holds) > 1 and abs(abs(holds[0].angle) - level) > ANGLE_TOLERANCE * level:
-            if abs(self.psi[holds[1].first] - self.psi[holds[0].first]) > COURSE_TOLERANCE:
+        course = course_of(self.psi)
+        while len(holds) > 1 and abs(self.psi[holds[1].first] - self.psi[holds[0].first]) < course.smallest_turn:
+            is_level = max(abs(abs(hold.angle) - level) for hold in holds[:2]) <= ANGLE_TOLERANCE * level
+            if is_level and holds[0].angle * holds[1].angle < 0.0:
                 break
             holds = holds[1:]
         return tuple(holds)
@@ -206,10 +213,37 @@ class ObservedManoeuvre:
         return float(np.interp(time, self.record.time, self.psi))
 
     @cached_property
+    def spirals(self) -> list[list[Hold]]:
+        """Chains of angles at which the rudder stands, each a step further to the same side, from one side on to the
+        other; looked at twice a second.
+        """
+        time, chains = self.record.time, list[list[Hold]]()
+        step = float(time[-1] - time[0]) / max(len(time) - 1, 1)
+        stride = max(1, round(_LOOK_S / step)) if step > 0.0 else 1
+        looks, first = np.degrees(means_of(self.delta, stride)).tolist(), 0
+        least = min(_HOLD_S, _HOLD_PART * step * len(time))
+        for row in range(1, len(looks) + 1):
+            if row < len(looks) and abs(looks[row] - looks[first]) <= _HOLD_DEG:
+                continue
+            if (row - first) * stride * step >= least:
+                angle = float(np.radians(np.median(looks[first:row])))
+                hold = Hold(first * stride, min(row * stride, len(time)), angle)
+                if chains and _is_further(chains[-1], hold):
+                    chains[-1].append(hold)
+                else:
+                    near = chains[-1][-1:] if chains and _is_further(chains[-1][-1:], hold) else []
+                    chains.append([*near, hold])
+            first = row
+        return [one for one in chains if len(one) >= _SPIRAL_ANGLES and one[0].angle * one[-1].angle < 0.0]
+
+    @cached_property
     def kind(self) -> ManoeuvreKind:
         """Which manoeuvre this is, from the signs of the holds and the heading at each execute."""
         holds, times = self.holds, self.executes
-        if _is_spiral(self.delta):
+        largest = 0.5 * float(np.max(np.abs(self.delta)))
+        if any(
+            min(h.angle for h in chain) < -largest and max(h.angle for h in chain) > largest for chain in self.spirals
+        ):
             return ManoeuvreKind.SPIRAL
         if not holds:
             return ManoeuvreKind.OTHER
@@ -311,15 +345,10 @@ def _median_angle(holds: list[Hold]) -> float:
     return abs(order[int(np.searchsorted(share, 0.5 * share[-1]))].angle)
 
 
-def _is_spiral(delta: Array) -> bool:
-    """Whether the rudder stood at six or more angles, large ones on both sides, and changed sides at most twice."""
-    levels, counts = np.unique(np.round(np.degrees(delta)), return_counts=True)
-    stood = levels[counts >= _STANDING * len(delta)]
-    largest = float(np.max(np.abs(stood), initial=0.0))
-    if len(stood) < _FEWEST_ANGLES or stood.max() < 0.5 * largest or stood.min() > -0.5 * largest:
-        return False
-    sides = np.sign(delta[np.abs(delta) > np.radians(0.5 * largest)])
-    return bool(np.count_nonzero(np.diff(sides)) <= 2)
+def _is_further(chain: list[Hold], hold: Hold) -> bool:
+    """Whether a rudder stands a step further to the same side."""
+    step, way = np.degrees(hold.angle - chain[-1].angle), chain[-1].angle - chain[0].angle
+    return bool(0.0 < abs(step) <= _LARGEST_STEP_DEG and step * way >= 0.0)
 
 
 # What was ordered in a zigzag, a turning circle or a pull-out, and whether another run repeats it.

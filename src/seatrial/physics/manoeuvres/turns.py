@@ -47,6 +47,11 @@ class Course:
     turns: tuple[HeadingTurn, ...]
     steady: tuple[tuple[int, int], ...]
 
+    @property
+    def smallest_turn(self) -> float:
+        """The change of heading [rad] from which on it is a turn."""
+        return self.scale * self.rate
+
 
 def course_of(psi: Array) -> Course:
     """Return turns and steady courses of a heading, unwrapped, without gaps, (n,), n >= 1.
@@ -58,11 +63,11 @@ def course_of(psi: Array) -> Course:
     if float(np.ptp(psi)) < 2.0 * _SMALLEST_THRESHOLD:
         return Course(scale, smallest / scale, (), ((0, len(psi)),))
     stride = max(1, scale // _LOOKS)
-    looks = _means(psi, stride)
+    looks = means_of(psi, stride)
     window = max(2, round(_STEADY_TIMES * scale / stride))
     steady = _steady(looks, window, _STEADY_SHARE * smallest)
     turns = [
-        turn for a, b in pairwise(_reversals(looks, smallest)) for turn in _turns_between(looks, a, b, steady, smallest)
+        turn for a, b in pairwise(reversals(looks, smallest)) for turn in _turns_between(looks, a, b, steady, smallest)
     ]
     last = len(psi) - 1
     return Course(
@@ -95,8 +100,8 @@ def _time_scale(psi: Array, angle: float) -> int:
     return longer
 
 
-def _means(values: Array, stride: int) -> Array:
-    """Means of so many values each, the last of those that are left."""
+def means_of(values: Array, stride: int) -> Array:
+    """Return means of so many values each, the last of those that are left."""
     starts = np.arange(0, len(values), stride)
     return np.add.reduceat(values, starts) / np.diff(np.append(starts, len(values)))
 
@@ -115,8 +120,11 @@ def _steady(psi: Array, window: int, band: float) -> list[tuple[int, int]]:
     return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
 
 
-def _reversals(psi: Array, smallest: float) -> list[int]:
-    """Places between which the heading goes one way, but for less than the smallest turn back; first and last too."""
+def reversals(psi: Array, smallest: float) -> list[int]:
+    """Return places between which an angle, (n,), goes one way, but for less than the smallest turn back.
+
+    The first and the last one too, and between them where it leaves the first level, and where it has gone to at last.
+    """
     places, low, high, side = [0], 0, 0, 0
     values = psi.tolist()
     for k, value in enumerate(values):
