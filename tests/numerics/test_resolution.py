@@ -24,7 +24,7 @@ def test_values_further_apart_than_a_step_still_show_it() -> None:
 
 def test_values_with_all_digits_have_none(rng: np.random.Generator) -> None:
     assert resolution(rng.normal(size=300)) == 0.0
-    assert resolution(np.full(5, 3.2)) == 0.0
+    assert resolution(np.full(5, 3.2)) == resolution(np.array([0.1, 0.4, 0.4])) == 0.0
     assert resolution(np.array([np.nan, 1.0])) == 0.0
 
 

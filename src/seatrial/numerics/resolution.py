@@ -15,8 +15,7 @@ _LEAST_SHARE = 0.95  # of the gaps that are whole steps: a few values may have b
 def resolution(values: NDArray[np.float64]) -> float:
     """Return the coarsest step on whose multiples, counted from any origin, the values lie, in their unit.
 
-    0 where there is none: fewer than two distinct values, or values with as many digits as a computer has. Of a channel
-    that took two values only it is their distance, which may be far above the sensor's own step.
+    0 where there is none: fewer than three distinct values, as of two orders, or values with all digits of a computer.
 
     Args:
         values: any shape; what is not finite counts for nothing.
@@ -24,7 +23,7 @@ def resolution(values: NDArray[np.float64]) -> float:
     finite = np.unique(np.asarray(values, dtype=np.float64)[np.isfinite(values)])
     rounding = _ROUNDING * float(np.max(np.abs(finite), initial=0.0))
     gaps = _gaps(finite, rounding)
-    further = gaps
+    further = gaps if gaps.size > 1 else gaps[:0]
     for _ in range(_LEVELS):
         if further.size == 0:
             return 0.0

@@ -19,6 +19,7 @@ from seatrial.data.check.motion import (
     smoothed_derivative,
     window_length,
 )
+from seatrial.numerics.resolution import resolution
 
 # Integrated velocity against position over the whole record: the place where wrong points show.
 
@@ -103,9 +104,13 @@ def kinematic_consistency_findings(motion: RecordedMotion) -> tuple[Finding, ...
     evidence += f", {_residuals_text(ranked)}"
     mean_speed = motion.path_length / record.duration
     turning = float(np.sqrt(np.mean(np.gradient(record["psi"], record.dt) ** 2)))
-    if max(one.speed_error(mean_speed, turning) for one in alike) < SMALL_SPEED_ERROR * mean_speed:
+    rounding = 0.5 * math.hypot(resolution(record["u"]), resolution(record["v"]))  # m/s, of a reading at most
+    small = max(SMALL_SPEED_ERROR * mean_speed, rounding)
+    if max(one.speed_error(mean_speed, turning) for one in alike) < small:
         advice = (
             f"no action needed: it is below {SMALL_SPEED_ERROR:.0%} of the speed, and a good log may have twice that"
+            if small > rounding
+            else f"no action needed: it is below the {rounding:.2g} m/s by which u and v are rounded"
         )
         return (Finding(Severity.INFO, "closure", message, evidence, advice),)
     is_distinct = second.residual_rms > DOUBTFUL_GAIN * best.residual_rms

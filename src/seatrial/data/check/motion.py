@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatrial.core.values import Array, Record
+from seatrial.numerics.resolution import resolution
 
 # Arithmetic the checks share: smoothed derivatives, robust size, integrals, jackknifed least squares, stretches.
 
@@ -53,8 +54,12 @@ def sample_noise(values: Array) -> float:
     """Standard deviation of white noise on a signal, from third differences: their variance is 1 + 9 + 9 + 1 times its.
 
     What does not change within a few samples cancels (Gasser, Sroka & Jennen-Steinmetz 1986, Biometrika 73, 625-633).
+    Rounding is noise too, of a variance of a twelfth of the resolution squared (Widrow & Kollar 2008, section 1.4).
     """
-    return float(np.sqrt(np.nanmean(np.diff(values, 3) ** 2) / _THIRD_DIFFERENCES)) if len(values) > 3 else 0.0
+    if len(values) <= 3:
+        return 0.0
+    rounding = resolution(values) / np.sqrt(12.0)  # a uniform distribution's
+    return max(float(np.sqrt(np.nanmean(np.diff(values, 3) ** 2) / _THIRD_DIFFERENCES)), float(rounding))
 
 
 def least_squares(features: Array, target: Array) -> tuple[Array, float]:

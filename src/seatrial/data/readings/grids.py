@@ -63,9 +63,8 @@ class Samples:
 
     @cached_property
     def resolution(self) -> float:
-        """The step in which the numbers were written; 0: none shows, as of two orders."""
-        cells = self.readings[1]
-        return resolution(cells) if np.unique(cells).size > 2 else 0.0
+        """The step in which the numbers were written; 0: none shows."""
+        return resolution(self.readings[1])
 
 
 @dataclass(frozen=True, eq=False)
