@@ -135,7 +135,7 @@ def _run_command(line: str, folder: Path, out: Path, execute: Execute) -> Outcom
     name, *arguments = shlex.split(line)
     document = out / "result.json"
     document.unlink(missing_ok=True)
-    arguments = [path for part in arguments for path in _expanded(part, folder)]
+    arguments = [path for part in arguments for path in expanded(part, folder)]
     if name in _WITH_JSON:
         arguments += ["--json", str(document)]
     if name in _WITH_FOLDER and "--out" not in arguments:
@@ -154,7 +154,8 @@ def _text_of(path: Path) -> str:
     return path.read_text(encoding="utf-8") if path.exists() else ""
 
 
-def _expanded(part: str, folder: Path) -> list[str]:
+def expanded(part: str, folder: Path) -> list[str]:
+    """Return the files of a pattern in a folder; what is no pattern as it is."""
     if "*" not in part:
         return [part]
     base = Path(part) if Path(part).is_absolute() else folder / part

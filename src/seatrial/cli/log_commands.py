@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from seatrial.cli.application import app
-from seatrial.cli.screen import in_shell, print_file, print_lines, print_next, print_table
+from seatrial.cli.screen import in_shell, print_file, print_lines, print_next, print_table, print_verbatim
 
 if TYPE_CHECKING:
     from seatrial.data.draft import ColumnGuess, ColumnSummary, DraftTrial, LogSurvey, SurveyedLogs, TopicSummary
@@ -104,7 +104,7 @@ def init(
         says = ", ".join(header_size.text for header_size in draft.header_sizes)
         options = " ".join(header_size.option for header_size in draft.header_sizes)
         print_lines([f"NOTE the header says {says}, not used: {options}"])
-    print_lines(_other_speed_note(other_speed, out) for other_speed in draft.other_speeds)
+    print_verbatim(_other_speed_note(other_speed, out) for other_speed in draft.other_speeds)
     _print_runs(draft)
     print_lines([f"NOTE {draft.unlike_decays}"] if draft.unlike_decays else [])
     if draft.held_out.names:
@@ -161,15 +161,15 @@ def _after_draft(draft: "DraftTrial", out: Path) -> str:
         return f"{first}, seatrial check {in_shell(log)} lists all"
     steps = [f"decide what is OPEN in {out}"] if draft.open_questions or draft.lacks_speed else []
     steps += [f"put the length of the craft after 'L =' in {out} (init --length does)"] if draft.lacks_length else []
-    if draft.lacks_input and draft.unrecognised:
-        one = in_shell(f"{draft.unrecognised[0]}=CHANNEL")
+    if draft.lacks_input and (rudder := draft.column_like("delta")):
+        stated = in_shell(f"{rudder}=delta")
         return (
             "say which column is a rudder (delta), a thruster (command_1, command_2) or the roll angle (phi): the same "
-            f"command with --overwrite --column {one}"
+            f"command with --overwrite --column {stated}"
         )
-    if draft.lacks_heading and draft.unrecognised:
-        one = in_shell(f"{draft.unrecognised[0]}=psi")
-        return f"no column is recognised as the heading: if one is, the same command with --overwrite --column {one}"
+    if draft.lacks_heading and (heading := draft.column_like("psi")):
+        stated = in_shell(f"{heading}=psi")
+        return f"no column is recognised as the heading: if one is, the same command with --overwrite --column {stated}"
     if draft.lacks_manoeuvre:
         return (
             "every run is one straight course, which shows nothing of the rudder: record a zigzag 10/10 to either side"
@@ -204,7 +204,8 @@ def print_surveys(path: Path, surveyed: "SurveyedLogs", *, show_all: bool) -> No
         _print_survey(survey, show_all=show_all)
     print_lines(f"no log: {one.name}: {why}" for one, why in surveyed.left_out.items())
     has_time = any(topic.time is not None for survey in surveyed.logs for topic in survey.topics)
-    time = "" if has_time else " --column 'HEADING OF THE TIME=time'"
+    heading = next((heading for survey in surveyed.logs for heading in survey.headings), "")
+    time = "" if has_time or not heading else f" --column {in_shell(f'{heading}=time')}"
     print_next(f"seatrial init {in_shell(path)}{time} --out trial.toml")
 
 

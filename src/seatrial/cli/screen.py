@@ -106,7 +106,5 @@ def print_file(meaning: str, path: Path | str) -> None:
 
 
 def print_next(command: str) -> None:
-    """Print the command to type next, in one line so that it can be copied."""
-    from seatrial.core.text.plain import ascii_text
-
-    print_verbatim([f"Next: {ascii_text(command)}"])
+    """Print the command to type next, in one line and with the letters of headings, so that it can be copied."""
+    print_verbatim([f"Next: {command}"])

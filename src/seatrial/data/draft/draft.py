@@ -71,6 +71,9 @@ from seatrial.data.trial.records import need_release
 from seatrial.data.trial.run_data import run_name
 
 _NOZZLE = re.compile("nozzle|jet|bucket", re.IGNORECASE)  # in the name of a column that steers by the jet itself
+# deg, between which an angle lies; ours: a heading from -180 or to 360, rudders that turn to either side
+_ANGLES = {"psi": (-180.0, 360.0), "delta": (-90.0, 90.0)}
+_WIDER_THAN_A_STATE = 6.0  # range of a column, up to which it may number states, such as those of a fix; chosen
 _MIXED = "mixed"  # kind of a run that holds several manoeuvres, or none that is recognised; ours
 _RUNS_EXAMINED = 6  # the longest, whose motion is compared with the guesses; chosen: some show what others do not
 
@@ -127,6 +130,23 @@ class DraftTrial:
         symbols = {g.symbol for part in self.guesses for g in part if g.is_used}
         steers = any(symbol == "delta" or symbol.startswith(("command_", "rpm_")) for symbol in symbols)
         return steers and not symbols & {"psi", "psi_magnetic", "q_w"}
+
+    def column_like(self, symbol: str) -> str:
+        """Return the heading of the column that may be an angle which is missing; empty where none may.
+
+        Of those that are not recognised the one of the widest range within what the angle can be, in degrees.
+        """
+        columns = [
+            one for run in self.runs for source in run.sources for topic in source.topics for one in topic.columns
+        ]
+        low, high = _ANGLES[symbol]
+        likely = {
+            column.name: column.high - column.low
+            for column in columns
+            if column.name in self.unrecognised and low <= column.low and column.high <= high
+        }
+        widest = max(likely, key=lambda name: likely[name], default="")
+        return widest if likely.get(widest, 0.0) > _WIDER_THAN_A_STATE else ""
 
     @property
     def lacks_manoeuvre(self) -> bool:

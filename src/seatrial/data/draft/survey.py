@@ -319,6 +319,12 @@ class LogSurvey:
         return tuple(dict.fromkeys((*self.log.notes, *(topic.clock_note for topic in self.topics if topic.clock_note))))
 
     @property
+    def headings(self) -> tuple[str, ...]:
+        """The headings of its columns, those of text before those of numbers."""
+        columns = [column.name for topic in self.topics for column in topic.columns]
+        return (*(name for topic in self.topics for name in topic.text_columns), *columns)
+
+    @property
     def kind(self) -> tuple:
         """What files of one kind share: format, and names of the columns of each topic."""
         return (self.layout.format, *(table.names for table in self.log.tables))
@@ -486,11 +492,8 @@ def survey_logs(paths: Sequence[Path], stated: StatedColumns = NOTHING_STATED) -
 
 def _how_to_state(survey: LogSurvey, meaning: str) -> str:
     """The end of a sentence that says how a column is named: with the first one of text, or else of all."""
-    topic = next((one for one in survey.topics if one.text_columns or one.columns), None)
-    if topic is None:
-        return ""
-    heading = topic.text_columns[0] if topic.text_columns else topic.columns[0].name
-    return f"; if it is '{heading}', add --column '{heading}={meaning}'"
+    headings = survey.headings[:1]
+    return "".join(f"; if it is '{heading}', add --column '{heading}={meaning}'" for heading in headings)
 
 
 def _log_files(paths: Sequence[Path]) -> list[Path]:
