@@ -114,7 +114,8 @@ def _decided(guess: ColumnGuess, place: _Place, verdict: ReadingVerdict, k: int)
     )
     text = f"from {place.column.low:.4g} to {place.column.high:.4g}"
     if is_impossible(best, place.named.samples):
-        return replace(read, other_reading=_instead(best, place)).with_evidence(f"{text}: no {_WORDS[best.unit]}")
+        none = f"{text}: no {_WORDS.get(best.unit, best.unit)}"
+        return replace(read, other_reading=_instead(best, place)).with_evidence(none)
     other = _differences(best, rival) if rival is not None and verdict.is_open else ""
     if verdict.best.contradicts:
         other = f"{_differences(best, place.named.reading)} as its heading says"
@@ -138,10 +139,13 @@ def _decided(guess: ColumnGuess, place: _Place, verdict: ReadingVerdict, k: int)
 
 def _with_difference(guess: ColumnGuess, first: Array, second: Array) -> tuple[ColumnGuess, str]:
     """The guess with what its twins differ by, and what it may be where one turns as the other turns back."""
-    difference = first - second
-    mean, spread = float(np.nanmean(difference)), float(np.nanstd(difference))
+    both = np.isfinite(first) & np.isfinite(second)
+    if not both.any():
+        return guess, f"the first alone: '{guess.twin}' never has a number beside it"
+    difference = (first - second)[both]
+    mean, spread = float(np.mean(difference)), float(np.std(difference))
     text = f"half the sum of two, whose difference is {mean:.2g} {guess.unit} (spread {spread:.2g})"
-    is_against = spread > float(np.nanstd(first + second))
+    is_against = spread > float(np.std((first + second)[both]))
     return guess.with_evidence(text), f"the first alone: '{guess.twin}' turns the other way" if is_against else ""
 
 

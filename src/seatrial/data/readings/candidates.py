@@ -327,8 +327,11 @@ def _slot_values(role: str, readings: Sequence[ColumnReading], values: Sequence[
     is_enu = readings[0].frame == "enu"
     match role:
         case "fixes":
-            north = _EARTH_RADIUS * (values[0] - np.nanmean(values[0]))
-            east = _EARTH_RADIUS * np.cos(np.nanmean(values[0])) * (values[1] - np.nanmean(values[1]))
+            lat, lon = (
+                float(np.mean(angles[np.isfinite(angles)])) if np.isfinite(angles).any() else 0.0 for angles in values
+            )
+            north = _EARTH_RADIUS * (values[0] - lat)
+            east = _EARTH_RADIUS * math.cos(lat) * (values[1] - lon)
             yield "track", north + 1j * east
         case "place":
             yield "track", values[1] + 1j * values[0] if is_enu else values[0] + 1j * values[1]

@@ -177,6 +177,8 @@ class Relations:
         results = [0.0]
         for k, v in enumerate(self._velocities(slots["track"], _LAGS[1])):
             size, logged = np.abs(v), _integral(np.abs(speed[k]), _LAGS[1]) / _LAGS[1]
+            if not np.any(np.isfinite(size - logged)):
+                continue
             off = float(np.nanmean(size - logged))
             bound = _CURRENT * float(np.nanmean(logged)) + _CURRENT_M_S
             ratio = abs(off) / max(bound, 1e-9)  # never a zero

@@ -267,6 +267,8 @@ def _slope(record: Record, symbol: str) -> Array:
     """Derivative by local cubic polynomials (Savitzky & Golay 1964) over 15 samples, fewer where the motion is fast."""
     values = record[symbol]
     width = min(_smoothing_width(values), len(values) - 1 + len(values) % 2)
+    if width == 1:
+        raise InputError(f"record '{record.name}': {len(values)} samples show no rate of '{symbol}'; give a longer one")
     return smoothed_locally(values, width, min(3, width - 1), 1, record.dt)
 
 
