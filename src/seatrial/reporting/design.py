@@ -1,7 +1,7 @@
 """The page of a designed manoeuvre: its precision compared with standard ones, its orders, its track."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from markupsafe import Markup
 
@@ -139,11 +139,15 @@ def _coefficients(design: Design, baselines: Sequence[ManoeuvrePrecision]) -> Se
         number("assumed value", lambda i: significant(parameters[design.coefficients[i]].value, 4)),
         number("may differ by", lambda i: percent_text(float(design.relative_spread[i])), "± %"),
         number("designed", lambda i: percent_text(float(design.designed.relative_error[i])), "%"),
-        *(number(manoeuvre_name(w.name), lambda i, w=w: percent_text(float(w.relative_error[i])), "%")
-          for w in baselines),
-    )  # fmt: skip
+        *(number(manoeuvre_name(w.name), _errors_of(w), "%") for w in baselines),
+    )
     pictures = (Picture(lambda: _errors_figure(design), _ERRORS_CAPTION),)
     return Section("Precision of each coefficient", "coefficients", table=table, pictures=pictures, level=Level.PAGE)
+
+
+def _errors_of(manoeuvre: ManoeuvrePrecision) -> Callable[[int], str]:
+    """Error of a coefficient with a manoeuvre, by its place."""
+    return lambda i: percent_text(float(manoeuvre.relative_error[i]))
 
 
 def _coefficient_columns(design: Design) -> tuple[Column[int], Column[int]]:
