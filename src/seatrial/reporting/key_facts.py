@@ -179,7 +179,11 @@ def _coverage(fit: Fit) -> KeyFact:
         *([f"{', '.join(texts)}{over}"] if texts else []),
         *([] if whole is None or is_whole_kept else [f"{fixed(100.0 * whole, 0)} % of heading, simulated whole"]),
         *([f"too wide to test: {enumeration(untested)}"] if untested else []),
-        *([f"bands {significant(widest, 2)} times as wide as the error"] if widest > _CAUTIOUS else []),
+        *(
+            [f"bands {significant(widest, 2)} times as wide as the error, where 2 would do"]
+            if widest > _CAUTIOUS
+            else []
+        ),
     ]
     is_kept = bool(shares or bands) and min(judged, default=0.0) >= LEAST_COVERAGE
     return KeyFact(name, "; ".join(clauses), "prediction", None if is_kept and widest > _CAUTIOUS else is_kept)
