@@ -19,9 +19,8 @@ import numpy as np
 from seatrial._plugins import installed, load_plugin
 from seatrial.core.values import Array, InputError, spelling_hint
 from seatrial.core.values.files import is_file
-from seatrial.data.trial import EstimateMethod
-from seatrial.estimation.search import SearchBudget, search_method
-from seatrial.numerics.optimise import FitnessMemory, levenberg_marquardt
+from seatrial.data.trial import SEARCHES, EstimateMethod
+from seatrial.numerics.optimise import SEARCH_METHODS, FitnessMemory, SearchBudget, levenberg_marquardt
 from seatrial.problems.problem import BudgetSpent, Estimate, PosedProblem
 
 # Optimisers that ask and tell, run within a budget and held to their box.
@@ -239,10 +238,6 @@ def _imported(module: str, package: str) -> Any:
 
 RANDOM, OUTPUT_ERROR, IDENTIFY = "random", "output-error", "identify"
 """Names of the trivial baseline and of the package's own estimators."""
-_SEARCHES = (
-    EstimateMethod.PSO, EstimateMethod.WHO, EstimateMethod.IWHO, EstimateMethod.ICPSO, EstimateMethod.DE,
-    EstimateMethod.CMA_ES,
-)  # fmt: skip
 _RANDOM_POINTS = 40  # points of one call of the random search, as the populations have them
 _NO_LOCAL = np.zeros((0, 0))
 _NEGLIGIBLE = 1e-8  # relative step of the cost at which the own estimator ends; ours, far below any bound
@@ -294,7 +289,7 @@ def _random_search(problem: PosedProblem, rng: np.random.Generator) -> Estimate:
 
 def _published_search(name: EstimateMethod, problem: PosedProblem, rng: np.random.Generator) -> Estimate:
     """A published search, its length fitted to the budget, points judged again where the fitness changes."""
-    method = search_method(name)
+    method = SEARCH_METHODS[name]
     population = method.population(problem.box.size)
     memory = FitnessMemory.RE_EVALUATE if problem.is_changing else FitnessMemory.KEEP
     create = method.within(SearchBudget(population, ceil(problem.budget / population), memory))
@@ -326,10 +321,10 @@ ENTRIES: tuple[BuiltIn, ...] = (
     BuiltIn(RANDOM, "uniform random points; the trivial baseline", "", _random_search, _is_any),
     *(
         BuiltIn(
-            name.value, search_method(name).source, "", partial(_published_search, name),
+            name.value, SEARCH_METHODS[name].source, "", partial(_published_search, name),
             _is_any if name in (EstimateMethod.PSO, EstimateMethod.WHO, EstimateMethod.IWHO) else _is_constant,
         )
-        for name in _SEARCHES
+        for name in SEARCHES
     ),
     BuiltIn("scipy-de", "SciPy, differential_evolution", "scipy", scipy_evolution, _is_constant),
     BuiltIn("scipy-annealing", "SciPy, dual_annealing", "scipy", scipy_annealing, _is_constant),

@@ -1,10 +1,47 @@
-"""Optimisers by name."""
+"""Optimisers by name: every one keeps its box and its budget, with the settings of its source."""
 
 import numpy as np
 import pytest
 
-from seatrial.numerics.optimise.named import OPTIMISERS, optimiser_named
-from seatrial.numerics.optimise.population import Box, SearchError
+from seatrial.data.trial import SEARCHES
+from seatrial.numerics.optimise import (
+    OPTIMISERS,
+    SEARCH_METHODS,
+    Box,
+    FitnessMemory,
+    SearchBudget,
+    SearchError,
+    optimiser_named,
+    search,
+)
+
+BOX = Box(np.array([-1.0, -2.0]), np.array([3.0, 2.0]))
+
+
+def test_every_search_of_a_trial_file_stands_in_the_table() -> None:
+    assert set(SEARCHES) == set(SEARCH_METHODS)
+
+
+@pytest.mark.parametrize("method", sorted(SEARCH_METHODS))
+def test_every_search_stays_within_its_budget(method: str) -> None:
+    optimiser = SEARCH_METHODS[method].within(SearchBudget(12, 5))(BOX, np.random.default_rng(0))
+    found = search(optimiser, lambda x: np.sum((x - 0.5) ** 2, axis=1))
+    assert len(found.history) <= 5
+    assert found.evaluations <= 12 * 5
+
+
+def test_settings_are_those_of_the_source() -> None:
+    sizes = {name: (m.population(8), m.iterations) for name, m in SEARCH_METHODS.items()}
+    # Qi et al. 2025, section 4.1; Meng et al. 2014, section 3; Hansen 2016, eq. 48: 4 + floor(3 ln 8)
+    assert sizes == {
+        "pso": (40, 200), "who": (40, 200), "iwho": (40, 200), "icpso": (60, 1000), "de": (40, 200), "cma-es": (10, 200)
+    }  # fmt: skip
+
+
+def test_a_fitness_that_changes_has_remembered_points_judged_again() -> None:
+    budget = SearchBudget(12, 3, FitnessMemory.RE_EVALUATE)
+    optimiser = SEARCH_METHODS["pso"].within(budget)(BOX, np.random.default_rng(0))
+    assert search(optimiser, lambda x: np.sum(x**2, axis=1)).evaluations == 12 + 2 * 24
 
 
 @pytest.mark.parametrize("name", sorted(OPTIMISERS))

@@ -20,7 +20,7 @@ from seatrial.estimation.predict.open_loop import rms_errors
 from seatrial.estimation.regress.estimators import RegressionEstimator
 from seatrial.estimation.regress.operators import RegressionMotion, features
 from seatrial.estimation.regress.pipeline import available_estimators
-from seatrial.estimation.search import search_method
+from seatrial.numerics.optimise import SEARCH_METHODS
 from seatrial.physics.simulate.replay import replay
 
 _CORRELATED_CHANNELS = ("u", "v", "r")
@@ -56,7 +56,7 @@ def with_search_baselines(fit: Fit, trial: Trial, seed: int, report_progress: Pr
     baselines = list(fit.baselines) or [*_fit_as_baselines(fit), *_failed_regressions(fit)]
     for method in SEARCHES:
         named = replace(trial, estimate=replace(trial.estimate, method=method, search=settings))
-        title = f"{search_method(method).title} ({method})"
+        title = f"{SEARCH_METHODS[method].title} ({method})"
         try:
             found = estimate_by_search(named, fit, seed, report_progress)
         except InputError as error:

@@ -41,14 +41,12 @@ from seatrial.estimation.search import (
     Fitness,
     JudgedRun,
     LinearCandidates,
-    SearchBudget,
     SimulatedCandidates,
     one_sample_fitness,
     run_search,
-    search_method,
     whole_record_fitness,
 )
-from seatrial.numerics.optimise import Box, FitnessMemory, Optimiser, SearchError
+from seatrial.numerics.optimise import SEARCH_METHODS, Box, FitnessMemory, Optimiser, SearchBudget, SearchError
 from seatrial.physics.simulate import Forcing, LinearBatch, inputs_of
 from seatrial.physics.simulate.replay import replay
 
@@ -129,7 +127,7 @@ def search_budget(method: EstimateMethod, settings: SearchSettings, unknowns: in
     Raises:
         InputError: the population is too small for the method.
     """
-    published = search_method(method)
+    published = SEARCH_METHODS[method]
     population, iterations = settings.population or published.population(unknowns), settings.iterations
     changes = settings.fitness is SearchFitness.SAMPLE
     memory = FitnessMemory.RE_EVALUATE if changes else FitnessMemory.KEEP
@@ -366,7 +364,7 @@ def _restarts(
     report_progress: ProgressReporter | None,
 ) -> list[FinishedSearch]:
     """As many searches as required, or those finished when the user interrupts."""
-    create = search_method(method).within(budget)
+    create = SEARCH_METHODS[method].within(budget)
     finished: list[FinishedSearch] = []
 
     def fitness_of(optimiser: Optimiser) -> Fitness:
@@ -445,7 +443,7 @@ def _named(names: Sequence[str], values: Array) -> dict[str, float]:
 
 
 def search_method_text(method: EstimateMethod, settings: SearchSettings, search: Search) -> Method:
-    published = search_method(method)
+    published = SEARCH_METHODS[method]
     judged = "one sample an iteration" if settings.fitness is SearchFitness.SAMPLE else "rms over the whole record"
     return Method(
         f"{published.title} ({published.source}), {judged}",

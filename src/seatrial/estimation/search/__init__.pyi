@@ -7,11 +7,6 @@ from seatrial.estimation.search.sample_search import (
     whole_record_fitness as whole_record_fitness,
 )
 from seatrial.estimation.search.candidates import LinearCandidates as LinearCandidates
-from seatrial.estimation.search.methods import (
-    SearchBudget as SearchBudget,
-    SearchMethod as SearchMethod,
-    search_method as search_method,
-)
 from seatrial.estimation.search.sample_search import FinishedSearch as FinishedSearch, run_search as run_search
 from seatrial.estimation.search.candidates import JudgedRun as JudgedRun
 from seatrial.estimation.search.sample_search import SampleSearch as SampleSearch

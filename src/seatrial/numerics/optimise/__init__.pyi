@@ -19,7 +19,8 @@ from seatrial.numerics.optimise.least_squares import predicted_decrease as predi
 from seatrial.numerics.optimise.multistart import Multistart as Multistart, RestartSettings as RestartSettings
 from seatrial.numerics.optimise.multistart import multistart as multistart
 from seatrial.numerics.optimise.named import OPTIMISERS as OPTIMISERS, OptimiserFactory as OptimiserFactory
-from seatrial.numerics.optimise.named import optimiser_named as optimiser_named
+from seatrial.numerics.optimise.named import SEARCH_METHODS as SEARCH_METHODS, SearchBudget as SearchBudget
+from seatrial.numerics.optimise.named import SearchMethod as SearchMethod, optimiser_named as optimiser_named
 from seatrial.numerics.optimise.particle_swarm import ParticleSwarm as ParticleSwarm, SwarmSettings as SwarmSettings
 from seatrial.numerics.optimise.population import FitnessMemory as FitnessMemory, Population as Population
 from seatrial.numerics.optimise.random_weight_genetic import GeneticSettings as GeneticSettings

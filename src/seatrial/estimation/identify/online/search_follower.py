@@ -20,7 +20,8 @@ from seatrial.estimation.identify.search import (
     simulated_starts,
     training_predictions,
 )
-from seatrial.estimation.search import Candidates, SampleSearch, search_method
+from seatrial.estimation.search import Candidates, SampleSearch
+from seatrial.numerics.optimise import SEARCH_METHODS
 from seatrial.physics.simulate import initial_state
 
 # s of a stream between two times at which samples are processed; chosen: as often as the package's own follower
@@ -43,7 +44,7 @@ class SearchFollower:
         self._trial, self._seed = trial, seed
         self._box = search_box(trial.model, self._method, self._settings)
         self._budget = search_budget(self._method, self._settings, self._box.size)
-        create = search_method(self._method).within(self._budget)
+        create = SEARCH_METHODS[self._method].within(self._budget)
         self._search = SampleSearch(create(self._box, np.random.default_rng([seed, 0])))
         self._follower = OnlineEstimator(own_trial(trial))
         self._place = len(trial.runs_with_role(Role.TRAIN))
