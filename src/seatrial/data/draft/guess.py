@@ -18,6 +18,7 @@ from seatrial.data.draft.naming import NameGuess, bracketed_unit, guess_by_name,
 from seatrial.data.draft.stored_parameters import OutputSetting, is_disabled, output_setting
 from seatrial.data.draft.stretches import padded, smooth_speed
 from seatrial.data.draft.survey import ColumnSummary, LogSurvey, TopicSummary, column_values
+from seatrial.data.readings import name_table
 from seatrial.physics.models.thruster_layout import CommandInput, Thruster, ThrusterLayout
 
 # Columns without names, by what they do: derivatives of one another, the heading of the track, what turns the ship.
@@ -316,6 +317,8 @@ def _ranked_guesses(survey: LogSurvey, topic: TopicSummary, gear: float) -> list
         guess = _first_guess(survey, topic, column, named)
         if guess is None:
             continue
+        if column.is_constant and column.low in name_table()["codes"].get(guess.symbol, ()):
+            guess = replace(guess, unused_because=f"always {column.low:g}, a code for no reading")
         if guess.symbol == "n" and gear and not _SHAFT.search(column.name):
             guess = _of_propeller(guess, gear)
         ranked.append(_RankedGuess((column.is_constant, not named.unit, column.missing, -topic.rows), guess))

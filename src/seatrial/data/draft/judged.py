@@ -12,7 +12,15 @@ from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.ship_estimates import HeaderStatement, header_statements
 from seatrial.data.draft.survey import ColumnSummary, LogSurvey, column_values, columns_by_source
 from seatrial.data.read.clock import stamps
-from seatrial.data.readings import ColumnReading, NamedColumn, ReadingVerdict, Samples, is_impossible, judge
+from seatrial.data.readings import (
+    ColumnReading,
+    NamedColumn,
+    ReadingVerdict,
+    Samples,
+    is_impossible,
+    judge,
+    without_codes,
+)
 
 _GROUPS = (("lat", "lon"), ("x0", "y0"), ("u", "v"), ("q_w", "q_x", "q_y", "q_z"))
 _SIDES = ("port", "starboard")
@@ -87,7 +95,7 @@ def _places(
             pair = [cells for cells in sides if cells is not None]
             if not pair or len(pair) < len(sides):
                 continue
-            cells = table.numbers(guess.column)
+            cells = without_codes(guess.symbol, table.numbers(guess.column))
             reading = ColumnReading(guess.symbol, guess.unit, guess.frame, guess.positive, 0.0, guess.scale)
             samples = Samples(clocks[topic.topic], cells, guess.symbol in _ANGLES)
             statement = statements[k].get(guess.symbol, HeaderStatement())

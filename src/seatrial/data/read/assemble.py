@@ -14,6 +14,7 @@ from seatrial.data.held_readings import between_readings, held_text, slower_chan
 from seatrial.data.read.clock import Series, common_time, moment_text, ordered_series, stamps, values_at
 from seatrial.data.read.layout import LOG_QUANTITIES, ColumnSpec, Geometry, Layout
 from seatrial.data.read.log import Log, RawTable
+from seatrial.data.readings import without_codes
 
 # Channels of a record out of what a log measures: positions on a plane, velocities, headings.
 
@@ -25,6 +26,7 @@ _ENU_PAIRS = (("x0", "y0"), ("u", "v"), ("u_dot", "v_dot"))
 class Measured:
     """A column in SI units, shape (n,), with what is declared about it.
 
+    emptied: what readings were made empty that a standard's code marks; empty: none.
     is_measured: shape (n,), False in rows that repeat an earlier reading; None: every row is a reading.
     """
 
@@ -32,6 +34,7 @@ class Measured:
     values: Array
     label: str
     is_measured: Mask | None = None
+    emptied: str = ""
 
     def turned_into(self, symbol: str, values: Array, *, frame: str = "", reference_point: float = 0.0) -> "Measured":
         """Return a channel derived from this one, in the notation table's sign."""
@@ -304,10 +307,13 @@ def assemble_record(log: Log, layout: Layout, sha256: str) -> Record:
     read = stamps(table, _time_column(layout, table))
     _require_increasing_time(read.seconds, table, layout)
     measured = {column.symbol: _measured(column, table) for column in layout.columns}
+    codes = [entry.emptied for entry in measured.values()]
     measured, emptied = without_fixes_at_zero(measured, read.seconds)
     measured, held = _once_each(measured, read.seconds)
     channels = derived_channels(measured, layout.geometry, log.file)
-    provenance = Provenance(plain_name(log.file), sha256, _notes(f"read as {layout.format}", read.note, emptied, held))
+    provenance = Provenance(
+        plain_name(log.file), sha256, _notes(f"read as {layout.format}", read.note, *codes, emptied, held)
+    )
     return _record(record_name(log.file), read.seconds, channels, layout.scale, provenance)
 
 
@@ -365,7 +371,7 @@ def _series(source: LogSource) -> _SourceSeries:
         time = stamps(table, _time_column(layout, table)).seconds
         columns = [column for column in layout.columns if log.table_of(column) is table]
         measured, fixes = without_fixes_at_zero({c.symbol: _measured(c, table) for c in columns}, time)
-        emptied.append(fixes)
+        emptied += [*(entry.emptied for entry in measured.values()), fixes]
         for symbol, one in measured.items():
             measured[symbol], text = without_sentinel(one, time)
             emptied.append(text)
@@ -388,12 +394,16 @@ def _time_column(layout: Layout, table: RawTable) -> ColumnSpec:
 
 
 def _measured(column: ColumnSpec, table: RawTable) -> Measured:
-    values = column.in_si(table.numbers(column))
+    cells = table.numbers(column)
+    readings = without_codes(column.symbol, cells)
+    values = column.in_si(readings)
     if np.isnan(values[:1]).all() and np.isnan(values).all():
         raise InputError(
             f"{table.title}: {column.display_name} (channel '{column.symbol}') holds no number at all; leave it out"
         )
-    return Measured(column, values, table.label(column))
+    count = int(np.sum(np.isfinite(cells) & np.isnan(readings)))
+    text = f"'{column.symbol}': {count} of {len(cells)} readings are codes of a standard for none, and {EMPTIED}"
+    return Measured(column, values, table.label(column), emptied=text if count else "")
 
 
 def _once_each(measured: dict[str, Measured], time: Array) -> tuple[dict[str, Measured], str]:

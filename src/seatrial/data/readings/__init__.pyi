@@ -5,6 +5,7 @@ from seatrial.data.readings.candidates import (
     is_impossible,
     mistaken_units,
     name_table,
+    without_codes,
 )
 from seatrial.data.readings.grids import Samples
 from seatrial.data.readings.search import (
@@ -19,4 +20,5 @@ from seatrial.data.readings.search import (
 __all__ = [
     "OPEN_NATS", "ColumnReading", "JointReading", "JudgedStatements", "NamedColumn", "ReadingVerdict",
     "RefutedStatement", "Samples", "is_impossible", "judge", "judge_statements", "mistaken_units", "name_table",
+    "without_codes",
 ]  # fmt: skip

@@ -98,6 +98,8 @@ class ColumnGroup:
 
 
 _Readings = tuple[ColumnReading, ...]
+_TURN_DEG = 360.0  # deg, of a turn: 360 lies beside 0
+_JUMPS_OVER_STEPS = 5.0  # of the largest of a hundred steps, by which readings jump to a code; chosen
 
 
 @cache
@@ -110,6 +112,25 @@ def shares() -> Mapping[str, Mapping]:
 def name_table() -> Mapping[str, Mapping]:
     """Return the table of names."""
     return tomllib.loads(Path(__file__).with_name("names.toml").read_text(encoding="utf-8"))
+
+
+def without_codes(symbol: str, cells: Array) -> Array:
+    """Return numbers of a column (n,) with those empty that mean no reading in a standard.
+
+    A code lies beyond all other numbers, and readings jump to it: a heading of 360.0 between 359 and 1 is none.
+    """
+    for code in name_table()["codes"].get(symbol, ()):
+        rows = cells == code
+        others = cells[np.isfinite(cells) & ~rows]
+        if not rows.any() or (others.size and np.min(others) <= code <= np.max(others)):
+            continue
+        before = np.flatnonzero(np.isfinite(cells[:-1]) & ~rows[:-1] & rows[1:])
+        usual = np.percentile(np.abs(np.diff(others)), 99.0) if others.size > 1 else 0.0  # of a hundred steps
+        jumps = np.abs(cells[before] - code)
+        jumps = np.minimum(jumps, np.abs(_TURN_DEG - jumps)) if code == _TURN_DEG else jumps
+        if np.median(jumps) > _JUMPS_OVER_STEPS * usual if before.size else abs(code) != _TURN_DEG:
+            cells = np.where(rows, np.nan, cells)
+    return cells
 
 
 def variable(columns: Sequence[NamedColumn], on: Sequence[Grid]) -> ColumnGroup:
