@@ -55,12 +55,12 @@ def test_nothing_is_said_of_thrusters_that_are_as_declared() -> None:
 @pytest.mark.parametrize(
     ("port", "starboard", "sentences"),
     [
-        (inverted, as_it_is, ["'port' ('command_1') works inverted: more command drives and turns"]),
+        (inverted, as_it_is, ["'port' ('command_1') works inverted"]),
         (other_side, other_side, ["'port' ('command_1') turns the craft as one on the other side", "'starboard'"]),
         (
             as_it_is,
             lambda t: other_side(inverted(t)),
-            ["'starboard' ('command_2') works inverted and on the other side"],
+            ["'starboard' ('command_2') works inverted and turns the craft as one on the other side"],
         ),
     ],
 )

@@ -6,7 +6,6 @@ from seatrial.core.values import NOTATION, Array, Finding, InputError, Record, S
 from seatrial.data.check.consequences import moment
 from seatrial.data.check.consistency import FOLLOWS, heading_rate, shift_text
 from seatrial.data.check.motion import (
-    RecordedMotion,
     jackknife_least_squares,
     mask_intervals,
     smoothed,
@@ -135,55 +134,23 @@ def _stuck_findings(record: Record, symbol: str, values: Array) -> list[Finding]
     return [Finding(Severity.WARNING, "stuck", text, evidence)]
 
 
-def lag_findings(record: Record, motion: RecordedMotion | None) -> tuple[Finding, ...]:
-    """Lags of u, v behind the positions and of r behind the heading, of a clean, signed record as declared."""
-    of_rate = _lag_finding(
-        record, yaw_rate_lag(record), "r", "r lags behind the heading", "r leads the heading, or the heading is late,"
-    )
-    # velocities are turned by the heading: where that is late they seem so
-    of_velocity = _lag_finding(
-        record, velocity_lag(motion), "u, v", "u, v lag behind the positions", "u, v lead the positions"
-    )
-    return of_rate or of_velocity
-
-
-def _lag_finding(
-    record: Record, lag: tuple[float, float] | None, names: str, late: str, early: str
-) -> tuple[Finding, ...]:
-    delay, error = lag or (0.0, 0.0)
+def lag_findings(record: Record) -> tuple[Finding, ...]:
+    """Return a warning on a lag of r behind the heading of a clean, signed record; that of u, v shows in `closure`."""
+    delay, error = yaw_rate_lag(record) or (0.0, 0.0)
     if abs(delay) <= max(LAG_SAMPLES * record.dt, LAG_STANDARD_ERRORS * error):
         return ()
-    text = f"record '{record.name}': {late if delay > 0 else early} by about {abs(delay):.2g} s"
+    order = "r lags behind the heading" if delay > 0 else "r leads the heading, or the heading is late,"
+    text = f"record '{record.name}': {order} by about {abs(delay):.2g} s"
     evidence = f"{abs(delay) / record.dt:.1f} samples, standard error {error:.2g} s"
-    advice = f"write {names} {shift_text(delay)} into the file, or leave {names} out of channels under [estimate]"
+    advice = f"write r {shift_text(delay)} into the file, or leave r out of channels under [estimate]"
     return (Finding(Severity.WARNING, "lag", text, evidence, advice),)
 
 
-def velocity_lag(motion: RecordedMotion | None) -> tuple[float, float] | None:
-    """Return the delay tau of the measured velocity w [s] and its standard error.
-
-    Fitted: d(position)/dt - w = tau dw/dt - d lever + constant.
-
-    A reference point d ahead (its lever is the turned yaw rate), a scale and a misalignment are fitted along, so that
-    they do not pass for a lag.
-    None where positions are missing or what is stated of them is refuted.
-    """
-    if motion is None:
-        return None
-    length, psi, dt = motion.window_samples, motion.record["psi"], motion.record.dt
-    levers, turning = (-np.sin(psi), np.cos(psi)), np.gradient(psi, dt)
-    features, levered, scaled, target = [], [], [], []
-    for position, velocity, lever in zip(motion.position_derivative, motion.velocity, levers, strict=True):
-        features.append(smoothed_derivative(velocity, dt, length))
-        levered.append(smoothed(turning * lever, length))
-        scaled.append(smoothed(velocity, length))
-        target.append(position - scaled[-1])
-    turned = [-scaled[1], scaled[0]]
-    return _estimate_delay(features, target, levered, scaled, turned)
-
-
 def yaw_rate_lag(record: Record) -> tuple[float, float] | None:
-    """Return the same for r against the heading; None where they do not belong together."""
+    """Return the delay of the yaw rate behind that of the heading [s] and its standard error.
+
+    Fitted: d(psi)/dt - r = tau dr/dt + constant. None where they do not belong together.
+    """
     turning = heading_rate(record)
     if turning is None or "r" not in record:
         return None
@@ -191,16 +158,6 @@ def yaw_rate_lag(record: Record) -> tuple[float, float] | None:
     r = smoothed(record["r"], length)
     if np.ptp(r) == 0 or np.corrcoef(r, turning)[0, 1] < FOLLOWS:
         return None
-    return _estimate_delay([smoothed_derivative(record["r"], record.dt, length)], [turning - r])
-
-
-def _estimate_delay(
-    features: list[Array], target: list[Array], *nuisance_features: list[Array]
-) -> tuple[float, float] | None:
-    """Components interleaved in time, so that blocks of rows are blocks of time; one offset for each component."""
-    rate, misfit, *rest = (np.stack(part, axis=1).ravel() for part in (features, target, *nuisance_features))
-    if not np.any(rate):
-        return None
-    offsets = np.tile(np.eye(len(features)), (len(features[0]), 1))
-    solution, errors = jackknife_least_squares(np.column_stack([rate, *rest, offsets]), misfit)
+    rate = smoothed_derivative(record["r"], record.dt, length)
+    solution, errors = jackknife_least_squares(np.column_stack([rate, np.ones(len(rate))]), turning - r)
     return float(solution[0]), float(errors[0])

@@ -195,8 +195,8 @@ def _turns(motion: RecordedMotion) -> list[_Turn]:
     inner = smoothed_derivative(psi, dt, motion.window_samples)
     margin = (len(psi) - len(inner)) // 2
     rate = np.pad(inner, (margin, len(psi) - len(inner) - margin), mode="edge")
-    ahead, aside = _body_velocities(motion)
-    aside = aside - rate * record.channel("v").reference_point
+    body = _in_body_axes(record)
+    ahead, aside = body["u"], body["v"] - rate * record.channel("v").reference_point
     course, turns = course_of(psi), []
     for turn in (one for one in course.turns if abs(one.angle) >= LEAST_TURN):
         first = turn.first + int(np.searchsorted(_turned(psi[turn.first : turn.last + 1]), 0.5))
@@ -209,14 +209,6 @@ def _turns(motion: RecordedMotion) -> list[_Turn]:
 def _turned(psi: Array) -> Array:
     """Share of a turn's change of heading that is done, (n,), never decreasing."""
     return np.maximum.accumulate(np.abs(psi - psi[0]) / abs(psi[-1] - psi[0]))
-
-
-def _body_velocities(motion: RecordedMotion) -> tuple[Array, Array]:
-    """Velocities ahead and to starboard [m/s], (n,) each."""
-    u, v, psi = (motion.record[s] for s in ("u", "v", "psi"))
-    if motion.frame == "body":
-        return u, v
-    return u * np.cos(psi) + v * np.sin(psi), v * np.cos(psi) - u * np.sin(psi)
 
 
 # What a trial file states of channels, against what the judge of readings makes of all of them together.

@@ -119,7 +119,7 @@ def _comparison_findings(record: Record) -> list[Finding]:
         *(() if motion is None else kinematic_consistency_findings(motion)),
         *(() if motion is None else drift_side_findings(motion)),
         *excitation_findings(record),
-        *lag_findings(record, motion),
+        *lag_findings(record),
         *phase_findings(record),
         *approach_findings(record),
         *feedback_findings(record),

@@ -155,25 +155,18 @@ def _side_findings(layout: ThrusterLayout, records: Sequence[Record]) -> list[Fi
         evidence = (
             f"effect on speed {effect.surge:+.0f}, on yaw rate {effect.yaw:+.0f} standard errors against the layout"
         )
+        is_inverted = effect.surge < -SURE_EFFECT
+        is_across = effect.yaw > SURE_EFFECT if is_inverted else effect.yaw < -SURE_EFFECT
+        if not (is_inverted or is_across):
+            continue
         other = "astern" if thruster.command.span > 0 else "ahead"
-        inverted = f'set command.positive = "{other}" for it'
         sides = "exchange the channels of port and starboard, or the signs of their y"
         if isinstance(thruster.angle, AngleInput):
             sides = f"state the other side as positive for channels.{thruster.angle.channel}"
-        if effect.surge < -SURE_EFFECT and effect.yaw < -SURE_EFFECT:
-            what, advice = "works inverted: more command drives and turns the craft the other way", inverted
-        elif effect.surge < -SURE_EFFECT and effect.yaw > SURE_EFFECT:
-            what, advice = "works inverted and on the other side", f"{inverted} and {sides}"
-        elif effect.yaw < -SURE_EFFECT < effect.surge:
-            what, advice = "turns the craft as one on the other side would", sides
-        elif effect.surge < -SURE_EFFECT:
-            what, advice = "works inverted: more command drives the craft the other way", inverted
-        else:
-            continue
-        findings.append(Finding(
-            Severity.ERROR, "thruster-side", f"thruster '{thruster.name}' ('{thruster.command.channel}') {what}",
-            evidence, advice,
-        ))  # fmt: skip
+        faults = ["works inverted"] * is_inverted + ["turns the craft as one on the other side would"] * is_across
+        advice = [f'set command.positive = "{other}" for it'] * is_inverted + [sides] * is_across
+        text = f"thruster '{thruster.name}' ('{thruster.command.channel}') {' and '.join(faults)}"
+        findings.append(Finding(Severity.ERROR, "thruster-side", text, evidence, " and ".join(advice)))
     return findings
 
 

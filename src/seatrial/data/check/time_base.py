@@ -63,7 +63,8 @@ def even_base(time: Array) -> EvenBase:
     gapless = _base(time, np.empty(0, dtype=np.intp), rounding, repeated)
     if repeated and gapless.is_even:
         return gapless
-    nominal = _nominal_step(time, quantum)
+    lag = min(STEP_LAG, len(time) - 1)
+    nominal = float(np.median((time[lag:] - time[:-lag]) / lag))
     gaps = np.flatnonzero((steps > GAP_STEPS * nominal) & (steps > nominal + GAP_QUANTA * rounding[1:]))
     return _base(time, gaps, rounding, repeated)
 
@@ -106,19 +107,6 @@ def _base(time: Array, gaps: RowIndices, rounding: Array, repeated: int) -> Even
     deviation = np.abs(time - start - step * index)
     is_even = bool(np.all(deviation <= np.maximum(LARGEST_JITTER * step, LARGEST_ROUNDING * rounding)))
     return EvenBase(index.astype(np.intp), start, step, float(np.max(deviation)), is_even, repeated, gaps)
-
-
-def _nominal_step(time: Array, quantum: float) -> float:
-    """The usual step: from the samples that share a rounded stamp where there are many, else the median over 20."""
-    lag = min(STEP_LAG, len(time) - 1)
-    nominal = float(np.median((time[lag:] - time[:-lag]) / lag))
-    if quantum > 0.0:
-        stamps, counts = np.unique(time, return_counts=True)
-        is_next = np.diff(stamps) < GAP_QUANTA * quantum
-        inner = counts[1:-1][is_next[1:] & is_next[:-1]]
-        if inner.size and np.mean(inner) > 1.0:
-            return quantum / float(np.mean(inner))
-    return nominal
 
 
 # Samples that are missing: channels run on where the craft has not forgotten what went before; other holes are cut.

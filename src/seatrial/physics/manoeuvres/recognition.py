@@ -100,7 +100,10 @@ class ObservedManoeuvre:
                 f"record '{record.name}' is not sampled at the times of '{self.record.name}', at whose executes it is "
                 "to be measured; resample it"
             )
-        return _TransferredManoeuvre(record, _heading(record), self.delta, self)
+        transferred = replace(self, record=record, psi=_heading(record))
+        for name in ("holds", "executes", "kind"):  # cached properties, made out here
+            transferred.__dict__[name] = getattr(self, name)
+        return transferred
 
     @cached_property
     def holds(self) -> tuple[Hold, ...]:
@@ -263,25 +266,6 @@ class ObservedManoeuvre:
         amidships = np.abs(self.delta[hold.last :]) < _AMIDSHIPS * abs(hold.angle)
         long = np.count_nonzero(amidships) > 0.25 * (hold.last - hold.first)
         return ManoeuvreKind.PULL_OUT if long else ManoeuvreKind.TURNING_CIRCLE
-
-
-@dataclass(frozen=True, eq=False)
-class _TransferredManoeuvre(ObservedManoeuvre):
-    """A record whose manoeuvre was made out on another one, row by row."""
-
-    reference: ObservedManoeuvre
-
-    @cached_property
-    def holds(self) -> tuple[Hold, ...]:
-        return self.reference.holds
-
-    @cached_property
-    def executes(self) -> tuple[float, ...]:
-        return self.reference.executes
-
-    @cached_property
-    def kind(self) -> ManoeuvreKind:
-        return self.reference.kind
 
 
 def recognise_manoeuvre(record: Record) -> ManoeuvreKind:
