@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from seatrial.core.values import InputError, Record
-from seatrial.core.values.arrays import held_rows, travel
+from seatrial.core.values.arrays import held_rows, step_rows, travel, with_corner_areas
 
 TIME = 0.5 * np.arange(200)
 
@@ -22,6 +22,13 @@ def test_orders_travel_in_steps_and_a_slewing_rudder_does_not(rng: np.random.Gen
     noise = 0.003 * rng.normal(size=len(TIME))
     assert travel(orders()).is_stepped and travel(orders() + noise).is_stepped
     assert not travel(slewing()).is_stepped and not travel(slewing() + noise).is_stepped
+
+
+def test_rows_that_steps_reach_are_those_that_show_them(rng: np.random.Generator) -> None:
+    rows = np.flatnonzero(np.diff(orders())) + 1
+    np.testing.assert_array_equal(step_rows(orders()), rows)
+    np.testing.assert_array_equal(step_rows(orders() + 0.003 * rng.normal(size=len(TIME))), rows)
+    assert step_rows(slewing()[:192]).size == step_rows(np.array([0.1])).size == 0
 
 
 def test_what_stands_still_is_not_stepped() -> None:
@@ -62,3 +69,26 @@ def test_metadata_of_an_undeclared_channel_stays_as_it_was() -> None:
     record = Record.from_arrays("run", TIME, {"delta": orders()})
     assert isinstance(record.to_dataframe(), pd.DataFrame)
     assert set(record.channel("delta").metadata) == {"unit", "frame", "positive", "reference_point", "label"}
+
+
+def ramps(time: np.ndarray, late: float) -> np.ndarray:
+    """A machinery of 3.1 per second between held angles, four ramps, as it is at these times."""
+    starts = np.array([10.0, 30.0, 50.0, 70.0]) + late
+    return sum(np.clip(3.1 * (time - start), 0.0, 20.0) * (-1) ** k for k, start in enumerate(starts))
+
+
+@pytest.mark.parametrize("late", [0.0, 0.3, 0.77])
+@pytest.mark.parametrize("step", [0.0, 0.1])
+def test_corners_within_a_sample_keep_their_area(late: float, step: float) -> None:
+    coarse, fine = np.arange(0.0, 90.5), np.linspace(0.0, 90.0, 90001)
+    written = ramps(coarse, late)
+    values = step * np.round(written / step) if step else written
+    areas = [np.trapezoid(ramps(fine, late)[: 1000 * n + 1], dx=1e-3) for n in (25, 45, 65, 90)]
+    corrected = with_corner_areas(values)
+    by_lines = [np.trapezoid(corrected[: n + 1]) for n in (25, 45, 65, 90)]
+    np.testing.assert_allclose(by_lines, areas, atol=1e-3 if not step else 2.0 * step)
+
+
+def test_what_has_no_greatest_rate_keeps_its_values(rng: np.random.Generator) -> None:
+    for values in (orders(), np.sin(0.7 * TIME), rng.normal(size=200), np.full(20, 0.1), np.array([0.1]), slewing()):
+        np.testing.assert_array_equal(with_corner_areas(values), values)

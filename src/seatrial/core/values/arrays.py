@@ -9,6 +9,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from seatrial.numerics.resolution import resolution
+
 # Array types, and arrays that cannot be written to.
 
 Array = NDArray[np.float64]
@@ -111,19 +113,69 @@ class Travel:
 
 
 def travel(values: Array) -> Travel:
-    """Return how far the values move, (n,); moves to and fro within a twentieth of their range are noise.
+    """Return how far the values move, (n,); moves to and fro within a twentieth of their range are noise."""
+    finite = values[np.isfinite(values)]
+    moves, is_step = _followed_moves(finite)
+    return Travel(float(moves.sum()), float(moves[is_step].sum()))
+
+
+def step_rows(values: Array) -> Index:
+    """Return the rows of values (n,), all finite, that a step within a single sample reaches."""
+    return np.flatnonzero(_followed_moves(values)[1]) + 1
+
+
+def _followed_moves(values: Array) -> tuple[Array, Mask]:
+    """Return sizes of the moves that leave a twentieth of the range, and which are steps, both (n - 1,).
 
     A step has hardly any move in the samples before and after it; a slewing rudder takes several samples.
     """
-    finite = values[np.isfinite(values)]
-    if finite.size < 2:
-        return Travel()
-    play = _NOISE * float(np.ptp(finite))
-    followed = np.fromiter(accumulate(finite.tolist(), lambda y, v: min(max(y, v - play), v + play)), np.float64)
+    if values.size < 2:
+        return np.zeros(0), np.zeros(0, dtype=np.bool_)
+    play = _NOISE * float(np.ptp(values))
+    followed = np.fromiter(accumulate(values.tolist(), lambda y, v: min(max(y, v - play), v + play)), np.float64)
     moves = np.abs(np.diff(followed))
     beside = np.concatenate([[0.0], moves, [0.0]])
-    is_step = (moves > play) & (np.maximum(beside[:-2], beside[2:]) <= _QUIET * moves)
-    return Travel(float(moves.sum()), float(moves[is_step].sum()))
+    return moves, (moves > play) & (np.maximum(beside[:-2], beside[2:]) <= _QUIET * moves)
+
+
+_FEWEST_RAMPS = 3  # of one rate, by which a machinery's rate is evident; chosen
+_PLAY_QUARTILES = 9.0  # lower quartiles of the moves, four standard deviations of noise between held angles; chosen
+_SAME_MOVE = 1e-6  # of the greatest move, by which moves that are one differ: rounding of numbers; chosen
+_FINE_RATE = 4.0  # plays that a move at full rate has at least, so that no noise passes for one; chosen
+
+
+def with_corner_areas(values: Array) -> Array:
+    """Return values (n,) that straight lines from sample to sample give the area of ramps between held angles.
+
+    A rudder machinery slews at one rate, and turns anywhere within a sample: where the lines before and behind meet.
+    The area between its corner and the chord of that sample goes to the two values about it. Values that do not move
+    at one greatest rate, ramp after ramp, stay as they are.
+    """
+    moves = np.diff(values)
+    sizes = np.abs(moves)
+    greatest = float(np.max(sizes, initial=0.0))
+    if greatest == 0.0:
+        return values
+    usual = float(np.quantile(sizes, 0.25))
+    play = max(resolution(values), _PLAY_QUARTILES * usual, _SAME_MOVE * greatest)
+    if greatest < _FINE_RATE * play:
+        return values
+    is_full = sizes >= greatest - 2.0 * play
+    full = np.sign(moves) * float(np.mean(sizes[is_full]))
+    course = np.where(is_full, full, np.where(sizes <= play, 0.0, np.nan))
+    goes_on = (course[1:] == course[:-1]) & is_full[1:]
+    if np.count_nonzero(np.diff(goes_on.astype(int), prepend=0) > 0) < _FEWEST_RAMPS:
+        return values
+    before, move, behind = course[:-2], moves[1:-1], course[2:]
+    corner = np.flatnonzero((move - before) * (move - behind) < 0.0)
+    before, move, behind = before[corner], move[corner], behind[corner]
+    share = (move - behind) / (before - behind)  # of the sample before its corner: where both lines meet
+    area = 0.5 * (before - behind) * share * (1.0 - share)  # of the triangle over the chord, times the sample
+    centre = (1.0 + share) / 3.0  # centroid of a triangle: the mean of its corners
+    result = values.copy()
+    result[corner + 1] += (1.0 - centre) * area
+    result[corner + 2] += centre * area
+    return result
 
 
 def held_rows(values: Array, ratio: int) -> Array:

@@ -20,7 +20,7 @@ from seatrial.core.values import (
     frozen,
     spelling_hint,
 )
-from seatrial.core.values.arrays import Between
+from seatrial.core.values.arrays import Between, with_corner_areas
 from seatrial.core.values.notation import OPPOSITE
 from seatrial.physics.manoeuvres.recognition import TRUE
 from seatrial.physics.simulate.batch import is_within_range, sufficient_substeps
@@ -34,7 +34,8 @@ ZERO_BY_DEFAULT = ("wind_speed", "wind_direction", "F3", "M5", "delta_f1", "delt
 def inputs_of(model: Model, record: Record) -> Array:
     """Inputs in the model's own signs, shape (n, nu); absent wind, waves and fins are at rest.
 
-    A channel whose positive direction is the opposite of the input's is turned.
+    A channel whose positive direction is the opposite of the input's is turned. Where nothing says how a channel runs
+    between samples, the corners of its ramps keep their area.
 
     Raises:
         InputError: an input channel is missing, holds NaN, or points in a direction that has nothing to do with the
@@ -69,10 +70,12 @@ def _input_values(model: Model, record: Record, item: Input) -> Array:
             f"record '{record.name}': input channel '{item.name}' has no value at sample {row} "
             f"(t = {record.time[row]:g} s); repair it first"
         )
+    is_course_open = not (item.is_held or channel.between or channel.is_command)
+    values = with_corner_areas(channel.values) if is_course_open else channel.values
     if item.direction in (channel.positive, "none"):
-        return channel.values
+        return values
     if OPPOSITE.get(item.direction) == channel.positive:
-        return -channel.values
+        return -values
     raise InputError(
         f"record '{record.name}': input channel '{item.name}' is positive to '{channel.positive}', "
         f"model '{model.name}' has it positive to '{item.direction}'; declare one of the two directions"
