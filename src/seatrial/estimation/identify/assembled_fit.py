@@ -48,6 +48,7 @@ from seatrial.estimation.identify.nonlinear_intervals import (
     short_record_findings,
 )
 from seatrial.estimation.identify.score_test import output_error_estimate, own_criterion
+from seatrial.estimation.identify.step_times import with_open_step_times
 from seatrial.estimation.identify.terms import (
     drifting_thrust_finding,
     held_couplings,
@@ -99,6 +100,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         "errors of instruments in the intervals",
         lambda: with_undetected_sensor_errors(widened, _instrument_errors(task, selected.estimation)), widened,
     )  # fmt: skip
+    widened = parts.computed("times of steps in the intervals", lambda: with_open_step_times(widened, task), widened)
     coefficients = fit_result.coefficients(widened, trial.truth, interval_ends(assessment.profiles, posterior))
     free = estimation.estimate.problem.free
     responses = parts.computed(

@@ -11,7 +11,7 @@ from seatrial.core.equations import Model
 from seatrial.core.results import Symmetry
 from seatrial.core.text.numbers import significant
 from seatrial.core.text.words import enumeration
-from seatrial.core.values import Finding, InputError, Parameters, ProgressReporter, Record, Severity
+from seatrial.core.values import Array, Finding, InputError, Parameters, ProgressReporter, Record, Severity
 from seatrial.core.values.arrays import BETWEEN, Between
 from seatrial.data.check.phases import is_free_decay
 from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRecord
@@ -92,6 +92,21 @@ def is_unforced_roll(model: Model, records: Sequence[Record]) -> bool:
 
 
 @dataclass(frozen=True, eq=False)
+class InputStep:
+    """One step of held inputs, which a training run shows at a row.
+
+    Attributes:
+        size: of each input, in the model's signs, (nu,).
+        share: of the sample before that row in which the step was there already, 0 to 1.
+    """
+
+    run: int
+    row: int
+    size: Array
+    share: float
+
+
+@dataclass(frozen=True, eq=False)
 class Identification:
     """What every strategy of `identify` is given.
 
@@ -101,6 +116,7 @@ class Identification:
         options: intervals, seed and the like.
         choose: whether the best member of the family takes the place of the trial's model.
         began: reading of the performance counter at the start [s].
+        steps: of inputs of the training runs whose times within a sample are estimated.
     """
 
     trial: Trial
@@ -110,6 +126,7 @@ class Identification:
     choose: bool
     began: float
     report_progress: ProgressReporter | None = None
+    steps: tuple[InputStep, ...] = ()
 
     @cached_property
     def train(self) -> tuple[TrialRecord, ...]:

@@ -36,6 +36,7 @@ from seatrial.estimation.identify.search import (
     published_fit,
     refuse_options,
 )
+from seatrial.estimation.identify.step_times import with_step_times
 from seatrial.estimation.identify.warnings import single_order_findings, with_unexcited_thrust_held
 from seatrial.estimation.identify.waves import contradicted_waves, identify_by_wave_spectrum, identify_in_unknown_waves
 from seatrial.estimation.information.frequency_response import frequency_range, frequency_range_finding
@@ -180,7 +181,8 @@ def identify(
     if method.is_published:
         return _published(task, situation, report_progress)
     if situation is Situation.STEERED:
-        task = with_detected_sensor_errors(with_likelier_courses(task))
+        timed = with_step_times(task)
+        task = with_detected_sensor_errors(with_likelier_courses(task) if timed is task else timed)
     fit = STRATEGIES[situation](task)
     fit = replace(fit, method=replace(fit.method, name=method.value))
     if not compare or situation is Situation.UNKNOWN_WAVES:  # no input, so that there is nothing to regress on
