@@ -155,6 +155,12 @@ def _timed_steps(task: Identification, names: Sequence[str], steps: tuple[InputS
     local = before.optimum.local[first]
     alone = levenberg_marquardt(plain, before.common_parameters, local, evaluations=_EVALUATIONS)
     spread = residual_spread(plain, PointEstimate(plain, alone).residuals())
+    late_steps = tuple(replace(s, share=_STEP) for s in steps)
+    test = score_test(
+        PointEstimate(replace(plain, noise=spread, inflation=None), alone), _candidates(late_steps, records)
+    )
+    if test.joint((_MEAN**2 + _VARIANCE) * np.eye(len(steps)))[2] < 2.0 * len(steps):
+        return ()
     point = _without_lead(plain, alone.solution.point, names)
     for _ in range(_ROUNDS):
         problem = added_input("", _inputs_of_steps(steps, records)).problem_with(plain, 1.0)
