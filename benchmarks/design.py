@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from seatrial.core.results import Design
 from seatrial.core.values import InputError, Ship
-from seatrial.data.example_series.series import JET_VELOCITY, SAMPLE_RATE, SENSOR_NOISE, SLEW_RATE, true_model
+from seatrial.data.example_series import JET_VELOCITY, SAMPLE_RATE, SENSOR_NOISE, SLEW_RATE, true_model
 from seatrial.data.trial.design_request import DesignRequest, InputRange
 from seatrial.estimation.design.design import CONFIRMATION_RUNS, design
 from seatrial.estimation.design.manoeuvre_information import ManoeuvreEvaluator, leaves_limits

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from seatrial.core.results.online import EstimatorPhase, Sample, Snapshot
 from seatrial.core.values import NOTATION, Channel, Record
-from seatrial.data.example_series import series
+from seatrial.data import example_series as series
 from seatrial.data.read import ColumnSpec, Layout
 from seatrial.data.trial import Role, Trial, load_trial
 from seatrial.data.trial.settings import Stream, StreamSource

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Record
-from seatrial.data.example_series.series import SENSOR_NOISE, true_model, with_sensor_noise
-from seatrial.data.example_series.series import simulate_run as steered
+from seatrial.data.example_series import SENSOR_NOISE, true_model, with_sensor_noise
+from seatrial.data.example_series import simulate_run as steered
 from seatrial.estimation.identify import EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.information.covariance import from_information
 from seatrial.estimation.problem.output_error import OutputError

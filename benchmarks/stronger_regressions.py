@@ -15,7 +15,7 @@ from scipy.linalg import solveh_banded
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Record
-from seatrial.data.example_series.series import SENSOR_NOISE
+from seatrial.data.example_series import SENSOR_NOISE
 from seatrial.estimation.regress.estimators import RegressionEstimate, RegressionEstimator
 from seatrial.estimation.regress.operators import RegressionMotion, window_function
 from seatrial.numerics.kernels.integrate import evaluate_tangent

@@ -22,7 +22,7 @@ import numpy.typing as npt
 from measure import Line, at_least, at_most
 
 import seatrial as st
-from seatrial.data.example_series.series import demo_series
+from seatrial.data.example_series import demo_series
 
 Array = npt.NDArray[np.float64]
 TRUE = {"K": 0.12, "T": 9.0}  # 1/s and s: gain and time constant of a boat of some 8 m; chosen

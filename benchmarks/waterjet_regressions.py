@@ -17,13 +17,17 @@ from numpy.typing import NDArray
 from stronger_regressions import SmoothedRegression, WeightedRegression
 
 from seatrial.core.values import InputError, Record
-from seatrial.data.example_series.series import JET_VELOCITY, SLEW_RATE, true_model, with_sensor_noise
-from seatrial.data.example_series.series import simulate_run as steered
+from seatrial.data.example_series import JET_VELOCITY, SLEW_RATE, true_model, with_sensor_noise
+from seatrial.data.example_series import simulate_run as steered
 from seatrial.estimation.identify import EstimatorOptions, Runs, estimate_model
-from seatrial.estimation.regress.estimators import InstrumentalVariables, LinearRegression, RegressionEstimator
+from seatrial.estimation.regress.estimators import (
+    InstrumentalVariables,
+    LinearRegression,
+    OrdinaryLeastSquares,
+    RegressionEstimator,
+)
 from seatrial.estimation.regress.operators import Central, Smoothed, Weak
 from seatrial.estimation.regress.pipeline import Pipeline, standard_estimators
-from seatrial.estimation.regress.solvers import OrdinaryLeastSquares
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.simulate.steer import manoeuvre
 

@@ -43,7 +43,7 @@ def read(path, layout):
 ESTIMATOR = """
 from seatrial.estimation.regress.estimators import LinearRegression
 from seatrial.estimation.regress.operators import Weak
-from seatrial.estimation.regress.solvers import OrdinaryLeastSquares
+from seatrial.estimation.regress.estimators import OrdinaryLeastSquares
 
 def estimator(half_width):
     return LinearRegression("addon", Weak(2.0 * half_width), OrdinaryLeastSquares())

@@ -7,9 +7,14 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Record
-from seatrial.estimation.regress.estimators import RegressionEstimate, solve_systems
+from seatrial.estimation.regress.estimators import (
+    RegressionEstimate,
+    RegressionSolution,
+    RegressionSystem,
+    build_systems,
+    solve_systems,
+)
 from seatrial.estimation.regress.operators import RegressionMotion, Weak
-from seatrial.estimation.regress.solvers import RegressionSolution, RegressionSystem, build_systems
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,8 @@ from seatrial.physics.models import model_named
 
 
 def test_the_demo_trial_loads_with_its_truth(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from seatrial.data.example_series import files, series
+    from seatrial.data import example_series as files
+    from seatrial.data import example_series as series
 
     monkeypatch.setattr(files, "demo_series", lambda seed: series.demo_series(seed, executes=1))
     trial = sea.load_trial(files.write_demo(tmp_path, seed=1))

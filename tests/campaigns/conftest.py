@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from seatrial.data.example_series.series import simulate_run, true_model, with_sensor_noise, write_csv
+from seatrial.data.example_series import simulate_run, true_model, with_sensor_noise, write_csv
 
 TRIAL = """
 [ship]

@@ -22,8 +22,8 @@ from seatrial.core.values import Array, InputError
 from seatrial.data.folder.model_file import ModelFile
 from seatrial.physics.loops import Block, LoopSignal, TransferLoop
 from seatrial.physics.loops.autopilot import acceleration_feed_forward, heading_loop, pitch_loop, speed_loop
+from seatrial.physics.loops.discrete import controller_transfer_function, transfer_function
 from seatrial.physics.loops.objective import variance
-from seatrial.physics.loops.python_control import controller_transfer_function, transfer_function
 from seatrial.physics.models import model_named
 from seatrial.physics.models.published import kvlcc2
 from seatrial.physics.simulate.closed_loop import REFERENCE, ActuatorLimits

@@ -26,7 +26,7 @@ from seatrial.core.values import Array, InputError
 from seatrial.physics.hydro.capytaine_data import HullExcitation, read_capytaine
 from seatrial.physics.hydro.excitation import BoxHull, Complex, Excitation, G
 from seatrial.physics.loops.objective import motion_sickness_weighting
-from seatrial.physics.sea.response import MotionStatistics, motion_sickness
+from seatrial.physics.sea.wave_forces import MotionStatistics, motion_sickness
 
 OBJECTIVES = '[{ name = "vertical_acceleration", x = 20 }, "actuator_rate"]'
 ALL_OBJECTIVES = (

@@ -16,7 +16,7 @@ from seatrial.core.figures.chart import Rule
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Verdict
 from seatrial.core.values import InputError, Record
-from seatrial.data.example_series.series import true_model
+from seatrial.data.example_series import true_model
 from seatrial.data.read import ColumnSpec, Layout, read_record
 from seatrial.numerics.optimise import Box, optimiser_named, search
 from seatrial.physics.models import model_from_file

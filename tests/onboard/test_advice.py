@@ -7,7 +7,7 @@ import pytest
 
 from seatrial.core.results.online import EstimatorPhase, Snapshot
 from seatrial.core.values import NOTATION, Channel, Record, Ship
-from seatrial.data.example_series.series import JET_VELOCITY, SENSOR_NOISE
+from seatrial.data.example_series import JET_VELOCITY, SENSOR_NOISE
 from seatrial.data.read import ColumnSpec, Layout
 from seatrial.data.trial.settings import Stream, StreamSource
 from seatrial.data.trial.trial import Trial

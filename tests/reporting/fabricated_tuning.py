@@ -34,7 +34,7 @@ from seatrial.core.results.tuning import (
 from seatrial.core.values import Array, Channel, Finding, Parameter, Parameters, Record, RecordKind, Severity, frozen
 from seatrial.numerics.optimise import Solution, Status
 from seatrial.physics.loops import Block, Term, TransferLoop, margins
-from seatrial.physics.loops.margins import frequency_band
+from seatrial.physics.loops.performance import frequency_band
 from seatrial.physics.loops.structures import fin_loop
 
 CHOSEN = {"KP": 19.4, "KI": 0.9, "KD": 52.5}

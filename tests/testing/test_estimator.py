@@ -8,10 +8,9 @@ import pytest
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Record
-from seatrial.estimation.regress.estimators import LinearRegression, RegressionEstimate
+from seatrial.estimation.regress.estimators import LinearRegression, OrdinaryLeastSquares, RegressionEstimate
 from seatrial.estimation.regress.operators import Central
 from seatrial.estimation.regress.pipeline import available_estimators
-from seatrial.estimation.regress.solvers import OrdinaryLeastSquares
 from seatrial.testing import ConformanceError, check_estimator
 
 HALF_WIDTH = 5.0  # s; a window of a quarter of the check's rudder period

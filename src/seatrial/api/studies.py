@@ -53,7 +53,7 @@ def demo(folder: str | Path, seed: int = 0, report_progress: "ProgressReporter |
     from seatrial.api.files import save
     from seatrial.api.trials import identify, load_trial
     from seatrial.core.values.files import writable_folder
-    from seatrial.data.example_series.files import write_demo
+    from seatrial.data.example_series import write_demo
 
     report_progress = report_progress or (lambda _: None)
     folder = writable_folder(Path(folder))

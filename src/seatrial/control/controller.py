@@ -37,7 +37,7 @@ from seatrial.core.values import (
 from seatrial.physics.loops import Block, Sampling, TransferLoop, margins, reversals_per_hour
 from seatrial.physics.loops.autopilot import START, FeedForward, acceleration_feed_forward, working_frequency
 from seatrial.physics.loops.discrete import default_sample_time, difference_equation, holding_terms
-from seatrial.physics.loops.margins import frequency_band
+from seatrial.physics.loops.performance import frequency_band
 from seatrial.physics.simulate.closed_loop import REFERENCE, ActuatorLimits, ClosedLoop, simulation_step, steps_a_sample
 
 # A demand carried out: a change and a zigzag by the nonlinear model within its limits, and by ships the fit allows.

@@ -12,7 +12,7 @@ from seatrial.core.results.tuning import Robustness
 from seatrial.core.values import Array
 from seatrial.physics.hydro.excitation import Complex
 from seatrial.physics.loops import Block, TransferLoop, margins
-from seatrial.physics.loops.margins import frequency_band
+from seatrial.physics.loops.performance import frequency_band
 
 _POINTS = 1000  # frequencies, evenly in the logarithm, on which the largest |S| of each ship is sought; chosen
 

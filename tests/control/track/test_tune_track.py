@@ -22,7 +22,7 @@ from seatrial.control.track.tune_track import (
 )
 from seatrial.core.results.tuning import TrackKeeping
 from seatrial.core.values import InputError
-from seatrial.physics.loops import python_control
+from seatrial.physics.loops import discrete as python_control
 from seatrial.physics.simulate.closed_loop import ActuatorLimits
 from seatrial.physics.simulate.craft_control import LineOfSight
 

@@ -7,7 +7,7 @@ from tests.control.loop_files import AUTOPILOT, write_loop_file
 from seatrial.control.loopfile.load import tuning_task
 from seatrial.control.task import TuningTask
 from seatrial.core.values import Ship
-from seatrial.data.example_series.series import JET_VELOCITY, true_model
+from seatrial.data.example_series import JET_VELOCITY, true_model
 from seatrial.data.folder.model_file import ModelFile, write_model
 
 TRACK = """

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from seatrial.data.example_series.series import EXAMPLE_SEED, SENSOR_NOISE, demo_series, main, simulate_run, true_model
+from seatrial.data.example_series import EXAMPLE_SEED, SENSOR_NOISE, demo_series, main, simulate_run, true_model
 from seatrial.physics.simulate import replay
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from seatrial.core.results import TrialLimits
 from seatrial.core.values import Ship
-from seatrial.data.example_series.series import JET_VELOCITY, SENSOR_NOISE
+from seatrial.data.example_series import JET_VELOCITY, SENSOR_NOISE
 from seatrial.data.trial.design_request import DesignRequest, InputRange
 from seatrial.estimation.design.task import DesignTask
 from seatrial.physics.models import model_named

@@ -9,7 +9,7 @@ from standard_craft import NOMOTO
 
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Prior, Record
-from seatrial.data.example_series.series import SENSOR_NOISE, with_sensor_noise
+from seatrial.data.example_series import SENSOR_NOISE, with_sensor_noise
 from seatrial.data.trial import EstimateMethod, EstimateSettings
 from seatrial.estimation.estimate.assemble import Runs, output_error_problem
 from seatrial.estimation.estimate.fit import Estimation, estimate_model

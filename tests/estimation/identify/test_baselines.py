@@ -24,10 +24,9 @@ from seatrial.estimation.identify.baselines import (
     simulation_errors,
     with_baselines,
 )
-from seatrial.estimation.regress.estimators import LinearRegression, RegressionEstimate
+from seatrial.estimation.regress.estimators import LinearRegression, OrdinaryLeastSquares, RegressionEstimate
 from seatrial.estimation.regress.operators import Weak
 from seatrial.estimation.regress.pipeline import standard_estimators
-from seatrial.estimation.regress.solvers import OrdinaryLeastSquares
 from seatrial.physics.simulate.replay import replay
 
 

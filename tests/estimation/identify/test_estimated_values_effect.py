@@ -9,7 +9,7 @@ from benchmarks.independent_ships import CRAFTS, FAULTS, posed
 
 from seatrial.core.equations import Model
 from seatrial.core.values import NOT_MEASURED, Array, Finding, Prior, Record, Severity
-from seatrial.data.example_series.series import simulate_run, true_model, with_sensor_noise
+from seatrial.data.example_series import simulate_run, true_model, with_sensor_noise
 from seatrial.data.trial import EstimateMethod, EstimateSettings
 from seatrial.data.trial.plausibility import ESTIMATED_VALUES
 from seatrial.estimation.estimate.fit import Estimation

@@ -7,7 +7,7 @@ import pytest
 
 from seatrial.core.results import Identifiability
 from seatrial.core.values import ForceContent, ForcePoints, Prior, Record
-from seatrial.data.example_series.series import SENSOR_NOISE, simulate_run, true_model, with_sensor_noise
+from seatrial.data.example_series import SENSOR_NOISE, simulate_run, true_model, with_sensor_noise
 from seatrial.data.trial import EstimateMethod, EstimateSettings
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import PointEstimate

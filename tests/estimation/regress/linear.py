@@ -5,8 +5,8 @@ from functools import cache
 import numpy as np
 
 from seatrial.core.values import Record
-from seatrial.data.example_series.series import simulate_run, true_model
-from seatrial.estimation.regress.solvers import RegressionSystem
+from seatrial.data.example_series import simulate_run, true_model
+from seatrial.estimation.regress.estimators import RegressionSystem
 
 COEFFICIENTS = np.array([2.0, -0.5, 1500.0])
 

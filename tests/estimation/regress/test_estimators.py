@@ -5,7 +5,7 @@ import pytest
 from tests.estimation.regress.linear import zigzags
 
 from seatrial.core.values import InputError
-from seatrial.data.example_series.series import with_sensor_noise
+from seatrial.data.example_series import with_sensor_noise
 from seatrial.estimation.regress.pipeline import standard_estimators
 from seatrial.physics.models.waterjet import TABLE_2, waterjet
 

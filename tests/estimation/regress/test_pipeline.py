@@ -10,11 +10,11 @@ import pytest
 from tests.estimation.regress.linear import zigzags
 
 from seatrial.core.values import InputError
-from seatrial.data.example_series.series import with_sensor_noise
+from seatrial.data.example_series import with_sensor_noise
 from seatrial.data.trial.settings import CompareSettings, SupportVectorSettings
+from seatrial.estimation.regress.estimators import Lasso, OrdinaryLeastSquares
 from seatrial.estimation.regress.operators import Central, Euler
 from seatrial.estimation.regress.pipeline import NO_CLEANING, Cleaning, Pipeline, ablations, pipelines, row_score
-from seatrial.estimation.regress.solvers import Lasso, OrdinaryLeastSquares
 from seatrial.physics.models.waterjet import TABLE_2, waterjet
 
 TRUE = np.array(list(TABLE_2.values()))

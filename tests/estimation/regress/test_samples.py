@@ -12,7 +12,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from seatrial.core.values import Array, Channel, InputError, Record, RecordKind
-from seatrial.data.example_series.series import simulate_run, true_model
+from seatrial.data.example_series import simulate_run, true_model
 from seatrial.estimation.regress.samples import (
     blocks,
     first_occurrences,

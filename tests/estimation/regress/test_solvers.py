@@ -10,19 +10,19 @@ from sklearn.linear_model import Lasso as ReferenceLasso
 from tests.estimation.regress.linear import COEFFICIENTS, random_system
 
 from seatrial.core.values import InputError
-from seatrial.estimation.regress.estimators import SupportVectors
-from seatrial.estimation.regress.operators import Differenced, Euler, Smoothed, Weak
-from seatrial.estimation.regress.solvers import (
+from seatrial.estimation.regress.estimators import (
     Lasso,
     LeastSquaresSvm,
     LinearSolver,
     OrdinaryLeastSquares,
     RegressionSystem,
     Ridge,
+    SupportVectors,
     TruncatedSvd,
     scale_system,
     solve_with_instruments,
 )
+from seatrial.estimation.regress.operators import Differenced, Euler, Smoothed, Weak
 
 METHODS = [OrdinaryLeastSquares(), Ridge(), TruncatedSvd(), LeastSquaresSvm(), Lasso(), SupportVectors(1000.0, 1e-4)]
 

@@ -5,8 +5,8 @@ import pytest
 from tests.estimation.regress.linear import zigzags
 
 from seatrial.core.values import InputError
+from seatrial.estimation.regress.estimators import RegressionSystem, build_systems, refuse_degenerate
 from seatrial.estimation.regress.operators import Central, Centred, Euler, RegressionMotion, Weak
-from seatrial.estimation.regress.solvers import RegressionSystem, build_systems, refuse_degenerate
 from seatrial.physics.models.mmg import mmg
 from seatrial.physics.models.waterjet import waterjet
 
@@ -20,7 +20,7 @@ def test_surge_sway_and_yaw_of_the_craft_stand_apart() -> None:
 
 def test_equations_that_share_coefficients_stand_together() -> None:
     """With the origin off G the side forces enter sway and yaw."""
-    from seatrial.estimation.regress.solvers import _coupled_equations
+    from seatrial.estimation.regress.estimators import _coupled_equations
 
     ship = mmg()
     states = [[ship.states[i] for i in equations] for equations, _ in _coupled_equations(ship)]

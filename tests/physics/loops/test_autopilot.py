@@ -17,7 +17,7 @@ from seatrial.physics.loops.autopilot import (
     speed_loop,
     working_frequency,
 )
-from seatrial.physics.loops.margins import sensitivity_magnitude
+from seatrial.physics.loops.performance import sensitivity_magnitude
 
 GEAR = (Block("steering gear", (1.0,), (0.5, 1.0)),)
 UNSTABLE = Block("tanker", (0.0285, 0.00497), (1.0, 0.384, -0.0045, 0.0))

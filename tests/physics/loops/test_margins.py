@@ -8,8 +8,8 @@ import pytest
 from tests.physics.loops.example_loops import second_order
 
 from seatrial.physics.loops import TransferLoop, delay_margin, margins
-from seatrial.physics.loops.margins import frequency_band, sensitivity_magnitude
-from seatrial.physics.loops.python_control import open_loop_transfer_function
+from seatrial.physics.loops.discrete import open_loop_transfer_function
+from seatrial.physics.loops.performance import frequency_band, sensitivity_magnitude
 from seatrial.physics.loops.structures import Preamplifier, fin_loop
 
 OMEGA = np.geomspace(1e-4, 1e4, 40_001)

@@ -28,9 +28,9 @@ from seatrial.physics.loops.objective import (
 )
 from seatrial.physics.loops.performance import distinct_variances
 from seatrial.physics.loops.structures import ROLL, fin_loop
-from seatrial.physics.sea.response import MotionStatistics
-from seatrial.physics.sea.response import motion_sickness as sickness_of
 from seatrial.physics.sea.spectrum import ittc
+from seatrial.physics.sea.wave_forces import MotionStatistics
+from seatrial.physics.sea.wave_forces import motion_sickness as sickness_of
 
 OBJECTIVES = [
     variance("roll", "rad^2", LoopSignal.OUTPUT),

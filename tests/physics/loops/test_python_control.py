@@ -8,7 +8,7 @@ from tests.physics.loops.sampled_loops import RIB, sampled_loop
 
 from seatrial.core.values import InputError
 from seatrial.physics.loops import Block, Sampling, TransferLoop
-from seatrial.physics.loops.python_control import (
+from seatrial.physics.loops.discrete import (
     block_from_system,
     controller_transfer_function,
     open_loop_transfer_function,

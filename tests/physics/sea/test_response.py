@@ -6,14 +6,14 @@ import pytest
 from seatrial.core.values import InputError
 from seatrial.physics.hydro.excitation import encounter_frequency
 from seatrial.physics.sea.realise import Spacing, realise
-from seatrial.physics.sea.response import (
+from seatrial.physics.sea.spectrum import ittc, jonswap
+from seatrial.physics.sea.wave_forces import (
     MotionStatistics,
     motion_sickness,
     motion_statistics,
     response_spectrum,
     vertical_motion,
 )
-from seatrial.physics.sea.spectrum import ittc, jonswap
 
 SEA = ittc(2.27)
 OMEGA = np.geomspace(0.2, 20.0, 5000)

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from seatrial.data.example_series.series import JET_VELOCITY
+from seatrial.data.example_series import JET_VELOCITY
 from seatrial_studies.song2025.audit import (
     assumed_parameter_sets,
     audit,

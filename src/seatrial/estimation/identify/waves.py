@@ -36,13 +36,6 @@ from seatrial.estimation.problem.spectral_likelihood import (
 from seatrial.numerics.kernels.integrate import evaluate_tangent
 from seatrial.numerics.optimise import Optimum, levenberg_marquardt
 from seatrial.physics.hydro.excitation import G, encounter_frequency
-from seatrial.physics.sea.response import (
-    MotionStatistics,
-    motion_sickness,
-    motion_statistics,
-    response_spectrum,
-    vertical_motion,
-)
 from seatrial.physics.sea.spectrum import (
     Spectrum,
     WaveEncounter,
@@ -51,7 +44,15 @@ from seatrial.physics.sea.spectrum import (
     speed_factor,
     wave_frequency,
 )
-from seatrial.physics.sea.wave_forces import force_density, with_wave_forces
+from seatrial.physics.sea.wave_forces import (
+    MotionStatistics,
+    force_density,
+    motion_sickness,
+    motion_statistics,
+    response_spectrum,
+    vertical_motion,
+    with_wave_forces,
+)
 from seatrial.physics.simulate.linear import Complex, frequency_response, linear_system
 from seatrial.physics.simulate.replay import inputs_of
 

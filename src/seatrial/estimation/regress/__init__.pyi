@@ -39,7 +39,7 @@ from seatrial.estimation.regress.pipeline import (
     pipelines as pipelines,
     row_score as row_score,
 )
-from seatrial.estimation.regress.solvers import (
+from seatrial.estimation.regress.estimators import (
     Lasso as Lasso,
     LeastSquaresSvm as LeastSquaresSvm,
     LinearSolver as LinearSolver,
@@ -55,7 +55,7 @@ from seatrial.estimation.regress.samples import (
 )
 from seatrial.estimation.regress.pipeline import standard_estimators as standard_estimators
 from seatrial.estimation.regress.estimators import SupportVectors as SupportVectors
-from seatrial.estimation.regress.solvers import (
+from seatrial.estimation.regress.estimators import (
     RegressionSystem as RegressionSystem,
     assemble_systems as assemble_systems,
     build_systems as build_systems,

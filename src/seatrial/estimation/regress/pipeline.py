@@ -13,10 +13,20 @@ from seatrial.core.values import Array, Finding, InputError, Record, Severity, s
 from seatrial.data.trial.settings import EstimateMethod, SupportVectorSettings
 from seatrial.estimation.regress.estimators import (
     InstrumentalVariables,
+    Lasso,
+    LeastSquaresSvm,
     LinearRegression,
+    LinearSolver,
+    OrdinaryLeastSquares,
     RegressionEstimate,
     RegressionEstimator,
+    RegressionSolution,
+    RegressionSystem,
+    Ridge,
     SupportVectors,
+    TruncatedSvd,
+    assemble_systems,
+    build_systems,
     solve_systems,
 )
 from seatrial.estimation.regress.operators import (
@@ -35,18 +45,6 @@ from seatrial.estimation.regress.samples import (
     without_missing,
     without_outliers,
     without_small,
-)
-from seatrial.estimation.regress.solvers import (
-    Lasso,
-    LeastSquaresSvm,
-    LinearSolver,
-    OrdinaryLeastSquares,
-    RegressionSolution,
-    RegressionSystem,
-    Ridge,
-    TruncatedSvd,
-    assemble_systems,
-    build_systems,
 )
 from seatrial.physics.models.candidate_structures import with_candidate_terms
 

@@ -2,8 +2,8 @@
 
 from seatrial.estimation.sea.wave_leg import EncounteredSea as EncounteredSea, encountered_sea as encountered_sea
 from seatrial.estimation.sea.wave_leg import sea_spectrum as sea_spectrum
-from seatrial.estimation.sea.legs_in_waves import LegFit as LegFit, LegPriors as LegPriors
-from seatrial.estimation.sea.legs_in_waves import LegsInWaves as LegsInWaves, fit_legs as fit_legs
+from seatrial.estimation.sea.wave_leg import LegFit as LegFit, LegPriors as LegPriors
+from seatrial.estimation.sea.wave_leg import LegsInWaves as LegsInWaves, fit_legs as fit_legs
 from seatrial.estimation.sea.wave_leg import PLANT_FACTORS as PLANT_FACTORS, altered_loop as altered_loop
 from seatrial.estimation.sea.wave_leg import StretchSpectra as StretchSpectra
 from seatrial.estimation.sea.wave_leg import stretch_spectra as stretch_spectra

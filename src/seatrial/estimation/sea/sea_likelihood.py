@@ -9,8 +9,7 @@ import numpy as np
 
 from seatrial.core.values import Array, Index
 from seatrial.estimation.problem.spectral_likelihood import hann_leakage
-from seatrial.estimation.sea.legs_in_waves import PEAK_DEVIATION, PEAK_MEAN
-from seatrial.estimation.sea.wave_leg import altered_responses, sea_spectrum
+from seatrial.estimation.sea.wave_leg import PEAK_DEVIATION, PEAK_MEAN, altered_responses, sea_spectrum
 from seatrial.physics.hydro.excitation import Complex, G, encounter_frequency
 from seatrial.physics.loops import TransferLoop, WaveEffect
 from seatrial.physics.sea.spectrum import speed_factor

@@ -18,16 +18,16 @@ from seatrial.physics.loops.structures import (
 )
 from seatrial.physics.loops.loop import Term as Term, TransferLoop as TransferLoop
 from seatrial.physics.loops.loop_states import StateSpace as StateSpace, state_space as state_space
-from seatrial.physics.loops.margins import delay_margin as delay_margin, margins as margins
-from seatrial.physics.loops.margins import StabilityMargins as StabilityMargins
+from seatrial.physics.loops.performance import delay_margin as delay_margin, margins as margins
+from seatrial.physics.loops.performance import StabilityMargins as StabilityMargins
 from seatrial.physics.loops.objective import LoopSignal as LoopSignal, Objective as Objective
 from seatrial.physics.loops.objective import WeightedVariance as WeightedVariance
 from seatrial.physics.loops.objective import squared_deviation as squared_deviation, variance as variance
 from seatrial.physics.loops.performance import LoopEvaluation as LoopEvaluation, Performance as Performance
 from seatrial.physics.loops.performance import distinct_variances as distinct_variances
-from seatrial.physics.loops.python_control import block_from_system as block_from_system
-from seatrial.physics.loops.python_control import controller_transfer_function as controller_transfer_function
-from seatrial.physics.loops.python_control import open_loop_transfer_function as open_loop_transfer_function
+from seatrial.physics.loops.discrete import block_from_system as block_from_system
+from seatrial.physics.loops.discrete import controller_transfer_function as controller_transfer_function
+from seatrial.physics.loops.discrete import open_loop_transfer_function as open_loop_transfer_function
 from seatrial.physics.loops.loop_states import plant_model as plant_model
 from seatrial.physics.loops.loop import Sampling as Sampling
 from seatrial.physics.loops.structures import FREQUENCIES_AND_DAMPINGS as FREQUENCIES_AND_DAMPINGS

@@ -7,7 +7,7 @@ import numpy as np
 
 from seatrial.core.values import InputError, Parameter, Parameters
 from seatrial.physics.loops.loop import Block, Term, TransferLoop
-from seatrial.physics.loops.margins import margins
+from seatrial.physics.loops.performance import margins
 
 # The fin stabiliser of Yu et al. 2014 (CAAI Transactions on Intelligent Systems 9(4), 433-438), block by block.
 

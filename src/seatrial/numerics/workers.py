@@ -1,7 +1,4 @@
-"""One ordered map: over threads, for kernels that release the interpreter lock, or over processes.
-
-Results come in the order of the items whatever the number of workers, so the same seed gives the same bits.
-"""
+"""Ordered maps over threads or processes, independent of their number."""
 
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, ThreadPoolExecutor, wait
@@ -9,6 +6,9 @@ from contextlib import contextmanager
 from typing import TypeVar
 
 from seatrial.numerics.platform import usable_cores
+
+__all__ = ["limited_workers", "map_in_processes", "map_in_threads", "worker_count"]
+
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")

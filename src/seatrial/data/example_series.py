@@ -1,7 +1,4 @@
-"""A simulated trial series of a craft whose coefficients are known: the embedded example, and the proof by truth.
-
-`python -m seatrial.data.example_series.series FOLDER` writes it as CSV files of 2 Hz, as in ``examples/waterjet``.
-"""
+"""A simulated trial series of a craft with known coefficients, and its files."""
 
 import math
 from collections.abc import Sequence
@@ -16,6 +13,21 @@ from seatrial.core.values.files import write_atomically
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.waterjet import waterjet
 from seatrial.physics.simulate.steer import manoeuvre
+
+__all__ = [
+    "JET_VELOCITY",
+    "SENSOR_NOISE",
+    "SLEW_RATE",
+    "demo_series",
+    "simulate_run",
+    "true_model",
+    "with_sensor_noise",
+    "write_csv",
+    "write_demo",
+]
+
+
+# A simulated trial series of a craft whose coefficients are known: the embedded example, and the proof by truth.
 
 # standard deviations in SI units; chosen: log, gyro and GNSS of a small craft
 SENSOR_NOISE = {"u": 0.02, "v": 0.02, "r": math.radians(0.1), "psi": math.radians(0.2), "x0": 0.5, "y0": 0.5}
@@ -97,6 +109,61 @@ def _number(value: float) -> str:
     return f"{value + 0.0:.4g}" if abs(value) < 10.0 else f"{value:.2f}"
 
 
+# The embedded example as a user would have it: record files and the trial file over them.
+
+_TRIAL = """\
+# Simulated trials of a waterjet craft with known coefficients (Song et al. 2025), seed {seed}.
+question = "Do noisy zigzags give back known coefficients, and predict manoeuvres that were not fitted?"
+
+[ship]
+name = "waterjet craft"
+source = "Song et al. 2025, doi 10.19693/j.issn.1673-3185.03832, table 1"
+L = 9.8
+d = 0.71
+m = 5540.0
+
+[[records]]
+files = "*.csv"
+header_lines = 1
+validate = [{validate}]
+source = "simulated in steps of 0.01 s with sensor noise"
+kind = "simulated"
+time = {{ column = "time [s]", unit = "s" }}
+
+[records.channels]
+x0 = {{ column = "x0 [m]", unit = "m" }}
+y0 = {{ column = "y0 [m]", unit = "m" }}
+psi = {{ column = "psi [deg]", unit = "deg" }}
+u = {{ column = "u [m/s]", unit = "m/s" }}
+v = {{ column = "v [m/s]", unit = "m/s" }}
+r = {{ column = "r [deg/s]", unit = "deg/s" }}
+delta = {{ column = "delta [deg]", unit = "deg", positive = "starboard" }}
+v_j = {{ column = "v_j [m/s]", unit = "m/s" }}
+
+[model]
+name = "waterjet"
+
+[truth]
+{truth}
+"""
+
+
+def write_demo(folder: Path, seed: int) -> Path:
+    """Make the trial series and write it to `folder`; returns the trial file.
+
+    Raises:
+        InputError: the folder cannot be written.
+    """
+    records, craft = demo_series(seed)
+    for record in records:
+        write_csv(record, folder / f"{record.name}.csv")
+    validate = ", ".join(f'"{file_name(text)}"' for text in HELD_OUT)
+    truth = "\n".join(f"{p.name} = {p.value!r}" for p in craft.parameters.free)
+    path = folder / "trial.toml"
+    write_atomically(path, _TRIAL.format(seed=seed, validate=validate, truth=truth).encode())
+    return path
+
+
 def main(folder: str) -> None:
     """Write the example series to `folder`."""
     for record in demo_series(EXAMPLE_SEED)[0]:
@@ -109,5 +176,5 @@ if __name__ == "__main__":
     import sys
 
     if len(sys.argv) != 2:
-        sys.exit("usage: python -m seatrial.data.example_series.series FOLDER")
+        sys.exit("usage: python -m seatrial.data.example_series FOLDER")
     main(sys.argv[1])
