@@ -37,7 +37,7 @@ def slower_channels(values: Mapping[str, Array], time: Array) -> dict[str, Mask]
         time: stamps (n,) [s].
     """
     masks: dict[str, Mask] = {}
-    for group in (*_TOGETHER, *((one,) for one in _ALONE)):
+    for group in (*_TOGETHER, *((symbol,) for symbol in _ALONE)):
         present = [symbol for symbol in group if symbol in values]
         if present:
             for part in _renewed_together(present, values):
@@ -73,11 +73,11 @@ def _renewed_together(symbols: Sequence[str], values: Mapping[str, Array]) -> li
     """The channels of a message: all of them where they step in the same rows, else each by itself."""
     steps = [_stepping_rows([values[symbol]]) for symbol in symbols]
     counts = [int(step.sum()) for step in steps]
-    moving = [one for one, count in zip(steps, counts, strict=True) if count >= _FEWEST]
+    moving = [step for step, count in zip(steps, counts, strict=True) if count >= _FEWEST]
     if len(moving) < 2:
         return [list(symbols)]
     common = int(np.sum(np.all(moving, axis=0)))
-    least = min(int(one.sum()) for one in moving)
+    least = min(int(step.sum()) for step in moving)
     return [list(symbols)] if common >= _SAME_ROWS * least else [[symbol] for symbol in symbols]
 
 
@@ -85,41 +85,41 @@ def _stepping_rows(columns: Sequence[Array]) -> Mask:
     """Rows in which one of the columns differs from its last reading; not its first one."""
     stepping = np.zeros(len(columns[0]), dtype=np.bool_)
     for values in columns:
-        known = np.flatnonzero(np.isfinite(values))
-        stepping[known[1:]] |= np.diff(values[known]) != 0.0
+        read_rows = np.flatnonzero(np.isfinite(values))
+        stepping[read_rows[1:]] |= np.diff(values[read_rows]) != 0.0
     return stepping
 
 
 def _renewals(columns: Sequence[Array], time: Array) -> Mask | None:
     """Rows in which a group of columns was measured; None where it was in every row."""
-    known = np.flatnonzero(np.all(np.isfinite(columns), axis=0))
-    steps = np.flatnonzero(_stepping_rows([values[known] for values in columns]))
+    read_rows = np.flatnonzero(np.all(np.isfinite(columns), axis=0))
+    steps = np.flatnonzero(_stepping_rows([values[read_rows] for values in columns]))
     if len(steps) < _FEWEST:
         return None
     stays = np.diff(steps)
-    jumps = np.any([np.abs(_step_sizes(values[known], steps)) > _JUMP for values in columns], axis=0)[1:-1]
+    jumps = np.any([np.abs(_step_sizes(values[read_rows], steps)) > _JUMP for values in columns], axis=0)[1:-1]
     if np.sum(jumps) < max(_FEWEST, _JUMPS_SHARE * len(jumps)):
         return None
     is_between_stays = (stays[:-1] > 1) & (stays[1:] > 1)
     if np.mean(is_between_stays[jumps]) < _HELD_SHARE:
         return None
-    moments = time[known]
+    moments = time[read_rows]
     if not np.all(np.diff(moments) > 0.0):  # rounded stamps: rows count
-        moments = np.arange(len(known), dtype=np.float64)
+        moments = np.arange(len(read_rows), dtype=np.float64)
     late = steps[np.diff(moments)[steps - 1] > _LOST * float(np.median(np.diff(moments)))]  # new in a row that is lost
     mask = np.zeros(len(columns[0]), dtype=np.bool_)
-    mask[known[np.setdiff1d(_with_unchanged(moments, steps), late)]] = True
+    mask[read_rows[np.setdiff1d(_with_unchanged(moments, steps), late)]] = True
     return mask
 
 
 def _unfrozen(columns: Sequence[Array]) -> Mask | None:
     """Rows in which a group of columns of every row was measured; None where it never froze."""
-    known = np.flatnonzero(np.all(np.isfinite(columns), axis=0))
-    steps = np.flatnonzero(_stepping_rows([values[known] for values in columns]))
+    read_rows = np.flatnonzero(np.all(np.isfinite(columns), axis=0))
+    steps = np.flatnonzero(_stepping_rows([values[read_rows] for values in columns]))
     if len(steps) < _FEWEST:
         return None
     stays = np.diff(steps, prepend=0)
-    moving = [values[known] for values in columns if np.ptp(values[known]) > 0.0]
+    moving = [values[read_rows] for values in columns if np.ptp(values[read_rows]) > 0.0]
     sizes = np.max([np.abs(np.diff(values))[steps - 1] / _usual_step(values) for values in moving], axis=0)
     longest = max(_FROZEN_ROWS, 2.0 * float(np.quantile(stays, _USUAL)))
     caught_up = np.flatnonzero((sizes > _CATCHES_UP) & (stays >= longest))
@@ -127,7 +127,7 @@ def _unfrozen(columns: Sequence[Array]) -> Mask | None:
         return None
     mask = np.ones(len(columns[0]), dtype=np.bool_)
     for k in caught_up:
-        mask[known[steps[k] - stays[k] + 1 : steps[k]]] = False
+        mask[read_rows[steps[k] - stays[k] + 1 : steps[k]]] = False
     return mask
 
 
@@ -152,6 +152,6 @@ def _with_unchanged(moments: Array, steps: np.ndarray) -> np.ndarray:
     due = [np.arange(first - period, moments[0] - tolerance, -period)]
     ends = [*(moments[steps[1:]] - 0.5 * period), last + tolerance]
     begins = moments[steps].tolist()
-    due += [np.arange(begin + period, float(end), period) for begin, end in zip(begins, ends, strict=True)]
+    due += [np.arange(stay + period, float(end), period) for stay, end in zip(begins, ends, strict=True)]
     rows = np.searchsorted(moments, np.concatenate(due) - tolerance)
     return np.unique(np.concatenate([steps, np.minimum(rows, len(moments) - 1)]))

@@ -209,7 +209,7 @@ def schema_error(error: ValidationError, table: type, source: str) -> InputError
 
     source: the file, or the class of settings written in Python, with which the sentence begins.
     """
-    first = min(error.errors(), key=lambda one: one["type"] not in _UNKNOWN_KEY)
+    first = min(error.errors(), key=lambda fault: fault["type"] not in _UNKNOWN_KEY)
     location = first["loc"]
     where = f"{source}: "
     match first["type"]:

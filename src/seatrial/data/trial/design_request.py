@@ -119,11 +119,13 @@ class DesignRequest:
     @cached_property
     def actuators(self) -> tuple[Actuator, ...]:
         """The inputs that may be moved, SI."""
-        return tuple(one.actuator(name) for name, one in self.inputs.items())
+        return tuple(input_range.actuator(name) for name, input_range in self.inputs.items())
 
     def with_hold(self, hold: float) -> "DesignRequest":
         """Return the request with another shortest time between two orders of every input [s]."""
-        return replace(self, inputs={name: replace(one, hold=hold) for name, one in self.inputs.items()})
+        return replace(
+            self, inputs={name: replace(input_range, hold=hold) for name, input_range in self.inputs.items()}
+        )
 
     @property
     def limits(self) -> TrialLimits:

@@ -82,8 +82,8 @@ def _motion(table: ForcesTable, sheet: RawTable, length: float, where: str) -> d
     r = given.get("r", np.zeros_like(speed))
     if "r" in table.motion and table.motion["r"].unit == "1":
         r = r * speed / length
-    known = {s: values for s, values in given.items() if s not in ("U", "beta", "u", "v", "r")}
-    return {"u": given["u"], "v": given["v"], "r": r, **known}
+    further = {s: values for s, values in given.items() if s not in ("U", "beta", "u", "v", "r")}
+    return {"u": given["u"], "v": given["v"], "r": r, **further}
 
 
 def _complete_velocity(table: ForcesTable, motion: dict[str, Array], sheet: RawTable, where: str) -> Array:
@@ -140,8 +140,8 @@ def _motion_values(symbol: str, column: MotionColumn, sheet: RawTable, scale: fl
 
 
 def _unit_factor(unit: str, wanted: str, where: str) -> float:
-    size, found = si_unit(unit)
-    if found != wanted:
+    size, si = si_unit(unit)
+    if si != wanted:
         raise InputError(f"{where}.unit: '{unit}' does not fit, the quantity is in {wanted}; correct it")
     return size
 
@@ -188,13 +188,13 @@ def _force_scale(
         unit = _UNITS[symbol]
         return _unit_factor(column.unit, unit, where) * froude_factor(unit, table.scale)
     if table.prime not in PRIME_SYSTEMS:
-        known = " and ".join(f'"{system}"' for system in PRIME_SYSTEMS)
+        systems = " and ".join(f'"{system}"' for system in PRIME_SYSTEMS)
         hint = spelling_hint(table.prime, list(PRIME_SYSTEMS))
-        raise InputError(f"{where}: unknown prime system '{table.prime}'{hint}; known are {known}, or give N and N m")
+        raise InputError(f"{where}: unknown prime system '{table.prime}'{hint}; known are {systems}, or give N and N m")
     if column.unit != "1":
         raise InputError(f"{where} is in '{column.unit}' although prime = \"{table.prime}\" is given; keep one")
-    one, other = (_particular(model, name, where) for name in PRIME_SYSTEMS[table.prime])
-    unit = _particular(model, "rho", where) / 2 * one * other * speed**2
+    length, depth = (_particular(model, name, where) for name in PRIME_SYSTEMS[table.prime])
+    unit = _particular(model, "rho", where) / 2 * length * depth * speed**2
     return unit * _particular(model, "L", where) if symbol == "N" else unit
 
 

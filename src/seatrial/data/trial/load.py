@@ -162,8 +162,11 @@ def trial_of_tables(
         _refuse_unknown_names("noise", list(file.noise), symbols)
         _refuse_unknown_names("estimate.channels", list(file.estimate.channels), set(model.observables))
         resting = {state for state in model.states if rest_parameter(model, state)}
-        for key, names, known in (("offsets", file.estimate.offsets, resting), ("gains", file.estimate.gains, set())):
-            _refuse_unknown_names(f"estimate.{key}", list(names), {*model.input_names, *known}, _correction_hint)
+        for key, names, correctable in (
+            ("offsets", file.estimate.offsets, resting),
+            ("gains", file.estimate.gains, set()),
+        ):
+            _refuse_unknown_names(f"estimate.{key}", list(names), {*model.input_names, *correctable}, _correction_hint)
         timed = {c for channels in TIMED_CHANNELS.values() for c in channels} & set(model.channels)
         _refuse_unknown_names("estimate.delays", list(file.estimate.delays), {*model.input_names, *timed})
         if file.feedback is not None:
@@ -243,8 +246,8 @@ def load_runs(path: str | Path) -> tuple[TrialRun, ...]:
 
 def _reference_force(model: Model, ship: Ship) -> float | None:
     """rho/2 L d [kg/m^2], where ship or model know them."""
-    known = {p.name: p.value for p in model.parameters} | dict(ship.particulars)
-    return known["rho"] / 2 * known["L"] * known["d"] if {"rho", "L", "d"} <= set(known) else None
+    values = {p.name: p.value for p in model.parameters} | dict(ship.particulars)
+    return values["rho"] / 2 * values["L"] * values["d"] if {"rho", "L", "d"} <= set(values) else None
 
 
 def _correction_hint(name: str, inputs: list[str]) -> str:
@@ -426,5 +429,9 @@ def change_lines(correction: Correction) -> Iterator[str]:
     """Return what was changed, and what was not and why, a line each."""
     for change in correction.changes:
         edits = "; ".join(map(str, change.finding.edits))
-        what = f"{change.block}: {edits}"
-        yield f"not changed: {what}: {change.refusal}" if change.refusal else f"changed {what} ({change.finding.text})"
+        corrected = f"{change.block}: {edits}"
+        yield (
+            f"not changed: {corrected}: {change.refusal}"
+            if change.refusal
+            else f"changed {corrected} ({change.finding.text})"
+        )

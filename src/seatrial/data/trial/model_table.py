@@ -99,8 +99,8 @@ def model_guide(name: str) -> ModelGuide:
 
 def _example_ship() -> Ship:
     """A ship with what the formulas take and nothing else: which parameters they fill does not depend on it."""
-    known = kvlcc2_l7().ship
-    return Ship(known.name, {name: known.particulars[name] for name in _FORM})
+    tanker = kvlcc2_l7().ship
+    return Ship(tanker.name, {name: tanker.particulars[name] for name in _FORM})
 
 
 def _needed(model: Model, priors: Mapping[str, LiteraturePrior]) -> dict[str, str]:
@@ -115,7 +115,7 @@ def _words(parameter: Parameter) -> str:
 
 
 def _filled(model: Model, priors: Mapping[str, LiteraturePrior]) -> list[FilledValue]:
-    by_formula = [FilledValue(n, one.source, one.deviation) for n, one in priors.items() if n in model.parameters]
+    by_formula = [FilledValue(n, prior.source, prior.deviation) for n, prior in priors.items() if n in model.parameters]
     stated = {"L", *priors, *model.parameters.missing}
     fixed = [p for p in model.parameters if p.name not in stated]
     return by_formula + [FilledValue(p.name, _stated(p), 0.0) for p in fixed]
@@ -207,8 +207,8 @@ def build_trial_model(
     model = own_model or model_named(table.name, layout)
     craft, model = model, with_sensors(model, sensors or Sensors())
     literature = _sourced_priors(table, ship, model, results)
-    for name, known in literature.items():
-        model = model.with_values({name: known.mean}, source=known.source)
+    for name, prior in literature.items():
+        model = model.with_values({name: prior.mean}, source=prior.source)
     if table.parameter_set is not None:
         published = parameter_set(table.parameter_set)
         model = model.with_values(published.values, source=published.source)
@@ -257,10 +257,10 @@ def _without_particulars(ship: Ship, names: tuple[str, ...]) -> Ship:
 
 
 def _refuse_unknown_particulars(ship: Ship, model: Model) -> None:
-    known = [*model.parameters.names, *COMMON_PARTICULARS]
+    allowed = [*model.parameters.names, *COMMON_PARTICULARS]
     for symbol in ship.particulars:
-        if symbol not in known:
-            keys = ["name", "source", "scale", *sorted(set(known))]
+        if symbol not in allowed:
+            keys = ["name", "source", "scale", *sorted(set(allowed))]
             raise InputError(f"unknown key 'ship.{symbol}'{spelling_hint(symbol, keys)}")
 
 
@@ -321,14 +321,14 @@ def _with_priors(
     _refuse_unknown("model.priors", tuple(table.priors), parameters)
     priors = {name: _prior(parameters, name, prior) for name, prior in table.priors.items()}
     for p in parameters:
-        known = literature.get(p.name)
+        sourced = literature.get(p.name)
         if (
-            known is not None
-            and known.deviation
-            and (p.free or (known == formulas.get(p.name) and p.value == known.mean))
+            sourced is not None
+            and sourced.deviation
+            and (p.free or (sourced == formulas.get(p.name) and p.value == sourced.mean))
         ):
-            priors.setdefault(p.name, Prior(known.mean, known.deviation, known.source))
-    if table.prior_sd_percent is None and any(not known.deviation for known in literature.values()):
+            priors.setdefault(p.name, Prior(sourced.mean, sourced.deviation, sourced.source))
+    if table.prior_sd_percent is None and any(not sourced.deviation for sourced in literature.values()):
         raise InputError(
             "model.priors_from says nothing about how far its values may be wrong; "
             "add prior_sd_percent, for example 25 for regressions of linear coefficients"
@@ -336,9 +336,9 @@ def _with_priors(
     if table.prior_sd_percent is not None:
         share = table.prior_sd_percent / 100.0
         for p in parameters.free:
-            known = literature.get(p.name, LiteraturePrior(p.value, p.source))
-            spread = share * max(abs(known.mean), p.scale) or share
-            priors.setdefault(p.name, Prior(known.mean, spread, known.source, is_spread_assumed=True))
+            sourced = literature.get(p.name, LiteraturePrior(p.value, p.source))
+            spread = share * max(abs(sourced.mean), p.scale) or share
+            priors.setdefault(p.name, Prior(sourced.mean, spread, sourced.source, is_spread_assumed=True))
     return _with_prior_sources(parameters.with_priors(priors), literature)
 
 

@@ -92,10 +92,10 @@ def literature_priors(names: Sequence[str], ship: Ship, model: str) -> dict[str,
 
 
 def _require_source_for_model(name: str, model: str) -> None:
-    known = sorted((*FORMULAS, *PARAMETER_SETS))
-    if name not in known:
+    sources = sorted((*FORMULAS, *PARAMETER_SETS))
+    if name not in sources:
         raise InputError(
-            f"model.priors_from: unknown source '{name}'{spelling_hint(name, known)}; known: {', '.join(known)}"
+            f"model.priors_from: unknown source '{name}'{spelling_hint(name, sources)}; known: {', '.join(sources)}"
         )
     source_model = _FORMULA_MODEL if name in FORMULAS else parameter_set(name).model
     if source_model != model:
@@ -169,11 +169,10 @@ class EarlierResult:
 
     def joint_prior_of(self, parameters: Parameters) -> JointPrior:
         """Return what it says of those free parameters whose priors are its own."""
-        own = self.priors
-        return self.joint_prior.restricted({
-            p.name for p in parameters.free
-            if p.name in own and p.prior == Prior(own[p.name].mean, own[p.name].deviation, own[p.name].source)
-        })  # fmt: skip
+        marginal = {n: Prior(prior.mean, prior.deviation, prior.source) for n, prior in self.priors.items()}
+        return self.joint_prior.restricted(
+            {p.name for p in parameters.free if p.prior and p.prior == marginal.get(p.name)}
+        )
 
 
 ResultReader = Callable[[Path], EarlierResult]

@@ -274,9 +274,9 @@ def _one_course_findings(trial: Trial, records: tuple[TrialRecord, ...]) -> tupl
     if not trial.estimate.current or not trial.model.has_speed or any("u" in r.record for r in records):
         return ()
     sessions = {r.session: [s.record for s in records if s.session == r.session] for r in records}
-    shown = {name: speed_through_water(runs) for name, runs in sessions.items()}
-    lone = [name for name, water in shown.items() if water is not None and not water.is_separate]
-    if not lone or any(water is not None and water.is_separate for water in shown.values()):
+    by_session = {name: speed_through_water(runs) for name, runs in sessions.items()}
+    lone = [name for name, water in by_session.items() if water is not None and not water.is_separate]
+    if not lone or any(water is not None and water.is_separate for water in by_session.values()):
         return ()
     return (Finding(
         Severity.WARNING, "velocity-over-ground",

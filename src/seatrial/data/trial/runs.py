@@ -50,8 +50,8 @@ class DeclaredQuantity:
         Raises:
             InputError: which directions there are.
         """
-        own = self.quantity.positive
-        sides = [own, *([OPPOSITE[own]] if own in OPPOSITE else [])]
+        positive_side = self.quantity.positive
+        sides = [positive_side, *([OPPOSITE[positive_side]] if positive_side in OPPOSITE else [])]
         if positive is not None and positive not in sides:
             raise InputError(f"{where}.positive: '{positive}' is none of {' and '.join(sides)}; correct it")
 
@@ -73,9 +73,9 @@ def declared_channels(tables: Mapping[str, DeclaredChannel]) -> Declared:
 def _declared(symbol: str, table: DeclaredChannel) -> DeclaredQuantity:
     if not (symbol.isidentifier() and symbol.isascii()):
         raise InputError(f"channels.'{symbol}': a channel is named by letters, digits and _; choose another name")
-    known = NOTATION.get(symbol) or LOG_QUANTITIES.get(symbol)
-    if known is not None:
-        raise InputError(f"channels.{symbol} is known already ({known.meaning}); use it undeclared, or rename yours")
+    standard = NOTATION.get(symbol) or LOG_QUANTITIES.get(symbol)
+    if standard is not None:
+        raise InputError(f"channels.{symbol} is known already ({standard.meaning}); use it undeclared, or rename yours")
     unit = si_unit(table.unit)[1]
     meaning = Quantity(symbol, table.meaning, unit, table.frame, table.positive, symbol, symbol)
     return DeclaredQuantity(meaning, table.kind, table.between or "")
@@ -219,17 +219,17 @@ def _block_runs(
     declared: Declared,
 ) -> list[TrialRun]:
     located = _sources_of if block.sources else _files_of
-    whole = located(block, data_folder, where, declared)
-    _require_files_of_parts(block, [one.name for one in whole], where)
-    data = [replace(one, part=part) for one in whole for part in _parts(block, one.name, len(whole))]
+    files = located(block, data_folder, where, declared)
+    _require_files_of_parts(block, [run.name for run in files], where)
+    data = [replace(run, part=part) for run in files for part in _parts(block, run.name, len(files))]
     trimming = Trimming(block.from_s, block.to_s, block.skip_acceleration, block.rate, block.from_release)
-    roles = _roles(block, [one.name for one in data], where)
-    met = None if length is None else wave_encounter(block.waves, excitation, length, where)
+    roles = _roles(block, [run.name for run in data], where)
+    encounter = None if length is None else wave_encounter(block.waves, excitation, length, where)
     kind = None if block.kind is None else RecordKind(block.kind)
-    sessions = [session_of(_session_path(one), block.session, one.first_day) for one in data]
+    sessions = [session_of(_session_path(run), block.session, run.first_day) for run in data]
     return [
-        TrialRun(one, role, session, trimming, block.source, met, kind)
-        for one, role, session in zip(data, roles, sessions, strict=True)
+        TrialRun(run, role, session, trimming, block.source, encounter, kind)
+        for run, role, session in zip(data, roles, sessions, strict=True)
     ]
 
 
@@ -345,12 +345,12 @@ def layout_of(block: ColumnsTable, file_format: str, where: str, declared: Decla
 
 def _column(symbol: str, column: ChannelColumn, where: str, declared: DeclaredQuantity | None) -> ColumnSpec:
     try:
-        known = log_quantity(symbol) if declared is None else declared.quantity
+        standard = log_quantity(symbol) if declared is None else declared.quantity
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
-    is_share = known.unit == "1" and column.span != 1.0
-    if si_unit(column.unit)[1] != known.unit and not is_share:
-        raise InputError(f"{where}.unit: '{column.unit}' is no unit of {known.meaning}, which is in {known.unit}")
+    is_share = standard.unit == "1" and column.span != 1.0
+    if si_unit(column.unit)[1] != standard.unit and not is_share:
+        raise InputError(f"{where}.unit: '{column.unit}' is no unit of {standard.meaning}, which is in {standard.unit}")
     if declared is not None:
         declared.require_side(column.positive, where)
     usual = declared.kind if declared is not None else "command" if symbol.startswith("command_") else ""
@@ -438,8 +438,8 @@ def with_source(trial: Trial, source: str) -> Trial:
             place ([follow] file, port) that the table does not name.
     """
     stream = require_stream(trial)
-    if source not in [one.value for one in StreamSource]:
-        raise InputError(f"unknown source '{source}'{spelling_hint(source, [one.value for one in StreamSource])}")
+    if source not in [kind.value for kind in StreamSource]:
+        raise InputError(f"unknown source '{source}'{spelling_hint(source, [kind.value for kind in StreamSource])}")
     wanted = StreamSource(source)
     if _kind(wanted) != _kind(stream.source):
         raise InputError(

@@ -302,7 +302,7 @@ class RecordsTable(ColumnsTable):
             raise ValueError("a run of several sources needs a name; add it")
         if self.sources and self.channels:
             raise ValueError("channels of a run of several sources belong to each of [[records.sources]]; move them")
-        if not any(one.channels for one in self.sources or (self,)):
+        if not any(table.channels for table in self.sources or (self,)):
             raise ValueError(NO_CHANNELS)
         return self
 
