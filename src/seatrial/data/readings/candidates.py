@@ -121,11 +121,11 @@ def without_codes(symbol: str, cells: Array) -> Array:
     """
     for code in name_table()["codes"].get(symbol, ()):
         rows = cells == code
-        others = cells[np.isfinite(cells) & ~rows]
-        if not rows.any() or (others.size and np.min(others) <= code <= np.max(others)):
+        numbers = cells[np.isfinite(cells) & ~rows]
+        if not rows.any() or (numbers.size and np.min(numbers) <= code <= np.max(numbers)):
             continue
         before = np.flatnonzero(np.isfinite(cells[:-1]) & ~rows[:-1] & rows[1:])
-        usual = np.percentile(np.abs(np.diff(others)), 99.0) if others.size > 1 else 0.0  # of a hundred steps
+        usual = np.percentile(np.abs(np.diff(numbers)), 99.0) if numbers.size > 1 else 0.0  # of a hundred steps
         jumps = np.abs(cells[before] - code)
         jumps = np.minimum(jumps, np.abs(_TURN_DEG - jumps)) if code == _TURN_DEG else jumps
         if np.median(jumps) > _JUMPS_OVER_STEPS * usual if before.size else abs(code) != _TURN_DEG:
