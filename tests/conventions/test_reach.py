@@ -20,7 +20,7 @@ _WINDOW = "step of the recursive estimator; tests/estimation/identify/test_onlin
 EXCEPTIONS: dict[str, str] = {
     ": export_lazily": "every subpackage that exports names runs it on import",
     "core/equations: is_cached": "decides what is compiled ahead; tests/core/equations/test_cache.py",
-    "data/example_series: write_demo": "tests/api/test_api.py loads what it writes",
+    "data: write_demo": "tests/api/test_api.py loads what it writes",
     "data/folder: findings_document": "`seatrial check --json` writes it: tests/cli",
     "data/read: serve": "runs in the process that reads each binary format; tests/data/read/test_formats.py",
     "data/trial: trial_schema": "docs/write_schemas.py writes the published schema with it",
