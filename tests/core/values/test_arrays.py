@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import frozen
-from seatrial.core.values.arrays import correlation_matrix, sentinel_value, smeared_wraps
+from seatrial.core.values.arrays import correlation_matrix, mask_intervals, sentinel_value, smeared_wraps
 
 
 def test_correlation_of_a_covariance() -> None:
@@ -47,3 +47,8 @@ def test_a_heading_interpolated_as_a_number_runs_the_wrong_way_round() -> None:
     smeared = smeared_wraps(np.interp(time, time[::10], second))
     assert len(smeared) == np.count_nonzero(np.abs(np.diff(second)) > np.pi)
     assert max(b - a for a, b in smeared) <= 30
+
+
+def test_stretches_of_a_mask_are_in_order() -> None:
+    assert mask_intervals(np.array([True, False, True, True])) == [(0, 1), (2, 4)]
+    assert mask_intervals(np.zeros(2, bool)) == []

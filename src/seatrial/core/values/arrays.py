@@ -25,6 +25,12 @@ def frozen(values: ArrayLike) -> Array:
     return array
 
 
+def mask_intervals(mask: Mask) -> list[tuple[int, int]]:
+    """Return first row and row after the last of every unbroken stretch of a mask, in order."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(int)))
+    return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+
+
 def correlation_matrix(covariance: Array) -> Array:
     """Return a covariance (n, n) scaled to a unit diagonal; rows without a variance are NaN."""
     spread = np.sqrt(np.where(np.diag(covariance) > 0, np.diag(covariance), np.nan))

@@ -3,11 +3,11 @@
 import numpy as np
 
 from seatrial.core.values import NOTATION, Array, Finding, InputError, Record, Severity
+from seatrial.core.values.arrays import mask_intervals
 from seatrial.data.check.consequences import moment
 from seatrial.data.check.consistency import FOLLOWS, heading_rate, shift_text
 from seatrial.data.check.motion import (
     jackknife_least_squares,
-    mask_intervals,
     smoothed,
     smoothed_derivative,
     window_length,

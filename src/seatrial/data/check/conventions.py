@@ -198,7 +198,7 @@ def _turns(motion: RecordedMotion) -> list[_Turn]:
     body = _in_body_axes(record)
     ahead, aside = body["u"], body["v"] - rate * record.channel("v").reference_point
     course, turns = course_of(psi), []
-    for turn in (one for one in course.turns if abs(one.angle) >= LEAST_TURN):
+    for turn in (turn for turn in course.turns if abs(turn.angle) >= LEAST_TURN):
         first = turn.first + int(np.searchsorted(_turned(psi[turn.first : turn.last + 1]), 0.5))
         u, v, r = (np.nanmean(values[first : turn.last - course.scale]) for values in (ahead, aside, rate))
         if u > _SLOW * np.nanmax(ahead) and r != 0.0:

@@ -13,7 +13,6 @@ from seatrial.numerics.resolution import resolution
 # Arithmetic the checks share: smoothed derivatives, robust size, integrals, jackknifed least squares, stretches.
 
 RowIndices = NDArray[np.intp]
-Mask = NDArray[np.bool_]
 # variance of third differences of white noise over its own: 1 + 9 + 9 + 1
 _THIRD_DIFFERENCES = 20.0
 # stretches of a record left out in turn; chosen
@@ -83,12 +82,6 @@ def jackknife_least_squares(features: Array, target: Array) -> tuple[Array, Arra
     spread = np.array(partial) - np.mean(partial, axis=0)
     errors = np.sqrt((JACKKNIFE_BLOCKS - 1) / JACKKNIFE_BLOCKS * np.sum(spread**2, axis=0))
     return least_squares(features, target)[0], errors
-
-
-def mask_intervals(mask: Mask) -> list[tuple[int, int]]:
-    """First row and row after the last of every unbroken stretch of a mask, in order."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(int)))
-    return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
 
 
 # Velocities, heading and position side by side, as declared: what the comparisons work on.

@@ -6,11 +6,11 @@ from itertools import groupby, pairwise
 
 import numpy as np
 
-from seatrial.core.values import Array, Finding, InputError, Record, Severity
+from seatrial.core.values import Array, Finding, Record, Severity
 from seatrial.core.values.arrays import unwrapped
 from seatrial.data.check.consequences import moment
 from seatrial.data.check.motion import MIN_SAMPLES, sample_noise, smoothed, window_length
-from seatrial.physics.manoeuvres import ManoeuvreKind, recognise_manoeuvre
+from seatrial.physics.manoeuvres import steered_orders
 from seatrial.physics.manoeuvres.track import speed
 from seatrial.physics.manoeuvres.turns import course_of
 
@@ -68,7 +68,6 @@ _SPEED_S, _SPEED_SHARE = 10.0, 0.1
 # up to which an approach is steady; chosen
 _TURNS, _CHANGES, _STANDARD_ERRORS = 0.2, 0.03, 4.0
 _FEWEST_ROWS = 5  # before the execute, for a change of speed; chosen
-_WITH_APPROACH = (ManoeuvreKind.ZIGZAG, ManoeuvreKind.TURNING_CIRCLE, ManoeuvreKind.PULL_OUT)
 
 
 def first_execution(record: Record) -> int:
@@ -92,7 +91,7 @@ def approach_fault(record: Record) -> str:
 def approach_findings(record: Record) -> tuple[Finding, ...]:
     """Return a warning where a zigzag or a turn of a clean, signed record begins while the craft is still settling."""
     fault = approach_fault(record)
-    if not fault or not _is_manoeuvre(record):
+    if not fault or steered_orders(record) is None:
         return ()
     text = f"record '{record.name}': no steady approach before the first execute"
     advice = (
@@ -100,13 +99,6 @@ def approach_findings(record: Record) -> tuple[Finding, ...]:
         "has a steady one"
     )
     return (Finding(Severity.WARNING, "approach", text, fault, advice),)
-
-
-def _is_manoeuvre(record: Record) -> bool:
-    try:
-        return recognise_manoeuvre(record) in _WITH_APPROACH
-    except InputError:
-        return False
 
 
 def _still_turns(record: Record, row: int) -> str:

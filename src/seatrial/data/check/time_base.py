@@ -6,10 +6,10 @@ import numpy as np
 
 from seatrial.core.text.words import counted
 from seatrial.core.values import Array, Channel, Finding, InputError, Record, Severity
-from seatrial.core.values.arrays import Mask, unwrapped
+from seatrial.core.values.arrays import Mask, mask_intervals, unwrapped
 from seatrial.core.values.notation import COMMANDS, REFERENCES
 from seatrial.data.check.consequences import moment
-from seatrial.data.check.motion import RowIndices, mask_intervals
+from seatrial.data.check.motion import RowIndices
 from seatrial.numerics.resolution import local_resolution
 
 # The even time base behind rounded stamps: its step, and the place of each sample on it.

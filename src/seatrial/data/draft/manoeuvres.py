@@ -7,11 +7,11 @@ from itertools import pairwise
 import numpy as np
 
 from seatrial.core.values import InputError, Record
+from seatrial.data.check.motion import MIN_SAMPLES
 from seatrial.data.check.phases import approach_fault
 from seatrial.data.draft.stretches import (
     COURSES,
     DECAY,
-    MIN_SAMPLES,
     SHORTEST_STRAIGHT_S,
     STRAIGHT,
     LogStretch,

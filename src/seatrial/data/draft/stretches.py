@@ -10,7 +10,8 @@ import numpy as np
 
 from seatrial.core.text.words import counted
 from seatrial.core.values import Array, InputError, Record
-from seatrial.data.check.motion import mask_intervals, smoothed
+from seatrial.core.values.arrays import mask_intervals
+from seatrial.data.check.motion import smoothed
 from seatrial.data.check.phases import HalfSwing, driven_swings, half_swings, is_in_waves, release_row
 from seatrial.physics.manoeuvres import ManoeuvreKind, ObservedManoeuvre, ordered_degrees
 from seatrial.physics.manoeuvres.track import speed
@@ -18,8 +19,6 @@ from seatrial.physics.manoeuvres.turns import Course, HeadingTurn, course_of
 
 # A stretch of a log that is a manoeuvre, and the signals in which manoeuvres are sought.
 
-MIN_SAMPLES = 30
-"""Samples below which nothing is a manoeuvre; as in the checks."""
 _SMOOTHING_S = 2.0  # s over which rates and speeds are smoothed; chosen
 
 

@@ -5,15 +5,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatrial.core.values import Array, Index, InputError, Record
+from seatrial.core.values.arrays import Mask
 from seatrial.physics.manoeuvres.recognition import ManoeuvreKind, ObservedManoeuvre
 from seatrial.physics.manoeuvres.turns import reversals
 
 # Samples left out of a record before a regression: outliers, repetitions, holes, small values.
 
-Mask = NDArray[np.bool_]
 # a channel whose range is a smaller part of its size is constant
 ROUNDING = 1e-12
 

@@ -8,9 +8,9 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from seatrial.core.values import Array, InputError, Record
+from seatrial.core.values.arrays import Mask, mask_intervals
 from seatrial.physics.manoeuvres.turns import course_of, means_of
 
 # Motion of the craft itself in a record that was simulated by a model with sensors.
@@ -26,8 +26,6 @@ def own_motion(record: Record) -> Record:
 
 
 # What manoeuvre a record shows: when the rudder was put over, how far, and what the heading did.
-
-Mask = NDArray[np.bool_]
 
 # the rudder is "over" beyond a quarter of the record's largest angle; a stretch is a hold if 40 % of it lies within
 # 15 % of its level and it lasts a tenth of the median hold
@@ -237,7 +235,7 @@ class ObservedManoeuvre:
                     near = chains[-1][-1:] if chains and _is_further(chains[-1][-1:], hold) else []
                     chains.append([*near, hold])
             first = row
-        return [one for one in chains if len(one) >= _SPIRAL_ANGLES and one[0].angle * one[-1].angle < 0.0]
+        return [chain for chain in chains if len(chain) >= _SPIRAL_ANGLES and chain[0].angle * chain[-1].angle < 0.0]
 
     @cached_property
     def kind(self) -> ManoeuvreKind:
@@ -316,10 +314,8 @@ def _find_hold(delta: Array, first: int, last: int) -> Hold | None:
     flat = np.abs(delta[first:last] - angle) <= HOLD_TOLERANCE * abs(angle)
     if np.mean(flat) < HOLD_SHARE:
         return None
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], flat.astype(np.int8), [0]])))
-    begins, ends = edges[::2], edges[1::2]
-    longest = int(np.argmax(ends - begins))
-    return Hold(first + int(begins[longest]), first + int(ends[longest]), angle)
+    start, stop = max(mask_intervals(flat), key=lambda ends: ends[1] - ends[0])
+    return Hold(first + start, first + stop, angle)
 
 
 def _median_angle(holds: list[Hold]) -> float:

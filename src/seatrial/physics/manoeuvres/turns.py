@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from seatrial.core.values import Array
-from seatrial.core.values.arrays import Mask
+from seatrial.core.values.arrays import Mask, mask_intervals
 
 # rad of the smallest turn: waves yaw less than the larger, headings in whole degrees step by less than the smaller; a
 # log that turns less than twice the larger is judged by half of what it turns; chosen
@@ -115,9 +115,8 @@ def _steady(psi: Array, window: int, band: float) -> list[tuple[int, int]]:
     half = window // 2
     is_inside: Mask = maximum_filter1d(psi, 2 * half + 1) - minimum_filter1d(psi, 2 * half + 1) < band
     is_inside[:half] = is_inside[len(psi) - half :] = False  # windows that reach beyond the record
-    is_steady = maximum_filter1d(is_inside.astype(np.uint8), 2 * half + 1)
-    edges = np.flatnonzero(np.diff(is_steady, prepend=0, append=0))
-    return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+    is_steady = maximum_filter1d(is_inside.astype(np.uint8), 2 * half + 1) > 0
+    return mask_intervals(is_steady)
 
 
 def reversals(psi: Array, smallest: float) -> list[int]:
