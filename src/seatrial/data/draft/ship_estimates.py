@@ -354,7 +354,8 @@ def header_statements(survey: LogSurvey) -> dict[str, HeaderStatement]:
     A clause without a quantity goes on about that of the clause before it.
     """
     statements = dict[str, HeaderStatement]()
-    for sentence in re.split(r"[;\n]|\.\s", _header(survey)):
+    sentences = re.split(r"[;\n]|\.\s", _header(survey))
+    for sentence in (text for text in sentences if _PLACE.search(text) or re.search(_POSITIVE, text, re.IGNORECASE)):
         symbol = ""
         for clause in sentence.split(","):
             symbol = _subject(clause) or symbol
