@@ -53,6 +53,7 @@ def test_report(fit: Path) -> None:
     assert heavy_imports("report", str(fit)) == []
 
 
+@pytest.mark.long
 def test_tune(fit: Path, tmp_path: Path) -> None:
     options = ("--from", f"{fit}/model.toml", "--out", str(tmp_path))
     assert heavy_imports("tune", f"{EXAMPLES}/waterjet_autopilot.toml", *options) == []

@@ -23,7 +23,6 @@ VARIABLES: dict[str, int] = {
     "seatrial/cli": 15,
     "seatrial/control": 174,
     "seatrial/control/loopfile": 30,
-    "seatrial/core/figures": 1,
     "seatrial/data/check": 41,
     "seatrial/data/draft": 152,
     "seatrial/data/folder": 1,

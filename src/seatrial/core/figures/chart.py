@@ -177,7 +177,7 @@ def decade_ticks(low: float, high: float, count: int) -> tuple[Tick, ...]:
     # px, chosen
     choices += [[step * 10.0**power for power in powers for step in steps] for steps in ((1, 3), (1, 2, 5))]
     inside = [[v for v in choice if low * (1.0 - ROUNDING) <= v <= high * (1.0 + ROUNDING)] for choice in choices]
-    values = min(inside, key=lambda some: (len(some) < 2, abs(len(some) - count)))
+    values = min(inside, key=lambda multiples: (len(multiples) < 2, abs(len(multiples) - count)))
     return tuple(Tick(v, exact(v, 2)) for v in values)
 
 
