@@ -7,7 +7,7 @@ import os
 
 import numpy as np
 from measure import Line, at_most
-from seatrial_studies.alexandersson2022.study import study
+from seatrial_studies.alexandersson2022 import study
 
 from seatrial_studies.alexandersson2022.reproduction import RERUN_HEADING, RERUN_POSITION
 

@@ -187,7 +187,7 @@ def motion_sickness(lever: float) -> Objective:
 def _sickness(name: str, rows: tuple[WeightedVariance, ...]) -> Objective:
     """Return the share of people sick, of variances of vertical velocity and acceleration.
 
-    O'Hanlon & McCauley 1974 as in `sea.response`: Phi((log10(0.798 sqrt(v_4) / g) - mu) / 0.4),
+    O'Hanlon & McCauley 1974 as in `sea.wave_forces`: Phi((log10(0.798 sqrt(v_4) / g) - mu) / 0.4),
     mu = -0.819 + 2.32 log10(omega)^2, omega = sqrt(v_4 / v_2).
     """
 
@@ -202,7 +202,7 @@ def _sickness(name: str, rows: tuple[WeightedVariance, ...]) -> Objective:
 
     def slope(v: Array) -> Array:
         z, ratio = score(v)
-        density = np.exp(-0.5 * z**2) / math.sqrt(2.0 * math.pi) / 0.4  # normal density; 0.4 as in `sea.response`
+        density = np.exp(-0.5 * z**2) / math.sqrt(2.0 * math.pi) / 0.4  # normal density; 0.4 as in `sea.wave_forces`
         half = 0.5 / math.log(10.0)
         by_first = density * 2.32 * 2.0 * ratio * half / v[:, 0]  # 2.32 as above
         by_second = density * (1.0 - 2.32 * 2.0 * ratio) * half / v[:, 1]  # 2.32 as above

@@ -222,7 +222,7 @@ class KalmanFilter(SegmentBatch):
 def corrected_inputs(inputs: Array, dt: float, gain: Array, zero: Array, delay: Array) -> tuple[Array, Array]:
     """Inputs as `kernels.integrate.effective_input` corrects them, (rows, nu), and their derivatives (rows, 3 nu).
 
-    The derivatives by zero, gain and delay stand in that order for every input (`kernels.sensitivity`).
+    The derivatives by zero, gain and delay stand in that order for every input (`kernels.integrate`).
     """
     made, weights = np.empty(inputs.shape), np.empty((len(inputs), 3 * inputs.shape[1]))
     correct(np.ascontiguousarray(inputs), dt, gain, zero, delay, made, weights)
