@@ -154,7 +154,8 @@ def _timed_steps(task: Identification, names: Sequence[str], steps: tuple[InputS
     plain, first = join_segments(before.problem)
     local = before.optimum.local[first]
     alone = levenberg_marquardt(plain, before.common_parameters, local, evaluations=_EVALUATIONS)
-    spread = residual_spread(plain, PointEstimate(plain, alone).residuals())
+    problem, residuals = plain, PointEstimate(plain, alone).residuals()
+    spread = residual_spread(plain, residuals)
     late_steps = tuple(replace(s, share=_STEP) for s in steps)
     test = score_test(
         PointEstimate(replace(plain, noise=spread, inflation=None), alone), _candidates(late_steps, records)
@@ -183,7 +184,7 @@ def _moves(estimate: PointEstimate, steps: Sequence[InputStep], records: Sequenc
     """By how much shares change in one step of the gradient, and the common parameters with them."""
     test = score_test(estimate, _candidates(steps, records))
     pull = test.gradient + (np.array([s.share for s in steps]) - _MEAN) / _VARIANCE
-    moves = -np.linalg.solve(test.curvature + np.eye(len(steps)) / _VARIANCE, pull)
+    moves: Array = -np.linalg.solve(test.curvature + np.eye(len(steps)) / _VARIANCE, pull).astype(np.float64)
     return moves, test.by_candidates @ moves
 
 
