@@ -7,8 +7,8 @@ import os
 
 import numpy as np
 from measure import Line, at_most
-from seatrial_studies.alexandersson2022 import study
 
+from seatrial_studies.alexandersson2022 import study
 from seatrial_studies.alexandersson2022.reproduction import RERUN_HEADING, RERUN_POSITION
 
 LIMIT_DEG, LIMIT_M = 10.0, 7.0
