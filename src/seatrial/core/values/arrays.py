@@ -147,6 +147,7 @@ def _followed_moves(values: Array) -> tuple[Array, Mask]:
 _FEWEST_RAMPS = 3  # of one rate, by which a machinery's rate is evident; chosen
 _PLAY_QUARTILES = 9.0  # lower quartiles of the moves, four standard deviations of noise between held angles; chosen
 _SAME_MOVE = 1e-6  # of the greatest move, by which moves that are one differ: rounding of numbers; chosen
+_LARGEST_STEP = 0.05  # of the greatest move, by which ramps of one rate differ where values are rounded; chosen
 _FINE_RATE = 4.0  # plays that a move at full rate has at least, so that no noise passes for one; chosen
 
 
@@ -163,7 +164,8 @@ def with_corner_areas(values: Array) -> Array:
     if greatest == 0.0:
         return values
     usual = float(np.quantile(sizes, 0.25))
-    play = max(resolution(values), _PLAY_QUARTILES * usual, _SAME_MOVE * greatest)
+    step = min(resolution(values), _LARGEST_STEP * greatest)  # values that end on the rate's own multiples have no more
+    play = max(step, _PLAY_QUARTILES * usual, _SAME_MOVE * greatest)
     if greatest < _FINE_RATE * play:
         return values
     is_full = sizes >= greatest - 2.0 * play
