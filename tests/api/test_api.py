@@ -1,5 +1,6 @@
 """The commands as functions: what each returns, and what it refuses."""
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -15,11 +16,10 @@ from seatrial.physics.models import model_named
 
 
 def test_the_demo_trial_loads_with_its_truth(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from seatrial.data import example_series as files
-    from seatrial.data import example_series as series
+    from seatrial.data import example_series
 
-    monkeypatch.setattr(files, "demo_series", lambda seed: series.demo_series(seed, executes=1))
-    trial = sea.load_trial(files.write_demo(tmp_path, seed=1))
+    monkeypatch.setattr(example_series, "demo_series", partial(example_series.demo_series, executes=1))
+    trial = sea.load_trial(example_series.write_demo(tmp_path, seed=1))
     assert [run.role for run in trial.runs].count(Role.VALIDATE) == 2
     assert set(trial.truth) == set(trial.model.parameters.free_names)
     assert not [f for f in sea.check(trial) if f.severity == "error"]

@@ -181,12 +181,12 @@ def replay(
     inputs = inputs_of(model, record)
     states, outputs = trajectory(model, inputs, record.dt, initial_state(model, record, initial or {}), substeps)
     require_bounded(model, record.time, states, f"record '{record.name}'")
-    made = _with_input_course(model, record_of(model, record.name, record.time, states, outputs, inputs))
+    made = with_input_course(model, record_of(model, record.name, record.time, states, outputs, inputs))
     step = f"inputs of '{record.name}' replayed through model '{model.name}'"
     return replace(made, provenance=Provenance(record.provenance.source, record.provenance.sha256, (step,)))
 
 
-def _with_input_course(model: Model, record: Record) -> Record:
+def with_input_course(model: Model, record: Record) -> Record:
     """Return the record with how each input ran between samples, which a simulation knows."""
     runs = {i.name: replace(record.channel(i.name), between=_course(i.is_held)) for i in model.inputs}
     return replace(record, channels={**record.channels, **runs})
