@@ -8,6 +8,7 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, Finding, InputError, Record, Severity
+from seatrial.core.values.arrays import with_corner_areas
 from seatrial.data.check import canonical_record, examined_record
 from seatrial.data.check.consequences import completed
 from seatrial.data.check.consistency import ESTIMATE_CURRENT
@@ -182,7 +183,8 @@ class CheckedRecords:
 def checked_records(trial: Trial) -> CheckedRecords:
     """Load every run that is not left out and refuse errors of training runs that the trial does not accept.
 
-    A validation run with such an error is not predicted, which a finding says: the fit does not rest on it.
+    A validation run with such an error is not predicted, which a finding says: the fit does not rest on it. Where
+    nothing says how an input runs between samples, the corners of its ramps keep their area.
 
     Raises:
         InputError: as `load_records` and `refuse_errors`.
@@ -190,9 +192,21 @@ def checked_records(trial: Trial) -> CheckedRecords:
     records, findings = load_records(trial)
     records, findings = _without_failed_validation(records, findings, trial.accept)
     findings, rate = refuse_errors(findings, trial.accept), trial.estimate.rate
+    records = tuple(replace(r, record=_with_corner_areas(r.record, trial.model)) for r in records)
     if rate is not None:
         records = tuple(replace(r, record=r.record.resampled(rate)) for r in records)
     return CheckedRecords(records, findings)
+
+
+def _with_corner_areas(record: Record, model: Model) -> Record:
+    """The record with inputs that keep the area of the corners that a ramp turns within a sample."""
+    for item in model.inputs:
+        channel = record.channel(item.name) if item.name in record else None
+        if channel is None or item.is_held or channel.between or channel.is_command:
+            continue
+        if np.all(np.isfinite(channel.values)):
+            record = record.with_channel(item.name, channel.with_values(with_corner_areas(channel.values)))
+    return record
 
 
 def _without_failed_validation(

@@ -20,7 +20,7 @@ from seatrial.core.values import (
     frozen,
     spelling_hint,
 )
-from seatrial.core.values.arrays import Between, with_corner_areas
+from seatrial.core.values.arrays import Between
 from seatrial.core.values.notation import OPPOSITE
 from seatrial.physics.manoeuvres.recognition import TRUE
 from seatrial.physics.simulate.batch import is_within_range, sufficient_substeps
@@ -34,8 +34,7 @@ ZERO_BY_DEFAULT = ("wind_speed", "wind_direction", "F3", "M5", "delta_f1", "delt
 def inputs_of(model: Model, record: Record) -> Array:
     """Inputs in the model's own signs, shape (n, nu); absent wind, waves and fins are at rest.
 
-    A channel whose positive direction is the opposite of the input's is turned. Where nothing says how a channel runs
-    between samples, the corners of its ramps keep their area.
+    A channel whose positive direction is the opposite of the input's is turned.
 
     Raises:
         InputError: an input channel is missing, holds NaN, or points in a direction that has nothing to do with the
@@ -70,12 +69,10 @@ def _input_values(model: Model, record: Record, item: Input) -> Array:
             f"record '{record.name}': input channel '{item.name}' has no value at sample {row} "
             f"(t = {record.time[row]:g} s); repair it first"
         )
-    is_course_open = not (item.is_held or channel.between or channel.is_command)
-    values = with_corner_areas(channel.values) if is_course_open else channel.values
     if item.direction in (channel.positive, "none"):
-        return values
+        return channel.values
     if OPPOSITE.get(item.direction) == channel.positive:
-        return -values
+        return -channel.values
     raise InputError(
         f"record '{record.name}': input channel '{item.name}' is positive to '{channel.positive}', "
         f"model '{model.name}' has it positive to '{item.direction}'; declare one of the two directions"
@@ -181,12 +178,12 @@ def replay(
     inputs = inputs_of(model, record)
     states, outputs = trajectory(model, inputs, record.dt, initial_state(model, record, initial or {}), substeps)
     require_bounded(model, record.time, states, f"record '{record.name}'")
-    made = with_input_course(model, record_of(model, record.name, record.time, states, outputs, inputs))
+    made = _with_input_course(model, record_of(model, record.name, record.time, states, outputs, inputs))
     step = f"inputs of '{record.name}' replayed through model '{model.name}'"
     return replace(made, provenance=Provenance(record.provenance.source, record.provenance.sha256, (step,)))
 
 
-def with_input_course(model: Model, record: Record) -> Record:
+def _with_input_course(model: Model, record: Record) -> Record:
     """Return the record with how each input ran between samples, which a simulation knows."""
     runs = {i.name: replace(record.channel(i.name), between=_course(i.is_held)) for i in model.inputs}
     return replace(record, channels={**record.channels, **runs})

@@ -21,7 +21,7 @@ from seatrial.physics.manoeuvres.programme import (
     release_angle,
     rudder_angles,
 )
-from seatrial.physics.simulate.replay import record_of, require_bounded, trajectory, with_input_course
+from seatrial.physics.simulate.replay import record_of, require_bounded, trajectory
 from seatrial.physics.simulate.states import approach_speed, characteristic_time, held_inputs, settled_actuators
 
 # A ship that rolls, let go from an angle: the decay that a model foresees.
@@ -129,7 +129,7 @@ def manoeuvre(
     # Record.dt's own quotient, so that a replay takes the same steps to the last bit
     states, outputs = trajectory(model, used, float(time[-1] - time[0]) / (len(time) - 1), start)
     require_bounded(model, time, states, f"manoeuvre '{programme.text}'")
-    made = with_input_course(model, record_of(model, programme.text, time, states, outputs, used))
+    made = record_of(model, programme.text, time, states, outputs, used)
     ending = f"finished at {time[-1]:g} s" if finished else f"not finished after {time[-1]:g} s"
     steps = (f"rudder slews at {math.degrees(slew_rate):g} deg/s", ending)
     return replace(made, provenance=Provenance(f"manoeuvre '{programme.text}' of model '{model.name}'", steps=steps))
