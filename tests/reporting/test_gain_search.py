@@ -47,7 +47,7 @@ def test_costs_are_ratios_of_measurements(tuning: Tuning) -> None:
     assert tuning.search.lsim_ratio == pytest.approx(10_000.0)
     covered, cost = search_sentences(tuning)
     assert "covers 0.61" in covered
-    assert "200 times as long by a compiled scalar loop (1" in cost
+    assert "200 times as long by a compiled loop (1" in cost
 
 
 def test_curves_and_bars_show_every_seed(tuning: Tuning) -> None:

@@ -28,6 +28,12 @@ from seatrial.physics.simulate.population import (
 )
 from seatrial.physics.simulate.population import one_sample_fitness as linear_one_sample_fitness
 
+__all__ = [
+    "Candidates", "FinishedSearch", "Fitness", "JudgedRun", "LinearCandidates", "SampleSearch", "SimulatedCandidates",
+    "one_sample_fitness", "run_search", "whole_record_fitness",
+]  # fmt: skip
+
+
 # Searches of a population by the whole record or sample by sample, restarted: what one iteration judges by.
 
 # What one iteration of a search judges candidates by: the whole record, or one sample.

@@ -19,6 +19,7 @@ from seatrial.core.results.design import (
     sampled_criterion_errors,
 )
 from seatrial.core.text.numbers import DASH, duration, exact, fixed, significant
+from seatrial.core.text.words import counted
 from seatrial.core.values import Record
 from seatrial.core.values.notation import reading_order
 from seatrial.core.values.record_chart import channel_panels, is_constant
@@ -122,6 +123,7 @@ def _manoeuvres(design: Design, baselines: Sequence[ManoeuvrePrecision]) -> Sect
         number("worst, drawn ships", lambda w: percent_text(w.worst_sampled_error), "%"),
         number("drift angle", lambda w: fixed(math.degrees(w.drift), 1) if is_drifting else "", "deg"),
         number("distance", lambda w: significant(w.distance, 3) if is_tracked else "", "m"),
+        words("", lambda w: Cell(f"{counted(w.diverged, 'ship')} diverged" if w.diverged else "", tone="bad")),
         words("", lambda w: "" if is_within_limits(w, design.limits) else Cell("leaves the limits", tone="bad")),
         is_marked=lambda w: w is design.designed,
     )

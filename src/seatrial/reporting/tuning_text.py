@@ -226,7 +226,7 @@ def comparison_sentence(pair: PairedDifference) -> str:
     """Return one paired difference; not significant where the interval contains zero."""
     stage = _SIMULATION_LABELS.get(pair.stage, pair.stage)
     width = 100.0 * (pair.upper - pair.lower)
-    decimals = max(1, -math.floor(math.log10(width))) if width > 0.0 else 1  # so many that the ends differ
+    decimals = max(1, -math.floor(math.log10(width))) if 0.0 < width < math.inf else 1  # so many that the ends differ
     ends = f"95 % interval {fixed(100.0 * pair.lower, decimals)} to {fixed(100.0 * pair.upper, decimals)}"
     tail = f"({ends}, {counted(pair.seeds, 'realisation')})"
     start = f"On the same waves, {stage}, it"

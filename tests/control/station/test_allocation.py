@@ -75,6 +75,6 @@ def test_the_current_that_is_held_from_ahead_is_that_of_the_drag() -> None:
 
 
 def test_a_craft_without_side_force_keeps_no_station() -> None:
-    with pytest.raises(InputError, match=r"give no sway of their own.*leave \[station\] out, or add a thruster"):
+    with pytest.raises(InputError, match=r"give no sway of their own.*leave \[station\] out, or add one"):
         refuse_under_actuated(craft(model_named("thrusters")))
     refuse_under_actuated(craft(azimuths()))

@@ -57,7 +57,7 @@ def test_one_order_astern_does_not_separate_exponent_and_thrust() -> None:
     runs = [run(0.8, 0.2), run(0.5, 0.0), run(-0.4, 0.0), run(0.3, -0.4)]
     (finding,) = single_order_findings(thrusters(), runs)
     assert finding.code == "single-order" and "orders astern of port or starboard only near 40 %" in finding.message
-    assert "k_b and p_b together" in finding.message and "full command is 2.5 times that order" in finding.consequence
+    assert "k_b and p_b together" in finding.message and "full command is 2.5 times that order" in finding.evidence
     assert single_order_findings(thrusters(), [*runs, run(-0.8, 0.0)]) == ()
 
 

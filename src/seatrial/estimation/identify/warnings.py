@@ -355,7 +355,8 @@ def _single_order(side: _Side, thrusters: str, names: Sequence[str], order: floa
     return Finding(
         Severity.WARNING, "single-order", f"the training runs hold orders {side.name} of {thrusters} only near "
         f"{percent(order)} % of full command: {scale} and {exponent} together give the thrust there, neither by itself",
-        "", f"record a second order {side.name}, or fix {exponent} under [model.fixed]",
+        f"full command is {significant(1.0 / order, 2)} times that order",
+        f"record a second order {side.name}, or fix {exponent} under [model.fixed]",
     )  # fmt: skip
 
 
