@@ -26,11 +26,9 @@ from seatrial.physics.loops.objective import squared_deviation as squared_deviat
 from seatrial.physics.loops.performance import LoopEvaluation as LoopEvaluation, Performance as Performance
 from seatrial.physics.loops.performance import distinct_variances as distinct_variances
 from seatrial.physics.loops.discrete import block_from_system as block_from_system
-from seatrial.physics.loops.discrete import block_from_system as block_from_system
 from seatrial.physics.loops.discrete import controller_transfer_function as controller_transfer_function
 from seatrial.physics.loops.discrete import open_loop_transfer_function as open_loop_transfer_function
 from seatrial.physics.loops.discrete import transfer_function as transfer_function
-from seatrial.physics.loops.discrete import open_loop_transfer_function as open_loop_transfer_function
 from seatrial.physics.loops.loop_states import plant_model as plant_model
 from seatrial.physics.loops.loop import Sampling as Sampling
 from seatrial.physics.loops.structures import FREQUENCIES_AND_DAMPINGS as FREQUENCIES_AND_DAMPINGS
