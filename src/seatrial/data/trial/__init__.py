@@ -9,6 +9,7 @@ from seatrial.data.trial.records import (
     checked_records,
     load_records,
     refuse_errors,
+    with_input_corners,
 )
 from seatrial.data.trial.settings import (
     SEARCHES,
@@ -26,5 +27,5 @@ __all__ = [
     "ModelFamily",
     "RecordFile", "Role", "SearchFitness", "SearchSettings", "Trial", "TrialRecord", "TrialRun", "Trimming",
     "approach_condition", "checked_records", "corrected_trial", "load_records", "load_runs", "load_trial",
-    "parse_tables", "refuse_errors", "trial_of_tables",
+    "parse_tables", "refuse_errors", "trial_of_tables", "with_input_corners",
 ]  # fmt: skip

@@ -192,14 +192,14 @@ def checked_records(trial: Trial) -> CheckedRecords:
     records, findings = load_records(trial)
     records, findings = _without_failed_validation(records, findings, trial.accept)
     findings, rate = refuse_errors(findings, trial.accept), trial.estimate.rate
-    records = tuple(replace(r, record=_with_corner_areas(r.record, trial.model)) for r in records)
+    records = tuple(replace(r, record=with_input_corners(r.record, trial.model)) for r in records)
     if rate is not None:
         records = tuple(replace(r, record=r.record.resampled(rate)) for r in records)
     return CheckedRecords(records, findings)
 
 
-def _with_corner_areas(record: Record, model: Model) -> Record:
-    """The record with inputs that keep the area of the corners that a ramp turns within a sample."""
+def with_input_corners(record: Record, model: Model) -> Record:
+    """Return the record with inputs that keep the area of the corners that a ramp turns within a sample."""
     for item in model.inputs:
         channel = record.channel(item.name) if item.name in record else None
         if channel is None or item.is_held or channel.between or channel.is_command:

@@ -11,7 +11,7 @@ from seatrial.core.results.online import CoefficientChange, EstimatorPhase, Snap
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.check.conventions import canonical_record
 from seatrial.data.read.assemble import record_from_values
-from seatrial.data.trial import FitCriterion, Trial
+from seatrial.data.trial import FitCriterion, Trial, with_input_corners
 from seatrial.data.trial.settings import Stream
 from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.fit import estimate_model, with_segment_seconds
@@ -278,7 +278,8 @@ def suits_whole_runs(trial: Trial) -> bool:
 
 def _runs(trial: Trial, phase: KeptPhase, records: Sequence[Record]) -> Runs:
     """The records, each a session, and beside them the trial's static forces or the carried information with them."""
-    runs = replace(Runs.one_session_each(records, trial.ship.length), noise=trial.noise)
+    cornered = [with_input_corners(record, trial.model) for record in records]
+    runs = replace(Runs.one_session_each(cornered, trial.ship.length), noise=trial.noise)
     if isinstance(phase, Carried):  # with it go the correlations of priors
         return replace(runs, carried=(phase.prior,))
     return replace(runs, forces=trial.forces, joint_priors=trial.joint_priors)
