@@ -8,6 +8,7 @@ import pytest
 from tests.reporting.test_course import unstable, with_course
 
 from seatrial.core.results import ChannelScore, Divergence, Fit, Prediction, WindowScore
+from seatrial.core.results.prediction import motion_spreads
 from seatrial.core.values import Record
 from seatrial.reporting.grades import (
     ErrorShare,
@@ -20,6 +21,7 @@ from seatrial.reporting.grades import (
     judging_window,
     largest_error_share,
     longest_judged,
+    run_error,
     window_shares,
     worst_share,
 )
@@ -131,3 +133,11 @@ def test_a_disturbance_excuses_no_error_of_which_it_has_no_floor(fit: Fit) -> No
     bare = replace(run, noise_floor={})
     assert is_disturbed(gusty, bare, ErrorShare("psi_deg", 5.0, 4.0))
     assert not is_disturbed(gusty, bare, ErrorShare("phi_deg", 5.0, 4.0))
+
+
+def test_a_run_is_as_bad_as_the_largest_share_of_its_motions_and_worst_where_it_diverges(fit: Fit) -> None:
+    p = fit.validation[0]
+    spread = motion_spreads({"psi_deg": 0.0}, p.measured)["psi_deg"]
+    assert run_error(replace(p, rms={"psi_deg": 0.2 * spread})) == pytest.approx(0.2)
+    assert run_error(replace(p, divergence=Divergence(70.0, 65.0, "r"))) == math.inf
+    assert run_error(replace(p, rms={})) == 0.0

@@ -9,9 +9,9 @@ from tests.reporting.fabricated import zigzag
 
 from seatrial.core.results import Divergence, Fit, Prediction
 from seatrial.core.values import Record, Severity
-from seatrial.reporting.grades import graded_errors
+from seatrial.reporting.grades import error_text, graded_errors
 from seatrial.reporting.key_facts import first_screen
-from seatrial.reporting.verdict import error_text, extrapolation_limit, run_name, verdict, worst_errors
+from seatrial.reporting.verdict import extrapolation_limit, run_name, verdict, worst_errors
 
 ANGLE = math.radians(20.0)
 

@@ -17,11 +17,11 @@ _INDENT = " " * 8  # below the text of a finding
 
 
 def print_findings(
-    findings: "Sequence[Finding]", per_code: int, rest: str = "--all shows them", *, has_notes: bool = True
+    findings: "Sequence[Finding]", per_code: int, rest: str = "--all shows them", *, is_brief: bool = False
 ) -> None:
     """Print findings by kind, errors first; of each kind the first few (all with --verbose), and where the rest is.
 
-    Without notes, which --verbose shows all the same, these are only counted, and what follows is not printed.
+    In brief notes are only counted, and what follows is not printed; --verbose is never brief.
     """
     if is_quiet():
         _print_errors(findings)
@@ -31,18 +31,18 @@ def print_findings(
     for finding in findings:
         kinds.setdefault((finding.severity.value, finding.code), []).append(finding)
     for (severity, _), alike in sorted(kinds.items(), key=lambda item: order.index(item[0][0])):
-        if severity == "info" and not has_notes:
+        if severity == "info" and is_brief:
             continue
         shown = alike if is_verbose() else alike[:per_code]
         for finding in shown:
             print_finding(severity, f"[{finding.code}] {finding.text}")
         if len(alike) > len(shown):
             print_verbatim([f"{_INDENT}... and {len(alike) - len(shown)} more of this kind; {rest}"])
-        if alike[0].consequence and has_notes:
+        if alike[0].consequence and not is_brief:
             print_lines([f"consequence: {alike[0].consequence}"], _INDENT)
         if alike[0].advice:
             print_lines([f"advice: {alike[0].advice}"], _INDENT)
-    hidden = "; --verbose shows notes" if not has_notes and any(severity == "info" for severity, _ in kinds) else ""
+    hidden = "; --verbose shows notes" if is_brief and any(severity == "info" for severity, _ in kinds) else ""
     where = "; codes in brackets: docs/bad-fit.md" if any(f.severity.value != "info" for f in findings) else ""
     print_lines([f"{count_sentence(findings)}{hidden}{where}"])
 
@@ -70,7 +70,7 @@ def print_warnings(findings: "Sequence[Finding]", rest: str = "the report lists 
 
     if findings:
         print_heading("Findings, causes first")
-        print_findings(worst_first(findings), 1, rest, has_notes=is_verbose())
+        print_findings(worst_first(findings), 1, rest, is_brief=not is_verbose())
 
 
 def print_finding(severity: str, text: str) -> None:

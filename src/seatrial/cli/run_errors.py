@@ -17,8 +17,8 @@ def errors_text(rms: Mapping[str, float]) -> str:
 
 def label_and_unit(key: str) -> tuple[str, str]:
     """Return how the report names an error of `Prediction.rms`, or a measure, and the unit in which it is shown."""
+    from seatrial.reporting.grades import ERROR_LABELS
     from seatrial.reporting.measures import measure_label
-    from seatrial.reporting.runs import ERROR_LABELS
 
     return ERROR_LABELS[key] if key in ERROR_LABELS else measure_label(key)
 

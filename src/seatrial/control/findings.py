@@ -95,9 +95,9 @@ def findings(
     if between is not None and between.feasible < between.conditions:
         found.append(_warning("schedule-infeasible", f"with interpolated gains {between.conditions - between.feasible} "
                               f"of {between.conditions} conditions on and between the schedule's break the "
-                              "restrictions"))  # fmt: skip
+                              "restrictions", "add conditions to [schedule]"))  # fmt: skip
     found += [
-        Finding(Severity.INFO, "breaks-limits", f"controller '{rival.name}' does not keep: {broken}")
+        Finding(Severity.INFO, "rival-breaks-limits", f"controller '{rival.name}' does not keep: {broken}")
         for rival in baselines
         for broken in rival.violated
     ]
@@ -169,7 +169,7 @@ def _track_findings(track: TrackKeeping | None) -> list[Finding]:
     found, corner = [], track.corner
     if not corner.is_kept:
         text = "the craft does not settle on the track behind the corner: it swings beyond the acceptance to the end"
-        found.append(_warning("not-settled", text))
+        found.append(_warning("not-settled", text, "a longer demand.time_constant, or a larger acceptance"))
     if corner.stable_draws < corner.draws or math.isinf(corner.worst_overshoot):
         lost = f"{corner.draws - corner.stable_draws} of {corner.draws} ships that the fit allows"
         text = f"{lost} do not keep a track under this guidance, or run away at the corner"
@@ -179,7 +179,7 @@ def _track_findings(track: TrackKeeping | None) -> list[Finding]:
     )
     if held > MAX_LIMITED_RATIO * free:
         text = f"the distance from the track is {held / free:.2g} times as large with the actuator's limits as without"
-        found.append(_warning("lost-to-limits", text))
+        found.append(_warning("lost-to-limits", text, "allow the actuator more, or less Ms"))
     return found
 
 
@@ -198,7 +198,8 @@ def _station_findings(station: StationKeeping | None) -> list[Finding]:
         found.append(_warning("station-not-held", text))
     if trial.cut > MAX_STATION_CUT:
         text = f"the thrusters' limits cut the force ordered {100.0 * trial.cut:.2g} % of the time on station"
-        found.append(_warning("lost-to-limits", text))
+        advice = "give a slower current, or more of full command (station.limit)"
+        found.append(_warning("lost-to-limits", text, advice))
     return found
 
 

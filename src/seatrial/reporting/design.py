@@ -56,7 +56,7 @@ from seatrial.reporting.time_figures import run_figure
 MAX_COLUMNS, MIN_COLUMN_ROWS, MAX_BASELINES = 4, 12, 3
 _BOUND_NOTE = (
     "Standard errors over the magnitude of the coefficients, as the sensors' noise allows at best (Cramér-Rao bound); "
-    "mean: root mean square over the coefficients. {} from the start: largest for the ship as assumed."
+    "mean: root mean square over the coefficients."
 )
 _ERRORS_CAPTION = (
     "Relative standard errors with the ship as assumed. Filled: the designed manoeuvre. Open: the best standard one."
@@ -128,8 +128,8 @@ def _manoeuvres(design: Design, baselines: Sequence[ManoeuvrePrecision]) -> Sect
         is_marked=lambda w: w is design.designed,
     )
     reach = "Drift angle and distance" if is_drifting else "Distance"
-    note = _BOUND_NOTE.format(reach) if is_tracked else _BOUND_NOTE.partition(" {}")[0]
-    return Section("Compared with standard manoeuvres", "manoeuvres", table=table, note=note)
+    largest = f" {reach} from the start: largest for the ship as assumed." if is_tracked else ""
+    return Section("Compared with standard manoeuvres", "manoeuvres", table=table, note=f"{_BOUND_NOTE}{largest}")
 
 
 def _coefficients(design: Design, baselines: Sequence[ManoeuvrePrecision]) -> Section:

@@ -15,11 +15,24 @@ from seatrial.core.results.prediction import (
     motion_spread,
     motion_spreads,
 )
+from seatrial.core.text.numbers import significant
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, Record
 from seatrial.reporting.course import growth_time, unstable_course
-from seatrial.reporting.runs import ERROR_LABELS, error_text
 
+ERROR_LABELS = {
+    "psi_deg": ("heading", "deg"),
+    "position_m": ("position", "m"),
+    "u": ("u", "m/s"),
+    "v": ("v", "m/s"),
+    "r": ("r", "deg/s"),
+    "z": ("heave", "m"),
+    "theta_deg": ("pitch", "deg"),
+    "phi_deg": ("roll", "deg"),
+}
+"""Error of `Prediction.rms` -> its quantity and unit on a screen."""
+DEGREES = math.degrees(1.0)
+"""Degrees of a radian."""
 MAX_GROWTH = 100.0
 """Growth of a deviation over the windows that judge a course-unstable craft: a hundredth becomes the whole; chosen."""
 _CARRIED = ("psi_deg", "position_m")
@@ -48,6 +61,13 @@ GRADE_NOTE = (
     "on and on."
 )
 """How a grade comes about, once for a page."""
+
+
+def error_text(name: str, rms: float) -> str:
+    """Return an error of `Prediction.rms` with its unit: ``6.3°``, ``0.037 m/s``."""
+    unit = ERROR_LABELS[name][1]
+    value = significant(rms * (DEGREES if name == "r" else 1.0), 2)
+    return f"{value}°" if unit == "deg" else f"{value} {unit}"
 
 
 @dataclass(frozen=True)
@@ -153,14 +173,15 @@ def judged_share(p: Prediction, longest: float | None) -> ErrorShare | None:
     return max(judged_shares(p, longest), key=lambda share: share.share, default=None)
 
 
+def run_error(p: Prediction, longest: float | None = None) -> float:
+    """Return the largest share of its motion that a run misses, infinite where it diverges."""
+    share = judged_share(p, longest)
+    return math.inf if p.divergence is not None else 0.0 if share is None else share.share
+
+
 def worst_run(runs: Sequence[Prediction], longest: float | None = None) -> Prediction:
-    """Return the run that diverges, or misses the largest share of its motion; longest: as `longest_judged`."""
-
-    def size(p: Prediction) -> float:
-        share = judged_share(p, longest)
-        return math.inf if p.divergence is not None else 0.0 if share is None else share.share
-
-    return max(runs, key=size)
+    """Return the run with the largest error; longest: as `longest_judged`."""
+    return max(runs, key=lambda p: run_error(p, longest))
 
 
 def worst_share(fit: Fit) -> ErrorShare | None:

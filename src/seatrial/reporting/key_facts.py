@@ -16,7 +16,9 @@ from seatrial.reporting.coefficient_uses import relative_half_width
 from seatrial.reporting.course import course_facts, unstable_course
 from seatrial.reporting.first_screen import FirstScreen, KeyFact
 from seatrial.reporting.grades import (
+    ERROR_LABELS,
     Grade,
+    error_text,
     graded_errors,
     is_disturbed,
     largest_error_share,
@@ -27,7 +29,6 @@ from seatrial.reporting.grades import (
 from seatrial.reporting.measures import IntervalVerdict, interval_verdict
 from seatrial.reporting.operators import operators_sentence
 from seatrial.reporting.record_gaps import gap_facts
-from seatrial.reporting.runs import ERROR_LABELS, error_text
 from seatrial.reporting.time_figures import run_figure
 from seatrial.reporting.verdict import has_converged, verdict, worst_errors
 from seatrial.reporting.windows import shortest_judged

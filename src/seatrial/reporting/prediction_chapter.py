@@ -11,7 +11,7 @@ from seatrial.core.text.numbers import column_texts, duration, exact, fixed, int
 from seatrial.core.text.words import counted, enumeration
 from seatrial.core.values import Record
 from seatrial.core.values.record_chart import has_track
-from seatrial.reporting.grades import GRADE_NOTE
+from seatrial.reporting.grades import DEGREES, ERROR_LABELS, GRADE_NOTE
 from seatrial.reporting.measures import (
     NOT_DETERMINED,
     IntervalVerdict,
@@ -24,8 +24,6 @@ from seatrial.reporting.measures import (
 from seatrial.reporting.repeats import MAX_NAMES, repeat_clause, repeated_runs
 from seatrial.reporting.resimulation import resimulation
 from seatrial.reporting.runs import (
-    DEGREES,
-    ERROR_LABELS,
     drawn_predictions,
     hidden_runs_sentence,
     reading_note,

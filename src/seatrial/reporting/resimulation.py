@@ -12,12 +12,12 @@ from markupsafe import Markup
 from seatrial.core.equations import Model
 from seatrial.core.equations.latex import rates_function
 from seatrial.core.results import Coefficient, Fit, Prediction
-from seatrial.core.results.prediction import largest_share
 from seatrial.core.values import Array, InputError, Record, display_unit
 from seatrial.core.values.notation import channel_label, channel_letter, channel_meaning, channel_unit, display_values
 from seatrial.physics.simulate.filtering import corrected_inputs as delayed_inputs
 from seatrial.physics.simulate.replay import inputs_of, state_limits
 from seatrial.reporting.document import environment
+from seatrial.reporting.grades import run_error
 
 # a slider reaches so many half widths of the 95 % interval to each side, and this share of the estimate; both chosen
 HALF_WIDTHS, SHARE = 3.0, 0.5
@@ -51,7 +51,7 @@ def resimulation(fit: Fit) -> Markup:
     The model has to be integrated step by step (no exact propagator), a run has to have all inputs, and every state
     needs a start. The script compares its own run with the prediction before it draws. The worst run is shown first.
     """
-    able = sorted((p for p in fit.validation if _can_be_simulated(p, fit)), key=largest_share, reverse=True)
+    able = sorted((p for p in fit.validation if _can_be_simulated(p, fit)), key=run_error, reverse=True)
     free = [c for c in fit.coefficients if not c.fixed]
     if not able or not free:
         return Markup()

@@ -1,46 +1,27 @@
 """Runs on the page: a table of their errors, a figure and the measures of each, the IMO criteria."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from seatrial.core.results import Fit, Prediction
 from seatrial.core.results.fit_charts import has_band
-from seatrial.core.results.prediction import estimated_current, largest_share
-from seatrial.core.text.numbers import fixed, significant
+from seatrial.core.results.prediction import estimated_current
+from seatrial.core.text.numbers import fixed
 from seatrial.core.text.words import sentence
 from seatrial.core.values import InputError, Record
 from seatrial.core.values.record_chart import has_track
 from seatrial.physics.manoeuvres import ImoCriterion, imo_criteria
 from seatrial.physics.sensors.measured_outputs import shows_ground_velocity, without_current
+from seatrial.reporting.grades import run_error
 from seatrial.reporting.measures import corrected_measure_label
 from seatrial.reporting.section import Cell, Level, Section, number, table_of, words
 
-ERROR_LABELS = {
-    "psi_deg": ("heading", "deg"),
-    "position_m": ("position", "m"),
-    "u": ("u", "m/s"),
-    "v": ("v", "m/s"),
-    "r": ("r", "deg/s"),
-    "z": ("heave", "m"),
-    "theta_deg": ("pitch", "deg"),
-    "phi_deg": ("roll", "deg"),
-}
-# degrees of a radian
-DEGREES = math.degrees(1.0)
 # runs up to which all are drawn; beyond, how many of the worst ones of each role
 MAX_DRAWN, WORST_DRAWN = 15, 12
 CURRENT_NOTE = (
     "runs in a current that the fit estimated are corrected for it, measured and simulated alike: track minus current "
     "times time, speeds through the water (IMO MSC/Circ.1053, 3.4.2.5; ITTC 7.5-04-02-01, 5.1.1)"
 )
-
-
-def error_text(name: str, rms: float) -> str:
-    """Return an error of `Prediction.rms` with its unit: ``6.3°``, ``0.037 m/s``."""
-    unit = ERROR_LABELS[name][1]
-    value = significant(rms * (DEGREES if name == "r" else 1.0), 2)
-    return f"{value}°" if unit == "deg" else f"{value} {unit}"
 
 
 def reading_note(predictions: Sequence[Prediction]) -> str:
@@ -67,7 +48,7 @@ def drawn_predictions(predictions: Sequence[Prediction]) -> list[Prediction]:
         return list(predictions)
     kept: list[Prediction] = []
     for role in ("validation", "training"):
-        kept += sorted((p for p in predictions if p.role == role), key=largest_share, reverse=True)[:WORST_DRAWN]
+        kept += sorted((p for p in predictions if p.role == role), key=run_error, reverse=True)[:WORST_DRAWN]
     return [p for p in predictions if any(p is one for one in kept)]
 
 

@@ -16,9 +16,16 @@ from seatrial.physics.manoeuvres import (
     ordered_degrees,
     to_starboard,
 )
-from seatrial.reporting.grades import Grade, judged_share, judging_window, longest_judged, worst_run
+from seatrial.reporting.grades import (
+    ERROR_LABELS,
+    Grade,
+    error_text,
+    judged_share,
+    judging_window,
+    longest_judged,
+    worst_run,
+)
 from seatrial.reporting.repeats import MAX_NAMES, repeated_runs
-from seatrial.reporting.runs import ERROR_LABELS, error_text
 
 # errors that a sentence names, the first ones that the runs have
 MAX_ERRORS = 2

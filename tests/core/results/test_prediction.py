@@ -1,14 +1,11 @@
 """The spread of a motion, and when a simulation is further off than that."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.reporting.fabricated import fabricated_fit
 
-from seatrial.core.results import Divergence
-from seatrial.core.results.prediction import HEADING_SPREAD, largest_share, motion_spread, motion_spreads
+from seatrial.core.results.prediction import HEADING_SPREAD, motion_spread, motion_spreads
 from seatrial.core.values import Record
 
 TIME = np.arange(1000) * 0.1
@@ -36,11 +33,3 @@ def test_a_held_heading_is_judged_as_a_small_turn_and_a_turn_by_itself() -> None
     )
     assert held == pytest.approx(10.0)
     assert turned == pytest.approx(10.0 / math.sqrt(2.0))
-
-
-def test_a_run_is_as_bad_as_the_largest_share_of_its_motions_and_worst_where_it_diverges() -> None:
-    p = fabricated_fit().validation[0]
-    spreads = motion_spreads({"psi_deg": 0.0, "u": 0.0}, p.measured)
-    assert largest_share(replace(p, rms={"psi_deg": 0.2 * spreads["psi_deg"]})) == pytest.approx(0.2)
-    assert largest_share(replace(p, divergence=Divergence(70.0, 65.0, "r"))) == math.inf
-    assert largest_share(replace(p, rms={})) == 0.0

@@ -39,7 +39,7 @@ from seatrial_studies.song2025.published import (
     reference_record,
 )
 
-# Columns sailed beside the truth; RMSE and CC as measures.
+# Columns simulated beside the truth; RMSE and CC as measures.
 
 ORIGINAL, IMPROVED = CORRECTED[1], CORRECTED[2]
 

@@ -49,14 +49,6 @@ def motion_spreads(names: Container[str], measured: Record) -> dict[str, float]:
     return spreads
 
 
-def largest_share(p: "Prediction") -> float:
-    """Return the largest error of a whole run over the spread of that motion; infinite where it diverges."""
-    if p.divergence is not None:
-        return math.inf
-    spreads = motion_spreads(p.rms, p.measured)
-    return max((p.rms[name] / spread for name, spread in spreads.items() if spread > 0.0), default=0.0)
-
-
 # Errors of predictions some samples ahead, from the samples up to each moment.
 
 

@@ -108,7 +108,7 @@ def _constant_finding(record: Record, symbol: str, value: float) -> Finding:
         text = f"record '{record.name}': channel '{symbol}' is dead, it never changes"
         return Finding(Severity.WARNING, "dead-channel", text, evidence)
     text = f"record '{record.name}': channel '{symbol}' is constant"
-    return Finding(Severity.INFO, "dead-channel", text, evidence)
+    return Finding(Severity.INFO, "constant", text, evidence)
 
 
 def _stuck_findings(record: Record, symbol: str, values: Array) -> list[Finding]:

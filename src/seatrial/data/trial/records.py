@@ -295,7 +295,8 @@ def _one_course_findings(trial: Trial, records: tuple[TrialRecord, ...]) -> tupl
     return (Finding(
         Severity.WARNING, "velocity-over-ground",
         "speed through the water was not recorded, and one course alone does not separate a current from it",
-        f"sessions {enumeration(lone)}",
+        f"sessions {enumeration(lone)}", "record a run on the opposite course, or the speed through the water; runs of "
+        'one outing share its current: session = "all"',
     ),)  # fmt: skip
 
 

@@ -110,7 +110,8 @@ def _unidentifiable(task: DesignTask, designed: ManoeuvrePrecision) -> list[Find
     if some.any():
         listed = ", ".join(n for n, bad in zip(names, some, strict=True) if bad)
         findings.append(_warning("not-identifiable",
-                              f"for some ship of the prior this manoeuvre does not identify {listed}"))  # fmt: skip
+                              f"for some ship of the prior this manoeuvre does not identify {listed}",
+                              "design again after a first trial, with --from and its model file"))  # fmt: skip
     return findings
 
 

@@ -197,8 +197,7 @@ def finding_with_effects(finding: Finding, effects: Sequence[EstimatedValueEffec
         *([f"{enumeration(rest)} {'matter' if len(rest) > 1 else 'matters'} less"] if rest else []),
     ]
     return replace(
-        finding, evidence="; ".join(parts),
-
+        finding, evidence=f"{'; '.join(parts)}; intervals of coefficients hold these errors, of predictions do not",
         advice=f"measure {worst[0].name} first, write it in place of the estimate, and remove the mark",
     )  # fmt: skip
 
@@ -240,6 +239,7 @@ def box_force_findings(
     return (Finding(
         Severity.WARNING, ESTIMATED_VALUES, f"the wave forces are those of a box, {NOT_MEASURED}",
         lost if undetermined else "every coefficient keeps its sign where they are wrong by as much as of a hull",
+        "give the hull's own forces: source = \"table\" or \"capytaine\" under [excitation]",
     ),)  # fmt: skip
 
 

@@ -223,6 +223,7 @@ def _course_finding(courses: Mapping[str, Between]) -> Finding:
     return Finding(
         Severity.INFO, "stepped-input", f"between samples the records show {' and '.join(texts)}",
         "the other way the records are less likely, and half a sample is left as a delay",
+        "declare between where you know it",
     )  # fmt: skip
 
 

@@ -282,7 +282,7 @@ def _predictions(reference: Fit, model: Model) -> tuple[tuple[Prediction, ...], 
             simulated = replay(model, p.simulated)
         except DivergedError as error:
             text = f"with the coefficients of the method run '{p.record}' cannot be simulated"
-            findings.append(Finding(Severity.WARNING, "diverged", text, str(error)))
+            findings.append(Finding(Severity.WARNING, "diverged", text, str(error), "do not use them"))
             continue
         measures = compare_measures(p.measured, simulated, length) if is_steered(p.measured, model) else {}
         predictions.append(

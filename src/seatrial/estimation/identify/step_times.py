@@ -142,6 +142,7 @@ def _finding(names: Sequence[str], steps: Sequence[InputStep]) -> Finding:
         Severity.INFO, "stepped-input", f"{enumeration(names, len(names))} change between samples, not at them: the "
         f"times of {len(steps)} steps are estimated",
         f"on average {np.mean([s.share for s in steps]):.2f} of a sample before the row that shows the step",
+        "record orders as often as they change; declare between where they change at samples",
     )  # fmt: skip
 
 

@@ -569,4 +569,5 @@ def _finding(reading: WaveReading, least: float, stated: float) -> Finding:
         Severity.WARNING, "sensor-error", f"the motions contradict the waves as they are stated: {reading.text}",
         f"tried here: read so, they leave {significant(least, 2)} of the motions unexplained, as stated "
         f"{significant(stated, 2)} (standard deviations)",
+        "check the sign and the place of the wave probe, and the speed under [records.waves]",
     )  # fmt: skip
