@@ -71,11 +71,15 @@ class Hold:
 
 @dataclass(frozen=True, eq=False)
 class ObservedManoeuvre:
-    """A record's heading and rudder, unwrapped and positive to starboard, shape (n,), and the rudder's holds."""
+    """A record's heading and rudder, unwrapped and positive to starboard, shape (n,), and the rudder's holds.
+
+    steered_as: the run of the same rudder history whose holds, executes and kind count; None: its own.
+    """
 
     record: Record
     psi: Array
     delta: Array
+    steered_as: "ObservedManoeuvre | None" = None
 
     @classmethod
     def from_record(cls, record: Record) -> "ObservedManoeuvre":
@@ -98,14 +102,13 @@ class ObservedManoeuvre:
                 f"record '{record.name}' is not sampled at the times of '{self.record.name}', at whose executes it is "
                 "to be measured; resample it"
             )
-        transferred = replace(self, record=record, psi=_heading(record))
-        for name in ("holds", "executes", "kind"):  # cached properties, made out here
-            transferred.__dict__[name] = getattr(self, name)
-        return transferred
+        return replace(self, record=record, psi=_heading(record), steered_as=self)
 
     @cached_property
     def holds(self) -> tuple[Hold, ...]:
         """Flat stretches of rudder to one side, long against the others, in order; none of a thousand and more."""
+        if self.steered_as is not None:
+            return self.steered_as.holds
         largest = float(np.max(np.abs(self.delta)))
         if largest < MINIMUM_RUDDER:
             return ()
@@ -156,6 +159,8 @@ class ObservedManoeuvre:
     @cached_property
     def executes(self) -> tuple[float, ...]:
         """Times [s] at which the rudder began to move to each hold: its slew between 25 and 75 % drawn back to 0 %."""
+        if self.steered_as is not None:
+            return self.steered_as.executes
         return tuple(self._execute_time(k) for k in range(len(self.holds)))
 
     def _execute_time(self, k: int) -> float:
@@ -240,6 +245,8 @@ class ObservedManoeuvre:
     @cached_property
     def kind(self) -> ManoeuvreKind:
         """Which manoeuvre this is, from the signs of the holds and the heading at each execute."""
+        if self.steered_as is not None:
+            return self.steered_as.kind
         holds, times = self.holds, self.executes
         largest = 0.5 * float(np.max(np.abs(self.delta)))
         if any(
