@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from seatrial.core.values import InputError, Record
-from seatrial.core.values.arrays import held_rows, step_rows, travel, with_corner_areas
+from seatrial.core.values.arrays import early_turns, held_rows, step_rows, travel, with_corner_areas
 
 TIME = 0.5 * np.arange(200)
 
@@ -92,3 +92,24 @@ def test_corners_within_a_sample_keep_their_area(late: float, step: float) -> No
 def test_what_has_no_greatest_rate_keeps_its_values(rng: np.random.Generator) -> None:
     for values in (orders(), np.sin(0.7 * TIME), rng.normal(size=200), np.full(20, 0.1), np.array([0.1]), slewing()):
         np.testing.assert_array_equal(with_corner_areas(values), values)
+
+
+def test_moves_made_at_once_keep_their_area(rng: np.random.Generator) -> None:
+    """A controller on the recorder's clock: a machinery of 3 a sample follows each order from the sample's start."""
+    orders = rng.normal(scale=4.0, size=60)
+    fine, angle = [0.0], 0.0
+    for order in orders:
+        for _ in range(100):
+            angle += np.clip(order - angle, -0.03, 0.03)
+            fine.append(angle)
+    course = np.array(fine)
+    samples = course[::100]
+    early, middle = samples + early_turns(samples), slice(1, -1)
+    areas = np.array([np.trapezoid(course[: 100 * n + 1], dx=0.01) for n in range(1, 60)])
+    errors = [np.array([np.trapezoid(v[: n + 1]) for n in range(1, 60)]) - areas for v in (samples, early)]
+    assert np.std(errors[1][middle]) < 0.3 * np.std(errors[0][middle])
+
+
+def test_a_rudder_that_always_moves_at_one_rate_or_stands_has_no_course_left_open() -> None:
+    for values in (np.zeros(9), np.array([1.0]), np.concatenate([np.arange(9.0), np.full(5, 8.0)])):
+        assert not early_turns(values).any()

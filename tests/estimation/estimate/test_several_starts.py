@@ -7,7 +7,7 @@ import pytest
 
 from seatrial.core.values import Record
 from seatrial.data.trial import EstimateSettings, FitCriterion
-from seatrial.estimation.estimate import EstimatorOptions, Runs, estimate_model
+from seatrial.estimation.estimate import EstimatorOptions, Runs, begin_estimate, estimate_model
 from seatrial.estimation.estimate.assemble import output_error_problem
 from seatrial.estimation.estimate.start import find_start, number_of_starts, search_from_several
 from seatrial.physics.models import model_named
@@ -55,6 +55,15 @@ def test_the_same_seed_searches_from_the_same_points(run: Record) -> None:
     assert first.search_attempts == second.search_attempts
     assert len(first.search_attempts) == 3
     assert first.start_method.startswith("the best of 3 starts: ")
+
+
+def test_an_estimate_that_is_begun_already_ends_the_same(run: Record) -> None:
+    model, runs = model_named("nomoto"), Runs.one_session_each([run], 10.0)
+    settings, options = EstimateSettings(), EstimatorOptions()
+    begun = begin_estimate(model, runs, settings, options)
+    alone, again = (estimate_model(model, runs, settings, options, beginning=b) for b in (None, begun))
+    np.testing.assert_array_equal(alone.estimate.common_parameters, again.estimate.common_parameters)
+    assert again.shooting is begun.shooting and alone.reasons == again.reasons
 
 
 def test_one_start_suffices_unless_thrusters_drive_the_craft_or_the_trial_says_otherwise() -> None:

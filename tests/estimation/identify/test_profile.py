@@ -1,5 +1,6 @@
 """Few memories of a disturbance and few changes of a reference: profiles in place of the information, and a warning."""
 
+import math
 from types import SimpleNamespace
 from typing import Any
 
@@ -13,7 +14,9 @@ from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.fit import estimate_model
 from seatrial.estimation.estimate.settings import EstimatorOptions
 from seatrial.estimation.identify import nonlinear_intervals
+from seatrial.estimation.identify.assembled_fit import widened_ends
 from seatrial.estimation.identify.nonlinear_intervals import default_profiles, short_record_findings
+from seatrial.estimation.information.covariance import Interval
 from seatrial.problems.disturbed_craft import Disturbance, independent_nomoto
 
 PROFILE = Profile("K", (0.1, 0.2), (0.0, 4.0), None, 0.19)
@@ -86,3 +89,17 @@ def test_a_profile_of_prediction_error_has_the_curvature_of_its_information() ->
         assert p.lower is not None
         assert p.lower < centre
         assert p.upper is None or p.upper > centre
+
+
+def test_ends_go_out_with_what_widens_the_standard_errors() -> None:
+    """Errors that no profile knows add as squares, on the side that a profile leaves open nothing."""
+
+    def of_error(error: float) -> Any:
+        estimate = SimpleNamespace(
+            problem=SimpleNamespace(free=("K", "T")), common_parameters=np.array([0.2, 8.0, 0.0])
+        )
+        interval = Interval(np.diag([error**2, 1.0, 1.0]), np.inf, "")
+        return SimpleNamespace(estimate=estimate, interval=interval)
+
+    ends = widened_ends({"K": (0.17, None), "T": (7.0, 9.5)}, of_error(0.01), of_error(math.hypot(0.01, 0.04 / 1.96)))
+    assert ends["K"] == (pytest.approx(0.15, abs=1e-4), None) and ends["T"] == (7.0, 9.5)

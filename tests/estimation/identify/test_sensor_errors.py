@@ -15,8 +15,11 @@ from seatrial.estimation.estimate import Estimation, Runs, estimate_model
 from seatrial.estimation.identify import identify
 from seatrial.estimation.identify.instruments import instrument_errors, with_undetected_sensor_errors
 from seatrial.estimation.identify.score_test import output_error_estimate, own_criterion
+from seatrial.physics.models.nomoto import nomoto
 
 BOAT = CRAFTS["Nomoto boat"]
+GAIN = 0.14
+"""Of the boat with an autopilot, 1/s."""
 
 
 def fit_of(fault: str) -> Fit:
@@ -127,3 +130,36 @@ def test_the_timing_of_a_measured_channel_can_be_known() -> None:
     assert information is not None
     prior = dict(zip(information.test.names, np.diag(information.open_prior), strict=True))
     assert prior["lag_yaw_rate"] == 0.0 and prior["lag_heading"] == pytest.approx(0.1**2 / 12.0)
+
+
+def test_where_a_slewing_rudder_moves_within_a_sample_is_in_the_intervals() -> None:
+    """An autopilot on the recorder's clock moves the rudder at the start of each sample, which straight lines miss."""
+    record = loop_record(np.random.default_rng(1))
+    model = nomoto().with_values({"K": 0.12, "T": 7.0})
+    model = model.with_parameters(model.parameters.only_free(["K", "T"]))
+    settings = EstimateSettings(method=EstimateMethod.OUTPUT_ERROR)
+    estimation = estimate_model(model, Runs.one_session_each((record,), 10.0), settings)
+    information = instrument_errors(estimation.estimate, (record,), 10.0, {})
+    assert information is not None and [e.name for e in information.courses] == ["delta course"]
+    widened = with_undetected_sensor_errors(estimation, information).interval.standard_error
+    narrow = estimation.interval.standard_error
+    error = abs(estimation.model.parameters["K"].value - GAIN)
+    assert error > 2.5 * narrow[0] and error < 2.0 * widened[0]
+    known = instrument_errors(estimation.estimate, (record,), 10.0, {"delta": 0.0})
+    assert known is None or known.courses == ()
+
+
+def loop_record(rng: np.random.Generator) -> Record:
+    """The boat on courses by an autopilot of 2 Hz whose rudder slews at 4 deg/s, exact but for the compass's noise."""
+    rudder, psi, r, course, order, h = 0.0, 0.0, 0.0, 0.0, 0.0, 0.005
+    rows = []
+    for step in range(120_000):
+        if step % 12_000 == 0:
+            course = math.radians(float(rng.uniform(-40.0, 40.0)))
+        if step % 100 == 0:
+            rows.append((psi + math.radians(0.05) * rng.standard_normal(), rudder))
+            order = 1.0 * (course - psi + math.radians(0.3) * math.sin(0.9 * h * step)) - 4.0 * r
+        rudder += float(np.clip(order - rudder, -math.radians(4.0) * h, math.radians(4.0) * h))
+        r, psi = r + h * (GAIN * rudder - r) / 8.0, psi + h * r
+    heading, angle = np.array(rows).T
+    return Record.from_arrays("loop", 0.5 * np.arange(len(rows)), {"psi": heading, "delta": angle})

@@ -186,6 +186,23 @@ def with_corner_areas(values: Array) -> Array:
     return result
 
 
+def early_turns(values: Array) -> Array:
+    """Return what values (n,) lack where each move is made at once, at the machinery's rate, and then held.
+
+    A move d takes the share |d| / D of its sample, D being the move that the machinery makes in a whole one: that which
+    the values reach again and again. The area between this course and the straight line, d (1 - |d| / D) / 2 times
+    the sample, goes to the two values about it in halves. With the other sign, each move ends with its sample.
+    """
+    moves, missing = np.diff(values), np.zeros_like(values)
+    sizes = np.sort(np.abs(moves))[::-1]
+    full = float(sizes[_FEWEST_RAMPS - 1]) if sizes.size >= _FEWEST_RAMPS else 0.0
+    if full > 0.0:
+        area = 0.5 * moves * np.maximum(1.0 - np.abs(moves) / full, 0.0)
+        missing[:-1] += 0.5 * area
+        missing[1:] += 0.5 * area
+    return missing
+
+
 def held_rows(values: Array, ratio: int) -> Array:
     """Return every `ratio`-th sample of a held channel as the mean of what was held until the next one."""
     starts = np.arange(0, len(values), ratio)

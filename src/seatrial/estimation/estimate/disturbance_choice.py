@@ -285,10 +285,11 @@ def _additions(best: ProcessNoise, white: ProcessNoise) -> list[DisturbanceModel
 
 
 def _further_peaks(best: ProcessNoise) -> list[SpectralPeak]:
-    """Where waves may have another peak: where the innovations show one, and to both sides of the first."""
-    waves, outputs = best.waves[0], best.output_error.data.outputs
+    """Where waves may have another peak: where innovations show one, and beside the first, below the sampling."""
+    waves, outputs, sampling = best.waves[0], best.output_error.data.outputs, 2.0 * np.pi / best.output_error.data.dt
     sizes = _SIDE_SHARE * np.array([waves.rms.get(c, 0.0) ** 2 for c in outputs])
-    sides = [SpectralPeak(f * waves.frequency, sizes, np.full(len(outputs), np.inf)) for f in _SIDES]
+    frequencies = [f * waves.frequency for f in _SIDES if f * waves.frequency < sampling]
+    sides = [SpectralPeak(frequency, sizes, np.full(len(outputs), np.inf)) for frequency in frequencies]
     return [*(p for p in _peaks(best) if p.is_high or not best.test.is_nearly_white), *sides]
 
 

@@ -1,7 +1,6 @@
 """Records and a model in, a fit out: the decision table of the estimator (docs/estimation.md)."""
 
 import math
-import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -211,7 +210,6 @@ class Estimation:
     start_method: str
     criterion: str
     reasons: tuple[str, ...]
-    elapsed_s: float
     process_noise: ProcessNoise | None = None
     search_attempts: tuple[SearchAttempt, ...] = ()
     abandoned: str = ""
@@ -281,30 +279,36 @@ def with_segment_seconds(settings: EstimateSettings, model: Model, runs: Runs) -
     return replace(settings, segment_s=seconds, segment_lengths=None)
 
 
-def estimate_model(
+@dataclass(frozen=True, eq=False)
+class Beginning:
+    """What every criterion begins from.
+
+    Attributes:
+        runs: those on which criterion and disturbance are chosen: the training runs, or stretches of long ones.
+        settings: as the trial has them, segments in seconds; unit: the ship's characteristic time [s].
+        starts: where the search began; shooting: the estimate over segments.
+    """
+
+    runs: Runs
+    settings: EstimateSettings
+    unit: float
+    starts: SeveralStarts
+    shooting: PointEstimate
+
+
+def begin_estimate(
     model: Model,
     runs: Runs,
-    settings: EstimateSettings | None = None,
-    options: EstimatorOptions | None = None,
+    settings: EstimateSettings,
+    options: EstimatorOptions,
     report_progress: ProgressReporter | None = None,
-) -> Estimation:
-    """Estimate the free parameters of `model` from training runs.
-
-    Start by the weak form, then multiple shooting with re-estimated noise; then, by the decision table, output error
-    over whole runs or prediction error with process noise, unless a criterion or a segment length is set. Of long
-    records all this is done on some stretches, and the estimate then moved to the optimum of all samples. Where it ends
-    outside physics and nothing is set, output error over whole runs takes its place, which does not take what the model
-    leaves unexplained for a craft without damping.
+) -> Beginning:
+    """Return the estimate over segments by multiple shooting with re-estimated noise, begun by the weak form.
 
     Raises:
-        InputError: no excitation, no free parameter, outputs that cannot be compared, runs too short for a disturbance
-            that is required, a search that cannot begin, or one that ends outside physics.
+        InputError: no excitation, no free parameter, outputs that cannot be compared, or a search that cannot begin.
     """
-    began = time.perf_counter()
-    options, settings = (
-        options or EstimatorOptions(),
-        with_segment_seconds(settings or EstimateSettings(), model, runs),
-    )
+    settings = with_segment_seconds(settings, model, runs)
     if not model.parameters.free:
         raise InputError(f"model '{model.name}' has no free parameter; free some under [model]")
     refuse_without_excitation(model, runs.records)
@@ -314,46 +318,10 @@ def estimate_model(
     ):
         refuse_short_runs(runs.records)
     report = report_progress or (lambda _: None)
-    is_free = settings.criterion is FitCriterion.AUTO and settings.segment_s is None and not settings.robust
-    some = choice_runs(runs) if is_free else None
-    evidence = loop_evidence(runs.records, runs.feedback, some.records if some else None)
-    begun, shooting, choice = _chosen(model, some or runs, settings, options, evidence, report_progress)
-    if some is not None:
-        report("start values: all samples")
-        choice = choice_over_all(choice, runs)
-    if more := integration_text(choice.estimate.problem):
-        choice = choice.with_reasons(more)
-    criterion = f"{choice.criterion}, Huber loss" if settings.robust else choice.criterion
-    uncertainty = _uncertainty(choice, options, report)
-    estimate = choice.estimate
-    if _is_unforced(model, runs.records) and len(runs) < RUNS_FOR_JACKKNIFE and not choice.whiteness.is_white:
-        interval = with_slow_forces(uncertainty.interval, estimate, choice.residuals)
-        uncertainty = replace(uncertainty, interval=interval, information=inverse(interval.covariance))
-    lost = implausible_coefficients(estimate, uncertainty.interval.standard_error)
-    if lost and is_free:
-        over_runs = replace(settings, method=EstimateMethod.OUTPUT_ERROR)
-        report("start values: whole runs, as the search ended outside physics")
-        kept = estimate_model(model, runs, over_runs, options, report_progress)
-        reason = f"{criterion} ended outside physics ({lost})"
-        return replace(kept, abandoned=reason, reasons=(reason, *kept.reasons))
-    refuse_implausible(estimate, uncertainty.interval.standard_error)
-    return Estimation(
-        estimate, shooting, uncertainty, choice.residuals, choice.inflation,
-        choice.rho, choice.whiteness, _noise_model(choice, evidence), begun.start.origin, criterion, choice.reasons,
-        time.perf_counter() - began, choice.process_noise or choice.implied_noise, begun.attempts,
-    )  # fmt: skip
-
-
-def _chosen(
-    model: Model, runs: Runs, settings: EstimateSettings, options: EstimatorOptions, evidence: LoopEvidence,
-    report_progress: ProgressReporter | None,
-) -> tuple[SeveralStarts, PointEstimate, CriterionChoice]:  # fmt: skip
-    """Where the search began, the estimate over segments, and the criterion's choice."""
-    report = report_progress or (lambda _: None)
+    runs = (choice_runs(runs) if _is_free(settings) else None) or runs
     report("start values: weak form")
     unit = characteristic_time(model, runs.records, runs.length, settings.segment_s)
-    seconds = segment_seconds(model, settings, unit)
-    problem = output_error_problem(model, runs, seconds, settings, options.workers)
+    problem = output_error_problem(model, runs, segment_seconds(model, settings, unit), settings, options.workers)
     begun = SeveralStarts(find_start(problem, runs.records, WEAK_FORM_SHIP_LENGTHS * unit), ())
     if settings.robust:
         begun = replace(begun, start=replace(begun.start, problem=replace(begun.start.problem, huber=HUBER_LIMIT)))
@@ -369,8 +337,76 @@ def _chosen(
         evaluations=options.evaluations,
         report_progress=report_progress,
     )
-
     refuse_unstarted(shooting)
+    return Beginning(runs, settings, unit, begun, shooting)
+
+
+def _is_free(settings: EstimateSettings) -> bool:
+    """Whether criterion and segments are left to the decision table."""
+    return settings.criterion is FitCriterion.AUTO and settings.segment_s is None and not settings.robust
+
+
+def estimate_model(
+    model: Model,
+    runs: Runs,
+    settings: EstimateSettings | None = None,
+    options: EstimatorOptions | None = None,
+    report_progress: ProgressReporter | None = None,
+    *,
+    beginning: Beginning | None = None,
+) -> Estimation:
+    """Estimate the free parameters of `model` from training runs.
+
+    After the beginning, by the decision table, output error over whole runs or prediction error with process noise,
+    unless a criterion or a segment length is set. Of long records all this is done on some stretches, and the estimate
+    then moved to the optimum of all samples. Where it ends outside physics and nothing is set, output error over whole
+    runs takes its place, which does not take what the model leaves unexplained for a craft without damping.
+
+    beginning: of this model and these runs, where it is known already.
+
+    Raises:
+        InputError: what `begin_estimate` raises, runs too short for a disturbance that is required, or a search that
+            ends outside physics.
+    """
+    options = options or EstimatorOptions()
+    beginning = beginning or begin_estimate(model, runs, settings or EstimateSettings(), options, report_progress)
+    report, settings = report_progress or (lambda _: None), beginning.settings
+    is_part = beginning.runs is not runs
+    evidence = loop_evidence(runs.records, runs.feedback, beginning.runs.records if is_part else None)
+    choice = _choice(model, beginning, options, evidence, report_progress)
+    if is_part:
+        report("start values: all samples")
+        choice = choice_over_all(choice, runs)
+    if more := integration_text(choice.estimate.problem):
+        choice = choice.with_reasons(more)
+    criterion = f"{choice.criterion}, Huber loss" if settings.robust else choice.criterion
+    uncertainty = _uncertainty(choice, options, report)
+    estimate = choice.estimate
+    if _is_unforced(model, runs.records) and len(runs) < RUNS_FOR_JACKKNIFE and not choice.whiteness.is_white:
+        interval = with_slow_forces(uncertainty.interval, estimate, choice.residuals)
+        uncertainty = replace(uncertainty, interval=interval, information=inverse(interval.covariance))
+    lost = implausible_coefficients(estimate, uncertainty.interval.standard_error)
+    if lost and _is_free(settings):
+        over_runs = replace(settings, method=EstimateMethod.OUTPUT_ERROR)
+        report("start values: whole runs, as the search ended outside physics")
+        kept = estimate_model(model, runs, over_runs, options, report_progress)
+        reason = f"{criterion} ended outside physics ({lost})"
+        return replace(kept, abandoned=reason, reasons=(reason, *kept.reasons))
+    refuse_implausible(estimate, uncertainty.interval.standard_error)
+    return Estimation(
+        estimate, beginning.shooting, uncertainty, choice.residuals, choice.inflation, choice.rho, choice.whiteness,
+        _noise_model(choice, evidence), beginning.starts.start.origin, criterion, choice.reasons,
+        choice.process_noise or choice.implied_noise, beginning.starts.attempts,
+    )  # fmt: skip
+
+
+def _choice(
+    model: Model, beginning: Beginning, options: EstimatorOptions, evidence: LoopEvidence,
+    report_progress: ProgressReporter | None,
+) -> CriterionChoice:  # fmt: skip
+    """The criterion's choice from a beginning."""
+    runs, settings, shooting, unit = beginning.runs, beginning.settings, beginning.shooting, beginning.unit
+    seconds = segment_seconds(model, settings, unit)
 
     def whole_runs() -> PointEstimate | None:
         if np.isinf(seconds):
@@ -381,10 +417,10 @@ def _chosen(
         shooting, seconds, settings, runs.noise, whole_runs, runs,
         WindowSeconds(JUDGED_SHIP_LENGTHS * unit, INITIAL_STATE_SHIP_LENGTHS * unit), report_progress,
         is_unforced=_is_unforced(model, runs.records),
-        begun=_begun(shooting, begun.start),
+        begun=_begun(shooting, beginning.starts.start),
         has_feedback=evidence.is_closed,
     )  # fmt: skip
-    return begun, shooting, with_sufficient_steps(choice)
+    return with_sufficient_steps(choice)
 
 
 def _is_unforced(model: Model, records: Sequence[Record]) -> bool:

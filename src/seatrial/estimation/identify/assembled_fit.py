@@ -5,6 +5,8 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from seatrial.core.results import Fit, Identifiability, Posterior, Profile
 from seatrial.core.results.fields import MissingParts
 from seatrial.core.values import Finding
@@ -101,8 +103,9 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         lambda: with_undetected_sensor_errors(widened, _instrument_errors(task, selected.estimation)), widened,
     )  # fmt: skip
     widened = parts.computed("times of steps in the intervals", lambda: with_open_step_times(widened, task), widened)
-    coefficients = fit_result.coefficients(widened, trial.truth, interval_ends(assessment.profiles, posterior))
     free = estimation.estimate.problem.free
+    ends = widened_ends(interval_ends(assessment.profiles, posterior), selected.estimation, widened)
+    coefficients = fit_result.coefficients(widened, trial.truth, ends)
     responses = parts.computed(
         "the frequency responses",
         lambda: frequency_responses(estimation.model, predicted.predictions, task.outputs),
@@ -216,13 +219,30 @@ def _with_sampling(task: Identification, selected: SelectedModel) -> tuple[Selec
     return replace(selected, estimation=estimation), posterior
 
 
-def interval_ends(
-    profiles: Sequence[Profile], posterior: Posterior | None
-) -> dict[str, tuple[float | None, float | None]]:
+def interval_ends(profiles: Sequence[Profile], posterior: Posterior | None) -> fit_result.Limits:
     """Return the ends of intervals that no standard error gives: by draws, or by profile likelihoods."""
     if posterior is not None:
         return {c.name: (c.lower, c.upper) for c in posterior.coefficients}
     return {p.parameter: (p.lower, p.upper) for p in profiles}
+
+
+def widened_ends(ends: fit_result.Limits, estimation: Estimation, widened: Estimation) -> fit_result.Limits:
+    """Return ends as far farther from the estimate as its standard error has grown: independent errors add as squares.
+
+    Args:
+        ends: of intervals that no standard error gives, of `estimation`.
+        widened: the same with further errors in its covariance.
+    """
+    problem, values = estimation.estimate.problem, estimation.estimate.common_parameters
+    half_widths = widened.interval.half_width**2 - estimation.interval.half_width**2
+    grown = dict(zip(problem.free, np.maximum(half_widths, 0.0).tolist(), strict=False))
+    at = dict(zip(problem.free, values.tolist(), strict=False))
+
+    def moved(name: str, end: float | None, side: float) -> float | None:
+        distance = 0.0 if end is None else abs(end - at[name])
+        return None if end is None else end + side * (math.hypot(distance, math.sqrt(grown[name])) - distance)
+
+    return {n: (moved(n, low, -1.0), moved(n, high, 1.0)) for n, (low, high) in ends.items()}
 
 
 def _predictions(task: Identification, selected: SelectedModel) -> RunPredictions:

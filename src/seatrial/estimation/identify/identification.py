@@ -15,7 +15,14 @@ from seatrial.core.values import Array, Finding, InputError, Parameters, Progres
 from seatrial.core.values.arrays import BETWEEN, Between
 from seatrial.data.check.phases import is_free_decay
 from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRecord
-from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, estimate_model
+from seatrial.estimation.estimate import (
+    Beginning,
+    Estimation,
+    EstimatorOptions,
+    Runs,
+    begin_estimate,
+    estimate_model,
+)
 from seatrial.estimation.estimate.assemble import UNIFORM, is_course_open, training_runs
 from seatrial.estimation.estimate.criterion_choice import WAVE_FORCES
 from seatrial.estimation.estimate.fit import moving_inputs, with_segment_seconds
@@ -174,14 +181,25 @@ class Identification:
         return instrument_errors(estimate, self.runs.records, self.runs.length, self.settings.delays)
 
     @cached_property
+    def beginning(self) -> Beginning:
+        """The estimate of the trial's own model over segments, from which every criterion begins.
+
+        Raises:
+            InputError: the outputs do not determine the free coefficients, or what `begin_estimate` raises.
+        """
+        refuse_unidentifiable(self.trial.model, self.outputs, self._force_names)
+        return begin_estimate(self.trial.model, self.runs, self.settings, self.options, self.report_progress)
+
+    @cached_property
     def estimation(self) -> Estimation:
         """The estimate of the trial's own model from the training runs, by the criterion that they call for.
 
         Raises:
-            InputError: the outputs do not determine the free coefficients, or what `estimate_model` raises.
+            InputError: what `beginning` or `estimate_model` raises.
         """
-        refuse_unidentifiable(self.trial.model, self.outputs, self._force_names)
-        return estimate_model(self.trial.model, self.runs, self.settings, self.options, self.report_progress)
+        return estimate_model(
+            self.trial.model, self.runs, self.settings, self.options, self.report_progress, beginning=self.beginning
+        )
 
     @property
     def _force_names(self) -> tuple[str, ...]:
@@ -260,18 +278,18 @@ def _are_likelier(estimate: PointEstimate | ProcessNoise, courses: Mapping[str, 
 # A task whose model has the errors of instruments that its records show, which the estimate with them confirms.
 
 
-def with_detected_sensor_errors(task: Identification) -> Identification:
-    """Return the task with the errors of instruments that its records show as coefficients of its model.
+def with_detected_sensor_errors(task: Identification) -> tuple[Identification, tuple[Finding, ...]]:
+    """Return the task with errors of instruments that its records show as coefficients of its model, and their finding.
 
-    The task itself where they show none, or none that the estimate with it confirms.
+    The task itself and nothing where they show none, or none that the estimate with it confirms.
     """
     try:
         information = task.instrument_errors
         detected = detected_errors(information, standard_error_ratio(task.estimation)) if information else []
     except (ArithmeticError, np.linalg.LinAlgError):  # of the intervals that is a finding of its own
-        return task
+        return task, ()
     if not detected:
-        return task
+        return task, ()
     stated = Sensors.from_text(task.trial.model.equations.sensors)
     for one in detected:
         stated = one.stated(stated)
@@ -279,8 +297,8 @@ def with_detected_sensor_errors(task: Identification) -> Identification:
     try:
         finding = _confirmed(tried.estimation, detected)
     except InputError:  # the records do not determine the coefficients beside these errors
-        return task
-    return task if finding is None else replace(tried, findings=(*tried.findings, finding))
+        return task, ()
+    return (task, ()) if finding is None else (tried, (finding,))
 
 
 def _with_stated(model: Model, stated: Sensors) -> Model:

@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 from seatrial.core.results import Fit
 from seatrial.core.text.words import enumeration
-from seatrial.core.values import InputError, ProgressReporter
+from seatrial.core.values import Finding, InputError, ProgressReporter
 from seatrial.data.check.phases import begins_before_release
 from seatrial.data.trial import EstimateMethod, FitCriterion, Role, Trial, checked_records
 from seatrial.data.trial.records import require_decay
@@ -180,11 +180,12 @@ def identify(
     _refuse_sampling(intervals, situation, method)
     if method.is_published:
         return _published(task, situation, report_progress)
+    errors: tuple[Finding, ...] = ()
     if situation is Situation.STEERED:
         timed = with_step_times(task)
-        task = with_detected_sensor_errors(with_likelier_courses(task) if timed is task else timed)
+        task, errors = with_detected_sensor_errors(with_likelier_courses(task) if timed is task else timed)
     fit = STRATEGIES[situation](task)
-    fit = replace(fit, method=replace(fit.method, name=method.value))
+    fit = replace(fit, method=replace(fit.method, name=method.value), findings=(*errors, *fit.findings))
     if not compare or situation is Situation.UNKNOWN_WAVES:  # no input, so that there is nothing to regress on
         return fit
     window = WEAK_FORM_SHIP_LENGTHS * task.characteristic_time

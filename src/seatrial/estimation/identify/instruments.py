@@ -12,7 +12,8 @@ from seatrial.core.results import Prediction
 from seatrial.core.text.numbers import percent, significant
 from seatrial.core.text.words import NAMES_SHOWN, enumeration
 from seatrial.core.values import Array, Finding, Record, Severity
-from seatrial.estimation.estimate.assemble import UNIFORM
+from seatrial.core.values.arrays import early_turns
+from seatrial.estimation.estimate.assemble import UNIFORM, is_course_open
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import (
     PointEstimate,
@@ -21,7 +22,7 @@ from seatrial.estimation.estimate.point_estimate import (
     residual_spread,
 )
 from seatrial.estimation.estimate.process_noise import ProcessNoise
-from seatrial.estimation.identify.score_test import Candidate, ScoreTest, score_test
+from seatrial.estimation.identify.score_test import Candidate, ScoreTest, added_input, score_test
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.prediction_error import join_segments
 from seatrial.numerics.optimise import levenberg_marquardt
@@ -176,6 +177,7 @@ _LEAST_BIAS, _LEAST_SCALE = 0.002, 0.01  # rad/s and 1: below, a good rate gyro 
 _LEAST_LEVER = 0.05  # of the ship's length, as in `antenna_place`: less is what a model of sway misses; chosen
 _LEAST_LAG = 0.2  # s: below, a model that is not the craft's may well ask for it; chosen
 _LAG = 1.0  # s, that of a lag where it is sought; chosen: filters of receivers and compasses
+_ANY_PLACE = 3.0**-0.5  # standard deviation of a place that is uniform from -1 to 1
 _LIKELIER = 25.0  # twice the gain of likelihood from which an error is sought, five standard errors; chosen
 _ERROR_STEP = 0.1  # of such an error's deviation, of differences by it: a filter follows what it is shown; chosen
 _ERROR_EVALUATIONS = 12  # of a short search beside such errors; chosen
@@ -189,7 +191,7 @@ class SensorError:
         name: of the coefficient that a model with sensors has of it; unit: of that.
         deviation: standard deviation where it is sought; undetected: where nothing shows it, 0: it then is none.
         negligible: size up to which it is what a model misses or a sample leaves open, and stays inside the intervals.
-        slopes: channel -> what one unit of it adds to what is shown, (rows,), SI; least: smallest that there is.
+        problem_with: the problem of records from which an error of a size is taken; least: smallest that there is.
     """
 
     name: str
@@ -197,16 +199,21 @@ class SensorError:
     deviation: float
     undetected: float
     negligible: float
-    slopes: Mapping[str, Array]
+    problem_with: Callable[[OutputError, float], OutputError]
     least: float = -np.inf
 
-    def problem_with(self, problem: OutputError, size: float) -> OutputError:
-        """Return the problem of records from which an error of this size is taken."""
+
+def _taken_from(slopes: Mapping[str, Array]) -> Callable[[OutputError, float], OutputError]:
+    """The problem of records without an error; slopes: channel -> what a unit of it adds to what is shown, (rows,)."""
+
+    def problem_with(problem: OutputError, size: float) -> OutputError:
         measured = problem.data.measured.copy()
         channels = [output.removesuffix(biased_name("")) for output in problem.data.outputs]
-        for channel, slope in self.slopes.items():
+        for channel, slope in slopes.items():
             measured[:, channels.index(channel)] -= size * slope
         return replace(problem, data=replace(problem.data, measured=measured))
+
+    return problem_with
 
 
 @dataclass(frozen=True, eq=False)
@@ -270,11 +277,11 @@ def _of_yaw(motion: _Motion, timing: "_Timing") -> Iterator[Suspect]:
     """Errors of a compass and a yaw rate that are read together."""
     r, ones = motion.channels["r"], np.ones(len(motion.channels["r"]))
     yield Suspect(
-        "the yaw rate has a bias", (SensorError("r_bias", "rad/s", _BIAS, _BIAS, _LEAST_BIAS, {"r": ones}),),
+        "the yaw rate has a bias", (SensorError("r_bias", "rad/s", _BIAS, _BIAS, _LEAST_BIAS, _taken_from({"r": ones})),),
         lambda s: replace(s, yaw_rate_bias=True), "yaw_rate_bias = true",
     )  # fmt: skip
     yield Suspect(
-        "the yaw rate is scaled", (SensorError("r_scale", "1", _SCALE, _SCALE, _LEAST_SCALE, {"r": r}),),
+        "the yaw rate is scaled", (SensorError("r_scale", "1", _SCALE, _SCALE, _LEAST_SCALE, _taken_from({"r": r})),),
         lambda s: replace(s, yaw_rate_scale=True), "yaw_rate_scale = true",
     )  # fmt: skip
     for late, channel in ((Late.HEADING, "psi"), (Late.YAW_RATE, "r")):
@@ -301,7 +308,7 @@ class _Timing:
         stated = [deviation for c in channels if (deviation := self.delays.get(c)) is not None]
         deviation, negligible = 0.0 if 0.0 in stated else _LAG, max(0.5 * interval, _LEAST_LAG)
         undetected = min(stated, default=0.0 if self.is_known else interval / UNIFORM)
-        error = SensorError(lag_name(late), "s", deviation, undetected, negligible, slopes, least)
+        error = SensorError(lag_name(late), "s", deviation, undetected, negligible, _taken_from(slopes), least)
         instrument = f"the {late.replace('_', ' ')}"
         return Suspect(
             f"{instrument} is late", (error,), lambda s: replace(s, late=(*s.late, late)), f'late = ["{late}"]',
@@ -325,24 +332,51 @@ def _of_receiver(motion: _Motion, timing: _Timing, stated: Sensors, length: floa
     yield Suspect(
         "the antenna stands elsewhere",
         tuple(
-            SensorError(name, "m", aboard, aboard, _LEAST_LEVER * length, arm)
+            SensorError(name, "m", aboard, aboard, _LEAST_LEVER * length, _taken_from(arm))
             for name, arm in (("x_antenna", x), ("y_antenna", y))
         ),
         lambda s: replace(s, antenna=Antenna(sd=aboard)), f"antenna = {{ sd = {aboard:.2g} }}",
     )  # fmt: skip
 
 
+def _of_courses(
+    problem: OutputError, records: Sequence[Record], delays: Mapping[str, float | None]
+) -> Iterator[SensorError]:
+    """Each input that runs straight for all that is known: where within samples it makes its smaller moves.
+
+    1: at once when the sample begins, as by a controller of the recorder's clock; -1: at its end.
+    """
+    model, runs = problem.model, problem.data.run_inputs
+    if runs is None:
+        return
+    ends = [(int(first), int(behind)) for first, behind in np.unique(runs.place[:, 1:], axis=0)]
+    for column, name in enumerate(model.input_names):
+        if name in model.held or delays.get(name) == 0.0 or not is_course_open(name, records):
+            continue
+        added = [np.zeros_like(runs.values[a:b]) for a, b in ends]
+        for missing, (a, b) in zip(added, ends, strict=True):
+            missing[:, column] = early_turns(runs.values[a:b, column])
+        if any(np.any(missing) for missing in added):
+            course = added_input(f"{name} course", added)
+            yield SensorError(course.name, "1", 0.0, _ANY_PLACE, np.inf, course.problem_with)
+
+
 @dataclass(frozen=True, eq=False)
 class ErrorInformation:
-    """What records say of errors of instruments: `test` has those of all suspects, in order."""
+    """What records say of errors of instruments: `test` has those of all suspects, then those of courses, in order.
+
+    Attributes:
+        courses: of inputs within samples, which no setting states.
+    """
 
     suspects: tuple[Suspect, ...]
+    courses: tuple[SensorError, ...]
     test: ScoreTest
 
     @property
     def errors(self) -> tuple[SensorError, ...]:
-        """Of all suspects, in order."""
-        return tuple(e for one in self.suspects for e in one.errors)
+        """Of all suspects and courses, in order."""
+        return (*(e for one in self.suspects for e in one.errors), *self.courses)
 
     @property
     def open_prior(self) -> Array:
@@ -383,13 +417,14 @@ def instrument_errors(
     if {"x0", "y0"} <= motion.channels.keys():
         among += _of_receiver(motion, timing, Sensors.from_text(runs.model.equations.sensors), length)
     among = [one for one in among if all(e.name not in runs.model.parameters for e in one.errors)]
-    errors = [e for one in among for e in one.errors]
+    courses = tuple(_of_courses(runs, records, delays))
+    errors = [*(e for one in among for e in one.errors), *courses]
     if not errors:
         return None
     candidates = [Candidate(e.name, e.problem_with, _ERROR_STEP * (e.deviation or 1.0)) for e in errors]
     if isinstance(estimate, PointEstimate):
         estimate = _with_noise_beside_errors(estimate, errors, candidates)
-    return ErrorInformation(tuple(among), score_test(estimate, candidates))
+    return ErrorInformation(tuple(among), courses, score_test(estimate, candidates))
 
 
 def _with_noise_beside_errors(
@@ -449,6 +484,6 @@ def with_undetected_sensor_errors(estimation: Estimation, information: ErrorInfo
     moves = information.test.by_candidates[:count]
     interval, widened = estimation.interval, estimation.interval.covariance.copy()
     widened[:count, :count] += moves @ (covariance + np.outer(values, values)) @ moves.T
-    meaning = f"{interval.meaning}, with lags, levers and zeros of instruments that the records leave open"
+    meaning = f"{interval.meaning}, with errors of instruments and courses of inputs that the records leave open"
     interval = replace(interval, covariance=widened, meaning=meaning)
     return replace(estimation, uncertainty=replace(estimation.uncertainty, interval=interval))

@@ -76,7 +76,7 @@ def open_steps(task: Identification) -> tuple[tuple[str, ...], tuple[InputStep, 
 
     Inputs that change in one row do so at one time: they come in one message.
     """
-    problem, records = output_error_estimate(task.estimation).problem, task.runs.records
+    problem, records = task.beginning.shooting.problem, task.runs.records
     model = problem.model
     late = {n.correction.input for n in problem.nuisances if n.correction.kind == "delay" and n.is_spread_fixed}
     declared = {n for n in late for r in records if n in r and r.channel(n).between}
@@ -151,7 +151,9 @@ def _timed_steps(task: Identification, names: Sequence[str], steps: tuple[InputS
 
     They are likelier by more than one for each share, each an unknown (Akaike 1974), in effective samples.
     """
-    before, records = output_error_estimate(task.estimation), task.runs.records
+    is_part = task.beginning.runs is not task.runs  # of long records: the estimate over all of them
+    before = output_error_estimate(task.estimation) if is_part else task.beginning.shooting
+    records = task.runs.records
     plain, first = join_segments(before.problem)
     local = before.optimum.local[first]
     alone = levenberg_marquardt(plain, before.common_parameters, local, evaluations=_EVALUATIONS)
