@@ -203,7 +203,7 @@ class SensorError:
     least: float = -np.inf
 
 
-def _taken_from(slopes: Mapping[str, Array]) -> Callable[[OutputError, float], OutputError]:
+def _measured(slopes: Mapping[str, Array]) -> Callable[[OutputError, float], OutputError]:
     """The problem of records without an error; slopes: channel -> what a unit of it adds to what is shown, (rows,)."""
 
     def problem_with(problem: OutputError, size: float) -> OutputError:
@@ -277,11 +277,11 @@ def _of_yaw(motion: _Motion, timing: "_Timing") -> Iterator[Suspect]:
     """Errors of a compass and a yaw rate that are read together."""
     r, ones = motion.channels["r"], np.ones(len(motion.channels["r"]))
     yield Suspect(
-        "the yaw rate has a bias", (SensorError("r_bias", "rad/s", _BIAS, _BIAS, _LEAST_BIAS, _taken_from({"r": ones})),),
+        "the yaw rate has a bias", (SensorError("r_bias", "rad/s", _BIAS, _BIAS, _LEAST_BIAS, _measured({"r": ones})),),
         lambda s: replace(s, yaw_rate_bias=True), "yaw_rate_bias = true",
     )  # fmt: skip
     yield Suspect(
-        "the yaw rate is scaled", (SensorError("r_scale", "1", _SCALE, _SCALE, _LEAST_SCALE, _taken_from({"r": r})),),
+        "the yaw rate is scaled", (SensorError("r_scale", "1", _SCALE, _SCALE, _LEAST_SCALE, _measured({"r": r})),),
         lambda s: replace(s, yaw_rate_scale=True), "yaw_rate_scale = true",
     )  # fmt: skip
     for late, channel in ((Late.HEADING, "psi"), (Late.YAW_RATE, "r")):
@@ -308,7 +308,7 @@ class _Timing:
         stated = [deviation for c in channels if (deviation := self.delays.get(c)) is not None]
         deviation, negligible = 0.0 if 0.0 in stated else _LAG, max(0.5 * interval, _LEAST_LAG)
         undetected = min(stated, default=0.0 if self.is_known else interval / UNIFORM)
-        error = SensorError(lag_name(late), "s", deviation, undetected, negligible, _taken_from(slopes), least)
+        error = SensorError(lag_name(late), "s", deviation, undetected, negligible, _measured(slopes), least)
         instrument = f"the {late.replace('_', ' ')}"
         return Suspect(
             f"{instrument} is late", (error,), lambda s: replace(s, late=(*s.late, late)), f'late = ["{late}"]',
@@ -332,7 +332,7 @@ def _of_receiver(motion: _Motion, timing: _Timing, stated: Sensors, length: floa
     yield Suspect(
         "the antenna stands elsewhere",
         tuple(
-            SensorError(name, "m", aboard, aboard, _LEAST_LEVER * length, _taken_from(arm))
+            SensorError(name, "m", aboard, aboard, _LEAST_LEVER * length, _measured(arm))
             for name, arm in (("x_antenna", x), ("y_antenna", y))
         ),
         lambda s: replace(s, antenna=Antenna(sd=aboard)), f"antenna = {{ sd = {aboard:.2g} }}",
