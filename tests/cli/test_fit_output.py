@@ -10,9 +10,8 @@ from tests.reporting.fabricated import fabricated_fit
 from tests.reporting.fabricated_study import fabricated_study
 
 from seatrial.cli.finding_output import print_warnings
-from seatrial.cli.fit_output import print_fit
+from seatrial.cli.result_output import print_fit, print_study
 from seatrial.cli.screen import Detail, printing
-from seatrial.cli.study_output import print_study
 from seatrial.core.text.words import sentence
 from seatrial.core.values import Finding, Severity
 from seatrial.data.folder.model_file import model_text

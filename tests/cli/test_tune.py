@@ -12,7 +12,7 @@ from tests.fits import example_fit
 from tests.reporting.fabricated_tuning import fabricated_autopilot, fabricated_bare, fabricated_fin
 
 from seatrial import api, cli
-from seatrial.cli.tuning_output import print_tuning
+from seatrial.cli.result_output import print_tuning
 from seatrial.control.loopfile.load import tuning_task
 from seatrial.core.results.tuning import Tuning
 from seatrial.core.values import InputError, Ship

@@ -6,9 +6,8 @@ from tests.reporting.fabricated import fabricated_fit
 from tests.reporting.section_text import cells, header
 
 from seatrial.core.results import Fit
-from seatrial.reporting.ahead import frequency_section, k_step_section
-from seatrial.reporting.figures.frequency_chart import frequency_chart
-from seatrial.reporting.figures.k_step_chart import k_step_chart
+from seatrial.reporting.figures.response_charts import frequency_chart, k_step_chart
+from seatrial.reporting.prediction_chapter import frequency_section, k_step_section
 
 
 def test_errors_stand_by_horizon_with_those_of_the_last_value(fit: Fit) -> None:

@@ -7,8 +7,7 @@ import pytest
 
 from seatrial.core.results import Coefficient, Consequence, Fit, Identifiability, Symmetry
 from seatrial.core.results.fit import Collinearity, Sensitivity
-from seatrial.reporting.coefficient_uses import Use, coefficient_uses, meaning_sentences
-from seatrial.reporting.correlations import Partner
+from seatrial.reporting.coefficients_chapter import Partner, Use, coefficient_uses, meaning_sentences
 
 PLAIN = Coefficient("a", "1", 2.0, 0.05, 1.9, 2.1, False)
 

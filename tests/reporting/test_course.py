@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 
 from seatrial.core.results import ChannelScore, Fit, Stability, WindowScore
-from seatrial.reporting.course import course_facts, growth_clause, growth_time, unstable_course
-from seatrial.reporting.grades import is_missed
 from seatrial.reporting.key_facts import key_facts
-from seatrial.reporting.verdict import verdict
+from seatrial.reporting.measures import course_facts, growth_clause, growth_time, unstable_course
+from seatrial.reporting.verdict import is_missed, verdict
 
 
 def unstable(seconds: float) -> Stability:

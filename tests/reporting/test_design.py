@@ -10,10 +10,19 @@ from tests.reporting.fabricated_design import fabricated_design
 from tests.reporting.test_page import HOSTILE, parsed
 
 from seatrial.core.results import Actuator, Design, TimedOrder, TrialLimits
-from seatrial.reporting.design import html, minutes_seconds, order_table, percent_text, sections
-from seatrial.reporting.design_text import actuator_text, key_facts, order_warnings, verdict
-from seatrial.reporting.first_screen import KeyFact
+from seatrial.reporting.design import (
+    actuator_text,
+    html,
+    key_facts,
+    minutes_seconds,
+    order_table,
+    order_warnings,
+    percent_text,
+    sections,
+    verdict,
+)
 from seatrial.reporting.measures import manoeuvre_name
+from seatrial.reporting.section import KeyFact
 
 LARGEST = 300_000
 

@@ -12,7 +12,7 @@ from seatrial.core.figures.chart import Stroke
 from seatrial.core.figures.run import RunView, Track
 from seatrial.core.results import Fit
 from seatrial.reporting.document import chapters_page, environment
-from seatrial.reporting.first_screen import FirstScreen
+from seatrial.reporting.section import FirstScreen
 from seatrial.reporting.time_figures import run_figure
 
 

@@ -8,7 +8,7 @@ from tests.data.draft.test_draft import BASE, TRUTH, write
 
 from seatrial.api import draft_trial
 from seatrial.reporting.draft import html, verdict
-from seatrial.reporting.figures.log_parts import log_view
+from seatrial.reporting.figures.record_charts import log_view
 
 
 def test_the_page_shows_columns_runs_and_parts(tmp_path: Path) -> None:

@@ -8,10 +8,10 @@ from tests.reporting.fabricated_tuning import fabricated_fin
 from tests.reporting.section_text import cells, header
 
 from seatrial.cli.application import result_document
-from seatrial.cli.tuning_output import print_tuning
+from seatrial.cli.result_output import print_tuning
 from seatrial.core.results.tuning import GainSearch, Tuning, TuningMethod
-from seatrial.reporting.gain_search import convergence_chart, scatter_chart, search_sentences, search_table
 from seatrial.reporting.tuning import html
+from seatrial.reporting.tuning_rows import convergence_chart, scatter_chart, search_sentences, search_table
 
 
 @pytest.fixture(scope="module")

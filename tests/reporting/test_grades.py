@@ -10,7 +10,7 @@ from tests.reporting.test_course import unstable, with_course
 from seatrial.core.results import ChannelScore, Divergence, Fit, Prediction, WindowScore
 from seatrial.core.results.prediction import motion_spreads
 from seatrial.core.values import Record
-from seatrial.reporting.grades import (
+from seatrial.reporting.verdict import (
     ErrorShare,
     Grade,
     error_shares,

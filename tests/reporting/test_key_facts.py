@@ -11,10 +11,9 @@ from seatrial.core.results.fit import Collinearity
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Record, Severity
 from seatrial.numerics.optimise import Status
-from seatrial.reporting.first_screen import KeyFact
 from seatrial.reporting.key_facts import first_screen, key_facts, whole_run_share
-from seatrial.reporting.prediction_chapter import ranged_motions
-from seatrial.reporting.windows import baseline_sentence, shortest_judged
+from seatrial.reporting.prediction_chapter import baseline_sentence, ranged_motions, shortest_judged
+from seatrial.reporting.section import KeyFact
 
 
 def rows(fit: Fit) -> dict[str, KeyFact]:

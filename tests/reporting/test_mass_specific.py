@@ -7,7 +7,7 @@ from tests.reporting.test_thruster_chapter import CRAFT
 
 from seatrial.core.results import Fit
 from seatrial.physics.models import model_named
-from seatrial.reporting.mass_specific import mass_specific_unit, with_mass_specific_units
+from seatrial.reporting.model_chapter import mass_specific_unit, with_mass_specific_units
 
 
 @pytest.mark.parametrize(("unit", "text"), [

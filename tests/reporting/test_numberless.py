@@ -11,7 +11,8 @@ from tests.reporting.test_verification import LEGS, TURNS
 
 from seatrial.core.results.tuning import Tuning
 from seatrial.core.results.verification import Verification
-from seatrial.reporting import tuning, tuning_text, verification, verification_text
+from seatrial.reporting import tuning, tuning_text, verification
+from seatrial.reporting import verification as verification_text
 
 TUNINGS = {"fin": fabricated_fin, "autopilot": fabricated_autopilot}
 

@@ -6,7 +6,7 @@ from tests.reporting.test_roll_chapter import KNOWN
 from tests.reporting.test_thruster_chapter import CRAFT
 
 from seatrial.core.results import CraftMeasure, Fit, IntervalEstimate, PointMotion, Seakeeping
-from seatrial.reporting.operators import operators_sentence
+from seatrial.reporting.key_facts import operators_sentence
 
 
 def test_a_roll_model_gives_period_and_damping(fit: Fit) -> None:

@@ -23,7 +23,7 @@ from seatrial.physics.models import model_named
 from seatrial.physics.models.waterjet import waterjet
 from seatrial.physics.simulate.replay import inputs_of, trajectory
 from seatrial.reporting.pages import report_page
-from seatrial.reporting.resimulation import _coded, corrected_inputs, replay_script, resimulation
+from seatrial.reporting.runs import _coded, corrected_inputs, replay_script, resimulation
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
@@ -89,7 +89,7 @@ def test_the_worst_run_is_shown_first_and_those_that_the_page_has_no_room_for_ar
     text = resimulation(with_two_runs(fit))
     assert [len(run["start"]) for run in data(text)["runs"]] == [len(fit.model.states)] * 2
     assert f"<option selected>{held.record}</option><option>shorter</option>" in text
-    monkeypatch.setattr("seatrial.reporting.resimulation.MAX_LETTERS", 10)
+    monkeypatch.setattr("seatrial.reporting.runs.MAX_LETTERS", 10)
     text = resimulation(with_two_runs(fit))
     assert len(data(text)["runs"]) == 1 and "Left out, so that the page stays small: shorter." in text
 

@@ -6,7 +6,7 @@ from tests.reporting.section_text import cells, header
 
 from seatrial.core.results import Fit, IntervalEstimate, RollCharacteristics
 from seatrial.reporting.page import html
-from seatrial.reporting.roll_chapter import roll_section
+from seatrial.reporting.seakeeping_chapter import roll_section
 
 AMPLITUDE = tuple(0.02 * k for k in range(1, 11))
 KNOWN = RollCharacteristics(

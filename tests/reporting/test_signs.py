@@ -15,7 +15,7 @@ from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.published import kvlcc2
 from seatrial.physics.models.waterjet import waterjet
 from seatrial.physics.simulate.replay import trajectory
-from seatrial.reporting.design_text import order_meaning
+from seatrial.reporting.design import order_meaning
 from seatrial.reporting.measures import manoeuvre_name
 from seatrial.reporting.model_chapter import sign_conventions
 from seatrial.reporting.verdict import run_name

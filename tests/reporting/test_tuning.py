@@ -13,18 +13,20 @@ from tests.reporting.test_page import HOSTILE, parsed
 
 from seatrial.core.results.tuning import PairedDifference, Tuning
 from seatrial.core.values import Finding, Severity
-from seatrial.reporting.first_screen import KeyFact
+from seatrial.reporting.section import KeyFact
 from seatrial.reporting.station_part import (
     capability_figure,
     capability_sentence,
+    corner_figure,
+    corner_sentence,
     footprint_figure,
     front_figure,
     gain_rows,
     margin_sentence,
     precision_sentence,
     thruster_rows,
+    track_rows,
 )
-from seatrial.reporting.track_part import corner_figure, corner_sentence, track_rows
 from seatrial.reporting.tuning import html
 from seatrial.reporting.tuning_rows import (
     disturbance_headings,

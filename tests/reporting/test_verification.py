@@ -14,8 +14,15 @@ from seatrial.core.results.verification import (
     VerifiedQuantity,
 )
 from seatrial.reporting.pages import report_page
-from seatrial.reporting.verification import changes_chart, html, quantity_forest, sections, spectra_chart
-from seatrial.reporting.verification_text import key_facts, verdict
+from seatrial.reporting.verification import (
+    changes_chart,
+    html,
+    key_facts,
+    quantity_forest,
+    sections,
+    spectra_chart,
+    verdict,
+)
 
 NAN = float("nan")
 REDUCTION = VerifiedQuantity("reduction", "1", 0.78, 0.77, 0.79, 0.65, 0.6, 0.7, False)

@@ -8,9 +8,9 @@ from tests.reporting.section_text import cells
 
 from seatrial.core.results import Coefficient, Fit, OffsetPopulation
 from seatrial.numerics.optimise import Status
-from seatrial.reporting import summary
-from seatrial.reporting.citations import Citations
-from seatrial.reporting.correlations import correlation_text, strong_partners
+from seatrial.reporting import model_chapter as summary
+from seatrial.reporting.coefficients_chapter import correlation_text, strong_partners
+from seatrial.reporting.model_chapter import Citations
 from seatrial.reporting.records_chapter import offset_section
 
 

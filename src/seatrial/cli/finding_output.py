@@ -1,14 +1,31 @@
-"""Findings on the terminal, by severity."""
+"""Findings on the terminal, and corrections that were made."""
 
 from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import typer
 
-from seatrial.cli.screen import is_quiet, is_verbose, line_width, print_heading, print_lines, print_verbatim
+from seatrial.cli.next_steps import after_check
+from seatrial.cli.screen import (
+    in_shell,
+    is_quiet,
+    is_verbose,
+    line_width,
+    print_file,
+    print_heading,
+    print_lines,
+    print_next,
+    print_verbatim,
+)
 
 if TYPE_CHECKING:
     from seatrial.core.values import Finding
+    from seatrial.data.trial.load import Correction
+
+
+# Findings on the terminal, by severity.
 
 SEVERITY_MARK = {"error": "ERROR  ", "warning": "warning", "info": "note   "}
 _NOUNS = {"error": "error", "warning": "warning", "info": "note"}
@@ -100,3 +117,36 @@ def _print_errors(findings: "Sequence[Finding]") -> None:
     for finding in findings:
         if finding.severity.value == "error":
             print(ascii_text(f"{SEVERITY_MARK['error'].strip()} [{finding.code}] {finding.text}"))
+
+
+# What `check --fix` prints and writes: the corrected trial file.
+
+
+def write_correction(correction: "Correction", trial: Path, findings: "tuple[Finding, ...]", per_code: int) -> None:
+    """Write the corrected trial file beside the original, and print what was changed and what is left.
+
+    findings: of `check` on the file as it is, across its blocks too.
+
+    Raises:
+        InputError: there is a corrected file already.
+        Exit: nothing is corrected and errors are left.
+    """
+    from seatrial.core.values import InputError
+    from seatrial.core.values.files import write_atomically
+    from seatrial.data.trial.load import change_lines
+
+    fixed = trial.with_name(f"{trial.stem}.fixed.toml")
+    print_lines(change_lines(correction))
+    if not correction.applied:
+        why = "no error has an edit that removes it" if has_errors(findings) else "the checks find no error"
+        print_finding("info", f"nothing to correct: {why}; no file is written")
+        print_findings(findings, per_code)
+        print_next(after_check(tuple(replace(finding, edits=()) for finding in findings), trial))
+        exit_if_errors(findings)
+        return
+    if fixed.exists():
+        raise InputError(f"'{fixed}' exists and is not overwritten; move or remove it")
+    write_atomically(fixed, correction.text.encode())
+    print_findings(correction.findings, per_code, f"seatrial check {in_shell(fixed)} --all shows them")
+    print_file("corrected", fixed)
+    print_next(f"seatrial check {in_shell(fixed)}")

@@ -1,7 +1,8 @@
-"""Commands on a model: tune, simulate, models."""
+"""The commands on models: list, simulate, export."""
 
 import math
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -9,16 +10,58 @@ import typer
 
 from seatrial.cli.application import Json, OwnModelPath, Seed, app, own_model, result_document, write_json
 from seatrial.cli.finding_output import print_finding
-from seatrial.cli.fit_output import print_measures
 from seatrial.cli.progress import progress_reporter
-from seatrial.cli.run_errors import errors_text
-from seatrial.cli.screen import print_file, print_lines
-from seatrial.cli.tuning_output import print_tuning, print_verification
+from seatrial.cli.result_output import errors_text, print_measures, print_tuning, print_verification
+from seatrial.cli.screen import print_file, print_heading, print_lines, print_next, print_table, print_verbatim
 
 if TYPE_CHECKING:
     from seatrial.control.task import TuningTask
     from seatrial.core.values import Record
     from seatrial.data.folder.model_file import ModelFile
+    from seatrial.data.trial.model_table import FilledValue, ModelGuide
+    from seatrial.physics.models import ModelSummary
+
+
+# The list of models on the screen.
+
+
+def print_models(summaries: "Sequence[ModelSummary]") -> None:
+    """Print name, states, inputs and source of each model; why an installed one cannot be loaded."""
+    rows = []
+    for model in summaries:
+        signature = f"states {', '.join(model.states)}; inputs {', '.join(model.inputs)}"
+        rows.append([model.name, model.problem or signature])
+        rows += [["", text] for text in (model.source, model.package and f"installed by {model.package}") if text]
+    print_table(rows, flush_left=(0, 1))
+    print_next("seatrial models NAME says what a model needs, with a trial file to begin with")
+
+
+def print_model_guide(guide: "ModelGuide") -> None:
+    """Print what a model needs, what is filled from where, and the tables of a trial file to begin with."""
+    from seatrial.core.text.words import enumeration
+
+    print_lines([f"{guide.name}: {guide.source}"])
+    needed = [name for name in guide.inputs if name not in guide.optional_inputs]
+    needs = f"{enumeration(needed)}, and " if needed else ""
+    print_lines([f"records need {needs}one or more of {', '.join(guide.observables)}"])
+    if guide.optional_inputs:
+        print_lines([f"where recorded: {enumeration(list(guide.optional_inputs))}"])
+    print_lines([f"estimated unless you say otherwise: {', '.join(guide.free)}"])
+    by_source: dict[str, list[FilledValue]] = {}
+    for value in guide.filled:
+        by_source.setdefault(value.source, []).append(value)
+    print_lines(["filled, where you do not state it:"])
+    for source, values in by_source.items():
+        print_lines([f"  {', '.join(_with_deviation(value) for value in values)}: {source}"])
+    print_heading("A trial file begins so ('seatrial init LOG... --out trial.toml' writes the records)")
+    print_verbatim(["", *guide.trial.splitlines()])
+
+
+def _with_deviation(value: "FilledValue") -> str:
+    return f"{value.name} (prior sd {value.deviation:g})" if value.deviation else value.name
+
+
+# Commands on a model: tune, simulate, models.
 
 INTERVALS_OF_COEFFICIENTS = (
     "intervals hold what the coefficients may be wrong by, in still water and if the model's terms are the right ones; "
@@ -272,7 +315,6 @@ def models(
     from dataclasses import asdict
 
     from seatrial import api
-    from seatrial.cli.model_table import print_model_guide, print_models
 
     if name:
         guide = api.model_guide(name)
@@ -299,3 +341,51 @@ def _name_and_value(text: str) -> tuple[str, float]:
         return name.strip(), float(value)
     except ValueError:
         raise InputError(f"--set {text}: write NAME=VALUE with a number in SI units, e.g. --set n=10.2") from None
+
+
+# The command export: a model as files of another tool.
+
+
+@app.command()
+def export(
+    model_file: Annotated[
+        Path, typer.Argument(metavar="MODEL.toml", help="Model file, as identify writes it, or its folder.")
+    ],
+    to: Annotated[
+        str | None,
+        typer.Option("--to", metavar="TARGET", help="c99, fmu, casadi, matlab, vrx, gazebo or ardupilot; see --list."),
+    ] = None,
+    out: Annotated[Path | None, typer.Option("--out", metavar="PATH", help="New file or folder.")] = None,
+    gains: Annotated[
+        Path | None, typer.Option("--gains", metavar="GAINS.toml", help="gains.toml of tune, for ardupilot.")
+    ] = None,
+    show_list: Annotated[bool, typer.Option("--list", help="Show which targets suit the model, and why not.")] = False,
+    model: OwnModelPath = None,
+    json: Json = None,
+    seed: Seed = 0,  # noqa: ARG001
+) -> None:
+    """Export a model to another tool, with units, signs, identified range and provenance in every file.
+
+    Example: seatrial export results/kvlcc2/model.toml --to c99 --out kvlcc2
+
+    What suits a model: seatrial export results/kvlcc2/model.toml --list
+    """
+    from seatrial import api
+    from seatrial.core.values import InputError
+    from seatrial.data.folder.gains_file import controller_gains
+    from seatrial.exporting import TARGETS
+
+    file = model_file if model is None else api.load_model(model_file, own_model(model))
+    if show_list:
+        reasons = api.export_targets(file)
+        print_lines(
+            f"{name:10s} {(reason and f'no: {reason}') or TARGETS[name].meaning}" for name, reason in reasons.items()
+        )
+        write_json(json, lambda: {"targets": reasons})
+        return
+    if to is None or out is None:
+        raise InputError("give --to TARGET and --out PATH, or --list to see what suits the model")
+    result = api.export(file, to, out, None if gains is None else controller_gains(gains))
+    print_lines(result.notes)
+    write_json(json, lambda: {"target": to, "path": str(out), "files": list(result.files), "notes": list(result.notes)})
+    print_file("exported", out)

@@ -34,7 +34,7 @@ def after_fit(fit: "Fit", folder: Path, trial: Path | None = None) -> str:
 
     trial: the file whose runs are replayed where the model steers no manoeuvre; None: there is none.
     """
-    from seatrial.reporting.grades import is_missed
+    from seatrial.reporting.verdict import is_missed
 
     runs = sum(p.role == "training" for p in fit.predictions)
     if trial is not None and not fit.validation and runs > 1:

@@ -7,14 +7,10 @@ import typer
 
 from seatrial.cli.application import Json, OwnModelPath, Seed, app, own_model, result_document, write_json
 from seatrial.cli.finding_output import print_warnings
-from seatrial.cli.fit_output import print_fit
 from seatrial.cli.next_steps import after_fit
-from seatrial.cli.poster_output import print_poster
 from seatrial.cli.progress import progress_reporter
-from seatrial.cli.screen import print_file, print_next
-from seatrial.cli.section_output import print_sections
-from seatrial.cli.study_output import print_study
-from seatrial.cli.summary_output import print_summary
+from seatrial.cli.result_output import print_fit, print_poster, print_study, print_summary
+from seatrial.cli.screen import print_file, print_next, print_sections
 
 
 @app.command()

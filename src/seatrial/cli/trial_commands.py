@@ -6,13 +6,11 @@ from typing import Annotated
 import typer
 
 from seatrial.cli.application import Json, OwnModelPath, Seed, TrialPath, app, own_model, result_document, write_json
-from seatrial.cli.correction_output import write_correction
-from seatrial.cli.design_output import print_design
-from seatrial.cli.finding_output import exit_if_errors, print_findings
-from seatrial.cli.fit_output import print_fit
+from seatrial.cli.finding_output import exit_if_errors, print_findings, write_correction
 from seatrial.cli.follow_output import journal_path, live_display, print_outcome, stop_on_signal, stream_heading
 from seatrial.cli.next_steps import after_check, after_fit
 from seatrial.cli.progress import progress_reporter
+from seatrial.cli.result_output import print_design, print_fit
 from seatrial.cli.screen import print_file, print_next
 
 Method = Annotated[

@@ -12,7 +12,7 @@ from seatrial.core.text.numbers import exact, fixed, significant
 from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import display_unit
 from seatrial.core.values.notation import unit_text
-from seatrial.reporting.figures.relative_errors import CoefficientError, estimator_chart
+from seatrial.reporting.figures.coefficient_charts import CoefficientError, estimator_chart
 from seatrial.reporting.section import Cell, Column, Level, Picture, Section, TextTable, name, number, table_of, words
 
 # distance from the fit in its standard errors up to which a coefficient is near, and up to which it is off

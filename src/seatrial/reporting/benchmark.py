@@ -12,10 +12,17 @@ from seatrial.core.results.campaign import Benchmark, CheckedClaim, MethodScore,
 from seatrial.core.text.numbers import DASH, fixed, p_value, significant
 from seatrial.core.text.words import counted, enumeration
 from seatrial.reporting.document import chapters_page
-from seatrial.reporting.finding_chapter import finding_section
-from seatrial.reporting.first_screen import FirstScreen, KeyFact
 from seatrial.reporting.model_chapter import version_section
-from seatrial.reporting.section import Picture, Section, TextTable, fact_table, plain_table
+from seatrial.reporting.section import (
+    FirstScreen,
+    KeyFact,
+    Picture,
+    Section,
+    TextTable,
+    fact_table,
+    finding_section,
+    plain_table,
+)
 
 _OTHERS = Stroke(GREY, 1.0)  # px, chosen
 _LIMIT = Stroke(GREY, 1.2, "5 3")  # px, chosen

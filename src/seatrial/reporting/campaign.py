@@ -39,10 +39,8 @@ from seatrial.core.text.numbers import DASH, duration, exact, fixed, significant
 from seatrial.core.text.words import counted, enumeration
 from seatrial.core.values import Severity
 from seatrial.reporting.document import chapters_page
-from seatrial.reporting.finding_chapter import finding_section
-from seatrial.reporting.first_screen import FirstScreen, KeyFact
 from seatrial.reporting.model_chapter import version_section
-from seatrial.reporting.section import Picture, Section, plain_table
+from seatrial.reporting.section import FirstScreen, KeyFact, Picture, Section, finding_section, plain_table
 
 _HISTOGRAM_CAPTION = (
     "Errors over the Cramér-Rao bound; without a known bound, deviations from the mean over their standard deviation. "

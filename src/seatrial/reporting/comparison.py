@@ -28,11 +28,9 @@ from seatrial.core.text.numbers import DASH, exact, p_value, significant
 from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import Severity
 from seatrial.reporting.document import chapters_page
-from seatrial.reporting.finding_chapter import finding_section
-from seatrial.reporting.first_screen import FirstScreen, KeyFact
 from seatrial.reporting.measures import manoeuvre_name, simulated_measure_label
 from seatrial.reporting.model_chapter import version_section
-from seatrial.reporting.section import Level, Section, TextTable, plain_table
+from seatrial.reporting.section import FirstScreen, KeyFact, Level, Section, TextTable, finding_section, plain_table
 
 _AGREES, _DIFFERS, _ZERO = Stroke(ACCENT, 2.0), Stroke(SECOND, 2.0), Stroke("#8a9299", 1.2)  # px, chosen
 _SIZE = 3.2  # px, chosen

@@ -11,9 +11,8 @@ from markupsafe import Markup
 from seatrial.core.figures.svg_text import night_colour
 from seatrial.core.pages import shell
 from seatrial.core.text.numbers import duration, significant
-from seatrial.reporting.first_screen import FirstScreen
 from seatrial.reporting.mathml import inline, pieces
-from seatrial.reporting.section import Section
+from seatrial.reporting.section import FirstScreen, Section
 
 if TYPE_CHECKING:
     from jinja2 import Environment

@@ -4,9 +4,8 @@ from seatrial.core.text.words import counted
 from seatrial.core.values import Record
 from seatrial.data.draft import ColumnGuess, DraftTrial, LogRun, LogStretch
 from seatrial.reporting.document import chapters_page
-from seatrial.reporting.figures.log_parts import log_view
-from seatrial.reporting.first_screen import FirstScreen
-from seatrial.reporting.section import Cell, Picture, Section, name, number, table_of, words
+from seatrial.reporting.figures.record_charts import log_view
+from seatrial.reporting.section import Cell, FirstScreen, Picture, Section, name, number, table_of, words
 from seatrial.reporting.time_figures import run_figure
 
 _OPEN_RUNS = 3  # runs whose drawing is unfolded; chosen: what one scrolls through

@@ -1,4 +1,4 @@
-"""The chapter on identifiability: what the records determine and what they do not; nothing is computed."""
+"""The chapter of what the records determine, with the draws of a posterior."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -9,29 +9,82 @@ from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import (
     CandidateModel,
     Consequence,
+    CredibleInterval,
     DisturbanceCandidate,
     Fit,
     Identifiability,
     NoiseModel,
+    Posterior,
     Symmetry,
 )
-from seatrial.core.text.numbers import DASH, fixed, p_value, rounded, signed_percent, significant
+from seatrial.core.text.numbers import (
+    DASH,
+    EstimateText,
+    estimate_text,
+    fixed,
+    p_value,
+    rounded,
+    signed_percent,
+    significant,
+)
 from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import NOT_MEASURED, display_unit
 from seatrial.core.values.notation import channel_meaning, channel_unit, unit_text
-from seatrial.reporting.coefficient_uses import (
+from seatrial.reporting.coefficients_chapter import (
     WELL_DETERMINED,
     CoefficientUse,
     Use,
+    assumption,
     coefficient_uses,
+    correlation_section,
     meaning_sentences,
+    strong_partners,
 )
-from seatrial.reporting.coefficients_chapter import assumption, correlation_section
-from seatrial.reporting.correlations import strong_partners
-from seatrial.reporting.figures.directions import direction_chart, profile_chart
-from seatrial.reporting.posterior_part import posterior_section
+from seatrial.reporting.figures.coefficient_charts import direction_chart, posterior_densities, profile_chart
 from seatrial.reporting.record_gaps import RecordGap, record_gaps
 from seatrial.reporting.section import Cell, Level, Picture, Section, TextTable, name, number, table_of, words
+
+# Draws from the posterior: credible intervals next to the others, how far the chains agree, densities.
+
+_CAPTION = (
+    "Draws of each coefficient; between the lines lie 95 % of them, on the dashed lines the ends of the interval "
+    "without sampling."
+)
+
+
+def posterior_section(posterior: Posterior | None) -> Section:
+    """Return the part on draws from what records and priors leave open; empty where there are none."""
+    if posterior is None:
+        return Section("")
+    table = table_of(
+        posterior.coefficients,
+        name("Coefficient", lambda c: c.name),
+        words("unit", lambda c: unit_text(c.unit)),
+        number("mean", lambda c: f"{_text(c).value}{_text(c).power}"),
+        number("sd", lambda c: _text(c).error),
+        number("95 % credible", lambda c: f"[{_text(c).lower}, {_text(c).upper}]"),
+        number("without sampling", lambda c: f"[{_without(c).lower}, {_without(c).upper}]"),
+        number("R-hat", lambda c: fixed(c.r_hat, 3)),
+        number("independent draws", lambda c: fixed(c.effective_size, 0)),
+    )
+    return Section(
+        "Draws from what records and priors leave open", sentences=posterior.sentences, table=table,
+        note=f"Without sampling: {posterior.other_intervals}.",
+        pictures=(Picture(lambda: svg(posterior_densities(posterior)), _CAPTION),),
+    )  # fmt: skip
+
+
+def _text(c: CredibleInterval) -> EstimateText:
+    factor = display_unit(c.unit)[0]
+    return estimate_text(factor * c.mean, factor * c.standard_deviation, factor * c.lower, factor * c.upper)
+
+
+def _without(c: CredibleInterval) -> EstimateText:
+    factor = display_unit(c.unit)[0]
+    return estimate_text(factor * c.mean, factor * c.standard_deviation, factor * c.other_lower, factor * c.other_upper)
+
+
+# The chapter on identifiability: what the records determine and what they do not; nothing is computed.
 
 _LIMITS = (WELL_DETERMINED, 1.0)
 """Relative standard deviations between which combinations are well, poorly and not determined; chosen."""

@@ -5,26 +5,25 @@ from collections.abc import Callable, Iterator
 from seatrial.core.results import Fit
 from seatrial.core.results.fields import MissingParts
 from seatrial.reporting import (
-    ahead,
     baselines,
     coefficients_chapter,
-    course,
-    finding_chapter,
     identifiability_chapter,
     key_facts,
     model_chapter,
     prediction_chapter,
     published_chapter,
     records_chapter,
-    roll_chapter,
     runs,
     seakeeping_chapter,
-    summary,
     thruster_chapter,
 )
-from seatrial.reporting.citations import Citations
+from seatrial.reporting import measures as course
+from seatrial.reporting import model_chapter as summary
+from seatrial.reporting import prediction_chapter as ahead
+from seatrial.reporting import seakeeping_chapter as roll_chapter
+from seatrial.reporting import section as finding_chapter
 from seatrial.reporting.document import chapters_page
-from seatrial.reporting.mass_specific import with_mass_specific_units
+from seatrial.reporting.model_chapter import Citations, with_mass_specific_units
 from seatrial.reporting.section import Level, Section
 
 

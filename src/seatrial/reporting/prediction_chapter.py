@@ -1,17 +1,19 @@
-"""Chapters on runs: how those held out are predicted, and how those that were fitted are reproduced."""
+"""The predictions' chapter: whole runs, windows, and samples ahead."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
-from seatrial.core.results import Extrapolation, Fit, Measure, Prediction, WindowScore
+from seatrial.core.figures.svg_text import svg
+from seatrial.core.results import Extrapolation, Fit, FrequencyResponse, KStepErrors, Measure, Prediction, WindowScore
 from seatrial.core.results.fit_charts import has_modelled_position, prediction_view
 from seatrial.core.results.prediction import ChannelScore
 from seatrial.core.text.numbers import column_texts, duration, exact, fixed, interval, ratio_text, significant
-from seatrial.core.text.words import counted, enumeration
-from seatrial.core.values import Record
+from seatrial.core.text.words import counted, enumeration, sentence
+from seatrial.core.values import Record, display_unit
+from seatrial.core.values.notation import channel_letter
 from seatrial.core.values.record_chart import has_track
-from seatrial.reporting.grades import DEGREES, ERROR_LABELS, GRADE_NOTE
+from seatrial.reporting.figures.response_charts import frequency_chart, k_step_chart
 from seatrial.reporting.measures import (
     NOT_DETERMINED,
     IntervalVerdict,
@@ -21,16 +23,140 @@ from seatrial.reporting.measures import (
     measure_decimals,
     measure_label,
 )
-from seatrial.reporting.repeats import MAX_NAMES, repeat_clause, repeated_runs
-from seatrial.reporting.resimulation import resimulation
-from seatrial.reporting.runs import (
-    drawn_predictions,
-    hidden_runs_sentence,
-    reading_note,
-)
+from seatrial.reporting.runs import drawn_predictions, hidden_runs_sentence, reading_note, resimulation
 from seatrial.reporting.section import Cell, Column, Level, Picture, Section, TextTable, number, table_of, words
 from seatrial.reporting.time_figures import run_figure
-from seatrial.reporting.windows import WINDOW_NOTE, baseline_sentence, shortest_judged
+from seatrial.reporting.verdict import DEGREES, ERROR_LABELS, GRADE_NOTE, MAX_NAMES, repeat_clause, repeated_runs
+
+# Windows of held-out runs on the page: their scores next to predictions that need no fit.
+
+WINDOW_NOTE = (
+    "Errors in windows: root-mean-square errors open loop, each window from the state estimated in its first seconds. "
+    "Fit in windows: 100 % less the error over the spread about the mean (NRMSE, as MATLAB's compare): 100 is perfect, "
+    "0 no better than the mean. In brackets R², one less the squares of the errors over those about the mean."
+)
+"""How the tables of windows are to be read, once for all runs."""
+
+
+def shortest_judged(fit: Fit) -> float:
+    """Return the s of windows from which on a better prediction without the fit speaks against it.
+
+    Of roll its natural period: over less, the motion goes on as it began, and any smooth curve predicts it.
+    """
+    return fit.roll.natural_period.value if fit.roll is not None else 0.0
+
+
+def baseline_sentence(
+    predictions: Sequence[Prediction], labels: dict[str, tuple[str, str]], shortest: float = 0.0
+) -> str:
+    """Return in which windows the model diverges, and which runs predictions without this fit predict better.
+
+    shortest: s of the windows that are compared, at least.
+    """
+    clauses, lost = [], []
+    for p in predictions:
+        for w in p.windows:
+            if w.diverged:
+                lost.append(f"{p.record}, windows of {w.window}: {w.divergence_text}")
+            better = [f"{labels[name][0]} by {baseline}" for name, baseline in w.better_baselines.items()]
+            if better and w.seconds >= shortest:
+                clauses.append(f"{p.record} in windows of {w.window}: {enumeration(better)}")
+    sentences = [f"{sentence('; '.join(lost))}"] if lost else []
+    if clauses:
+        sentences.append(
+            f"Predictions without this fit are better in places, so do not rely on it there: {'; '.join(clauses)}."
+        )
+    return " ".join(sentences)
+
+
+# Chapters on predictions some samples ahead and on frequency responses.
+
+_ROLES = {"validation": "held-out runs", "training": "training runs"}
+_AHEAD_NOTE = (
+    "The Kalman filter of the fit takes the measured samples up to a moment; model and recorded inputs go on from "
+    "there. Root-mean-square error over many moments, in brackets that of the last value held. With noise of the "
+    "sensors only, every horizon has the error of a simulation."
+)
+_COMPARED_NOTE = (
+    "Cross-spectrum over input spectrum (H1; Welch 1967) of what was measured, and by the same estimator of the model "
+    "simulated with the same inputs. Compared: frequencies at which the input has a thousandth of its largest density "
+    "or more and the 95 % region of the records leaves zero out. Chance takes the model out of the region at one in "
+    "twenty. Where a controller was on, disturbances bias the response of the records."
+)
+
+
+def k_step_section(fit: Fit) -> Section:
+    """Return the chapter on errors over the horizon; empty where the fit has none."""
+    if not fit.k_step_errors:
+        return Section("")
+    longest = max(fit.k_step_errors, key=lambda e: len(e.steps))
+    dt = longest.seconds[0] / longest.steps[0]
+    horizons = sorted({k for e in fit.k_step_errors for k in e.steps})
+    ordered = [e for role in _ROLES for e in fit.k_step_errors if e.role == role]
+    table = table_of(
+        ordered,
+        words("Channel", lambda e: f"{channel_letter(e.channel)}, {display_unit(e.unit)[1]}"),
+        words("runs", lambda e: _ROLES[e.role]),
+        *(_horizon_column(k, k * dt) for k in horizons),
+    )
+    picture = Picture(lambda: svg(k_step_chart(fit.k_step_errors)), "Root-mean-square error over the horizon.")
+    return Section(
+        "Prediction some samples ahead",
+        "ahead",
+        table=table,
+        note=_AHEAD_NOTE,
+        pictures=(picture,),
+        level=Level.DETAIL,
+        is_folded=True,
+    )
+
+
+def _horizon_column(steps: int, seconds: float) -> Column[KStepErrors]:
+    def text(e: KStepErrors) -> str:
+        if steps not in e.steps:
+            return ""
+        factor, place = display_unit(e.unit)[0], e.steps.index(steps)
+        return f"{significant(factor * e.rms[place], 3)} ({significant(factor * e.held_rms[place], 3)})"
+
+    return number(f"{steps} ({exact(seconds, 3)} s)", text)
+
+
+def frequency_section(fit: Fit) -> Section:
+    """Return the chapter on frequency responses of records and model; empty where the fit has none."""
+    if not fit.frequency_responses:
+        return Section("")
+    table = table_of(
+        fit.frequency_responses,
+        words("Response", lambda r: f"{channel_letter(r.output)} over {channel_letter(r.input)}"),
+        number("excited", lambda r: " to ".join(significant(w, 2) for w in r.excited_range), "rad/s"),
+        number("compared", lambda r: str(int(r.is_compared.sum()))),
+        number("model inside", lambda r: _where_compared(r, str(int((r.is_inside & r.is_compared).sum())))),
+        number("coherence there, mean", _coherence),
+    )
+    caption = "Magnitude and phase with the 95 % region of the records (Jenkins & Watts 1968, section 10.3)."
+    picture = Picture(
+        lambda: "" if (chart := frequency_chart(fit.frequency_responses)) is None else svg(chart), caption
+    )
+    return Section(
+        "Frequency response: records and model",
+        "frequency",
+        table=table,
+        note=_COMPARED_NOTE,
+        pictures=(picture,),
+        level=Level.DETAIL,
+        is_folded=True,
+    )
+
+
+def _where_compared(r: FrequencyResponse, text: str) -> str:
+    return text if r.is_compared.any() else ""
+
+
+def _coherence(r: FrequencyResponse) -> str:
+    return fixed(float(r.coherence[r.is_compared].mean()), 2) if r.is_compared.any() else ""
+
+
+# Chapters on runs: how those held out are predicted, and how those that were fitted are reproduced.
 
 # measures of a run, and held-out runs, that are shown unfolded; chosen, one screen
 MAX_MEASURES, MAX_RUNS = 8, 4

@@ -13,7 +13,7 @@ from seatrial.core.values.notation import channel_meaning, channel_unit, unit_te
 from seatrial.physics.manoeuvres import REACH_PERCENTILE, initial_speed, ordered_degrees, steered_orders, to_starboard
 from seatrial.physics.models.thrust_orders import work_shares
 from seatrial.physics.models.thruster_layout import ThrusterLayout, layout_of, steering_angles, with_steering_order
-from seatrial.reporting.first_screen import KeyFact
+from seatrial.reporting.section import KeyFact
 from seatrial.reporting.verdict import LEAST_RUDDER, extrapolation_limit
 
 # share of the other side's rudder angle below which a side was not used; chosen

@@ -1,7 +1,10 @@
-"""Chapters on the records: what they are, what the fit leaves of them, and what is off by session."""
+"""The records' chapter: channels, residuals and the wind."""
 
 import math
+from collections.abc import Sequence
 from functools import partial
+
+import numpy as np
 
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Fit, Noise, Offset, OffsetPopulation
@@ -11,12 +14,35 @@ from seatrial.core.text.numbers import fixed as decimals
 from seatrial.core.text.words import common_prefix
 from seatrial.core.values import Record, display_unit
 from seatrial.core.values.notation import channel_meaning, unit_text
-from seatrial.reporting.figures.record_charts import track_overview
-from seatrial.reporting.figures.residual_charts import residual_series, whiteness_chart
+from seatrial.reporting.figures.record_charts import residual_series, track_overview, whiteness_chart
+from seatrial.reporting.model_chapter import residual_sentence, steering_zero_note
 from seatrial.reporting.runs import drawn_predictions, hidden_runs_sentence
 from seatrial.reporting.section import Cell, Level, Picture, Section, name, number, table_of, words
-from seatrial.reporting.summary import residual_sentence, steering_zero_note
-from seatrial.reporting.wind import wind_sentence
+
+# The wind of the day, as it was recorded beside the runs.
+
+_WIND = {"wind_speed", "wind_direction"}
+
+
+def wind_sentence(records: Sequence[Record]) -> str:
+    """Return the mean of the recorded true wind over all samples, and the range over the runs; empty without any.
+
+    The mean is that of the velocity towards north and east; directions are those that the wind comes from.
+    """
+    winds = [r["wind_speed"] * np.exp(1j * r["wind_direction"]) for r in records if set(r.channels) >= _WIND]
+    means = [complex(np.nanmean(wind)) for wind in winds if np.isfinite(wind).any()]
+    if not means:
+        return ""
+    mean = complex(np.nanmean(np.concatenate(winds)))
+    course = round(math.degrees(math.atan2(mean.imag, mean.real))) % 360
+    text = f"Wind as recorded, mean over the runs: {significant(abs(mean), 2)} m/s from {course:03d}°"
+    if len(means) == 1:
+        return f"{text}."
+    low, high = (significant(f(abs(one) for one in means), 2) for f in (min, max))
+    return f"{text}, {low} to {high} m/s in single runs."
+
+
+# Chapters on the records: what they are, what the fit leaves of them, and what is off by session.
 
 _WHITENESS_NOTE = (
     "Whiteness: two portmanteau tests (Ljung & Box 1978; 20 and 100 lags); p is twice the smaller of their p-values. A "

@@ -1,4 +1,4 @@
-"""A chapter of a result as data, which page and terminal render alike: sentences, a table, pictures, parts."""
+"""Sections: what a screen, a page and a notebook say of a result, as values."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -9,6 +9,9 @@ from markupsafe import Markup
 
 from seatrial.core.results import Table
 from seatrial.core.text.numbers import DASH, significant
+from seatrial.core.values import Finding, worst_first
+
+# A chapter of a result as data, which page and terminal render alike: sentences, a table, pictures, parts.
 
 T = TypeVar("T")
 
@@ -203,3 +206,67 @@ def _number_text(cell: str | float | None, digits: int) -> str:
     if cell is None:
         return DASH
     return str(cell) if isinstance(cell, (str, int)) else significant(cell, digits)
+
+
+# What every page answers first: a sentence with its number, a picture, a short table.
+
+
+@dataclass(frozen=True)
+class KeyFact:
+    """A row of the table at the top.
+
+    Attributes:
+        section: key of the section that says more; empty: none.
+        is_good: what the mark at the row says; None: neither good nor bad.
+    """
+
+    name: str
+    text: str
+    section: str = ""
+    is_good: bool | None = None
+
+
+@dataclass(frozen=True)
+class FirstScreen:
+    """A verdict, its table, and a picture with its caption; an empty picture or lead is not shown.
+
+    lead: what the result means to those who operate the craft, in a sentence.
+    gains: symbols and values of a controller, under `gains_title`.
+    """
+
+    verdict: str
+    facts: tuple[KeyFact, ...]
+    figure: Markup = field(default_factory=Markup)
+    caption: str = ""
+    lead: str = ""
+    gains_title: str = ""
+    gains: tuple[tuple[str | Markup, str], ...] = ()
+
+
+# The chapter on findings: grouped by code and advice, the most severe first, causes before what they cause.
+
+# findings of a group that are shown unfolded
+MAX_UNFOLDED = 3
+_TITLE = Markup('<span class="severity {}">{}</span><code>{}</code>')
+
+
+def finding_section(findings: Sequence[Finding]) -> Section:
+    """Return the chapter on the findings of a result, on the page; empty where there are none."""
+    groups: dict[tuple[str, str, str], list[Finding]] = {}
+    for f in worst_first(findings):
+        groups.setdefault((f.severity, f.code, f.advice), []).append(f)
+    parts = tuple(_group(group) for group in groups.values())
+    return Section("Findings", "findings", parts=parts, level=Level.PAGE)
+
+
+def _group(findings: Sequence[Finding]) -> Section:
+    """Findings of one code with the same advice: the first few, the others behind a fold."""
+    first, texts = findings[0], [f.text for f in findings]
+    more = Section(f"{len(texts) - MAX_UNFOLDED} more", points=tuple(texts[MAX_UNFOLDED:]), is_folded=True)
+    statements = [("What follows", first.consequence), ("Advice", first.advice)]
+    advice = Section("", sentences=tuple(f"{name}: {text}." for name, text in statements if text))
+    return Section(
+        _TITLE.format(first.severity.value, first.severity.value, first.code),
+        points=tuple(texts[:MAX_UNFOLDED]),
+        parts=(more, advice),
+    )

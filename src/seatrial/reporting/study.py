@@ -11,18 +11,19 @@ from seatrial.core.text.numbers import duration, exact
 from seatrial.core.text.words import counted, enumeration
 from seatrial.core.values import Severity
 from seatrial.reporting.document import chapters_page
-from seatrial.reporting.figures.study_figures import study_chart
-from seatrial.reporting.finding_chapter import finding_section
-from seatrial.reporting.first_screen import FirstScreen, KeyFact
+from seatrial.reporting.figures.response_charts import study_chart
 from seatrial.reporting.model_chapter import version_section
 from seatrial.reporting.prediction_chapter import run_section, score_table
 from seatrial.reporting.runs import reading_note
 from seatrial.reporting.section import (
     Cell,
+    FirstScreen,
+    KeyFact,
     Level,
     Picture,
     Section,
     TextTable,
+    finding_section,
     number,
     result_section,
     table_of,

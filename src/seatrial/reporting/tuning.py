@@ -12,15 +12,19 @@ from seatrial.core.results.loop_charts import bode_chart, nyquist_chart, sensiti
 from seatrial.core.results.tuning import ManoeuvreResponse, Tuning
 from seatrial.core.text.numbers import fixed
 from seatrial.core.values.notation import channel_meaning
-from seatrial.reporting import gain_search, station_part, track_part, tuning_rows, tuning_text
+from seatrial.reporting import station_part, tuning_rows, tuning_text
+from seatrial.reporting import station_part as track_part
+from seatrial.reporting import tuning_rows as gain_search
 from seatrial.reporting.document import chapters_page
-from seatrial.reporting.figures.controlled_runs import manoeuvre_view, seaway_view
-from seatrial.reporting.figures.loop_diagram import loop_diagram, signal_order
-from seatrial.reporting.figures.paired_differences import difference_chart
-from seatrial.reporting.figures.schedule_maps import schedule_chart
-from seatrial.reporting.finding_chapter import finding_section
-from seatrial.reporting.first_screen import FirstScreen
-from seatrial.reporting.section import Level, Picture, Section, fact_table, plain_table
+from seatrial.reporting.figures.control_charts import (
+    difference_chart,
+    loop_diagram,
+    manoeuvre_view,
+    schedule_chart,
+    seaway_view,
+    signal_order,
+)
+from seatrial.reporting.section import FirstScreen, Level, Picture, Section, fact_table, finding_section, plain_table
 from seatrial.reporting.time_figures import run_figure
 
 FRONT_CAPTION = (

@@ -17,7 +17,7 @@ from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import Severity
 from seatrial.core.values.notation import channel_meaning
 from seatrial.data.folder.gains_file import channel_display_unit
-from seatrial.reporting.first_screen import KeyFact
+from seatrial.reporting.section import KeyFact
 from seatrial.reporting.station_part import precision_sentence
 
 _SIMULATION_LABELS = {"limited": "with angle and rate limits", "stalled": "with stall, too", "linear": "without limits"}

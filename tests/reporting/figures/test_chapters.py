@@ -12,13 +12,11 @@ from tests.reporting.test_roll_chapter import KNOWN
 
 from seatrial.core.figures.chart import Area, Line, Points, Text
 from seatrial.core.results import Bars, Curve, Figure, Fit, Matrix, TrialLimits
+from seatrial.reporting.figures.coefficient_charts import profile_chart
+from seatrial.reporting.figures.control_charts import difference_chart
 from seatrial.reporting.figures.designed_manoeuvre import drift_angle, order_view, track_chart
-from seatrial.reporting.figures.directions import profile_chart
-from seatrial.reporting.figures.paired_differences import difference_chart
-from seatrial.reporting.figures.record_charts import track_overview
-from seatrial.reporting.figures.residual_charts import residual_series, whiteness_chart
-from seatrial.reporting.figures.roll_damping import roll_damping_chart
-from seatrial.reporting.figures.study_figures import study_chart
+from seatrial.reporting.figures.record_charts import residual_series, track_overview, whiteness_chart
+from seatrial.reporting.figures.response_charts import roll_damping_chart, study_chart
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import pytest
 from tests.reporting.fabricated_tuning import fabricated_autopilot, fabricated_bare, fabricated_fin
 
 from seatrial.core.values import Record, frozen
-from seatrial.reporting.figures.controlled_runs import (
+from seatrial.reporting.figures.control_charts import (
     FREE,
     first_channel,
     manoeuvre_view,

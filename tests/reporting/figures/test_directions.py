@@ -4,7 +4,7 @@ import math
 
 from seatrial.core.figures.chart import Points, Shape, Text
 from seatrial.core.results import Direction
-from seatrial.reporting.figures.directions import combination_text, direction_chart
+from seatrial.reporting.figures.coefficient_charts import combination_text, direction_chart
 
 
 def test_markers_follow_the_zones() -> None:

@@ -4,7 +4,7 @@ import pytest
 
 from seatrial.core.figures.chart import Rectangle
 from seatrial.core.results.tuning import Component
-from seatrial.reporting.figures.loop_diagram import loop_diagram, signal_order
+from seatrial.reporting.figures.control_charts import loop_diagram, signal_order
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 import math
 
 from seatrial.core.figures.chart import Points, Text
-from seatrial.reporting.figures.relative_errors import (
+from seatrial.reporting.figures.coefficient_charts import (
     FILLED,
     OPEN,
     CoefficientError,

@@ -8,7 +8,7 @@ from tests.reporting.fabricated_tuning import fabricated_fin
 
 from seatrial.core.figures.chart import Line, Panel, Rectangle, Text
 from seatrial.core.results.tuning import OperatingPoint
-from seatrial.reporting.figures.schedule_maps import schedule_chart
+from seatrial.reporting.figures.control_charts import schedule_chart
 
 
 @pytest.fixture(scope="module")

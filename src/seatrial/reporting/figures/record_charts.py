@@ -1,12 +1,43 @@
-"""All records of a fit as small multiples: channels over time, and tracks."""
+"""Charts of records: channels, residuals, and the parts of a log."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
-from seatrial.core.figures.chart import WIDTH, Chart, Panel, Region
-from seatrial.core.figures.run import Track, is_slender, strip_height, track_panel
+import numpy as np
+from markupsafe import Markup
+
+from seatrial.core.figures.chart import (
+    ACCENT,
+    GREY,
+    INK,
+    SECOND,
+    WIDTH,
+    Array,
+    Axis,
+    Chart,
+    LegendEntry,
+    Line,
+    Mark,
+    Panel,
+    Rectangle,
+    Region,
+    Rule,
+    Stroke,
+    decimated,
+    tiles,
+)
+from seatrial.core.figures.run import ChannelPanel, RunView, TimeCurve, Track, is_slender, strip_height, track_panel
+from seatrial.core.figures.time_plot import TimeSpan
+from seatrial.core.results import Residuals
 from seatrial.core.text.words import common_prefix
-from seatrial.core.values import Record
-from seatrial.core.values.record_chart import PLAIN, has_track, record_track
+from seatrial.core.values import InputError, Record, display_unit
+from seatrial.core.values.notation import channel_label, channel_letter, channel_unit, reading_order
+from seatrial.core.values.record_chart import PLAIN, channel_panels, has_track, is_constant, record_track
+from seatrial.data.check import canonical_record
+from seatrial.data.draft import LogStretch
+from seatrial.reporting.time_figures import run_figure
+
+# All records of a fit as small multiples: channels over time, and tracks.
 
 # channels and records of one figure at most
 MAX_COLUMNS, MAX_ROWS = 8, 16
@@ -47,3 +78,127 @@ def _track_rows(tracks: Sequence[tuple[str, Track]], length: float, top: float, 
                                       title=name))  # fmt: skip
         top += height + ROW_GAP
     return panels
+
+
+# Residuals of every channel: over the samples, their autocorrelation with a 95 % band, and against the normal.
+
+# bars of the histogram, its reach in standard deviations, and the density of the normal at zero
+BINS, WIDEST, NORMAL_PEAK = 41, 4.5, 0.42
+HEIGHT = 76.0  # px, chosen
+# lags up to which the autocorrelation is drawn as stems
+MAX_STEMS = 60
+# quantile of the standard normal distribution for 95 %, two-sided
+NORMAL_95 = 1.96
+
+
+def residual_series(residuals: Sequence[Residuals]) -> Markup:
+    """Return the residuals of every channel over the samples; empty where there are none."""
+    usable = _usable(residuals)
+    panels = tuple(_series(r) for r in usable)
+    return run_figure(RunView("residuals", panels), x_label="sample") if panels else Markup()
+
+
+def whiteness_chart(residuals: Sequence[Residuals]) -> Chart | None:
+    """Return autocorrelation and histogram of the residuals of each channel; None where there are none."""
+    usable = _usable(residuals)
+    boxes = tiles(2 * len(usable), 4, HEIGHT, left=46.0, right=14.0, gap=52.0, top=22.0)  # px, chosen
+    panels = [
+        panel
+        for k, r in enumerate(usable)
+        for panel in (
+            replace(_autocorrelation(r, boxes[2 * k]), title=f"{channel_letter(r.channel)}: autocorrelation"),
+            replace(_histogram(r.values[np.isfinite(r.values)], boxes[2 * k + 1]), title="against the normal"),
+        )
+    ]
+    return Chart("autocorrelation and histogram of the residuals", tuple(panels)) if panels else None
+
+
+def _usable(residuals: Sequence[Residuals]) -> list[Residuals]:
+    return [r for r in residuals if np.isfinite(r.values).sum() > 2]
+
+
+def _series(r: Residuals) -> ChannelPanel:
+    unit = channel_unit(r.channel)
+    samples = np.arange(len(r.values), dtype=float)
+    curve = TimeCurve(samples, r.values * display_unit(unit)[0], Stroke(INK, 0.6), "residual")  # px, chosen
+    return ChannelPanel(channel_label(r.channel, unit), (curve,))
+
+
+def _autocorrelation(r: Residuals, box: Region) -> Panel:
+    """Band +-1.96 / sqrt(n) of white residuals (Region, Jenkins & Reinsel 2008, section 2.1.6)."""
+    edge = NORMAL_95 / np.sqrt(np.isfinite(r.values).sum())
+    rho, lags = r.autocorrelation, np.arange(len(r.autocorrelation)) / r.rate
+    low = min(-0.25, float(np.nanmin(rho)) - 0.05) if len(rho) else -0.25  # px, chosen
+    x = Axis((-0.02 * lags[-1], lags[-1] * 1.02 or 1.0), "lag [s]", tick_count=4)  # px and ticks, chosen
+    # px, chosen
+    marks: list[Mark] = [Rectangle(x.ends[0], -edge, x.ends[1], edge, "#d9e4ec"), Rule(0.0, Stroke("#999999", 0.6))]
+    if len(lags) <= MAX_STEMS:
+        stems = [np.array([lag, lag, np.nan]) for lag in lags], [np.array([0.0, value, np.nan]) for value in rho]
+        marks.append(Line(np.concatenate(stems[0]), np.concatenate(stems[1]), Stroke(ACCENT, 1.6)))  # px, chosen
+    else:
+        marks.append(Line(*decimated(lags, rho), Stroke(ACCENT, 1.0)))
+    return Panel(box, x, Axis((low, 1.05), tick_count=3), tuple(marks))  # px and ticks, chosen
+
+
+def _histogram(values: Array, box: Region) -> Panel:
+    spread = float(np.std(values)) or 1.0
+    scaled = np.clip((values - np.mean(values)) / spread, -WIDEST, WIDEST)
+    density, edges = np.histogram(scaled, bins=np.linspace(-WIDEST, WIDEST, BINS), density=True)
+    marks: list[Mark] = [
+        Rectangle(left, 0.0, right, height, "#c9d3da")
+        for height, left, right in zip(density, edges[:-1], edges[1:], strict=True)
+        if height > 0
+    ]
+    z = np.linspace(-WIDEST, WIDEST, 91)  # points of a curve, chosen
+    marks.append(Line(z, np.exp(-0.5 * z**2) / np.sqrt(2 * np.pi), Stroke(SECOND, 1.2, "4 2.5")))  # px, chosen
+    # px and ticks, chosen
+    y = Axis((0.0, max(NORMAL_PEAK, 1.05 * float(density.max()))), tick_count=1, has_labels=False)
+    return Panel(box, Axis((-WIDEST, WIDEST), "residual / std. deviation", tick_count=4), y, tuple(marks))
+
+
+# A run of a log with its manoeuvres: track and channels, the parts in colour.
+
+# colours of neighbours, distinguished by people who see no red or no green (Okabe & Ito 2008), and paler for areas
+_COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8a6d00")
+_PALE = ("#d5e8f3", "#f8dfcf", "#d2efe5", "#f6e4ee", "#efe7c8")
+_THIN, _THICK = Stroke(GREY, 0.8), 2.2  # px, chosen
+_CHANNELS_SHOWN = 12  # the first in the order of reading; chosen: two screens of a telephone
+
+
+def log_view(record: Record, parts: Sequence[LogStretch]) -> tuple[RunView, tuple[TimeSpan, ...]]:
+    """Return the track and the channels of a run, and its manoeuvres as stretches of time.
+
+    Each part has a colour on the track and behind the channels.
+
+    parts: start and stop are s after the first sample.
+    """
+    record = _from_zero(record)
+    shown = [name for name in reading_order(list(record.channels)) if not is_constant(record, name)]
+    tracks = (record_track(record, _THIN), *_part_tracks(record, parts)) if has_track(record) else ()
+    legend = tuple(LegendEntry(f"{k} {one.name}", Stroke(_colour(k), _THICK)) for k, one in enumerate(parts, start=1))
+    view = RunView(record.name, channel_panels(record, shown[:_CHANNELS_SHOWN]), tracks, 0.0, legend)
+    spans = (TimeSpan(one.start, one.stop, _PALE[k % len(_PALE)], str(k + 1)) for k, one in enumerate(parts))
+    return view, tuple(spans)
+
+
+def _from_zero(record: Record) -> Record:
+    """The record with time from its first sample, and velocities along the ship where its heading turns them."""
+    started = replace(record, time=record.time - record.time[0])
+    try:
+        return canonical_record(started)
+    except InputError:
+        return started
+
+
+def _colour(number: int) -> str:
+    return _COLOURS[(number - 1) % len(_COLOURS)]
+
+
+def _part_tracks(record: Record, parts: Sequence[LogStretch]) -> list[Track]:
+    tracks = []
+    for number, part in enumerate(parts, start=1):
+        inside = (record.time >= part.start) & (record.time <= part.stop)
+        north, east = record["x0"][inside], record["y0"][inside]
+        if np.count_nonzero(np.isfinite(north + east)) > 1:
+            tracks.append(Track(north, east, None, Stroke(_colour(number), _THICK)))
+    return tracks
