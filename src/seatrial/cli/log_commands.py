@@ -105,6 +105,9 @@ def init(
         options = " ".join(header_size.option for header_size in draft.header_sizes)
         print_lines([f"NOTE the header says {says}, not used: {options}"])
     print_verbatim(_other_speed_note(other_speed, out) for other_speed in draft.other_speeds)
+    for reason in dict.fromkeys(draft.left_out.values()):
+        names = [path.name for path, why in draft.left_out.items() if why == reason]
+        print_lines([f"NOTE left out: {', '.join(names)}: {reason}"])
     _print_runs(draft)
     print_lines([f"NOTE {draft.unlike_decays}"] if draft.unlike_decays else [])
     if draft.held_out.names:
@@ -143,7 +146,7 @@ def _print_runs(draft: "DraftTrial") -> None:
 
 
 def _other_speed_note(other: "OtherSpeed", out: Path) -> str:
-    """Which roll decays are left out, why, and the command that makes a trial of them."""
+    """Which runs at another speed are left out, why, and the command that makes a trial of them."""
     trial = out.with_name(f"{out.stem}_{other.speed:g}ms{out.suffix}")
     parts = [*other.logs, *other.options, "--out", trial]
     names = ", ".join(log.name for log in other.logs)

@@ -1,5 +1,7 @@
 """Declared conventions to the house's: signs, frames, reference points, unwrapping; twice is once."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -8,6 +10,7 @@ from tests.data.check.ship import in_earth_axes, with_declaration, with_values, 
 
 from seatrial.core.values import InputError, Record
 from seatrial.data.check import canonical_record
+from seatrial.data.check.conventions import statement_findings
 
 
 def expect_equal(a: Record, b: Record, tolerance: float = 1e-12) -> None:
@@ -93,3 +96,14 @@ def test_refusals() -> None:
         canonical_record(zigzag().without("r"), 1.0)
     with pytest.raises(InputError, match="heading 'psi'"):
         canonical_record(in_earth_axes(zigzag()).without("psi", "x0", "y0"))
+
+
+@pytest.mark.parametrize(("place", "count"), [(0.0, 1), (1.9, 0)])
+def test_waves_met_ahead_of_midship_refute_no_side_of_heave(place: float, count: int) -> None:
+    """At midship heave against long waves has another side; a probe half a wave ahead shows the same."""
+    time = 0.05 * np.arange(4000)
+    wave = sum(0.02 * np.cos(rate * time + phase) for rate, phase in ((2.0, 0.3), (2.6, 1.9), (3.1, 4.0), (3.7, 5.1)))
+    record = Record.from_arrays("run", time, {"zeta": wave, "z": 0.8 * wave})  # z down, as waves lift no craft
+    record = record.with_channel("zeta", replace(record.channel("zeta"), reference_point=place))
+    findings, _ = statement_findings(record)
+    assert [one.code for one in findings] == ["wrong-sign"] * count

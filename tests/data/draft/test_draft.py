@@ -315,16 +315,20 @@ def test_sheets_of_a_workbook_with_the_same_columns_are_runs(tmp_path: Path) -> 
     assert particulars is not None
     for row in (("Vessel", "cutter"), ("Lpp [m]", 12.0), ("Breadth [m]", 4.0)):
         particulars.append(row)
-    columns = BASE | {"rudder [deg]": TRUTH["delta"] / DEGREE}
+    rudder = TRUTH["delta"] / DEGREE
+    columns = BASE | {"nozzle": rudder, "nozzle of the other jet": rudder + 0.5}
+    groups = ["Navigation", *[""] * (len(BASE) - 1), "Port", "Starboard"]
+    names = [*BASE, "nozzle [deg]", "nozzle [deg]"]
     for title, part in (("zigzag", slice(0, 900)), ("circle", slice(1300, 2400))):
         sheet = book.create_sheet(title)
-        for row in (["trial of the cutter"], list(columns), *np.column_stack(list(columns.values()))[part].tolist()):
+        for row in (["trial of the cutter"], groups, names, *np.column_stack(list(columns.values()))[part].tolist()):
             sheet.append(row)
     book.save(tmp_path / "trials.xlsx")
     draft = draft_trial(tmp_path / "trials.xlsx", length=12.0)
     assert [run.name for run in draft.runs] == ["zigzag", "circle"]
     for name in ("zigzag", "circle"):
-        assert f'\nchannels.delta = {{ column = "{name}/rudder [deg]"' in draft.text
+        pair = f'column = "{name}/Port nozzle [deg]", twin = "{name}/Starboard nozzle [deg]"'
+        assert f"\nchannels.delta = {{ {pair}" in draft.text
     trial = tmp_path / "trial.toml"
     trial.write_text(draft.text, encoding="utf-8")
     assert [len(run.raw_record()) for run in load_runs(trial)] == [900, 1100]

@@ -31,8 +31,9 @@ def test_a_header_names_the_options(tmp_path: Path) -> None:
 
 def test_a_header_of_lines_with_tabs_names_displacement_and_metacentric_height(tmp_path: Path) -> None:
     tank = "Scale\t1:8\nLpp\t3.90 m\nT\t0.42 m\nDispl.\t873 kg\nGM\t0.081 m"
+    tank += "\nfresh water 1000 kg/m3"
     options = [one.option for one in sizes_in_header(log(tmp_path / "a.txt", tank), UNSTATED)]
-    assert options == ["--length 3.9", "--draught 0.42", "--mass 873", "--gm 0.081", "--scale 8"]
+    assert options == ["--length 3.9", "--draught 0.42", "--mass 873", "--gm 0.081", "--rho 1000", "--scale 8"]
 
 
 def test_the_speed_of_a_carriage_is_that_of_the_run(tmp_path: Path) -> None:
@@ -57,6 +58,8 @@ def test_sentences_above_a_table_say_sides_and_places(tmp_path: Path) -> None:
     assert (said["zeta"].place, said["antenna"].place, said["z"].place) == (1.95, -34.0, None)
     assert [one.option for one in sizes_in_header(log(tmp_path / "b.txt", PROSE), UNSTATED)] == ["--antenna -34"]
     assert header_statements(log(tmp_path / "c.txt", "# positive results, 3 m ahead")) == {}
+    carried = header_statements(log(tmp_path / "d.txt", "# tank 2\n# probe on carriage, 1.900 m fwd of midship"))
+    assert carried["zeta"].place == 1.9
 
 
 @pytest.mark.parametrize(("side", "is_open"), [("starboard", False), ("port", True)])

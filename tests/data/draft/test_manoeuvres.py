@@ -50,6 +50,7 @@ def test_a_circle_with_a_pull_out_reaches_to_its_end() -> None:
     delta = 0.35 * over(TIME, 100.0, 400.0) - 0.35 * over(TIME, 550.0, 750.0)
     first, second = turning(nomoto(delta, np.full(TIME.size, 4.0)))
     assert (first.name, second.name) == ("circle_starboard_with_pull_out_", "circle_port_with_pull_out_")
+    assert first.kind_text == "circle to starboard with pull out"
     assert first.start == pytest.approx(100.0, abs=5.0) and first.stop == pytest.approx(550.0, abs=5.0)
     assert second.start == pytest.approx(550.0, abs=5.0) and second.stop == pytest.approx(800.0, abs=5.0)
 

@@ -117,6 +117,8 @@ def test_the_side_of_a_thruster_is_that_of_its_name(name: str, side: str) -> Non
         ("C3_right", "command_2", ""),
         ("apparent wind direction", "wind_direction_relative", ""),
         ("gyro_z", "r", ""),
+        ("Navigation Latitude", "lat", ""),
+        ("Motion Roll (deg)", "phi", "deg"),
     ],
 )
 def test_an_instrument_before_a_name_and_how_it_was_taken_behind_it_change_nothing(

@@ -1,4 +1,4 @@
-"""Roll decays at several speeds are drafted as one trial for each speed."""
+"""Decays and runs in waves at several speeds are drafted as one trial for each speed, those in calm water as none."""
 
 from pathlib import Path
 
@@ -41,3 +41,22 @@ def test_a_speed_is_missed_by_little_and_none_is_rest(logs: list[Path]) -> None:
     runs = runs_of_logs([survey_log(one) for one in logs])
     assert [(speed, len(group)) for speed, group in runs_by_speed(runs)] == [(0.0, 3), (1.1, 2)]
     assert stated_options(StatedSize(), {"Rolle": "phi"}) == ("--column", "Rolle=phi")
+
+
+def in_waves(path: Path, amplitude: float, speed: float) -> Path:
+    """A model in waves of this amplitude [mm] whose header states a speed."""
+    wave = amplitude * (np.cos(3.0 * TIME) + 0.5 * np.cos(4.1 * TIME))
+    rows = "".join(f"{t:.1f}\t{0.8 * w:.3f}\t{w:.3f}\n" for t, w in zip(TIME, wave, strict=True))
+    path.write_text(f"Towing tank\nV = {speed:.2f} m/s\nTime [s]\tHeave [mm]\tWave [mm]\n{rows}")
+    return path
+
+
+def test_runs_in_waves_are_of_one_speed_and_those_in_calm_water_are_named(tmp_path: Path) -> None:
+    runs = {"a": (10.0, 0.8), "b": (9.0, 0.8), "c": (10.0, 1.4), "calm": (0.1, 0.8)}
+    for name, one in runs.items():
+        in_waves(tmp_path / f"{name}.txt", *one)
+    draft = draft_trial(tmp_path, folder=tmp_path, length=3.0)
+    assert 'files = ["a.txt", "b.txt"]' in draft.text and "\nspeed = 0.8    # m/s, as the header says" in draft.text
+    assert [[one.name for one in other.logs] for other in draft.other_speeds] == [["c.txt"]]
+    ((path, reason),) = draft.left_out.items()
+    assert path.name == "calm.txt" and reason.startswith("no waves in it")

@@ -86,6 +86,17 @@ def test_a_rudder_that_turns_the_other_way_is_a_question(tmp_path: Path) -> None
     assert question.symbol == "delta" and "'rudder stbd [deg]' turns the other way" in question.other_reading
 
 
+def test_two_shafts_that_turn_steadily_do_not_turn_against_each_other(tmp_path: Path) -> None:
+    """What noise alone makes of their difference is no question."""
+    time, generator = np.arange(0.0, 120.0, 0.5), np.random.default_rng(3)
+    rudder = 10.0 * np.sign(np.sin(0.1 * time))
+    columns = {"time": time, "heading [deg]": np.degrees(np.cumsum(np.cumsum(0.0002 * rudder))), "rudder [deg]": rudder}
+    noise = generator.normal(0.0, 1.0, (2, time.size))
+    columns |= {"shaft port [rpm]": 140.0 + noise[0], "shaft stbd [rpm]": 141.0 - 0.5 * noise[0] + noise[1]}
+    write(tmp_path / "ferry.csv", columns)
+    assert draft_trial(tmp_path / "ferry.csv", length=100.0).open_questions == ()
+
+
 def test_rates_of_thrusters_whose_commands_are_recorded_are_not_two_more_thrusters(tmp_path: Path) -> None:
     time = np.arange(60.0)
     columns = {"time": time, "heading_deg": 40.0 + time, "rpm_port": 30.0 * time, "rpm_stbd": 300.0 - 4.0 * time}

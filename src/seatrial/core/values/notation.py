@@ -86,7 +86,7 @@ _SPELLINGS = {
     "deg": "deg degs degree degrees °", "rad": "rad rads radian radians", "kn": "kn kt kts knt knts knot knots",
     "m/s": "m/s mps ms m/sec", "km/h": "km/h kmh kph", "deg/s": "deg/s deg/sec degrees/s dps °/s",
     "deg/min": "deg/min degrees/min °/min", "rad/s": "rad/s", "rpm": "rpm 1/min rev/min", "rps": "rps 1/s rev/s",
-    "m": "m metre metres meter meters", "m/s^2": "m/s2", "V": "v volt volts", "us": "us pwm",
+    "m": "m metre metres meter meters", "m/s^2": "m/s2", "kg/m^3": "kg/m3", "V": "v volt volts", "us": "us pwm",
     "percent": "% pct percent",
 }  # fmt: skip
 UNIT_WORDS: dict[str, str] = {word: unit for unit, words in _SPELLINGS.items() for word in words.split()}

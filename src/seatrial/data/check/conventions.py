@@ -249,7 +249,8 @@ def _columns(record: Record) -> list[list[NamedColumn]]:
     groups = [
         pair for pair in _PAIRS if {*pair} <= {*record.channels} and len({record.channel(s).frame for s in pair}) == 1
     ]
-    groups += [(s,) for s in (*_LONE, "u") if s in record and not any(s in pair for pair in groups)]
+    lone = [s for s in (*_LONE, "u") if s in record and not any(s in pair for pair in groups)]
+    groups += [(s,) for s in lone if s != "zeta" or record.channel(s).reference_point == 0.0]  # waves met at midship
     return [[_column(of_one_point, symbol) for symbol in group] for group in groups if _moves(record, group)]
 
 

@@ -127,10 +127,8 @@ def _agreed(guess: ColumnGuess, readings: Sequence[ColumnGuess]) -> ColumnGuess:
     first = next(iter(decided or readings), guess)
     if len({_meaning(one) for one in decided}) > 1:
         other = "; another run shows ".join(_different(decided))
-        return replace(
-            first, source=guess.source, other_reading=f"{other}: the runs contradict each other", is_used=guess.is_used
-        )
-    return replace(first, source=guess.source, is_used=guess.is_used)
+        first = replace(first, other_reading=f"{other}: the runs contradict each other")
+    return replace(first, source=guess.source, twin=guess.twin, is_used=guess.is_used)
 
 
 def _meaning(guess: ColumnGuess) -> tuple[str, str, str]:

@@ -65,7 +65,7 @@ from seatrial.data.draft.starting_model import (
     with_wind,
 )
 from seatrial.data.draft.stretches import STRAIGHT, LogStretch, used_parts
-from seatrial.data.draft.survey import LogSurvey, apart_by_sheet, survey_logs, with_common_ranges
+from seatrial.data.draft.survey import LogSurvey, apart_by_sheet, columns_by_source, survey_logs, with_common_ranges
 from seatrial.data.trial.plausibility import ESTIMATED
 from seatrial.data.trial.records import need_release
 from seatrial.data.trial.run_data import run_name
@@ -75,6 +75,8 @@ _NOZZLE = re.compile("nozzle|jet|bucket", re.IGNORECASE)  # in the name of a col
 _ANGLES = {"psi": (-180.0, 360.0), "delta": (-90.0, 90.0)}
 _WIDER_THAN_A_STATE = 6.0  # range of a column, up to which it may number states, such as those of a fix; chosen
 _MIXED = "mixed"  # kind of a run that holds several manoeuvres, or none that is recognised; ours
+_CALM = 0.1  # of the largest range of a run's waves, below which another run lies in calm water; chosen
+_CALM_REASON = "no waves in it: heave_pitch is fitted to what waves move, and takes no decays in calm water"
 _RUNS_EXAMINED = 6  # the longest, whose motion is compared with the guesses; chosen: some show what others do not
 
 
@@ -92,13 +94,14 @@ class DraftTrial:
         held_out: the runs that judge the model; empty: none can.
         unrecognised: columns of the longest run that stand for nothing that is known.
         not_needed: those that are known and stand for no channel, with the reason.
-        other_speeds: roll decays that are left out, a trial of their own for each speed.
+        other_speeds: decays and runs in waves that are left out, a trial of their own for each speed.
         unlike_decays: which roll decays die out faster than the others; empty: none.
         session: the line that says which runs share their offsets; empty: each has its own.
         header_sizes: what the header of the longest run says of the craft and what is not stated.
         lacks_density: whether its water is taken for that of the sea, and the craft is often tried in fresh water.
         lacks_length: whether the length of the craft is to be stated.
         lacks_input: whether no column is an input of a model.
+        left_out: files that are no runs of the trial, with the reason; not those of `other_speeds`.
     """
 
     text: str
@@ -118,6 +121,7 @@ class DraftTrial:
     lacks_density: bool = False
     lacks_length: bool = False
     lacks_input: bool = False
+    left_out: Mapping[Path, str] = field(default_factory=dict)
 
     @property
     def estimated(self) -> tuple[str, ...]:
@@ -201,12 +205,15 @@ def draft_trial(
     _refuse_unwritable_names(surveys)
     runs = runs_of_logs(with_common_ranges(apart_by_sheet(surveys)))
     used = {survey.path for run in runs for survey in run.sources}
-    left_out = {one.path: "it is of another kind than the runs" for one in surveys if one.path not in used}
+    left_out = dict(surveyed.left_out)
+    left_out |= {one.path: "it is of another kind than the runs" for one in surveys if one.path not in used}
     named = _named_columns(runs, size)
     _refuse_nothing_recognised(surveys, named)
-    others = _other_speeds(runs, named, size, stated)
-    left_out |= {path: one.reason for one in others for path in one.logs}
+    left_out |= _calm_runs(surveys, runs, named)
     runs = [run for run in runs if run.sources[0].path not in left_out]
+    others = _other_speeds(runs, named, size, stated)
+    at_other_speeds = {path: one.reason for one in others for path in one.logs}
+    runs = [run for run in runs if run.sources[0].path not in at_other_speeds]
     named = _named_columns(runs, size)
     longest = sorted(range(len(runs)), key=lambda k: -runs[k].duration)[:_RUNS_EXAMINED]
     examined = [checked_by_behaviour(runs[k].sources, named[k]) for k in longest]
@@ -245,14 +252,15 @@ def draft_trial(
     decays = _decays(runs, records, stretches) if model.swings else {}
     columns_of_longest = [g for _, columns in blocks[0].sources for g in columns]
     tables = tables_text(model, columns_of_longest, size, rate, heels_apart(decays))
-    text = trial_text(blocks, tables, {**surveyed.left_out, **left_out}, Path(folder).resolve())
+    text = trial_text(blocks, tables, {**at_other_speeds, **left_out}, Path(folder).resolve())
+    has_density = "\nrho = " in text or "in sea water" in text
     return DraftTrial(
         text, surveys, tuple(runs), guesses[longest[0]], tuple(records), stretches, parts, held_out,
         tuple(name for source in blocks[0].sources for name in unrecognised_columns(*source)),
         {name: why for source in blocks[0].sources for name, why in known_unneeded(*source).items()}, others,
         unlike_decays_text(decays), session,
-        sizes_in_header(runs[longest[0]].sources[0], size), may_be_in_fresh_water(size) and "\nrho = " in text,
-        bool(model.name) and not size.length, not model.name,
+        sizes_in_header(runs[longest[0]].sources[0], size), has_density and may_be_in_fresh_water(size),
+        bool(model.name) and not size.length, not model.name, left_out,
     )  # fmt: skip
 
 
@@ -267,14 +275,33 @@ def _other_speeds(
     size: StatedSize,
     stated: StatedColumns,
 ) -> tuple[OtherSpeed, ...]:
-    """The roll decays that are left out, by their speed: all but those of the speed with the most."""
+    """The decays and runs in waves that are left out, by their speed: all but those of the speed with the most."""
     symbols = {g.symbol for run in named for part in run for g in part if g.is_used}
-    if not starting_model(symbols, ()).swings:
+    model = starting_model(symbols, ())
+    if not (model.swings or model.has_waves):
         return ()
     return tuple(
         OtherSpeed(speed, tuple(run.sources[0].path for run in group), stated_options(size, stated))
         for speed, group in runs_by_speed(runs)[1:]
     )
+
+
+def _calm_runs(
+    surveys: Sequence[LogSurvey], runs: Sequence[LogRun], named: Sequence[Sequence[Sequence[ColumnGuess]]]
+) -> dict[Path, str]:
+    """The runs in calm water beside others in waves, with the reason why they are left out."""
+    if not starting_model({g.symbol for run in named for part in run for g in part if g.is_used}, ()).has_waves:
+        return {}
+    own = {survey.path: columns_by_source(survey) for survey in surveys}  # ranges of each log, not those of all
+    spans = {
+        source.path: own[source.path][guess.source][1].high - own[source.path][guess.source][1].low
+        for run, parts in zip(runs, named, strict=True)
+        for source, part in zip(run.sources, parts, strict=True)
+        for guess in part
+        if guess.is_used and guess.symbol == "zeta"
+    }
+    largest = max(spans.values(), default=0.0)
+    return {path: _CALM_REASON for path, span in spans.items() if span < _CALM * largest}
 
 
 def _refuse_nothing_recognised(

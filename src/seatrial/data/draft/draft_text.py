@@ -572,9 +572,7 @@ def run_text(stretches: Sequence[LogStretch]) -> str:
     """Return what a run that stays whole is: its manoeuvre, or the kinds of several."""
     if len(stretches) == 1:
         return f"{stretches[0].name}: {stretches[0].evidence}"
-    kinds = list(
-        dict.fromkeys(stretch.name.rstrip("0123456789").rstrip("_").replace("_", " to ") for stretch in stretches)
-    )
+    kinds = list(dict.fromkeys(stretch.kind_text for stretch in stretches))
     return f"{counted(len(stretches), 'manoeuvre')}: {', '.join(kinds)}"
 
 

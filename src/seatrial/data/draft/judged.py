@@ -153,7 +153,7 @@ def _with_difference(guess: ColumnGuess, first: Array, second: Array) -> tuple[C
     difference = (first - second)[both]
     mean, spread = float(np.mean(difference)), float(np.std(difference))
     text = f"half the sum of two, whose difference is {mean:.2g} {guess.unit} (spread {spread:.2g})"
-    is_against = spread > float(np.std((first + second)[both]))
+    is_against = float(np.linalg.norm(difference)) > float(np.linalg.norm((first + second)[both]))
     return guess.with_evidence(text), f"the first alone: '{guess.twin}' turns the other way" if is_against else ""
 
 

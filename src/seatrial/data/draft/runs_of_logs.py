@@ -280,7 +280,7 @@ def _day_of(run: LogRun) -> str:
     return ""
 
 
-# Roll decays at several speeds: damping depends on the speed, so that a trial holds the decays of one.
+# Decays and runs in waves at several speeds: damping depends on the speed, so that a trial holds those of one.
 
 _ALIKE = 0.05  # of a speed, by which a carriage misses it from run to run at most; chosen
 
@@ -299,7 +299,7 @@ class OtherSpeed:
     @property
     def reason(self) -> str:
         """Why they are left out."""
-        return f"at {self.speed:g} m/s by its header: roll damping depends on the speed, fit each by itself"
+        return f"at {self.speed:g} m/s by its header: damping depends on the speed, fit each by itself"
 
 
 def runs_by_speed(runs: Sequence[LogRun]) -> list[tuple[float, list[LogRun]]]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from seatrial.core.values import InputError, si_unit
+from seatrial.core.values.notation import UNIT_WORDS
 from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.naming import guess_by_name
 from seatrial.data.draft.survey import LogSurvey
@@ -282,8 +283,9 @@ _NAMES = {
     "draught": (r"T|d|(?i:draught|draft)", "m"),
     "mass": (r"(?i:displ(?:acement|\.)|mass)", "kg"),
     "gm": (r"(?i:GM(?:[ _]?[0tT])?)", "m"),
+    "rho": (r"(?i:rho|density|water)", "kg/m^3"),
 }
-_UNITS = {"m": "mm|cm|m", "kg": "kg|t"}
+_UNITS = {"m": "mm|cm|m", "kg": "kg|t", "kg/m^3": r"kg/m\^3|kg/m3"}
 # the speed of a carriage or craft, as headers have it
 _DECIMAL = r"\d+(?:\.\d+)?"
 _SPEED = re.compile(rf"(?:(?i:speed)|(?<![\w.])V(?=[ \t]*[=:]))[ \t]*[=:]?[ \t]*({_DECIMAL})[ \t]*(m/s|kn)\b")
@@ -408,7 +410,7 @@ def _sizes(header: str) -> dict[str, HeaderSize]:
         pattern = rf"(?<![\w.])(?:{words})[ \t]*[=:]?[ \t]*(\d+(?:\.\d+)?)[ \t]*({_UNITS[unit]})\b"
         matches = list(re.finditer(pattern, header))
         if len(matches) == 1:
-            value = float(matches[0][1]) * si_unit(matches[0][2])[0]
+            value = float(matches[0][1]) * si_unit(UNIT_WORDS.get(matches[0][2], matches[0][2]))[0]
             sizes[name] = HeaderSize(" ".join(matches[0][0].split()), f"--{name} {value:g}")
     scales = list(_SCALE.finditer(header))
     if len(scales) == 1:

@@ -46,6 +46,11 @@ class LogStretch:
         """What it is, without side and number."""
         return self.name.partition("_")[0].rstrip("0123456789")
 
+    @property
+    def kind_text(self) -> str:
+        """What it is with its side, as one says it."""
+        return self.name.rstrip("0123456789").rstrip("_").replace("_", " to ", 1).replace("_", " ")
+
 
 def used_parts(offered: Sequence[LogStretch]) -> tuple[LogStretch, ...]:
     """Return those of the offered stretches of a run that are runs of their own."""

@@ -376,10 +376,13 @@ def _sheets(survey: LogSurvey) -> list[LogSurvey]:
 
 
 def with_common_ranges(surveys: Sequence[LogSurvey]) -> list[LogSurvey]:
-    """Return logs in which a column has the range of all logs with the same columns: of one craft they hold one."""
+    """Return logs in which a column has the range of all logs with the same columns: of one craft they hold one.
+
+    The only topic of each may have any name, as sheets have.
+    """
     ends: dict[tuple, tuple[float, float]] = {}
     for survey, topic, column in ((s, t, c) for s in surveys for t in s.topics for c in t.columns):
-        low, high = ends.get(key := (survey.kind, topic.topic, column.number), (column.low, column.high))
+        low, high = ends.get(key := _place(survey, topic, column), (column.low, column.high))
         ends[key] = min(low, column.low), max(high, column.high)
     return [
         replace(
@@ -387,7 +390,7 @@ def with_common_ranges(surveys: Sequence[LogSurvey]) -> list[LogSurvey]:
             topics=tuple(
                 replace(
                     topic,
-                    columns=tuple(_ranged(one, ends[survey.kind, topic.topic, one.number]) for one in topic.columns),
+                    columns=tuple(_ranged(one, ends[_place(survey, topic, one)]) for one in topic.columns),
                 )
                 for topic in survey.topics
             ),
@@ -396,8 +399,12 @@ def with_common_ranges(surveys: Sequence[LogSurvey]) -> list[LogSurvey]:
     ]
 
 
+def _place(survey: LogSurvey, topic: TopicSummary, column: ColumnSummary) -> tuple:
+    return survey.kind, topic.topic if len(survey.topics) > 1 else "", column.number
+
+
 def _ranged(column: ColumnSummary, ends: tuple[float, float]) -> ColumnSummary:
-    return replace(column, low=ends[0], high=ends[1])
+    return replace(column, low=ends[0], high=ends[1], is_constant=ends[0] == ends[1])
 
 
 def _topic_summary(table: RawTable, layout: Layout, stated_time: str) -> TopicSummary:
