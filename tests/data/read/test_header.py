@@ -15,10 +15,25 @@ NAMES, UNITS = ("t", "heading", "rudder"), ("s", "deg", "degC")
         ([NAMES, UNITS], TableHeader(NAMES, UNITS)),
         ([("a title", "", ""), NAMES, ("[s]", "(deg)", ""), ("", "", "")], TableHeader(NAMES, ("s", "deg", ""))),
         ([("first", "second", "third"), ("t", "u", "psi")], TableHeader(("t", "u", "psi"))),
+        ([("t", "Port", ""), ("time", "Nozzle", "RPM")], TableHeader(("time", "Port Nozzle", "Port [RPM]"))),
+        (
+            [("t", "Port", ""), ("time", "Nozzle", "RPM"), ("s", "deg", "1/min")],
+            TableHeader(("time", "Port Nozzle", "Port RPM"), ("s", "deg", "1/min")),
+        ),
         ([UNITS], TableHeader(UNITS)),
         ([], TableHeader()),
     ],
-    ids=["names", "title", "units", "brackets", "names like units", "units alone", "nothing"],
+    ids=[
+        "names",
+        "title",
+        "units",
+        "brackets",
+        "names like units",
+        "groups",
+        "groups and units",
+        "units alone",
+        "nothing",
+    ],
 )
 def test_the_last_row_holds_names_or_units(rows: list[tuple[str, ...]], header: TableHeader) -> None:
     assert table_header(rows) == header

@@ -178,6 +178,11 @@ def half_swings(phi: Array) -> list[HalfSwing]:
     return [swing for swing in swings if swing.stop - swing.first > _NOISE_SAMPLES]
 
 
+def half_swing_angles(phi: Array) -> Array:
+    """Return the largest angle of each swing to one side, rad; phi: about its rest."""
+    return np.array([half_swing.angle for half_swing in half_swings(phi)])
+
+
 def driven_swings(chain: Sequence[HalfSwing]) -> int:
     """Return how many of the swings were driven, by people who run from side to side, before the last as large one.
 
@@ -209,7 +214,7 @@ def is_in_waves(phi: Array) -> bool:
 
     A ship that is let go lies calm before it is driven or pulled over; in a sea groups of swings follow one another.
     """
-    angles = np.array([half_swing.angle for half_swing in half_swings(phi)])
+    angles = half_swing_angles(phi)
     level = 0.5 * (angles[1:] + angles[:-1])  # of both sides: a heel is no growth
     groups = list(_groups(level))
     dying = sum(1 for start, end in groups if start > end)

@@ -15,9 +15,10 @@ from seatrial.data.draft.column_guess import RELATIVE, Changes, ColumnGuess
 from seatrial.data.draft.guess import command_directions, rest_of_commands
 from seatrial.data.draft.judged import judged_guesses
 from seatrial.data.draft.naming import APPARENT_WIND
-from seatrial.data.draft.stretches import padded
+from seatrial.data.draft.stretches import track_velocity
 from seatrial.data.draft.survey import LogSurvey
 from seatrial.data.read.assemble import LogSource, assemble_record, record_of_sources
+from seatrial.physics.manoeuvres.track import has_track
 
 # Axes of positions and attitudes that a log leaves open, by its thrusters.
 
@@ -103,9 +104,10 @@ def wind_readings(record: Record) -> Changes:
     A wind over ground changes slowly; read wrongly it turns with the craft, or grows and falls with its speed.
     """
     changes: Changes = {}
-    velocity = _velocity(record)
-    if velocity is None or float(np.ptp(np.unwrap(record["psi"]))) < _TURNS_RAD:
+    is_seen = has_track(record) and "psi" in record
+    if not is_seen or float(np.ptp(np.unwrap(record["psi"]))) < _TURNS_RAD:
         return changes
+    velocity = track_velocity(record)
     for pair in _PAIRS:
         if set(pair) <= set(record.channels):
             scatters = _scatters(record[pair[0]], record[pair[1]], record["psi"], velocity)
@@ -150,14 +152,6 @@ def _as_shown(guess: ColumnGuess, reading: str, unit: str, text: str) -> ColumnG
     symbol = guess.symbol.removesuffix(RELATIVE) + (RELATIVE if reading == _APPARENT else "")
     read = replace(guess, symbol=symbol, unit=unit if is_unit_open else guess.unit, other_reading="")
     return read.with_evidence(f"{read.unit}: the wind over ground is then steady" if is_unit_open else text)
-
-
-def _velocity(record: Record) -> tuple[Array, Array] | None:
-    """North and east velocity over ground [m/s], each (n,); None without positions or heading."""
-    if not {"x0", "y0", "psi"} <= set(record.channels):
-        return None
-    north, east = (np.gradient(padded(record, record[one]), record.dt) for one in ("x0", "y0"))
-    return north, east
 
 
 def _scatters(speed: Array, angle: Array, psi: Array, velocity: tuple[Array, Array]) -> dict[tuple[str, str], float]:

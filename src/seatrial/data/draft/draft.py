@@ -32,7 +32,6 @@ from seatrial.data.draft.manoeuvres import (
     autopilot_modes,
     changes_course,
     find_stretches,
-    is_decay,
     numbered,
     offered_parts,
     parts_without_gaps,
@@ -64,7 +63,7 @@ from seatrial.data.draft.starting_model import (
     thinned_rate,
     with_wind,
 )
-from seatrial.data.draft.stretches import STRAIGHT, LogStretch, used_parts
+from seatrial.data.draft.stretches import DECAY, STRAIGHT, LogStretch, used_parts
 from seatrial.data.draft.survey import LogSurvey, apart_by_sheet, columns_by_source, survey_logs, with_common_ranges
 from seatrial.data.trial.plausibility import ESTIMATED
 from seatrial.data.trial.records import need_release
@@ -380,10 +379,10 @@ def _decays(
     """The roll decays by name, each from its release; those of a log with several by the names of these."""
     decays = dict[str, Record]()
     for run, record, found in zip(runs, records, stretches, strict=True):
-        for one in filter(is_decay, found if record is not None else ()):
-            origin = float(record.time[0]) if record is not None else 0.0
+        for one in (stretch for stretch in found if stretch.kind == DECAY and record is not None):
+            origin = float(record.time[0])
             name = _whole_name(run) if len(found) == 1 else one.name
-            decays |= {} if record is None else {name: record.between(origin + one.start, origin + one.stop)}
+            decays[name] = record.between(origin + one.start, origin + one.stop)
     return decays
 
 

@@ -16,9 +16,10 @@ from seatrial.data.check.motion import jackknife_least_squares, smoothed, smooth
 from seatrial.data.draft.column_guess import Changes, ColumnGuess
 from seatrial.data.draft.naming import NameGuess, bracketed_unit, guess_by_name, named_side
 from seatrial.data.draft.stored_parameters import OutputSetting, is_disabled, output_setting
-from seatrial.data.draft.stretches import padded, smooth_speed
+from seatrial.data.draft.stretches import smooth_speed, track_velocity
 from seatrial.data.draft.survey import ColumnSummary, LogSurvey, TopicSummary, column_values
 from seatrial.data.readings import name_table
+from seatrial.physics.manoeuvres.track import has_track
 from seatrial.physics.models.thruster_layout import CommandInput, Thruster, ThrusterLayout
 
 # Columns without names, by what they do: derivatives of one another, the heading of the track, what turns the ship.
@@ -239,9 +240,9 @@ def command_directions(record: Record) -> Changes:
 
 def _with_speeds(record: Record) -> Record:
     """The record with the speeds ahead and to starboard as the positions show them, where no speed is recorded."""
-    if "u" in record or not {"x0", "y0", "psi"} <= set(record.channels):
+    if "u" in record or not has_track(record) or "psi" not in record:
         return record
-    north, east = (np.gradient(padded(record, record[one]), record.dt) for one in ("x0", "y0"))
+    north, east = track_velocity(record)
     cos, sin = np.cos(record["psi"]), np.sin(record["psi"])
     speeds = {"u": north * cos + east * sin, "v": east * cos - north * sin}
     motion = Record.from_arrays("motion", record.time, speeds)

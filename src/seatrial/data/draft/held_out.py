@@ -13,9 +13,9 @@ import numpy as np
 from seatrial.core.text.numbers import duration
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, Record
-from seatrial.data.check.phases import half_swings
+from seatrial.data.check.phases import half_swing_angles, half_swings
 from seatrial.data.draft.starting_model import StartingModel
-from seatrial.data.draft.stretches import STRAIGHT, half_swing_angles
+from seatrial.data.draft.stretches import STRAIGHT
 from seatrial.physics.manoeuvres import ManoeuvreKind, SteeredOrders, steered_orders
 
 # Roll decays that differ: in how they die out, of another speed or loading, or in the heel about which they roll.

@@ -166,7 +166,7 @@ def _without_straight(stretches: Sequence[LogStretch]) -> tuple[LogStretch, ...]
 
 
 def _is_whole(record: Record, stretches: Sequence[LogStretch], count: int) -> bool:
-    if len(stretches) == 1 and is_decay(stretches[0]):
+    if len(stretches) == 1 and stretches[0].kind == DECAY:
         return True
     return changes_course(stretches) or (_fills(record, stretches) and (count > 1 or len(stretches) == 1))
 
@@ -177,11 +177,6 @@ def _fills(record: Record, stretches: Sequence[LogStretch]) -> bool:
         covered += max(0.0, stretch.stop - max(stretch.start, end))
         end = max(end, stretch.stop)
     return covered >= _FILLED * record.duration
-
-
-def is_decay(stretch: LogStretch) -> bool:
-    """Return whether a stretch is a roll decay."""
-    return stretch.name.startswith(DECAY)
 
 
 def _manoeuvres_of(record: Record) -> list[LogStretch]:

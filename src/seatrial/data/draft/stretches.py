@@ -71,9 +71,13 @@ def elapsed(record: Record) -> Array:
 def smooth_speed(record: Record) -> Array | None:
     """Return the smoothed speed [m/s], shape (n,); None where it is not recorded."""
     known = speed(record)
-    if known is None and {"x0", "y0"} <= set(record.channels):
-        known = np.hypot(*(np.gradient(padded(record, record[one]), record.dt) for one in ("x0", "y0")))
     return None if known is None else padded(record, known)
+
+
+def track_velocity(record: Record) -> tuple[Array, Array]:
+    """Return north and east velocity over ground [m/s] of smoothed positions, each (n,)."""
+    north, east = (np.gradient(padded(record, record[one]), record.dt) for one in ("x0", "y0"))
+    return north, east
 
 
 # Spirals, stops and roll decays in a log.
@@ -168,11 +172,6 @@ def decays(record: Record) -> list[LogStretch]:
             chain = []
         chain.append(swing)
     return stretches
-
-
-def half_swing_angles(phi: Array) -> Array:
-    """Return the largest angle of each swing to one side, rad; phi: about its rest."""
-    return np.array([half_swing.angle for half_swing in half_swings(phi)])
 
 
 def _peak(phi: Array, swing: HalfSwing) -> int:

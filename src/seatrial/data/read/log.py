@@ -109,7 +109,7 @@ def table_header(rows: Sequence[Sequence[str]], width: int = 0) -> TableHeader:
         filled.pop()
     names, place = filled[-1], places[len(filled) - 1]
     if len(filled) > 1 and places[len(filled) - 2] == place - 1 and _are_groups(filled[-2], names):
-        names = _with_groups(filled[-2], names)
+        names = _with_groups(filled[-2], names, has_units=bool(units))
     return TableHeader(tuple(names), units)
 
 
@@ -129,16 +129,20 @@ def _are_groups(groups: Sequence[str], names: Sequence[str]) -> bool:
     return len(groups) == len(names) and len(filled) > 1 and is_text and spans
 
 
-def _with_groups(groups: Sequence[str], names: Sequence[str]) -> Sequence[str]:
-    """The names behind those of the groups above them; of a group of one column its own name, if it has one."""
+def _with_groups(groups: Sequence[str], names: Sequence[str], *, has_units: bool) -> Sequence[str]:
+    """The names behind those of the groups above them; of a group of one column its own name, if it has one.
+
+    has_units: whether a row of its own states the units, so that a name such as RPM is none.
+    """
     group, joined = "", list[str]()
     for k, (above, name) in enumerate(zip(groups, names, strict=True)):
         is_alone = bool(above) and (k + 1 == len(groups) or bool(groups[k + 1]))
         group = above or (group if name else "")
-        if is_alone and name and names.count(name) == 1 and not is_unit(name):
+        names_unit = is_unit(name) and not has_units
+        if is_alone and name and names.count(name) == 1 and not names_unit:
             joined.append(name)
         else:
-            joined.append(f"{group} [{name}]" if is_unit(name) else f"{group} {name}".strip())
+            joined.append(f"{group} [{name}]" if names_unit else f"{group} {name}".strip())
     return joined
 
 
