@@ -5,9 +5,11 @@ import os
 import shutil
 import sys
 import zlib
+from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import nullcontext
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -15,6 +17,9 @@ from hypothesis import settings
 
 from seatrial import cli
 from seatrial.numerics.workers import limited_workers
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
 
 REPOSITORY = Path(__file__).parents[1]
 
@@ -38,22 +43,31 @@ LONGEST_FIRST = {"studies", "cli", "reporting"}
 LONG_SHARE = 10
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+QUIET = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
+         "--disable-component-update", "--disable-sync"]  # fmt: skip
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Put the longest files first; of long tests keep a sample, unless they are asked for by `-m long` or by name."""
+    """Put the longest files first; of long tests keep a sample, unless `-m long` or their names ask for them."""
     items.sort(key=lambda item: LONGEST_FIRST.isdisjoint(item.path.relative_to(REPOSITORY).parts))
     if config.option.markexpr or any("::" in argument for argument in config.args):
         return
-    sample = int(os.environ.get("SEATRIAL_SAMPLE", "0")) % LONG_SHARE
-    left_out = [item for item in items if item.get_closest_marker("long") and _sample_of(item.path) != sample]
+    sample, cases = int(os.environ.get("SEATRIAL_SAMPLE", "0")), Counter[str]()
+    kept, left_out = [], []
+    for item in items:
+        function = item.nodeid.partition("[")[0]
+        (kept if _is_in_sample(item, cases[function], sample) else left_out).append(item)
+        cases[function] += 1
     config.hook.pytest_deselected(items=left_out)
-    items[:] = [item for item in items if item not in left_out]
+    items[:] = kept
 
 
-def _sample_of(path: Path) -> int:
-    """The sample that a file belongs to: what its long tests share is made once."""
-    return zlib.crc32(path.stem.encode()) % LONG_SHARE
+def _is_in_sample(item: pytest.Item, case: int, sample: int) -> bool:
+    """Whether a test runs with the suite; long ones of a file do so together: what they share is made once."""
+    long = item.get_closest_marker("long")
+    if long is None or "every" not in long.kwargs:
+        return long is None or (zlib.crc32(item.path.stem.encode()) - sample) % LONG_SHARE == 0
+    return (case - sample) % long.kwargs["every"] == 0
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -79,14 +93,17 @@ def data_folder() -> Path:
     return folder
 
 
-@pytest.fixture(scope="session")
-def browser_path() -> str:
+@pytest.fixture(scope="module")
+def browser() -> "Iterator[Browser]":
     """The machine's Chromium, for tests that look at a page."""
-    for name in BROWSERS:
-        found = shutil.which(name)
-        if found:
-            return found
-    pytest.skip("no Chromium on this machine; install the package 'chromium' to run browser tests")
+    playwright = pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
+    path = next(filter(None, map(shutil.which, BROWSERS)), None)
+    if path is None:
+        pytest.skip("no Chromium on this machine; install the package 'chromium' to run browser tests")
+    with playwright.sync_playwright() as started:
+        opened = started.chromium.launch(executable_path=path, args=QUIET)
+        yield opened
+        opened.close()
 
 
 @pytest.fixture

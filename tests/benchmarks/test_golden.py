@@ -54,6 +54,7 @@ def execute(
     return run
 
 
+@pytest.mark.long(every=3)
 @pytest.mark.parametrize("trial", QUICK, ids=lambda trial: trial.name)
 def test_a_quick_trial_gives_what_is_recorded(trial: GoldenTrial, execute: Execute) -> None:
     if not trial.is_here:

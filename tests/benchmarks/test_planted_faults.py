@@ -5,6 +5,7 @@ from benchmarks.fault_kinds import KINDS, UNDETECTABLE, FaultKind
 from benchmarks.planted_faults import alarms, outcome, simulated, thruster_outcomes
 
 
+@pytest.mark.long(every=2)
 @pytest.mark.parametrize("kind", KINDS[1::2], ids=lambda kind: kind.name)
 def test_a_planted_fault_is_found_by_its_cause(kind: FaultKind) -> None:
     assert outcome(kind, "tanker", 5, simulated("tanker", 5)).is_found

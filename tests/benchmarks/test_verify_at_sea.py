@@ -11,9 +11,8 @@ def trial() -> Trial:
     return tuned_trial()
 
 
-@pytest.mark.parametrize(
-    "change", [CHANGES[0], *(pytest.param(c, marks=pytest.mark.long) for c in CHANGES[2::2])], ids=lambda c: c.name
-)
+@pytest.mark.long(every=len(CHANGES[::2]))
+@pytest.mark.parametrize("change", CHANGES[::2], ids=lambda c: c.name)
 def test_what_changed_is_named(trial: Trial, change: Change) -> None:
     made = verify(trial.task, trial.gains, [log_of(trial, change, 7)])
     assert is_named(change, made), made.findings

@@ -57,12 +57,11 @@ def demand_is_met(task: TuningTask, L_over_U: float) -> None:
 
 def test_an_identified_waterjet_craft_changes_course() -> None:
     fit = example_fit("waterjet")
-    ship = trim_ship(
-        ModelFile(fit.model, fit.covariance, approach={"v_j": 1.866}), output="psi", actuator="delta"
-    )  # fmt: skip
+    ship = trim_ship(ModelFile(fit.model, fit.covariance, approach={"v_j": 1.866}), output="psi", actuator="delta")
     demand_is_met(autopilot_of(ship, 9.8, gear=0.5, limit=30.0, rate=20.0), 9.8 / float(ship.state[0]))
 
 
+@pytest.mark.long
 def test_an_identified_tanker_unstable_on_its_course_changes_course(
     data_folder: Path, repository: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

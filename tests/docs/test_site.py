@@ -3,7 +3,6 @@
 import re
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,7 +11,7 @@ import pytest
 import seatrial
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Page
+    from playwright.sync_api import Browser, Page
 
 # whether the page is wider than the window, or a table sticks out of it that nothing around it lets scroll
 OVERFLOWS = """() => {
@@ -60,15 +59,9 @@ def test_every_public_name_is_described(site: Path) -> None:
 
 
 @pytest.fixture(scope="module")
-def phone(browser_path: str) -> "Iterator[Page]":
+def phone(browser: "Browser") -> "Page":
     """A window as wide as a phone's, 390 pixels."""
-    playwright = pytest.importorskip(
-        "playwright.sync_api", reason="playwright is not installed; pip install playwright"
-    )
-    with playwright.sync_playwright() as started:
-        browser = started.chromium.launch(executable_path=browser_path, args=["--no-sandbox", "--disable-gpu"])
-        yield browser.new_page(viewport={"width": 390, "height": 844})
-        browser.close()
+    return browser.new_page(viewport={"width": 390, "height": 844})
 
 
 def test_the_search_answers_from_disk(site: Path, phone: "Page") -> None:

@@ -63,6 +63,7 @@ def test_every_craft_with_thrusters_is_a_problem() -> None:
         assert commands <= set(craft.ranges) and set(craft.values) >= {"M_v", "M_r", "tau"}
 
 
+@pytest.mark.long
 def test_under_gusts_identify_is_near_the_bound_and_output_error_is_not() -> None:
     problem, methods = PROBLEMS["nomoto-gusts-closed"], built_in_methods()
     draw = problem.draw(1)

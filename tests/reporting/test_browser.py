@@ -1,6 +1,5 @@
 """A real browser opens the pages, clicks through them and has nothing to complain about."""
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -21,18 +20,6 @@ from seatrial.reporting.tuning import html as tuning_html
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
-
-playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed; pip install playwright")
-QUIET = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
-         "--disable-component-update", "--disable-sync"]  # fmt: skip
-
-
-@pytest.fixture(scope="module")
-def browser(browser_path: str) -> "Iterator[Browser]":
-    with playwright.sync_playwright() as started:
-        opened = started.chromium.launch(executable_path=browser_path, args=QUIET)
-        yield opened
-        opened.close()
 
 
 def opened(browser: "Browser", path: Path, width: int = 1100) -> "tuple[Page, list[str]]":

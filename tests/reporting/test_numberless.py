@@ -32,12 +32,14 @@ def fields_printed(result: Tuning | Verification, number: float) -> list[str]:
     return [name for name, made in numberless(result, number) if re.search(r"(?<![\w.-])-?(nan|inf)\b", texts_of(made))]
 
 
+@pytest.mark.long(every=2)
 @pytest.mark.parametrize("number", [math.nan, math.inf])
 @pytest.mark.parametrize("result", [LEGS, TURNS], ids=["legs", "changes"])
 def test_no_verification_prints_what_is_unknown(result: Verification, number: float) -> None:
     assert fields_printed(result, number) == []
 
 
+@pytest.mark.long(every=2)
 @pytest.mark.parametrize("number", [math.nan, math.inf])
 @pytest.mark.parametrize("make", list(TUNINGS.values()), ids=list(TUNINGS))
 def test_no_tuning_prints_what_is_unknown(make: Callable[[], Tuning], number: float) -> None:

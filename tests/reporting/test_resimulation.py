@@ -5,7 +5,6 @@ import json
 import re
 import shutil
 import subprocess
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -109,17 +108,6 @@ def test_without_a_held_out_run_or_a_model_of_steps_there_are_none(fit: Fit) -> 
     assert resimulation(replace(fit, model=model_named("heave_pitch"))) == ""
     assert resimulation(replace(fit, coefficients=tuple(replace(c, fixed=True) for c in fit.coefficients))) == ""
     assert "resimulation" in report_page(fit)
-
-
-playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed; pip install playwright")
-
-
-@pytest.fixture(scope="module")
-def browser(browser_path: str) -> "Iterator[Browser]":
-    with playwright.sync_playwright() as started:
-        opened = started.chromium.launch(executable_path=browser_path, args=["--no-sandbox", "--disable-gpu"])
-        yield opened
-        opened.close()
 
 
 def page_with(browser: "Browser", fit: Fit, folder: Path, width: int = 1100):

@@ -85,6 +85,7 @@ def test_identify_is_at_the_bound_and_inside_the_box(name: str, seed: int) -> No
     assert np.all((answer.values >= draw.box.lower) & (answer.values <= draw.box.upper))
 
 
+@pytest.mark.long(every=2)
 @pytest.mark.parametrize(
     "method",
     [EstimateMethod.AUTO, EstimateMethod.OUTPUT_ERROR, EstimateMethod.MULTIPLE_SHOOTING,

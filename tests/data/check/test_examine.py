@@ -1,13 +1,20 @@
 """Each wrong declaration is found, by its own code, and right ones are left in peace."""
 
 import math
+from functools import cache
 
 import numpy as np
 import pytest
+from benchmarks.fault_kinds import KINDS, FaultKind
+from benchmarks.planted_faults import simulated
 from tests.data.check.ship import in_earth_axes, integral, mirrored, with_declaration, with_values, zigzag
+from tests.data.conftest import LONGEST_MESSAGE
 
-from seatrial.core.values import Finding, Record, Severity
-from seatrial.data.check import canonical_record, examine, is_excited
+from seatrial.core.values import Finding, InputError, Record, Severity
+from seatrial.data.check import canonical_record, is_excited
+from seatrial.data.check import examine as examine_anew
+
+examine = cache(examine_anew)
 
 
 def errors(record: Record) -> list[str]:
@@ -51,11 +58,17 @@ WRONG = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("noise", [0.0, 1.0])
+@cache
+def wrong_record(name: str, noise: float) -> Record:
+    return WRONG[name][0](sideways(noise) if name == "sway to port" else zigzag(noise=noise))
+
+
+@pytest.mark.long(every=2)
+@pytest.mark.parametrize("noise", [1.0, 0.0])
 @pytest.mark.parametrize("name", WRONG)
 def test_wrong_declarations_are_found(name: str, noise: float) -> None:
-    spoil, code, words = WRONG[name]
-    wrong = spoil(sideways(noise) if name == "sway to port" else zigzag(noise=noise))
+    _, code, words = WRONG[name]
+    wrong = wrong_record(name, noise)
     assert errors(wrong) == [code]
     assert words in found(wrong, code).message
 
@@ -75,8 +88,9 @@ def sideways(noise: float) -> Record:
 
 def test_yaw_rate_in_degrees() -> None:
     record = zigzag(noise=1.0)
-    assert errors(with_values(record, r=np.degrees(record["r"]))) == ["wrong-unit"]
-    assert "'r' is in deg/s" in found(with_values(record, r=np.degrees(record["r"])), "wrong-unit").message
+    wrong = with_values(record, r=np.degrees(record["r"]))
+    assert errors(wrong) == ["wrong-unit"]
+    assert "'r' is in deg/s" in found(wrong, "wrong-unit").message
     assert "'r' is in rad/s" in found(with_values(record, r=np.radians(record["r"])), "wrong-unit").message
 
 
@@ -217,9 +231,9 @@ def test_a_coarse_compass_that_rests_at_north_was_read_in_every_row() -> None:
     assert not {"empty-cells", "empty-rows", "rows-dropped"} & set(codes(made))
 
 
-@pytest.mark.parametrize("spoil", [lambda r: r, *(spoil for spoil, _, _ in WRONG.values())])
-def test_the_mirror_image_is_judged_alike(spoil) -> None:
-    record = spoil(zigzag(noise=1.0))
+@pytest.mark.parametrize("name", ["right", *WRONG])
+def test_the_mirror_image_is_judged_alike(name: str) -> None:
+    record = wrong_record(name, 1.0) if name in WRONG else zigzag(noise=1.0)
     ours, theirs = examine(record), examine(mirrored(record))
     assert [(f.code, f.severity) for f in ours] == [(f.code, f.severity) for f in theirs]
 
@@ -230,6 +244,17 @@ def test_every_finding_names_the_record_and_gives_numbers_and_advice() -> None:
         assert "'zigzag'" in finding.message
         assert any(c.isdigit() for c in finding.evidence) and finding.advice
         assert not math.isnan(len(finding.text))
+
+
+@pytest.mark.long(every=2)
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
+def test_what_a_check_says_of_a_planted_fault_is_short(kind: FaultKind, rng: np.random.Generator) -> None:
+    record = simulated("tanker", 3).rows(slice(0, 1500)).renamed("20240513_zigzag_20_20_starboard_second L 7.0")
+    try:
+        texts = [text for f in examine(kind.spoil(record, rng)) for text in (f.text, f.consequence, f.advice)]
+    except InputError as error:
+        texts = [str(error)]
+    assert max(map(len, texts)) <= LONGEST_MESSAGE, max(texts, key=len)
 
 
 @pytest.mark.parametrize(("speed", "is_said"), [(0.1, False), (1.0, True)])

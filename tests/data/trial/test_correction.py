@@ -36,6 +36,7 @@ def with_swapped_positions(record: Record) -> Record:
     return Record(record.name, record.time, {**record.channels, **channels})
 
 
+@pytest.mark.long(every=2)
 @pytest.mark.parametrize(
     ("record", "declared", "expected"),
     [

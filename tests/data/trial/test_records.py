@@ -112,6 +112,7 @@ def test_windows_and_rates() -> None:
     assert (record.time[0], record.time[-1], record.dt) == (10.0, 30.0, pytest.approx(1.0))
 
 
+@pytest.mark.long(every=2)
 @pytest.mark.parametrize(("example", "runs"), [("kvlcc2_hsva", 13), ("esso_osaka", 23)])
 def test_the_ready_trial_files_pass_the_checks(
     example: str, runs: int, repository: Path, data_folder: Path, monkeypatch: pytest.MonkeyPatch

@@ -16,6 +16,7 @@ def shortened(path: Path, duration: float) -> DesignTask:
     return replace(task, request=replace(task.request, duration=duration, draws=2), question="")
 
 
+@pytest.mark.long(every=2)
 @pytest.mark.parametrize(
     ("example", "duration", "standard"),
     [("kvlcc2_design.toml", 100.0, "zigzag:20/20"), ("heave_pitch_design.toml", 40.0, "sine sweep")],

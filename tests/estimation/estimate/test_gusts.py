@@ -19,6 +19,7 @@ def test_a_gust_with_a_memory_is_modelled(is_closed: bool, runs: int) -> None:
         assert np.all(np.abs(np.log(o.standard_error / o.bound)) < 0.6), o
 
 
+@pytest.mark.long
 def test_a_closed_loop_is_fitted_by_prediction_error_though_nothing_disturbs_it() -> None:
     cell = gusts.Cell("nomoto", gusts.Disturbance(0.0, 0.0), is_closed=True)
     (result,) = gusts.outcomes(cell, "independent", 1, gusts.SEED, 1)

@@ -88,6 +88,7 @@ def test_intervals_of_coefficients_hold_the_error_of_an_estimated_value(record: 
     assert widened.interval.meaning.endswith("with m_y wrong by 10 % (standard deviation)")
 
 
+@pytest.mark.long(every=2)
 @pytest.mark.parametrize("name", ["c55", "I5"])
 def test_intervals_hold_what_the_source_of_a_fixed_value_leaves_open(name: str) -> None:
     """A craft by its own equations, a stiffness or an inertia fixed one standard deviation of its source too high."""

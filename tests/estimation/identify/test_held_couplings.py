@@ -63,6 +63,7 @@ def test_a_coupling_of_the_truth_is_named_with_what_it_moves(
     assert held_couplings(estimation) == ()  # within one standard error of what is not known
 
 
+@pytest.mark.long(every=2)
 @pytest.mark.parametrize("is_of_the_craft", [True, False])
 def test_freeing_is_advised_where_held_out_runs_gain(is_of_the_craft: bool, rng: np.random.Generator) -> None:
     """Held-out runs are the craft's own, or those of the model that holds the coupling at zero."""

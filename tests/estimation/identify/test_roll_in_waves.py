@@ -53,6 +53,7 @@ def test_the_share_of_the_slope_that_it_feels_can_be_stated_too() -> None:
     assert found.model.parameters["r_w"].value == pytest.approx(0.8, rel=2e-3)
 
 
+@pytest.mark.long(every=4)
 @pytest.mark.parametrize(
     ("spectrum", "seed"),
     [(bretschneider(2.0, 9.0), 1), (bretschneider(2.0, 12.0), 2), (jonswap(2.0, 9.0), 1), (jonswap(2.0, 12.0), 2)],
@@ -92,7 +93,7 @@ name = "roll"
 
 def test_a_trial_of_roll_alone_becomes_a_fit_with_its_reason(tmp_path: Path) -> None:
     """Linear equivalent, and a spectrum in place of curves over amplitude."""
-    fit = trial_of(tmp_path, simulate_roll_record(bretschneider(2.0, 12.0), 1))
+    fit = trial_of(tmp_path, simulate_roll_record(bretschneider(2.0, 12.0), 1, dt=0.5))
     assert [c.name for c in fit.coefficients if not c.fixed] == ["b_1", "c_1"]
     assert "Whittle" in fit.method.criterion
     assert "equivalent-linear" in [f.code for f in fit.findings]
@@ -105,7 +106,7 @@ def test_a_trial_of_roll_alone_becomes_a_fit_with_its_reason(tmp_path: Path) -> 
 def test_waves_without_energy_at_the_natural_frequency_are_refused(tmp_path: Path) -> None:
     """They tell their own period, not the ship's."""
     with pytest.raises(InputError, match="waves have next to no energy at the natural frequency"):
-        trial_of(tmp_path, simulate_roll_record(bretschneider(2.0, 6.5), 2, duration=600.0))
+        trial_of(tmp_path, simulate_roll_record(bretschneider(2.0, 6.5), 2, duration=600.0, dt=0.5))
 
 
 def test_a_record_of_a_few_samples_has_no_spectrum() -> None:
@@ -116,7 +117,7 @@ def test_a_record_of_a_few_samples_has_no_spectrum() -> None:
 def test_too_short_a_record_is_refused(tmp_path: Path) -> None:
     """With the number of swings it has."""
     with pytest.raises(InputError, match="swings in waves that nobody measured are too few"):
-        trial_of(tmp_path, simulate_roll_record(bretschneider(2.0, 12.0), 1, duration=200.0))
+        trial_of(tmp_path, simulate_roll_record(bretschneider(2.0, 12.0), 1, duration=200.0, dt=0.5))
 
 
 @pytest.mark.parametrize("growth", [0.0, 0.004])

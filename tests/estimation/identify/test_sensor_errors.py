@@ -28,6 +28,7 @@ def fit_of(fault: str) -> Fit:
     return identify(replace(trial, estimate=replace(trial.estimate, method=EstimateMethod.OUTPUT_ERROR)))
 
 
+@pytest.mark.long(every=3)
 @pytest.mark.parametrize(
     ("fault", "name", "truth"),
     [
@@ -110,6 +111,7 @@ def test_waves_on_compass_and_gyro_show_their_lag() -> None:
     assert spread[0] < 0.01 and spread[0] < 0.2 * spread[1]
 
 
+@pytest.mark.long(every=2)
 @pytest.mark.parametrize("delays", [{"delta": 0.0}, {"psi": 0.0, "r": 0.0}])
 def test_known_timing_leaves_no_lag_open(delays: dict[str, float]) -> None:
     """Its intervals are those of bias and scale alone, which the pair shows."""

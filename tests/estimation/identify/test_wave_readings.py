@@ -22,6 +22,7 @@ def findings(folder: Path, old: str, new: str, seconds: float) -> str:
         return str(error)
 
 
+@pytest.mark.long(every=3)
 @pytest.mark.parametrize(
     ("old", "new", "seconds", "said"),
     [

@@ -35,6 +35,7 @@ def shares(fit: Fit) -> np.ndarray:
     return np.array([c.estimate / c.truth - 1.0 for c in fit.coefficients if not c.fixed])  # type: ignore[operator]
 
 
+@pytest.mark.long(every=3)
 @pytest.mark.parametrize("heading", [90, 135, 180])
 def test_recorded_forces_give_the_coefficients_back(tmp_path: Path, heading: int) -> None:
     fit = identify(load_trial(write_wave_trial(tmp_path, [SeawayScenario(heading), SeawayScenario(heading)], FORCES)))
@@ -64,6 +65,7 @@ def test_gain_and_delay_of_a_force_are_found(tmp_path: Path) -> None:
     assert found["M5 delay"] == pytest.approx(0.1, abs=0.01)
 
 
+@pytest.mark.long(every=3)
 @pytest.mark.parametrize("heading", [45, 135, 180])
 def test_the_spectrum_of_the_sea_will_do_with_a_fin(tmp_path: Path, heading: int) -> None:
     path = write_wave_trial(tmp_path, [long(heading)], FORCES[2:], WITH_BOX + NOISE, waves_table(heading, SEA))

@@ -23,6 +23,7 @@ BUDGET = 40 * 200
 SEEDS = range(5)
 
 
+@pytest.mark.long(every=2)
 @pytest.mark.parametrize(("function", "limit"), [(sphere, 0.01), (rosenbrock, 15.0), (rastrigin, 25.0)])
 @pytest.mark.parametrize("kind", KINDS)
 def test_it_finds_what_a_random_search_does_not(kind: str, function: Callable[[Array], Array], limit: float) -> None:

@@ -82,6 +82,7 @@ def one_after_another(
     return min(leaders, key=lambda horse: horse[0])[0]
 
 
+@pytest.mark.long(every=2)
 @pytest.mark.parametrize("variant", StrideVariant)
 def test_moving_all_groups_at_once_reaches_what_one_after_another_does(variant: StrideVariant) -> None:
     landscape = Landscape(sphere, LEAST[:4])

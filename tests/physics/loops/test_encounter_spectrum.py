@@ -89,6 +89,7 @@ def test_a_beam_sea_is_the_slope_spectrum_whatever_the_speed() -> None:
     assert still.variance == pytest.approx(expected, rel=1e-7)
 
 
+@pytest.mark.long(every=4)
 @pytest.mark.parametrize(
     ("heading", "exponent", "hull"),
     [

@@ -19,6 +19,7 @@ from seatrial_studies.seaway import SeawayScenario, ship, simulate_seaway_run
 EXAMPLES = Path(__file__).parents[4] / "examples"
 
 
+@pytest.mark.long(every=3)
 @pytest.mark.parametrize("heading", [90, 135, 180])
 def test_the_numbers_are_those_of_the_batch_fit_on_the_same_samples(heading):
     stream = sea_stream(heading, 120.0)
@@ -71,6 +72,7 @@ def test_a_gap_beyond_the_window_goes_on_with_what_the_filter_knew():
     assert np.all(np.abs(snapshot.value - truth) < 5.0 * snapshot.standard_error)
 
 
+@pytest.mark.long(every=2)
 @pytest.mark.parametrize("forgetting", [None, 60.0])
 def test_a_ship_that_becomes_another_is_stated_and_followed(forgetting):
     stream = sea_stream(90, 240.0)
