@@ -8,7 +8,7 @@ import numpy as np
 from seatrial.core.results import Fit
 from seatrial.core.results.online import EstimatorPhase, Sample, SampleCounts, Snapshot
 from seatrial.data.folder.document import document
-from seatrial.data.trial import Trial, load_trial
+from seatrial.data.trial import EstimateMethod, Trial, load_trial
 from seatrial.data.trial.runs import require_stream
 from seatrial.onboard.follow import FollowResult
 
@@ -59,9 +59,10 @@ class ListSource:
 
 
 def stream_trial(file: Path = VOYAGE) -> Trial:
-    """The example's trial, its stream from `file`, no runs besides."""
+    """The example's trial, its stream from `file`, no runs besides, estimated by output error."""
     trial = load_trial(EXAMPLES / "heave_pitch_follow.toml")
-    return replace(trial, runs=(), stream=replace(require_stream(trial), file=file, name=file.stem))
+    plain = replace(trial.estimate, method=EstimateMethod.OUTPUT_ERROR)
+    return replace(trial, runs=(), estimate=plain, stream=replace(require_stream(trial), file=file, name=file.stem))
 
 
 def sample_range(first: int, last: int, start: float = 0.0) -> list[Sample]:

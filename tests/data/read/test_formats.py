@@ -56,7 +56,8 @@ def test_readers_conform(sample: Sample, folder: Path) -> None:
         return (reader_of("mat") if is_damaged else sample.read)(file, layout)
 
     check_reader(read, path, sample.layout)
-    gc.collect()  # what asammdf leaves of a damaged file complains when it is deleted: here, not in another test
+    if path.suffix == ".mf4":
+        gc.collect()  # what asammdf leaves of a damaged file complains when it is deleted: here, not in another test
 
 
 @pytest.mark.parametrize("file", [name for name, sample in SAMPLES.items() if "/" in str(sample.u.source)])

@@ -44,7 +44,7 @@ def test_a_steered_manoeuvre_has_intervals_and_an_index(
 def test_every_kind_of_interval_can_be_had(
     trial_of: WriteTrial, tmp_path: Path, run_command: Callable[..., int], kind: str
 ) -> None:
-    trial = trial_of(RUNS, more='[estimate]\nmethod = "multiple-shooting"')
+    trial = trial_of(RUNS, more='[estimate]\nmethod = "multiple-shooting"', rows=300)
     arguments = ("--intervals", kind, "--out", tmp_path / "out", "--json", tmp_path / "fit.json")
     assert run_command("identify", trial, *arguments) == 0
     fit = json.loads((tmp_path / "fit.json").read_text())
@@ -94,7 +94,8 @@ def test_what_cannot_be_had_is_refused_in_one_sentence(
 def test_the_same_seed_gives_the_same_file(
     trial_of: WriteTrial, tmp_path: Path, run_command: Callable[..., int]
 ) -> None:
-    trial, measures = trial_of({"a": 0.0, "b": 0.01, "v_f": 0.01}), []
+    more = '[estimate]\nmethod = "output-error"'
+    trial, measures = trial_of({"a": 0.0, "b": 0.01, "v_f": 0.01}, more=more), []
     for seed in (1, 1, 2):
         file = tmp_path / f"{seed}.json"
         assert run_command("identify", trial, "--out", tmp_path / "out", "--json", file, "--seed", seed) == 0
@@ -110,6 +111,6 @@ def test_an_interrupt_during_refits_leaves_nothing_half_written(
 
     monkeypatch.setattr("seatrial.estimation.estimate.intervals.full_jackknife", interrupted)
     out = tmp_path / "out"
-    trial = trial_of(RUNS, more='[estimate]\nmethod = "multiple-shooting"')
+    trial = trial_of(RUNS, more='[estimate]\nmethod = "multiple-shooting"', rows=300)
     assert run_command("identify", trial, "--out", out, "--intervals", "jackknife") == 130
     assert not out.exists() or not list(out.iterdir())

@@ -46,7 +46,7 @@ def zigzags():
     trial, raw = _stream("waterjet")
     estimator = OnlineEstimator(trial)
     assert trial.stream is not None
-    snapshot = feed(estimator, raw, trial, slice(0, 900))
+    snapshot = feed(estimator, raw, trial, slice(0, 600))
     return trial, estimator, snapshot, estimator.relinearise()
 
 
