@@ -48,7 +48,8 @@ def independent_numbers(values: Signal, beside: Signal | None = None) -> float:
 
     beside: the other signal; None: the signal itself.
     """
-    power, other = (np.abs(np.fft.rfft(v - np.mean(v))) ** 2 for v in (values, values if beside is None else beside))
+    power = np.abs(np.fft.rfft(values - np.mean(values))) ** 2
+    other = power if beside is None else np.abs(np.fft.rfft(beside - np.mean(beside))) ** 2
     total = float(np.sum(power * other))
     return min(2.0 * float(np.sum(power)) * float(np.sum(other)) / total, _MOST_NUMBERS) if total > 0.0 else 0.0
 
@@ -67,11 +68,11 @@ def identity(first: Signal, second: Signal, means: float, noise: float = 0.0) ->
     a, b = first[finite], second[finite]
     if a.size < 2 * max(_LAGS):
         return 0.0
-    total = float(np.var(a) + np.var(b))
-    scale = float(np.mean(a**2) + np.mean(b**2))
+    signals = np.stack([a, b, a - b])  # one call for all three: the arrays are short
+    variances, squares, mean = np.var(signals, axis=1), np.mean(signals**2, axis=1), np.mean(signals, axis=1)
+    total, scale, difference = float(variances[0] + variances[1]), float(squares[0] + squares[1]), float(variances[2])
     if total <= _FLOOR * scale or scale == 0.0:
         return 0.0
-    difference = float(np.var(a - b))
     share, disagreement = difference / total + _FLOOR, max(difference - noise, 0.0) / total + _FLOOR
     nats = _CAP * max(1.0 - 2.0 * share, 0.0) ** 2
     if share <= _HALF:
@@ -81,7 +82,7 @@ def identity(first: Signal, second: Signal, means: float, noise: float = 0.0) ->
     nats -= max(_DISAGREEMENT * math.log(disagreement / _DISAGREEING), 0.0)
     if means:
         alike = min(max((_HALF - disagreement) / (_HALF - _DISAGREEING), 0.0), 1.0)
-        off = float(np.mean(a - b)) ** 2 / (float(np.mean(a) ** 2 + np.mean(b) ** 2) + _FLOOR * scale)
+        off = float(mean[2]) ** 2 / (float(mean[0] ** 2 + mean[1] ** 2) + _FLOOR * scale)
         nats -= 0.5 * means * alike * math.log(off + _PROVING)
     return max(softly(nats), _LEAST)
 
@@ -144,7 +145,7 @@ class Relations:
     def _track(self, slots: Slots) -> float:
         """Velocities against the derivative of position, ahead and aside, less a current."""
         is_hull = "along the hull" in slots
-        results = []
+        results, place_variance = [], self._place_variance(slots["track"][-1])
         for k, step in enumerate(self.steps):
             for lag in _LAGS[::2]:
                 velocity = (slots["along the hull"] if is_hull else slots["over ground"])[k]
@@ -153,15 +154,15 @@ class Relations:
                 rate = (slots["track"][k][lag:] - slots["track"][k][:-lag]) / (lag * step)
                 turn = np.conj(_midway(axes, lag))
                 off = _less_current(rate - mean, mean)
-                noise = 2.0 * self._place_variance(slots["track"][-1], step) / (lag * step) ** 2  # of a difference
+                noise = 2.0 * (place_variance / step) / (lag * step) ** 2  # of a difference
                 means = (_MEANS["ahead"], _MEANS["aside"]) if is_hull else (_MEANS["over ground"],) * 2
                 ahead = identity(((mean + off) * turn).real, (mean * turn).real, means[0], noise)
                 aside = identity(((mean + off) * turn).imag, (mean * turn).imag, means[1], noise)
                 results.append(ahead + aside)
         return max(results, default=0.0)
 
-    def _place_variance(self, fine: Signal, step: float) -> float:
-        """Variance [m^2] of white noise of a coordinate in bins of a width [s], from third differences of fine bins.
+    def _place_variance(self, fine: Signal) -> float:
+        """Variance [m^2 s] of white noise of a coordinate in bins of one second, from third differences of fine bins.
 
         The variance of a third difference is 20 times that of the noise (Gasser et al. 1986, Biometrika 73, 625-633).
         """
@@ -169,7 +170,7 @@ class Relations:
         means = np.mean(fine[: len(fine) // length * length].reshape(-1, length), axis=1)
         squares = np.abs(np.diff(means, 3)) ** 2
         noise = float(np.nanmean(squares)) / 40.0 if np.any(np.isfinite(squares)) else 0.0  # 20, of two coordinates
-        return noise * length * self.steps[-1] / step
+        return noise * length * self.steps[-1]
 
     def _speed(self, slots: Slots) -> float:
         """A speed against that of the track."""
@@ -236,9 +237,10 @@ def _midway(axes: Signal, lag: int) -> Signal:
 
 def _less_current(off: Signal, velocity: Signal) -> Signal:
     """The residual of the track without what a steady current may be."""
-    if not np.any(np.isfinite(off)):
+    finite, speed = off[np.isfinite(off)], np.abs(velocity)
+    if not finite.size:
         return off
-    mean, bound = complex(np.nanmean(off)), _CURRENT * float(np.nanmean(np.abs(velocity))) + _CURRENT_M_S
+    mean, bound = complex(np.mean(finite)), _CURRENT * float(np.mean(speed[np.isfinite(speed)])) + _CURRENT_M_S
     return off - (mean * min(1.0, bound / abs(mean)) if abs(mean) > 0.0 else 0.0)
 
 
