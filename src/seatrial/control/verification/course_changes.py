@@ -280,7 +280,7 @@ def verify_changes(task: TuningTask, gains: Array, records: Sequence[Record], se
     loop, followed = _loop_of_log(task, gains, logged)
     ship = task.trimmed_ship or plant_as_model(loop)
     ships = draw_parameters(ship, SHIPS, seed).ships
-    nominal = [_answer(task, ship, loop, gains, change) for change in logged]
+    nominal = [_answers(task, (ship,), loop, gains, change)[0] for change in logged]
     settling = [_judged(c, a, demand)[1] for c, a in zip(logged, nominal, strict=True)]
     backgrounds = (c.background(_SETTLED * s) for c, s in zip(logged, settling, strict=True))
     weather = [background for background in backgrounds if len(background) >= _LEAST_BACKGROUND]
@@ -290,7 +290,7 @@ def verify_changes(task: TuningTask, gains: Array, records: Sequence[Record], se
             f"the changes end before they settle, so that nothing shows what weather does; log {longest:.0f} s and "
             "some minutes after each order"
         )
-    answers = [[_answer(task, sister, loop, gains, change) for change in logged] for sister in ships] or [nominal]
+    answers = list(zip(*(_answers(task, ships, loop, gains, c) for c in logged), strict=True)) or [nominal]
     rng = np.random.default_rng(seed)
     repeats = math.ceil(SHIPS * WEATHERS / len(answers))
     sampled = np.array([
@@ -345,8 +345,10 @@ def _loop_of_log(task: TuningTask, gains: Array, logged: Sequence[LoggedChange])
     return loops[best], followed[best]
 
 
-def _answer(task: TuningTask, ship: TrimmedShip, loop: TransferLoop, gains: Array, change: LoggedChange) -> _Answer:
-    """Return what a ship does with the change as it was ordered, without weather, by the loop as it samples."""
+def _answers(
+    task: TuningTask, ships: Sequence[TrimmedShip], loop: TransferLoop, gains: Array, change: LoggedChange
+) -> list[_Answer]:
+    """Return what each ship does with the change as it was ordered, without weather, by the loop as it samples."""
     demand: Demand = task.demand  # type: ignore[assignment]
     loop = _without_noise(loop)
     moving = loop.closed_loop_poles if loop.sampling is None else loop.plant.poles
@@ -363,8 +365,11 @@ def _answer(task: TuningTask, ship: TrimmedShip, loop: TransferLoop, gains: Arra
         sampled, fed = np.interp(sample_time, order_time, change.order), np.zeros(len(sample_time))
     level, fed = (np.repeat(signal, every)[: len(time)] for signal in (sampled, fed))
     limits = ActuatorLimits(task.constraints.limit, task.constraints.rate)
-    output, moved = simulate_tracking(ship, loop, gains, limits, dt, level, fed)
-    return _Answer(np.interp(order_time, time, output - output[0]), np.interp(order_time, time, moved - moved[0]))
+    simulated = [simulate_tracking(ship, loop, gains, limits, dt, level, fed) for ship in ships]
+    return [
+        _Answer(np.interp(order_time, time, output - output[0]), np.interp(order_time, time, moved - moved[0]))
+        for output, moved in simulated
+    ]
 
 
 def _without_noise(loop: TransferLoop) -> TransferLoop:
