@@ -379,7 +379,9 @@ def _decays(
     """The roll decays by name, each from its release; those of a log with several by the names of these."""
     decays = dict[str, Record]()
     for run, record, found in zip(runs, records, stretches, strict=True):
-        for one in (stretch for stretch in found if stretch.kind == DECAY and record is not None):
+        if record is None:
+            continue
+        for one in (stretch for stretch in found if stretch.kind == DECAY):
             origin = float(record.time[0])
             name = _whole_name(run) if len(found) == 1 else one.name
             decays[name] = record.between(origin + one.start, origin + one.stop)
