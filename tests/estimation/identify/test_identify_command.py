@@ -65,7 +65,9 @@ def test_prediction_error_has_profiles(trial_of: WriteTrial, tmp_path: Path, run
     free = [c for c in fit["coefficients"] if not c["fixed"]]
     assert set(profiles) == {c["name"] for c in free}
     for c in free:
-        assert (c["lower"], c["upper"]) == (profiles[c["name"]]["lower"], profiles[c["name"]]["upper"])
+        profile, slack = profiles[c["name"]], 0.1 * (c["estimate"] - c["lower"])  # of errors that no profile knows
+        assert profile["lower"] - slack <= c["lower"] <= profile["lower"]
+        assert profile["upper"] <= c["upper"] <= profile["upper"] + slack
 
 
 @pytest.mark.parametrize(

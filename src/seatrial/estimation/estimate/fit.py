@@ -1,6 +1,7 @@
 """Records and a model in, a fit out: the decision table of the estimator (docs/estimation.md)."""
 
 import math
+import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -210,6 +211,7 @@ class Estimation:
     start_method: str
     criterion: str
     reasons: tuple[str, ...]
+    elapsed_s: float
     process_noise: ProcessNoise | None = None
     search_attempts: tuple[SearchAttempt, ...] = ()
     abandoned: str = ""
@@ -368,6 +370,7 @@ def estimate_model(
         InputError: what `begin_estimate` raises, runs too short for a disturbance that is required, or a search that
             ends outside physics.
     """
+    began = time.perf_counter()
     options = options or EstimatorOptions()
     beginning = beginning or begin_estimate(model, runs, settings or EstimateSettings(), options, report_progress)
     report, settings = report_progress or (lambda _: None), beginning.settings
@@ -396,7 +399,7 @@ def estimate_model(
     return Estimation(
         estimate, beginning.shooting, uncertainty, choice.residuals, choice.inflation, choice.rho, choice.whiteness,
         _noise_model(choice, evidence), beginning.starts.start.origin, criterion, choice.reasons,
-        choice.process_noise or choice.implied_noise, beginning.starts.attempts,
+        time.perf_counter() - began, choice.process_noise or choice.implied_noise, beginning.starts.attempts,
     )  # fmt: skip
 
 
