@@ -308,7 +308,8 @@ def begin_estimate(
     """Return the estimate over segments by multiple shooting with re-estimated noise, begun by the weak form.
 
     Raises:
-        InputError: no excitation, no free parameter, outputs that cannot be compared, or a search that cannot begin.
+        InputError: no excitation, no free parameter, outputs that cannot be compared, runs too short for a disturbance
+            that is required, or a search that cannot begin.
     """
     settings = with_segment_seconds(settings, model, runs)
     if not model.parameters.free:
@@ -367,8 +368,7 @@ def estimate_model(
     beginning: of this model and these runs, where it is known already.
 
     Raises:
-        InputError: what `begin_estimate` raises, runs too short for a disturbance that is required, or a search that
-            ends outside physics.
+        InputError: what `begin_estimate` raises, or a search that ends outside physics.
     """
     began = time.perf_counter()
     options = options or EstimatorOptions()
