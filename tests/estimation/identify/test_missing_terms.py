@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.signal import lfilter
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Record
@@ -43,11 +44,34 @@ def waterjet_rates(nozzle: Callable[[float], float], cross: Mapping[str, float])
     return rates
 
 
-def waterjet_run(name: str, degrees: float, period: float, cross: Mapping[str, float], seed: int) -> Record:
-    """Five minutes of nozzle to and fro, straight from sample to sample, 2 Hz."""
+GUST_MEMORY = 8.0  # s
+
+
+def gusts_of(size: float, rng: np.random.Generator) -> np.ndarray:
+    """Accelerations of sway and yaw with a memory, at the samples, (600, 2)."""
+    kept = np.exp(-0.5 / GUST_MEMORY)
+    shocks = size * np.sqrt(1.0 - kept**2) * rng.standard_normal((600, 2)) * [1.0, 1.0 / 3.0]
+    return np.asarray(lfilter([1.0], [1.0, -kept], shocks, axis=0))
+
+
+def waterjet_run(
+    name: str, degrees: float, period: float, cross: Mapping[str, float], seed: int, gust: float = 0.0
+) -> Record:
+    """Five minutes of nozzle to and fro, straight from sample to sample, 2 Hz; gust: its acceleration, rms [m/s^2]."""
     time, rng = 0.5 * np.arange(600), np.random.default_rng(seed)
     nozzle = np.radians(degrees) * np.clip(8.0 * np.sin(2.0 * np.pi * time / period), -1.0, 1.0)
-    rates = waterjet_rates(lambda t: float(np.interp(t, time, nozzle)), cross)
+    calm = waterjet_rates(lambda t: float(np.interp(t, time, nozzle)), cross)
+    gusts = gusts_of(gust, np.random.default_rng(1000 + seed))
+
+    def rates(t: float, x: np.ndarray) -> list[float]:
+        surge, sway, yaw, *rest = calm(t, x)
+        return [
+            surge,
+            sway + float(np.interp(t, time, gusts[:, 0])),
+            yaw + float(np.interp(t, time, gusts[:, 1])),
+            *rest,
+        ]
+
     start = [SPEED, 0.0, 0.0, 0.0, 0.0, 0.0]
     motion = solve_ivp(rates, (0.0, time[-1]), start, t_eval=time, rtol=1e-8, atol=1e-9, max_step=0.5).y
     noisy = {n: row + s * rng.standard_normal(len(time)) for (n, s), row in zip(NOISE.items(), motion, strict=True)}
@@ -57,10 +81,13 @@ def waterjet_run(name: str, degrees: float, period: float, cross: Mapping[str, f
 
 
 def fitted_waterjet(
-    cross: Mapping[str, float], model: Model | None = None, method: EstimateMethod = EstimateMethod.AUTO
+    cross: Mapping[str, float],
+    model: Model | None = None,
+    method: EstimateMethod = EstimateMethod.AUTO,
+    gust: float = 0.0,
 ) -> Estimation:
     sizes = ((10.0, 90.0), (20.0, 120.0), (35.0, 160.0), (30.0, 100.0))
-    runs = [waterjet_run(f"run {i}", *size, cross, i) for i, size in enumerate(sizes)]
+    runs = [waterjet_run(f"run {i}", *size, cross, i, gust) for i, size in enumerate(sizes)]
     return estimate_model(
         model or waterjet(),
         Runs.one_session_each(runs, L),
@@ -81,6 +108,14 @@ def test_terms_that_the_waterjet_lacks_are_named(method: EstimateMethod) -> None
 
 
 @pytest.mark.long
+@pytest.mark.long
+def test_terms_are_tested_by_output_error_where_the_fit_has_gusts_among_its_states() -> None:
+    estimation = fitted_waterjet(CROSS, gust=0.012)
+    assert estimation.process_noise is not None
+    assert estimation.process_noise.problem.runs.model.name == "waterjet with gusts"
+    assert all(finding.code == "held-coupling" for finding in held_couplings(estimation))
+
+
 def test_terms_that_the_waterjet_lacks_can_be_freed() -> None:
     wide = fitted_waterjet(CROSS, model_named("waterjet_candidates"))
     assert held_couplings(wide) == ()

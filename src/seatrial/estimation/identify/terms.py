@@ -190,7 +190,8 @@ def held_couplings(
     candidates = tuple(p.name for p in held if p.value == 0.0)
     if not candidates:
         return ()
-    test = score_test(own_criterion(estimation), [_coefficient(wide.parameters[n], candidates) for n in candidates])
+    estimate = _estimate_for(estimation, candidates)
+    test = score_test(estimate, [_coefficient(wide.parameters[n], candidates) for n in candidates])
     free = estimation.estimate.problem.free
     moves = dict(zip(candidates, np.abs(test.by_candidates[: len(free)] * test.sizes).T, strict=True))
     errors = np.maximum(estimation.interval.standard_error[: len(free)], 1e-300)  # above zero, for a division
@@ -247,7 +248,7 @@ def _error_ratio_of_freeing(
     """
     held_out = in_windows(estimation, judged_runs(predictions))
     if held_out:
-        runs, optimum = _freed(own_criterion(estimation), name)
+        runs, optimum = _freed(_estimate_for(estimation, (name,)), name)
         model, point = with_terms(estimation.model, (name,)), optimum.solution.point.tolist()
         values = {n: v for n, v in zip(runs.free, point, strict=False) if n in model.parameters}
         return error_ratio(estimation, model.with_values(values), held_out)
@@ -260,6 +261,17 @@ def _error_ratio_of_freeing(
     except InputError:
         return np.nan
     return float(np.exp(np.mean(np.log(freed / without))))
+
+
+def _estimate_for(estimation: Estimation, names: tuple[str, ...]) -> PointEstimate | ProcessNoise:
+    """The estimate by its own criterion where its model can take these terms, else by output error.
+
+    A model with gusts or biases among its states has no wider one.
+    """
+    estimate = own_criterion(estimation)
+    runs = estimate.problem.runs if isinstance(estimate, ProcessNoise) else estimate.problem
+    can_take = set(names) <= set(with_terms(runs.model, names).parameters.names)
+    return estimate if can_take else output_error_estimate(estimation)
 
 
 def _freed(estimate: PointEstimate | ProcessNoise, name: str) -> tuple[OutputError, Optimum]:
