@@ -234,6 +234,14 @@ class Estimation:
         values = dict(zip(problem.free, self.estimate.common_parameters[: len(problem.free)], strict=True))
         return problem.model.with_values(values)
 
+    def widened(self, added: Array, reason: str) -> "Estimation":
+        """Return the estimation with more covariance of its coefficients; added: (k, k), of the first k unknowns."""
+        interval, count = self.interval, len(added)
+        covariance = interval.covariance.copy()
+        covariance[:count, :count] += added
+        wider = replace(interval, covariance=covariance, meaning=f"{interval.meaning}, with {reason}")
+        return replace(self, uncertainty=replace(self.uncertainty, interval=wider))
+
     @property
     def has_process_noise(self) -> bool:
         """Whether the coefficients come from prediction error, with noise in the states."""

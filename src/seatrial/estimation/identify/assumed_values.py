@@ -150,14 +150,11 @@ def with_estimated_values(estimation: Estimation, shifts: Sequence[EstimatedValu
     """
     if not shifts:
         return estimation
-    moves, interval = np.array([shift.moves for shift in shifts]), estimation.interval
-    count, covariance = moves.shape[1], interval.covariance.copy()
-    covariance[:count, :count] += moves.T @ moves
+    moves = np.array([shift.moves for shift in shifts])
     errors = sorted({shift.error for shift in shifts})
     shares = " or ".join(f"{percent(error)} %" for error in errors)
-    meaning = f"{interval.meaning}, with {enumeration([s.name for s in shifts])} wrong by {shares} (standard deviation)"
-    widened = replace(interval, covariance=covariance, meaning=meaning)
-    return replace(estimation, uncertainty=replace(estimation.uncertainty, interval=widened))
+    names = enumeration([s.name for s in shifts])
+    return estimation.widened(moves.T @ moves, f"{names} wrong by {shares} (standard deviation)")
 
 
 def estimated_value_effects(

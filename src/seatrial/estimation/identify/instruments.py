@@ -479,11 +479,7 @@ def with_undetected_sensor_errors(estimation: Estimation, information: ErrorInfo
     """
     if information is None:
         return estimation
-    count = len(estimation.estimate.problem.free)
     values, covariance, _ = information.test.joint(information.open_prior)
-    moves = information.test.by_candidates[:count]
-    interval, widened = estimation.interval, estimation.interval.covariance.copy()
-    widened[:count, :count] += moves @ (covariance + np.outer(values, values)) @ moves.T
-    meaning = f"{interval.meaning}, with errors of instruments and courses of inputs that the records leave open"
-    interval = replace(interval, covariance=widened, meaning=meaning)
-    return replace(estimation, uncertainty=replace(estimation.uncertainty, interval=interval))
+    moves = information.test.by_candidates[: len(estimation.estimate.problem.free)]
+    added = moves @ (covariance + np.outer(values, values)) @ moves.T
+    return estimation.widened(added, "errors of instruments and courses of inputs that the records leave open")

@@ -381,14 +381,11 @@ def with_model_spread(estimation: Estimation, tied: Sequence[TiedModel]) -> Esti
     """The fit with the scatter of tied models about it added to the covariance of its coefficients."""
     if not tied:
         return estimation
-    free, interval = estimation.estimate.problem.free, estimation.interval
+    free = estimation.estimate.problem.free
     here = estimation.estimate.common_parameters[: len(free)]
     away = np.array([[t.model.parameters[n].value for n in free] for t in tied]) - here
-    covariance = interval.covariance.copy()
-    covariance[: len(free), : len(free)] += away.T @ away / len(tied)
-    meaning = f"{interval.meaning}, with the spread of {len(tied)} tied model{'s' * (len(tied) != 1)}"
-    widened = replace(interval, covariance=covariance, meaning=meaning)
-    return replace(estimation, uncertainty=replace(estimation.uncertainty, interval=widened))
+    reason = f"the spread of {len(tied)} tied model{'s' * (len(tied) != 1)}"
+    return estimation.widened(away.T @ away / len(tied), reason)
 
 
 # The model that is used: the trial's own, or the best member of its family, of roll as of manoeuvring.

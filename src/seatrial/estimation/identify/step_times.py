@@ -208,9 +208,5 @@ def with_open_step_times(estimation: Estimation, task: Identification) -> Estima
     candidates = _candidates(task.steps, task.runs.records)
     test = score_test(own_criterion(estimation), candidates)
     covariance = test.joint(_VARIANCE * np.eye(len(candidates)))[1]
-    count = len(estimation.estimate.problem.free)
-    moves = test.by_candidates[:count]
-    interval, widened = estimation.interval, estimation.interval.covariance.copy()
-    widened[:count, :count] += moves @ covariance @ moves.T
-    interval = replace(interval, covariance=widened, meaning=f"{interval.meaning}, with times of steps within samples")
-    return replace(estimation, uncertainty=replace(estimation.uncertainty, interval=interval))
+    moves = test.by_candidates[: len(estimation.estimate.problem.free)]
+    return estimation.widened(moves @ covariance @ moves.T, "times of steps within samples")
