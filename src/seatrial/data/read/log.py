@@ -215,6 +215,11 @@ class RawTable:
     def __len__(self) -> int:
         return len(self.cells[0]) if self.cells else 0
 
+    @property
+    def units_of_columns(self) -> tuple[str, ...]:
+        """Units of all columns, empty where the file states none."""
+        return self.units or ("",) * len(self.names)
+
     def column_index(self, column: ColumnSpec) -> int:
         """Position of a wanted column.
 
@@ -308,6 +313,53 @@ class RawTable:
         raise InputError(f"{where} is not a number; check header_lines, separator and decimal")
 
 
+# Units that stand behind each number of a column, as in spreadsheets and transcripts of a bridge.
+
+_WITH_UNIT = re.compile(rf"([+-]?{_NUMBER})\s*([^\d\s.,+-]\S*)")
+_REFERENCES = {"T": "true", "M": "magnetic"}
+"""Letters behind an angle, and what they say of it (NMEA 0183, sentences HDT, HDM and VHW)."""
+
+
+def number_and_unit(text: str) -> tuple[str, str] | None:
+    """Return the number and the unit of a cell, `12.3kn`, `183°T`; None for a cell that has none, or a side."""
+    match = None if degrees_of(text) is not None else _WITH_UNIT.fullmatch(text.strip().replace(_MINUS_SIGN, "-"))
+    if match is None or not (is_unit(match[2]) or match[2].lstrip("° ") in _REFERENCES):
+        return None
+    return match[1].replace(",", "."), match[2]
+
+
+def with_units_of_cells(table: RawTable) -> RawTable:
+    """Return the table with each unit that all cells of a column have as that of the column, and numbers in its cells.
+
+    A letter for true or magnetic north joins the name: ``Heading`` over ``183T`` becomes ``Heading true`` in degrees.
+    """
+    names, units, cells = list(table.names), list(table.units_of_columns), list(table.cells)
+    for k, column in enumerate(table.cells):
+        parsed = _numbers_and_unit(column)
+        if parsed is not None:
+            cells[k], unit = parsed
+            reference = _REFERENCES.get(unit.lstrip("° "), "")
+            units[k] = units[k] or ("deg" if reference else unit)
+            names[k] = f"{names[k]} {reference}".strip()
+    return replace(table, names=tuple(names), units=tuple(units) if any(units) else (), cells=tuple(cells))
+
+
+def _numbers_and_unit(cells: Sequence | np.ndarray) -> tuple[list[str], str] | None:
+    """The cells without the unit that all have that are not empty, and the unit; None where there is no such unit."""
+    if isinstance(cells, np.ndarray):
+        return None
+    numbers, units = list[str](), set[str]()
+    for cell in map(str, cells):
+        parsed = ("", "") if cell.strip().lower() in EMPTY_CELLS else number_and_unit(cell)
+        if parsed is None:
+            return None
+        numbers.append(parsed[0])
+        units |= {parsed[1]} - {""}
+        if len(units) > 1:
+            return None
+    return (numbers, units.pop()) if units else None
+
+
 # What every reader returns: the topics of a log as tables of cells, before anything is known about them.
 
 
@@ -341,6 +393,7 @@ class Log:
         object.__setattr__(self, "parameters", MappingProxyType(dict(self.parameters)))
         if not self.tables:
             raise InputError(f"{self.file} holds no samples; leave it out or replace it")
+        object.__setattr__(self, "tables", tuple(map(with_units_of_cells, self.tables)))
 
     def __reduce__(self) -> tuple[type["Log"], tuple]:
         return type(self), (self.file, self.tables, dict(self.parameters), self.events, self.notes)

@@ -17,7 +17,15 @@ import numpy as np
 
 from seatrial.core.values import InputError
 from seatrial.data.read.layout import ColumnSpec, Layout
-from seatrial.data.read.log import EMPTY_CELLS, Log, RawTable, table_header, with_sides
+from seatrial.data.read.log import (
+    EMPTY_CELLS,
+    Log,
+    RawTable,
+    degrees_of,
+    number_and_unit,
+    table_header,
+    with_sides,
+)
 
 if TYPE_CHECKING:
     import pandas
@@ -153,7 +161,10 @@ class _Line:
 
     @cached_property
     def numbers(self) -> list[bool]:
-        return [_CELL.fullmatch(cell) is not None for cell in self.cells]
+        return [
+            _CELL.fullmatch(cell) is not None or degrees_of(cell) is not None or number_and_unit(cell) is not None
+            for cell in self.cells
+        ]
 
     @cached_property
     def is_data(self) -> bool:
