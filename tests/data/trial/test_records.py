@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Finding, InputError, Record, RecordKind, Severity
-from seatrial.data.check.phases import first_execution
+from seatrial.data.check.phases import first_execution, is_free_decay
 from seatrial.data.trial import (
     Role,
     TrialRun,
@@ -200,7 +200,7 @@ def test_an_angle_that_is_held_long_is_cut_at_the_release(rng: np.random.Generat
             Record.from_arrays("decay", TIME, {"phi": 0.002 * np.exp(0.07 * TIME) * np.cos(2.5 * TIME)}),
             "the roll grows, to 7.1 deg at 59",
         ),
-        (decay(start=8.6), "the decay starts at 494.2 deg, beyond 90 deg of heel; check the unit"),
+        (decay(start=8.6), "the decay starts at 494.2 deg, beyond 90 deg; check the unit"),
         (Record.from_arrays("decay", TIME[:3], {"phi": np.zeros(3)}), "3 rows are no decay"),
         (decay().without("phi"), "needs the roll angle 'phi'"),
         (Record.from_arrays("decay", TIME, {"phi": np.where(TIME > 59.8, 0.1, 0.0)}), "nothing is left of the decay"),
@@ -210,6 +210,16 @@ def test_what_is_no_decay_is_refused(record: Record, said: str) -> None:
     """One sentence, naming the record."""
     with pytest.raises(InputError, match=f"record 'decay'.*{said}"):
         trim_to_decay_start(record)
+
+
+@pytest.mark.parametrize("channel", ["theta", "z"])
+def test_a_decay_of_pitch_or_heave_begins_at_its_release(channel: str) -> None:
+    held = np.where(TIME < 5.0, 1.0, np.exp(-0.3 * (TIME - 5.0)) * np.cos(2.5 * (TIME - 5.0)))
+    still = 1e-4 * np.cos(7.0 * TIME)
+    record = Record.from_arrays("decay", TIME, {**dict.fromkeys(("theta", "z"), still), channel: 0.05 * held})
+    assert is_free_decay(record)
+    assert need_release([record])
+    assert trim_to_decay_start(record).time[0] == pytest.approx(5.0, abs=0.15)
 
 
 @pytest.mark.parametrize("growth", [0.0, 0.01])

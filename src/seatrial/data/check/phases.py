@@ -1,11 +1,13 @@
 """Phases of a run: getting under way, the approach, the release of a roll decay, coasting, and what is compared."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby, pairwise
+from types import MappingProxyType
 
 import numpy as np
 
+from seatrial.core.text.numbers import significant
 from seatrial.core.values import Array, Finding, Record, Severity
 from seatrial.core.values.arrays import unwrapped
 from seatrial.data.check.consequences import moment
@@ -142,7 +144,10 @@ def _speed_changes(record: Record, row: int) -> str:
     return f"speed {start:.3g} to {end:.3g} m/s in the {(row - first) * record.dt:.2g} s before it"
 
 
-# The release of a roll decay: what lies before it was held or driven by hand, and is no motion of the ship alone.
+# The release of a decay: what lies before it was held or driven by hand, and is no motion of the ship alone.
+
+SWINGING: Mapping[str, str] = MappingProxyType({"phi": "roll", "theta": "pitch", "z": "heave"})
+"""Channels of motions that have a rest to which they swing back, and their names."""
 
 _HELD_NOISE = 3.0  # standard deviations of noise by which an angle that is held differs from the largest; chosen
 # share of the largest angle that a swing loses in a fourteenth of its period, acos(0.9) / (2 pi), and shares of the
@@ -164,7 +169,7 @@ _WAVE_SHARE = 0.5  # groups that grow out of a motion over those that die out: a
 
 @dataclass(frozen=True)
 class HalfSwing:
-    """The roll between two times at rest: its first row, the row after its last, and its largest angle [rad]."""
+    """The motion between two times at rest: its first row, the row after its last, its largest value [rad or m]."""
 
     first: int
     stop: int
@@ -264,62 +269,85 @@ def release_row(swing: Array) -> int:
     return largest if leaves - largest < fall else leaves
 
 
+def about_rest(values: Array) -> Array:
+    """Return a motion about that in which it ends, (n,)."""
+    return values - np.median(values[-max(1, len(values) // 4) :])
+
+
+def swinging_channel(record: Record) -> str:
+    """Return the first of roll, pitch and heave that dies out, or else the first that is recorded; empty: none is."""
+    present = [channel for channel in SWINGING if channel in record]
+    sizes = {channel: np.abs(about_rest(record[channel])) for channel in present}
+    dying = (c for c, size in sizes.items() if np.max(size) >= _SHRINKS * np.max(size[-max(1, len(size) // 3) :]))
+    return next(dying, present[0] if present else "")
+
+
+def swing_text(channel: str, value: float) -> str:
+    """Return the size of a swing in words: degrees, or metres of heave."""
+    return f"{significant(value, 2)} m" if channel == "z" else f"{significant(float(np.degrees(value)), 2)} deg"
+
+
 def is_free_decay(record: Record) -> bool:
-    """Return whether the roll dies out from a release, with nothing recorded that drives it."""
+    """Return whether a motion dies out from a release, with nothing recorded that drives it."""
     return _release(record) is not None
 
 
 def begins_before_release(record: Record) -> bool:
-    """Return whether a free roll decay begins long before its release: with an angle that is held, or on its way."""
+    """Return whether a free decay begins long before its release: with a motion that is held, or on its way."""
     release = _release(record)
     return release is not None and release.row > _HOLD_SHARE * release.fall > 0.0
 
 
 def release_findings(record: Record) -> tuple[Finding, ...]:
-    """Return a warning where a free roll decay begins with an angle that is held, or with a roll that is driven."""
+    """Return a warning where a free decay begins with a motion that is held, or that is driven."""
     release = _release(record)
     if release is None or not release.fall or not (release.is_driven or release.held > _HOLD_SHARE * release.fall):
         return ()
-    angle, seconds = np.degrees(release.angle), (release.row if release.is_driven else release.held) * record.dt
+    size, seconds = (
+        swing_text(release.channel, release.size),
+        (release.row if release.is_driven else release.held) * record.dt,
+    )
     what, evidence = (
-        ("driven", f"it grows to {angle:.1f} deg within {seconds:.1f} s, then dies out")
+        ("driven", f"it grows to {size} within {seconds:.1f} s, then dies out")
         if release.is_driven
-        else ("held", f"within {100 * (1 - _NEAR):.0f} % of {angle:.1f} deg for {seconds:.1f} s, then a decay")
+        else ("held", f"within {100 * (1 - _NEAR):.0f} % of {size} for {seconds:.1f} s, then a decay")
     )
     return (
         Finding(
-            Severity.WARNING, "held-roll", f"record '{record.name}': the roll angle is {what} before it is released",
-            evidence,
+            Severity.WARNING, "held-roll",
+            f"record '{record.name}': the {SWINGING[release.channel]} is {what} before it is released", evidence,
         ),
     )  # fmt: skip
 
 
 @dataclass(frozen=True)
 class _Release:
-    """Of a free decay: the row of its release and the angle [rad]; rows it was held before, and from it to the rest.
+    """Of a free decay: its channel, the row of its release and the size; rows it was held before, and to the rest.
 
-    is_driven: whether swings that grow lead to it.
+    size: rad or m. is_driven: whether swings that grow lead to it.
     """
 
+    channel: str
     row: int
-    angle: float
+    size: float
     held: int
     fall: int
     is_driven: bool
 
 
 def _release(record: Record) -> _Release | None:
-    """The release of a free roll decay; None of another record."""
-    if "phi" not in record or any(name in record for name in _DRIVEN) or len(record) < _FEWEST_DECAY_ROWS:
+    """The release of a free decay; None of another record."""
+    channel = swinging_channel(record)
+    if not channel or any(name in record for name in _DRIVEN) or len(record) < _FEWEST_DECAY_ROWS:
         return None
-    swing = record["phi"] - np.median(record["phi"][-max(1, len(record) // 4) :])
+    swing = about_rest(record[channel])
     size, row = np.abs(swing), release_row(swing)
     if size[row] < _SHRINKS * np.max(size[-len(size) // 3 :]):
         return None
     start = int(np.flatnonzero(size >= _NEAR * size[row])[0])
     after = np.flatnonzero(np.sign(swing[row:]) != np.sign(swing[row]))
     is_driven = driven_swings(half_swings(swing)) > 0
-    return _Release(row, float(size[row]), row - start, int(after[0]) if after.size else 0, is_driven)
+    return _Release(channel, row, float(size[row]), row - start, int(after[0]) if after.size else 0, is_driven)
 
 
 # Phases of a run that are not the manoeuvre: getting under way and coasting.

@@ -75,7 +75,7 @@ _ANGLES = {"psi": (-180.0, 360.0), "delta": (-90.0, 90.0)}
 _WIDER_THAN_A_STATE = 6.0  # range of a column, up to which it may number states, such as those of a fix; chosen
 _MIXED = "mixed"  # kind of a run that holds several manoeuvres, or none that is recognised; ours
 _CALM = 0.1  # of the largest range of a run's waves, below which another run lies in calm water; chosen
-_CALM_REASON = "no waves in it: heave_pitch is fitted to what waves move, and takes no decays in calm water"
+_CALM_REASON = "no waves in it: decays in calm water make a trial of their own"
 _RUNS_EXAMINED = 6  # the longest, whose motion is compared with the guesses; chosen: some show what others do not
 
 
@@ -248,7 +248,7 @@ def draft_trial(
         for block in blocks
     ]
     rate = thinned_rate(records, size.length, model.speed) if model.has_forces_of_a_ship else None
-    decays = _decays(runs, records, stretches) if model.swings else {}
+    decays = _decays(runs, records, stretches) if model.rolls else {}
     columns_of_longest = [g for _, columns in blocks[0].sources for g in columns]
     tables = tables_text(model, columns_of_longest, size, rate, heels_apart(decays))
     text = trial_text(blocks, tables, {**at_other_speeds, **left_out}, Path(folder).resolve())

@@ -170,13 +170,13 @@ def _ship_lines(model: StartingModel, size: StatedSize) -> list[str]:
     if model.has_derivatives:
         lines += [mass_property.line for mass_property in mass_properties(size)]
         lines += _speed_lines(model)
-    if model.has_waves and size.length:
+    if model.heaves and size.length:
         lines += [wave.line for wave in ship_in_waves(size)]
     if model.has_thrusters and size.mass:
         lines.append(
             f"m = {size.mass:g}    # kg, as stated: forces come out on each kg of m + m_x until a thruster has bollard"
         )
-    if model.swings:
+    if model.rolls:
         lines += _roll_lines(size)
     written = {line.partition(" =")[0] for line in lines}
     return [*lines, *(stated_value.line for stated_value in stated_values(size) if stated_value.key not in written)]

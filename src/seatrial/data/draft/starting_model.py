@@ -7,6 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from seatrial.core.values import Record
+from seatrial.data.check.phases import is_free_decay
 from seatrial.data.check.water_speed import SpeedAndCurrent, speed_through_water
 from seatrial.data.draft.ship_estimates import UNSTATED, EstimatedValue, StatedSize, hull_rudder_propeller, wind_areas
 from seatrial.physics.manoeuvres.track import speed
@@ -92,14 +93,24 @@ class StartingModel:
         return self.name == _THRUSTERS
 
     @property
-    def has_waves(self) -> bool:
-        """Whether its input is the elevation of the waves."""
+    def heaves(self) -> bool:
+        """Whether it is the model of heave and pitch."""
         return self.name == _WAVES
 
     @property
-    def swings(self) -> bool:
-        """Whether its input is an angle that swings to both sides of its rest."""
+    def has_waves(self) -> bool:
+        """Whether its input is the elevation of the waves."""
+        return self.inputs == (_WAVE,)
+
+    @property
+    def rolls(self) -> bool:
+        """Whether it is the model of roll."""
         return self.name == _ROLL
+
+    @property
+    def swings(self) -> bool:
+        """Whether runs are decays: what stands for its inputs swings to both sides of its rest."""
+        return self.rolls or (self.heaves and not self.has_waves)
 
 
 def starting_model(
@@ -124,6 +135,10 @@ def starting_model(
         reason = "linear and quadratic damping, restoring, its cubic term, angle of rest"
         free = ("b_1", "b_2", "c_1", "c_3", "phi_0")
         return StartingModel(_ROLL, "of a ship that rolls out from a release", free, reason, ("phi",))
+    motions = symbols & _MOTION_IN_WAVES
+    if motions and not symbols & _STEERED_MOTION and all(is_free_decay(r) for r in records if r is not None):
+        why = "of a craft that heaves and pitches out from a release"
+        return StartingModel(_WAVES, why, inputs=tuple(sorted(motions)))
     return StartingModel("")
 
 

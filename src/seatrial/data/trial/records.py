@@ -16,12 +16,16 @@ from seatrial.data.check.examine import copies
 from seatrial.data.check.inputs import thruster_findings
 from seatrial.data.check.motion import sample_noise
 from seatrial.data.check.phases import (
+    SWINGING,
+    about_rest,
     approach_fault,
     begins_before_release,
     first_execution,
     is_in_waves,
     release_findings,
     release_row,
+    swing_text,
+    swinging_channel,
 )
 from seatrial.data.check.water_speed import speed_through_water
 from seatrial.data.trial.trial import Role, Trial, TrialRun, Trimming
@@ -59,7 +63,7 @@ def _approach_value(record: Record, symbol: str) -> float:
     return float(np.mean(record[symbol][within]))
 
 
-# A roll decay from its release on: what lies before it was held by hand.
+# A decay from its release on: what lies before it was held by hand.
 
 # first angle over noise; largest angle of the last third over that of the first, ours
 _MIN_SIGNAL_TO_NOISE, _MAX_AMPLITUDE_RATIO = 5.0, 0.9
@@ -67,51 +71,53 @@ _MIN_SIGNAL_TO_NOISE, _MAX_AMPLITUDE_RATIO = 5.0, 0.9
 _EARLY_SWING_FRACTION, _MAX_EARLY_SWINGS = 0.2, 4
 # fewest samples of a decay, ours
 _MIN_ROWS = 20
-# roll angle [rad] beyond which degrees were given without their unit
-_MAX_ROLL_ANGLE = np.pi / 2.0
+# angle [rad] beyond which degrees were given without their unit
+_MAX_ANGLE = np.pi / 2.0
 
 
 def trim_to_decay_start(record: Record) -> Record:
-    """The record from its release on: the last time that its roll angle, about that it ends at, is the largest.
+    """The record from its release on: the last time that its motion, about that it ends at, is the largest.
 
-    People who run from side to side may have driven it before.
+    The motion is that of roll, pitch and heave which dies out most. People who run from side to side may have driven it
+    before.
 
     Raises:
-        InputError: no roll angle, a start that is not above the noise or beyond 90 deg of heel, a motion that does
-            not decay, too little of it.
+        InputError: none of these, a start that is not above the noise or beyond 90 deg, a motion that does not decay,
+            too little of it.
     """
-    if "phi" not in record:
-        raise InputError(f"record '{record.name}': from_release needs the roll angle 'phi'; add the channel")
+    channel = swinging_channel(record)
+    if not channel:
+        raise InputError(f"record '{record.name}': from_release needs the roll angle 'phi', 'theta' or 'z'; add it")
     if len(record) < _MIN_ROWS:
         raise InputError(f"record '{record.name}': {len(record)} rows are no decay; give a longer record")
-    swing = record["phi"] - np.median(record["phi"][-max(1, len(record) // 4) :])
+    swing, motion = about_rest(record[channel]), SWINGING[channel]
     first = release_row(swing)
     largest, noise = abs(float(swing[first])), sample_noise(swing)
     if not largest > _MIN_SIGNAL_TO_NOISE * noise:
         raise InputError(
-            f"record '{record.name}': the decay starts at {np.degrees(largest):.2g} deg, within the noise of "
-            f"{np.degrees(noise):.2g} deg; release from a larger angle"
+            f"record '{record.name}': the decay starts at {swing_text(channel, largest)}, within the noise of "
+            f"{swing_text(channel, noise)}; release from a larger one"
         )
-    if largest > _MAX_ROLL_ANGLE:
+    if channel != "z" and largest > _MAX_ANGLE:
         raise InputError(
-            f"record '{record.name}': the decay starts at {np.degrees(largest):.4g} deg, beyond 90 deg of heel; "
-            "check the unit of channel 'phi'"
+            f"record '{record.name}': the decay starts at {np.degrees(largest):.4g} deg, beyond 90 deg; "
+            f"check the unit of channel '{channel}'"
         )
     early, late = (_swing_count(part, _EARLY_SWING_FRACTION * largest) for part in (swing[:first], swing[first:]))
     if early > _MAX_EARLY_SWINGS and (late < _MAX_EARLY_SWINGS or is_in_waves(swing)):
         raise InputError(
-            f"record '{record.name}': the roll grows, to {np.degrees(largest):.2g} deg at {record.time[first]:g} s, "
-            "instead of decaying from a release; leave the run out"
+            f"record '{record.name}': the {motion} grows, to {swing_text(channel, largest)} at "
+            f"{record.time[first]:g} s, instead of decaying from a release; leave the run out"
         )
     if len(record) - first < _MIN_ROWS:
         raise InputError(
-            f"record '{record.name}': the largest roll angle stands at {record.time[first]:g} s, so that nothing is "
+            f"record '{record.name}': the largest {motion} stands at {record.time[first]:g} s, so that nothing is "
             "left of the decay; give a longer record, or trim it by from_s"
         )
-    _require_smaller_last_third(record.name, swing[first:])
-    step = f"from its release on: the largest roll angle at {record.time[first]:g} s"
+    _require_smaller_last_third(record.name, channel, swing[first:])
+    step = f"from its release on: the largest {motion} at {record.time[first]:g} s"
     kept = record.rows(slice(first, None))
-    return kept.with_channel("phi", kept.channel("phi"), step)
+    return kept.with_channel(channel, kept.channel(channel), step)
 
 
 def need_release(records: Sequence[Record]) -> bool:
@@ -130,17 +136,17 @@ def require_decay(record: Record) -> None:
     Raises:
         InputError: both angles.
     """
-    _require_smaller_last_third(record.name, record["phi"] - np.nanmedian(record["phi"]))
+    _require_smaller_last_third(record.name, "phi", record["phi"] - np.nanmedian(record["phi"]))
 
 
-def _require_smaller_last_third(name: str, swing: Array) -> None:
+def _require_smaller_last_third(name: str, channel: str, swing: Array) -> None:
     size = np.abs(swing)
     third = len(size) // 3
     first, last = float(np.nanmax(size[:third])), float(np.nanmax(size[-third:]))
     if not last < _MAX_AMPLITUDE_RATIO * first:
         raise InputError(
-            f"record '{name}': the roll does not decay: {np.degrees(first):.2g} deg in its first third, "
-            f"{np.degrees(last):.2g} deg in its last; leave the run out, or record what drives the ship"
+            f"record '{name}': the {SWINGING[channel]} does not decay: {swing_text(channel, first)} in its first "
+            f"third, {swing_text(channel, last)} in its last; leave the run out, or record what drives the ship"
         )
 
 

@@ -34,7 +34,7 @@ class Trimming:
     Attributes:
         from_s, to_s: s on the record's own clock; None keeps the end.
         skip_acceleration: drop what lies before 90 % of the speed at the first rudder execution.
-        from_release: drop what lies before the largest roll angle of a decay.
+        from_release: drop what lies before the largest swing of a decay of roll, pitch or heave.
         rate: Hz after resampling; None keeps the record's own.
     """
 

@@ -11,6 +11,7 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.results import NoiseModel, SearchAttempt
 from seatrial.core.values import NOTATION, Array, InputError, ProgressReporter, Record, display_unit
+from seatrial.data.check.phases import is_free_decay
 from seatrial.data.trial import EstimateMethod, EstimateSettings, FitCriterion
 from seatrial.estimation.estimate.assemble import Runs, output_error_problem
 from seatrial.estimation.estimate.closed_loop import LoopEvidence, closed_loop, loop_evidence
@@ -264,10 +265,13 @@ def refuse_without_excitation(model: Model, records: Sequence[Record]) -> None:
             f"no excitation: none of {', '.join(model.input_names)} moves in {', '.join(r.name for r in records)}; "
             "record spins, straights ahead and astern, and steps of each thruster"
         )
-    if model.is_affine and not moving_inputs(model, records):
+    is_driven = bool(moving_inputs(model, records)) or (
+        not model.has_course and all(is_free_decay(record) for record in records)
+    )
+    if model.is_affine and not is_driven:
         raise InputError(
             f"no excitation: none of {', '.join(model.input_names)} moves in {', '.join(r.name for r in records)}; "
-            "give wave forces or fin angles, or the wave elevation with [excitation]"
+            "give wave forces or fin angles, the wave elevation with [excitation], or decays from a release"
         )
     still = all("delta" in r and np.ptp(r["delta"]) < _MIN_RUDDER_RANGE for r in records)
     if model.has_rudder and still:
