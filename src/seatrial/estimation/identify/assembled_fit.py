@@ -49,7 +49,7 @@ from seatrial.estimation.identify.nonlinear_intervals import (
     sampling_findings,
     short_record_findings,
 )
-from seatrial.estimation.identify.score_test import output_error_estimate, own_criterion
+from seatrial.estimation.identify.score_test import own_criterion
 from seatrial.estimation.identify.step_times import with_open_step_times
 from seatrial.estimation.identify.terms import (
     drifting_thrust_finding,
@@ -206,7 +206,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
 def _instrument_errors(task: Identification, estimation: Estimation) -> ErrorInformation | None:
     """What the records say of errors of instruments by the criterion that is used: the task's own, or another."""
     estimate = own_criterion(estimation)
-    if estimate is output_error_estimate(task.estimation):
+    if estimate is task.beginning.shooting:
         return task.instrument_errors
     return instrument_errors(estimate, task.runs.records, task.runs.length, task.settings.delays)
 

@@ -27,14 +27,17 @@ from seatrial.estimation.estimate.assemble import UNIFORM, is_course_open, train
 from seatrial.estimation.estimate.criterion_choice import WAVE_FORCES
 from seatrial.estimation.estimate.fit import moving_inputs, with_segment_seconds
 from seatrial.estimation.estimate.newton_refinement import approach_by_gradient
-from seatrial.estimation.estimate.point_estimate import PointEstimate
+from seatrial.estimation.estimate.intervals import estimate_uncertainty
+from seatrial.estimation.estimate.point_estimate import PointEstimate, residual_correlation
 from seatrial.estimation.estimate.process_noise import ProcessNoise
 from seatrial.estimation.estimate.settings import INITIAL_STATE_SHIP_LENGTHS, characteristic_time
 from seatrial.estimation.identify.identifiability import box_scale, stands_on_box
 from seatrial.estimation.identify.instruments import ErrorInformation, Suspect, detected_errors, instrument_errors
-from seatrial.estimation.identify.score_test import output_error_estimate, own_criterion
+from seatrial.estimation.identify.score_test import own_criterion
 from seatrial.estimation.identify.terms import standard_error_ratio
+from seatrial.estimation.information.covariance import inverse
 from seatrial.estimation.information.symmetries import refuse_unidentifiable, structural_symmetries
+from seatrial.estimation.problem.output_error import Nuisance, OutputError
 from seatrial.estimation.problem.segments import compared_outputs
 from seatrial.estimation.problem.static_forces import StaticForces
 from seatrial.numerics.optimise import levenberg_marquardt
@@ -176,8 +179,8 @@ class Identification:
 
     @cached_property
     def instrument_errors(self) -> ErrorInformation | None:
-        """What output error says of errors of instruments that the model does not have; None: of none."""
-        estimate = output_error_estimate(self.estimation)
+        """What output error over segments says of errors of instruments that the model does not have; None: of none."""
+        estimate = self.beginning.shooting
         return instrument_errors(estimate, self.runs.records, self.runs.length, self.settings.delays)
 
     @cached_property
@@ -219,9 +222,10 @@ def with_likelier_courses(task: Identification) -> Identification:
     Held values come half a sample after straight lines, so that a delay by nearly as much speaks for the other course.
     It is taken where the records are likelier with it, by the criterion and the noise of the task's own estimate.
     """
-    estimate = own_criterion(task.estimation)
+    if not _open_courses(task.beginning.shooting.problem, task.runs.records):
+        return task
     courses = _courses_by_delay(task.estimation.estimate, task.runs.records)
-    if not courses or not _are_likelier(estimate, courses):
+    if not courses or not _are_likelier(own_criterion(task.estimation), courses):
         return task
     records = tuple(replace(r, record=_with_courses(r.record, courses)) for r in task.records)
     others = tuple(f for f in task.findings if f.code != "stepped-input")
@@ -245,15 +249,24 @@ def _course_finding(courses: Mapping[str, Between]) -> Finding:
     )  # fmt: skip
 
 
+def _open_courses(problem: OutputError, records: Sequence[Record]) -> dict[int, Nuisance]:
+    """Delays of inputs of which the records do not say how they run between samples: column of a session -> delay."""
+    return {
+        j: nuisance
+        for j, nuisance in enumerate(problem.nuisances, start=len(problem.session_parameters))
+        if nuisance.correction.kind == "delay" and nuisance.is_spread_fixed
+        and is_course_open(nuisance.correction.input, records)
+    }  # fmt: skip
+
+
 def _courses_by_delay(estimate: PointEstimate, records: Sequence[Record]) -> dict[str, Between]:
     """How inputs would run between samples by their delays, mean of all sessions: those whose records leave it open."""
     problem, courses = estimate.problem, dict[str, Between]()
-    for j, nuisance in enumerate(problem.nuisances, start=len(problem.session_parameters)):
+    for j, nuisance in _open_courses(problem, records).items():
         name, sample = nuisance.correction.input, UNIFORM * nuisance.prior.standard_deviation
-        if nuisance.correction.kind == "delay" and nuisance.is_spread_fixed and is_course_open(name, records):
-            late, is_held = float(np.mean(estimate.session_offsets[:, j])), name in problem.model.held
-            if (-late if is_held else late) > _NEARER * sample:
-                courses[name] = "straight" if is_held else "held"
+        late, is_held = float(np.mean(estimate.session_offsets[:, j])), name in problem.model.held
+        if (-late if is_held else late) > _NEARER * sample:
+            courses[name] = "straight" if is_held else "held"
     return courses
 
 
@@ -281,24 +294,38 @@ def _are_likelier(estimate: PointEstimate | ProcessNoise, courses: Mapping[str, 
 def with_detected_sensor_errors(task: Identification) -> tuple[Identification, tuple[Finding, ...]]:
     """Return the task with errors of instruments that its records show as coefficients of its model, and their finding.
 
-    The task itself and nothing where they show none, or none that the estimate with it confirms.
+    The task itself and nothing where they show none, or none that the estimate with it confirms. They are sought beside
+    the estimate over segments, and judged by what model error adds to the standard errors of the estimate with them.
     """
     try:
         information = task.instrument_errors
-        detected = detected_errors(information, standard_error_ratio(task.estimation)) if information else []
-    except (ArithmeticError, np.linalg.LinAlgError):  # of the intervals that is a finding of its own
+        detected = detected_errors(information, _model_error(task.beginning.shooting)) if information else []
+        while information and detected:
+            tried = _with_errors(task, detected)
+            finding = _confirmed(tried.estimation, detected)
+            certain = detected_errors(information, standard_error_ratio(tried.estimation))
+            if finding is not None and len(certain) == len(detected):
+                return tried, (finding,)
+            detected = certain if len(certain) < len(detected) else []
+    except (ArithmeticError, np.linalg.LinAlgError, InputError):  # with them nothing is determined: without them
         return task, ()
-    if not detected:
-        return task, ()
+    return task, ()
+
+
+def _model_error(estimate: PointEstimate) -> float:
+    """What the runs of an estimate add to standard errors of its information, by runs or segments left out: a ratio."""
+    inflation, count = residual_correlation(estimate.problem, estimate.residuals())[1], len(estimate.problem.free)
+    deviations = estimate_uncertainty(estimate, inflation).interval.standard_error[:count]
+    information = inverse(estimate.optimum.normal.without_local()[1])[:count, :count]
+    return max(1.0, float(np.median(deviations / np.sqrt(np.diag(information)))))
+
+
+def _with_errors(task: Identification, detected: Sequence[Suspect]) -> Identification:
+    """The task whose model has the errors of these instruments."""
     stated = Sensors.from_text(task.trial.model.equations.sensors)
     for one in detected:
         stated = one.stated(stated)
-    tried = replace(task, trial=replace(task.trial, model=_with_stated(task.trial.model, stated)))
-    try:
-        finding = _confirmed(tried.estimation, detected)
-    except InputError:  # the records do not determine the coefficients beside these errors
-        return task, ()
-    return (task, ()) if finding is None else (tried, (finding,))
+    return replace(task, trial=replace(task.trial, model=_with_stated(task.trial.model, stated)))
 
 
 def _with_stated(model: Model, stated: Sensors) -> Model:
