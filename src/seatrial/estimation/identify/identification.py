@@ -26,8 +26,8 @@ from seatrial.estimation.estimate import (
 from seatrial.estimation.estimate.assemble import UNIFORM, is_course_open, training_runs
 from seatrial.estimation.estimate.criterion_choice import WAVE_FORCES
 from seatrial.estimation.estimate.fit import moving_inputs, with_segment_seconds
-from seatrial.estimation.estimate.newton_refinement import approach_by_gradient
 from seatrial.estimation.estimate.intervals import estimate_uncertainty
+from seatrial.estimation.estimate.newton_refinement import approach_by_gradient
 from seatrial.estimation.estimate.point_estimate import PointEstimate, residual_correlation
 from seatrial.estimation.estimate.process_noise import ProcessNoise
 from seatrial.estimation.estimate.settings import INITIAL_STATE_SHIP_LENGTHS, characteristic_time
