@@ -22,7 +22,7 @@ from measure import Line, at_least
 from sample_rates import NOMOTO, ROLL, USV, nomoto_rates, roll_rates, simulated, usv_rates
 from scipy.interpolate import CubicSpline
 
-from seatrial.core.values import Array, Record, Ship
+from seatrial.core.values import Array, InputError, Record, Ship
 from seatrial.data.trial import EstimateSettings, Trial, TrialRun
 from seatrial.estimation.identify import identify
 from seatrial.physics.models import model_named
@@ -371,13 +371,18 @@ def cell(craft: Craft, fault: Fault, seeds: range) -> Cell:
     """Return what the fits of some seeds come to; an interval that is not given holds the truth."""
     away, said, began = [], Counter[str](), time.process_time()
     for seed in seeds:
-        fit = identify(posed(craft, fault, seed))
+        try:
+            fit = identify(posed(craft, fault, seed))
+        except InputError as error:  # the checks name what is wrong, and the edit
+            said[f"refused: {error}"] += 1
+            continue
         said.update({f.code for f in fit.findings if f.code in NAMING or "converge" in f.message})
         for c in fit.coefficients:
             if c.name in craft.truth and c.lower is not None and c.upper is not None:
                 away.append(abs(c.estimate - craft.truth[c.name]) / (0.5 * (c.upper - c.lower)))
     seconds = (time.process_time() - began) / len(seeds)
-    return Cell(float(np.mean(np.array(away) <= 1.0)), len(away), float(np.max(away)), dict(said), seconds)
+    held, largest = (float(np.mean(np.array(away) <= 1.0)), max(away)) if away else (1.0, 0.0)
+    return Cell(held, len(away), largest, dict(said), seconds)
 
 
 def cells(words: str = "") -> list[tuple[str, Craft, Fault]]:
