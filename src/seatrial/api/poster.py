@@ -63,6 +63,7 @@ def poster(
     from seatrial.api.simulation import rudder_rate_of
     from seatrial.core.results.poster import Poster
     from seatrial.core.values.versions import versions
+    from seatrial.estimation.predict.draws import models_at_scale
     from seatrial.physics.simulate.thrust import is_steered_by_angle
 
     if not is_steered_by_angle(fit.model):
@@ -83,11 +84,13 @@ def poster(
     if not any(m.quantities for m in manoeuvres):
         raise InputError(f"no manoeuvre of the poster can be steered with this fit: {manoeuvres[0].note}")
     held_out, rate = {p.record for p in fit.validation}, rudder_rate_of(fit)
+    simulated = [record for m in manoeuvres for record in m.simulated]
+    has_scale_effects = any(models_at_scale(fit.model, run, fit.ship.length, fit.ship.scale) for run in simulated)
     return Poster(
         fit.ship.name, dict(fit.ship.particulars), fit.ship.scale, fit.model.name,
         _approach_speed(fit, speed, manoeuvres), rudder_deg, tuple(manoeuvres), rate.value, rate.origin,
         tuple(r.name for r in fit.records if r.name not in held_out), fit.intervals,
-        versions(),
+        has_scale_effects, versions(),
     )  # fmt: skip
 
 

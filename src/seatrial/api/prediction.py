@@ -64,7 +64,7 @@ def measure_intervals(model: "ModelFile", steer: "Steering") -> dict[str, tuple[
 
     if model.interval_basis is None or model.ship is None:
         return {}
-    return measure_intervals(model.model, model.interval_basis, steer, model.ship.length)
+    return measure_intervals(model.model, model.interval_basis, steer, model.ship.length, model.ship.scale)
 
 
 def extrapolation(model: "ModelFile", record: "Record") -> "Extrapolation | None":

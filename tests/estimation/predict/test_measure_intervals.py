@@ -9,10 +9,11 @@ import pytest
 from seatrial.core.equations import Model
 from seatrial.core.results import IntervalBasis
 from seatrial.core.values import InputError, Record
-from seatrial.estimation.predict.draws import measure_intervals
+from seatrial.estimation.predict.draws import measure_intervals, models_at_scale
 from seatrial.physics.manoeuvres import measures
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto
+from seatrial.physics.models.published import kvlcc2, kvlcc2_l7
 from seatrial.physics.models.waterjet import waterjet
 from seatrial.physics.simulate.steer import manoeuvre
 
@@ -137,3 +138,29 @@ def test_few_degrees_of_freedom_widen_by_students_t(model: Model, steer: Callabl
         measure_intervals(model, replace(margin(1e-4), degrees_of_freedom=d), steer, LENGTH) for d in (4.0, np.inf)
     )
     assert np.ptp(wide[NAME]) / np.ptp(narrow[NAME]) == pytest.approx(2.776 / 1.960, rel=1e-3)
+
+
+def test_a_model_test_adds_wake_and_propeller_loading_of_its_scale() -> None:
+    """KVLCC2 1:45.7 at 1.18 m/s: CF 0.00318 of the model, 0.00139 of the ship (ITTC 1957); 27194 m^2 wet."""
+    ship, tanker = kvlcc2_l7().ship, kvlcc2()
+    run = Record.from_arrays("run", np.arange(2.0), {"u": np.full(2, 1.18)})
+    (full, _), (loaded, _) = models_at_scale(tanker, run, ship.length, 45.7)
+    assert full.parameters["w_P0"].value == pytest.approx(0.45)
+    added = loaded.parameters["R_0"].value - tanker.parameters["R_0"].value
+    assert added == pytest.approx(0.00179 * 27194.0 / (320.0 * 20.8), rel=0.06)
+    assert models_at_scale(tanker, run, ship.length, 1.0) == []
+    assert models_at_scale(nomoto(), run, ship.length, 45.7) == []
+
+
+def test_intervals_at_full_scale_are_wider_than_those_of_the_model_test() -> None:
+    tanker, orders = kvlcc2(), programme("turning-circle:35")
+    alone = tanker.with_parameters(tanker.parameters.only_free(["N_r"]))
+
+    def turned(ship: Model) -> Record:
+        return manoeuvre(ship, orders, dt=0.5, inputs={"n": 10.4})
+
+    length = kvlcc2_l7().ship.length
+    tested, scaled = (measure_intervals(alone, margin(1e-5), turned, length, scale)[NAME] for scale in (1.0, 45.7))
+    assert tested is not None
+    assert scaled is not None
+    assert np.ptp(scaled) > 2.0 * np.ptp(tested)

@@ -85,4 +85,7 @@ class Poster:
     rudder_rate_origin: Annotated[str, Field(description="where the rudder's rate is from")] = ""
     training_runs: tuple[str, ...] = ()
     intervals: Annotated[str, Field(description="method of the coefficients' intervals")] = ""
+    has_scale_effects: Annotated[
+        bool, Field(description="whether intervals hold what the scale of a model test leaves open")
+    ] = False
     versions: Annotated[dict[str, str], Field(description="package -> version")] = field(default_factory=dict)

@@ -169,7 +169,7 @@ MeasuresPair = tuple[dict[str, float] | None, dict[str, float] | None]
 
 
 def measure_intervals(
-    model: Model, interval_basis: IntervalBasis, steer: Callable[[Model], Record], length: float
+    model: Model, interval_basis: IntervalBasis, steer: Callable[[Model], Record], length: float, scale: float = 1.0
 ) -> dict[str, tuple[float, float] | None]:
     """Return the 95 % interval of each measure of the manoeuvre that `steer` makes of a model; None: not determined.
 
@@ -178,7 +178,9 @@ def measure_intervals(
     as `delta_0`); half their differences add up in squares. Nothing is drawn at random. Measures of a kind that runs
     left out have shown get the discrepancy found there, others the foreseen spread times the margin's factor; the
     distance of tied models comes on top. Process noise is not counted: the interval is for the manoeuvre in water as
-    calm as discrepancy and factor have it.
+    calm as discrepancy and factor have it. A model test adds what its scale leaves open, see `models_at_scale`.
+
+    length: of the ship as tested [m]; scale: that of the ship over it.
 
     Raises:
         InputError: more than half of these ships diverge.
@@ -189,7 +191,7 @@ def measure_intervals(
     index = reached.index if reached else 1.0
     pairs = [
         (_measures_or_none(up, steer, length), _measures_or_none(down, steer, length))
-        for up, down in perturbed_models(model, interval_basis)
+        for up, down in (*perturbed_models(model, interval_basis), *models_at_scale(model, nominal, length, scale))
     ]
     lost = sum(m is None for pair in pairs for m in pair)
     if lost > len(pairs):
@@ -238,6 +240,37 @@ def perturbed_models(model: Model, interval_basis: IntervalBasis) -> list[tuple[
         zero = model.parameters["delta_0"].value
         models.append((model.with_values({"delta_0": zero + between}), model.with_values({"delta_0": zero - between})))
     return models
+
+
+# What a test at model scale leaves open of the ship: its wake, and how much of the thrust its friction takes.
+
+_WAKE_OF_SCALE = 0.05  # 1, 0.40 of KVLCC2's models less 0.35 of the ship (Yasukawa & Yoshimura 2015)
+_VISCOSITY = 1.14e-6  # m^2/s, of fresh water at 15 deg C (ITTC 7.5-02-01-03)
+
+
+def models_at_scale(model: Model, run: Record, length: float, scale: float) -> list[tuple[Model, Model]]:
+    """Return pairs of models with wake and resistance to either side of a model test's, by what the scale may change.
+
+    The resistance by the difference of friction lines, which is also how much the propeller is loaded beyond that of
+    the ship. A model without a propeller has neither, and no pair.
+
+    run: as tested, of whose first sample the speed is taken.
+    """
+    if not scale > 1.0 or not {"w_P0", "R_0"} <= set(model.parameters.names) or "u" not in run:
+        return []
+    value = {name: model.parameters[name].value for name in ("m", "rho", "d", "w_P0", "R_0")}
+    wetted = 1.7 + value["m"] / (value["rho"] * length * value["d"] ** 2)  # over L d, Mumford's formula
+    number = max(float(run["u"][0]), np.finfo(float).eps) * length / _VISCOSITY
+    friction = wetted * (_friction(number) - _friction(number * scale**1.5))  # by Froude's law U L grows so
+    return [
+        (model.with_values({name: value[name] + size}), model.with_values({name: value[name] - size}))
+        for name, size in (("w_P0", _WAKE_OF_SCALE), ("R_0", friction))
+    ]
+
+
+def _friction(reynolds_number: float) -> float:
+    """The friction coefficient of the ITTC 1957 line."""
+    return 0.075 / (np.log10(reynolds_number) - 2.0) ** 2  # ITTC 7.5-02-02-02, eq. (1)
 
 
 def _measures_or_none(model: Model, steer: Callable[[Model], Record], length: float) -> dict[str, float] | None:
