@@ -30,6 +30,7 @@ EXCEPTIONS: dict[str, str] = {
     "estimation/estimate: newton_step": "a bound under gusts takes it; tests/problems/test_craft_problems.py runs that",
     "estimation/estimate: refuse_diverging": _WINDOW,
     "estimation/estimate: refuse_unmeasured_waves": "its sentence is that of tests/estimation/identify/test_waves.py",
+    "estimation/estimate: refuse_roll_in_unmeasured_waves": "its sentence is that of identify/test_roll_by_fins.py",
     "estimation/estimate: warm_start": _WINDOW,
     "numerics/kernels: filter_linear": _COMPILED,
     "numerics/kernels: filter_runge_kutta": _COMPILED,

@@ -16,6 +16,7 @@ from seatrial.physics.models.published import SYMMETRIC
 # The model with which a drafted trial begins, by what the logs hold and what is stated of the craft.
 
 _THRUSTERS, _ROLL, _SHIP, _MMG, _WAVES = "thrusters", "roll", "abkowitz", "mmg", "heave_pitch"
+_FINS = "alpha_f"
 _WAVE, _MOTION_IN_WAVES = "zeta", frozenset({"z", "theta"})
 _ROLL_MOTION = frozenset({"phi", "p"})
 _STEERED_MOTION = frozenset({"psi", "psi_magnetic", "r", "u", "v", "x0", "y0", "lat", "lon"})
@@ -110,7 +111,7 @@ class StartingModel:
     @property
     def swings(self) -> bool:
         """Whether runs are decays: what stands for its inputs swings to both sides of its rest."""
-        return self.rolls or (self.heaves and not self.has_waves)
+        return (self.rolls and _FINS not in self.inputs) or (self.heaves and not self.has_waves)
 
 
 def starting_model(
@@ -134,6 +135,8 @@ def starting_model(
     if symbols & _ROLL_MOTION and not symbols & _STEERED_MOTION:
         reason = "linear and quadratic damping, restoring, its cubic term, angle of rest"
         free = ("b_1", "b_2", "c_1", "c_3", "phi_0")
+        if any(r is not None and _FINS in r and np.ptp(r[_FINS]) > 0.0 for r in records):
+            return StartingModel(_ROLL, "of a ship that fins roll", (*free, "K_alpha"), f"{reason}; the fins", (_FINS,))
         return StartingModel(_ROLL, "of a ship that rolls out from a release", free, reason, ("phi",))
     motions = symbols & _MOTION_IN_WAVES
     if motions and not symbols & _STEERED_MOTION and all(is_free_decay(r) for r in records if r is not None):

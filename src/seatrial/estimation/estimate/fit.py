@@ -543,17 +543,45 @@ def refuse_unmeasured_waves(estimation: Estimation, records: Sequence[Record]) -
         return
     if np.max(estimation.inflation) <= WHITE_INFLATION and not estimation.has_process_noise:
         return
-    problem = estimation.shooting.problem
-    remaining = np.sqrt(np.nanmean(estimation.shooting.residuals() ** 2, axis=0))
-    moved = np.nanstd(problem.data.measured, axis=0)
-    unexplained = [
-        _residual_text(channel, r, m) for channel, r, m in zip(problem.data.outputs, remaining, moved, strict=True)
-    ]
+    remaining, moved = _remaining_and_moved(estimation)
     raise InputError(
-        f"the ship moves although no wave is recorded: the model leaves {' and '.join(unexplained)} unexplained; "
+        f"the ship moves although no wave is recorded: {_unexplained_text(estimation, remaining, moved)}; "
         "give the elevation zeta with [excitation], or F3 and M5, or the sea under [records.waves], "
         "or record in calm water"
     )
+
+
+_LEFT_BY_FINS = 0.5  # of the roll, which the fins and the start do not explain: waves roll the ship; chosen
+
+
+def refuse_roll_in_unmeasured_waves(estimation: Estimation, records: Sequence[Record]) -> None:
+    """Refuse records of roll that neither fins nor the start explain, and without the slope of the waves.
+
+    Fins that follow the roll in waves nobody measured make damping of what they do.
+
+    Raises:
+        InputError: how much is left unexplained, and what to give.
+    """
+    remaining, moved = _remaining_and_moved(estimation)
+    if any("alpha_w" in record for record in records) or np.any(remaining <= _LEFT_BY_FINS * moved):
+        return
+    raise InputError(
+        f"the ship rolls although no wave is recorded: {_unexplained_text(estimation, remaining, moved)}; "
+        "give the wave slope alpha_w, or record with the fins held, or in calm water"
+    )
+
+
+def _remaining_and_moved(estimation: Estimation) -> tuple[Array, Array]:
+    """Root mean squares of what the model leaves by the better of both estimates, and of the motion, (ny,), SI."""
+    estimates = (estimation.shooting, estimation.estimate)
+    remaining = [np.sqrt(np.nanmean(estimate.residuals() ** 2, axis=0)) for estimate in estimates]
+    return np.min(remaining, axis=0), np.nanstd(estimation.shooting.problem.data.measured, axis=0)
+
+
+def _unexplained_text(estimation: Estimation, remaining: Array, moved: Array) -> str:
+    outputs = estimation.shooting.problem.data.outputs
+    texts = [_residual_text(channel, r, m) for channel, r, m in zip(outputs, remaining, moved, strict=True)]
+    return f"the model leaves {' and '.join(texts)} unexplained"
 
 
 def _residual_text(channel: str, residual: float, motion: float) -> str:

@@ -14,7 +14,7 @@ from seatrial.data.trial.records import require_decay
 from seatrial.data.trial.settings import window_lengths
 from seatrial.estimation.estimate import EstimatorOptions, IntervalMethod
 from seatrial.estimation.estimate.criterion_choice import is_explained
-from seatrial.estimation.estimate.fit import refuse_unmeasured_waves
+from seatrial.estimation.estimate.fit import refuse_roll_in_unmeasured_waves, refuse_unmeasured_waves
 from seatrial.estimation.estimate.plausibility import OutsidePhysicsError
 from seatrial.estimation.estimate.point_estimate import force_consistency
 from seatrial.estimation.estimate.settings import WEAK_FORM_SHIP_LENGTHS
@@ -93,8 +93,10 @@ def identify_driven_roll(task: Identification) -> Fit:
     """Return the fit of roll that recorded inputs drive.
 
     Raises:
-        InputError: the records do not determine the coefficients, or lead to no model that can be simulated.
+        InputError: waves that nobody recorded roll the ship, or the records do not determine the coefficients, or lead
+            to no model that can be simulated.
     """
+    refuse_roll_in_unmeasured_waves(task.estimation, task.runs.records)
     return assembled_fit(task, selected_model(task))
 
 

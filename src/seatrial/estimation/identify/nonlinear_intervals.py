@@ -209,6 +209,7 @@ class _ProfiledFit:
 
     Attributes:
         own_errors: standard errors of the free coefficients by its information, (free,).
+        hessian: second derivatives of the loss by all unknowns that are shared, (n, n).
         hold: column -> (value, where the others start) -> refit.
     """
 
@@ -217,8 +218,14 @@ class _ProfiledFit:
     lower: Array
     upper: Array
     own_errors: Array
+    hessian: Array
     hold: Callable[[int], Callable[[float, _Refit], _Refit]]
     workers: int | None
+
+    def others_by(self, column: int) -> Array:
+        """Return derivatives of the other unknowns at their optimum by the one that is held, (n - 1,): -H_oo^-1 h_o."""
+        others = np.delete(np.arange(len(self.hessian)), column)
+        return -inverse(self.hessian[np.ix_(others, others)]) @ self.hessian[others, column]
 
 
 def profiles(
@@ -232,10 +239,10 @@ def profiles(
     if not _is_minimum_of_its_problem(estimate):
         return ()
     problem, solution = estimate.problem, estimate.optimum.solution
+    hessian = estimate.optimum.normal.without_local()[1]
     fit = _ProfiledFit(
         problem.free, _Refit(2.0 * solution.value, solution.point, estimate.optimum.local),
-        problem.lower, problem.upper,
-        np.sqrt(np.diag(inverse(estimate.optimum.normal.without_local()[1]))),
+        problem.lower, problem.upper, np.sqrt(np.diag(inverse(hessian))), hessian,
         lambda column: _hold_in_output_error(problem, column), problem.workers,
     )  # fmt: skip
     return _profiles(fit, deviations, names, report_progress)
@@ -248,7 +255,7 @@ def innovation_profiles(
     problem, solution = noise.problem, noise.optimum.solution
     fit = _ProfiledFit(
         noise.output_error.free, _Refit(2.0 * solution.value, solution.point, np.zeros((0, 0))), problem.lower,
-        problem.upper, noise.interval.standard_error,
+        problem.upper, noise.interval.standard_error, noise.optimum.normal.hessian,
         lambda column: _hold_in_prediction_error(problem, column), problem.runs.workers,
     )  # fmt: skip
     return _profiles(fit, deviations, names, report_progress)
@@ -294,16 +301,19 @@ def _profile(fit: _ProfiledFit, column: int, deviation: float) -> Profile:
 def _branch(fit: _ProfiledFit, column: int, step: float) -> list[tuple[float, float]]:
     """Values and twice the loss, outward until the limit is passed, or bound, reach or the model's range is at its end.
 
-    Where a refit finds a smaller loss than the estimate's, the limit counts from there.
+    A refit starts where the information expects the others; along a ridge no short search would follow them. Where a
+    refit finds a smaller loss than the estimate's, the limit counts from there.
     """
-    refit, start = fit.hold(column), fit.optimum.common_parameters
-    last = replace(fit.optimum, common_parameters=np.delete(start, column))
+    refit, start, by_held = fit.hold(column), fit.optimum.common_parameters, fit.others_by(column)
+    low, high = (np.delete(bounds, column) for bounds in (fit.lower, fit.upper))
+    last, held = replace(fit.optimum, common_parameters=np.delete(start, column)), float(start[column])
     least, away, points = fit.optimum.twice_loss, 0.5, []
     while away <= _MAX_DEVIATIONS and len(points) < _MAX_POINTS_PER_SIDE:
         value = float(start[column]) + away * step
         if not fit.lower[column] <= value <= fit.upper[column]:
             break
-        last = refit(value, last)
+        expected = np.clip(last.common_parameters + by_held * (value - held), low, high)
+        last, held = refit(value, replace(last, common_parameters=expected)), value
         if not np.isfinite(last.twice_loss):
             break
         least = min(least, last.twice_loss)
