@@ -17,6 +17,7 @@ import against_optimisers
 import against_shipmmg
 import autopilots
 import campaign
+import changed_ships
 import checking
 import controllers_at_sea
 import criteria
@@ -93,6 +94,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "sample_rates": sample_rates.run,
     "independent_ships": independent_ships.run,
     "follow": follow.run,
+    "changed_ships": changed_ships.run,
     "campaign": campaign.run,
     "memory": memory.run,
 }

@@ -119,6 +119,12 @@ class CoefficientChange:
     p: Annotated[Number, Field(description="probability of as much by chance")]
     is_significant: Annotated[bool, Field(description="p is small enough, corrected for repeated testing")]
     most_changed: Annotated[str, Field(description="coefficient that changed most, in its standard errors")]
+    between: Annotated[
+        tuple[float, float], Field(description="s on the stream's clock, interval of the instant of the change")
+    ] = (float("nan"), float("nan"))
+    sizes: Annotated[
+        dict[str, Number], Field(description="coefficient -> change since, relative to its value before")
+    ] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -97,6 +97,24 @@ def test_a_ship_that_becomes_another_is_stated_and_followed(forgetting):
     assert abs(snapshot.value[place] / (1.5 * truth[place]) - 1.0) < 0.01
 
 
+def test_behind_a_change_the_estimate_is_of_the_changed_ship_alone():
+    """At 60 s in one window: the same sea, another ship."""
+    stream, voyage = sea_stream(90, 120.0, seed=5), SeawayScenario(90, duration=120.0)
+    heavy = ship(90).with_values({"a33": 1.3 * ship(90).parameters["a33"].value})
+    loaded = simulate_seaway_run(voyage, np.random.default_rng(5), heavy).with_sensor_noise(
+        np.random.default_rng(7), voyage
+    )
+    estimator = OnlineEstimator(stream.trial)
+    feed(estimator, stream.record, stream.trial, slice(0, 600))
+    feed(estimator, loaded, stream.trial, slice(600, None))
+    snapshot = estimator.relinearise()
+    assert snapshot.change is not None
+    assert snapshot.change.between[0] - 2.0 < 60.0 < snapshot.change.between[1] + 2.0
+    place = list(stream.trial.model.parameters.free_names).index("a33")
+    error = snapshot.value[place] - 1.3 * stream.truth[place]
+    assert abs(error) < 4.0 * snapshot.standard_error[place] < 0.05 * stream.truth[place]
+
+
 def test_the_same_samples_give_the_same_bits():
     stream = sea_stream(90, 30.0)
     trial, record = stream.trial, stream.record

@@ -7,7 +7,6 @@ import pytest
 from tests.estimation.identify.online.streams import samples, sea_stream, window_of
 
 from seatrial.core.results.online import EstimatorPhase
-from seatrial.estimation.estimate.online.carried_information import ChangeDetector
 from seatrial.estimation.identify.online import phases as search
 from seatrial.estimation.identify.online.phases import (
     BLOCK_SAMPLES,
@@ -140,9 +139,7 @@ def window_phase(stream):
 
 
 def _filter(stream, window_phase, **changes):
-    names = stream.trial.model.parameters.free_names
-    detector = ChangeDetector(names, 60.0)
-    return filter_phase(window_phase.estimate, replace(stream.trial.stream, **changes), 0.0, detector)
+    return filter_phase(window_phase.estimate, replace(stream.trial.stream, **changes), 0.0)
 
 
 def test_warm_up_becomes_a_window_with_the_first_estimate(stream, window_phase):
@@ -201,8 +198,7 @@ def test_correlated_residuals_discount_what_an_efficient_search_carries(stream, 
 
 def test_a_filter_that_is_left_hands_its_information_to_a_window(stream, window_phase):
     recursive = _filter(stream, window_phase)
-    elapsed = 50.0
-    moved = [recursive.add(s.time, s.values, elapsed) for s in samples(stream.record, stream.trial, slice(500, 595))]
+    moved = [recursive.add(s.time, s.values) for s in samples(stream.record, stream.trial, slice(500, 595))]
     assert sum(moved) == 95 // BLOCK_SAMPLES
     carried = recursive.to_window()
     assert isinstance(carried, Carried)
@@ -216,9 +212,9 @@ def test_a_filter_that_has_diverged_leads_back_to_warm_up(stream, window_phase):
     recursive = _filter(stream, window_phase)
     scale = np.array([1.0, 1.0, 1.0, 1e3, 1e3])
     for sample in samples(stream.record, stream.trial, slice(500, 600)):
-        recursive.add(sample.time, sample.values * scale, 50.0)
+        recursive.add(sample.time, sample.values * scale)
     for sample in samples(stream.record, stream.trial, slice(0, 200)):
-        recursive.add(60.0 + sample.time, sample.values * scale, 60.0)
+        recursive.add(60.0 + sample.time, sample.values * scale)
     assert not recursive.is_sound
     assert recursive.to_window() == WarmUp()
 

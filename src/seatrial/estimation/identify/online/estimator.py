@@ -4,16 +4,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from seatrial.core.results.online import CoefficientChange, Sample, Snapshot
+from seatrial.core.results.online import Sample, Snapshot
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.read.assemble import record_from_values
 from seatrial.data.trial import Role, Trial, TrialRun
 from seatrial.data.trial.records import load_run
 from seatrial.data.trial.runs import require_stream
-from seatrial.estimation.estimate.online.carried_information import ChangeDetector
+from seatrial.estimation.estimate.online.change_detector import ChangeDetector
 from seatrial.estimation.estimate.online.window import SampleRows, WindowEstimate
 from seatrial.estimation.identify.online.phases import (
-    CHANGE_TEST_INTERVAL,
     CONTINUED_INTERVALS,
     REPEATED_INTERVALS,
     Carried,
@@ -165,7 +164,8 @@ _NO_MODEL_YET = "the samples so far lead to no model that can be simulated"
 class OnlineEstimator:
     """Feed with `update`; the same samples give the same bits. No threads, no files.
 
-    A trial's own training runs come first and stay in the window.
+    A trial's own training runs come first and stay in the window. Beside a window a filter watches for a change of the
+    coefficients, behind which the estimate begins anew.
 
     Raises:
         InputError: the trial has no [follow], or its own records do not pass.
@@ -177,7 +177,8 @@ class OnlineEstimator:
         self._schedule = SearchSchedule(CONTINUED_INTERVALS if is_continued else REPEATED_INTERVALS)
         self._search: WindowSearch = ContinuedSearch(trial, self._schedule) if is_continued else RepeatedSearch(trial)
         self._window = StreamWindow(trial)
-        self._change_detector = ChangeDetector(trial.model.parameters.free_names, CHANGE_TEST_INTERVAL)
+        self._change_detector = ChangeDetector(trial.model.parameters.free_names)
+        self._watch: RecursivePhase | None = None
         self._phase: KeptPhase | RecursivePhase = WarmUp()
         self._progress = StreamProgress()
         self._snapshot = first_snapshot(trial.model)
@@ -195,6 +196,10 @@ class OnlineEstimator:
             self.relinearise()
         if isinstance(self._phase, RecursivePhase):
             self._leave_filter(self._phase)
+        self._watch = None
+        self._change_detector.restart()
+        if not isinstance(self._phase, WarmUp):  # what the next run is compared with
+            self._is_changed(self._phase.estimate)
         self._progress = self._progress.with_run()
         self._window.begin_run(self._progress.runs)
 
@@ -210,7 +215,10 @@ class OnlineEstimator:
             self._filter(self._phase, sample)
         else:
             self._window.add(sample)
-            if self._window.seconds >= self._schedule.next_search and self._window.open_samples >= MIN_RUN_SAMPLES:
+            is_due = self._window.seconds >= self._schedule.next_search
+            if self._watch is not None and self._is_changed_for(self._watch, sample):
+                self._begin_anew()
+            elif is_due and self._window.open_samples >= MIN_RUN_SAMPLES:
                 self.relinearise()
         self._snapshot = at_progress(self._snapshot, self._progress)
         return self._snapshot
@@ -253,9 +261,13 @@ class OnlineEstimator:
             try:
                 with np.errstate(all="ignore"):  # a trial step may overflow; the search then takes another
                     estimate = self._search.estimate(phase, self._window.records())
+                if self._watch is None and self._is_changed(estimate):
+                    self._begin_anew()
+                    return
                 self._phase = phase = phase.with_estimate(estimate)
-                change = self._test_for_change(estimate)
-                self._snapshot = window_snapshot(self._snapshot, self._trial.model, phase, estimate, change)
+                self._snapshot = window_snapshot(self._snapshot, self._trial.model, phase, estimate)
+                if self._watch is None and self._search.is_efficient:
+                    self._watch = filter_phase(estimate, self._stream, self._trial.reference_point)
             except (InputError, np.linalg.LinAlgError) as error:
                 if isinstance(phase, WarmUp):
                     reason = str(error) if isinstance(error, InputError) else _NO_MODEL_YET
@@ -267,22 +279,23 @@ class OnlineEstimator:
         """Go on with a filter where one can take over, else with the window's information."""
         following = None
         if self._search.is_efficient:
-            reference_point = self._trial.reference_point
-            following = filter_phase(phase.estimate, self._stream, reference_point, self._change_detector)
+            following = filter_phase(phase.estimate, self._stream, self._trial.reference_point)
         if following is None:
             is_efficient = self._search.is_efficient
             following = carried_phase(phase, self._window.seconds, self._stream, is_efficient=is_efficient)
             self._schedule.note_search(0.0, is_carried=True)
-        elif isinstance(phase, Carried) and self._stream.forgetting_time_s is not None:
-            self._change_detector.reset()
+        self._watch = None
+        self._change_detector.restart()
         self._phase = following
         self._window.clear()
 
     def _filter(self, phase: RecursivePhase, sample: Sample) -> None:
         """Take a sample into the filter; one that has diverged is left."""
-        if not phase.add(sample.time, sample.values, self._progress.elapsed):
+        if not phase.add(sample.time, sample.values):
             return
-        if phase.is_sound:
+        if phase.is_sound and self._shows_change(phase):
+            self._begin_anew()
+        elif phase.is_sound:
             self._snapshot = recursive_snapshot(self._snapshot, self._trial.model, phase)
         else:
             self._leave_filter(phase)
@@ -294,13 +307,33 @@ class OnlineEstimator:
         if isinstance(self._phase, WarmUp):
             self._change_detector.restart()
 
-    def _test_for_change(self, estimate: WindowEstimate) -> CoefficientChange | None:
-        """Whether the latest stretch contradicts the ones before, where successive estimates are nested.
+    def _begin_anew(self) -> None:
+        """Forget all that was before a change: what follows comes from later samples alone."""
+        self._phase, self._watch = WarmUp(), None
+        self._window.clear()
+        self._schedule.restart()
+        self._snapshot = first_snapshot(self._trial.model, self._change_detector.detected)
+
+    def _is_changed_for(self, watch: RecursivePhase, sample: Sample) -> bool:
+        """Whether the filter beside the window says so, with one more sample."""
+        if not watch.add(sample.time, sample.values):
+            return False
+        if watch.is_sound:
+            return self._shows_change(watch)
+        self._watch = None
+        self._change_detector.restart()
+        return False
+
+    def _shows_change(self, phase: RecursivePhase) -> bool:
+        now = phase.of_all_samples
+        return self._change_detector.update(self._progress.last_time, now.value, now.covariance)
+
+    def _is_changed(self, estimate: WindowEstimate) -> bool:
+        """Whether the latest samples contradict the ones before, where successive estimates are nested.
 
         They are not while old samples are forgotten, where every search chooses its criterion anew, and where the
         forces of the same waves change as more of their elevation is known.
         """
         is_nested = self._search.is_efficient and self._stream.waves is None and self._stream.forgetting_time_s is None
-        if is_nested and np.all(np.isfinite(estimate.covariance)):
-            self._change_detector.update(self._progress.elapsed, estimate.value, estimate.covariance)
-        return self._change_detector.reported
+        time = self._progress.last_time
+        return is_nested and self._change_detector.update(time, estimate.value, estimate.covariance, is_searched=True)

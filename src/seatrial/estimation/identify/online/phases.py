@@ -15,7 +15,8 @@ from seatrial.data.trial import FitCriterion, Trial, with_input_corners
 from seatrial.data.trial.settings import Stream
 from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.fit import estimate_model, with_segment_seconds
-from seatrial.estimation.estimate.online.carried_information import ChangeDetector, MarginalPrior, marginalise
+from seatrial.estimation.estimate.online.carried_information import MarginalPrior, marginalise
+from seatrial.estimation.estimate.online.change_detector import GaussianEstimate
 from seatrial.estimation.estimate.online.recursive import Forgetting
 from seatrial.estimation.estimate.online.window import (
     LINEAR_ENOUGH,
@@ -289,23 +290,19 @@ def _runs(trial: Trial, phase: KeptPhase, records: Sequence[Record]) -> Runs:
 
 # samples taken in at once: enough to spread the cost of a block, few enough that numbers move within a second at 10 Hz
 BLOCK_SAMPLES = 10
-# s of samples between tests for a change: several periods of any motion of a ship
-CHANGE_TEST_INTERVAL = 60.0
 
 
 class RecursivePhase:
     """Goes on behind the last sample of a fit.
 
-    Where samples are forgotten, a second filter that forgets nothing is tested for a change.
+    Where samples are forgotten, a second filter that forgets nothing says what all of them do.
 
     Raises:
         InputError: the fit is too curved or does not identify every coefficient, waves come from an elevation, or
             inputs are corrected for each run; a window goes on instead.
     """
 
-    def __init__(
-        self, estimate: WindowEstimate, stream: Stream, reference_point: float, change_detector: ChangeDetector
-    ) -> None:
+    def __init__(self, estimate: WindowEstimate, stream: Stream, reference_point: float) -> None:
         fit = estimate.estimate
         optimum = (fit.problem, fit.common_parameters, fit.optimum.local, fit.optimum.normal)
         if stream.waves is not None:
@@ -318,17 +315,15 @@ class RecursivePhase:
         self._filter = filter_from_fit(*optimum, forgetting=forgetting)
         self._unforgetting_filter = self._filter if forgetting is None else filter_from_fit(*optimum)
         self._model, self._outputs = fit.problem.model, fit.problem.data.outputs
-        self._change_detector = change_detector
         self._block = SampleRows(len(stream.layout.columns))
         self._last_inputs = np.full(len(self._model.inputs), np.nan)
 
-    def add(self, time: float, values: Array, elapsed: float) -> bool:
-        """Take in one sample, `elapsed` s of samples after the first, and return whether the estimate has changed."""
+    def add(self, time: float, values: Array) -> bool:
+        """Take in one sample, and return whether the estimate has changed."""
         self._block.add(time, values)
         if len(self._block) < BLOCK_SAMPLES:
             return False
         self._process_block()
-        self._change_detector.update(elapsed, self._unforgetting_filter.value, self._unforgetting_filter.covariance)
         return True
 
     def finish(self) -> None:
@@ -370,9 +365,9 @@ class RecursivePhase:
         return dict(zip(self._outputs, self._filter.innovations.rms.tolist(), strict=True))
 
     @property
-    def change(self) -> CoefficientChange | None:
-        """The last significant change, else the result of the last test."""
-        return self._change_detector.reported
+    def of_all_samples(self) -> GaussianEstimate:
+        """The estimate in which no sample is forgotten."""
+        return GaussianEstimate(self._unforgetting_filter.value, self._unforgetting_filter.covariance)
 
     def _process_block(self) -> None:
         rows, self._block = self._block, SampleRows(self._block.values.shape[1])
@@ -421,12 +416,10 @@ def is_window_full(phase: KeptPhase, seconds: float, stream: Stream, intervals: 
             return seconds >= min(intervals.stretch(window), window)
 
 
-def filter_phase(
-    estimate: WindowEstimate, stream: Stream, reference_point: float, change_detector: ChangeDetector
-) -> RecursivePhase | None:
+def filter_phase(estimate: WindowEstimate, stream: Stream, reference_point: float) -> RecursivePhase | None:
     """Return the filter that goes on behind the estimate; None where it cannot take over."""
     try:
-        return RecursivePhase(estimate, stream, reference_point, change_detector)
+        return RecursivePhase(estimate, stream, reference_point)
     except InputError:
         return None
 
@@ -471,8 +464,8 @@ class StreamProgress:
         return StreamProgress(self.samples + 1, self.runs, self.elapsed + step, time)
 
 
-def first_snapshot(model: Model) -> Snapshot:
-    """Return the snapshot before the first sample: start values, infinite standard errors."""
+def first_snapshot(model: Model, change: CoefficientChange | None = None) -> Snapshot:
+    """Return the snapshot before the first sample, or behind a change: start values, infinite standard errors."""
     free = model.parameters.free
     return Snapshot(
         time=0.0,
@@ -484,23 +477,22 @@ def first_snapshot(model: Model) -> Snapshot:
         value=np.array([p.value for p in free]),
         standard_error=np.full(len(free), np.inf),
         advice="too few samples yet" if free else "",
+        change=change,
     )
 
 
-def window_snapshot(
-    snapshot: Snapshot, model: Model, phase: KeptPhase, estimate: WindowEstimate, change: CoefficientChange | None
-) -> Snapshot:
+def window_snapshot(snapshot: Snapshot, model: Model, phase: KeptPhase, estimate: WindowEstimate) -> Snapshot:
     """Return the snapshot with the window's estimate; `phase` says whether earlier information is part of it."""
     outputs = estimate.estimate.problem.data.outputs
     rms = np.sqrt(np.nanmean(estimate.residuals**2, axis=0)).tolist()
     label = EstimatorPhase.RECURSIVE if isinstance(phase, Carried) else EstimatorPhase.WINDOW
-    snapshot = replace(snapshot, phase=label, noise=dict(zip(outputs, rms, strict=True)), change=change)
+    snapshot = replace(snapshot, phase=label, noise=dict(zip(outputs, rms, strict=True)))
     return _with_values(snapshot, model, estimate.value, estimate.covariance)
 
 
 def recursive_snapshot(snapshot: Snapshot, model: Model, phase: RecursivePhase) -> Snapshot:
     """Return the snapshot with the filter's estimate."""
-    snapshot = replace(snapshot, phase=EstimatorPhase.RECURSIVE, noise=phase.noise, change=phase.change)
+    snapshot = replace(snapshot, phase=EstimatorPhase.RECURSIVE, noise=phase.noise)
     return _with_values(snapshot, model, phase.value, phase.covariance)
 
 

@@ -1,0 +1,154 @@
+"""Whether and when a ship has changed: a bank of instants, each with what was known of the coefficients there."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import gammaincc, logsumexp
+
+from seatrial.core.results.online import CoefficientChange
+from seatrial.core.values import Array
+
+# What the data after an instant say against those before it.
+
+SIZE = 0.25
+"""Standard deviation of a change before any data, relative to the coefficient; chosen: loads and fouling are of it."""
+THRESHOLD = 10.9
+"""Nats of evidence at which a change is reported: 5 false alarms in 300 h with 45 instants tried at each of 10 samples
+a second, coefficients of heave and pitch known before (measured; fewer instants or looks raise fewer)."""
+
+
+@dataclass(frozen=True, eq=False)
+class GaussianEstimate:
+    """An estimate of k coefficients and its covariance."""
+
+    value: Array
+    covariance: Array
+
+
+@dataclass(frozen=True, eq=False)
+class _Moves:
+    """What data since some instants say of relative changes of the coefficients there.
+
+    With P and p covariances then and now, changes D have the information J = P^-1 (P - p) P^-1, and J D is
+    P^-1 (theta_now - theta_then): the error of the earlier estimate is in it.
+
+    Attributes:
+        information: J, (m, k, k); score: J D, (m, k).
+    """
+
+    information: Array
+    score: Array
+
+    @classmethod
+    def since(cls, before: Sequence[GaussianEstimate], now: GaussianEstimate) -> "_Moves":
+        """Return what is new since each of these estimates."""
+        scale = np.where(np.abs(now.value) > 0.0, now.value, 1.0)
+        units = np.outer(scale, scale)
+        known = np.linalg.inv(np.array([one.covariance for one in before]) / units)
+        moved = (now.value - np.array([one.value for one in before])) / scale
+        return cls(known - known @ (now.covariance / units) @ known, np.einsum("mij,mj->mi", known, moved))
+
+    @property
+    def sizes(self) -> Array:
+        """The likeliest relative changes under their prior, (m, k)."""
+        precision = self.information + np.eye(self.score.shape[1]) / SIZE**2
+        return np.linalg.solve(precision, self.score[..., None])[..., 0]
+
+    @property
+    def evidence(self) -> Array:
+        """Evidence for a change at each instant, nats, (m,); nothing where rounding leaves none.
+
+        The size has a Gaussian prior, of all coefficients together or of one alone, equally likely (mixture over the
+        size: Willsky & Jones 1976).
+        """
+        together = SIZE**2 * self.information + np.eye(self.score.shape[1])
+        of_all = 0.5 * np.einsum("mi,mi->m", self.score, self.sizes) - 0.5 * np.linalg.slogdet(together)[1]
+        alone = 1.0 + SIZE**2 * np.maximum(np.einsum("mii->mi", self.information), 0.0)
+        of_each = 0.5 * SIZE**2 * self.score**2 / alone - 0.5 * np.log(alone)
+        mean_of_each = logsumexp(of_each, axis=1) - np.log(self.score.shape[1])
+        return np.nan_to_num(np.logaddexp(of_all, mean_of_each) - np.log(2.0), nan=-np.inf)
+
+
+# The bank: instants close to the present one by one, older ones ever farther apart.
+
+_CLOSE = 8  # looks up to whose age every instant is kept; of twice the age every second, and so on; chosen
+_OLDEST = 400.0  # s, age of the oldest instant; chosen: what takes longer to show is no jump
+_KNOWN = 0.15  # relative standard error of every coefficient from which on an instant is kept; chosen
+_APART = (
+    0.8  # of an instant's variances, to which a search's have to fall to be compared with it: a search and a filter
+)
+# agree to a seventh of a standard error, chosen
+_SPAN = 3.0  # nats below the likeliest instant down to which another is inside its interval: half of chi squared, 99 %
+
+
+@dataclass(frozen=True, eq=False)
+class _Instant:
+    """A look: its number, its time [s], the estimate there, and whether a search gave it."""
+
+    number: int
+    time: float
+    estimate: GaussianEstimate
+    is_searched: bool
+
+    def can_be_compared(self, now: GaussianEstimate) -> bool:
+        """Whether what came since is more than that by which estimates of two kinds differ."""
+        variances = (np.diagonal(one.covariance) for one in (now, self.estimate))
+        return not self.is_searched or bool(np.all(np.divide(*variances) <= _APART))
+
+
+@dataclass(eq=False)
+class ChangeDetector:
+    """Compare an estimate that grows with what it was at a bank of earlier instants.
+
+    Attributes:
+        names: of the coefficients.
+        detected: the last change; None: there was none.
+    """
+
+    names: tuple[str, ...]
+    detected: CoefficientChange | None = None
+    _bank: tuple[_Instant, ...] = ()
+    _looks: int = 0
+
+    def update(self, time: float, value: Array, covariance: Array, *, is_searched: bool = False) -> bool:
+        """Take in the estimate from all data up to `time` [s], and return whether there is a change.
+
+        It empties the bank: the estimate is to begin anew. is_searched: by a search, not by the filter that goes on.
+        """
+        now = GaussianEstimate(np.array(value), np.array(covariance))
+        if not np.all(np.isfinite(now.covariance)):
+            return False
+        self._bank = tuple(one for one in self._bank if self._is_kept(one, time))
+        compared = [one for one in self._bank if one.can_be_compared(now)]
+        moves = _Moves.since([one.estimate for one in compared], now) if compared else None
+        if moves is not None and np.max(moves.evidence) > THRESHOLD:
+            self.detected = self._change([one.time for one in compared], moves)
+            self.restart()
+            return True
+        if np.all(np.sqrt(np.diagonal(now.covariance)) <= _KNOWN * np.abs(now.value)):
+            self._bank = (*self._bank, _Instant(self._looks, time, now, is_searched))
+        self._looks += 1
+        return False
+
+    def restart(self) -> None:
+        """Forget all instants: the estimate begins anew, or counts data anew."""
+        self._bank = ()
+
+    def _is_kept(self, one: _Instant, time: float) -> bool:
+        every = 1 << ((self._looks - one.number) // _CLOSE).bit_length()
+        return one.is_searched or (time - one.time <= _OLDEST and one.number % every == 0)
+
+    def _change(self, times: Sequence[float], moves: _Moves) -> CoefficientChange:
+        """The change at the likeliest instant."""
+        nats = moves.evidence
+        best = int(np.argmax(nats))
+        near = [time for time, each in zip(times, nats, strict=True) if each >= nats[best] - _SPAN]
+        sizes, freedom = moves.sizes[best], len(self.names)
+        statistic = float(sizes @ moves.score[best])
+        errors = np.sqrt(np.diagonal(np.linalg.inv(moves.information[best] + np.eye(freedom) / SIZE**2)))
+        return CoefficientChange(
+            times[best], statistic, freedom, float(gammaincc(0.5 * freedom, 0.5 * statistic)), True,
+            self.names[int(np.argmax(np.abs(sizes) / errors))], (min(near), max(near)),
+            dict(zip(self.names, sizes.tolist(), strict=True)),
+        )  # fmt: skip
