@@ -12,8 +12,10 @@ from time import monotonic, process_time
 import numpy as np
 
 from seatrial.core.results import Fit
-from seatrial.core.results.online import NO_SAMPLE, Sample, SampleCounts, Snapshot
-from seatrial.core.values import ProgressReporter
+from seatrial.core.results.online import NO_SAMPLE, CoefficientChange, Sample, SampleCounts, Snapshot
+from seatrial.core.text.numbers import signed_percent
+from seatrial.core.text.words import enumeration
+from seatrial.core.values import Finding, InputError, ProgressReporter, Severity
 from seatrial.data.trial import Trial
 from seatrial.data.trial.runs import require_stream
 from seatrial.data.trial.settings import Stream, StreamSource
@@ -31,6 +33,7 @@ from seatrial.onboard.stream_session import (
     StreamSession,
     with_training_records,
 )
+from seatrial.onboard.table import change_text
 
 # s: longest wait for samples, longest computation between two polls, shortest time between two displays; chosen: no
 # user sees a delay, and they cost nothing
@@ -123,7 +126,8 @@ def follow(
         show(latest, counts)
     fit = None
     if buffer is not None and is_ended and trial.model.parameters.free_names:
-        fit = _final_fit(with_training_records(trial, buffer.records()), estimator, seed, report_progress)
+        fit, missing = _final_fit(trial, buffer, estimator, seed, report_progress)
+        session.messages.extend(missing)
     writers = [one for one in (log, proposer) if one is not None]
     errors = tuple(writer.write_error for writer in writers if writer.write_error)
     return FollowResult(latest, counts, fit, (*session.messages, *errors))
@@ -134,13 +138,41 @@ def _estimator(trial: Trial, seed: int) -> StreamEstimator:
     return SearchFollower(trial, seed) if trial.estimate.method.is_published else OnlineEstimator(trial)
 
 
-def _final_fit(trial: Trial, estimator: StreamEstimator, seed: int, report_progress: ProgressReporter | None) -> Fit:
-    """The fit that `identify` makes; where a published method followed the stream, its values with that fit."""
-    if not isinstance(estimator, SearchFollower):
-        return identify(trial, seed=seed, report_progress=report_progress)
-    began = process_time()
-    reference = identify(own_trial(trial), seed=seed, report_progress=own_estimate_progress(report_progress))
-    return published_fit(reference, estimator.estimate(reference), process_time() - began)
+def _final_fit(
+    trial: Trial, buffer: RunBuffer, estimator: StreamEstimator, seed: int, report_progress: ProgressReporter | None
+) -> tuple[Fit | None, tuple[str, ...]]:
+    """The fit that `identify` makes; where a published method followed the stream, its values with that fit.
+
+    Of a ship that changed that of the samples behind the change; none, and why, where these do not suffice.
+    """
+    if isinstance(estimator, SearchFollower):
+        trial, began = with_training_records(trial, buffer.records()), process_time()
+        reference = identify(own_trial(trial), seed=seed, report_progress=own_estimate_progress(report_progress))
+        return published_fit(reference, estimator.estimate(reference), process_time() - began), ()
+    change = estimator.change if isinstance(estimator, OnlineEstimator) else None
+    begun_at = estimator.begun_at if isinstance(estimator, OnlineEstimator) else -math.inf
+    own = with_training_records(trial, buffer.records(begun_at), has_changed=change is not None)
+    if change is None:
+        return identify(own, seed=seed, report_progress=report_progress), ()
+    try:
+        fit = identify(own, seed=seed, report_progress=report_progress)
+    except InputError as error:
+        return None, (f"{change_text(change)}, and the samples behind it do not suffice for a fit: {error}",)
+    return replace(fit, findings=(_change_finding(change, fit), *fit.findings)), ()
+
+
+_SIZES_SHOWN = 3  # coefficients whose change a finding names, the clearest; ours
+
+
+def _change_finding(change: CoefficientChange, fit: Fit) -> Finding:
+    """The warning `coefficients-changed` on a fit of the samples behind a change."""
+    moved = [
+        (abs(c.estimate - before) / c.standard_error, f"{c.name} by {signed_percent(c.estimate / before - 1.0)}")
+        for c in fit.coefficients if c.standard_error and (before := change.before.get(c.name))
+    ]  # fmt: skip
+    clearest = [text for _, text in sorted(moved, reverse=True)[:_SIZES_SHOWN]]
+    where = f"the {change_text(change)} of the stream's clock"
+    return Finding(Severity.WARNING, "coefficients-changed", where, enumeration(clearest))
 
 
 class _Display:

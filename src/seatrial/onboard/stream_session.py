@@ -185,10 +185,11 @@ class RunBuffer:
         rows.append(sample.time)
         rows.frombytes(sample.values.tobytes())
 
-    def records(self) -> tuple[Record, ...]:
-        """Return the runs of two samples and more as records, in order."""
+    def records(self, behind: float = -math.inf) -> tuple[Record, ...]:
+        """Return the runs of two samples and more as records, in order; behind: a time of the stream's clock [s]."""
         width = 1 + len(self._layout.columns)
         tables = [(name, np.frombuffer(rows, dtype=np.float64).reshape(-1, width)) for name, rows in self._runs]
+        tables = [(name, table[table[:, 0] > behind]) for name, table in tables]
         return tuple(
             record_from_values(name, self._layout, table[:, 0], table[:, 1:])
             for name, table in tables
@@ -196,12 +197,15 @@ class RunBuffer:
         )
 
 
-def with_training_records(trial: Trial, records: tuple[Record, ...]) -> Trial:
-    """Return the trial with these records as training runs, behind its own and before all other runs."""
+def with_training_records(trial: Trial, records: tuple[Record, ...], *, has_changed: bool = False) -> Trial:
+    """Return the trial with these records as training runs, behind its own and before all other runs.
+
+    has_changed: whether they are of another ship than its own training runs, which are then left out.
+    """
     waves = require_stream(trial).waves
     came = tuple(TrialRun(record, waves=waves) for record in records)
     others = tuple(run for run in trial.runs if run.role is not Role.TRAIN)
-    return replace(trial, runs=(*trial.runs_with_role(Role.TRAIN), *came, *others))
+    return replace(trial, runs=(*(() if has_changed else trial.runs_with_role(Role.TRAIN)), *came, *others))
 
 
 # The run so far as a record for people: thinned, so that a day of samples fits a screen.

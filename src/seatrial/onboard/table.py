@@ -17,7 +17,7 @@ from seatrial.core.results.online import (
     Snapshot,
 )
 from seatrial.core.results.ship_motions import IntervalEstimate
-from seatrial.core.text.numbers import DASH, duration, exponent, fixed, percent, raised, signed_percent, significant
+from seatrial.core.text.numbers import DASH, duration, exponent, fixed, percent, raised, significant
 from seatrial.core.text.words import counted, enumeration, printable
 from seatrial.core.values import Array, Severity, display_unit, worst_first
 from seatrial.core.values.notation import channel_unit, unit_text
@@ -99,13 +99,16 @@ def change_sentence(change: CoefficientChange | None) -> str:
     """Return a significant change as a sentence; empty if there is none."""
     if change is None or not change.is_significant:
         return ""
-    first, last = (time_text(time if math.isfinite(time) else change.since) for time in change.between)
-    size = f" by {signed_percent(change.sizes[change.most_changed])}" if change.most_changed in change.sizes else ""
-    when = f"between {first} and {last}" if first != last else f"at {first}"
     return (
-        f"The coefficients changed {when}, {printable(change.most_changed)} most clearly{size}. "
+        f"The {change_text(change)}, {printable(change.most_changed)} most clearly. "
         "What is shown comes from later samples alone."
     )
+
+
+def change_text(change: CoefficientChange) -> str:
+    """Return when the coefficients changed: ``coefficients changed between 201.0 s and 203.0 s``."""
+    first, last = (time_text(time if math.isfinite(time) else change.since) for time in change.between)
+    return f"coefficients changed {f'between {first} and {last}' if first != last else f'at {first}'}"
 
 
 def time_text(time: float) -> str:

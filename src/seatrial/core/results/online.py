@@ -122,9 +122,9 @@ class CoefficientChange:
     between: Annotated[
         tuple[float, float], Field(description="s on the stream's clock, interval of the instant of the change")
     ] = (float("nan"), float("nan"))
-    sizes: Annotated[
-        dict[str, Number], Field(description="coefficient -> change since, relative to its value before")
-    ] = field(default_factory=dict)
+    before: Annotated[dict[str, Number], Field(description="coefficient -> value before the change, SI")] = field(
+        default_factory=dict
+    )
 
 
 @dataclass(frozen=True)

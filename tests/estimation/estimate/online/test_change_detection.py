@@ -37,14 +37,14 @@ def test_regressions_without_change_raise_no_alarm() -> None:
     assert sum(told(estimates(rng, np.zeros(3))) is not None for _ in range(200)) <= 1
 
 
-def test_the_coefficient_that_moved_its_instant_and_its_size_are_named(rng: np.random.Generator) -> None:
+def test_the_coefficient_that_moved_its_instant_and_its_value_before_are_named(rng: np.random.Generator) -> None:
     found = told(estimates(rng, np.array([0.0, -0.6, 0.0])))
     assert found is not None
     look, change = found
     assert 36 < look < 46
     assert change.most_changed == "b"
     assert change.between[0] <= 200.0 <= change.between[1] + 10.0
-    assert change.sizes["b"] == pytest.approx(0.3, abs=0.15)
+    assert change.before["b"] == pytest.approx(-2.0, abs=0.1)
 
 
 def test_a_look_without_information_is_passed_over() -> None:

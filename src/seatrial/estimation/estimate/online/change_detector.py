@@ -123,7 +123,7 @@ class ChangeDetector:
         compared = [one for one in self._bank if one.can_be_compared(now)]
         moves = _Moves.since([one.estimate for one in compared], now) if compared else None
         if moves is not None and np.max(moves.evidence) > THRESHOLD:
-            self.detected = self._change([one.time for one in compared], moves)
+            self.detected = self._change(compared, moves)
             self.restart()
             return True
         if np.all(np.sqrt(np.diagonal(now.covariance)) <= _KNOWN * np.abs(now.value)):
@@ -139,16 +139,16 @@ class ChangeDetector:
         every = 1 << ((self._looks - one.number) // _CLOSE).bit_length()
         return one.is_searched or (time - one.time <= _OLDEST and one.number % every == 0)
 
-    def _change(self, times: Sequence[float], moves: _Moves) -> CoefficientChange:
+    def _change(self, compared: Sequence[_Instant], moves: _Moves) -> CoefficientChange:
         """The change at the likeliest instant."""
         nats = moves.evidence
         best = int(np.argmax(nats))
-        near = [time for time, each in zip(times, nats, strict=True) if each >= nats[best] - _SPAN]
-        sizes, freedom = moves.sizes[best], len(self.names)
+        near = [one.time for one, each in zip(compared, nats, strict=True) if each >= nats[best] - _SPAN]
+        sizes, freedom, instant = moves.sizes[best], len(self.names), compared[best]
         statistic = float(sizes @ moves.score[best])
         errors = np.sqrt(np.diagonal(np.linalg.inv(moves.information[best] + np.eye(freedom) / SIZE**2)))
         return CoefficientChange(
-            times[best], statistic, freedom, float(gammaincc(0.5 * freedom, 0.5 * statistic)), True,
+            instant.time, statistic, freedom, float(gammaincc(0.5 * freedom, 0.5 * statistic)), True,
             self.names[int(np.argmax(np.abs(sizes) / errors))], (min(near), max(near)),
-            dict(zip(self.names, sizes.tolist(), strict=True)),
+            dict(zip(self.names, instant.estimate.value.tolist(), strict=True)),
         )  # fmt: skip

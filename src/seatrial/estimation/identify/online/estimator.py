@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from seatrial.core.results.online import Sample, Snapshot
+from seatrial.core.results.online import CoefficientChange, Sample, Snapshot
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.read.assemble import record_from_values
 from seatrial.data.trial import Role, Trial, TrialRun
@@ -179,6 +179,7 @@ class OnlineEstimator:
         self._window = StreamWindow(trial)
         self._change_detector = ChangeDetector(trial.model.parameters.free_names)
         self._watch: RecursivePhase | None = None
+        self._begun_at = -np.inf
         self._phase: KeptPhase | RecursivePhase = WarmUp()
         self._progress = StreamProgress()
         self._snapshot = first_snapshot(trial.model)
@@ -237,6 +238,16 @@ class OnlineEstimator:
     def raw_runs(self) -> tuple[TrialRun, ...]:
         """Return the stream's runs that are still kept, as training runs of a trial whose files have been read."""
         return self._window.training_runs()
+
+    @property
+    def change(self) -> CoefficientChange | None:
+        """The last change of the coefficients; None: there was none."""
+        return self._change_detector.detected
+
+    @property
+    def begun_at(self) -> float:
+        """Time on the stream's clock [s] behind which samples count: that of the last change, else minus infinity."""
+        return self._begun_at
 
     @property
     def covariance(self) -> Array:
@@ -309,7 +320,7 @@ class OnlineEstimator:
 
     def _begin_anew(self) -> None:
         """Forget all that was before a change: what follows comes from later samples alone."""
-        self._phase, self._watch = WarmUp(), None
+        self._phase, self._watch, self._begun_at = WarmUp(), None, self._progress.last_time
         self._window.clear()
         self._schedule.restart()
         self._snapshot = first_snapshot(self._trial.model, self._change_detector.detected)
