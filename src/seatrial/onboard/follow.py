@@ -126,8 +126,8 @@ def follow(
         show(latest, counts)
     fit = None
     if buffer is not None and is_ended and trial.model.parameters.free_names:
-        fit, missing = _final_fit(trial, buffer, estimator, seed, report_progress)
-        session.messages.extend(missing)
+        fit, reasons = _final_fit(trial, buffer, estimator, seed, report_progress)
+        session.messages.extend(reasons)
     writers = [one for one in (log, proposer) if one is not None]
     errors = tuple(writer.write_error for writer in writers if writer.write_error)
     return FollowResult(latest, counts, fit, (*session.messages, *errors))
@@ -151,11 +151,11 @@ def _final_fit(
         return published_fit(reference, estimator.estimate(reference), process_time() - began), ()
     change = estimator.change if isinstance(estimator, OnlineEstimator) else None
     begun_at = estimator.begun_at if isinstance(estimator, OnlineEstimator) else -math.inf
-    own = with_training_records(trial, buffer.records(begun_at), has_changed=change is not None)
+    final_trial = with_training_records(trial, buffer.records(begun_at), has_changed=change is not None)
     if change is None:
-        return identify(own, seed=seed, report_progress=report_progress), ()
+        return identify(final_trial, seed=seed, report_progress=report_progress), ()
     try:
-        fit = identify(own, seed=seed, report_progress=report_progress)
+        fit = identify(final_trial, seed=seed, report_progress=report_progress)
     except InputError as error:
         return None, (f"{change_text(change)}, and the samples behind it do not suffice for a fit: {error}",)
     return replace(fit, findings=(_change_finding(change, fit), *fit.findings)), ()
@@ -166,11 +166,11 @@ _SIZES_SHOWN = 3  # coefficients whose change a finding names, the clearest; our
 
 def _change_finding(change: CoefficientChange, fit: Fit) -> Finding:
     """The warning `coefficients-changed` on a fit of the samples behind a change."""
-    moved = [
+    differences = [
         (abs(c.estimate - before) / c.standard_error, f"{c.name} by {signed_percent(c.estimate / before - 1.0)}")
         for c in fit.coefficients if c.standard_error and (before := change.before.get(c.name))
     ]  # fmt: skip
-    clearest = [text for _, text in sorted(moved, reverse=True)[:_SIZES_SHOWN]]
+    clearest = [text for _, text in sorted(differences, reverse=True)[:_SIZES_SHOWN]]
     where = f"the {change_text(change)} of the stream's clock"
     return Finding(Severity.WARNING, "coefficients-changed", where, enumeration(clearest))
 
