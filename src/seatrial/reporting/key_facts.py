@@ -9,7 +9,7 @@ from seatrial.core.results import Fit, Prediction, RollCharacteristics, Seakeepi
 from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
 from seatrial.core.results.fit import NOT_CONVERGED
 from seatrial.core.results.fit_charts import has_band, headline_view
-from seatrial.core.results.prediction import ChannelScore
+from seatrial.core.results.prediction import ChannelScore, is_sensor_noise
 from seatrial.core.results.ship_motions import CraftMeasure, IntervalEstimate, ThrusterCraft
 from seatrial.core.text.numbers import estimate_text, fixed, significant
 from seatrial.core.text.words import counted, enumeration
@@ -159,9 +159,7 @@ def first_screen(fit: Fit, length: float) -> FirstScreen:
     view = headline_view(p, length, fit.model.input_names)
     which = "The held-out run" if len(fit.validation) == 1 else (
         "The worst held-out run" if fit.validation else "The worst training run")  # fmt: skip
-    track = {"x0", "y0"} <= set(p.measured.channels)
-    reach = ", up to where it is half as wide as the track is long" if track else ""
-    band = f" Pale: 95 % band{reach}." if has_band(p) else ""
+    band = " Pale: 95 % band." if has_band(p) else ""
     caption = f"{which}, {p.record}: {p.reference_word} and {p.model_word}.{band}"
     return FirstScreen(verdict(fit), key_facts(fit), run_figure(view, is_first=True), caption, operators_sentence(fit))
 
@@ -227,7 +225,7 @@ def _baseline(fit: Fit) -> KeyFact:
                 and math.isfinite(score.rms) and any(key in b.scores for b in w.baselines)]  # fmt: skip
     if not compared:
         return KeyFact("Baseline", "none compared")
-    ratio, p, w, key = min(compared, key=lambda row: row[0])
+    (ratio, p, w, key), noise = min(compared, key=lambda row: row[0]), fit.sensor_errors
     best = min((b for b in w.baselines if key in b.scores), key=lambda b: b.scores[key].rms)
     text = (
         f"{best.name} {error_text(key, best.scores[key].rms)}, this fit {error_text(key, w.scores[key].rms)} in "
@@ -235,13 +233,15 @@ def _baseline(fit: Fit) -> KeyFact:
     )
     velocities = dict.fromkeys(
         ERROR_LABELS[name][0] for p in fit.validation if (w := _longest_windows(p))
-        for name in w.better_baselines if name not in _MAIN_CHANNELS
+        for name in w.better_baselines(noise) if name not in _MAIN_CHANNELS
     )  # fmt: skip
     shorter = dict.fromkeys(
         f"{ERROR_LABELS[name][0]} over {w.window}" for p in fit.validation for w in p.windows
-        for name in w.better_baselines if w.seconds >= shortest_judged(fit)
+        for name in w.better_baselines(noise) if w.seconds >= shortest_judged(fit)
     )  # fmt: skip
     better = list(velocities or shorter)
+    if is_sensor_noise(w.scores[key].rms, noise.get(key, 0.0)) and ratio < 1.0:
+        return KeyFact("Closest baseline", f"{text}: both within sensor noise", "prediction")
     is_best = ratio >= 1.0 and not velocities
     limits = f"; a baseline is better in {enumeration(better, MAX_NAMES)}" if ratio >= 1.0 and better else (
         "; the baseline is better" if ratio < 1.0 else "")  # fmt: skip

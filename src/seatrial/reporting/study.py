@@ -41,7 +41,7 @@ _VERDICT_TONES = {Verdict.REFUTED: "bad"}
 
 def sections(study: Study) -> tuple[Section, ...]:
     """Return the chapters of a study that have content, in order."""
-    run_parts = [run_section(p, study.predictions, 0.0, INPUT_CHANNELS) for p in study.predictions]
+    run_parts = [run_section(p, study.predictions, 0.0, INPUT_CHANNELS, {}) for p in study.predictions]
     figures = [Section(f.title, pictures=(Picture(partial(_drawing, f), f.note),)) for f in study.figures[1:]]
     facts = {"Seed": str(study.seed), "Elapsed": duration(study.elapsed_s)}
     chapters = (

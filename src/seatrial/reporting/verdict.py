@@ -8,7 +8,14 @@ from enum import StrEnum
 import numpy as np
 
 from seatrial.core.results import Fit, Prediction, WindowScore
-from seatrial.core.results.prediction import HEADING_SPREAD, HELD_COURSE_SPREAD, MOTIONS, motion_spread, motion_spreads
+from seatrial.core.results.prediction import (
+    HEADING_SPREAD,
+    HELD_COURSE_SPREAD,
+    MOTIONS,
+    is_sensor_noise,
+    motion_spread,
+    motion_spreads,
+)
 from seatrial.core.text.numbers import duration, significant
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, InputError, Record, Severity
@@ -207,8 +214,12 @@ def graded_errors(fit: Fit) -> str:
     if worst is None:
         return ""
     shares = judged_shares(worst_run(fit.validation, longest), longest)
-    texts = [f"{error_text(error.name, error.rms)} of {error_text(error.name, error.spread)} in "
-             f"{ERROR_LABELS[error.name][0]}" for error in shares]  # fmt: skip
+    noise = fit.sensor_errors
+    texts = [
+        f"{error_text(e.name, e.rms)} of {error_text(e.name, e.spread)} in {ERROR_LABELS[e.name][0]}"
+        + (f" (sensor noise {error_text(e.name, n)})" if is_sensor_noise(e.rms, n := noise.get(e.name, 0.0)) else "")
+        for e in shares
+    ]
     over = f", over {worst.window}" if worst.window else ""
     return f"{enumeration(texts)}{over}: {worst.grade}"
 
