@@ -11,7 +11,7 @@ from seatrial.core.results.fit import Collinearity
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Record, Severity
 from seatrial.numerics.optimise import Status
-from seatrial.reporting.key_facts import first_screen, key_facts, whole_run_share
+from seatrial.reporting.key_facts import first_screen, key_facts, whole_run_shares
 from seatrial.reporting.prediction_chapter import baseline_sentence, ranged_motions, shortest_judged
 from seatrial.reporting.section import KeyFact
 
@@ -97,8 +97,8 @@ def test_samples_scatter_about_the_band_of_a_whole_run_by_their_noise(fit: Fit) 
     scattered = replace(p, simulated=p.simulated.with_channel("psi", psi.with_values(psi.values + noise)),
                         half_width={"psi": np.full(len(noise), 1e-6)})  # fmt: skip
     noisy = replace(fit, predictions=(scattered,), noise_model=replace(fit.noise_model, measurement={"psi": 0.01}))
-    assert whole_run_share(noisy) == pytest.approx(0.95, abs=0.02)
-    assert whole_run_share(replace(noisy, noise_model=None)) == pytest.approx(0.0, abs=0.01)
+    assert whole_run_shares(noisy)["heading"] == pytest.approx(0.95, abs=0.02)
+    assert whole_run_shares(replace(noisy, noise_model=None))["heading"] == pytest.approx(0.0, abs=0.01)
 
 
 def test_bands_much_wider_than_the_error_are_no_tick(fit: Fit) -> None:

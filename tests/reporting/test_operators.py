@@ -22,7 +22,7 @@ def test_a_roll_model_gives_period_and_damping(fit: Fit) -> None:
 
 def test_a_craft_with_thrusters_makes_turns_and_stops(fit: Fit) -> None:
     text = operators_sentence(replace(fit, thruster_craft=CRAFT))
-    assert text == "At full command, beyond the training runs, it makes 2.5595 m/s (2.5523 to 2.5668 m/s)."
+    assert text == "At full command, beyond the training runs, it makes 2.56 m/s (2.55 to 2.57 m/s)."
     turning = CraftMeasure(-44.0, None, None, "turn")
     craft = replace(CRAFT, measures={"yaw_rate_deg_s": turning})
     assert operators_sentence(replace(fit, thruster_craft=craft)) == (

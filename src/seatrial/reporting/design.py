@@ -74,7 +74,7 @@ def key_facts(design: Design) -> tuple[KeyFact, ...]:
     rows = (
         KeyFact("Ships that differ", _prior_draws(design), "ships"),
         KeyFact("Simulated trials", _confirmation(design), "confirmation"),
-        KeyFact("Limits", _limits(design), "orders", is_kept),
+        KeyFact("Limits", _limits(design), "orders", None if is_kept and design.designed.diverged else is_kept),
     )
     warned = [f.code for f in design.findings if f.severity is not Severity.INFO]
     warnings = KeyFact("Warnings", enumeration(warned) or "none", "findings" if design.findings else "", not warned)

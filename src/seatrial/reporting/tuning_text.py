@@ -1,11 +1,14 @@
 """A tuned controller in sentences: reduction, margins, saturation, simulation, comparison, schedule."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
+from seatrial.core.results.station import StationTrial
 from seatrial.core.results.tuning import (
     Controller,
+    CornerResponse,
     ManoeuvreResponse,
     PairedDifference,
     SeawaySimulation,
@@ -37,23 +40,40 @@ def key_facts(tuning: Tuning) -> tuple[KeyFact, ...]:
     demands = [demand_sentence(m) for m in tuning.manoeuvres if m.controller == c.name]
     warned = list(dict.fromkeys(f.code for f in tuning.findings if f.severity is not Severity.INFO))
     rows = (
-        KeyFact("Margins", _margins(tuning), "margins", math.isfinite(c.Ms) and not c.violated),
+        KeyFact("Margins", _margins(tuning), "margins", _keeps_margins(tuning)),
         KeyFact("Other ships", _other_ships(tuning), "robustness", _holds_other_ships(tuning)),
         KeyFact("Constraints", _violations(c), "controllers", not c.violated),
         KeyFact("Actuator", _saturation(tuning), "controllers"),
         KeyFact("Simulated", _simulation(tuning), "simulation"),
         KeyFact("Compared", " ".join(map(comparison_sentence, pairs)), "simulation",
-                all(pair.upper >= 0.0 for pair in pairs)),
+                _is_better(pairs)),
         KeyFact("Demands", " ".join(demands), "manoeuvres"),
         KeyFact("Track", guidance_sentence(tuning.track) if tuning.track else "", "track",
-                tuning.track is None or tuning.track.corner.stable_draws == tuning.track.corner.draws),
+                _holds_draws(tuning.track.corner) if tuning.track else None),
         KeyFact("Station", precision_sentence(tuning.station) if tuning.station else "", "station",
-                tuning.station is None or tuning.station.trial.stable_draws == tuning.station.trial.draws),
+                _holds_draws(tuning.station.trial) if tuning.station else None),
         KeyFact("Schedule", _schedule(tuning), "schedule", _is_schedule_kept(tuning)),
     )  # fmt: skip
     text = " ".join(_on_bounds(tuning)) or enumeration(warned) or "none"
     warnings = KeyFact("Warnings", text, "findings" if tuning.findings else "", not warned)
     return (*(row for row in rows if row.text and row.text != verdict(tuning)), warnings)
+
+
+def _keeps_margins(tuning: Tuning) -> bool | None:
+    """Return whether the chosen gains keep the constraints; None where no sensitivity peak was required."""
+    c = tuning.chosen
+    is_kept = math.isfinite(c.Ms) and not c.violated
+    return None if is_kept and not math.isfinite(tuning.constraints.Ms) else is_kept
+
+
+def _is_better(pairs: Sequence[PairedDifference]) -> bool | None:
+    """Return whether a controller is better in every comparison, worse in one; None: chance may have made it so."""
+    return False if any(pair.upper < 0.0 for pair in pairs) else all(pair.lower > 0.0 for pair in pairs) or None
+
+
+def _holds_draws(tried: CornerResponse | StationTrial) -> bool | None:
+    """Return whether all ships drawn from the fit are stable; None where none was drawn."""
+    return tried.stable_draws == tried.draws if tried.draws else None
 
 
 def _is_schedule_kept(tuning: Tuning) -> bool:

@@ -88,7 +88,7 @@ def key_facts(v: Verification) -> tuple[KeyFact, ...]:
     inside = len(v.quantities) - len(v.outside)
     unmoved = "no property moved beyond its interval" if v.corrections else "not estimated anew"
     return (
-        KeyFact("Inside", f"{inside} of {len(v.quantities)} quantities", "quantities", not v.outside),
+        KeyFact("Inside", f"{inside} of {len(v.quantities)} quantities", "quantities", inside > 0 and not v.outside),
         *([KeyFact("Outside", enumeration(v.outside), "quantities", False)] if v.outside else []),
         KeyFact("Model", "; ".join(moved) or unmoved, "model" if v.corrections else "",
                 not moved if v.corrections else None),
