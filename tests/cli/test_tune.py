@@ -71,7 +71,7 @@ def test_an_autopilot_has_no_schedule_to_write_and_says_what_it_turns(
     assert not (tmp_path / "schedule.csv").exists()
     print_tuning(tuning)
     said = capsys.readouterr().out
-    assert "  heading, deg" in said and "100 of 100 ships that the fit allows are stable" in said
+    assert "  heading, deg" in said and "Of 100 ships that the fit allows 100 are stable" in said
     assert "does not settle" in said
     assert "reduction" not in said, "a heading drifts without control; it has no reduction"
 

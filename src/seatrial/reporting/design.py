@@ -115,13 +115,9 @@ def _comparison(design: Design) -> str:
     if best is None:
         return f"{start}; there is no standard manoeuvre to compare it with."
     theirs = criterion_error(best, criterion)
-    against = f"{_percent(theirs)}{_weakest_coefficient(best, design)} with the best standard manoeuvre of equal length"
-    leaving = "" if is_within_limits(best, design.limits) else ", which leaves the limits"
-    against += f", {manoeuvre_name(best.name)}{leaving}"
-    if error >= theirs:
-        return f"{start}, no better than the {against}."
-    ratio = f" ({significant(theirs / error, 2)} times as much)" if theirs < LARGEST_SHOWN_ERROR else ""
-    return f"{start} against {against}{ratio}."
+    leaving = "" if is_within_limits(best, design.limits) else ", which leaves the limits,"
+    against = f"the best standard manoeuvre of equal length{leaving} has {_percent(theirs)}"
+    return f"{start}, no better: {against}." if error >= theirs else f"{start}; {against}."
 
 
 def _prior_draws(design: Design) -> str:

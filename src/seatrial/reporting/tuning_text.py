@@ -31,7 +31,7 @@ def verdict(tuning: Tuning) -> str:
     chosen = [m for m in tuning.manoeuvres if m.controller == tuning.chosen.name]
     if not math.isfinite(tuning.chosen.Ms):
         return _margins(tuning)
-    return _motion(tuning) or next((demand_sentence(m) for m in chosen), _margins(tuning))
+    return _motion(tuning) or next((response_sentence(m) for m in chosen), _margins(tuning))
 
 
 def key_facts(tuning: Tuning) -> tuple[KeyFact, ...]:
@@ -128,16 +128,15 @@ def _motion(tuning: Tuning) -> str:
     effort = f", with {' and '.join(moved)} rms of the {channel_meaning(tuning.actuator)}" if moved else ""
     remaining = quantity_text(tuning.output, rms["output"]) if "output" in rms else ""
     if has_reduction(tuning) and (simulated := _simulated(tuning)):
-        stalled = float(np.mean(simulated.stalled))
-        mean = "" if len(tuning.seas) == 1 else f" over the {len(tuning.seas)} seas tuned in"
+        stalled, linear = (percent(float(np.mean(x))) for x in (simulated.stalled, simulated.linear))
         return (
-            f"Simulated with all limits in {realisations(tuning, len(simulated.stalled))}, these gains reduce the "
-            f"{motion_name(tuning)} by {percent(stalled)}; linear theory{mean} says {percent(c.reduction)}."
+            f"Simulated with all limits, these gains reduce the {motion_name(tuning)} by {stalled}; without limits, by "
+            f"{linear}."
         )
     if has_reduction(tuning):
         remaining = f"{significant(rms['motion'], 2)} m/s²" if tuning.motion else remaining
         to = f", to {remaining} rms" if remaining else ""
-        return f"By linear theory these gains reduce the {motion_name(tuning)} by {percent(c.reduction)}{to}{effort}."
+        return f"By linear theory these gains reduce the {motion_name(tuning)} by {percent(c.reduction)}{to}."
     return (
         f"By linear theory {remaining} rms of the {channel_meaning(tuning.output)} remains{effort}."
         if remaining
@@ -234,12 +233,11 @@ def _simulation(tuning: Tuning) -> str:
     linear, limited, stalled = (float(np.mean(x)) for x in (s.linear, s.limited, s.stalled))
     text = (
         f"Simulated in {realisations(tuning, len(s.linear))}, it reduces the {tuning.motion or 'motion'} by "
-        f"{percent(linear)} without limits and by {percent(limited)} with those of angle and rate: they cost "
-        f"{percent_points(s.saturation_loss)}"
+        f"{percent(linear)} without limits and by {percent(limited)} with those of angle and rate"
     )
     if math.isfinite(tuning.constraints.stall):
         text += f"; with stall beyond {_limit_text(tuning.actuator, tuning.constraints.stall)}, by {percent(stalled)}"
-    return f"{text}."
+    return f"{text}. The limits of angle and rate cost {percent_points(s.saturation_loss)}."
 
 
 def comparison_sentence(pair: PairedDifference) -> str:
@@ -258,20 +256,26 @@ def comparison_sentence(pair: PairedDifference) -> str:
     return f"{start} {change} {tail}."
 
 
-def demand_sentence(m: ManoeuvreResponse) -> str:
-    """Return the response to a demand, of the ship as identified and of those drawn from its covariance."""
+def response_sentence(m: ManoeuvreResponse) -> str:
+    """Return the response to a demand, of the ship as identified."""
     text = f"In the {m.name} it {_overshoot_text(m.overshoot)}"
     if math.isfinite(m.settling):
         text += f" and settles in {significant(m.settling, 3)} s"
     elif m.is_to_settle:
         text += " and does not settle"
-    if m.draws:
-        text += f"; {m.stable_draws} of {m.draws} ships that the fit allows are stable"
-        if math.isfinite(m.worst_overshoot):
-            worst = f"overshoots by {percent(m.worst_overshoot)} at most" if m.worst_overshoot > 0.0 else "overshoots"
-            text += f", and {'each' if m.worst_overshoot > 0.0 else 'none'} {worst}"
-        text += "; the simulation of at least one diverges" if math.isinf(m.worst_overshoot) else ""
     return f"{text}."
+
+
+def demand_sentence(m: ManoeuvreResponse) -> str:
+    """Return the response to a demand, of the ship as identified and of those drawn from its covariance."""
+    if not m.draws:
+        return response_sentence(m)
+    text = f"Of {m.draws} ships that the fit allows {m.stable_draws} are stable"
+    if math.isfinite(m.worst_overshoot):
+        worst = f"overshoots by {percent(m.worst_overshoot)} at most" if m.worst_overshoot > 0.0 else "overshoots"
+        text += f", and {'each' if m.worst_overshoot > 0.0 else 'none'} {worst}"
+    text += "; the simulation of at least one diverges" if math.isinf(m.worst_overshoot) else ""
+    return f"{response_sentence(m)} {text}."
 
 
 def reference_sentence(tuning: Tuning) -> str:
@@ -317,11 +321,12 @@ def _schedule(tuning: Tuning) -> str:
     text = f"A schedule over {counted(len(slots), 'condition')} leaves {percent(mean)} of the motion on average"
     baseline_costs = {name: [s.baseline_costs.get(name, math.nan) for s in slots] for name in slots[0].baseline_costs}
     comparisons = [_other_gains_text(name, costs) for name, costs in baseline_costs.items()]
-    text += f", where {enumeration(comparisons)}" if comparisons else ""
+    baselines = f" Other gains: {enumeration(comparisons)}." if comparisons else ""
     kept = sum(s.is_feasible for s in slots)
     check = tuning.schedule_check
     between = f" and, with gains interpolated, in {check.feasible} of {check.conditions}" if check else ""
-    return f"{text}; the constraints are kept in {'all' if kept == len(slots) else f'{kept} of {len(slots)}'}{between}."
+    conditions = "all" if kept == len(slots) else f"{kept} of {len(slots)}"
+    return f"{text}; the constraints are kept in {conditions}{between}.{baselines}"
 
 
 def _other_gains_text(name: str, costs: list[float]) -> str:
