@@ -13,6 +13,7 @@ from tests.reporting.fabricated_comparison import fabricated_comparison
 from tests.reporting.fabricated_design import fabricated_design
 from tests.reporting.fabricated_tuning import fabricated_autopilot, fabricated_bare, fabricated_fin
 from tests.reporting.test_campaign import fabricated_campaign
+from tests.reporting.test_roll_chapter import KNOWN
 from tests.reporting.test_ticks import CLEAN, Result, facts
 from tests.reporting.test_verification import LEGS, TURNS
 
@@ -29,6 +30,7 @@ MEDIAN_WORDS, VERDICT_WORDS = 18, 25  # chosen
 TAG = re.compile(r"<[^>]*>")
 RESULTS: dict[str, Result] = {
     "fit": complete_fit(fabricated_fit()),
+    "roll": replace(complete_fit(fabricated_fit()), roll=KNOWN),
     "plain fit": replace(fabricated_fit(), baselines=baselines(fabricated_fit())),
     "fin": fabricated_fin(),
     "fin by linear theory": replace(fabricated_fin(), seaway_simulations=()),

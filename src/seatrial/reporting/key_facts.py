@@ -70,13 +70,13 @@ def operators_sentence(fit: Fit) -> str:
 
 def _roll(roll: RollCharacteristics) -> str:
     period, ratio = _estimate(roll.natural_period, " s"), _estimate(roll.damping_ratio.scaled(100.0), " %")
-    text = f"The natural period at small angles is {period}, the linear damping {ratio} of critical"
+    text = f"The natural period at small angles is {period}. The linear damping is {ratio} of critical"
     if roll.amplitude:
         text += f", {_equivalent_damping(roll)}"
     height = roll.metacentric_height
     if height is None or height.lower == height.upper:  # unknown, or given
         return f"{text}."
-    return f"{text}; GM would be {_estimate(height, ' m')} with {roll.gyradius_source.partition(',')[0]}."
+    return f"{text}. GM would be {_estimate(height, ' m')} with {roll.gyradius_source.partition(',')[0]}."
 
 
 def _at_one_speed(fit: Fit) -> str:

@@ -360,9 +360,9 @@ def _errors(p: Prediction, noise: Mapping[str, float]) -> TextTable:
         list(p.rms),
         words("rms error", lambda name: ", ".join(ERROR_LABELS[name])),
         number("whole run", lambda name: _error(name, p.rms)),
-        number("sensor noise", lambda name: _error(name, noise), level=Level.PAGE),
-        number("process noise", lambda name: _error(name, p.noise_floor)),
-        number("tied models", lambda name: _error(name, p.tied_spread)),
+        number("sensor noise", lambda name: _error(name, noise), level=Level.PAGE, is_wide=True),
+        number("process noise", lambda name: _error(name, p.noise_floor), is_wide=True),
+        number("tied models", lambda name: _error(name, p.tied_spread), is_wide=True),
         *windows,
         *([words(f"best without fit, {last.window}", partial(_best_baseline, last, noise))] if last else []),
     )

@@ -264,7 +264,8 @@ _MAIN_ERRORS = ("psi_deg", "position_m", "z", "theta_deg", "phi_deg")
 
 def verdict(fit: Fit) -> str:
     """Return how well runs that were not fitted are predicted, in one sentence; first whether it may be used at all."""
-    clauses = [_score_clause(fit), _implausible_clause(fit)]
+    score, _, limit = _score_clause(fit).partition("; ")
+    clauses = [score, _implausible_clause(fit) or limit] if has_converged(fit) else [score]
     return f"{unusable_sentence(fit)}{'; '.join(clause for clause in clauses if clause)}."
 
 
