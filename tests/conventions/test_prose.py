@@ -2,8 +2,10 @@
 
 import ast
 import re
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
+from statistics import median
 
 import pytest
 from tests.conventions.source_tree import PACKAGES, REPOSITORY, SourceFile, source_files
@@ -89,6 +91,7 @@ def test_what_counts_as_a_retired_word_or_a_bare_decimal() -> None:
 
 
 MOST_WORDS = 40  # of a sentence on a screen; chosen
+MEDIAN_WORDS, LEAST_WORDS = 18, 5  # of sentences, chosen
 # A formula, an edit or a table of a file, which is read by its signs.
 FORMULA = re.compile(r"(?:^|\s)[=:]=?\s|\[\[|'' ")
 SENTENCE_END = re.compile(r"(?<=[.?!])\s+")
@@ -105,12 +108,23 @@ def _screen_texts(file: SourceFile) -> Iterator[str]:
             yield node.value
 
 
+def _sentences() -> Iterator[tuple[str, str]]:
+    """Sentences of screens and of tables of texts, each with the place where it stands."""
+    texts = [(file.folder, text) for file in source_files(PACKAGES[0]) for text in _screen_texts(file)]
+    for table in sorted((REPOSITORY / "src" / "seatrial").rglob("*.toml")):
+        rows = tomllib.loads(table.read_text(encoding="utf-8"))
+        texts += [(f"{table.name} [{key}]", text) for key, row in rows.items() if isinstance(row, dict)
+                  for text in row.values() if isinstance(text, str)]  # fmt: skip
+    for place, text in texts:
+        yield from ((place, part) for part in SENTENCE_END.split(text) if not FORMULA.search(part))
+
+
 def test_no_sentence_of_a_screen_has_more_than_forty_words() -> None:
-    sentences = [
-        (file, sentence)
-        for file in source_files(PACKAGES[0])
-        for text in _screen_texts(file)
-        for sentence in SENTENCE_END.split(text)
-        if len(sentence.split()) > MOST_WORDS and not FORMULA.search(sentence)
-    ]
-    assert [f"{file.folder}: {sentence[:100]}" for file, sentence in sentences] == []
+    long = [(place, text) for place, text in _sentences() if len(text.split()) > MOST_WORDS]
+    assert [f"{place}: {text[:100]}" for place, text in long] == []
+
+
+def test_half_of_all_sentences_have_eighteen_words_or_fewer() -> None:
+    """Of those of five words and more: shorter ones are names and headings."""
+    lengths = [count for _, text in _sentences() if (count := len(text.split())) >= LEAST_WORDS]
+    assert median(lengths) <= MEDIAN_WORDS

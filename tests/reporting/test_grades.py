@@ -44,7 +44,7 @@ def test_error_motion_and_grade_stand_together(fit: Fit) -> None:
     half = replace(fit, predictions=(replace(p, rms={"psi_deg": 0.51 * spread}),))
     assert graded_errors(half) == f"{0.51 * spread:.0f}° of {spread:.0f}° in heading: roughly"
     assert graded_errors(replace(fit, predictions=())) == ""
-    assert " in heading and " in graded_errors(fit) and " in position: " in graded_errors(fit)
+    assert " in heading and " in graded_errors(fit) and " in position" in graded_errors(fit)
 
 
 @pytest.mark.parametrize(("share", "grade", "is_marked"), [
@@ -141,3 +141,11 @@ def test_a_run_is_as_bad_as_the_largest_share_of_its_motions_and_worst_where_it_
     assert run_error(replace(p, rms={"psi_deg": 0.2 * spread})) == pytest.approx(0.2)
     assert run_error(replace(p, divergence=Divergence(70.0, 65.0, "r"))) == math.inf
     assert run_error(replace(p, rms={})) == 0.0
+
+
+def test_an_error_that_is_noise_of_the_sensor_is_called_so(fit: Fit) -> None:
+    assert fit.noise_model is not None
+    noisy = replace(fit, noise_model=replace(fit.noise_model, measurement={"psi": math.radians(1.0)}))
+    (p,) = fit.validation
+    for error, text in ((1.4, " in heading (sensor noise 1.0°): "), (1.5, " in heading: ")):
+        assert text in graded_errors(replace(noisy, predictions=(replace(p, rms={"psi_deg": error}),)))

@@ -11,7 +11,7 @@ from seatrial.core.results.fit import Collinearity
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Record, Severity
 from seatrial.numerics.optimise import Status
-from seatrial.reporting.key_facts import first_screen, key_facts, whole_run_share
+from seatrial.reporting.key_facts import first_screen, key_facts, whole_run_shares
 from seatrial.reporting.prediction_chapter import baseline_sentence, ranged_motions, shortest_judged
 from seatrial.reporting.section import KeyFact
 
@@ -53,6 +53,16 @@ def test_a_baseline_that_is_better_is_a_warning(fit: Fit) -> None:
     assert rows(fit)["Baseline"].text == "none compared"
 
 
+def test_a_baseline_that_is_better_within_sensor_noise_is_no_warning(fit: Fit) -> None:
+    assert fit.noise_model is not None
+    for noise, is_good in ((0.5, False), (2.5, None)):
+        measured = replace(fit.noise_model, measurement={"psi": math.radians(noise)})
+        scored = replace(with_windows(fit, 3.0, 2.9), noise_model=measured)
+        fact = rows(scored)["Closest baseline"]
+        assert fact.is_good is is_good and fact.text.endswith(": both within sensor noise") == (is_good is None)
+        assert (baseline_sentence(scored, {"psi_deg": ("heading", "deg")}) == "") == (is_good is None)
+
+
 def test_coverage_counts_values_and_samples(fit: Fit) -> None:
     fact = rows(with_windows(fit, 1.0, 3.0, inside=0.82))["Inside 95 % intervals"]
     assert "82 % of heading over 5 L" in fact.text
@@ -87,8 +97,8 @@ def test_samples_scatter_about_the_band_of_a_whole_run_by_their_noise(fit: Fit) 
     scattered = replace(p, simulated=p.simulated.with_channel("psi", psi.with_values(psi.values + noise)),
                         half_width={"psi": np.full(len(noise), 1e-6)})  # fmt: skip
     noisy = replace(fit, predictions=(scattered,), noise_model=replace(fit.noise_model, measurement={"psi": 0.01}))
-    assert whole_run_share(noisy) == pytest.approx(0.95, abs=0.02)
-    assert whole_run_share(replace(noisy, noise_model=None)) == pytest.approx(0.0, abs=0.01)
+    assert whole_run_shares(noisy)["heading"] == pytest.approx(0.95, abs=0.02)
+    assert whole_run_shares(replace(noisy, noise_model=None))["heading"] == pytest.approx(0.0, abs=0.01)
 
 
 def test_bands_much_wider_than_the_error_are_no_tick(fit: Fit) -> None:
@@ -154,12 +164,6 @@ def test_the_picture_is_the_worst_held_out_run_with_its_heading(fit: Fit) -> Non
     assert first_screen(replace(fit, predictions=()), 9.8).figure == ""
 
 
-def test_the_band_of_a_run_without_a_track_is_not_compared_with_one(fit: Fit) -> None:
-    assert first_screen(fit, 9.8).caption.endswith("as wide as the track is long.")
-    bare = [replace(p, measured=p.measured.without("x0", "y0")) for p in fit.predictions]
-    assert first_screen(replace(fit, predictions=tuple(bare)), 9.8).caption.endswith("Pale: 95 % band.")
-
-
 def test_the_extrapolation_index_names_what_it_compares(fit: Fit) -> None:
     (run,) = [p.measured for p in fit.validation]
     assert ranged_motions([run]) == "yaw rate, drift, rudder or speed"
@@ -201,8 +205,8 @@ def test_windows_that_diverge_have_no_better_baseline(fit: Fit) -> None:
     lost = replace(lost, predictions=(replace(run, windows=windows),))
     fact = rows(lost)["Closest baseline"]
     assert fact.is_good is False and "the model diverges in 3 of 4 windows of 5 L" in fact.text
-    assert windows[0].better_baselines == {}
-    text = baseline_sentence(lost.validation, {"psi_deg": ("heading", "deg")})
+    assert windows[0].better_baselines({}) == {}
+    text = baseline_sentence(lost, {"psi_deg": ("heading", "deg")})
     assert "diverges in 3 of 4 windows" in text and "without this fit" not in text
 
 
@@ -210,8 +214,8 @@ def test_windows_shorter_than_a_roll_period_are_no_reproach(fit: Fit) -> None:
     better = with_windows(fit, 1.0, 0.5)
     labels = {"psi_deg": ("heading", "deg")}
     seconds = max(w.seconds for p in better.validation for w in p.windows)
-    assert "do not rely on it" in baseline_sentence(better.validation, labels, seconds)
-    assert baseline_sentence(better.validation, labels, 1.01 * seconds) == ""
+    assert "do not rely on it" in baseline_sentence(better, labels, seconds)
+    assert baseline_sentence(better, labels, 1.01 * seconds) == ""
     assert shortest_judged(fit) == 0.0
 
 

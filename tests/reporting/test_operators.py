@@ -11,10 +11,12 @@ from seatrial.reporting.key_facts import operators_sentence
 
 def test_a_roll_model_gives_period_and_damping(fit: Fit) -> None:
     text = operators_sentence(replace(fit, roll=KNOWN))
-    assert text.startswith("The natural period at small angles is 2.5512 s (2.5475 to 2.5550 s), the linear damping ")
+    assert text.startswith(
+        "The natural period at small angles is 2.5512 s (2.5475 to 2.5550 s). The linear damping is "
+    )
     assert " of critical, the equivalent damping at " in text
     assert "11° 0.81 % (0.70 to 0.91 %): damping is not shown to change with it" in text
-    assert "; GM would be " in text
+    assert ". GM would be " in text
     assert operators_sentence(replace(fit, roll=replace(KNOWN, metacentric_height=None))).endswith("to change with it.")
     given = replace(KNOWN, metacentric_height=IntervalEstimate(0.07, 0.07, 0.07))
     assert "GM" not in operators_sentence(replace(fit, roll=given))
@@ -22,7 +24,7 @@ def test_a_roll_model_gives_period_and_damping(fit: Fit) -> None:
 
 def test_a_craft_with_thrusters_makes_turns_and_stops(fit: Fit) -> None:
     text = operators_sentence(replace(fit, thruster_craft=CRAFT))
-    assert text == "At full command, beyond the training runs, it makes 2.5595 m/s (2.5523 to 2.5668 m/s)."
+    assert text == "At full command, beyond the training runs, it makes 2.56 m/s (2.55 to 2.57 m/s)."
     turning = CraftMeasure(-44.0, None, None, "turn")
     craft = replace(CRAFT, measures={"yaw_rate_deg_s": turning})
     assert operators_sentence(replace(fit, thruster_craft=craft)) == (

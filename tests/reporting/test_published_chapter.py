@@ -69,4 +69,4 @@ def test_only_of_a_craft_that_sails_is_a_track_spoken_of(fit: Fit) -> None:
         banded, measured=banded.measured.without("x0", "y0"), simulated=banded.simulated.without("x0", "y0")
     )
     assert "track" not in reading_note([still]) and "Pale: 95 % band of the" in reading_note([still])
-    assert "along the track to its sides" in reading_note([banded]) and "Ships" in reading_note([banded])
+    assert "of a track on all sides" in reading_note([banded]) and "Ships" in reading_note([banded])

@@ -44,7 +44,7 @@ CRAFT = ThrusterCraft(
 
 def test_measures_have_digits_by_their_interval_and_a_mark_beyond_the_training_runs() -> None:
     chapter = thruster_section(CRAFT)
-    assert cells(chapter.table)[0] == ("top speed, m/s, extrapolated", "2.5595", "2.5523", "2.5668")
+    assert cells(chapter.table)[0] == ("top speed, m/s, extrapolated", "2.56", "2.55", "2.57")
     assert cells(chapter.table)[1][:2] == ("stopping time, s", "1.26")
     assert "Extrapolated: beyond the training runs" in chapter.note
 

@@ -9,6 +9,7 @@ from tests.reporting.fabricated import zigzag
 
 from seatrial.core.results import Divergence, Fit, Prediction
 from seatrial.core.values import Record, Severity
+from seatrial.numerics.optimise import Status
 from seatrial.reporting.key_facts import first_screen
 from seatrial.reporting.verdict import (
     error_text,
@@ -142,6 +143,9 @@ def test_a_verdict_has_two_clauses_and_25_words_at_most(fit: Fit) -> None:
     cases = [with_runs(fit, *graded[:n]) for n in range(6)]
     cases += [with_runs(fit, run) for run in graded]
     cases += [with_runs(fit, replace(p, measured=trained.measured, record=name)) for name in ("a", "b")]
+    odd = replace(fit.findings[0], code="unphysical-values", severity=Severity.WARNING)
+    cases += [replace(case, findings=(odd,)) for case in cases]
+    cases += [replace(case, solution=replace(fit.solution, status=Status.STALLED)) for case in cases]
     for case in cases:
         assert len(verdict(case).split()) <= 25 and verdict(case).count(";") <= 1
 

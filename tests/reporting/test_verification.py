@@ -49,11 +49,11 @@ TURNS = replace(
 def test_the_verdict_gives_what_was_achieved_and_whether_it_was_predicted() -> None:
     assert verdict(LEGS) == (
         "The controller took 65.0 % off the roll angle (95 % interval 60.0 to 70.0 %), not as predicted: the model "
-        "says 78.0 % in the sea that was met."
+        "says 78.0 %."
     )
     assert verdict(TURNS) == (
-        "Changes of the heading overshoot by 2.2 %, as predicted (1.0 to 3.0 %), and settle in 50.0 s, not as "
-        "predicted (37.0 to 44.0 s)."
+        "Changes of the heading overshoot by 2.2 % (predicted 1.0 to 3.0 %) and settle in 50.0 s (predicted 37.0 to "
+        "44.0 s)."
     )
 
 

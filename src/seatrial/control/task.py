@@ -34,7 +34,7 @@ from seatrial.physics.loops.encounter_spectrum import PointSpectrum, disturbance
 from seatrial.physics.loops.objective import vertical_acceleration
 from seatrial.physics.sea.spectrum import Spectrum
 
-# Settings of the published genetic algorithm: a table of the loop file, a value in Python.
+# Settings of the published genetic algorithm: values in Python.
 
 Probability = Annotated[float, Field(ge=0, le=1)]
 
@@ -56,7 +56,7 @@ class SearchedObjectives(StrEnum):
 @raises_input_error
 @dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
 class GeneticTuning:
-    """`[genetic]`: settings of `--method genetic` (Yu et al. 2014, section 3); the defaults are published.
+    """Settings of `--method genetic` (Yu et al. 2014, section 3); the defaults are published.
 
     Attributes:
         population: individuals of a generation; generations: how many of them, the first included.
@@ -274,7 +274,6 @@ class StationDemand:
         current_rms, current_bandwidth: how the current varies [m/s, rad/s].
         gust_rms, gust_bandwidth: of forces from outside ahead and to the side, in the model's unit of force, rad/s.
         limit: share of full command that may be used; dead_time: of the thrusters [s].
-        joint_Ms: the largest singular value allowed of the sensitivity of all three loops.
         hull: over which waves are averaged; None where there are no seas.
     """
 
@@ -287,7 +286,6 @@ class StationDemand:
     gust_bandwidth: float
     limit: float
     dead_time: float
-    joint_Ms: float
     hull: HullFactor | None
 
 

@@ -237,10 +237,17 @@ def _remaining_motion(controller: Controller, output: str) -> str:
 def _comparison_reasons(chosen: Controller, baselines: tuple[Controller, ...], output: str) -> tuple[str, ...]:
     """Return the chosen one beside each rival, a sentence each."""
     return tuple(
-        f"By linear theory, compared with '{other.name}'{_meaning(other)}, it leaves "
-        f"{_remaining_motion(chosen, output)} instead of {_remaining_motion(other, output)}, at "
-        f"{chosen.rms['actuator_rate'] / other.rms['actuator_rate']:.2f} times the actuator's rms rate and Ms "
-        f"{chosen.Ms:.2f} instead of {other.Ms:.2f}."
+        _comparison_reason(chosen, other, output)
         for other in baselines
         if other.rms["actuator_rate"] > 0.0 and np.isfinite(other.Ms) and np.isfinite(chosen.Ms)
+    )
+
+
+def _comparison_reason(chosen: Controller, other: Controller, output: str) -> str:
+    leaves, theirs = _remaining_motion(chosen, output), _remaining_motion(other, output)
+    return (
+        f"By linear theory, compared with '{other.name}'{_meaning(other)}, it leaves {leaves}"
+        f"{', as much' if leaves == theirs else f' instead of {theirs}'}, at "
+        f"{chosen.rms['actuator_rate'] / other.rms['actuator_rate']:.2f} times the actuator's rms rate and Ms "
+        f"{chosen.Ms:.2f} instead of {other.Ms:.2f}."
     )

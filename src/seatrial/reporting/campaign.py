@@ -99,7 +99,7 @@ def first_screen(summary: CampaignSummary) -> FirstScreen:
              for name, text in zip(("Tasks", "Errors"), others, strict=False)]  # fmt: skip
     failed = counted(sum(f.count for f in summary.failures), "task")
     facts.append(KeyFact("Failures", failed if summary.failures else "none", "failures" if summary.failures else "",
-                         not summary.failures))  # fmt: skip
+                         not summary.failures if summary.status.done else None))  # fmt: skip
     facts.append(KeyFact("Warnings", enumeration(warned) or "none", "findings" if summary.findings else "", not warned))
     chart = coverage_chart([c for c in summary.coefficients if c.intervals])
     caption = "Share of the 95 % intervals that hold the truth; bars: what so many intervals can say of that share."

@@ -74,7 +74,7 @@ def key_facts(design: Design) -> tuple[KeyFact, ...]:
     rows = (
         KeyFact("Ships that differ", _prior_draws(design), "ships"),
         KeyFact("Simulated trials", _confirmation(design), "confirmation"),
-        KeyFact("Limits", _limits(design), "orders", is_kept),
+        KeyFact("Limits", _limits(design), "orders", None if is_kept and design.designed.diverged else is_kept),
     )
     warned = [f.code for f in design.findings if f.severity is not Severity.INFO]
     warnings = KeyFact("Warnings", enumeration(warned) or "none", "findings" if design.findings else "", not warned)
@@ -115,13 +115,9 @@ def _comparison(design: Design) -> str:
     if best is None:
         return f"{start}; there is no standard manoeuvre to compare it with."
     theirs = criterion_error(best, criterion)
-    against = f"{_percent(theirs)}{_weakest_coefficient(best, design)} with the best standard manoeuvre of equal length"
-    leaving = "" if is_within_limits(best, design.limits) else ", which leaves the limits"
-    against += f", {manoeuvre_name(best.name)}{leaving}"
-    if error >= theirs:
-        return f"{start}, no better than the {against}."
-    ratio = f" ({significant(theirs / error, 2)} times as much)" if theirs < LARGEST_SHOWN_ERROR else ""
-    return f"{start} against {against}{ratio}."
+    leaving = "" if is_within_limits(best, design.limits) else ", which leaves the limits,"
+    against = f"the best standard manoeuvre of equal length{leaving} has {_percent(theirs)}"
+    return f"{start}, no better: {against}." if error >= theirs else f"{start}; {against}."
 
 
 def _prior_draws(design: Design) -> str:

@@ -9,15 +9,16 @@ from seatrial.core.results import Fit, Prediction, RollCharacteristics, Seakeepi
 from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
 from seatrial.core.results.fit import NOT_CONVERGED
 from seatrial.core.results.fit_charts import has_band, headline_view
-from seatrial.core.results.prediction import ChannelScore
+from seatrial.core.results.prediction import ERROR_CHANNELS, ChannelScore, is_sensor_noise
 from seatrial.core.results.ship_motions import CraftMeasure, IntervalEstimate, ThrusterCraft
-from seatrial.core.text.numbers import estimate_text, fixed, significant
+from seatrial.core.text.numbers import EstimateText, estimate_text, fixed, significant
 from seatrial.core.text.words import counted, enumeration
 from seatrial.core.values import Severity, worst_first
 from seatrial.reporting.coefficients_chapter import relative_half_width
 from seatrial.reporting.measures import (
     IntervalVerdict,
     course_facts,
+    craft_estimate,
     interval_verdict,
     is_extrapolated,
     unstable_course,
@@ -69,13 +70,13 @@ def operators_sentence(fit: Fit) -> str:
 
 def _roll(roll: RollCharacteristics) -> str:
     period, ratio = _estimate(roll.natural_period, " s"), _estimate(roll.damping_ratio.scaled(100.0), " %")
-    text = f"The natural period at small angles is {period}, the linear damping {ratio} of critical"
+    text = f"The natural period at small angles is {period}. The linear damping is {ratio} of critical"
     if roll.amplitude:
         text += f", {_equivalent_damping(roll)}"
     height = roll.metacentric_height
     if height is None or height.lower == height.upper:  # unknown, or given
         return f"{text}."
-    return f"{text}; GM would be {_estimate(height, ' m')} with {roll.gyradius_source.partition(',')[0]}."
+    return f"{text}. GM would be {_estimate(height, ' m')} with {roll.gyradius_source.partition(',')[0]}."
 
 
 def _at_one_speed(fit: Fit) -> str:
@@ -99,7 +100,10 @@ def _equivalent_damping(roll: RollCharacteristics) -> str:
 
 def _estimate(e: IntervalEstimate, unit: str) -> str:
     """A value with its interval: ``2.55 s (2.54 to 2.56 s)``."""
-    text = estimate_text(e.value, 0.5 * (e.upper - e.lower), e.lower, e.upper)
+    return _with_interval(estimate_text(e.value, 0.5 * (e.upper - e.lower), e.lower, e.upper), unit)
+
+
+def _with_interval(text: EstimateText, unit: str) -> str:
     return f"{text.value}{unit} ({text.lower} to {text.upper}{unit})"
 
 
@@ -124,7 +128,7 @@ def _measure(m: CraftMeasure, unit: str) -> str:
     gap = "" if unit.startswith("°") else " "
     if m.lower is None or m.upper is None:
         return f"{significant(m.value, 2)}{gap}{unit} (interval not determined)"
-    return _estimate(IntervalEstimate(m.value, m.lower, m.upper), f"{gap}{unit}")
+    return _with_interval(craft_estimate(m), f"{gap}{unit}")
 
 
 def _waves(seakeeping: Seakeeping) -> str:
@@ -159,9 +163,7 @@ def first_screen(fit: Fit, length: float) -> FirstScreen:
     view = headline_view(p, length, fit.model.input_names)
     which = "The held-out run" if len(fit.validation) == 1 else (
         "The worst held-out run" if fit.validation else "The worst training run")  # fmt: skip
-    track = {"x0", "y0"} <= set(p.measured.channels)
-    reach = ", up to where it is half as wide as the track is long" if track else ""
-    band = f" Pale: 95 % band{reach}." if has_band(p) else ""
+    band = " Pale: 95 % band." if has_band(p) else ""
     caption = f"{which}, {p.record}: {p.reference_word} and {p.model_word}.{band}"
     return FirstScreen(verdict(fit), key_facts(fit), run_figure(view, is_first=True), caption, operators_sentence(fit))
 
@@ -228,20 +230,23 @@ def _baseline(fit: Fit) -> KeyFact:
     if not compared:
         return KeyFact("Baseline", "none compared")
     ratio, p, w, key = min(compared, key=lambda row: row[0])
+    error, noise = w.scores[key].rms, fit.sensor_errors
     best = min((b for b in w.baselines if key in b.scores), key=lambda b: b.scores[key].rms)
     text = (
-        f"{best.name} {error_text(key, best.scores[key].rms)}, this fit {error_text(key, w.scores[key].rms)} in "
+        f"{best.name} {error_text(key, best.scores[key].rms)}, this fit {error_text(key, error)} in "
         f"{ERROR_LABELS[key][0]} over {w.window}{_run_name(fit, p)}"
     )
     velocities = dict.fromkeys(
         ERROR_LABELS[name][0] for p in fit.validation if (w := _longest_windows(p))
-        for name in w.better_baselines if name not in _MAIN_CHANNELS
+        for name in w.better_baselines(noise) if name not in _MAIN_CHANNELS
     )  # fmt: skip
     shorter = dict.fromkeys(
         f"{ERROR_LABELS[name][0]} over {w.window}" for p in fit.validation for w in p.windows
-        for name in w.better_baselines if w.seconds >= shortest_judged(fit)
+        for name in w.better_baselines(noise) if w.seconds >= shortest_judged(fit)
     )  # fmt: skip
     better = list(velocities or shorter)
+    if is_sensor_noise(error, noise.get(key, 0.0)) and ratio < 1.0:
+        return KeyFact("Closest baseline", f"{text}: both within sensor noise", "prediction")
     is_best = ratio >= 1.0 and not velocities
     limits = f"; a baseline is better in {enumeration(better, MAX_NAMES)}" if ratio >= 1.0 and better else (
         "; the baseline is better" if ratio < 1.0 else "")  # fmt: skip
@@ -267,8 +272,8 @@ def _coverage(fit: Fit) -> KeyFact:
     measures = [f"{inside} of {counted(inside + outside, 'measure')}"] if inside + outside else []
     shares = [inside / (inside + outside)] if measures else []
     bands, untested = _band_shares(fit)
-    whole = whole_run_share(fit)
-    judged = [*shares, *bands.values(), *([] if whole is None else [whole])]
+    whole = whole_run_shares(fit)
+    judged = [*shares, *bands.values(), *whole.values()]
     untested = [*([counted(wide, "measure")] if wide else []), *untested]
     if not judged and not untested:
         why = "nothing that was recorded has one" if fit.validation else "no run was held out"
@@ -279,10 +284,10 @@ def _coverage(fit: Fit) -> KeyFact:
     widest = max((_band_over_error(score) for p in fit.validation if (w := _longest_windows(p))
                   for score in w.scores.values()), default=0.0)  # fmt: skip
     widest = max(widest, *(_whole_band_over_error(p) for p in fit.validation))
-    is_whole_kept = whole is None or whole >= LEAST_COVERAGE
+    uncovered = {label: share for label, share in whole.items() if share < LEAST_COVERAGE}
     clauses = [
         *([f"{', '.join(texts)}{over}"] if texts else []),
-        *([] if whole is None or is_whole_kept else [f"{fixed(100.0 * whole, 0)} % of heading, simulated whole"]),
+        *(f"{fixed(100.0 * share, 0)} % of {label}, simulated whole" for label, share in uncovered.items()),
         *([f"too wide to test: {enumeration(untested)}"] if untested else []),
         *(
             [f"bands {significant(widest, 2)} times as wide as the error, where 2 would do"]
@@ -325,21 +330,29 @@ def _whole_band_over_error(p: Prediction) -> float:
     return math.degrees(float(np.sqrt(np.nanmean(np.square(band))))) / error
 
 
-def whole_run_share(fit: Fit) -> float | None:
-    """Return the share of headings inside their 95 % bands where runs are simulated whole; None: no band.
+def whole_run_shares(fit: Fit) -> dict[str, float]:
+    """Return the share of headings and positions inside their 95 % bands where runs are simulated whole, by quantity.
 
     A sample scatters about the band by the noise of its sensor and by waves.
     """
-    sensor = 0.0 if fit.noise_model is None else fit.noise_model.measurement.get("psi", 0.0)
-    inside = []
-    for p in fit.validation:
-        if "psi" in p.half_width and "psi" in p.measured and "psi" in p.simulated:
-            apart = np.abs(np.angle(np.exp(1j * (p.measured["psi"] - p.simulated["psi"]))))
-            band = np.hypot(p.half_width["psi"], two_sided_quantile(STORED_LEVEL, math.inf) * sensor)
-            judged = np.isfinite(apart) & np.isfinite(band)
-            inside.append(apart[judged] <= band[judged])
-    samples = np.concatenate(inside) if inside else np.zeros(0)
-    return float(np.mean(samples)) if len(samples) else None
+    noise = {} if fit.noise_model is None else fit.noise_model.measurement
+    shares = dict[str, float]()
+    for key in ("psi_deg", "position_m"):
+        parts = [_inside_band(p, c, noise.get(c, 0.0)) for p in fit.validation for c in ERROR_CHANNELS[key][0]]
+        if len(samples := np.concatenate([np.zeros(0, bool), *parts])):
+            shares[ERROR_LABELS[key][0]] = float(np.mean(samples))
+    return shares
+
+
+def _inside_band(p: Prediction, channel: str, noise: float) -> np.ndarray:
+    """Whether each sample of a channel lies inside its band, widened by the sensor's noise; none without a band."""
+    if not all(channel in values for values in (p.half_width, p.measured, p.simulated)):
+        return np.zeros(0, bool)
+    apart = p.measured[channel] - p.simulated[channel]
+    apart = np.abs(np.angle(np.exp(1j * apart)) if channel == "psi" else apart)
+    band = np.hypot(p.half_width[channel], two_sided_quantile(STORED_LEVEL, math.inf) * noise)
+    judged = np.isfinite(apart) & np.isfinite(band)
+    return apart[judged] <= band[judged]
 
 
 def _known_values(fit: Fit) -> tuple[KeyFact, ...]:

@@ -7,7 +7,7 @@ from enum import StrEnum
 
 from seatrial.core.results import CraftMeasure, Extrapolation, Fit, Measure, Stability
 from seatrial.core.results.fit import COURSE_UNSTABLE
-from seatrial.core.text.numbers import fixed, ratio_text, significant
+from seatrial.core.text.numbers import EstimateText, estimate_text, exponent, fixed, ratio_text, significant
 from seatrial.core.text.words import counted, enumeration, ordinal, sentence
 from seatrial.reporting.section import KeyFact, Level, Section
 
@@ -166,6 +166,14 @@ def extrapolation_zone(index: float) -> str:
 def is_extrapolated(m: CraftMeasure) -> bool:
     """Return whether what a craft does at full command lies beyond the training runs."""
     return m.extrapolation_index is not None and m.extrapolation_index > EDGE_INDEX
+
+
+def craft_estimate(m: CraftMeasure) -> EstimateText:
+    """Return a measure at full command with its interval; beyond the training runs in three digits at most."""
+    error = None if m.lower is None or m.upper is None else 0.5 * (m.upper - m.lower)
+    if error is not None and is_extrapolated(m) and m.value != 0.0:
+        error = max(error, 10.0 ** (exponent(m.value, 1) - 1))  # two digits of it are three of the value
+    return estimate_text(m.value, error, m.lower, m.upper)
 
 
 def extrapolation_text(e: Extrapolation) -> str:

@@ -46,19 +46,18 @@ def shortest_judged(fit: Fit) -> float:
     return fit.roll.natural_period.value if fit.roll is not None else 0.0
 
 
-def baseline_sentence(
-    predictions: Sequence[Prediction], labels: dict[str, tuple[str, str]], shortest: float = 0.0
-) -> str:
+def baseline_sentence(fit: Fit, labels: dict[str, tuple[str, str]], shortest: float = 0.0) -> str:
     """Return in which windows the model diverges, and which runs predictions without this fit predict better.
 
     shortest: s of the windows that are compared, at least.
     """
     clauses, lost = [], []
-    for p in predictions:
+    for p in fit.validation:
         for w in p.windows:
             if w.diverged:
                 lost.append(f"{p.record}, windows of {w.window}: {w.divergence_text}")
-            better = [f"{labels[name][0]} by {baseline}" for name, baseline in w.better_baselines.items()]
+            rivals = w.better_baselines(fit.sensor_errors)
+            better = [f"{labels[name][0]} by {baseline}" for name, baseline in rivals.items()]
             if better and w.seconds >= shortest:
                 clauses.append(f"{p.record} in windows of {w.window}: {enumeration(better)}")
     sentences = [f"{sentence('; '.join(lost))}"] if lost else []
@@ -238,9 +237,9 @@ def score_table(predictions: Sequence[Prediction], length: float) -> TextTable:
     )
 
 
-def _drawing(fit: Fit) -> tuple[float, Sequence[str]]:
-    """Length of the craft [m], 0 where it is not known, and the inputs of the model, for pictures of runs."""
-    return fit.ship.particulars.get("L", 0.0), fit.model.input_names
+def _drawing(fit: Fit) -> tuple[float, Sequence[str], Mapping[str, float]]:
+    """Length of the craft [m], 0 where it is not known, inputs of the model, and the sensors' own errors."""
+    return fit.ship.particulars.get("L", 0.0), fit.model.input_names, fit.sensor_errors
 
 
 def _track_unit(fit: Fit) -> float:
@@ -310,11 +309,18 @@ def ranged_motions(runs: Sequence[Record]) -> str:
 
 
 def run_section(
-    p: Prediction, predictions: Sequence[Prediction], length: float, inputs: Sequence[str], *, is_drawn: bool = True
+    p: Prediction,
+    predictions: Sequence[Prediction],
+    length: float,
+    inputs: Sequence[str],
+    noise: Mapping[str, float],
+    *,
+    is_drawn: bool = True,
 ) -> Section:
     """Return the part on one run of all predictions.
 
-    length: of the craft [m], 0 where it is not known; inputs: channels by which it is driven.
+    length: of the craft [m], 0 where it is not known; inputs: channels by which it is driven; noise: the sensors' own
+    errors.
     """
     repeat = repeat_clause(p, predictions) if p.role == "validation" else ""
     sentences = [f"The run is {repeat}."] if repeat else []
@@ -323,7 +329,7 @@ def run_section(
         f"{'Held out: ' if p.role == 'validation' else ''}{p.record}, {duration(p.measured.duration)}",
         f"run-{[run.record for run in predictions].index(p.record)}",
         sentences=(*sentences, *_sentences(p)),
-        table=_errors(p),
+        table=_errors(p, noise),
         pictures=(picture,) if is_drawn else (),
         parts=(Section("", table=_measures(p), sentences=_unread_manoeuvre(p)),),
     )
@@ -346,7 +352,7 @@ def _sentences(p: Prediction) -> list[str]:
     return sentences
 
 
-def _errors(p: Prediction) -> TextTable:
+def _errors(p: Prediction, noise: Mapping[str, float]) -> TextTable:
     """A row for each channel: over the whole run, what process noise leaves, over windows, and without the fit."""
     last = p.windows[-1] if p.windows else None
     windows = [number(f"{w.count} x {w.window}", partial(_window_error, w)) for w in p.windows]
@@ -354,10 +360,11 @@ def _errors(p: Prediction) -> TextTable:
         list(p.rms),
         words("rms error", lambda name: ", ".join(ERROR_LABELS[name])),
         number("whole run", lambda name: _error(name, p.rms)),
-        number("process noise", lambda name: _error(name, p.noise_floor)),
-        number("tied models", lambda name: _error(name, p.tied_spread)),
+        number("sensor noise", lambda name: _error(name, noise), level=Level.PAGE, is_wide=True),
+        number("process noise", lambda name: _error(name, p.noise_floor), is_wide=True),
+        number("tied models", lambda name: _error(name, p.tied_spread), is_wide=True),
         *windows,
-        *([words(f"best without fit, {last.window}", partial(_best_baseline, last))] if last else []),
+        *([words(f"best without fit, {last.window}", partial(_best_baseline, last, noise))] if last else []),
     )
 
 
@@ -373,18 +380,18 @@ def _window_error(w: WindowScore, name: str) -> str:
     return _error(name, {key: score.rms for key, score in w.scores.items()})
 
 
-def _best_baseline(w: WindowScore, name: str) -> Cell | str:
+def _best_baseline(w: WindowScore, noise: Mapping[str, float], name: str) -> Cell | str:
     """The best of the predictions that need no fit, and whether it is better."""
     best = min((b for b in w.baselines if name in b.scores), key=lambda b: b.scores[name].rms, default=None)
     if best is None:
         return ""
     text = f"{_error(name, {name: best.scores[name].rms})} {best.name}"
-    return Cell(f"{text} (BETTER)", tone="bad") if name in w.better_baselines else text
+    return Cell(f"{text} (BETTER)", tone="bad") if name in w.better_baselines(noise) else text
 
 
 def _window_section(fit: Fit) -> Section:
     """Every score in windows, folded: how well the model fits over each length, beside all baselines."""
-    better = baseline_sentence(fit.validation, ERROR_LABELS, shortest_judged(fit))
+    better = baseline_sentence(fit, ERROR_LABELS, shortest_judged(fit))
     parts = tuple(
         Section(f"{p.record}, {counted(w.count, 'window')} of {w.window}", table=_window_table(w))
         for p in fit.validation

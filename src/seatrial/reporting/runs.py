@@ -224,8 +224,7 @@ def reading_note(predictions: Sequence[Prediction]) -> str:
     reference = "the reference, itself simulated" if p.is_reference_simulated else "measured"
     inputs = "as in the reference" if p.is_reference_simulated else "as measured"
     has_ships = any(has_track(prediction.measured) for prediction in predictions)
-    sides = ", along the track to its sides and up to where it is half as wide as the track is long"
-    band = f" Pale: 95 % band of the {p.model_word} run{sides if has_ships else ''}."
+    band = f" Pale: 95 % band of the {p.model_word} run{', of a track on all sides' if has_ships else ''}."
     return (
         f"Broad grey line: {reference}. Thin dashed line: {p.model_word}, open loop, inputs {inputs}."
         f"{band if any(has_band(prediction) for prediction in predictions) else ''}"

@@ -25,17 +25,17 @@ CAPTION = "The corner from above, north up. The heading order changes no faster 
 def corner_sentence(track: TrackKeeping) -> str:
     """Return how far the craft goes beyond a corner, as identified and at worst of those drawn."""
     c = track.corner
+    end = "settles" if c.is_kept else "does not settle"
     text = (
-        f"At a corner of {exact(math.degrees(c.turn), 3)}°, taken {exact(c.acceptance, 3)} m before it, in "
-        f"{exact(c.current, 2)} m/s of current towards the outside, the craft goes "
-        f"{significant(c.overshoot, 3)} m beyond the new leg"
+        f"At a corner of {exact(math.degrees(c.turn), 3)}°, taken {exact(c.acceptance, 3)} m before it, the craft goes "
+        f"{significant(c.overshoot, 3)} m beyond the new leg and {end} on it, in "
+        f"{exact(c.current, 2)} m/s of current towards the outside"
     )
-    text += " and settles on it" if c.is_kept else " and does not settle on it"
     if c.draws:
         most = f"{significant(c.worst_overshoot, 3)} m at most"
         worst = "the simulation of one diverges" if math.isinf(c.worst_overshoot) else most
         known = "" if math.isnan(c.worst_overshoot) else f" ({worst})"
-        text += f"; {c.stable_draws} of {c.draws} ships that the fit allows keep a track{known}"
+        text += f". Of {c.draws} ships that the fit allows {c.stable_draws} keep a track{known}"
     return f"{text}."
 
 
@@ -119,13 +119,13 @@ def precision_sentence(station: StationKeeping) -> str:
     text = (
         f"In {exact(station.current, 3)} m/s of current from {len(t.directions)} directions the craft stays within "
         f"{significant(t.radius, 3)} m 95 % of the time ({significant(t.position, 3)} m rms, "
-        f"{significant(expected.position, 3)} m by linear theory), its heading to "
+        f"{significant(expected.position, 3)} m by linear theory). The heading is kept to "
         f"{significant(math.degrees(t.heading), 2)}° rms ({significant(math.degrees(expected.heading), 2)}°), with "
         f"{significant(100.0 * t.thrust, 2)} % of full thrust (rms)"
     )
     if t.draws:
         known = f" ({significant(t.worst_radius, 3)} m at most)" if t.stable_draws else ""
-        text += f"; {t.stable_draws} of {t.draws} craft that the fit allows keep it{known}"
+        text += f". Of {t.draws} craft that the fit allows {t.stable_draws} keep the place{known}"
     return f"{text}."
 
 
@@ -146,10 +146,10 @@ def capability_sentence(station: StationKeeping) -> str:
     c = station.capability
     worst, best = int(np.argmin(c.current)), int(np.argmax(c.current))
     return (
-        f"The thrusters hold a steady current of {significant(c.current[worst], 3)} m/s from any direction (least from "
-        f"{_degrees(c.direction[worst])}° off the bow, where {_limiting(c.limiting[worst])}), "
-        f"{significant(c.current[best], 3)} m/s from {_degrees(c.direction[best])}°; shared out as the controller "
-        f"does, {significant(float(c.current_shared_out.min()), 3)} m/s from any direction."
+        f"The thrusters hold a steady current of {significant(c.current[worst], 3)} m/s from any direction; shared out "
+        f"as the controller does, {significant(float(c.current_shared_out.min()), 3)} m/s. They hold least from "
+        f"{_degrees(c.direction[worst])}° off the bow, where {_limiting(c.limiting[worst])}, and "
+        f"{significant(c.current[best], 3)} m/s from {_degrees(c.direction[best])}°."
     )
 
 

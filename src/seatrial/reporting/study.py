@@ -41,7 +41,7 @@ _VERDICT_TONES = {Verdict.REFUTED: "bad"}
 
 def sections(study: Study) -> tuple[Section, ...]:
     """Return the chapters of a study that have content, in order."""
-    run_parts = [run_section(p, study.predictions, 0.0, INPUT_CHANNELS) for p in study.predictions]
+    run_parts = [run_section(p, study.predictions, 0.0, INPUT_CHANNELS, {}) for p in study.predictions]
     figures = [Section(f.title, pictures=(Picture(partial(_drawing, f), f.note),)) for f in study.figures[1:]]
     facts = {"Seed": str(study.seed), "Elapsed": duration(study.elapsed_s)}
     chapters = (
@@ -100,12 +100,20 @@ def first_screen(study: Study) -> FirstScreen:
     first = (outcome(study) or [study.title or study.name])[0]
     failed = [c.name for c in study.checks if c.status is CheckStatus.FAILS]
     warned = [f.code for f in study.findings if f.severity is not Severity.INFO]
+    holds = any(c.status is CheckStatus.HOLDS for c in study.checks)
     facts: list[KeyFact] = []
     if study.claims:
         facts.append(KeyFact("Claims", f"{len(study.claims)} judged: {study.claim_counts}", "claims"))
     if study.checks:
         tail = f"; failing: {enumeration(failed)}" if failed else ""
-        facts.append(KeyFact("Checks", f"{len(study.checks)}: {study.check_counts}{tail}", "checks", not failed))
+        facts.append(
+            KeyFact(
+                "Checks",
+                f"{len(study.checks)}: {study.check_counts}{tail}",
+                "checks",
+                False if failed else holds or None,
+            )
+        )
     facts.append(KeyFact("Warnings", enumeration(warned) or "none", "findings" if study.findings else "", not warned))
     again = f"seatrial reproduce {study.name}{' --quick' if study.quick else ''} --seed {study.seed}"
     facts += [KeyFact("Source", study.source), KeyFact("Again with", again)]

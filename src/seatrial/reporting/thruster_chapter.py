@@ -5,10 +5,10 @@ from functools import partial
 
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results.ship_motions import CompassCurve, CraftMeasure, FossenMatrix, ThrusterCraft
-from seatrial.core.text.numbers import EstimateText, estimate_text, significant
+from seatrial.core.text.numbers import significant
 from seatrial.core.text.words import enumeration
 from seatrial.reporting.figures.thruster_charts import compass_chart, quadrant_chart, thrust_chart
-from seatrial.reporting.measures import is_extrapolated
+from seatrial.reporting.measures import craft_estimate, is_extrapolated
 from seatrial.reporting.section import Level, Picture, Section, TextTable, number, plain_table, table_of, words
 
 MEASURE_LABELS = {
@@ -101,15 +101,10 @@ def _measures(measures: Mapping[str, CraftMeasure]) -> TextTable:
     return table_of(
         rows,
         words("", lambda row: f"{row[0]}{', extrapolated' if is_extrapolated(row[1]) else ''}"),
-        number("estimate", lambda row: _text(row[1]).value),
-        number("95 % from", lambda row: _text(row[1]).lower),
-        number("to", lambda row: _text(row[1]).upper),
+        number("estimate", lambda row: craft_estimate(row[1]).value),
+        number("95 % from", lambda row: craft_estimate(row[1]).lower),
+        number("to", lambda row: craft_estimate(row[1]).upper),
     )
-
-
-def _text(m: CraftMeasure) -> EstimateText:
-    error = None if m.lower is None or m.upper is None else 0.5 * (m.upper - m.lower)
-    return estimate_text(m.value, error, m.lower, m.upper)
 
 
 def _programmes(measures: Mapping[str, CraftMeasure]) -> str:

@@ -1,11 +1,14 @@
 """A tuned controller in sentences: reduction, margins, saturation, simulation, comparison, schedule."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
+from seatrial.core.results.station import StationTrial
 from seatrial.core.results.tuning import (
     Controller,
+    CornerResponse,
     ManoeuvreResponse,
     PairedDifference,
     SeawaySimulation,
@@ -28,7 +31,7 @@ def verdict(tuning: Tuning) -> str:
     chosen = [m for m in tuning.manoeuvres if m.controller == tuning.chosen.name]
     if not math.isfinite(tuning.chosen.Ms):
         return _margins(tuning)
-    return _motion(tuning) or next((demand_sentence(m) for m in chosen), _margins(tuning))
+    return _motion(tuning) or next((response_sentence(m) for m in chosen), _margins(tuning))
 
 
 def key_facts(tuning: Tuning) -> tuple[KeyFact, ...]:
@@ -37,23 +40,40 @@ def key_facts(tuning: Tuning) -> tuple[KeyFact, ...]:
     demands = [demand_sentence(m) for m in tuning.manoeuvres if m.controller == c.name]
     warned = list(dict.fromkeys(f.code for f in tuning.findings if f.severity is not Severity.INFO))
     rows = (
-        KeyFact("Margins", _margins(tuning), "margins", math.isfinite(c.Ms) and not c.violated),
+        KeyFact("Margins", _margins(tuning), "margins", _keeps_margins(tuning)),
         KeyFact("Other ships", _other_ships(tuning), "robustness", _holds_other_ships(tuning)),
         KeyFact("Constraints", _violations(c), "controllers", not c.violated),
         KeyFact("Actuator", _saturation(tuning), "controllers"),
         KeyFact("Simulated", _simulation(tuning), "simulation"),
         KeyFact("Compared", " ".join(map(comparison_sentence, pairs)), "simulation",
-                all(pair.upper >= 0.0 for pair in pairs)),
+                _is_better(pairs)),
         KeyFact("Demands", " ".join(demands), "manoeuvres"),
         KeyFact("Track", guidance_sentence(tuning.track) if tuning.track else "", "track",
-                tuning.track is None or tuning.track.corner.stable_draws == tuning.track.corner.draws),
+                _holds_draws(tuning.track.corner) if tuning.track else None),
         KeyFact("Station", precision_sentence(tuning.station) if tuning.station else "", "station",
-                tuning.station is None or tuning.station.trial.stable_draws == tuning.station.trial.draws),
+                _holds_draws(tuning.station.trial) if tuning.station else None),
         KeyFact("Schedule", _schedule(tuning), "schedule", _is_schedule_kept(tuning)),
     )  # fmt: skip
     text = " ".join(_on_bounds(tuning)) or enumeration(warned) or "none"
     warnings = KeyFact("Warnings", text, "findings" if tuning.findings else "", not warned)
     return (*(row for row in rows if row.text and row.text != verdict(tuning)), warnings)
+
+
+def _keeps_margins(tuning: Tuning) -> bool | None:
+    """Return whether the chosen gains keep the constraints; None where no sensitivity peak was required."""
+    c = tuning.chosen
+    is_kept = math.isfinite(c.Ms) and not c.violated
+    return None if is_kept and not math.isfinite(tuning.constraints.Ms) else is_kept
+
+
+def _is_better(pairs: Sequence[PairedDifference]) -> bool | None:
+    """Return whether a controller is better in every comparison, worse in one; None: chance may have made it so."""
+    return False if any(pair.upper < 0.0 for pair in pairs) else all(pair.lower > 0.0 for pair in pairs) or None
+
+
+def _holds_draws(tried: CornerResponse | StationTrial) -> bool | None:
+    """Return whether all ships drawn from the fit are stable; None where none was drawn."""
+    return tried.stable_draws == tried.draws if tried.draws else None
 
 
 def _is_schedule_kept(tuning: Tuning) -> bool:
@@ -108,16 +128,15 @@ def _motion(tuning: Tuning) -> str:
     effort = f", with {' and '.join(moved)} rms of the {channel_meaning(tuning.actuator)}" if moved else ""
     remaining = quantity_text(tuning.output, rms["output"]) if "output" in rms else ""
     if has_reduction(tuning) and (simulated := _simulated(tuning)):
-        stalled = float(np.mean(simulated.stalled))
-        mean = "" if len(tuning.seas) == 1 else f" over the {len(tuning.seas)} seas tuned in"
+        stalled, linear = (percent(float(np.mean(x))) for x in (simulated.stalled, simulated.linear))
         return (
-            f"Simulated with all limits in {realisations(tuning, len(simulated.stalled))}, these gains reduce the "
-            f"{motion_name(tuning)} by {percent(stalled)}; linear theory{mean} says {percent(c.reduction)}."
+            f"Simulated with all limits, these gains reduce the {motion_name(tuning)} by {stalled}; without limits, by "
+            f"{linear}."
         )
     if has_reduction(tuning):
         remaining = f"{significant(rms['motion'], 2)} m/s²" if tuning.motion else remaining
         to = f", to {remaining} rms" if remaining else ""
-        return f"By linear theory these gains reduce the {motion_name(tuning)} by {percent(c.reduction)}{to}{effort}."
+        return f"By linear theory these gains reduce the {motion_name(tuning)} by {percent(c.reduction)}{to}."
     return (
         f"By linear theory {remaining} rms of the {channel_meaning(tuning.output)} remains{effort}."
         if remaining
@@ -214,12 +233,11 @@ def _simulation(tuning: Tuning) -> str:
     linear, limited, stalled = (float(np.mean(x)) for x in (s.linear, s.limited, s.stalled))
     text = (
         f"Simulated in {realisations(tuning, len(s.linear))}, it reduces the {tuning.motion or 'motion'} by "
-        f"{percent(linear)} without limits and by {percent(limited)} with those of angle and rate: they cost "
-        f"{percent_points(s.saturation_loss)}"
+        f"{percent(linear)} without limits and by {percent(limited)} with those of angle and rate"
     )
     if math.isfinite(tuning.constraints.stall):
         text += f"; with stall beyond {_limit_text(tuning.actuator, tuning.constraints.stall)}, by {percent(stalled)}"
-    return f"{text}."
+    return f"{text}. The limits of angle and rate cost {percent_points(s.saturation_loss)}."
 
 
 def comparison_sentence(pair: PairedDifference) -> str:
@@ -238,20 +256,26 @@ def comparison_sentence(pair: PairedDifference) -> str:
     return f"{start} {change} {tail}."
 
 
-def demand_sentence(m: ManoeuvreResponse) -> str:
-    """Return the response to a demand, of the ship as identified and of those drawn from its covariance."""
+def response_sentence(m: ManoeuvreResponse) -> str:
+    """Return the response to a demand, of the ship as identified."""
     text = f"In the {m.name} it {_overshoot_text(m.overshoot)}"
     if math.isfinite(m.settling):
         text += f" and settles in {significant(m.settling, 3)} s"
     elif m.is_to_settle:
         text += " and does not settle"
-    if m.draws:
-        text += f"; {m.stable_draws} of {m.draws} ships that the fit allows are stable"
-        if math.isfinite(m.worst_overshoot):
-            worst = f"overshoots by {percent(m.worst_overshoot)} at most" if m.worst_overshoot > 0.0 else "overshoots"
-            text += f", and {'each' if m.worst_overshoot > 0.0 else 'none'} {worst}"
-        text += "; the simulation of at least one diverges" if math.isinf(m.worst_overshoot) else ""
     return f"{text}."
+
+
+def demand_sentence(m: ManoeuvreResponse) -> str:
+    """Return the response to a demand, of the ship as identified and of those drawn from its covariance."""
+    if not m.draws:
+        return response_sentence(m)
+    text = f"Of {m.draws} ships that the fit allows {m.stable_draws} are stable"
+    if math.isfinite(m.worst_overshoot):
+        worst = f"overshoots by {percent(m.worst_overshoot)} at most" if m.worst_overshoot > 0.0 else "overshoots"
+        text += f", and {'each' if m.worst_overshoot > 0.0 else 'none'} {worst}"
+    text += "; the simulation of at least one diverges" if math.isinf(m.worst_overshoot) else ""
+    return f"{response_sentence(m)} {text}."
 
 
 def reference_sentence(tuning: Tuning) -> str:
@@ -297,11 +321,12 @@ def _schedule(tuning: Tuning) -> str:
     text = f"A schedule over {counted(len(slots), 'condition')} leaves {percent(mean)} of the motion on average"
     baseline_costs = {name: [s.baseline_costs.get(name, math.nan) for s in slots] for name in slots[0].baseline_costs}
     comparisons = [_other_gains_text(name, costs) for name, costs in baseline_costs.items()]
-    text += f", where {enumeration(comparisons)}" if comparisons else ""
+    baselines = f" Other gains: {enumeration(comparisons)}." if comparisons else ""
     kept = sum(s.is_feasible for s in slots)
     check = tuning.schedule_check
     between = f" and, with gains interpolated, in {check.feasible} of {check.conditions}" if check else ""
-    return f"{text}; the constraints are kept in {'all' if kept == len(slots) else f'{kept} of {len(slots)}'}{between}."
+    conditions = "all" if kept == len(slots) else f"{kept} of {len(slots)}"
+    return f"{text}; the constraints are kept in {conditions}{between}.{baselines}"
 
 
 def _other_gains_text(name: str, costs: list[float]) -> str:

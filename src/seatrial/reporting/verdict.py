@@ -8,7 +8,14 @@ from enum import StrEnum
 import numpy as np
 
 from seatrial.core.results import Fit, Prediction, WindowScore
-from seatrial.core.results.prediction import HEADING_SPREAD, HELD_COURSE_SPREAD, MOTIONS, motion_spread, motion_spreads
+from seatrial.core.results.prediction import (
+    HEADING_SPREAD,
+    HELD_COURSE_SPREAD,
+    MOTIONS,
+    is_sensor_noise,
+    motion_spread,
+    motion_spreads,
+)
 from seatrial.core.text.numbers import duration, significant
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, InputError, Record, Severity
@@ -207,8 +214,12 @@ def graded_errors(fit: Fit) -> str:
     if worst is None:
         return ""
     shares = judged_shares(worst_run(fit.validation, longest), longest)
-    texts = [f"{error_text(error.name, error.rms)} of {error_text(error.name, error.spread)} in "
-             f"{ERROR_LABELS[error.name][0]}" for error in shares]  # fmt: skip
+    noise = fit.sensor_errors
+    texts = [
+        f"{error_text(e.name, e.rms)} of {error_text(e.name, e.spread)} in {ERROR_LABELS[e.name][0]}"
+        + (f" (sensor noise {error_text(e.name, n)})" if is_sensor_noise(e.rms, n := noise.get(e.name, 0.0)) else "")
+        for e in shares
+    ]
     over = f", over {worst.window}" if worst.window else ""
     return f"{enumeration(texts)}{over}: {worst.grade}"
 
@@ -253,7 +264,8 @@ _MAIN_ERRORS = ("psi_deg", "position_m", "z", "theta_deg", "phi_deg")
 
 def verdict(fit: Fit) -> str:
     """Return how well runs that were not fitted are predicted, in one sentence; first whether it may be used at all."""
-    clauses = [_score_clause(fit), _implausible_clause(fit)]
+    score, _, limit = _score_clause(fit).partition("; ")
+    clauses = [score, _implausible_clause(fit) or limit] if has_converged(fit) else [score]
     return f"{unusable_sentence(fit)}{'; '.join(clause for clause in clauses if clause)}."
 
 

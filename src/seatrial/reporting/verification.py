@@ -61,7 +61,7 @@ def _legs_verdict(v: Verification) -> str:
     )
     return (
         f"The controller took {achieved} % off the {channel_meaning(v.output)} (95 % interval {low} to {high} %), "
-        f"{_agreement(reduction)}: the model says {predicted} % in the sea that was met."
+        f"{_agreement(reduction)}: the model says {predicted} %."
     )
 
 
@@ -72,8 +72,8 @@ def _changes_verdict(v: Verification) -> str:
     time, first, last = (significant(x, _DIGITS) for x in (
         settling.achieved, settling.predicted_lower, settling.predicted_upper))  # fmt: skip
     return (
-        f"Changes of the {channel_meaning(v.output)} overshoot by {share} %, {_agreement(overshoot)} ({least} to "
-        f"{most} %), and settle in {time} s, {_agreement(settling)} ({first} to {last} s)."
+        f"Changes of the {channel_meaning(v.output)} overshoot by {share} % (predicted {least} to {most} %) and settle "
+        f"in {time} s (predicted {first} to {last} s)."
     )
 
 
@@ -88,7 +88,7 @@ def key_facts(v: Verification) -> tuple[KeyFact, ...]:
     inside = len(v.quantities) - len(v.outside)
     unmoved = "no property moved beyond its interval" if v.corrections else "not estimated anew"
     return (
-        KeyFact("Inside", f"{inside} of {len(v.quantities)} quantities", "quantities", not v.outside),
+        KeyFact("Inside", f"{inside} of {len(v.quantities)} quantities", "quantities", inside > 0 and not v.outside),
         *([KeyFact("Outside", enumeration(v.outside), "quantities", False)] if v.outside else []),
         KeyFact("Model", "; ".join(moved) or unmoved, "model" if v.corrections else "",
                 not moved if v.corrections else None),

@@ -37,7 +37,7 @@ KIND = 'kind = "yu2014"'
         ([("[actuator]", "[actuator]\nservo = [{ num = [1.0, 0.0], den = [1.0] }]")], "servo[1]: block 'servo'"),
         ([("[actuator]", "[actuator]\nservo = [{ num = [1.0] }]")], "actuator.servo[1]: give num and den"),
         ([(KIND, 'kind = "blocks"')], "controller: kind 'blocks' needs at least one entry in [[controller.terms]]"),
-        ([(KIND, 'kind = "pid"\nK_q = 2')], "controller: kind 'pid' knows no 'K_q'"),
+        ([(KIND, 'kind = "pid"\npreamplifier = "washout"')], "controller: kind 'pid' knows no 'preamplifier'"),
         ([(KIND, 'kind = "blocks"\nterms = [{ gain = "K1", num = [1], den = [1] }]')], "K1: the gain has no bounds"),
         (
             [(KIND, 'kind = "blocks"\nterms = [{ gain = "K", num = [1], den = [1] }]\ngains = { K = { lower = 1 } }')],
@@ -135,8 +135,9 @@ def test_what_is_wrong_with_a_fin_file_is_said(changes: list[tuple[str, str]], s
         ([("value = 20", "value = 0")], "demand.change = 0 is not positive"),
         ([('parts = ["KP", "KD"]', 'parts = ["KP", "KX"]')], "controller.parts[2] = 'KX'"),
         ([('parts = ["KP", "KD"]', 'parts = ["KP", "KP"]')], "controller.parts names a part twice"),
-        ([("[demand]", "[demand]\nduration = 1e12")], "demand.duration = 1e+12 s is no time to follow a demand"),
         ([('parts = ["KP", "KD"]', "derivative_filter = -1")], "controller.derivative_filter = -1 is not positive"),
+        ([("[demand]", "[demand]\nduration = 1e3")], "which is no key any more; leave it out: thirty time constants"),
+        ([("[demand]", "[genetic]\nbits = 9\n[demand]")], "'genetic', which is no key any more; leave the table out"),
         ([("[demand]", "[demand]\novershoot = 2")], "demand.overshoot = 2"),
         ([("[demand]", "[simulation]\n[demand]")], "simulation: there is no block [[seas]]"),
         (

@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from seatrial.core.figures.chart import Area, Region, Stroke
+from seatrial.core.figures.chart import Area, Line, Region, Stroke
 from seatrial.core.figures.run import (
     BAND,
     NARROW,
-    WIDEST_ENVELOPE,
     ChannelPanel,
     RunView,
     TimeCurve,
@@ -20,7 +19,7 @@ from seatrial.core.figures.run import (
     run_chart,
     strip_height,
     track_chart,
-    track_envelope,
+    track_corridor,
     track_panel,
     visible_edges,
 )
@@ -134,16 +133,35 @@ def test_axes_follow_a_band_no_further_than_the_curves_span() -> None:
     assert visible_edges([np.full(3, np.nan)], low, high) == []
 
 
-def test_an_envelope_has_the_half_width_to_the_side_of_the_track() -> None:
+def winding(area: Area, east: float, north: float) -> int:
+    """How often an outline runs round a point: where it is not 0, the point is filled."""
+    turns = np.diff(np.unwrap(np.arctan2(area.y - north, area.x - east)))
+    return round(float(turns.sum()) / (2.0 * np.pi))
+
+
+def test_a_corridor_has_the_half_width_to_the_side_of_the_track() -> None:
     """North at 3 m to the sides (east), whatever the half width along the track."""
     east, north = np.zeros(50), np.linspace(10.0, 90.0, 50)
-    area = track_envelope(east, north, np.full(50, 3.0), np.full(50, 20.0))
+    area = track_corridor(east, north, np.full(50, 3.0), np.full(50, 20.0))
     assert area is not None and (area.x.min(), area.x.max()) == pytest.approx((-3.0, 3.0))
-    assert track_envelope(east[:2], north[:2], east[:2], east[:2]) is None
+    assert track_corridor(east * np.nan, north, east, east) is None
 
 
-def test_an_envelope_ends_where_it_would_hide_the_track() -> None:
-    east, north = np.zeros(50), np.linspace(0.0, 100.0, 50)
-    area = track_envelope(east, north, np.linspace(0.0, 50.0, 50), np.zeros(50))
-    assert area is not None and area.x.max() <= WIDEST_ENVELOPE * 100.0 and area.y.max() == pytest.approx(49.0, abs=2.0)
-    assert track_envelope(east, north, np.full(50, 50.0), np.zeros(50)) is None
+def test_a_corridor_goes_on_to_the_end_of_its_track_and_fills_each_place_once_or_more() -> None:
+    """A circle of 100 m whose position is known to 150 m at its end: all places within that are filled, none beyond."""
+    share = np.linspace(0.0, 1.0, 400)
+    east, north, half = 100.0 * np.sin(6.0 * share), 100.0 * np.cos(6.0 * share), 150.0 * share
+    area = track_corridor(east, north, half, half)
+    assert area is not None
+    for x, y in np.random.default_rng(3).uniform(-260.0, 260.0, (300, 2)):
+        beyond = float(np.min(np.hypot(x - east, y - north) - half))
+        if abs(beyond) > 4.0:  # m, by which the edges of polygons are inside of ellipses
+            assert (winding(area, x, y) > 0) == (beyond < 0.0) and winding(area, x, y) >= 0
+
+
+def test_a_noisy_track_is_drawn_through_local_means() -> None:
+    time = np.arange(0.0, 1000.0, 0.1)
+    noisy = time + np.random.default_rng(1).normal(0.0, 5.0, len(time))
+    (line,) = [m for m in track_panel([Track(noisy, time, None, STROKE)], 0.0, Region(0.0, 0.0, 90.0, 90.0)).marks
+               if isinstance(m, Line)]  # fmt: skip
+    assert float(np.std(line.y[1:-1] - line.x[1:-1])) == pytest.approx(5.0 / np.sqrt(len(time) / 240), rel=0.2)

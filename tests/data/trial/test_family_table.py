@@ -14,10 +14,8 @@ def declared(trial_file: Path, table: str) -> Path:
 
 
 def test_a_family_is_kept(trial_file: Path) -> None:
-    table = 'structures = { inertia = ["m_x", "m_y"] }\nprior_factors = [0.5, 3]\nsegment_factors = [1.5]'
-    assert load_trial(declared(trial_file, table)).family == ModelFamily(
-        {"inertia": ("m_x", "m_y")}, (0.5, 3.0), (1.5,)
-    )
+    table = 'structures = { inertia = ["m_x", "m_y"] }'
+    assert load_trial(declared(trial_file, table)).family == ModelFamily({"inertia": ("m_x", "m_y")})
 
 
 def test_without_a_table_the_family_of_the_package_counts(trial_file: Path) -> None:
@@ -29,9 +27,7 @@ def test_without_a_table_the_family_of_the_package_counts(trial_file: Path) -> N
     [
         ('structures = { inertia = ["m_x", "m_yy"] }', "family.structures.'inertia': unknown name 'm_yy'"),
         ("structurs = {}", "family.structurs"),
-        ("prior_factors = [0.0]", "family.prior_factors"),
-        ("segment_factors = [-1.5]", "family.segment_factors"),
-        ('prior_factors = ["wide"]', "family.prior_factors"),
+        ("prior_factors = [3.0]", "which is no key any more; write priors under [model.priors]"),
     ],
 )
 def test_a_wrong_family_is_refused_with_file_and_key(trial_file: Path, table: str, says: str) -> None:

@@ -156,6 +156,13 @@ def test_the_approach_is_the_median_over_records_of_what_comes_before() -> None:
     assert condition["v_j"] == pytest.approx(1.8) and "delta" not in condition
 
 
+def test_a_ship_that_begins_from_rest_is_judged_by_its_run() -> None:
+    """Course stability at a creeping speed would say nothing of the ship under way."""
+    begun = run(1.0)
+    begun = begun.with_channel("u", begun.channel("u").with_values(np.clip(0.3 * (begun.time - 4.0), 0.015, 1.0)))
+    assert approach_condition([begun], model_named("waterjet"))["u"] == pytest.approx(1.0)
+
+
 TIME = np.arange(0.0, 60.0, 0.05)
 
 

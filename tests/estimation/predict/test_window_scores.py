@@ -99,7 +99,7 @@ def test_a_ship_that_rolls_about_its_rest_has_windows_in_seconds_and_a_band_that
 
 def test_a_baseline_that_errs_less_is_named(fit: Fit) -> None:
     for window in fit.validation[0].windows:
-        for channel, name in window.better_baselines.items():
+        for channel, name in window.better_baselines({}).items():
             (rival,) = [b for b in window.baselines if b.name == name]
             assert rival.rms[channel] < window.scores[channel].rms
 

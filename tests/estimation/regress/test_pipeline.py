@@ -12,7 +12,7 @@ from tests.estimation.regress.linear import zigzags
 from seatrial.core.values import InputError
 from seatrial.data.example_series import with_sensor_noise
 from seatrial.data.trial.settings import CompareSettings, SupportVectorSettings
-from seatrial.estimation.regress.estimators import Lasso, OrdinaryLeastSquares
+from seatrial.estimation.regress.estimators import Lasso, OrdinaryLeastSquares, SupportVectors
 from seatrial.estimation.regress.operators import Central, Euler
 from seatrial.estimation.regress.pipeline import NO_CLEANING, Cleaning, Pipeline, ablations, pipelines, row_score
 from seatrial.physics.models.waterjet import TABLE_2, waterjet
@@ -103,8 +103,8 @@ def test_a_score_is_that_of_its_definition() -> None:
 
 
 def test_a_search_that_does_not_converge_ends_at_its_limit_with_a_finding() -> None:
-    settings = SupportVectorSettings(C=1000.0, epsilon=1e-4, max_iterations=50, test_share=0.5)
-    found = pipelines(settings)[1].estimate(BLANK, [zigzags()])
+    improved = pipelines(SupportVectorSettings(test_share=0.5))[1]
+    found = replace(improved, solver=SupportVectors(1000.0, 1e-4, max_iterations=50)).estimate(BLANK, [zigzags()])
     assert sum(f.code == "not-converged" and "50 iterations" in f.text for f in found.findings) == 3
 
 

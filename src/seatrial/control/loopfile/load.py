@@ -63,7 +63,6 @@ _DEAD_TIME_SAMPLES = 25  # samples of the dead time at most where no sample time
 _ACCEPTANCE_LENGTHS = 2.0  # of the circle of acceptance, in lengths of the ship: Fossen 2011, section 10.3
 _SHARPEST_CORNER = math.radians(120.0)  # of a track; chosen
 _MOST_STEPS = 1e7  # steps over all seeds; guards against a wrong unit
-_MOST_TIME_CONSTANTS = 1e4  # longest duration of a demand, in its time constants; guards against a wrong unit
 
 
 def parse_loop(path: Path) -> LoopFile:
@@ -149,7 +148,6 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant, home: Path) -> TuningTas
         simulation=_simulation_settings(file.simulation, len(file.seas), demand, loop.sampling),
         trimmed_ship=plant.trimmed_ship,
         demand=demand,
-        genetic=file.genetic,
         drive=_drive(file.actuator),
         uncertainty=_uncertainty(file),
         track=None if file.track is None else _track(file.track, plant, demand),
@@ -220,7 +218,7 @@ def _uncertainty(file: LoopFile) -> PlantUncertainty:
     dead_time = _dead_time(file.actuator)
     if table.dead_time is not None:
         dead_time = positive_value(table.dead_time, "s", "uncertainty.dead_time")
-    return PlantUncertainty(table.gain, table.time, dead_time, table.draws)
+    return PlantUncertainty(table.gain, table.time, dead_time)
 
 
 def _drive(table: ActuatorTable) -> ActuatorDrive | None:
@@ -335,13 +333,12 @@ def _station(table: StationTable, file: LoopFile, plant: LoopPlant) -> StationDe
         else positive_value(table.gust_bandwidth, "rad/s", "station.gust_bandwidth"),
         limit=table.limit,
         dead_time=_dead_time(file.actuator),
-        joint_Ms=table.joint_Ms,
         hull=hull_factor(file.hull, plant.ship),
     )
 
 
 def _demand(table: DemandTable, plant: LoopPlant) -> Demand:
-    """Return the demand; time constant and duration default to length over speed and to thirty time constants."""
+    """Return the demand; its time constant defaults to length over speed, and thirty are simulated."""
     if plant.disturbed_by == "alpha_w":
         raise InputError("demand: a roll stabiliser follows no demand; leave the table out")
     unit = symbol_unit(plant.output)
@@ -358,11 +355,5 @@ def _demand(table: DemandTable, plant: LoopPlant) -> Demand:
         T = plant.ship.length / plant.U
     else:
         raise InputError("key 'demand.time_constant' is missing, and the ship's length is not known; add it in s")
-    duration = _TIME_CONSTANTS * T if table.duration is None else positive_value(table.duration, "s", "demand.duration")
-    if not T <= duration <= _MOST_TIME_CONSTANTS * T:
-        raise InputError(
-            f"demand.duration = {duration:g} s is no time to follow a demand of time constant {T:.4g} s; give one to "
-            f"{_MOST_TIME_CONSTANTS:g} time constants"
-        )
     settling = math.inf if table.settling is None else positive_value(table.settling, "s", "demand.settling")
-    return Demand(change, table.overshoot, T, duration, settling, table.feed_forward)
+    return Demand(change, table.overshoot, T, _TIME_CONSTANTS * T, settling, table.feed_forward)

@@ -79,7 +79,7 @@ def _with_terms(loop: TransferLoop, table: ExtendedStructureTable, where: str) -
     }
     if not made:
         return loop
-    lower, upper = _bounds(loop, table, where)
+    reach = _reach(loop)
     is_published = loop.gains.names == tuple(PUBLISHED_GAINS) and len(made) == len(ADDED_GAINS)
     try:
         if is_published:
@@ -94,7 +94,7 @@ def _with_terms(loop: TransferLoop, table: ExtendedStructureTable, where: str) -
         raise InputError(f"{where}.add: {error}") from None
     gains = full.gains
     for name in made:
-        gains = gains.bounded(name, lower, upper)
+        gains = gains.bounded(name, -reach, reach)
     return replace(
         full, gains=_clipped_to_bounds(gains.with_values({p.name: p.value for p in loop.gains if not p.free}))
     )
@@ -122,13 +122,9 @@ def _clipped_to_bounds(gains: Parameters) -> Parameters:
     return gains.with_values({p.name: min(max(p.value, p.lower), p.upper) for p in gains.free})
 
 
-def _bounds(loop: TransferLoop, table: ExtendedStructureTable, where: str) -> tuple[float, float]:
-    reach = max(max(abs(p.lower), abs(p.upper)) for p in loop.gains.free)
-    lower = -reach if table.lower is None else table.lower
-    upper = reach if table.upper is None else table.upper
-    if not lower < upper:
-        raise InputError(f"{where}: lower = {lower:g} is not below upper = {upper:g}; give the smaller first")
-    return lower, upper
+def _reach(loop: TransferLoop) -> float:
+    """Return the largest bound of any free gain of a loop, to either side: that of gains that are added."""
+    return max(max(abs(p.lower), abs(p.upper)) for p in loop.gains.free)
 
 
 def _natural_frequency(loop: TransferLoop, where: str) -> float:
@@ -158,7 +154,7 @@ def loop_from_tables(
         case "yu2014":
             if plant.output != "phi":
                 raise InputError(f"controller.kind: 'yu2014' is a fin loop, not one on '{plant.output}'; write 'pid'")
-            made = fin_loop(Preamplifier[table.preamplifier.upper()], K_q=table.K_q)
+            made = fin_loop(Preamplifier[table.preamplifier.upper()])
             made = replace(made, servo=own or (SERVO,))
         case "pid":
             made = replace(_pid_loop(table, plant, dead_time), servo=own)

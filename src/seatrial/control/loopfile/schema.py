@@ -5,7 +5,6 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from seatrial.control.task import GeneticTuning
 from seatrial.core.values import NOTATION, InputError, si_unit
 from seatrial.data.trial.amounts import (
     Amount,
@@ -227,7 +226,6 @@ class ControllerTable(StrictTable):
 
     kind: Literal["yu2014", "pid", "blocks"]
     preamplifier: Literal["printed", "washout"] = "washout"
-    K_q: Positive | None = None
     parts: tuple[Literal["KP", "KI", "KD"], ...] = ()
     derivative_filter: Seconds | None = None
     sample_s: Seconds | None = None
@@ -240,8 +238,8 @@ class ControllerTable(StrictTable):
     def _keys_of_the_kind(self) -> Self:
         of_others = {
             "yu2014": ("sensor", "terms", "parts", "derivative_filter"),
-            "pid": ("terms", "preamplifier", "K_q"),
-            "blocks": ("parts", "derivative_filter", "preamplifier", "K_q"),
+            "pid": ("terms", "preamplifier"),
+            "blocks": ("parts", "derivative_filter", "preamplifier"),
         }
         for key in of_others[self.kind]:
             if key in self.model_fields_set:
@@ -252,7 +250,7 @@ class ControllerTable(StrictTable):
 
 
 class ExtendedStructureTable(StrictTable):
-    """`[[extended_structures]]`: a loop with more terms, to be compared; `lower`, `upper`: bounds of each gain added.
+    """`[[extended_structures]]`: a loop with more terms, to be compared.
 
     band_pass, low_pass, notch: where they are set; without, at multiples of the frequency at which the plant swings.
     """
@@ -262,8 +260,6 @@ class ExtendedStructureTable(StrictTable):
     band_pass: PassTable | None = None
     low_pass: PassTable | None = None
     notch: NotchTable | None = None
-    lower: float | None = None
-    upper: float | None = None
 
     @model_validator(mode="after")
     def _added_once(self) -> Self:
@@ -402,7 +398,6 @@ class DemandTable(StrictTable):
     settling: Seconds | None = None
     feed_forward: bool = False
     time_constant: Seconds | None = None
-    duration: Seconds | None = None
 
 
 class TrackTable(StrictTable):
@@ -422,8 +417,7 @@ class StationTable(StrictTable):
     """`[station]`: a place and heading to be kept by a craft with thrusters, beside its heading loop.
 
     `current` is steady, from any direction, and varies by `current_rms` below `bandwidth`; `gust`: rms of a force ahead
-    and of one to the side, below `gust_bandwidth`; `limit`: share of full command that may be used; `joint_Ms`: the
-    largest singular value of the sensitivity of surge, sway and yaw together.
+    and of one to the side, below `gust_bandwidth`; `limit`: share of full command that may be used.
     """
 
     current: SiAmount
@@ -432,7 +426,6 @@ class StationTable(StrictTable):
     gust: SiAmount | None = None
     gust_bandwidth: RadiansPerSecond | None = None
     limit: Annotated[float, Field(gt=0, le=1)] = 1.0
-    joint_Ms: Annotated[float, Field(gt=1)] = 3.0  # tolerates a factor of 1.5 in all loops at once; chosen
 
     @model_validator(mode="after")
     def _gust_with_its_bandwidth(self) -> Self:
@@ -442,12 +435,11 @@ class StationTable(StrictTable):
 
 
 class UncertaintyTable(StrictTable):
-    """`[uncertainty]`: shares by which the plant's gain and time constants may differ, dead time, ships to draw."""
+    """`[uncertainty]`: shares by which the plant's gain and time constants may differ, dead time."""
 
     gain: Annotated[float, Field(ge=0, lt=1)] = 0.2  # as in `PlantUncertainty`
     time: Annotated[float, Field(ge=0, lt=1)] = 0.1  # as in `PlantUncertainty`
     dead_time: Seconds | None = None
-    draws: Annotated[int, Field(ge=0, le=100_000)] = 1000  # as in `PlantUncertainty`
 
 
 class LoopFile(StrictTable):
@@ -476,7 +468,6 @@ class LoopFile(StrictTable):
     track: TrackTable | None = None
     station: StationTable | None = None
     uncertainty: UncertaintyTable = UncertaintyTable()
-    genetic: GeneticTuning = GeneticTuning()
 
 
 def loop_schema() -> dict[str, Any]:

@@ -66,11 +66,14 @@ def margin_frequencies(craft: StationCraft, dead_time: float) -> Array:
     return np.geomspace(_SLOWEST * top / _REACH, top * _REACH, _SAMPLES)
 
 
+JOINT_MS = 3.0  # largest sensitivity of surge, sway and yaw together: tolerates 1.5 in all loops at once; chosen
+
+
 @dataclass(frozen=True, eq=False)
 class StationDesign:
     """What every candidate has: points it has to hold at, inverse (m, 3), dead time [s], limits, what disturbs.
 
-    Ms, joint_Ms: largest of each loop with the others closed, and of all together, the largest singular value of S.
+    Ms: largest of each loop with the others closed; `JOINT_MS` of all together, the largest singular value of S.
     frequencies: of margins [rad/s], `margin_frequencies`.
     """
 
@@ -78,7 +81,6 @@ class StationDesign:
     inverse: Array
     dead_time: float
     Ms: float
-    joint_Ms: float
     spectrum: DisturbanceSpectrum
     frequencies: Array
 
@@ -111,7 +113,7 @@ class StationDesign:
             delay = loop.tolerated_dead_time
             slack = least / delay if delay > 0.0 else math.inf
             peaks = loop.peaks()
-            worst = max(worst, float(peaks[:3].max()) / self.Ms, float(peaks[3]) / self.joint_Ms, slack)
+            worst = max(worst, float(peaks[:3].max()) / self.Ms, float(peaks[3]) / JOINT_MS, slack)
             if worst > enough:
                 break
         return worst
@@ -223,9 +225,9 @@ def _refuse(design: StationDesign, best: Array) -> None:
     delay = min(loop.tolerated_dead_time for loop in loops)
     raise InputError(
         f"station: no bandwidth keeps the limits in this current (Ms {worst[:3].max():.3g} for {design.Ms:g}, joint Ms "
-        f"{worst[3]:.3g} for {design.joint_Ms:g}, dead time {delay:.3g} s for "
-        f"{(1.0 + _DELAY_SHARE) * design.dead_time:.3g} s); give a slower current, more limits.Ms and "
-        "station.joint_Ms, or quicker thrusters"
+        f"{worst[3]:.3g} for {JOINT_MS:g}, dead time {delay:.3g} s for "
+        f"{(1.0 + _DELAY_SHARE) * design.dead_time:.3g} s); give a slower current, more limits.Ms, or "
+        "quicker thrusters"
     )
 
 
@@ -317,8 +319,8 @@ def tune_station(
         replace(station_point(craft, demand.current, direction, inverse), grids=(frequencies, spectrum.omega))
         for direction in directions.tolist()
     )
-    Ms, joint_Ms = task.constraints.Ms, demand.joint_Ms
-    chosen = choose_bandwidth(StationDesign(points, inverse, dead_time, Ms, joint_Ms, spectrum, frequencies))
+    design = StationDesign(points, inverse, dead_time, task.constraints.Ms, spectrum, frequencies)
+    chosen = choose_bandwidth(design)
     report_progress("station: kept by the nonlinear craft")
     compass = task.loop.sampling or Sampling(sample)
     sampling = Sampling(sample, demand.dead_time, compass.noise, compass.resolution)

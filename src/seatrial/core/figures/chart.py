@@ -224,6 +224,17 @@ def thinned(x: Array, y: Array, points: int = POINTS) -> tuple[Array, Array]:
     return x[kept], y[kept]
 
 
+def local_means(values: Array, points: int = POINTS) -> Array:
+    """Return the means of at most so many stretches of equal length, NaN left out; the first and last value stay."""
+    if len(values) <= points:
+        return values
+    edges = np.linspace(0, len(values), points + 1).astype(int)
+    finite = np.isfinite(values)
+    sums, counts = (np.add.reduceat(a, edges[:-1]) for a in (np.where(finite, values, 0.0), finite.astype(float)))
+    means = np.divide(sums, counts, out=np.full(points, np.nan), where=counts > 0.0)
+    return np.concatenate([values[:1], means[1:-1], values[-1:]])
+
+
 # A figure: panels, each a pair of axes in a box with marks, below a legend.
 
 # width of a figure on a page [px]: the text column of the report's style sheet less its padding

@@ -22,21 +22,22 @@ from seatrial.core.figures.chart import (
     Tick,
     decimated,
     linear_ticks,
+    local_means,
     span,
     thinned,
     tiles,
 )
 from seatrial.core.text.numbers import exact
 
-# Bands of 95 % about a curve: over time, and as an envelope along a track.
+# Bands of 95 % about a curve: over time, and as a corridor along a track.
 
 # blue of the model, transparent to 19 %
 BAND = "#1b4f7230"
 BAND_POINTS = 120  # px, chosen
 # how far axes follow a band beyond its curves, in spans of these
 REACH = 1.0
-# half width of an envelope, as a share of its track's larger extent, from which on it would hide the track; chosen
-WIDEST_ENVELOPE = 0.25
+# points of a track at which a corridor has its width, and edges of an ellipse there; chosen
+CORRIDOR_POINTS, ELLIPSE_EDGES = 60, 16
 
 
 def band(x: Array, lower: Array, upper: Array) -> Area:
@@ -59,28 +60,28 @@ def visible_edges(curves: list[Array], lower: Array, upper: Array) -> list[Array
     return [np.clip(edge, low - reach, high + reach) for edge in (lower, upper)]
 
 
-def track_envelope(x: Array, y: Array, half_x: Array, half_y: Array) -> Area | None:
-    """Return the envelope to both sides of a track, up to where it is too wide to be read; None under three points.
+def track_corridor(x: Array, y: Array, half_x: Array, half_y: Array) -> Area | None:
+    """Return the corridor along a track to its end: ellipses about its points and what lies between; None without any.
 
-    The half width to the side is that of an ellipse with the half widths of both coordinates as axes, seen along the
-    track: h_n = sqrt((n_x h_x)^2 + (n_y h_y)^2) with n the unit normal.
+    An ellipse has the half widths of both coordinates as axes; to the side of the track, with n the unit normal, it
+    reaches h_n = sqrt((n_x h_x)^2 + (n_y h_y)^2). All parts run round the same way, so that they are filled as one.
     """
-    kept = np.unique(np.linspace(0, len(x) - 1, min(BAND_POINTS, len(x))).astype(int))
-    if len(kept) < 3:
+    finite = np.flatnonzero(np.isfinite(x + y + half_x + half_y))
+    if len(finite) == 0:
         return None
-    middle = np.column_stack([x[kept], y[kept]])
-    step = np.gradient(middle, axis=0)
-    lengths = np.hypot(step[:, 0], step[:, 1])
-    normal = np.column_stack([-step[:, 1], step[:, 0]]) / np.where(lengths > 0, lengths, 1.0)[:, None]
-    half = np.hypot(normal[:, 0] * half_x[kept], normal[:, 1] * half_y[kept])
-    sides = [middle + sign * normal * half[:, None] for sign in (-1.0, 1.0)]
-    is_too_wide = half > WIDEST_ENVELOPE * np.nanmax(np.nanmax(middle, axis=0) - np.nanmin(middle, axis=0))
-    finite = (
-        np.isfinite(sides[0]).all(axis=1) & np.isfinite(sides[1]).all(axis=1) & ~np.logical_or.accumulate(is_too_wide)
-    )
-    if finite.sum() < 3:
-        return None
-    outline = np.vstack([sides[0][finite], sides[1][finite][::-1]])
+    kept = finite[np.unique(np.linspace(0, len(finite) - 1, min(CORRIDOR_POINTS, len(finite))).astype(int))]
+    middle, half = np.column_stack([x[kept], y[kept]]), np.column_stack([half_x[kept], half_y[kept]])
+    angles = np.linspace(0.0, 2.0 * np.pi, ELLIPSE_EDGES + 1)
+    circle = np.column_stack([np.cos(angles), np.sin(angles)])
+    parts = [middle[0] + half[0] * circle]
+    for k in range(1, len(kept)):
+        step = middle[k] - middle[k - 1]
+        across = half[k - 1 : k + 1] ** 2 * [-step[1], step[0]]  # where the ellipses touch lines along the step
+        reach = np.hypot(*(half[k - 1 : k + 1] * [-step[1], step[0]]).T)[:, None]
+        side = np.divide(across, reach, out=np.zeros_like(across), where=reach > 0.0)
+        (a, b), (p, q) = middle[k - 1 : k + 1], side
+        parts += [np.array([a - p, b - q, b + q, a + p, a - p]), middle[k] + half[k] * circle]
+    outline = np.vstack([*parts, *(part[:1] for part in reversed(parts[:-1]))])
     return Area(outline[:, 0], outline[:, 1], BAND)
 
 
@@ -92,7 +93,7 @@ HULLS, SLENDER = 7, 2.5
 LONGEST_NUMBER = 1e5
 # free distance about a track: in lengths of the ship, and as a share of the extent
 FREE_LENGTHS, FREE_SHARE = 0.6, 0.03
-# points of a track; finer than hulls along it, coarser than the noise of positions
+# points of a track, each the mean of the positions about it; finer than hulls along it
 TRACK_POINTS = 240
 # half a hull from above, in lengths: forward, starboard
 _HALF_HULL = np.array([[0.5, 0], [0.3, 0.075], [-0.4, 0.075], [-0.5, 0.05]])
@@ -194,14 +195,14 @@ def _centred(ends: tuple[float, float], size: float) -> tuple[float, float]:
 
 
 def _marks(track: Track, length: float, *, is_rotated: bool) -> list[Mark]:
-    """Envelope, line, hulls."""
+    """Corridor, line, hulls."""
     across, along = (track.north, track.east) if is_rotated else (track.east, track.north)
     marks: list[Mark] = []
     if track.half_north is not None and track.half_east is not None:
         halves = (track.half_north, track.half_east) if is_rotated else (track.half_east, track.half_north)
-        envelope = track_envelope(across, along, *halves)
-        marks += [envelope] if envelope else []
-    marks.append(Line(*thinned(across, along, TRACK_POINTS), track.stroke))
+        corridor = track_corridor(across, along, *halves)
+        marks += [corridor] if corridor else []
+    marks.append(Line(local_means(across, TRACK_POINTS), local_means(along, TRACK_POINTS), track.stroke))
     if track.heading is not None and length > 0.0:
         edge = Stroke(track.stroke.colour if track.hull_fill == "none" else "#9a9a9a", 0.8)  # px, chosen
         for i in np.linspace(0, len(track.north) - 1, HULLS).astype(int):

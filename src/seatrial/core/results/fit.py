@@ -27,7 +27,7 @@ from seatrial.core.results.fields import (
     Summarised,
     Summary,
 )
-from seatrial.core.results.prediction import Baseline, IntervalBasis, KStepErrors, Prediction
+from seatrial.core.results.prediction import Baseline, IntervalBasis, KStepErrors, Prediction, sensor_errors
 from seatrial.core.results.published_method import ReferenceEstimate, Search
 from seatrial.core.results.ship_motions import FrequencyResponse, RollCharacteristics, Seakeeping, ThrusterCraft
 from seatrial.core.text.numbers import exact
@@ -318,6 +318,11 @@ class Fit(Summarised):
     def validation(self) -> tuple[Prediction, ...]:
         """Return the predictions of runs that were not fitted."""
         return tuple(p for p in self.predictions if p.role == "validation")
+
+    @property
+    def sensor_errors(self) -> dict[str, float]:
+        """Return the errors that a perfect model would show, by the sensors' noise; empty where none is estimated."""
+        return {} if self.noise_model is None else sensor_errors(self.noise_model.measurement)
 
     @computed_field(description="method of the intervals")
     @property

@@ -1,7 +1,7 @@
 """Runs simulated and compared with their measurement: open loop, over windows, samples ahead."""
 
 import math
-from collections.abc import Container, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Annotated
 
@@ -16,13 +16,19 @@ from seatrial.core.values import Array, Record, RecordKind
 
 MOTIONS = {"psi_deg": ("psi",), "position_m": ("x0", "y0"), "z": ("z",), "theta_deg": ("theta",), "phi_deg": ("phi",)}
 """Name of an error, as in `Prediction.rms` -> the channels of that motion."""
+_DEGREES = math.degrees(1.0)
+ERROR_CHANNELS: Mapping[str, tuple[tuple[str, ...], float]] = {
+    "psi_deg": (("psi",), _DEGREES), "position_m": (("x0", "y0"), 1.0), "theta_deg": (("theta",), _DEGREES),
+    "phi_deg": (("phi",), _DEGREES), "z": (("z",), 1.0), "u": (("u",), 1.0), "v": (("v",), 1.0), "r": (("r",), 1.0),
+}  # fmt: skip
+"""Name of an error, as in `Prediction.rms` -> its channels, and the factor from their unit to its own."""
+_NOISE_SHARE = math.sqrt(2.0)  # of error over sensor noise up to which half of its square is noise; chosen
 HEADING_SPREAD = math.pi / math.sqrt(3.0)
 """rad, standard deviation of a heading that points anywhere alike: turns on and on spread it no further."""
 HELD_COURSE_SPREAD = math.radians(10.0)
 """rad, by which a heading that is held over a whole run counts as spread: what a helmsman leaves of it is no motion to
 measure a model by; chosen: of a 10/10 zigzag."""
 _HELD_WITHIN = math.radians(5.0)  # standard deviation of a heading below which it is held; chosen: of small zigzags
-_DEGREES = math.degrees(1.0)
 
 
 def motion_spread(name: str, motions: Sequence[Array]) -> float:
@@ -47,6 +53,23 @@ def motion_spreads(names: Container[str], measured: Record) -> dict[str, float]:
     if spreads.get("psi_deg", math.inf) < _DEGREES * _HELD_WITHIN:
         spreads["psi_deg"] = _DEGREES * HELD_COURSE_SPREAD
     return spreads
+
+
+def sensor_errors(noise: Mapping[str, float]) -> dict[str, float]:
+    """Return the errors that a perfect model would show: rms of the sensors' noise, in the unit of each error.
+
+    noise: standard deviation of channels, SI.
+    """
+    return {
+        name: factor * math.hypot(*(noise[c] for c in channels))
+        for name, (channels, factor) in ERROR_CHANNELS.items()
+        if all(c in noise for c in channels)
+    }
+
+
+def is_sensor_noise(rms: float, noise: float) -> bool:
+    """Return whether an error is mostly noise of the sensor, rms of both in one unit."""
+    return rms <= _NOISE_SHARE * noise
 
 
 # Errors of predictions some samples ahead, from the samples up to each moment.
@@ -138,15 +161,15 @@ class WindowScore:
         """Return in how many windows the model diverges; empty where it does in none."""
         return f"the model diverges in {self.diverged} of {self.count} windows" if self.diverged else ""
 
-    @property
-    def better_baselines(self) -> dict[str, str]:
+    def better_baselines(self, noise: Mapping[str, float]) -> dict[str, str]:
         """Return the channel of each baseline that errs less than the fit -> name of the best one there.
 
-        An error of the fit without a number, after a divergence, is compared with none.
+        An error of the fit without a number, after a divergence, is compared with none, and so is one that is sensor
+        noise: what lies below that no record shows. noise: as of `sensor_errors`.
         """
         better: dict[str, str] = {}
         for channel, score in self.scores.items():
-            if not math.isfinite(score.rms):
+            if not math.isfinite(score.rms) or is_sensor_noise(score.rms, noise.get(channel, 0.0)):
                 continue
             rivals = [
                 (b.scores[channel].rms, b.name) for b in self.baselines if b.scores.get(channel, score).rms < score.rms

@@ -141,6 +141,22 @@ _Arguments = ParamSpec("_Arguments")
 _UNKNOWN_KEY = ("extra_forbidden", "unexpected_keyword_argument")
 RENAMED_KEYS = {"criterion": "method"}
 """Key of earlier versions -> its name today, in the tables that have that name."""
+WITHDRAWN_KEYS = {
+    "compare.svr.scaled": "leave it out: columns and target are brought to unit root mean square",
+    "compare.svr.max_iterations": "leave it out: the solver takes 100000 steps at most",
+    "compare.svr.drop_duplicates": "leave it out: repeated samples go",
+    "compare.svr.lambda_count": "leave it out: 49 penalties are tried, write lambda = [smallest, largest]",
+    "family.prior_factors": "write priors under [model.priors] and compare the fits",
+    "family.segment_factors": "write segment_s under [estimate] and compare the fits",
+    "genetic": "leave the table out: the published settings are used",
+    "station.joint_Ms": "leave it out: 3 is allowed, write limits.Ms for each loop by itself",
+    "controller.K_q": "leave it out: the value that was fitted to the published results is used",
+    "uncertainty.draws": "leave it out: 1000 ships are drawn",
+    "demand.duration": "leave it out: thirty time constants are simulated, write time_constant = seconds",
+    "extended_structures.lower": "leave it out: the gains of the loop bound those that are added",
+    "extended_structures.upper": "leave it out: the gains of the loop bound those that are added",
+}
+"""Key of earlier versions, with its tables -> what to do in its place: its value is decided where it is used."""
 
 
 def _table_classes(annotation: object) -> Iterator[type]:
@@ -195,9 +211,11 @@ def _checked_init(init: Callable[_Arguments, None], table: type) -> Callable[_Ar
 
 
 def _key_hint(error: ErrorDetails, table: type) -> str:
-    """Return the end of the sentence on an unknown key: the edit where it was renamed, else the nearest key."""
+    """Return the end of the sentence on an unknown key: the edit where it was renamed or left, else the nearest key."""
     key, keys = str(error["loc"][-1]), known_keys(table, error["loc"])
     renamed = RENAMED_KEYS.get(key)
+    if withdrawn := WITHDRAWN_KEYS.get(".".join(step for step in error["loc"] if isinstance(step, str))):
+        return f", which is no key any more; {withdrawn}"
     if renamed not in keys:
         return spelling_hint(key, keys)
     value = str(error["input"]) if isinstance(error["input"], str) else error["input"]

@@ -37,29 +37,36 @@ from seatrial.physics.sea.wave_forces import with_wave_forces
 
 # how much of each record before its first rudder execution is taken for the approach, s
 APPROACH_SECONDS = 2.0
+# share of the run's median speed below which a ship begins from rest, and has no approach; chosen
+_FROM_REST = 0.5
 
 
 def approach_condition(records: Sequence[Record], model: Model) -> dict[str, float]:
     """Return surge velocity and inputs other than rudder and wind: median over records of each one's approach.
 
-    Of records whose approach is steady; of all where none is.
+    Of records whose approach is steady; of all where none is. A ship that begins from rest is judged by the medians of
+    its run; craft with thrusters begin so.
     """
     steady = [record for record in records if not approach_fault(record)]
     symbols = ["u", *(name for name in model.input_names if name != "delta" and not name.startswith("wind"))]
     condition = {}
     for symbol in symbols:
-        values = [_approach_value(r, symbol) for r in steady or records if symbol in r]
+        values = [_approach_value(r, symbol, model) for r in steady or records if symbol in r]
         if values:
             condition[symbol] = float(np.median(values))
     return condition
 
 
-def _approach_value(record: Record, symbol: str) -> float:
+def _approach_value(record: Record, symbol: str, model: Model) -> float:
     stop = float(record.time[0])
     if "delta" in record:
         stop = float(record.time[first_execution(record)])
     stop = max(stop, float(record.time[0]) + APPROACH_SECONDS)
     within = (record.time >= stop - APPROACH_SECONDS) & (record.time <= stop)
+    if "u" in record and not model.has_thrusters:
+        speed = np.abs(record["u"])
+        if np.mean(speed[within]) < _FROM_REST * np.median(speed):
+            return float(np.median(record[symbol]))
     return float(np.mean(record[symbol][within]))
 
 

@@ -175,18 +175,15 @@ Positive = Annotated[float, Field(gt=0)]
 class SupportVectorSettings:
     """`[compare.svr]`: the pipeline of Song et al. 2025, clean, split, select by Lasso, regress by support vectors.
 
-    C, epsilon, thresholds and the number of penalties are not printed there; their defaults are ours.
+    C, epsilon and thresholds are not printed there; their defaults are ours.
 
     Attributes:
         C: penalty of what lies outside the tube, eq. (19).
-        epsilon: half width of the tube in standard deviations of the target; in its own unit where `scaled` is false.
-        scaled: whether columns and target are brought to unit root mean square first.
-        max_iterations: steps of the solver, after which a finding says that it did not converge.
+        epsilon: half width of the tube in standard deviations of the target.
         outlier_score: largest standard score that stays, eq. (5); 0 keeps all samples.
         small_share: least absolute value that stays, as a share of each velocity's standard deviation, eq. (8).
-        drop_duplicates: whether repeated samples go, eq. (6).
         folds: contiguous folds of Lasso's cross-validation.
-        lambda_: smallest and largest penalty of Lasso, eq. (12); lambda_count: how many between, evenly in decades.
+        lambda_: smallest and largest penalty of Lasso, eq. (12).
         test_share: share of each record, its end, that is kept for testing, eq. (9).
         candidates: whether Lasso chooses among all candidate terms that the model knows, or among its own alone.
         ablation: whether the pipeline is repeated with each of its steps left out.
@@ -194,14 +191,10 @@ class SupportVectorSettings:
 
     C: Positive = 1.0
     epsilon: Annotated[float, Field(ge=0)] = 0.1
-    scaled: bool = True
-    max_iterations: Annotated[int, Field(ge=1)] = 100_000
     outlier_score: Annotated[float, Field(ge=0)] = 3.0
     small_share: Annotated[float, Field(ge=0)] = 1e-3
-    drop_duplicates: bool = True
     folds: Annotated[int, Field(ge=2)] = 10
     lambda_: Annotated[tuple[Positive, Positive], Field(alias="lambda")] = (1e-6, 1e6)
-    lambda_count: Annotated[int, Field(ge=1, le=1000)] = 49
     test_share: Annotated[float, Field(gt=0, lt=1)] = 0.2
     candidates: bool = True
     ablation: bool = False
@@ -327,12 +320,9 @@ class ModelFamily:
 
     Attributes:
         structures: name -> parameters that the structure frees beyond the trial's own.
-        prior_factors: factors on the widths of all priors; segment_factors: on the length of segments.
     """
 
     structures: Mapping[str, tuple[str, ...]] = Field(default_factory=dict)
-    prior_factors: tuple[Positive, ...] = ()
-    segment_factors: tuple[Positive, ...] = ()
 
 
 # The table `[proposal]` of a trial file: for which loop gains are proposed while a stream is followed.

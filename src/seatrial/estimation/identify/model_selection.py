@@ -161,7 +161,7 @@ def variants(model: Model, family: ModelFamily | None, is_segmented: bool) -> tu
     free, priors = set(model.parameters.free_names), any(p.prior for p in model.parameters.free)
     built_in = {n: names for n, names in FREED_PARAMETERS.get(model.name, {}).items() if _has(model, names)}
     structures = built_in if family is None else family.structures
-    factors = (PRIOR_FACTORS, SEGMENT_FACTORS) if family is None else (family.prior_factors, family.segment_factors)
+    factors = (PRIOR_FACTORS, SEGMENT_FACTORS) if family is None else ((), ())
     first = "as in the trial"
     members = [ModelVariant(first)]
     members += [ModelVariant(name, freed) for name, freed in structures.items() if not set(freed) <= free]
@@ -217,9 +217,7 @@ def fit_variants(
     fitter = _Fitter(estimation.shooting, model, runs, window_s, settings, options, report_progress)
     members = variants(model, family, fitter.is_segmented)
     if len(members) < 2:
-        raise InputError(
-            f"model '{model.name}' has no family to choose from; declare [family] with structures or prior_factors"
-        )
+        raise InputError(f"model '{model.name}' has no family to choose from; declare [family] with structures")
     fitted = fitter.fitted(members)
     if all(f.estimate is None for f in fitted):
         raise InputError(f"no member of the family can be fitted; the first fails because {fitted[0].note}")

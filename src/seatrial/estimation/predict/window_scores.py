@@ -8,7 +8,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
-from seatrial.core.results.prediction import ChannelScore, WindowBaseline, WindowScore
+from seatrial.core.results.prediction import ERROR_CHANNELS, ChannelScore, WindowBaseline, WindowScore
 from seatrial.core.values import Array, Index, InputError, Record
 from seatrial.data.trial.settings import WindowLength
 from seatrial.estimation.estimate.settings import characteristic_time
@@ -197,12 +197,6 @@ DEFAULT_LENGTHS = (1.0, 5.0, 20.0)
 THRUSTER_LENGTHS = (5.0, 10.0, 30.0)
 """The same of craft with thrusters, which turn on the spot [s]; chosen."""
 _DEGREES = float(np.degrees(1.0))
-# score -> channels and factor to its unit
-_SCORES: Mapping[str, tuple[tuple[str, ...], float]] = {
-    "psi_deg": (("psi",), _DEGREES), "position_m": (("x0", "y0"), 1.0), "theta_deg": (("theta",), _DEGREES),
-    "phi_deg": (("phi",), _DEGREES), "z": (("z",), 1.0), "u": (("u",), 1.0), "v": (("v",), 1.0), "r": (("r",), 1.0),
-}  # fmt: skip
-
 Predictor = Callable[[Windows, float], Sequence[Record]]
 """Windows and the seconds of their beginning that may be used -> the windows predicted; NaN where one diverges."""
 
@@ -275,7 +269,7 @@ def _score(
         halves.append({c: t * discrepancy.channel_sd(c, sd, piece.dt, index) for c, sd in sds.items()})
     scores = {
         key: _channel_score(pieces, simulated, halves, channels, factor)
-        for key, (channels, factor) in _SCORES.items()
+        for key, (channels, factor) in ERROR_CHANNELS.items()
         if _is_compared(pieces, simulated, channels)
     }
     rivals = [
@@ -337,8 +331,11 @@ def _baseline_scores(
     simulated: Sequence[Record], windows: list[Record], scores: Mapping[str, ChannelScore]
 ) -> dict[str, ChannelScore]:
     """Scores of a baseline in those of the fit's that it predicts."""
-    compared = {key: _SCORES[key] for key in scores if all(c in s for s in simulated for c in _SCORES[key][0])}
-    return {key: _channel_score(windows, simulated, [], *channels) for key, channels in compared.items()}
+    return {
+        key: _channel_score(windows, simulated, [], channels, factor)
+        for key, (channels, factor) in ERROR_CHANNELS.items()
+        if key in scores and all(c in s for s in simulated for c in channels)
+    }
 
 
 def pooled_rms(windows: Sequence[Record], simulated: Sequence[Record], channels: Sequence[str]) -> float:

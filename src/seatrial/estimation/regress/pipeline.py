@@ -130,15 +130,18 @@ class Pipeline:
         return tuple(n for n, c in zip(system.names, solved.coefficients, strict=True) if c != 0.0), solved.findings
 
 
+_PENALTIES = 49  # penalties of Lasso that are tried, evenly in decades: four to a decade of the default; chosen
+
+
 def pipelines(settings: SupportVectorSettings) -> tuple[Pipeline, ...]:
     """Return the published pipeline, the improved one and, for an ablation, the latter with each step left out."""
     lowest, highest = settings.lambda_
-    penalties = np.geomspace(lowest, highest, settings.lambda_count)
+    penalties = np.geomspace(lowest, highest, _PENALTIES)
     improved = Pipeline(
-        cleaning=Cleaning(settings.outlier_score, settings.small_share, settings.drop_duplicates),
+        cleaning=Cleaning(settings.outlier_score, settings.small_share),
         training_share=1.0 - settings.test_share,
         selection=Lasso(tuple(penalties.tolist()), folds=settings.folds),
-        solver=SupportVectors(settings.C, settings.epsilon, settings.scaled, max_iterations=settings.max_iterations),
+        solver=SupportVectors(settings.C, settings.epsilon),
         has_candidates=settings.candidates,
     )
     published = replace(improved, name=PUBLISHED, operator=Euler())
@@ -216,9 +219,7 @@ def _velocities(model: Model) -> list[str]:
 def standard_estimators(half_width: float, svr: SupportVectorSettings | None = None) -> tuple[RegressionEstimator, ...]:
     """The estimators of a comparison; windows of that half width [s], the published pipeline with its settings."""
     settings = svr or SupportVectorSettings()
-    support_vectors = SupportVectors(
-        settings.C, settings.epsilon, settings.scaled, max_iterations=settings.max_iterations
-    )
+    support_vectors = SupportVectors(settings.C, settings.epsilon)
     least_squares = OrdinaryLeastSquares()
     return (
         LinearRegression("Euler differences, least squares", Euler(), least_squares),
