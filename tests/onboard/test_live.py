@@ -51,7 +51,7 @@ def test_the_table_tells_values_intervals_trends_noise_and_trouble() -> None:
     assert "deg" in words and "rad" not in words
     assert any(bar in text for bar in "▁▂▃▅▆▇█") and ("→" in words or "↘" in words)
     assert "12 missing" in text and "4 wrong checksum" in text and "0 dropped" not in text
-    assert "psi 0.19" in text and "coloured" in text and "since 220.0 s" in text
+    assert "psi 0.19" in text and "coloured" in text and "at 220.0 s" in text
 
 
 def mmg_names() -> tuple[str, ...]:

@@ -53,7 +53,7 @@ class _Moves:
     def sizes(self) -> Array:
         """The likeliest relative changes under their prior, (m, k)."""
         precision = self.information + np.eye(self.score.shape[1]) / SIZE**2
-        return np.linalg.solve(precision, self.score[..., None])[..., 0]
+        return np.asarray(np.linalg.solve(precision, self.score[..., None])[..., 0], dtype=np.float64)
 
     @property
     def evidence(self) -> Array:

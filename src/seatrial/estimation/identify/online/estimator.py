@@ -199,7 +199,7 @@ class OnlineEstimator:
             self._leave_filter(self._phase)
         self._watch = None
         self._change_detector.restart()
-        if not isinstance(self._phase, WarmUp):  # what the next run is compared with
+        if isinstance(self._phase, Window | Carried):  # what the next run is compared with
             self._is_changed(self._phase.estimate)
         self._progress = self._progress.with_run()
         self._window.begin_run(self._progress.runs)
