@@ -161,14 +161,16 @@ def _final_fit(
     return replace(fit, findings=(_change_finding(change, fit), *fit.findings)), ()
 
 
-_SIZES_SHOWN = 3  # coefficients whose change a finding names, the clearest; ours
+_SIZES_SHOWN = 3  # coefficients whose change a finding names, the clearest whose intervals do not hold what was; ours
 
 
 def _change_finding(change: CoefficientChange, fit: Fit) -> Finding:
     """The warning `coefficients-changed` on a fit of the samples behind a change."""
     differences = [
         (abs(c.estimate - before) / c.standard_error, f"{c.name} by {signed_percent(c.estimate / before - 1.0)}")
-        for c in fit.coefficients if c.standard_error and (before := change.before.get(c.name))
+        for c in fit.coefficients
+        if c.standard_error and (before := change.before.get(c.name)) and c.lower is not None
+        and c.upper is not None and not c.lower <= before <= c.upper
     ]  # fmt: skip
     clearest = [text for _, text in sorted(differences, reverse=True)[:_SIZES_SHOWN]]
     where = f"the {change_text(change)} of the stream's clock"
