@@ -251,6 +251,8 @@ def test_fitted_runs_that_are_missed_are_a_row_of_their_own(fit: Fit) -> None:
     assert fact.text == f"{first.record} {0.8 * spread:.2g}° in heading; model error: docs/bad-fit.md, By symptom"
     more = (missed, replace(missed, record="b"), replace(missed, record="c"))
     assert "; 1 more; " in rows(replace(fit, predictions=(*more, *close)))["Error, fitted"].text
+    noise = replace(fit.noise_model, measurement={**fit.noise_model.measurement, "psi": math.radians(0.7 * spread)})
+    assert "Error, fitted" not in rows(replace(fit, predictions=(missed, *close), noise_model=noise))
 
 
 def test_a_fitted_run_that_the_disturbance_carries_off_is_no_model_error(fit: Fit) -> None:

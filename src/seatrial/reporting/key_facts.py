@@ -190,9 +190,15 @@ def _score(fit: Fit) -> KeyFact:
 
 
 def _training_score(fit: Fit) -> tuple[KeyFact, ...]:
-    """The training runs that the model misses, or by more than those held out; no row where it reproduces them."""
+    """The training runs that the model misses, or by more than those held out; no row where it reproduces them.
+
+    What sensors add is no miss.
+    """
     fitted = [p for p in fit.predictions if p.role == "training" and p.divergence is None]
-    shares = [(share, p) for p in fitted if (share := largest_error_share(p)) is not None]
+    shares = [
+        (share, p) for p in fitted if (share := largest_error_share(p)) is not None
+        and not is_sensor_noise(share.rms, fit.sensor_errors.get(share.name, 0.0))
+    ]  # fmt: skip
     shares.sort(key=lambda row: -row[0].share)
     missed = [p for share, p in shares if share.needs_attention]
     held = [share for p in fit.validation if (share := largest_error_share(p)) is not None]
