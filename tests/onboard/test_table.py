@@ -142,6 +142,7 @@ def test_a_change_is_stated_only_when_it_is_one() -> None:
         change_sentence(change) == "The coefficients changed at 300.0 s, b33 most clearly. "
         "What is shown comes from later samples alone."
     )
+    assert "not watched any longer" in change_sentence(replace(change, is_believed=False))
     placed = replace(change, between=(298.0, 301.0))
     assert change_sentence(placed).startswith("The coefficients changed between 298.0 s and 301.0 s, b33 most clearly.")
     assert (

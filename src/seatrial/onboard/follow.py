@@ -33,7 +33,7 @@ from seatrial.onboard.stream_session import (
     StreamSession,
     with_training_records,
 )
-from seatrial.onboard.table import change_text
+from seatrial.onboard.table import change_sentence, change_text
 
 # s: longest wait for samples, longest computation between two polls, shortest time between two displays; chosen: no
 # user sees a delay, and they cost nothing
@@ -150,10 +150,12 @@ def _final_fit(
         reference = identify(own_trial(trial), seed=seed, report_progress=own_estimate_progress(report_progress))
         return published_fit(reference, estimator.estimate(reference), process_time() - began), ()
     change = estimator.change if isinstance(estimator, OnlineEstimator) else None
+    if change is None or not change.is_believed:
+        whole_trial = with_training_records(trial, buffer.records())
+        doubts = () if change is None else (change_sentence(change),)
+        return identify(whole_trial, seed=seed, report_progress=report_progress), doubts
     begun_at = estimator.begun_at if isinstance(estimator, OnlineEstimator) else -math.inf
-    final_trial = with_training_records(trial, buffer.records(begun_at), has_changed=change is not None)
-    if change is None:
-        return identify(final_trial, seed=seed, report_progress=report_progress), ()
+    final_trial = with_training_records(trial, buffer.records(begun_at), has_changed=True)
     try:
         fit = identify(final_trial, seed=seed, report_progress=report_progress)
     except InputError as error:

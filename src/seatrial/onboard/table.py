@@ -99,6 +99,11 @@ def change_sentence(change: CoefficientChange | None) -> str:
     """Return a significant change as a sentence; empty if there is none."""
     if change is None or not change.is_significant:
         return ""
+    if not change.is_believed:
+        return (
+            f"The {change_text(change)} again, within a minute: the model or its inputs are off. "
+            "Changes are not watched any longer."
+        )
     return (
         f"The {change_text(change)}, {printable(change.most_changed)} most clearly. "
         "What is shown comes from later samples alone."

@@ -125,6 +125,9 @@ class CoefficientChange:
     before: Annotated[dict[str, Number], Field(description="coefficient -> value before the change, SI")] = field(
         default_factory=dict
     )
+    is_believed: Annotated[
+        bool, Field(description="false: changes followed one another so closely that the model is off, not the ship")
+    ] = True
 
 
 @dataclass(frozen=True)

@@ -63,6 +63,19 @@ def test_searches_are_compared_where_much_is_new_only() -> None:
     assert detector.update(2.0, np.full(1, 1.2), np.full((1, 1), 0.5e-4))
 
 
+def test_changes_in_a_row_are_the_models_misfit() -> None:
+    """A ramp of a minute is found in three; beyond, none is believed and none is looked for."""
+    detector, known = ChangeDetector(("a",)), np.full((1, 1), 1e-4)
+    for k in range(4):
+        assert not detector.update(10.0 * k, np.full(1, 1.0 + 0.3 * (k % 2)), known)
+        assert detector.update(10.0 * k + 5.0, np.full(1, 1.3 - 0.3 * (k % 2)), 0.5 * known)
+        assert detector.detected is not None
+        assert detector.detected.is_believed == (k < 3)
+    assert detector.is_ended
+    detector.update(50.0, np.ones(1), known)
+    assert not detector.update(55.0, np.full(1, 1.3), 0.5 * known)
+
+
 def alarms(stream: SeaStream, measured: Array) -> list[tuple[float, CoefficientChange]]:
     """What a filter's estimates, a look each second from 60 s on, tell up to the first change."""
     made, detector = stream.filter(stream.batch_state(measured, FIRST), FIRST), ChangeDetector(NAMES)

@@ -1,7 +1,7 @@
 """Whether and when a ship has changed: a bank of instants, each with what was known of the coefficients there."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import gammaincc, logsumexp
@@ -79,6 +79,8 @@ _APART = (
     0.8  # of an instant's variances, to which a search's have to fall to be compared with it: a search and a filter
 )
 # agree to a seventh of a standard error, chosen
+_SOON, _MOST_IN_A_ROW = 60.0, 3  # s between changes that count as in a row, and how many a ship makes; chosen: a ramp
+# of a minute is found in three
 _SPAN = 3.0  # nats below the likeliest instant down to which another is inside its interval: half of chi squared, 99 %
 
 
@@ -110,6 +112,12 @@ class ChangeDetector:
     detected: CoefficientChange | None = None
     _bank: tuple[_Instant, ...] = ()
     _looks: int = 0
+    _in_a_row: int = 0
+
+    @property
+    def is_ended(self) -> bool:
+        """Whether changes followed one another so closely that none is looked for any longer."""
+        return self._in_a_row > _MOST_IN_A_ROW
 
     def update(self, time: float, value: Array, covariance: Array, *, is_searched: bool = False) -> bool:
         """Take in the estimate from all data up to `time` [s], and return whether there is a change.
@@ -117,13 +125,16 @@ class ChangeDetector:
         It empties the bank: the estimate is to begin anew. is_searched: by a search, not by the filter that goes on.
         """
         now = GaussianEstimate(np.array(value), np.array(covariance))
-        if not np.all(np.isfinite(now.covariance)):
+        if self.is_ended or not np.all(np.isfinite(now.covariance)):
             return False
         self._bank = tuple(one for one in self._bank if self._is_kept(one, time))
         compared = [one for one in self._bank if one.can_be_compared(now)]
         moves = _Moves.since([one.estimate for one in compared], now) if compared else None
         if moves is not None and np.max(moves.evidence) > THRESHOLD:
-            self.detected = self._change(compared, moves)
+            change = self._change(compared, moves)
+            is_soon = self.detected is not None and change.since - self.detected.since < _SOON
+            self._in_a_row = self._in_a_row + 1 if is_soon else 1
+            self.detected = replace(change, is_believed=not self.is_ended)
             self.restart()
             return True
         if np.all(np.sqrt(np.diagonal(now.covariance)) <= _KNOWN * np.abs(now.value)):

@@ -272,12 +272,13 @@ class OnlineEstimator:
             try:
                 with np.errstate(all="ignore"):  # a trial step may overflow; the search then takes another
                     estimate = self._search.estimate(phase, self._window.records())
-                if self._watch is None and self._is_changed(estimate):
+                is_watched = not estimate.is_coloured  # coefficients of a model that is off differ from sea to sea
+                if self._watch is None and is_watched and self._is_changed(estimate):
                     self._begin_anew()
                     return
                 self._phase = phase = phase.with_estimate(estimate)
                 self._snapshot = window_snapshot(self._snapshot, self._trial.model, phase, estimate)
-                if self._watch is None and self._search.is_efficient:
+                if self._watch is None and is_watched and self._search.is_efficient:
                     self._watch = filter_phase(estimate, self._stream, self._trial.reference_point)
             except (InputError, np.linalg.LinAlgError) as error:
                 if isinstance(phase, WarmUp):
