@@ -1,9 +1,9 @@
-"""A ship that changes while she is followed: how soon it is told, false alarms, and intervals afterwards.
+"""A ship that changes under way: how soon it is seen, false alarms, and intervals afterwards.
 
     python benchmarks/changed_ships.py [--seeds 20] [--hours 2]
 
 A ship in head-quartering waves is simulated with forces and fin recorded, changes some coefficients at 200 s, and is
-fed to the follower as a stream would be. A change is told where a snapshot names one. Coverage is the share of 95 %
+fed to the follower as a stream would be. A change is seen where a snapshot names one. Coverage is the share of 95 %
 intervals of coefficients that hold the changed ship's. Hours without change are made of stretches of ten minutes.
 """
 
@@ -40,7 +40,7 @@ CHANGES: Mapping[str, Mapping[str, float]] = {
     "a33 +37 %, b33 -20 %": {"a33": 1.37, "b33": 0.8},
     "five by 14 %": {"a33": 1.14, "a55": 0.86, "b33": 1.14, "b55": 0.86, "b35": 1.14},
 }
-SOON, MOST_ALARMS = 10.0, 1.0  # s in which 95 % are to be told; alarms in the hours of the short sample; chosen
+SOON, MOST_ALARMS = 10.0, 1.0  # s in which 95 % are to be seen; alarms in the hours of the short sample; chosen
 COVERED = 0.88  # of the intervals behind an alarm in the short sample; chosen: two standard errors below 0.95
 
 
@@ -90,11 +90,11 @@ def followed(record: Record, truth: Model) -> Outcome:
     estimator, trial, stream = follower()
     names = trial.model.parameters.free_names
     values = np.array([truth.parameters[n].value for n in names])
-    told, alarms, covered = None, [], dict[float, float]()
+    latest, alarms, covered = None, [], dict[float, float]()
     for sample in samples(record, stream):
         snapshot = estimator.update(sample)
-        if snapshot.change is not None and snapshot.change is not told:
-            told = snapshot.change
+        if snapshot.change is not None and snapshot.change is not latest:
+            latest = snapshot.change
             alarms.append(sample.time)
         late = [a for a in alarms if a > CHANGED]
         for seconds in AFTER if late else ():
@@ -113,17 +113,17 @@ def cell(name: str, seeds: int) -> list[Line]:
     shares = ", ".join(f"{c:.3f} at {s:.0f} s" for c, s in zip(covered, AFTER, strict=True))
     others = f"before {sum(o.false_alarms for o in outcomes)}, further {sum(o.further for o in outcomes)}"
     print(
-        f"{name}: told in {delay:.1f} s (95 %), median {np.median(delays):.1f} s; coverage {shares}; {others}",
+        f"{name}: reported in {delay:.1f} s (95 %), median {np.median(delays):.1f} s; coverage {shares}; {others}",
         flush=True,
     )
     return [
-        at_most(f"{name}: told in 95 % of the voyages", delay, "s", SOON),
+        at_most(f"{name}: reported in 95 % of the voyages", delay, "s", SOON),
         at_least(f"{name}: coverage {AFTER[-1]:.0f} s behind the alarm", float(covered[-1]), "1", COVERED),
     ]
 
 
 def false_alarms(hours: float) -> int:
-    """Return how often a change is told of ships that stay as they are."""
+    """Return how often a change is reported of ships that stay as they are."""
     count = 0
     for seed in range(round(hours * HOUR / STRETCH)):
         record, ship_as_is = changed_record({}, STRETCH, 1000 + seed)
