@@ -17,9 +17,7 @@ MMG = {
     "N_v": (-0.137, "1"), "N_r": (-0.049, "1"), "N_vvv": (-0.03, "1"), "N_vvr": (-0.294, "1"),
     "delta_0": (0.0175, "rad"),
 }  # fmt: skip
-CHANGE = CoefficientChange(
-    since=220.0, statistic=31.2, degrees_of_freedom=8, p=1.3e-4, is_significant=True, most_changed="b33"
-)
+CHANGE = CoefficientChange(220.0, (220.0, 220.0), 223.0, 31.2, "b33", {"b33": 2.31e5}, {"b33": 1e4})
 ADVICE = "A zigzag 20/20 would tell Y_rrr and X_vr: both need a large yaw rate with little drift."
 
 

@@ -12,6 +12,7 @@ from time import monotonic, process_time
 import numpy as np
 
 from seatrial.core.results import Fit
+from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
 from seatrial.core.results.online import NO_SAMPLE, CoefficientChange, Sample, SampleCounts, Snapshot
 from seatrial.core.text.numbers import signed_percent
 from seatrial.core.text.words import enumeration
@@ -154,8 +155,7 @@ def _final_fit(
         whole_trial = with_training_records(trial, buffer.records())
         doubts = () if change is None else (change_sentence(change),)
         return identify(whole_trial, seed=seed, report_progress=report_progress), doubts
-    begun_at = estimator.begun_at if isinstance(estimator, OnlineEstimator) else -math.inf
-    final_trial = with_training_records(trial, buffer.records(begun_at), has_changed=True)
+    final_trial = with_training_records(trial, buffer.records(change.reported_at), has_changed=True)
     try:
         fit = identify(final_trial, seed=seed, report_progress=report_progress)
     except InputError as error:
@@ -163,18 +163,18 @@ def _final_fit(
     return replace(fit, findings=(_change_finding(change, fit), *fit.findings)), ()
 
 
-_SIZES_SHOWN = 3  # coefficients whose change a finding names, the clearest whose intervals do not hold what was; ours
+_SIZES_SHOWN = 3  # coefficients whose change a finding names, the clearest of those that are certain to 95 %; ours
 
 
 def _change_finding(change: CoefficientChange, fit: Fit) -> Finding:
     """The warning `coefficients-changed` on a fit of the samples behind a change."""
     differences = [
-        (abs(c.estimate - before) / c.standard_error, f"{c.name} by {signed_percent(c.estimate / before - 1.0)}")
-        for c in fit.coefficients
-        if c.standard_error and (before := change.before.get(c.name)) and c.lower is not None
-        and c.upper is not None and not c.lower <= before <= c.upper
+        (abs(c.estimate - before) / math.hypot(c.standard_error, change.error_before[c.name]),
+         f"{c.name} by {signed_percent(c.estimate / before - 1.0)}")
+        for c in fit.coefficients if c.standard_error and (before := change.before.get(c.name))
     ]  # fmt: skip
-    clearest = [text for _, text in sorted(differences, reverse=True)[:_SIZES_SHOWN]]
+    certain = [row for row in differences if row[0] > two_sided_quantile(STORED_LEVEL, math.inf)]
+    clearest = [text for _, text in sorted(certain, reverse=True)[:_SIZES_SHOWN]]
     where = f"the {change_text(change)} of the stream's clock"
     return Finding(Severity.WARNING, "coefficients-changed", where, enumeration(clearest))
 

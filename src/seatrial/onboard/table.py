@@ -96,8 +96,8 @@ def faults_text(counts: SampleCounts) -> str:
 
 
 def change_sentence(change: CoefficientChange | None) -> str:
-    """Return a significant change as a sentence; empty if there is none."""
-    if change is None or not change.is_significant:
+    """Return a change in sentences; empty if there is none."""
+    if change is None:
         return ""
     if not change.is_believed:
         return (
@@ -112,7 +112,7 @@ def change_sentence(change: CoefficientChange | None) -> str:
 
 def change_text(change: CoefficientChange) -> str:
     """Return when the coefficients changed: ``coefficients changed between 201.0 s and 203.0 s``."""
-    first, last = (time_text(time if math.isfinite(time) else change.since) for time in change.between)
+    first, last = map(time_text, change.between)
     return f"coefficients changed {f'between {first} and {last}' if first != last else f'at {first}'}"
 
 

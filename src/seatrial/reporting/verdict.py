@@ -264,7 +264,7 @@ _MAIN_ERRORS = ("psi_deg", "position_m", "z", "theta_deg", "phi_deg")
 
 def verdict(fit: Fit) -> str:
     """Return how well runs that were not fitted are predicted, in one sentence; first whether it may be used at all."""
-    score, _, limit = _score_clause(fit).partition("; ")
+    score, limit = _score_clauses(fit)
     clauses = [score, _implausible_clause(fit) or limit] if has_converged(fit) else [score]
     return f"{unusable_sentence(fit)}{'; '.join(clause for clause in clauses if clause)}."
 
@@ -285,42 +285,43 @@ def has_converged(fit: Fit) -> bool:
     return fit.search is not None or fit.solution.status.is_success
 
 
-def _score_clause(fit: Fit) -> str:
+def _score_clauses(fit: Fit) -> tuple[str, str]:
+    """How well runs are predicted, and what limits that; empty where nothing does."""
     held = fit.validation
     if not fit.predictions:
-        return "No run was simulated with this fit"
+        return "No run was simulated with this fit", ""
     if not held:
-        return _fitted_clause(fit.predictions)
+        return _fitted_clauses(fit.predictions)
     longest = longest_judged(fit)
     if len(held) == 1:
-        return _one_run_clause(held[0], fit.predictions, longest)
-    return _several_runs_clause(held, fit.predictions, longest)
+        return _one_run_clauses(held[0], fit.predictions, longest)
+    return _several_runs_clauses(held, fit.predictions, longest)
 
 
-def _fitted_clause(predictions: Sequence[Prediction]) -> str:
+def _fitted_clauses(predictions: Sequence[Prediction]) -> tuple[str, str]:
     """How the runs are reproduced that the model was fitted to, where no other tests it."""
     diverged = [p.record for p in predictions if p.divergence is not None]
     if diverged:
         of_all = "" if len(predictions) == 1 else f" of its {len(predictions)} runs"
-        return f"Does not reproduce {enumeration(diverged, MAX_NAMES)}{of_all}: the simulation diverges"
+        return f"Does not reproduce {enumeration(diverged, MAX_NAMES)}{of_all}: the simulation diverges", ""
     errors, runs = worst_errors(predictions), "run" if len(predictions) == 1 else f"{len(predictions)} runs"
-    return f"Reproduces its {runs}{f' to {errors}' if errors else ''}; no held-out run tests the model"
+    return f"Reproduces its {runs}{f' to {errors}' if errors else ''}", "no held-out run tests the model"
 
 
-def _one_run_clause(p: Prediction, predictions: Sequence[Prediction], longest: float | None) -> str:
+def _one_run_clauses(p: Prediction, predictions: Sequence[Prediction], longest: float | None) -> tuple[str, str]:
     """How a single held-out run is predicted, as a grade and its errors.
 
     longest: of windows that judge it [s]; None: the whole run does.
     """
     run = f"the held-out {run_name(p)}"
     if p.divergence is not None:
-        return f"Does not predict {run}: the simulation diverges after {duration(p.divergence.seconds)}"
+        return f"Does not predict {run}: the simulation diverges after {duration(p.divergence.seconds)}", ""
     largest, errors = judged_share(p, longest), _judged_errors(p, longest)
     if largest is not None and largest.grade is Grade.NOT:
-        return f"Does not predict {run}: {errors}"
+        return f"Does not predict {run}: {errors}", ""
     grade = "" if largest is None else f" {largest.grade}"
-    repeat = "; it repeats a fitted manoeuvre" if repeated_runs(p, predictions) else ""
-    return f"Predicts {run}{grade}{f': {errors}' if errors else ''}{repeat}"
+    repeat = "it repeats a fitted manoeuvre" if repeated_runs(p, predictions) else ""
+    return f"Predicts {run}{grade}{f': {errors}' if errors else ''}", repeat
 
 
 def _judged_errors(p: Prediction, longest: float | None) -> str:
@@ -341,7 +342,9 @@ def _worst_errors(held: Sequence[Prediction], longest: float | None) -> str:
     return f"{name}: {errors}" if errors else ""
 
 
-def _several_runs_clause(held: Sequence[Prediction], predictions: Sequence[Prediction], longest: float | None) -> str:
+def _several_runs_clauses(
+    held: Sequence[Prediction], predictions: Sequence[Prediction], longest: float | None
+) -> tuple[str, str]:
     """How held-out runs are predicted: the worst of them counts, and is named where it is predicted poorly.
 
     longest: of windows that judge them [s]; None: whole runs do.
@@ -349,7 +352,7 @@ def _several_runs_clause(held: Sequence[Prediction], predictions: Sequence[Predi
     diverged = [p.record for p in held if p.divergence is not None]
     if diverged:
         names = enumeration(diverged, MAX_NAMES)
-        return f"Does not predict {len(diverged)} of {len(held)} held-out runs: the simulation diverges ({names})"
+        return f"Does not predict {len(diverged)} of {len(held)} held-out runs: the simulation diverges ({names})", ""
     grades = {p.record: share.grade for p in held if (share := judged_share(p, longest)) is not None}
     worst = _worst(grades.values())
     if worst in (Grade.POORLY, Grade.NOT):
@@ -357,12 +360,12 @@ def _several_runs_clause(held: Sequence[Prediction], predictions: Sequence[Predi
         missed, others = ([p for p in held if (p.record in names) is which] for which in (True, False))
         verb = "Does not predict" if worst is Grade.NOT else "Predicts poorly"
         graded = _graded([grades.get(p.record) for p in others])
-        remainder = f"; the other{'s' if len(others) > 1 else ''}{graded}" if graded else ""
+        remainder = f"the other{'s' if len(others) > 1 else ''}{graded}" if graded else ""
         which = f"{len(names)} of {len(held)} held-out runs ({enumeration(names, MAX_NAMES)})"
-        return f"{verb} {which}{_worst_errors(missed, longest)}{remainder}"
+        return f"{verb} {which}{_worst_errors(missed, longest)}", remainder
     repeats = sum(bool(repeated_runs(p, predictions)) for p in held)
-    repeat = f"; {repeats} {'repeats' if repeats == 1 else 'repeat'} a fitted manoeuvre" if repeats else ""
-    return f"Predicts {len(held)} held-out runs{_graded(list(grades.values()))}{_worst_errors(held, longest)}{repeat}"
+    repeat = f"{repeats} {'repeats' if repeats == 1 else 'repeat'} a fitted manoeuvre" if repeats else ""
+    return f"Predicts {len(held)} held-out runs{_graded(list(grades.values()))}{_worst_errors(held, longest)}", repeat
 
 
 def _worst(grades: Iterable[Grade | None]) -> Grade | None:

@@ -209,7 +209,7 @@ def test_an_angle_that_is_held_long_is_cut_at_the_release(rng: np.random.Generat
         ),
         (decay(start=8.6), "the decay starts at 494.2 deg, beyond 90 deg; check the unit"),
         (Record.from_arrays("decay", TIME[:3], {"phi": np.zeros(3)}), "3 rows are no decay"),
-        (decay().without("phi"), "needs the roll angle 'phi'"),
+        (decay().without("phi"), "needs a swing, 'phi'"),
         (Record.from_arrays("decay", TIME, {"phi": np.where(TIME > 59.8, 0.1, 0.0)}), "nothing is left of the decay"),
     ],
 )

@@ -111,20 +111,17 @@ class EstimatorPhase(StrEnum):
 
 @dataclass(frozen=True)
 class CoefficientChange:
-    """Whether the latest stretch gives other coefficients than what came before (Hausman 1978, Econometrica 46)."""
+    """A change of the ship: what samples behind an instant say against those before (Willsky & Jones 1976)."""
 
-    since: Annotated[Number, Field(description="s on the stream's clock at the start of the latest stretch")]
-    statistic: Annotated[Number, Field(description="chi squared of `degrees_of_freedom`")]
-    degrees_of_freedom: int
-    p: Annotated[Number, Field(description="probability of as much by chance")]
-    is_significant: Annotated[bool, Field(description="p is small enough, corrected for repeated testing")]
+    since: Annotated[Number, Field(description="s on the stream's clock, likeliest instant of the change")]
+    between: Annotated[tuple[Number, Number], Field(description="s on the stream's clock, interval of that instant")]
+    reported_at: Annotated[
+        Number, Field(description="s on the stream's clock: what is estimated rests on later samples")
+    ]
+    evidence: Annotated[Number, Field(description="nats by which a change is likelier than none")]
     most_changed: Annotated[str, Field(description="coefficient that changed most, in its standard errors")]
-    between: Annotated[
-        tuple[float, float], Field(description="s on the stream's clock, interval of the instant of the change")
-    ] = (float("nan"), float("nan"))
-    before: Annotated[dict[str, Number], Field(description="coefficient -> value before the change, SI")] = field(
-        default_factory=dict
-    )
+    before: Annotated[dict[str, Number], Field(description="coefficient -> value before the change, SI")]
+    error_before: Annotated[dict[str, Number], Field(description="coefficient -> standard error of that value, SI")]
     is_believed: Annotated[
         bool, Field(description="false: changes followed one another so closely that the model is off, not the ship")
     ] = True
@@ -184,7 +181,7 @@ class Snapshot:
     advice: Annotated[
         str, Field(description="which manoeuvre would help, in a sentence; empty if every coefficient is identified")
     ] = ""
-    change: Annotated[CoefficientChange | None, Field(description="null: not tested")] = None
+    change: Annotated[CoefficientChange | None, Field(description="the last one; null: none was seen")] = None
     findings: tuple[ReportedFinding, ...] = ()
     counts: SampleCounts = SampleCounts()
     recent: Annotated[tuple[StoredRecord, ...], Field(exclude=True)] = ()

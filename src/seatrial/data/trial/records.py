@@ -94,7 +94,7 @@ def trim_to_decay_start(record: Record) -> Record:
     """
     channel = swinging_channel(record)
     if not channel:
-        raise InputError(f"record '{record.name}': from_release needs the roll angle 'phi', 'theta' or 'z'; add it")
+        raise InputError(f"record '{record.name}': from_release needs a swing, 'phi', 'theta' or 'z'; add the channel")
     if len(record) < _MIN_ROWS:
         raise InputError(f"record '{record.name}': {len(record)} rows are no decay; give a longer record")
     swing, motion = about_rest(record[channel]), SWINGING[channel]

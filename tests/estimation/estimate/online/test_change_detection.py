@@ -6,7 +6,7 @@ from tests.estimation.estimate.online.streams import DT, NAMES, NOISE, SeaStream
 
 from seatrial.core.equations import Model
 from seatrial.core.results.online import CoefficientChange
-from seatrial.estimation.estimate.online.change_detector import ChangeDetector
+from seatrial.estimation.estimate.online.change_detector import ChangeDetector, GaussianEstimate
 from seatrial.physics.simulate.linear import LinearBatch
 
 Array = np.ndarray
@@ -22,11 +22,11 @@ def estimates(rng: np.random.Generator, shift: Array) -> list[tuple[Array, Array
     return [(c @ x[:rows].T @ y[:rows] / 0.09, c) for rows, c in zip(range(20, 401, 5), covariances, strict=True)]
 
 
-def told(series: list[tuple[Array, Array]]) -> tuple[int, CoefficientChange] | None:
-    """The look at which a change is told."""
+def first_change(series: list[tuple[Array, Array]]) -> tuple[int, CoefficientChange] | None:
+    """The look at which a change is reported."""
     detector = ChangeDetector(("a", "b", "c"))
     for look, (value, covariance) in enumerate(series):
-        if detector.update(20.0 + 5.0 * look, value, covariance):
+        if detector.update(20.0 + 5.0 * look, GaussianEstimate(value, covariance)):
             assert detector.detected is not None
             return look, detector.detected
     return None
@@ -34,11 +34,11 @@ def told(series: list[tuple[Array, Array]]) -> tuple[int, CoefficientChange] | N
 
 def test_regressions_without_change_raise_no_alarm() -> None:
     rng = np.random.default_rng(11)
-    assert sum(told(estimates(rng, np.zeros(3))) is not None for _ in range(200)) <= 1
+    assert sum(first_change(estimates(rng, np.zeros(3))) is not None for _ in range(200)) <= 1
 
 
 def test_the_coefficient_that_moved_its_instant_and_its_value_before_are_named(rng: np.random.Generator) -> None:
-    found = told(estimates(rng, np.array([0.0, -0.6, 0.0])))
+    found = first_change(estimates(rng, np.array([0.0, -0.6, 0.0])))
     assert found is not None
     look, change = found
     assert 36 < look < 46
@@ -49,31 +49,31 @@ def test_the_coefficient_that_moved_its_instant_and_its_value_before_are_named(r
 
 def test_a_look_without_information_is_passed_over() -> None:
     detector = ChangeDetector(("a",))
-    assert not detector.update(0.0, np.ones(1), np.full((1, 1), np.inf))
+    assert not detector.update(0.0, GaussianEstimate(np.ones(1), np.full((1, 1), np.inf)))
     same = np.full((1, 1), 1e-4)
-    assert not any(detector.update(float(t), np.ones(1), same) for t in range(5))
+    assert not any(detector.update(float(t), GaussianEstimate(np.ones(1), same)) for t in range(5))
     assert detector.detected is None
 
 
 def test_searches_are_compared_where_much_is_new_only() -> None:
     """A search and a filter differ by parts of a standard error."""
     detector = ChangeDetector(("a",))
-    detector.update(0.0, np.ones(1), np.full((1, 1), 1e-4), is_searched=True)
-    assert not detector.update(1.0, np.full(1, 1.005), np.full((1, 1), 0.9999e-4))
-    assert detector.update(2.0, np.full(1, 1.2), np.full((1, 1), 0.5e-4))
+    detector.update(0.0, GaussianEstimate(np.ones(1), np.full((1, 1), 1e-4)), is_searched=True)
+    assert not detector.update(1.0, GaussianEstimate(np.full(1, 1.005), np.full((1, 1), 0.9999e-4)))
+    assert detector.update(2.0, GaussianEstimate(np.full(1, 1.2), np.full((1, 1), 0.5e-4)))
 
 
 def test_changes_in_a_row_are_the_models_misfit() -> None:
     """A ramp of a minute is found in three; beyond, none is believed and none is looked for."""
     detector, known = ChangeDetector(("a",)), np.full((1, 1), 1e-4)
     for k in range(4):
-        assert not detector.update(10.0 * k, np.full(1, 1.0 + 0.3 * (k % 2)), known)
-        assert detector.update(10.0 * k + 5.0, np.full(1, 1.3 - 0.3 * (k % 2)), 0.5 * known)
+        assert not detector.update(10.0 * k, GaussianEstimate(np.full(1, 1.0 + 0.3 * (k % 2)), known))
+        assert detector.update(10.0 * k + 5.0, GaussianEstimate(np.full(1, 1.3 - 0.3 * (k % 2)), 0.5 * known))
         assert detector.detected is not None
         assert detector.detected.is_believed == (k < 3)
     assert detector.is_ended
-    detector.update(50.0, np.ones(1), known)
-    assert not detector.update(55.0, np.full(1, 1.3), 0.5 * known)
+    detector.update(50.0, GaussianEstimate(np.ones(1), known))
+    assert not detector.update(55.0, GaussianEstimate(np.full(1, 1.3), 0.5 * known))
 
 
 def alarms(stream: SeaStream, measured: Array) -> list[tuple[float, CoefficientChange]]:
@@ -82,7 +82,7 @@ def alarms(stream: SeaStream, measured: Array) -> list[tuple[float, CoefficientC
     for row in range(FIRST, len(measured), BLOCK):
         made.update(measured[row : row + BLOCK], stream.clean.inputs[row : row + BLOCK])
         time = (row + BLOCK - 1) * DT
-        if detector.update(time, made.value, made.covariance):
+        if detector.update(time, GaussianEstimate(made.value, made.covariance)):
             assert detector.detected is not None
             return [(time, detector.detected)]
     return []

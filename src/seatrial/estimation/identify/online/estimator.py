@@ -10,7 +10,7 @@ from seatrial.data.read.assemble import record_from_values
 from seatrial.data.trial import Role, Trial, TrialRun
 from seatrial.data.trial.records import load_run
 from seatrial.data.trial.runs import require_stream
-from seatrial.estimation.estimate.online.change_detector import ChangeDetector
+from seatrial.estimation.estimate.online.change_detector import ChangeDetector, GaussianEstimate
 from seatrial.estimation.estimate.online.window import SampleRows, WindowEstimate
 from seatrial.estimation.identify.online.phases import (
     CONTINUED_INTERVALS,
@@ -179,7 +179,6 @@ class OnlineEstimator:
         self._window = StreamWindow(trial)
         self._change_detector = ChangeDetector(trial.model.parameters.free_names)
         self._watch: RecursivePhase | None = None
-        self._begun_at = -np.inf
         self._phase: KeptPhase | RecursivePhase = WarmUp()
         self._progress = StreamProgress()
         self._snapshot = first_snapshot(trial.model)
@@ -200,7 +199,7 @@ class OnlineEstimator:
         self._watch = None
         self._change_detector.restart()
         if isinstance(self._phase, Window | Carried):  # what the next run is compared with
-            self._is_changed(self._phase.estimate)
+            self._compare_search(self._phase.estimate)
         self._progress = self._progress.with_run()
         self._window.begin_run(self._progress.runs)
 
@@ -217,7 +216,7 @@ class OnlineEstimator:
         else:
             self._window.add(sample)
             is_due = self._window.seconds >= self._schedule.next_search
-            if self._watch is not None and self._is_changed_for(self._watch, sample):
+            if self._watch is not None and self._compare_sample(self._watch, sample):
                 self._begin_anew()
             elif is_due and self._window.open_samples >= MIN_RUN_SAMPLES:
                 self.relinearise()
@@ -245,11 +244,6 @@ class OnlineEstimator:
         return self._change_detector.detected
 
     @property
-    def begun_at(self) -> float:
-        """Time on the stream's clock [s] behind which samples count: that of the last change, else minus infinity."""
-        return self._begun_at
-
-    @property
     def covariance(self) -> Array:
         """Covariance of the free coefficients, (k, k); infinite diagonal where nothing is known."""
         if isinstance(self._phase, WarmUp):
@@ -272,13 +266,12 @@ class OnlineEstimator:
             try:
                 with np.errstate(all="ignore"):  # a trial step may overflow; the search then takes another
                     estimate = self._search.estimate(phase, self._window.records())
-                is_watched = not estimate.is_coloured  # coefficients of a model that is off differ from sea to sea
-                if self._watch is None and is_watched and self._is_changed(estimate):
+                if self._watch is None and self._compare_search(estimate):
                     self._begin_anew()
                     return
                 self._phase = phase = phase.with_estimate(estimate)
                 self._snapshot = window_snapshot(self._snapshot, self._trial.model, phase, estimate)
-                if self._watch is None and is_watched and self._search.is_efficient:
+                if self._watch is None and self._search.is_efficient and not estimate.is_coloured:
                     self._watch = filter_phase(estimate, self._stream, self._trial.reference_point)
             except (InputError, np.linalg.LinAlgError) as error:
                 if isinstance(phase, WarmUp):
@@ -305,7 +298,7 @@ class OnlineEstimator:
         """Take a sample into the filter; one that has diverged is left."""
         if not phase.add(sample.time, sample.values):
             return
-        if phase.is_sound and self._shows_change(phase):
+        if phase.is_sound and self._compare_filter(phase):
             self._begin_anew()
         elif phase.is_sound:
             self._snapshot = recursive_snapshot(self._snapshot, self._trial.model, phase)
@@ -321,31 +314,32 @@ class OnlineEstimator:
 
     def _begin_anew(self) -> None:
         """Forget all that was before a change: what follows comes from later samples alone."""
-        self._phase, self._watch, self._begun_at = WarmUp(), None, self._progress.last_time
+        self._phase, self._watch = WarmUp(), None
         self._window.clear()
         self._schedule.restart()
         self._snapshot = first_snapshot(self._trial.model, self._change_detector.detected)
 
-    def _is_changed_for(self, watch: RecursivePhase, sample: Sample) -> bool:
-        """Whether the filter beside the window says so, with one more sample."""
+    def _compare_sample(self, watch: RecursivePhase, sample: Sample) -> bool:
+        """Take a sample into the filter beside the window, and return whether it shows a change."""
         if not watch.add(sample.time, sample.values):
             return False
         if watch.is_sound:
-            return self._shows_change(watch)
-        self._watch = None
-        self._change_detector.restart()
+            return self._compare_filter(watch)
+        self._watch = None  # the next search is compared with what it saw
         return False
 
-    def _shows_change(self, phase: RecursivePhase) -> bool:
-        now = phase.of_all_samples
-        return self._change_detector.update(self._progress.last_time, now.value, now.covariance)
+    def _compare_filter(self, phase: RecursivePhase) -> bool:
+        """Compare a filter's estimate with earlier ones, and return whether it shows a change."""
+        return self._change_detector.update(self._progress.last_time, phase.of_all_samples)
 
-    def _is_changed(self, estimate: WindowEstimate) -> bool:
-        """Whether the latest samples contradict the ones before, where successive estimates are nested.
+    def _compare_search(self, estimate: WindowEstimate) -> bool:
+        """Compare a search with earlier estimates where successive ones are nested; return whether it shows a change.
 
         They are not while old samples are forgotten, where every search chooses its criterion anew, and where the
         forces of the same waves change as more of their elevation is known.
         """
         is_nested = self._search.is_efficient and self._stream.waves is None and self._stream.forgetting_time_s is None
-        time = self._progress.last_time
-        return is_nested and self._change_detector.update(time, estimate.value, estimate.covariance, is_searched=True)
+        now = GaussianEstimate(estimate.value, estimate.covariance)
+        return is_nested and self._change_detector.update(
+            self._progress.last_time, now, is_white=not estimate.is_coloured, is_searched=True
+        )
