@@ -191,3 +191,26 @@ def test_a_method_is_front_or_genetic(
     path = write_loop_file(tmp_path, FIN)
     assert run_command("tune", path, "--method", "genetics") == 2
     assert "there is no tuning method 'genetics'; did you mean 'genetic'?" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("line", "says"),
+    [
+        ("population = 3", "genetic.population"),
+        ("mutation = 2.0", "genetic.mutation"),
+        ("bits = 60", "genetic.bits"),
+        ('objectives = "print"', "genetic.objectives"),
+        ("rates = 1", "genetic.rates"),
+    ],
+)
+def test_settings_of_the_search_are_checked(tmp_path: Path, line: str, says: str) -> None:
+    path = write_loop_file(tmp_path, f"{FIN}\n[genetic]\n{line}\n")
+    with pytest.raises(InputError, match=says) as refused:
+        api.load_loop(path)
+    assert "\n" not in str(refused.value)
+
+
+def test_settings_of_the_search_reach_the_task(tmp_path: Path) -> None:
+    path = write_loop_file(tmp_path, f'{FIN}\n[genetic]\npopulation = 30\nobjectives = "one-sided"\n')
+    genetic = api.load_loop(path).genetic
+    assert (genetic.population, genetic.objectives, genetic.generations) == (30, "one-sided", 200)

@@ -40,8 +40,8 @@ def tune(
         task: as `load_loop` returns it, or the path of a loop file.
         seed: of the search, of the simulated seas, and of the ships drawn from the fit.
         report_progress: called with one line of text at each step.
-        method: where the chosen gains come from: "front", or "genetic" (Yu et al. 2014, settings of `task.genetic`),
-            with the choice from the front beside it as `reference`.
+        method: where the chosen gains come from: "front", or "genetic" (Yu et al. 2014, settings of the loop file's
+            table [genetic]), with the choice from the front beside it as `reference`.
 
     Raises:
         InputError: as `load_loop`; an unknown method; no gains keep the limits (which limit, by how much).

@@ -289,7 +289,10 @@ def searched_objectives(evaluator: GainEvaluator, settings: GeneticTuning) -> tu
         return evaluator.objectives
     target = float(evaluator.allowed_variances[0])
     if not np.isfinite(target):
-        raise InputError("genetic: the published objective of the actuator needs its limit; give [actuator] limit")
+        raise InputError(
+            "genetic: the published objective of the actuator needs its limit; give [actuator] limit, or "
+            'set objectives = "minimise" in [genetic]'
+        )
     one_sided = settings.objectives is SearchedObjectives.ONE_SIDED
     return (
         variance("J1", "rad^2", LoopSignal.OUTPUT),

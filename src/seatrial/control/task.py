@@ -34,7 +34,7 @@ from seatrial.physics.loops.encounter_spectrum import PointSpectrum, disturbance
 from seatrial.physics.loops.objective import vertical_acceleration
 from seatrial.physics.sea.spectrum import Spectrum
 
-# Settings of the published genetic algorithm: values in Python.
+# Settings of the published genetic algorithm: a table of the loop file, a value in Python.
 
 Probability = Annotated[float, Field(ge=0, le=1)]
 
@@ -56,7 +56,7 @@ class SearchedObjectives(StrEnum):
 @raises_input_error
 @dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
 class GeneticTuning:
-    """Settings of `--method genetic` (Yu et al. 2014, section 3); the defaults are published.
+    """`[genetic]`: settings of `--method genetic` (Yu et al. 2014, section 3); the defaults are published.
 
     Attributes:
         population: individuals of a generation; generations: how many of them, the first included.

@@ -137,7 +137,6 @@ def test_what_is_wrong_with_a_fin_file_is_said(changes: list[tuple[str, str]], s
         ([('parts = ["KP", "KD"]', 'parts = ["KP", "KP"]')], "controller.parts names a part twice"),
         ([('parts = ["KP", "KD"]', "derivative_filter = -1")], "controller.derivative_filter = -1 is not positive"),
         ([("[demand]", "[demand]\nduration = 1e3")], "which is no key any more; leave it out: thirty time constants"),
-        ([("[demand]", "[genetic]\nbits = 9\n[demand]")], "'genetic', which is no key any more; leave the table out"),
         ([("[demand]", "[demand]\novershoot = 2")], "demand.overshoot = 2"),
         ([("[demand]", "[simulation]\n[demand]")], "simulation: there is no block [[seas]]"),
         (

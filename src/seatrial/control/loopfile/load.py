@@ -148,6 +148,7 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant, home: Path) -> TuningTas
         simulation=_simulation_settings(file.simulation, len(file.seas), demand, loop.sampling),
         trimmed_ship=plant.trimmed_ship,
         demand=demand,
+        genetic=file.genetic,
         drive=_drive(file.actuator),
         uncertainty=_uncertainty(file),
         track=None if file.track is None else _track(file.track, plant, demand),

@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
+from seatrial.control.task import GeneticTuning
 from seatrial.core.values import NOTATION, InputError, si_unit
 from seatrial.data.trial.amounts import (
     Amount,
@@ -468,6 +469,7 @@ class LoopFile(StrictTable):
     track: TrackTable | None = None
     station: StationTable | None = None
     uncertainty: UncertaintyTable = UncertaintyTable()
+    genetic: GeneticTuning = GeneticTuning()
 
 
 def loop_schema() -> dict[str, Any]:

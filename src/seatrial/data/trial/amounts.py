@@ -148,7 +148,6 @@ WITHDRAWN_KEYS = {
     "compare.svr.lambda_count": "leave it out: 49 penalties are tried, write lambda = [smallest, largest]",
     "family.prior_factors": "write priors under [model.priors] and compare the fits",
     "family.segment_factors": "write segment_s under [estimate] and compare the fits",
-    "genetic": "leave the table out: the published settings are used",
     "station.joint_Ms": "leave it out: 3 is allowed, write limits.Ms for each loop by itself",
     "controller.K_q": "leave it out: the value that was fitted to the published results is used",
     "uncertainty.draws": "leave it out: 1000 ships are drawn",
