@@ -22,6 +22,7 @@ import checking
 import controllers_at_sea
 import criteria
 import design
+import esso_osaka
 import estimation_folds
 import fins_at_sea
 import follow
@@ -30,6 +31,7 @@ import generation
 import gusts
 import heave_pitch
 import independent_ships
+import interval_coverage
 import kvlcc2_zigzags
 import loggers
 import long_record
@@ -45,6 +47,8 @@ import roll_decay
 import sample_rates
 import simulation
 import station_at_sea
+import thrusters_blueboat
+import thrusters_truth
 import timing
 import tracks_at_sea
 import tune
@@ -64,6 +68,8 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "against_optimisers": against_optimisers.run,
     "montecarlo": montecarlo.run,
     "gusts": gusts.run,
+    "interval_coverage": interval_coverage.run,
+    "thrusters_truth": thrusters_truth.run,
     "waves": waves.run,
     "criteria": criteria.run,
     "timing": timing.run,
@@ -71,6 +77,8 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "kvlcc2_zigzags": kvlcc2_zigzags.run,
     "estimation_folds": estimation_folds.run,
     "prediction_bands": prediction_bands.run,
+    "esso_osaka": esso_osaka.run,
+    "thrusters_blueboat": thrusters_blueboat.run,
     "waterjet_regressions": waterjet_regressions.run,
     "fusion": fusion.run,
     "checking": checking.run,
