@@ -68,7 +68,7 @@ def test_vague_coefficients_have_profiles(
 
 
 def test_a_profile_of_prediction_error_has_the_curvature_of_its_information() -> None:
-    """Half a standard error away the loss is a quarter of chi squared's unit, with all else fitted again."""
+    """A standard error away the loss is one of chi squared's units, with all else fitted again."""
     craft = NOMOTO
     (run,) = independent_nomoto(
         craft, Disturbance(0.5, 5.0), 1, np.random.default_rng(11), is_closed=False, seconds=120.0
@@ -83,12 +83,21 @@ def test_a_profile_of_prediction_error_has_the_curvature_of_its_information() ->
     for p, error in zip(profiles, fitted.interval.standard_error, strict=False):
         values, costs = np.array(p.values), np.array(p.costs)
         centre = values[np.argmin(costs)]
-        near = np.isclose(np.abs(values - centre), 0.5 * error, rtol=1e-6)
+        near = np.isclose(np.abs(values - centre), error, rtol=1e-6)
         assert near.sum() == 2
-        assert np.mean(costs[near]) == pytest.approx(0.25, rel=0.15)
+        assert np.mean(costs[near]) == pytest.approx(1.0, rel=0.15)
         assert p.lower is not None
         assert p.lower < centre
         assert p.upper is None or p.upper > centre
+
+
+def test_unknowns_on_a_bound_stay_while_another_is_held() -> None:
+    """The delay of a stepped input ends on half a sample: no refit may begin beyond it."""
+    hessian = np.array([[4.0, 1.0, 1.0], [1.0, 2.0, 0.5], [1.0, 0.5, 2.0]])
+    optimum = nonlinear_intervals._Refit(0.0, np.array([0.1, 0.25, 1.0]), np.zeros((0, 0)))
+    bounds = np.array([-1.0, -0.25, -9.0]), np.array([1.0, 0.25, 9.0])
+    fit = nonlinear_intervals._ProfiledFit(("K",), optimum, *bounds, np.ones(3), hessian, lambda _: None, 1)  # type: ignore[arg-type,return-value]
+    assert fit.others_by(0) == pytest.approx([0.0, -0.5])
 
 
 def test_ends_go_out_with_what_widens_the_standard_errors() -> None:

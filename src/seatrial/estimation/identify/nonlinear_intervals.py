@@ -184,8 +184,8 @@ def _posterior(estimation: Estimation, chains: Chains, common: Index, target: _T
 CHI_SQUARED_LIMIT = 3.841
 """95 % quantile of chi squared with one degree of freedom."""
 
-# refits on each side of an estimate, and standard errors they reach at most, ours
-_MAX_POINTS_PER_SIDE, _MAX_DEVIATIONS = 8, 5.0
+# standard errors from an estimate at which refits are made, ours: of a parabola the limit is passed at 1.96
+_REACHES = (1.0, 2.0, 2.5, 3.75, 5.0)
 # promised decrease of the cost at which a refit ends, ours
 _NEGLIGIBLE = 1e-4
 # most steps of a refit by prediction error, ours: it starts at its neighbour
@@ -203,6 +203,9 @@ class _Refit:
     local: Array
 
 
+_Hold = Callable[[float, _Refit, Array], _Refit]
+
+
 @dataclass(frozen=True, eq=False)
 class _ProfiledFit:
     """An optimum whose coefficients can be held.
@@ -210,7 +213,7 @@ class _ProfiledFit:
     Attributes:
         own_errors: standard errors of the free coefficients by its information, (free,).
         hessian: second derivatives of the loss by all unknowns that are shared, (n, n).
-        hold: column -> (value, where the others start) -> refit.
+        hold: column -> (value, neighbour, where the information expects the others) -> refit.
     """
 
     free: Sequence[str]
@@ -219,13 +222,20 @@ class _ProfiledFit:
     upper: Array
     own_errors: Array
     hessian: Array
-    hold: Callable[[int], Callable[[float, _Refit], _Refit]]
+    hold: Callable[[int], _Hold]
     workers: int | None
 
     def others_by(self, column: int) -> Array:
-        """Return derivatives of the other unknowns at their optimum by the one that is held, (n - 1,): -H_oo^-1 h_o."""
-        others = np.delete(np.arange(len(self.hessian)), column)
-        return -inverse(self.hessian[np.ix_(others, others)]) @ self.hessian[others, column]
+        """Return derivatives of the other unknowns at their optimum by the one that is held, (n - 1,): -H_oo^-1 h_o.
+
+        Unknowns on a bound stay there.
+        """
+        point = self.optimum.common_parameters
+        is_moving = (self.lower < point) & (point < self.upper)
+        is_moving[column] = False
+        others, slopes = np.flatnonzero(is_moving), np.zeros(len(point))
+        slopes[others] = -inverse(self.hessian[np.ix_(others, others)]) @ self.hessian[others, column]
+        return np.delete(slopes, column)
 
 
 def profiles(
@@ -233,8 +243,8 @@ def profiles(
 ) -> tuple[Profile, ...]:
     """Return the profile of each named coefficient; none where the estimate minimises another criterion.
 
-    deviations: standard errors of all free ones, (free,); first steps are half of them or of the information's, if
-    those are smaller.
+    deviations: standard errors of all free ones, (free,); steps are in them or in the information's, if those are
+    smaller.
     """
     if not _is_minimum_of_its_problem(estimate):
         return ()
@@ -301,46 +311,52 @@ def _profile(fit: _ProfiledFit, column: int, deviation: float) -> Profile:
 def _branch(fit: _ProfiledFit, column: int, step: float) -> list[tuple[float, float]]:
     """Values and twice the loss, outward until the limit is passed, or bound, reach or the model's range is at its end.
 
-    A refit starts where the information expects the others; along a ridge no short search would follow them. Where a
-    refit finds a smaller loss than the estimate's, the limit counts from there.
+    A refit starts where the information expects the others, as along a ridge no short search would follow them, or at
+    its neighbour where that costs less. Where it finds a smaller loss than the estimate's, the limit counts from there.
     """
     refit, start, by_held = fit.hold(column), fit.optimum.common_parameters, fit.others_by(column)
     low, high = (np.delete(bounds, column) for bounds in (fit.lower, fit.upper))
     last, held = replace(fit.optimum, common_parameters=np.delete(start, column)), float(start[column])
-    least, away, points = fit.optimum.twice_loss, 0.5, []
-    while away <= _MAX_DEVIATIONS and len(points) < _MAX_POINTS_PER_SIDE:
+    least, points = fit.optimum.twice_loss, []
+    for away in _REACHES:
         value = float(start[column]) + away * step
         if not fit.lower[column] <= value <= fit.upper[column]:
             break
         expected = np.clip(last.common_parameters + by_held * (value - held), low, high)
-        last, held = refit(value, replace(last, common_parameters=expected)), value
+        last, held = refit(value, last, expected), value
         if not np.isfinite(last.twice_loss):
             break
         least = min(least, last.twice_loss)
         points.append((value, last.twice_loss))
         if last.twice_loss - least > CHI_SQUARED_LIMIT:
             break
-        away += 0.5 if away < 2.5 else 1.25  # steps in standard errors, longer in the tails; chosen
     return points
 
 
-def _hold_in_output_error(problem: OutputError, column: int) -> Callable[[float, _Refit], _Refit]:
-    def refit(value: float, start: _Refit) -> _Refit:
+def _hold_in_output_error(problem: OutputError, column: int) -> _Hold:
+    def refit(value: float, neighbour: _Refit, expected: Array) -> _Refit:
         held, prior = _held(problem, column, value)
-        again = levenberg_marquardt(held, start.common_parameters, start.local, negligible=_NEGLIGIBLE)
+        start = _cheaper(held, neighbour, expected)
+        again = levenberg_marquardt(held, start, neighbour.local, negligible=_NEGLIGIBLE)
         return _Refit(2.0 * again.solution.value + prior, again.solution.point, again.local)
 
     return refit
 
 
-def _hold_in_prediction_error(problem: PredictionError, column: int) -> Callable[[float, _Refit], _Refit]:
-    def refit(value: float, start: _Refit) -> _Refit:
+def _hold_in_prediction_error(problem: PredictionError, column: int) -> _Hold:
+    def refit(value: float, neighbour: _Refit, expected: Array) -> _Refit:
         runs, prior = _held(problem.runs, column, value)
         held = replace(problem, runs=runs, steps=None)
-        again = approach_by_gradient(held, start.common_parameters, _MOST_STEPS)[0]
-        return _Refit(2.0 * again.solution.value + prior, again.solution.point, start.local)
+        again = approach_by_gradient(held, _cheaper(held, neighbour, expected), _MOST_STEPS)[0]
+        return _Refit(2.0 * again.solution.value + prior, again.solution.point, neighbour.local)
 
     return refit
+
+
+def _cheaper(problem: OutputError | PredictionError, neighbour: _Refit, expected: Array) -> Array:
+    """Return the start of a refit that costs less: the neighbour's optimum, or where the others are expected."""
+    starts = (expected, neighbour.common_parameters)
+    return min(starts, key=lambda start: problem.cost(start, neighbour.local))
 
 
 def _held(problem: OutputError, column: int, value: float) -> tuple[OutputError, float]:
