@@ -1,5 +1,6 @@
 """Phases of a run: getting under way, the approach, the release of a roll decay, coasting, and what is compared."""
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby, pairwise
@@ -155,6 +156,7 @@ _HELD_NOISE = 3.0  # standard deviations of noise by which an angle that is held
 _NEAR, _HOLD_SHARE = 0.9, 1.5
 _LEAVES = 0.97  # of the level of an angle that is held, down to which it still is; chosen: a free one falls so in T/25
 _SHRINKS = 2.0  # largest swing over the largest of the last third of a decay; chosen
+_NORMAL_MEDIAN = 0.6745  # standard deviations, median of the size of a normal error
 _FEWEST_DECAY_ROWS = 30  # of a decay; chosen
 _DRIVEN = ("delta", "alpha_w", "alpha_f", "u", "psi", "r")  # channels of records that are no free decays
 _NOISE_SAMPLES = 2  # samples of a swing that is but noise about zero; chosen
@@ -241,10 +243,11 @@ def _groups(level: Array) -> Iterator[tuple[float, float]]:
 
 
 def release_row(swing: Array) -> int:
-    """Return the last row at which an angle, about its rest, is the largest to within noise, shape (n,).
+    """Return the row from which on a motion about its rest, (n,), is free: the last of the largest to within noise.
 
-    Of one that is held for longer than it takes to fall, the last row near the level at which it was held: it wanders
-    by more than noise while it is pulled, and the largest comes long before the release.
+    Of one that is held for longer than it takes to fall, the row after the last one near the level at which it was
+    held: the release lies between the two. It wanders by more than noise while it is pulled, and the largest comes long
+    before the release.
 
     Of a ship that was driven from side to side, the peak of the last swing as large as the largest.
 
@@ -256,17 +259,36 @@ def release_row(swing: Array) -> int:
     if driven := driven_swings(swings):
         last = swings[driven]
         first = last.first + int(np.argmax(size[last.first : last.stop]))
-    crossing = np.flatnonzero(np.sign(swing[first:]) != np.sign(swing[first]))
-    stop = first + int(crossing[0]) if crossing.size else len(swing)
-    noise = _HELD_NOISE * (sample_noise(swing) if len(swing) > _FEWEST_DECAY_ROWS else 0.0)
+    start, near, stop = _crest(swing, first)
+    noise = _HELD_NOISE * (swing_noise(swing) if len(swing) > _FEWEST_DECAY_ROWS else 0.0)
     largest = first + int(np.flatnonzero(size[first:stop] >= size[first] - noise)[-1])
-    near = first + np.flatnonzero(size[first:stop] >= _NEAR * size[first])
-    fall = stop - int(near[-1])
-    if len(near) <= _HOLD_SHARE * fall:
+    if near - start <= _HOLD_SHARE * (stop - near):
         return largest
-    level = float(np.median(size[near]))
+    level = float(np.median(size[start : near + 1]))
     leaves = first + int(np.flatnonzero(size[first:stop] >= _LEAVES * level)[-1])
-    return largest if leaves - largest < fall else leaves
+    return min((largest if leaves - largest < stop - near else leaves) + 1, stop - 1)
+
+
+def _crest(swing: Array, top: int) -> tuple[int, int, int]:
+    """Return the first and the last row on this side about a top that are near it, and the first beyond the rest."""
+    is_near = np.abs(swing) >= _NEAR * abs(swing[top])
+    other = np.flatnonzero(np.sign(swing) != np.sign(swing[top]))
+    side = np.searchsorted(other, top)
+    begin, stop = (int(other[side - 1]) + 1 if side else 0), (int(other[side]) if side < len(other) else len(swing))
+    rows = begin + np.flatnonzero(is_near[begin:stop])
+    return int(rows[0]), int(rows[-1]), stop
+
+
+def swing_noise(swing: Array) -> float:
+    """Return the standard deviation of white noise on a motion that swings at one frequency, (n,).
+
+    Coarse samples of it change by more than noise in third differences; two samples predict the next of such a motion
+    (a damped oscillation is autoregressive of order two). The median of what is left is not moved by a release.
+    """
+    past = np.stack([swing[1:-1], swing[:-2]], axis=1)
+    weights = np.linalg.lstsq(past, swing[2:], rcond=None)[0]
+    left = float(np.median(np.abs(swing[2:] - past @ weights))) / _NORMAL_MEDIAN
+    return min(sample_noise(swing), left / math.sqrt(1.0 + float(weights @ weights)))
 
 
 def about_rest(values: Array) -> Array:
@@ -342,12 +364,14 @@ def _release(record: Record) -> _Release | None:
         return None
     swing = about_rest(record[channel])
     size, row = np.abs(swing), release_row(swing)
-    if size[row] < _SHRINKS * np.max(size[-len(size) // 3 :]):
+    top = row - 1 if row and size[row - 1] > size[row] else row  # a hold ends before the row of its release
+    if size[top] < _SHRINKS * np.max(size[-len(size) // 3 :]):
         return None
-    start = int(np.flatnonzero(size >= _NEAR * size[row])[0])
-    after = np.flatnonzero(np.sign(swing[row:]) != np.sign(swing[row]))
+    start, near, stop = _crest(swing, top)
     is_driven = driven_swings(half_swings(swing)) > 0
-    return _Release(channel, row, float(size[row]), row - start, int(after[0]) if after.size else 0, is_driven)
+    return _Release(
+        channel, row, float(size[top]), max(top - start, 0), stop - near if stop < len(swing) else 0, is_driven
+    )
 
 
 # Phases of a run that are not the manoeuvre: getting under way and coasting.

@@ -14,7 +14,6 @@ from seatrial.data.check.consequences import completed
 from seatrial.data.check.consistency import ESTIMATE_CURRENT
 from seatrial.data.check.examine import copies
 from seatrial.data.check.inputs import thruster_findings
-from seatrial.data.check.motion import sample_noise
 from seatrial.data.check.phases import (
     SWINGING,
     about_rest,
@@ -24,6 +23,7 @@ from seatrial.data.check.phases import (
     is_in_waves,
     release_findings,
     release_row,
+    swing_noise,
     swing_text,
     swinging_channel,
 )
@@ -99,7 +99,7 @@ def trim_to_decay_start(record: Record) -> Record:
         raise InputError(f"record '{record.name}': {len(record)} rows are no decay; give a longer record")
     swing, motion = about_rest(record[channel]), SWINGING[channel]
     first = release_row(swing)
-    largest, noise = abs(float(swing[first])), sample_noise(swing)
+    largest, noise = float(np.max(np.abs(swing[first:]))), swing_noise(swing)
     if not largest > _MIN_SIGNAL_TO_NOISE * noise:
         raise InputError(
             f"record '{record.name}': the decay starts at {swing_text(channel, largest)}, within the noise of "
