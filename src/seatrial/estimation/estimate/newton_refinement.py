@@ -19,6 +19,8 @@ _MAX_DECREMENT = 1e-3  # decrease of the cost that a Newton step still promises 
 # most steps by the exact gradient, and shares of one of which the best is taken, ours: intensity and memory of a weak
 # disturbance are far from quadratic, so that whole steps overshoot, and each costs as much as fifty evaluations
 _NEWTON_STEPS, _STEP_SHARES = 30, (1.0, 0.5, 0.25, 0.125)
+# by which all shares are made smaller where none decreases the cost, as in a narrow valley that bends; ours
+_SHORTER = (1.0, 1.0 / 16.0, 1.0 / 256.0)
 _LEAST_CURVATURE = 0.2  # of the believed curvature along a step (Powell 1978)
 _DETERMINED = 2.0  # standard errors above zero from which on a variance is searched by its logarithm; chosen
 _FARTHEST = 2.0  # logarithm of the factor by which one step changes a size or time at most; chosen
@@ -123,21 +125,32 @@ def _descend(problem: PredictionError, point: Array, count: int, most_steps: int
         step, decrement = step_within(room, replace(here, hessian=hessian))
         if decrement <= _MAX_DECREMENT or count >= most_steps:
             return _Descent(point, normal, count, decrement)
-        trials = [
-            np.clip(coordinates.moved(point, share * step), problem.lower, problem.upper) for share in _STEP_SHARES
-        ]
-        costs = [problem.cost(trial, _NO_INITIAL_STATES) for trial in trials]
-        best = int(np.argmin(costs))
-        if not costs[best] < normal.cost:
+        end = _best_along(problem, coordinates, point, step, normal.cost)
+        if end is None:
             if is_expected:
                 return _Descent(point, normal, count, decrement)
             hessian, is_expected = here.hessian, True  # once more by the expected information
             continue
-        end = trials[best]
         normal = problem.normal(end, _NO_INITIAL_STATES)
         after = coordinates.normal(normal, end)
         hessian = with_curvature(hessian, coordinates.way(point, end), after.gradient - here.gradient)
         point, here, count, is_expected = end, after, count + 1, False
+
+
+def _best_along(
+    problem: PredictionError, coordinates: _Coordinates, point: Array, step: Array, cost: float
+) -> Array | None:
+    """Return the best of some shares of a step, of smaller ones where none is better; None: none decreases the cost."""
+    for scale in _SHORTER:
+        trials = [
+            np.clip(coordinates.moved(point, scale * share * step), problem.lower, problem.upper)
+            for share in _STEP_SHARES
+        ]
+        costs = [problem.cost(trial, _NO_INITIAL_STATES) for trial in trials]
+        best = int(np.argmin(costs))
+        if costs[best] < cost:
+            return trials[best]
+    return None
 
 
 def with_curvature(hessian: Array, moved: Array, gradient_change: Array) -> Array:
