@@ -47,6 +47,17 @@ def test_linear_derivatives_of_kvlcc2(method: type) -> None:
         assert abs(values[name] / published[name] - 1) < 0.33, name
 
 
+def test_errors_of_nonlinear_terms_are_those_on_two_published_ships() -> None:
+    errors = dict[str, list[float]]()
+    for ship in (kvlcc2_l7(), esso_osaka()):
+        estimate = yoshimura(HullForm.from_ship(ship.ship))
+        for name in estimate.deviations:
+            if name in ship.values:
+                errors.setdefault(name, []).append(ship.values[name] - estimate.values[name])
+    for name, deviation in yoshimura(KVLCC2).deviations.items():
+        assert deviation == pytest.approx(np.sqrt(np.mean(np.square(errors[name]))), rel=0.05), name
+
+
 def test_every_hull_coefficient_has_an_estimate() -> None:
     from seatrial.physics.models.mmg import HULL
 

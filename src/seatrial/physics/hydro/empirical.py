@@ -1,7 +1,9 @@
 """Hull, wake, propeller and rudder coefficients from main dimensions: prior means where no test says better."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from types import MappingProxyType
 
 import numpy as np
 
@@ -179,11 +181,21 @@ def kijima(form: HullForm) -> EmpiricalEstimate:
     return EmpiricalEstimate(values, KIJIMA, *_validity(form, (0.5, 0.85), (5.0, 8.0), (2.0, 4.5)))
 
 
+_YOSHIMURA_ERRORS: Mapping[str, float] = MappingProxyType(
+    {
+        "X_vv": 0.029, "X_vr": 0.044, "X_rr": 0.024, "X_vvvv": 0.65, "Y_vvv": 1.2, "Y_vvr": 0.96, "Y_vrr": 0.36,
+        "Y_rrr": 0.055, "N_vvv": 0.080, "N_vvr": 0.28, "N_vrr": 0.21,
+    }
+)  # fmt: skip
+"""Root mean squares of published coefficients of KVLCC2 and Esso Osaka less the regressions of Yoshimura & Masumoto:
+of cubic and higher terms, and of surge, of which these hold the order of magnitude only [1]."""
+
+
 def yoshimura(form: HullForm) -> EmpiricalEstimate:
     """Return all hull coefficients of the MMG standard method but R_0, by the regressions of Yoshimura & Masumoto.
 
-    Linear ones are good to about 25 % on KVLCC2, cubic ones only to their order of magnitude; X_rr with x_G m_y' rests
-    on one transcription.
+    Linear ones are good to about 25 % on KVLCC2, others only to their order of magnitude; X_rr with x_G m_y' rests on
+    one transcription.
     """
     C_b, L_B, f, k = form.C_b, form.L / form.B, form.fullness, form.aspect_ratio
     m_x, m_y = (added_mass(form).values[n] for n in ("m_x_prime", "m_y_prime"))
@@ -207,7 +219,8 @@ def yoshimura(form: HullForm) -> EmpiricalEstimate:
         "N_rrr": 0.25 * f - 0.056,
     }
     # ranges of the forms that the regression was fitted to
-    return EmpiricalEstimate(values, YOSHIMURA, *_validity(form, (0.5, 0.85), (2.5, 7.0), (2.1, 3.8)))
+    validity = _validity(form, (0.5, 0.85), (2.5, 7.0), (2.1, 3.8))
+    return EmpiricalEstimate(values, YOSHIMURA, *validity, dict(_YOSHIMURA_ERRORS))
 
 
 def interaction_coefficients(form: HullForm, aspect_ratio: float) -> EmpiricalEstimate:
