@@ -127,14 +127,14 @@ def test_a_study_answers_first_and_counts_its_checks(capsys: pytest.CaptureFixtu
 def test_a_warning_of_the_fit_goes_with_its_model_file_and_is_printed_where_that_simulates(
     run_command: Callable[..., int], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    lasting = Finding(Severity.WARNING, "gain-falls", "the gain falls")
+    lasting = Finding(Severity.WARNING, "held-coupling", "alpha is held at 0")
     other = Finding(Severity.WARNING, "closure", "the log is off")
     file = model_of_fit(replace(fabricated_fit(), findings=(lasting, other)))
-    assert file.provenance.warnings == ("[gain-falls] the gain falls",)
+    assert file.provenance.warnings == ("[held-coupling] alpha is held at 0",)
     path = tmp_path / "model.toml"
     path.write_text(model_text(file))
     manoeuvre = ("--manoeuvre", "turning-circle:35", "--set", "v_j=1.866", "--duration", "20")
     assert run_command("simulate", path, *manoeuvre, "--out", tmp_path / "turn.csv") == 0
     text = capsys.readouterr().out
-    assert "of the fit: [gain-falls] the gain falls" in text
+    assert "of the fit: [held-coupling] alpha is held at 0" in text
     assert "the log is off" not in text

@@ -89,11 +89,18 @@ def test_headings_are_unwrapped_over_holes() -> None:
     assert np.isnan(unwrapped[100:110]).all()
 
 
+def test_a_drift_speed_is_moved_by_the_rate_of_the_heading_where_no_gyro_is_recorded() -> None:
+    record = zigzag()
+    moved = canonical_record(record.without("r"), 1.0)
+    expected = record["v"] + np.gradient(record["psi"], record.time)
+    np.testing.assert_allclose(moved["v"], expected, atol=1e-12)
+
+
 def test_refusals() -> None:
     with pytest.raises(InputError, match="positive must be 'starboard' or 'port', not 'left'"):
         canonical_record(with_declaration(zigzag(), "delta", positive="left"))
-    with pytest.raises(InputError, match="needs channel 'r'"):
-        canonical_record(zigzag().without("r"), 1.0)
+    with pytest.raises(InputError, match="needs the heading 'psi'"):
+        canonical_record(zigzag().without("r", "psi", "x0", "y0"), 1.0)
     with pytest.raises(InputError, match="heading 'psi'"):
         canonical_record(in_earth_axes(zigzag()).without("psi", "x0", "y0"))
 

@@ -43,7 +43,7 @@ def whole_file() -> ModelFile:
             "output error",
             7,
             {"seatrial": "0"},
-            ("[gain-falls] the gain K falls with the rudder angle",),
+            ("[held-coupling] alpha is held at 0",),
         ),
         Ship("craft", {"L": 9.8}, "paper", 2.0),
         {"u": 0.8, "v_j": 1.866},

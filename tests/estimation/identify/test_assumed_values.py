@@ -42,7 +42,7 @@ def test_decays_of_several_speeds_are_named_and_in_the_interval(damping: tuple[f
     found = differing_decays(estimation)
     assert found is not None
     assert found.name == "b_1"
-    assert "decays do not share one b_1" in found.finding("1/s").text
+    assert "runs do not share one b_1" in found.finding("1/s").text
     free = estimation.estimate.problem.free
     value, column = estimation.model.parameters["b_1"].value, free.index("b_1")
     widened = with_estimated_values(estimation, [found.shift(free)]).interval.half_width[column]

@@ -171,6 +171,7 @@ def test_the_family_of_the_package_knows_its_models(model: Model) -> None:
     assert not any(n.startswith("priors") for n in names), "this model has no priors"
     assert [v.name for v in variants(model, None, is_segmented=False)] == [
         "as in the trial",
+        "gain that falls with the yaw rate",
         "priors x 0.5",
         "priors x 3",
     ]

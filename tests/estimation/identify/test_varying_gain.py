@@ -1,4 +1,4 @@
-"""A gain that falls with the rudder angle is a warning with the edit; one that does not is none."""
+"""A gain that falls with the yaw rate is a term held at zero, named with the edit; one that does not is none."""
 
 import numpy as np
 import pytest
@@ -8,8 +8,7 @@ from seatrial.data.trial import Trial, TrialRun, load_records
 from seatrial.estimation.estimate import EstimatorOptions
 from seatrial.estimation.estimate.assemble import training_runs
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
-from seatrial.estimation.estimate.intervals import one_step_by_run
-from seatrial.estimation.identify.terms import varying_gain_finding
+from seatrial.estimation.identify.terms import held_couplings
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.simulate import manoeuvre
@@ -41,21 +40,14 @@ def fitted(records: list[Record], *free: str) -> Estimation:
 
 def finding(alpha: float, *free: str) -> tuple[Finding, ...]:
     records = runs(alpha)
-    return varying_gain_finding(fitted(records, *free), records)
+    return held_couplings(fitted(records, *free), (), records)
 
 
-def test_each_run_by_itself_has_its_own_gain() -> None:
-    gains = one_step_by_run(fitted(runs(2.0)).shooting).values[:, 0]
-    assert gains[0] == pytest.approx(GAIN, rel=0.06)
-    assert gains[1] < 0.9 * gains[0]
-
-
-def test_a_gain_that_falls_with_the_rudder_angle_is_a_warning() -> None:
+def test_a_gain_that_falls_with_the_yaw_rate_is_a_warning() -> None:
     (warning,) = finding(2.0)
-    assert warning.code == "gain-falls"
+    assert warning.code == "held-coupling"
+    assert warning.message.startswith("alpha is held at 0")
     assert 'free = ["K", "T", "alpha"]' in warning.advice
-    assert "at 8 deg" in warning.evidence
-    assert "at 25 deg" in warning.evidence
 
 
 @pytest.mark.parametrize(("alpha", "free"), [(0.0, ()), (2.0, ("alpha",))])

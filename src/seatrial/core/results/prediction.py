@@ -257,7 +257,7 @@ class Prediction:
         dict[str, Number],
         Field(
             description="rms errors, keys as in `rms`, that the process noise of the fit leaves by itself, model error "
-            "in it; none above the error itself"
+            "in it"
         ),
     ] = field(default_factory=dict)
     tied_spread: Annotated[

@@ -118,15 +118,15 @@ def _body_fixed_channel(symbol: str, channel: Channel, values: Array) -> Channel
 def _moved_to_reference_point(record: Record, reference_point: float) -> Record:
     """v_P = v + d r, x_P = x + d cos(psi), y_P = y + d sin(psi), d = distance to P (Fossen 2021, section 2.3)."""
     moved, places = [], list[str]()
-    for symbol, needed in (("v", "r"), ("v_dot", "r"), ("x0", "psi"), ("y0", "psi")):
+    for symbol, needed in (("v", {"r", "psi"}), ("v_dot", {"r", "psi"}), ("x0", {"psi"}), ("y0", {"psi"})):
         if symbol not in record:
             continue
         channel = record.channel(symbol)
         distance = reference_point - channel.reference_point
         if distance != 0.0:
-            if needed not in record:
+            if not needed & set(record.channels):
                 raise InputError(
-                    f"record '{record.name}': moving '{symbol}' to a point {distance:+g} m off needs channel '{needed}'"
+                    f"record '{record.name}': moving '{symbol}' to a point {distance:+g} m off needs the heading 'psi'"
                 )
             values = channel.values + distance * _lever(symbol, record)
             record = record.with_channel(symbol, replace(channel.with_values(values), reference_point=reference_point))
@@ -143,7 +143,8 @@ def _moved_to_reference_point(record: Record, reference_point: float) -> Record:
 def _lever(symbol: str, record: Record) -> Array:
     if symbol in ("x0", "y0"):
         return (np.cos if symbol == "x0" else np.sin)(record["psi"])
-    return record["r"] if symbol == "v" else np.gradient(record["r"], record.time)
+    rate = record["r"] if "r" in record else np.gradient(record["psi"], record.time)
+    return rate if symbol == "v" else np.gradient(rate, record.time)
 
 
 # Drift in turns: a hull turns with its bow to the inside, and a record that has it outside is off somewhere.

@@ -13,6 +13,7 @@ _FEWEST_ROWS = 60  # of all runs together, for a fit of some eight coefficients;
 _MOST_ROWS = 6000  # of all runs together that are fitted; chosen: some tenths of a second
 _SPEED = 2  # place of the speed among the coefficients
 _SEPARATE = 0.04  # of a speed, up to which its standard error separates a current from it; chosen
+_ROUND = np.radians(300.0)  # sector of headings on which what a turn does to the craft averages out; chosen
 _SEVERAL = np.radians(60.0)  # sector of headings that are several courses; chosen: a wide zigzag is none
 _CLEAR, _LEAST_CURRENT = 4.0, 0.05  # standard errors and share of the speed from which on there is a current; chosen
 _TIMES_S = (0.0, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0)  # s in which a craft's speed recovers, that are tried; chosen
@@ -44,6 +45,11 @@ class SpeedAndCurrent:
     def is_separate(self) -> bool:
         """Whether the courses of the runs separate the speed through the water from the current."""
         return self.courses >= _SEVERAL and self.speed_error <= _SEPARATE * self.speed
+
+    @property
+    def shows_current(self) -> bool:
+        """Whether the courses of the runs separate the current from what the craft does: all round, or several."""
+        return self.courses >= _ROUND or self.is_separate
 
     @property
     def has_current(self) -> bool:

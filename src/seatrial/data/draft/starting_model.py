@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence, Set
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import combinations
 
 import numpy as np
 
@@ -172,8 +172,8 @@ def in_a_current(model: StartingModel, symbols: Set[str], records: Sequence[Reco
 def share_current(records: Sequence[Record | None]) -> bool:
     """Return whether no two runs show currents that differ."""
     fits = [speed_through_water([record]) for record in records if record is not None]
-    known = [fit for fit in fits if fit is not None and fit.is_separate]
-    return all(one.agrees_with(other) for one, other in pairwise(known))
+    known = [fit for fit in fits if fit is not None and fit.shows_current]
+    return all(one.agrees_with(other) for one, other in combinations(known, 2))
 
 
 def _steered_model(
@@ -186,7 +186,7 @@ def _steered_model(
         particulars = () if has_jet else hull_rudder_propeller(size, approach, _advance(records))
         if particulars:
             why = "forces of hull, propeller and rudder; abkowitz, without the last two, holds within the runs only"
-            reason = "hull, wake, thrust and the flow at the rudder, held near formulas by priors of 50 per cent"
+            reason = "hull, wake, thrust and the flow at the rudder, near formulas by priors as wide as their errors"
             return StartingModel(_MMG, why, _MMG_TERMS, reason, ("delta",), approach, particulars)
         if _is_rate_steady(records):
             why = "forces over drift, yaw rate, rudder; mmg goes farther with a propeller's rate (init --gear)"

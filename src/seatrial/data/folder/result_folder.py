@@ -65,7 +65,7 @@ class FolderKind(Generic[T]):
 
 
 LASTING_WARNINGS = (
-    "not-converged", "search-abandoned", "unphysical-values", "gain-falls", "held-coupling", "term-worsens-prediction",
+    "not-converged", "search-abandoned", "unphysical-values", "held-coupling", "term-worsens-prediction",
 )  # fmt: skip
 """Codes of findings of a fit that hold for every use of its values: they are written into the model file."""
 

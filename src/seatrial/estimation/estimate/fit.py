@@ -557,18 +557,32 @@ _LEFT_BY_FINS = 0.5  # of the roll, which the fins and the start do not explain:
 def refuse_roll_in_unmeasured_waves(estimation: Estimation, records: Sequence[Record]) -> None:
     """Refuse records of roll that neither fins nor the start explain, and without the slope of the waves.
 
-    Fins that follow the roll in waves nobody measured make damping of what they do.
+    Fins that follow the roll in waves nobody measured make damping of what they do, or a ship that they roll as they
+    answer it: one that does not swing.
 
     Raises:
-        InputError: how much is left unexplained, and what to give.
+        InputError: how much is left unexplained, or the damping, and what to give.
     """
+    if any("alpha_w" in record for record in records):
+        return
     remaining, moved = _remaining_and_moved(estimation)
-    if any("alpha_w" in record for record in records) or np.any(remaining <= _LEFT_BY_FINS * moved):
+    share = _share_of_critical_damping(estimation.model)
+    if np.all(remaining > _LEFT_BY_FINS * moved):
+        cause = _unexplained_text(estimation, remaining, moved)
+    elif share > 1.0:
+        cause = f"the model would have the fins roll a ship that does not swing, of {share:.2g} times critical damping"
+    else:
         return
     raise InputError(
-        f"the ship rolls although no wave is recorded: {_unexplained_text(estimation, remaining, moved)}; "
+        f"the ship rolls although no wave is recorded: {cause}; "
         "give the wave slope alpha_w, or record with the fins held, or in calm water"
     )
+
+
+def _share_of_critical_damping(model: Model) -> float:
+    """Return the linear damping over that of a roll that just does not swing, b_1 / (2 sqrt(c_1))."""
+    b_1, c_1 = (model.parameters.value_of(name, 0.0) for name in ("b_1", "c_1"))
+    return b_1 / (2.0 * math.sqrt(c_1)) if c_1 > 0.0 else math.inf
 
 
 def _remaining_and_moved(estimation: Estimation) -> tuple[Array, Array]:

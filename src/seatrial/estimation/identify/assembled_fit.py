@@ -55,7 +55,6 @@ from seatrial.estimation.identify.terms import (
     drifting_thrust_finding,
     held_couplings,
     needless_term_findings,
-    varying_gain_finding,
 )
 from seatrial.estimation.identify.warnings import (
     abandoned_criterion_finding,
@@ -163,11 +162,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
             ),
             *course_finding(estimation.model, assessment.stability, approach),
             *([decays.finding(estimation.model.parameters[decays.name].unit)] if decays else []),
-            *varying_gain_finding(estimation, runs.records),
-            *misfit_disturbance(
-                estimation.noise_model.process,
-                [p for p in predicted.predictions if p.role == "training"], task.characteristic_time,
-            ),
+            *misfit_disturbance([p for p in predicted.predictions if p.role == "training"]),
             *short_record_findings(estimation, assessment.profiles), *closed_loop_findings(estimation),
             *(sampling_findings(posterior) if posterior else ()),
             *parts.computed(

@@ -68,6 +68,7 @@ class EstimatedValueEffect:
         relative_change: of it; NaN where its interval contains 0.
         share_of_interval: its change over half its interval.
         prediction: rms change of everything compared over the training runs, over the noise.
+        is_marked: whether the trial marks it as estimated; else it stands near a formula by its prior.
     """
 
     name: str
@@ -76,6 +77,7 @@ class EstimatedValueEffect:
     relative_change: float
     share_of_interval: float
     prediction: float
+    is_marked: bool = True
 
     @property
     def matters(self) -> bool:
@@ -162,13 +164,17 @@ def estimated_value_effects(
 ) -> tuple[EstimatedValueEffect, ...]:
     """Return what each estimated value does to the coefficient that it moves most; the most first."""
     free, effects = estimation.estimate.problem.free, []
+    near_formulas = {p.name for p in estimation.model.parameters if p.prior and not p.source.startswith(NOT_MEASURED)}
     half = np.maximum(estimation.interval.half_width[: len(free)], 1e-300)  # above zero, for a division
     for shift in shifts:
         most = int(np.argmax(np.abs(shift.moves) / half))
         value = estimation.model.parameters[free[most]].value
         relative = float(shift.moves[most] / value) if abs(value) > half[most] else math.nan
         share = float(abs(shift.moves[most]) / half[most])
-        effects.append(EstimatedValueEffect(shift.name, shift.error, free[most], relative, share, shift.prediction))
+        is_marked = shift.name not in near_formulas
+        effects.append(
+            EstimatedValueEffect(shift.name, shift.error, free[most], relative, share, shift.prediction, is_marked)
+        )
     return tuple(sorted(effects, key=lambda e: -max(e.share_of_interval, e.prediction)))
 
 
@@ -195,8 +201,16 @@ def finding_with_effects(finding: Finding, effects: Sequence[EstimatedValueEffec
     ]
     return replace(
         finding, evidence=f"{'; '.join(parts)}; intervals of coefficients hold these errors, of predictions do not",
-        advice=f"measure {worst[0].name} first, write it in place of the estimate, and remove the mark",
+        advice=_advice(worst),
     )  # fmt: skip
+
+
+def _advice(worst: Sequence[EstimatedValueEffect]) -> str:
+    """Return what to measure first of what a trial marks; where it marks none of the worst, what to know better."""
+    marked = next((e.name for e in worst if e.is_marked), "")
+    if marked:
+        return f"measure {marked} first, write it in place of the estimate, and remove the mark"
+    return f"write a better value of {worst[0].name} under [model.fixed], if there is one"
 
 
 # What the forces of a box leave open, that stand in for the wave forces of a hull: a part of every interval.
@@ -289,7 +303,7 @@ class DifferingDecays:
         each = zip(self.runs[:_MOST_NAMED], self.values[:_MOST_NAMED], strict=True)
         listed = ", ".join(f"{significant(float(value), 2)} in {run}" for run, value in each)
         return Finding(
-            Severity.WARNING, "decays-differ", f"the decays do not share one {self.name}, and no single number holds",
+            Severity.WARNING, "decays-differ", f"the runs do not share one {self.name}, and no single number holds",
             f"{self.name} in {unit}: {listed}",
         )  # fmt: skip
 

@@ -1,6 +1,6 @@
 """All runs of a trial predicted: training runs to see the fit, the others to see what it is worth, with intervals."""
 
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Sequence, Set
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -255,8 +255,8 @@ def predict_runs(
         calibration = by_session[item.role is not Role.TRAIN and _is_session_known(problem, item)]
         uncertainty = replace(calibration.uncertainty, offsets=own.covariance)
         if run.divergence is None:
-            alone = _process_noise_floor(estimation, item.record, run.start.values[0], own.expected, one.rms)
-            one = replace(one, noise_floor=alone)
+            start = run.start.values[0]
+            one = replace(one, noise_floor=process_noise_floor(estimation, item.record, start, own.expected))
         if run.divergence is None and item.role is not Role.TRAIN:
             rng = np.random.default_rng(stream)
             spread = prediction_spread(
@@ -292,21 +292,6 @@ def _extrapolation(reached: Extrapolation | None, item: TrialRecord, kinds: Set[
 def _is_session_known(problem: OutputError, item: TrialRecord) -> bool:
     """Whether runs of its session were fitted."""
     return item.session in problem.data.sessions
-
-
-def _process_noise_floor(
-    estimation: Estimation, record: Record, start: Array, nuisances: Array, errors: Mapping[str, float]
-) -> dict[str, float]:
-    """Return what process noise alone would leave of the errors, as far as its intensities are known.
-
-    Where that is more than the error, the intensities hold what the model misses, and it is no floor.
-    """
-    if not any(estimation.noise_model.process.values()):
-        return {}
-    floors = process_noise_floor(
-        estimation.estimate.problem, estimation.model, record, start, nuisances, estimation.noise_model.process
-    )
-    return {name: floor for name, floor in floors.items() if floor <= errors.get(name, 0.0)}
 
 
 def _interval_basis(
@@ -353,24 +338,20 @@ def tied_model_spread(
     return {name: float(np.sqrt(np.mean(np.square(values)))) for name, values in away.items()}
 
 
-def process_noise_floor(
-    template: OutputError,
-    model: Model,
-    record: Record,
-    start: Array,
-    nuisances: Array,
-    intensities: Mapping[str, float],
-) -> dict[str, float]:
+def process_noise_floor(estimation: Estimation, record: Record, start: Array, nuisances: Array) -> dict[str, float]:
     """Return the rms error over time of an open-loop prediction that process noise alone causes, to first order.
 
     Args:
-        template: the problem whose nuisances `own` (k,) are; model: at the estimate.
         record: the run that is predicted, for its inputs; start: its initial state, (nx,).
-        intensity: of states, SI over the root of a second.
+        nuisances: of the run, (k,).
 
     Returns:
-        psi_deg in degrees, position_m in m, u, v in m/s, r in rad/s, as far as the model has them.
+        psi_deg in degrees, position_m in m, u, v in m/s, r in rad/s, as far as the model has them; empty where no
+        intensity is known.
     """
+    template, model, intensities = estimation.estimate.problem, estimation.model, estimation.noise_model.process
+    if not any(intensities.values()):
+        return {}
     split, parameters = len(template.session_parameters), model.parameters
     values = parameters.values
     values[[parameters.index(n) for n, _ in template.session_parameters]] = nuisances[:split]

@@ -11,7 +11,7 @@ from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
 from seatrial.core.results.prediction import ERROR_CHANNELS, ChannelScore, WindowBaseline, WindowScore
 from seatrial.core.values import Array, Index, InputError, Record
 from seatrial.data.trial.settings import WindowLength
-from seatrial.estimation.estimate.settings import characteristic_time
+from seatrial.estimation.estimate.settings import characteristic_time, shows_speed
 from seatrial.estimation.information.discrepancy import Discrepancy
 from seatrial.estimation.predict.draws import PredictionUncertainty, StartStates
 from seatrial.estimation.predict.open_loop import has_moving_track, open_loop_runs
@@ -236,7 +236,8 @@ def window_scores(
     has_thrusters = predictor.model.has_thrusters
     usual = [WindowLength(n, "s") for n in THRUSTER_LENGTHS]
     if not has_thrusters:
-        usual = [_usual_length(n, unit, is_steered=predictor.model.has_heading) for n in DEFAULT_LENGTHS]
+        in_lengths = predictor.model.has_heading and shows_speed(record)
+        usual = [_usual_length(n, unit, in_lengths=in_lengths) for n in DEFAULT_LENGTHS]
     wanted = [(str(w), w.value * seconds_of[w.unit]) for w in lengths or usual if w.unit in seconds_of]
     if not lengths:
         wanted = [(name, seconds) for name, seconds in wanted if 2.0 * seconds <= record.duration]
@@ -248,9 +249,9 @@ def window_scores(
     )
 
 
-def _usual_length(many: float, unit: float | None, *, is_steered: bool) -> WindowLength:
-    """So many ship lengths; of a ship that rolls or heaves about its rest, so many of its times `unit` [s]."""
-    if is_steered or unit is None:
+def _usual_length(many: float, unit: float | None, *, in_lengths: bool) -> WindowLength:
+    """So many ship lengths; of a ship whose way is not recorded, so many of its times `unit` [s]."""
+    if in_lengths or unit is None:
         return WindowLength(many, "L")
     return WindowLength(float(f"{many * unit:.2g}"), "s")
 

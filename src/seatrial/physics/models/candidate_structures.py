@@ -15,6 +15,8 @@ SURGE_TERMS = ("X_u", "X_uu", "X_vv", "X_rr", "X_dd", "X_vr")
 
 FREED_PARAMETERS: Mapping[str, Mapping[str, tuple[str, ...]]] = MappingProxyType(
     {
+        "nomoto": {"gain that falls with the yaw rate": ("alpha",)},
+        "nomoto2": {"gain that falls with the yaw rate": ("alpha",)},
         "mmg": {
             "side forces of the screw": ("Y_T", "N_T"),
             "asymmetric hull": ("Y_0", "N_0"),
