@@ -1,17 +1,20 @@
-"""Decays of several speeds fitted as one ship are named, and the interval holds what they differ by."""
+"""Runs of several speeds or loadings fitted as one ship are named, and the interval holds what they differ by."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from standard_craft import NOMOTO
 
 from seatrial.core.values import Record
 from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
 from seatrial.estimation.estimate.settings import EstimatorOptions
-from seatrial.estimation.identify.assumed_values import differing_decays, with_estimated_values
+from seatrial.estimation.identify.assumed_values import differing_runs, with_estimated_values
 from seatrial.physics.models.roll import roll
+from seatrial.problems.disturbed_craft import Disturbance, independent_nomoto
 
 FREE = ("b_1", "b_2", "c_1", "phi_0")
 
@@ -39,7 +42,7 @@ def fitted(damping: Sequence[float]) -> Estimation:
 @pytest.mark.parametrize("damping", [(0.1, 0.24, 0.38), (0.1, 0.1, 0.24, 0.24, 0.38)])
 def test_decays_of_several_speeds_are_named_and_in_the_interval(damping: tuple[float, ...]) -> None:
     estimation = fitted(damping)
-    found = differing_decays(estimation)
+    found = differing_runs(estimation)
     assert found is not None
     assert found.name == "b_1"
     assert "runs do not share one b_1" in found.finding("1/s").text
@@ -50,4 +53,21 @@ def test_decays_of_several_speeds_are_named_and_in_the_interval(damping: tuple[f
 
 
 def test_decays_of_one_ship_are_one() -> None:
-    assert differing_decays(fitted((0.2, 0.2, 0.2))) is None
+    assert differing_runs(fitted((0.2, 0.2, 0.2))) is None
+
+
+@pytest.mark.parametrize("gains", [(0.1, 0.07), (0.1, 0.1)])
+def test_a_boat_that_is_loaded_between_runs_is_named(gains: tuple[float, float]) -> None:
+    """Gusts and all: the gain of each run by its innovations."""
+    runs = list[Record]()
+    for seed, gain in enumerate(gains):
+        craft = replace(NOMOTO, model=NOMOTO.model.with_values({"K": gain}))
+        stream = np.random.default_rng([2, seed])
+        (run,) = independent_nomoto(craft, Disturbance(0.3, 5.0), 1, stream, is_closed=False, seconds=300.0)
+        runs.append(run.renamed(f"run {seed}"))
+    start = NOMOTO.model.with_values(dict(NOMOTO.guess))
+    found = differing_runs(
+        estimate_model(start, Runs.one_session_each(runs, NOMOTO.length), None, EstimatorOptions(workers=1))
+    )
+    assert (found is not None) == (gains[0] != gains[1])
+    assert found is None or (found.name == "K" and found.values == pytest.approx(gains, rel=0.2))

@@ -18,7 +18,7 @@ from seatrial.estimation.identify import fit_result
 from seatrial.estimation.identify.assumed_values import (
     box_force_findings,
     box_force_shifts,
-    differing_decays,
+    differing_runs,
     errors_of,
     estimated_value_shifts,
     with_effects,
@@ -94,9 +94,9 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
     given = {name for symmetry in assessment.structural for name in symmetry.parameters}  # said of all coefficients
     spreads = {p.name for p in estimation.model.parameters if p.prior is not None}
     stated = [shift for shift in shifts if shift.name not in given or shift.name in spreads]
-    decays = parts.computed("the differences between decays", lambda: differing_decays(estimation), None)
-    by_decay = [decays.shift(estimation.estimate.problem.free)] if decays else []
-    widened = with_estimated_values(estimation, [*stated, *by_box, *by_decay])
+    differing = parts.computed("the differences between runs", lambda: differing_runs(estimation), None)
+    by_run = [differing.shift(estimation.estimate.problem.free)] if differing else []
+    widened = with_estimated_values(estimation, [*stated, *by_box, *by_run])
     widened = parts.computed(
         "errors of instruments in the intervals",
         lambda: with_undetected_sensor_errors(widened, _instrument_errors(task, selected.estimation)), widened,
@@ -161,7 +161,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
                 "the thrust over the runs", lambda: drifting_thrust_finding(estimation, runs.records), ()
             ),
             *course_finding(estimation.model, assessment.stability, approach),
-            *([decays.finding(estimation.model.parameters[decays.name].unit)] if decays else []),
+            *([differing.finding(estimation.model.parameters[differing.name].unit)] if differing else []),
             *misfit_disturbance([p for p in predicted.predictions if p.role == "training"]),
             *short_record_findings(estimation, assessment.profiles), *closed_loop_findings(estimation),
             *(sampling_findings(posterior) if posterior else ()),

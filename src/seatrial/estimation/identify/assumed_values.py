@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from seatrial.core.equations.augment import MEMORY_PREFIX
 from seatrial.core.results import Coefficient
 from seatrial.core.text.numbers import percent, signed_percent, significant
 from seatrial.core.text.words import enumeration
@@ -23,7 +24,7 @@ from seatrial.estimation.identify.score_test import (
     own_criterion,
     score_test,
 )
-from seatrial.estimation.information.covariance import excess_spread
+from seatrial.estimation.information.covariance import excess_spread, inverse
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.physics.hydro.excitation import BoxForceError, BoxHull
 from seatrial.physics.sea.wave_forces import with_wave_forces
@@ -268,21 +269,20 @@ def _added_inputs(problem: OutputError, item: TrialRecord, way: BoxForceError) -
     return nothing
 
 
-# Roll decays that do not share one coefficient, as at several speeds or loadings: named, and in its interval.
+# Runs that do not share one coefficient, as of several speeds or loadings: named, and in its interval.
 
-_CHANCE = (
-    1e-3  # probability below which a spread between decays is no chance; chosen: with some five coefficients tested
-)
+# probability below which a spread between runs is no chance; chosen: with some five coefficients tested
+_CHANCE = 1e-3
 _LEAST_LEFT = 0.05  # of the sum of squares, as far as one linear step is trusted to explain it; chosen
-_MOST_NAMED = 8  # decays that a message names; chosen
+_MOST_NAMED = 8  # runs that a message names; chosen
 
 
 @dataclass(frozen=True, eq=False)
-class DifferingDecays:
-    """The coefficient in which decays differ most.
+class DifferingRuns:
+    """The coefficient in which runs differ most.
 
     Attributes:
-        name: of it; runs, values: each decay with what it says by itself, SI; spread: standard deviation between decays
+        name: of it; runs, values: each run with what it says by itself, SI; spread: standard deviation between runs
             beyond their errors, SI.
     """
 
@@ -292,41 +292,80 @@ class DifferingDecays:
     spread: float
 
     def shift(self, free: tuple[str, ...]) -> EstimatedValueShift:
-        """Return the spread as what the coefficient of a single decay differs by."""
+        """Return the spread as what the coefficient of a single run differs by."""
         moves = np.where([name == self.name for name in free], self.spread, 0.0)
-        return EstimatedValueShift(
-            f"{self.name} of a decay", self.spread / abs(float(np.mean(self.values))), moves, 0.0
-        )
+        return EstimatedValueShift(f"{self.name} of a run", self.spread / abs(float(np.mean(self.values))), moves, 0.0)
 
     def finding(self, unit: str) -> Finding:
-        """Return the warning `decays-differ`."""
+        """Return the warning `runs-differ`."""
         each = zip(self.runs[:_MOST_NAMED], self.values[:_MOST_NAMED], strict=True)
         listed = ", ".join(f"{significant(float(value), 2)} in {run}" for run, value in each)
         return Finding(
-            Severity.WARNING, "decays-differ", f"the runs do not share one {self.name}, and no single number holds",
-            f"{self.name} in {unit}: {listed}",
+            Severity.WARNING, "runs-differ", f"the runs do not share one {self.name}, and no single number holds",
+            f"{self.name} in {unit or '1'}: {listed}",
         )  # fmt: skip
 
 
-def differing_decays(estimation: Estimation) -> DifferingDecays | None:
-    """Return the coefficient in which the training decays differ beyond chance; None: none, or no roll decays.
+def differing_runs(estimation: Estimation) -> DifferingRuns | None:
+    """Return the coefficient in which the training runs differ beyond chance; None: none, or no test of them.
 
-    Each decay by itself, one Gauss-Newton step from the joint estimate, with the noise left when each has values of
-    its own: else what they differ by would pass for noise. Q, the sum of squares about the weighted mean over the
-    errors, is a chi squared where they share one value (Cochran 1954, Biometrics 10, 101-129).
+    Q, the sum of squares about the weighted mean over the errors, is a chi squared where runs share one value (Cochran
+    1954, Biometrics 10, 101-129). Steered ships are tested where their innovations are nearly white: what a model
+    misses differs from run to run.
     """
-    if estimation.model.has_course or len(estimation.shooting.problem.data.runs) < 2:
+    runs = estimation.shooting.problem.data.runs
+    if len(runs) < 2:
         return None
-    estimate, problem, found = estimation.shooting, estimation.shooting.problem, []
+    if not estimation.model.has_course:
+        by_run = _by_decay(estimation)
+    elif estimation.process_noise and estimation.has_process_noise and estimation.process_noise.test.is_nearly_white:
+        by_run = _by_innovations(estimation)
+    else:
+        return None
+    found = list[tuple[float, DifferingRuns]]()
+    for name, (values, errors) in by_run.items():
+        chance, spread = excess_spread(values, errors)
+        found.append((chance, DifferingRuns(name, runs, values, spread)))
+    chance, strongest = min(found, key=lambda pair: pair[0], default=(1.0, None))
+    return strongest if chance < _CHANCE else None
+
+
+def _by_decay(estimation: Estimation) -> dict[str, tuple[Array, Array]]:
+    """Return damping and restoring of each decay by itself and their errors: name -> (runs,), (runs,).
+
+    By one Gauss-Newton step from the joint estimate, with the noise left when each has values of its own: else what
+    they differ by would pass for noise.
+    """
+    estimate, problem = estimation.shooting, estimation.shooting.problem
     by_run = one_step_by_run(estimate)
     squares = 2.0 * problem.cost(estimate.common_parameters, estimate.optimum.local)
     left = np.sqrt(max(1.0 - float(np.sum(by_run.decreases)) / squares, _LEAST_LEFT))
-    for name in (*DAMPING_NAMES, *RESTORING_NAMES):
-        if name not in problem.free:
-            continue
-        column = problem.free.index(name)
-        values, errors = by_run.values[:, column], left * by_run.deviations[:, column]
-        chance, spread = excess_spread(values, errors)
-        found.append((chance, DifferingDecays(name, problem.data.runs, values, spread)))
-    chance, strongest = min(found, key=lambda pair: pair[0], default=(1.0, None))
-    return strongest if chance < _CHANCE else None
+    columns = {n: problem.free.index(n) for n in (*DAMPING_NAMES, *RESTORING_NAMES) if n in problem.free}
+    return {n: (by_run.values[:, k], left * by_run.deviations[:, k]) for n, k in columns.items()}
+
+
+def _by_innovations(estimation: Estimation) -> dict[str, tuple[Array, Array]]:
+    """Return each coefficient of each run and its error, the other coefficients as they are: name -> (runs,), (runs,).
+
+    By one step on the likelihood of the run's innovations, with the unknowns of its session free.
+    """
+    assert estimation.process_noise is not None
+    problem, point = estimation.process_noise.problem, estimation.process_noise.optimum.solution.point
+    steps = problem.difference_steps(point, estimation.process_noise.optimum.normal.hessian)
+    runs, count = problem.runs, len(problem.runs.free)
+    blocks = replace(problem, steps=steps, is_one_sided=True).segment_normals(point)
+    segments = [runs.data.run_segments(r) for r in range(len(runs.data.runs))]
+    gradients = np.array([blocks.gradients[s].sum(axis=0) for s in segments])
+    hessians = np.array([blocks.hessians[s].sum(axis=0) for s in segments])
+    for k, hessian in enumerate(hessians):
+        own = count + np.flatnonzero(np.diag(hessian)[count : count + runs.unknowns_per_session] > 0.0)
+        shares = hessian[:count, own] @ inverse(hessian[np.ix_(own, own)])
+        gradients[k, :count] -= shares @ gradients[k, own]
+        hessians[k, :count, :count] -= shares @ hessian[own, :count]
+    information = np.diagonal(hessians, axis1=1, axis2=2)[:, :count]
+    with np.errstate(divide="ignore", invalid="ignore"):  # a run that says nothing of a coefficient
+        values, errors = point[:count] - gradients[:, :count] / information, 1.0 / np.sqrt(information)
+    names = {
+        n: k for k, n in enumerate(runs.free) if n in estimation.model.parameters and not n.startswith(MEMORY_PREFIX)
+    }
+    return {n: (values[:, k], errors[:, k]) for n, k in names.items()}
