@@ -20,11 +20,11 @@ from seatrial.core.results import Prediction
 from seatrial.core.results.prediction import ChannelScore
 from seatrial.core.values import InputError
 from seatrial.data.trial import Role, Trial, TrialRecord, checked_records, load_trial
-from seatrial.data.trial.settings import window_lengths
 from seatrial.estimation.estimate import INITIAL_STATE_SHIP_LENGTHS, estimate_model, ship_length_seconds
 from seatrial.estimation.estimate.assemble import training_runs
 from seatrial.estimation.estimate.fit import with_segment_seconds
 from seatrial.estimation.predict.predict_runs import predict_runs
+from seatrial.estimation.predict.windows import window_lengths
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 CHANNELS = ("psi_deg", "position_m")

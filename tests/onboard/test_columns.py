@@ -44,7 +44,7 @@ def test_lines_are_read_as_a_file_is(rows: list, mark: str, decimal: str, named:
         return
     cells = [(repr(0.1 * k), *row) for k, row in enumerate(rows)] + [("99", "1.5", "2.5")]
     body = [mark.join(cells).replace(".", decimal) for cells in cells]
-    layout = Layout("text", (NAMED if named else NUMBERED).time, NUMBERED.columns, decimal=decimal)
+    layout = Layout("text", (NAMED if named else NUMBERED).time, NUMBERED.columns)
     lines = ([mark.join(("t", "speed", "head"))] if named else []) + body
     path = Path("run.csv")
     found, reader = samples("\n".join(lines), layout)

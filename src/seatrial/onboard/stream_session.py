@@ -28,6 +28,7 @@ from seatrial.onboard.proposer import GainProposer
 _FIRST_STEPS = 20
 # share of a step within which two times are the same; chosen: above the rounding of a logger that writes four digits
 _SAME_TIME = 1e-3
+_LONGEST_GAP_S, _LONGEST_GAP_STEPS = 30.0, 5.0  # s, and steps of a slow stream, after which a new run begins; chosen
 
 
 @dataclass(frozen=True)
@@ -391,4 +392,5 @@ class StreamSession:
 
 
 def _sample_order(stream: Stream) -> SampleOrder:
-    return SampleOrder(1.0 / stream.rate, stream.longest_gap_s)
+    dt = 1.0 / stream.rate
+    return SampleOrder(dt, max(_LONGEST_GAP_S, _LONGEST_GAP_STEPS * dt))

@@ -88,11 +88,6 @@ def test_prime_systems(tmp_path: Path, prime: str, area: float) -> None:
     assert points.sd["N"] == pytest.approx(0.001 * unit * LENGTH)
 
 
-def test_moments_about_another_point_are_moved(tmp_path: Path) -> None:
-    demand_house(read(tmp_path, columns(N=N - 0.25 * Y), origin=0.25, motion_origin=0.0))
-    demand_house(read(tmp_path, columns(N=N + 0.25 * Y), reference_point=0.25, motion_origin=0.25))
-
-
 def test_drift_at_another_point_is_moved_with_the_yaw_rate(tmp_path: Path) -> None:
     points = read(tmp_path, columns(N=N - 0.25 * Y), origin=0.25)
     np.testing.assert_allclose(points.motion["v"], -SPEED * np.sin(BETA) - 0.25 * RATE)

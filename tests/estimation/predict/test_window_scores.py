@@ -10,8 +10,7 @@ from tests.estimation.predict.test_open_loop import GENTLE, run
 from seatrial.core.equations import Model
 from seatrial.core.results import Fit
 from seatrial.core.values import InputError, Parameters, Prior, Record, Ship
-from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRun
-from seatrial.data.trial.settings import WindowLength, window_lengths
+from seatrial.data.trial import Role, Trial, TrialRun
 from seatrial.estimation.identify import identify
 from seatrial.estimation.predict.window_scores import (
     ARX,
@@ -24,6 +23,7 @@ from seatrial.estimation.predict.window_scores import (
     prior_means,
     stays,
 )
+from seatrial.estimation.predict.windows import WindowLength, window_lengths
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.roll import roll
 from seatrial.physics.models.thrusters import thrusters
@@ -48,18 +48,6 @@ def test_lengths_are_seconds_or_ship_lengths() -> None:
     for text in ("10", "5 m", "0s", "-3s"):
         with pytest.raises(InputError, match="write seconds or ship lengths"):
             window_lengths(text)
-
-
-def test_the_trial_states_windows_unless_the_command_does() -> None:
-    rng = np.random.default_rng(4)
-    runs = [run(name, GENTLE, rng, phase) for name, phase in (("a", 0.0), ("v", 3.0))]
-    roles = (Role.TRAIN, Role.VALIDATE)
-    trial = Trial(Ship("craft", {"L": 8.0}), tuple(map(TrialRun, runs, roles)), nomoto(),
-                  estimate=EstimateSettings(windows="40s"))  # fmt: skip
-    assert [w.window for w in identify(trial).validation[0].windows] == ["40 s"]
-    assert [w.window for w in identify(trial, windows="5L").validation[0].windows] == ["5 L"]
-    with pytest.raises(InputError, match="'40 m' is no length of a window"):
-        EstimateSettings(windows="40 m")
 
 
 def test_windows_of_both_units_are_scored_with_baselines(fit: Fit) -> None:

@@ -1,5 +1,6 @@
 """A `[[forces]]` block to force points in standard axes, SI, at the model's origin."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from seatrial.core.values.files import is_file
 from seatrial.core.values.notation import OPPOSITE
 from seatrial.core.values.record import froude_factor
 from seatrial.data.read import ColumnSpec, Layout, RawTable, format_of, read_log
+from seatrial.data.read.formats.text import text_layout
 from seatrial.data.trial.runs import expand_variables
 from seatrial.data.trial.schema import ForceColumn, ForcesTable, MotionColumn
 
@@ -33,23 +35,19 @@ def read_force_points(
     sheet = _read_columns(table, data_folder, where)
     length = _particular(model, "L", where)
     origin = table.origin * froude_factor("m", table.scale)
-    motion_origin = origin if table.motion_origin is None else table.motion_origin * froude_factor("m", table.scale)
-    for key, place in (("origin", origin), ("motion_origin", motion_origin)):
-        if abs(place) > length / 2:
-            raise InputError(
-                f"{where}.{key} = {place:g} m lies outside the ship, {length / 2:g} m from midship to the ends; "
-                "give it in m forward of midship"
-            )
+    if abs(origin) > length / 2:
+        raise InputError(
+            f"{where}.origin = {origin:g} m lies outside the ship, {length / 2:g} m from midship to the ends; "
+            "give it in m forward of midship"
+        )
     motion = _motion(table, sheet, length, where)
     speed = np.hypot(motion["u"], motion["v"])
     forces, sd = _forces(table, sheet, model, speed, where)
     if "N" in forces and origin != reference_point:
         forces["N"] = _transferred_moment(forces, origin - reference_point, where)
-    motion["v"] = motion["v"] + (reference_point - motion_origin) * motion["r"]
+    motion["v"] = motion["v"] + (reference_point - origin) * motion["r"]
     columns = {s: str(c.column) for s, c in (*table.motion.items(), *table.measured.items()) if c.column is not None}
-    return ForcePoints(
-        sheet.file, motion, forces, sd, ForceContent(table.includes), table.weight, table.source, columns
-    )
+    return ForcePoints(sheet.file, motion, forces, sd, ForceContent(table.includes), table.source, columns)
 
 
 def _read_columns(table: ForcesTable, data_folder: Path, where: str) -> RawTable:
@@ -58,9 +56,10 @@ def _read_columns(table: ForcesTable, data_folder: Path, where: str) -> RawTable
         raise InputError(f"{where}.file: there is no file '{path}'; check the name and [data] folder")
     wanted = {s: c for s, c in (*table.motion.items(), *table.measured.items()) if c.column is not None}
     columns = tuple(_column(symbol, column) for symbol, column in wanted.items())
+    kind = format_of(path)
+    layout = text_layout(path) if kind == "text" else Layout(kind, columns[0], ())
     # readers of several variables take those that share the first column's length, as they do with a record's time
-    layout = Layout(table.format or format_of(path), columns[0], columns, table.header_lines, table.encoding,
-                    table.separator, table.decimal)  # fmt: skip
+    layout = replace(layout, time=columns[0], columns=columns)
     return read_log(path, layout).table_of(columns[0])
 
 

@@ -119,7 +119,7 @@ def trim_to_decay_start(record: Record) -> Record:
     if len(record) - first < _MIN_ROWS:
         raise InputError(
             f"record '{record.name}': the largest {motion} stands at {record.time[first]:g} s, so that nothing is "
-            "left of the decay; give a longer record, or trim it by from_s"
+            "left of the decay; give a longer record, or cut it by parts"
         )
     _require_smaller_last_third(record.name, channel, swing[first:])
     step = f"from its release on: the largest {motion} at {record.time[first]:g} s"
@@ -370,7 +370,7 @@ def load_parts(run: TrialRun, reference_point: float) -> tuple[TrialRecord, ...]
     """
     examined = examined_record(run.raw_record())
     is_one = run.trimming.from_release or run.trimming.skip_acceleration
-    parts = [examined.record] if is_one else _parts_within(examined.parts, run.trimming)
+    parts = [examined.record] if is_one else examined.parts
     records = [_prepared(part, run, reference_point) for part in parts]
     names = [""] if len(records) == 1 else [f"-{k}" for k in range(1, len(records) + 1)]
     return tuple(
@@ -380,13 +380,6 @@ def load_parts(run: TrialRun, reference_point: float) -> tuple[TrialRecord, ...]
         )
         for k, (record, name) in enumerate(zip(records, names, strict=True))
     )  # fmt: skip
-
-
-def _parts_within(parts: Sequence[Record], trimming: Trimming) -> Sequence[Record]:
-    """The parts of which trimming leaves something; all where it leaves nothing of any."""
-    start = -np.inf if trimming.from_s is None else trimming.from_s
-    stop = np.inf if trimming.to_s is None else trimming.to_s
-    return [part for part in parts if float(part.time[-2]) > start and float(part.time[1]) < stop] or parts[:1]
 
 
 def _prepared(record: Record, run: TrialRun, reference_point: float) -> Record:
@@ -403,10 +396,6 @@ def apply_trimming(record: Record, trimming: Trimming) -> Record:
     Raises:
         InputError: nothing is left, or the channels a rule needs are absent.
     """
-    if trimming.from_s is not None or trimming.to_s is not None:
-        start = record.time[0] if trimming.from_s is None else trimming.from_s
-        stop = record.time[-1] if trimming.to_s is None else trimming.to_s
-        record = record.between(float(start), float(stop))
     if trimming.skip_acceleration:
         record = record.rows(slice(_acceleration_end_row(record), None))
     if trimming.from_release:

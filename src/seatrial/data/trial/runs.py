@@ -222,7 +222,7 @@ def _block_runs(
     files = located(block, data_folder, where, declared)
     _require_files_of_parts(block, [run.name for run in files], where)
     data = [replace(run, part=part) for run in files for part in _parts(block, run.name, len(files))]
-    trimming = Trimming(block.from_s, block.to_s, block.skip_acceleration, block.rate, block.from_release)
+    trimming = Trimming(block.skip_acceleration, block.rate, block.from_release)
     roles = _roles(block, [run.name for run in data], where)
     encounter = None if length is None else wave_encounter(block.waves, excitation, length, where)
     kind = None if block.kind is None else RecordKind(block.kind)
@@ -254,7 +254,7 @@ def _sources_of(
 
 
 def _joined(layout: Layout, block: RecordsTable, clock_offset: float = 0.0) -> Layout:
-    """The layout with what the whole block says: scale, geometry, rate, longest gap, offset of the clock [s]."""
+    """The layout with what the whole block says: scale, geometry, rate, offset of the clock [s]."""
     origin = None if block.origin is None else (block.origin.lat, block.origin.lon)
     return replace(
         layout,
@@ -262,7 +262,6 @@ def _joined(layout: Layout, block: RecordsTable, clock_offset: float = 0.0) -> L
         scale=block.scale,
         geometry=Geometry(origin, block.variation, block.antenna.x, block.antenna.y),
         rate=block.rate,
-        longest_gap=block.longest_gap,
     )
 
 
@@ -339,7 +338,6 @@ def layout_of(block: ColumnsTable, file_format: str, where: str, declared: Decla
         header_lines=block.header_lines,
         encoding=block.encoding,
         separator=block.separator,
-        decimal=block.decimal,
     )
 
 

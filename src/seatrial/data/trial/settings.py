@@ -1,48 +1,18 @@
 """Settings of estimator, search, comparison, proposal and stream: tables of a trial file, values in Python."""
 
-import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Self
 
-from pydantic import AfterValidator, BeforeValidator, Field, InstanceOf, model_validator
+from pydantic import BeforeValidator, Field, InstanceOf, model_validator
 from pydantic.dataclasses import dataclass as pydantic_dataclass
 
 from seatrial.core.values import InputError, spelling_hint
 from seatrial.data.read import Layout
 from seatrial.data.trial.amounts import STRICT_FIELDS, DelayDeviation, Deviation, raises_input_error
 from seatrial.physics.sea.spectrum import WaveEncounter
-
-# Lengths of the windows in which validation runs are predicted: of a trial file's `windows` and of `--windows`.
-
-
-@dataclass(frozen=True)
-class WindowLength:
-    """Length of a window; `unit`: s, or L for the time of a ship length at the run's speed."""
-
-    value: float
-    unit: str
-
-    def __str__(self) -> str:
-        return f"{self.value:g} {self.unit}"
-
-
-def window_lengths(text: str) -> tuple[WindowLength, ...]:
-    """Return the lengths that a text such as ``10s,5L`` names.
-
-    Raises:
-        InputError: a part is no positive number with s or L.
-    """
-    lengths = []
-    for part in filter(None, (p.strip() for p in text.split(","))):
-        match = re.fullmatch(r"(\d+\.?\d*|\.\d+)\s*([sL])", part)
-        if match is None or not float(match[1]) > 0.0:
-            raise InputError(f"windows: '{part}' is no length of a window; write seconds or ship lengths, as 10s,5L")
-        lengths.append(WindowLength(float(match[1]), match[2]))
-    return tuple(lengths)
-
 
 # Methods of estimation by the names that trial files and the command line have for them.
 
@@ -185,7 +155,6 @@ class SupportVectorSettings:
         folds: contiguous folds of Lasso's cross-validation.
         lambda_: smallest and largest penalty of Lasso, eq. (12).
         test_share: share of each record, its end, that is kept for testing, eq. (9).
-        candidates: whether Lasso chooses among all candidate terms that the model knows, or among its own alone.
         ablation: whether the pipeline is repeated with each of its steps left out.
     """
 
@@ -196,7 +165,6 @@ class SupportVectorSettings:
     folds: Annotated[int, Field(ge=2)] = 10
     lambda_: Annotated[tuple[Positive, Positive], Field(alias="lambda")] = (1e-6, 1e6)
     test_share: Annotated[float, Field(gt=0, lt=1)] = 0.2
-    candidates: bool = True
     ablation: bool = False
 
     @model_validator(mode="after")
@@ -221,15 +189,6 @@ class CompareSettings:
 def _as_deviations(value: object) -> object:
     """Names alone have the estimator's own priors."""
     return dict.fromkeys(value) if isinstance(value, list | tuple) else value
-
-
-def _checked_windows(value: str) -> str:
-    """Lengths that can be read."""
-    try:
-        window_lengths(value)
-    except InputError as error:
-        raise ValueError(str(error)) from None
-    return value
 
 
 Method = Annotated[EstimateMethod, BeforeValidator(method_named)]
@@ -260,8 +219,6 @@ class EstimateSettings:
         starts: points from which to search; None: 6 for craft with thrusters, else one.
         initial_s: s of a validation run from which its initial state is estimated; None: L/U.
         offsets_from_start: whether these seconds of a run of a new session move what is expected of its offsets, too.
-        windows: in which validation runs are predicted, by the longest of which the fit is judged, as ``10s,5L``;
-            empty: by the length of the run.
     """
 
     method: Method = EstimateMethod.AUTO
@@ -279,7 +236,6 @@ class EstimateSettings:
     starts: Annotated[int, Field(ge=1, le=100)] | None = None
     initial_s: Positive | None = None
     offsets_from_start: bool = False
-    windows: Annotated[str, AfterValidator(_checked_windows)] = ""
 
     @property
     def criterion(self) -> FitCriterion:
@@ -374,7 +330,6 @@ class StreamSettings:
         host, port: on which UDP is listened to.
         batch_window_s: time over which the batch criterion is kept [s].
         forgetting_time_s: time after which the past counts 1/e [s]; None: it counts for ever.
-        longest_gap_s: time without a sample after which a new run begins [s].
         page: port of the local page; 0: none.
         journal: file in which admitted samples are kept; None: beside the result.
     """
@@ -386,7 +341,6 @@ class StreamSettings:
     port: Annotated[int, Field(ge=1, le=65535)] | None = None
     batch_window_s: Positive = 3600.0
     forgetting_time_s: Positive | None = None
-    longest_gap_s: Positive = 30.0
     page: Annotated[int, Field(ge=0, le=65535)] = 0
     journal: Path | None = None
 
@@ -396,10 +350,6 @@ class StreamSettings:
             raise ValueError(f"source = '{self.source}' needs a file; add it")
         if self.source.endswith("udp") and self.port is None:
             raise ValueError(f"source = '{self.source}' needs a port; add it")
-        if self.longest_gap_s * self.rate < 1.0:
-            raise ValueError(
-                f"longest_gap_s = {self.longest_gap_s:g} is shorter than a step at {self.rate:g} Hz; make it longer"
-            )
         return self
 
 

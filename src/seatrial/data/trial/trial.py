@@ -32,14 +32,11 @@ class Trimming:
     """Which part of a record is used, and at what rate.
 
     Attributes:
-        from_s, to_s: s on the record's own clock; None keeps the end.
         skip_acceleration: drop what lies before 90 % of the speed at the first rudder execution.
         from_release: drop what lies before the largest swing of a decay of roll, pitch or heave.
         rate: Hz after resampling; None keeps the record's own.
     """
 
-    from_s: float | None = None
-    to_s: float | None = None
     skip_acceleration: bool = False
     rate: float | None = None
     from_release: bool = False

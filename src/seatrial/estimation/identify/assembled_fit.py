@@ -12,7 +12,6 @@ from seatrial.core.results.fields import MissingParts
 from seatrial.core.values import Finding
 from seatrial.core.values.versions import versions
 from seatrial.data.trial.records import approach_condition
-from seatrial.data.trial.settings import window_lengths
 from seatrial.estimation.estimate import Estimation, IntervalMethod
 from seatrial.estimation.identify import fit_result
 from seatrial.estimation.identify.assumed_values import (
@@ -72,6 +71,7 @@ from seatrial.estimation.identify.waves import seakeeping
 from seatrial.estimation.information.frequency_response import frequency_responses
 from seatrial.estimation.predict.predict_runs import RunPredictions, predict_runs
 from seatrial.estimation.predict.session_offsets import horizon_list, k_step_errors
+from seatrial.estimation.predict.windows import window_lengths
 
 
 def assembled_fit(task: Identification, selected: SelectedModel, findings: Sequence[Finding] = ()) -> Fit:

@@ -11,7 +11,6 @@ from seatrial.core.values import Finding, InputError, ProgressReporter
 from seatrial.data.check.phases import begins_before_release
 from seatrial.data.trial import EstimateMethod, FitCriterion, Role, Trial, checked_records
 from seatrial.data.trial.records import require_decay
-from seatrial.data.trial.settings import window_lengths
 from seatrial.estimation.estimate import EstimatorOptions, IntervalMethod
 from seatrial.estimation.estimate.criterion_choice import is_explained
 from seatrial.estimation.estimate.fit import refuse_roll_in_unmeasured_waves, refuse_unmeasured_waves
@@ -41,6 +40,7 @@ from seatrial.estimation.identify.warnings import single_order_findings, with_un
 from seatrial.estimation.identify.waves import contradicted_waves, identify_by_wave_spectrum, identify_in_unknown_waves
 from seatrial.estimation.information.frequency_response import frequency_range, frequency_range_finding
 from seatrial.estimation.predict.session_offsets import horizon_list
+from seatrial.estimation.predict.windows import window_lengths
 
 # A ship in waves whose forces, or whose elevation, were recorded.
 
@@ -171,7 +171,7 @@ def identify(
     checked = checked_records(trial)
     window_lengths(windows)  # what is misspelt is refused before the fit
     horizon_list(horizons)
-    options = EstimatorOptions(intervals, seed, windows=windows or trial.estimate.windows, horizons=horizons)
+    options = EstimatorOptions(intervals, seed, windows=windows, horizons=horizons)
     own_progress = own_estimate_progress(report_progress) if method.is_published else report_progress
     train = [r.record for r in checked.records if r.role is Role.TRAIN]
     model, held = with_unexcited_thrust_held(trial.model, train)

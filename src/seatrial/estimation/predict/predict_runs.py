@@ -10,7 +10,6 @@ from seatrial.core.equations import Model
 from seatrial.core.results import Extrapolation, IntervalBasis, Prediction
 from seatrial.core.values import Array, Finding, InputError, ProgressReporter, Record
 from seatrial.data.trial import Role, TrialRecord
-from seatrial.data.trial.settings import WindowLength
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import PointEstimate
 from seatrial.estimation.information.discrepancy import Discrepancy, HoldoutError, discrepancy
@@ -48,6 +47,7 @@ from seatrial.estimation.predict.session_offsets import (
     updated_by_start,
 )
 from seatrial.estimation.predict.window_scores import WindowPredictor, window_baselines, window_scores
+from seatrial.estimation.predict.windows import WindowLength
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.simulate.filtering import FilterPoint, KalmanFilter

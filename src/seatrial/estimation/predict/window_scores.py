@@ -10,13 +10,12 @@ from seatrial.core.equations import Model
 from seatrial.core.results.coefficients import STORED_LEVEL, two_sided_quantile
 from seatrial.core.results.prediction import ERROR_CHANNELS, ChannelScore, WindowBaseline, WindowScore
 from seatrial.core.values import Array, Index, InputError, Record
-from seatrial.data.trial.settings import WindowLength
 from seatrial.estimation.estimate.settings import characteristic_time
 from seatrial.estimation.information.discrepancy import Discrepancy
 from seatrial.estimation.predict.draws import PredictionUncertainty, StartStates
 from seatrial.estimation.predict.open_loop import has_moving_track, open_loop_runs
 from seatrial.estimation.predict.prediction_intervals import window_spreads, with_sensor_noise
-from seatrial.estimation.predict.windows import Windows, like_window
+from seatrial.estimation.predict.windows import WindowLength, Windows, like_window
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.physics.sensors.measured_outputs import SENSOR_SOURCE
 from seatrial.physics.simulate.replay import inputs_of
