@@ -65,13 +65,13 @@ def test_real_records_followed_are_the_records(repository: Path, data_folder: Pa
     trial = load_trial(repository / "examples" / "kvlcc2_hsva.toml")
     assert trial.runs and data_folder.is_dir()
     for run in trial.runs:
-        assert run.file is not None
-        reader, lines = ColumnReader(run.file.layout), TailLines(run.file.path, once=True)
+        (file,) = run.files
+        reader, lines = ColumnReader(file.layout), TailLines(file.path, once=True)
         found: list[Sample] = []
         while not lines.is_over:
             found += reader.samples(lines.read(0.0))
         record = run.raw_record()
-        expected = np.column_stack([record.time, *(record[c.symbol] for c in run.file.layout.columns)])
+        expected = np.column_stack([record.time, *(record[c.symbol] for c in file.layout.columns)])
         np.testing.assert_array_equal(table(found), expected)
 
 

@@ -18,7 +18,7 @@ from seatrial.data.read.assemble import record_from_values
 from seatrial.data.trial import Role, Trial
 from seatrial.data.trial.runs import require_stream
 from seatrial.data.trial.settings import Stream
-from seatrial.data.trial.trial import TrialRun
+from seatrial.data.trial.trial import Run
 from seatrial.onboard.journal import Journal, RunEntry
 from seatrial.onboard.proposer import GainProposer
 
@@ -204,7 +204,7 @@ def with_training_records(trial: Trial, records: tuple[Record, ...], *, has_chan
     has_changed: whether they are of another ship than its own training runs, which are then left out.
     """
     waves = require_stream(trial).waves
-    came = tuple(TrialRun(record, waves=waves) for record in records)
+    came = tuple(Run(record, waves=waves) for record in records)
     others = tuple(run for run in trial.runs if run.role is not Role.TRAIN)
     return replace(trial, runs=(*(() if has_changed else trial.runs_with_role(Role.TRAIN)), *came, *others))
 

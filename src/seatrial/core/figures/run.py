@@ -269,11 +269,14 @@ def in_suitable_unit(channel: ChannelPanel) -> ChannelPanel:
     if not prefix or _PREFIXED_UNIT.search(channel.label) is None:
         return channel
     factor = _PREFIXES[prefix]
-    curves = tuple(replace(c, values=c.values / factor) for c in channel.curves)
-    edges = (None if edge is None else edge / factor for edge in (channel.lower, channel.upper))
-    limits = tuple(replace(rule, value=rule.value / factor) for rule in channel.limits)
-    ends = None if channel.ends is None else (channel.ends[0] / factor, channel.ends[1] / factor)
-    return ChannelPanel(_PREFIXED_UNIT.sub(rf"[{prefix}\1]", channel.label), curves, *edges, limits, ends)
+    return ChannelPanel(
+        _PREFIXED_UNIT.sub(rf"[{prefix}\1]", channel.label),
+        tuple(replace(c, values=c.values / factor) for c in channel.curves),
+        None if channel.lower is None else channel.lower / factor,
+        None if channel.upper is None else channel.upper / factor,
+        tuple(replace(rule, value=rule.value / factor) for rule in channel.limits),
+        None if channel.ends is None else (channel.ends[0] / factor, channel.ends[1] / factor),
+    )
 
 
 @dataclass(frozen=True, eq=False)

@@ -190,8 +190,10 @@ def _error_panel(channel: ChannelPanel) -> ChannelPanel:
     """The record less the model, with the model's band about zero."""
     reference, model = channel.curves
     error = TimeCurve(reference.time, reference.values - model.values, PLAIN, "record less model")
-    edges = [None if edge is None else edge - model.values for edge in (channel.lower, channel.upper)]
-    return ChannelPanel(f"{_ERROR}{channel.label}", (error,), *edges)
+    label = f"{_ERROR}{channel.label}"
+    if channel.lower is None or channel.upper is None:
+        return ChannelPanel(label, (error,))
+    return ChannelPanel(label, (error,), channel.lower - model.values, channel.upper - model.values)
 
 
 def _single_channel(view: RunView) -> Chart:

@@ -28,7 +28,7 @@ from seatrial.data.check.phases import (
     swinging_channel,
 )
 from seatrial.data.check.water_speed import speed_through_water
-from seatrial.data.trial.trial import Role, Trial, TrialRun, Trimming
+from seatrial.data.trial.trial import Role, Run, Trial, Trimming
 from seatrial.physics.models.thruster_layout import layout_of
 from seatrial.physics.sea.spectrum import WaveEncounter
 from seatrial.physics.sea.wave_forces import with_wave_forces
@@ -277,7 +277,7 @@ def _answered(finding: Finding, trial: Trial) -> Finding:
     return replace(finding, severity=Severity.INFO, advice=advice)
 
 
-def _load_unless_bad(run: TrialRun, reference_point: float) -> tuple[TrialRecord | Finding, ...]:
+def _load_unless_bad(run: Run, reference_point: float) -> tuple[TrialRecord | Finding, ...]:
     """The parts of the run, or of a validation run that cannot be read the finding that says why."""
     try:
         return load_parts(run, reference_point)
@@ -345,7 +345,7 @@ def _refuse_absurd_noise(channel: str, deviation: float, records: Sequence[Recor
         )
 
 
-def load_run(run: TrialRun, reference_point: float) -> TrialRecord:
+def load_run(run: Run, reference_point: float) -> TrialRecord:
     """Return the longest of `load_parts` under the name of the run, with the findings on all of it.
 
     Raises:
@@ -357,7 +357,7 @@ def load_run(run: TrialRun, reference_point: float) -> TrialRecord:
     return replace(longest, record=longest.record.renamed(longest.run), findings=findings)
 
 
-def load_parts(run: TrialRun, reference_point: float) -> tuple[TrialRecord, ...]:
+def load_parts(run: Run, reference_point: float) -> tuple[TrialRecord, ...]:
     """Return one run repaired and checked, in standard conventions, with wave forces, trimmed and resampled.
 
     Holes longer than the craft's memory cut it into parts that begin anew, called after it and numbered; of a decay
@@ -382,7 +382,7 @@ def load_parts(run: TrialRun, reference_point: float) -> tuple[TrialRecord, ...]
     )  # fmt: skip
 
 
-def _prepared(record: Record, run: TrialRun, reference_point: float) -> Record:
+def _prepared(record: Record, run: Run, reference_point: float) -> Record:
     """A part of a run as the estimate takes it."""
     record = canonical_record(record, reference_point)
     if run.waves is not None and run.waves.spectrum is None:
