@@ -95,8 +95,8 @@ def reading_lines(paths: tuple[Path, Path]) -> list[Line]:
         (paths[0], lambda: pd.read_csv(paths[0]), "seconds"), (paths[1], with_dates, "ISO time, to_datetime")
     ):  # fmt: skip
         (run,) = load_runs(path.with_suffix(".toml"))
-        assert run.file is not None
-        read = partial(read_record, run.file.path, run.file.layout)
+        (file,) = run.files
+        read = partial(read_record, file.path, file.layout)
         ratio = cpu_time(read) / cpu_time(plain)
         lines.append(at_most(f"reading over pandas, {kind}", ratio, "", READ_LIMIT))
     return lines

@@ -260,8 +260,7 @@ def tanker() -> Iterator[Line]:
     trial = load_trial(EXAMPLES / "kvlcc2_hsva.toml")
     runs = tuple(run for run in trial.runs if run.role is Role.TRAIN)
     raws = [run.raw_record() for run in runs]
-    assert runs[0].file is not None
-    stream = Stream(source=StreamSource.STDIN, layout=runs[0].file.layout, rate=1.0 / raws[0].dt)
+    stream = Stream(source=StreamSource.STDIN, layout=runs[0].files[0].layout, rate=1.0 / raws[0].dt)
     estimator, began = OnlineEstimator(replace(trial, runs=(), stream=stream)), time.process_time()
     for raw in raws:
         estimator.begin_run()

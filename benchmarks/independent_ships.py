@@ -23,7 +23,7 @@ from sample_rates import NOMOTO, ROLL, USV, nomoto_rates, roll_rates, simulated,
 from scipy.interpolate import CubicSpline
 
 from seatrial.core.values import Array, InputError, Record, Ship
-from seatrial.data.trial import EstimateSettings, Trial, TrialRun
+from seatrial.data.trial import EstimateSettings, Run, Trial
 from seatrial.estimation.identify import identify
 from seatrial.physics.models import model_named
 
@@ -340,7 +340,7 @@ def posed(craft: Craft, fault: Fault, seed: int) -> Trial:
         model = model.with_values({n: 0.8 * v for n, v in craft.truth.items()})
     model = model.with_parameters(model.parameters.only_free([*craft.truth, *craft.freed]))
     rng = np.random.default_rng([seed, round(10 * craft.rate)])
-    runs = tuple(TrialRun(record(craft, k, fault, rng)) for k in range(len(craft.starts)))
+    runs = tuple(Run(record(craft, k, fault, rng)) for k in range(len(craft.starts)))
     settings = EstimateSettings().with_known_timing(model.input_names)
     return Trial(Ship(craft.model, {"L": craft.length}), runs, model, settings)
 

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Record
-from seatrial.data.trial import Role, TrialRun
+from seatrial.data.trial import Role, Run
 from seatrial.data.trial.records import load_parts
 from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
@@ -207,7 +207,7 @@ def fitted(craft: Craft, records: Sequence[Record], left_out: Record, seed: int)
     off = 1.0 + START_SPREAD * np.random.default_rng(seed).uniform(-1.0, 1.0, len(truth))
     blank = craft.model.with_values(dict(zip(names, (truth * off).tolist(), strict=True)))
     try:
-        parts = [part for record in records for part in load_parts(TrialRun(record, Role.TRAIN, record.name), 0.0)]
+        parts = [part for record in records for part in load_parts(Run(record, Role.TRAIN, record.name), 0.0)]
         runs = Runs(tuple(p.record for p in parts), tuple(p.session for p in parts), craft.length)
         fit = estimate_model(blank, runs, None, EstimatorOptions(workers=1))
         heading, position = left_out_errors(fit, left_out, craft.start_s)

@@ -59,13 +59,13 @@ def steered(rows: int, seed: int = 6) -> dict[str, np.ndarray]:
 def cost_of(rows: int) -> Cost:
     """Identify one record of that length in this process."""
     from seatrial.core.values import Record, Ship
-    from seatrial.data.trial import Role, Trial, TrialRun
+    from seatrial.data.trial import Role, Run, Trial
     from seatrial.estimation.identify import identify
     from seatrial.physics.models.nomoto import nomoto
     from seatrial.physics.simulate.filtering import KalmanFilter
 
     record = Record.from_arrays("long", DT * np.arange(rows), steered(rows))
-    trial = Trial(Ship("craft", {"L": 50.0}), (TrialRun(record, Role.TRAIN),), nomoto())
+    trial = Trial(Ship("craft", {"L": 50.0}), (Run(record, Role.TRAIN),), nomoto())
     filtered, run = [0], KalmanFilter._run
 
     def counted(self, segment, *arguments, **keywords):

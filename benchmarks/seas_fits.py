@@ -66,7 +66,7 @@ def trial_of(
         model = model.with_parameters(model.parameters.with_values(means).with_priors(priors))
     else:
         model = model.with_values(dict(craft.guess))
-    runs = (st.TrialRun(train.record, session="day"), st.TrialRun(held.record, st.Role.VALIDATE, session="day"))
+    runs = (st.Run(train.record, session="day"), st.Run(held.record, st.Role.VALIDATE, session="day"))
     return st.Trial(craft.ship, runs, model, settings, truth=truth)
 
 

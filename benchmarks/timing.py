@@ -150,7 +150,7 @@ def fitted(cell: Cell, seed: int) -> dict[str, Fitted]:
     """Return K and T of one record as `identify` estimates them."""
     record, pieces = simulated(cell, seed)
     settings = st.EstimateSettings(segment_s=SEGMENT) if cell.timing == "segments" else st.EstimateSettings()
-    trial = st.Trial(st.Ship("boat", {"L": 8.0}), (st.TrialRun(record),), st.models.nomoto(), estimate=settings)
+    trial = st.Trial(st.Ship("boat", {"L": 8.0}), (st.Run(record),), st.models.nomoto(), estimate=settings)
     fit = st.identify(trial)
     bound = bounds(cell, pieces, record.time)
     is_settled = all(f.code != "not-converged" for f in fit.findings)
@@ -214,7 +214,7 @@ def waterjet(given: argparse.Namespace) -> list[str]:
         # as a file has it: nothing says at what rate the nozzle was simulated
         bare = {s: replace(c, sample_s=0.0, between="") for s, c in late.channels.items()}
         record = replace(late, channels=bare)
-        trial = st.Trial(st.Ship("waterjet", {"L": 9.8}), (st.TrialRun(record),), craft)
+        trial = st.Trial(st.Ship("waterjet", {"L": 9.8}), (st.Run(record),), craft)
         fit = st.identify(trial)
         for c in fit.coefficients:
             if c.lower is not None and c.upper is not None:

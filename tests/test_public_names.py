@@ -67,7 +67,7 @@ WORKS: dict[str, Callable[[Case], object]] = {
     "Solution": lambda c: isinstance(c.fit.solution, st.Solution),
     "Study": lambda _: isinstance(st.load(KEPT / "earlier_results" / "study"), st.Study),
     "Trial": lambda c: isinstance(st.load_trial(c.trial), st.Trial),
-    "TrialRun": lambda c: isinstance(st.load_trial(c.trial).runs[0], st.TrialRun),
+    "Run": lambda c: isinstance(st.load_trial(c.trial).runs[0], st.Run),
     "Tuning": lambda _: isinstance(st.load(KEPT / "earlier_results" / "tuning"), st.Tuning),
     "benchmark": lambda c: refuses(lambda: st.benchmark("qi2025-135-whole", c.folder, runs=0), "0 runs"),
     "campaign": lambda c: refuses(lambda: st.campaign(c.folder / "none.toml", c.folder / "store"), "cannot be read"),

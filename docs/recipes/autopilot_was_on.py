@@ -43,7 +43,7 @@ axes.legend(loc="lower left")
 
 trial = st.Trial(
     st.Ship("craft", {"L": 8.0}),
-    (st.TrialRun(record),),
+    (st.Run(record),),
     st.models.nomoto(),
     truth={"K": K, "T": T},
     estimate=st.EstimateSettings(channels=("psi", "r")),

@@ -28,7 +28,7 @@ def trial(name: str, K: float, T: float, seed: int) -> st.Trial:
         name, time, {"psi": run["psi"] + noise[0], "r": run["r"] + noise[1], "delta": rudder}
     )
     settings = st.EstimateSettings(channels=("psi", "r"))
-    return st.Trial(st.Ship(name, {"L": 8.0}), (st.TrialRun(record),), st.models.nomoto(), settings)
+    return st.Trial(st.Ship(name, {"L": 8.0}), (st.Run(record),), st.models.nomoto(), settings)
 
 
 laden = st.identify(trial("laden", K=0.13, T=9.5, seed=1))

@@ -37,9 +37,9 @@ def measured(manoeuvre: str) -> st.Record:
 
 
 runs = (
-    st.TrialRun(measured("zigzag:10/10")),
-    st.TrialRun(measured("zigzag:20/20")),
-    st.TrialRun(measured("turning-circle:20"), st.Role.VALIDATE),
+    st.Run(measured("zigzag:10/10")),
+    st.Run(measured("zigzag:20/20")),
+    st.Run(measured("turning-circle:20"), st.Role.VALIDATE),
 )
 
 # %%

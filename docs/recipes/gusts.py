@@ -40,7 +40,7 @@ axes.legend(loc="lower left")
 
 trial = st.Trial(
     st.Ship("craft", {"L": 8.0}),
-    (st.TrialRun(record),),
+    (st.Run(record),),
     st.models.nomoto(),
     st.EstimateSettings(channels=("psi", "r")),
     truth={"K": K, "T": T},

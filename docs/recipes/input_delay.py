@@ -43,7 +43,7 @@ axes.legend(loc="lower left")
 # %%
 # Without and with ``delays``:
 
-ship, runs = st.Ship("craft", {"L": 8.0}), (st.TrialRun(record),)
+ship, runs = st.Ship("craft", {"L": 8.0}), (st.Run(record),)
 estimates = {}
 for label, settings in (
     ("as logged", st.EstimateSettings(channels=("psi", "r"))),

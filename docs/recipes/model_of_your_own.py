@@ -46,7 +46,7 @@ axes.legend(loc="lower left")
 # %%
 # A trial made in code takes the model as it takes a built-in one.
 
-fit = st.identify(st.Trial(st.Ship("craft", {"L": 8.0}), (st.TrialRun(zigzag),), model(), truth=truth))
+fit = st.identify(st.Trial(st.Ship("craft", {"L": 8.0}), (st.Run(zigzag),), model(), truth=truth))
 fit.summary()
 
 # %%

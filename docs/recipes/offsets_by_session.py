@@ -26,7 +26,7 @@ for day, zero in zip(("monday", "tuesday", "friday"), (-2.0, 1.0, 3.0), strict=T
         noise = np.radians(0.1) * rng.standard_normal((2, time.size))
         measured = {"psi": true["psi"] + noise[0], "r": true["r"] + noise[1], "delta": rudder + np.radians(zero)}
         name = f"{day}_{amplitude:.0f}"
-        runs.append(st.TrialRun(st.Record.from_arrays(name, time, measured), session=day))
+        runs.append(st.Run(st.Record.from_arrays(name, time, measured), session=day))
 
 # %%
 # ``offsets`` frees the zero for each session. In a trial file: ``offsets = ["delta"]`` under ``[estimate]``, and

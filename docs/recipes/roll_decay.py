@@ -28,7 +28,7 @@ axes.set(xlabel="time [s]", ylabel="roll angle [deg]")
 
 trial = st.Trial(
     st.Ship("barge", {"L": 60.0, "B": 12.0, "d": 3.0}),
-    (st.TrialRun(decay),),
+    (st.Run(decay),),
     st.models.roll(),
     truth={"b_1": 0.03, "b_2": 0.2},
 )

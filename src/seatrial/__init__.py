@@ -39,7 +39,7 @@ Values
     Ship, Parameters, Prior      particulars; named values; Gaussian knowledge of one
     Model                        equations with parameters
     Sheet                        on which a model is written
-    Trial, TrialRun, Role        what is to be estimated; one of its records and what that is for
+    Trial, Run, Role             what is to be estimated; one of its records and what that is for
     EstimateSettings             how it is to be estimated
     Problem, Solution            a trial as an optimiser sees it; what an optimiser returns
     Fit, Design, Tuning, Study   results

@@ -34,7 +34,7 @@ from seatrial.core.results import Design, Fit, Study
 from seatrial.core.results.tuning import Tuning
 from seatrial.core.values import Channel, Finding, InputError, Parameters, Prior, Record, Ship
 from seatrial.data.read import ColumnSpec, Layout
-from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRun
+from seatrial.data.trial import EstimateSettings, Role, Trial, Run
 from seatrial.estimation import regress as estimators
 from seatrial.estimation.estimate.trial_problem import TrialProblem as Problem
 from seatrial.numerics import optimise as optimisers
@@ -56,12 +56,12 @@ __all__ = [
     "Problem",
     "Record",
     "Role",
+    "Run",
     "Sheet",
     "Ship",
     "Solution",
     "Study",
     "Trial",
-    "TrialRun",
     "Tuning",
     "benchmark",
     "campaign",

@@ -9,7 +9,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Record, RecordKind
-from seatrial.data.trial import Trial, TrialRecord, TrialRun, checked_records
+from seatrial.data.trial import Run, Trial, TrialRecord, checked_records
 from seatrial.estimation.predict import HoldoutProtocol
 from seatrial.estimation.problem import LinearOutputError
 from seatrial.estimation.search import JudgedRun, LinearCandidates
@@ -205,7 +205,7 @@ def _trial(data: SearchData, model: Model, start: Array, box: Box, has_noise: bo
     }  # fmt: skip
     record = Record.from_arrays("run", time, channels, RecordKind.SIMULATED)
     noise = {"z": float(MOTION_NOISE[0]), "theta": float(MOTION_NOISE[1])} if has_noise else {}
-    return Trial(SHIP, (TrialRun(record),), start_within(model, model.parameters.free_names, start, box), noise=noise)
+    return Trial(SHIP, (Run(record),), start_within(model, model.parameters.free_names, start, box), noise=noise)
 
 
 def heave_pitch_problem(

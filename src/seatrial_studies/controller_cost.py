@@ -181,10 +181,10 @@ _SEED_KEY = 23
 LABELS = ControlLabels(("KP", "KD, s"), "pitch rms, deg", "fin rms, deg")
 CONTROLLER_COST_TITLE = "What wrong coefficients cost a controller"
 _NOTE = (
-    "A fin (6 m², 25 m aft, assumed as elsewhere) turned by KP pitch + KD pitch rate, tuned by simulation of the ship "
-    f"that the coefficients describe, in {SEAS} seas of 200 s, for least pitch variance plus {FIN_WEIGHT:g}² fin "
-    "variance; then simulated on the true ship in the same seas. A positive fin angle lifts the stern; pitch is "
-    "positive bow up, so that positive gains work against it. Fin angles are not limited. 'Predicted': pitch of the "
+    "A fin (6 m², 25 m aft, assumed as elsewhere) is turned by KP pitch + KD pitch rate. The gains are tuned on the "
+    f"ship that the coefficients describe, in {SEAS} seas of 200 s, for least pitch variance plus {FIN_WEIGHT:g}² fin "
+    "variance. They are then simulated on the true ship in the same seas. A positive fin angle lifts the stern; pitch "
+    "is positive bow up, so that positive gains work against it. Fin angles are not limited. 'Predicted': pitch of the "
     "ship that the coefficients describe. 'Cost over best': the sum that was to be least, on the true ship, over that "
     "of the controller tuned on the truth; without control it is the pitch variance alone."
 )

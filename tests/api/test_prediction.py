@@ -79,7 +79,7 @@ def test_a_record_survives_being_written_and_read(zigzag: st.Record, tmp_path: P
 def test_a_file_of_another_program_is_read_by_its_layout(tmp_path: Path) -> None:
     (tmp_path / "log.txt").write_text("t;kn\n0,0;10,0\n0,5;10,0\n")
     columns = (st.ColumnSpec("u", "kn", "kn"),)
-    layout = st.Layout("text", st.ColumnSpec("time", "t", "s"), columns, separator=";", decimal=",")
+    layout = st.Layout("text", st.ColumnSpec("time", "t", "s"), columns, separator=";")
     np.testing.assert_allclose(st.read_record(tmp_path / "log.txt", layout)["u"], 10.0 * 1852.0 / 3600.0)
 
 

@@ -1,6 +1,5 @@
 """Texts are in the plain English of the field: retired words stand in no page and in no text of the packages."""
 
-import ast
 import re
 import tomllib
 from collections.abc import Iterator
@@ -8,7 +7,8 @@ from pathlib import Path
 from statistics import median
 
 import pytest
-from tests.conventions.source_tree import PACKAGES, REPOSITORY, SourceFile, source_files
+from tests.conventions.joined_texts import joined_texts
+from tests.conventions.source_tree import PACKAGES, REPOSITORY, parsed, source_files
 
 # docs/glossary.md gives the plain word for each.
 RETIRED = re.compile(
@@ -97,20 +97,10 @@ FORMULA = re.compile(r"(?:^|\s)[=:]=?\s|\[\[|'' ")
 SENTENCE_END = re.compile(r"(?<=[.?!])\s+")
 
 
-def _screen_texts(file: SourceFile) -> Iterator[str]:
-    """Texts that are printed, values in their places as a letter; docstrings and texts of attributes left out."""
-    explained = {id(n.value) for n in file.nodes if isinstance(n, ast.Expr)}
-    parts = {id(part) for n in file.nodes if isinstance(n, ast.JoinedStr) for part in n.values}
-    for node in file.nodes:
-        if isinstance(node, ast.JoinedStr):
-            yield "".join(str(part.value) if isinstance(part, ast.Constant) else "X" for part in node.values)
-        elif isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in explained | parts:
-            yield node.value
-
-
 def _sentences() -> Iterator[tuple[str, str]]:
-    """Sentences of screens and of tables of texts, each with the place where it stands."""
-    texts = [(file.folder, text) for file in source_files(PACKAGES[0]) for text in _screen_texts(file)]
+    """Sentences of screens, error messages, verdicts and tables of texts, each with the place where it stands."""
+    files = (file for package in PACKAGES for file in source_files(package))
+    texts = [(file.place(node), text) for file in files for node, text in joined_texts(file)]
     for table in sorted((REPOSITORY / "src" / "seatrial").rglob("*.toml")):
         rows = tomllib.loads(table.read_text(encoding="utf-8"))
         texts += [(f"{table.name} [{key}]", text) for key, row in rows.items() if isinstance(row, dict)
@@ -128,3 +118,22 @@ def test_half_of_all_sentences_have_eighteen_words_or_fewer() -> None:
     """Of those of five words and more: shorter ones are names and headings."""
     lengths = [count for _, text in _sentences() if (count := len(text.split())) >= LEAST_WORDS]
     assert median(lengths) <= MEDIAN_WORDS
+
+
+def test_the_parts_of_a_message_are_read_together(tmp_path: Path) -> None:
+    """So that no long sentence hides in pieces: alternatives, names of the function, constants and what it calls."""
+    source = tmp_path / "seatrial" / "log.py"
+    source.parent.mkdir()
+    source.write_text(
+        '''HINT = "; correct " "it"
+def refuse(name):
+    """Refuse."""
+    reason = f"'{name}' is no " + kind(name)
+    raise InputError(f"{name}: " + (reason if name else "none") + HINT)
+def kind(name):
+    return "channel" if name else "channel of this log"
+'''
+    )
+    texts = [text for _, text in joined_texts(parsed(source, tmp_path))]
+    assert "X: 'X' is no channel of this log; correct it" in texts
+    assert "Refuse." not in texts

@@ -5,6 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+MOST_KEYS = 242  # of a trial file, a key of two tables counted twice; chosen
+
 
 def test_command_line_and_keys_are_current(repository: Path) -> None:
     command = [sys.executable, "docs/write_reference.py", "--check"]
@@ -16,6 +18,7 @@ def test_every_key_of_the_trial_file_has_its_meaning_on_its_page_or_that_of_thru
     page = (repository / "docs" / "trial-file.md").read_text(encoding="utf-8")
     meanings, _, keys = page.partition("## Every key, with type, unit and default")
     meanings += (repository / "docs" / "thrusters.md").read_text(encoding="utf-8")
-    listed = set(re.findall(r"^\| `(\w+)` \|", keys, re.MULTILINE))
-    assert len(listed) > 100
+    rows = re.findall(r"^\| `(\w+)` \|", keys, re.MULTILINE)
+    listed = set(rows)
+    assert len(listed) > 100 and len(rows) <= MOST_KEYS
     assert sorted(key for key in listed if not re.search(rf"\b{key}\b", meanings)) == []

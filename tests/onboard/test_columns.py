@@ -44,7 +44,7 @@ def test_lines_are_read_as_a_file_is(rows: list, mark: str, decimal: str, named:
         return
     cells = [(repr(0.1 * k), *row) for k, row in enumerate(rows)] + [("99", "1.5", "2.5")]
     body = [mark.join(cells).replace(".", decimal) for cells in cells]
-    layout = Layout("text", (NAMED if named else NUMBERED).time, NUMBERED.columns, decimal=decimal)
+    layout = Layout("text", (NAMED if named else NUMBERED).time, NUMBERED.columns)
     lines = ([mark.join(("t", "speed", "head"))] if named else []) + body
     path = Path("run.csv")
     found, reader = samples("\n".join(lines), layout)
@@ -65,13 +65,13 @@ def test_real_records_followed_are_the_records(repository: Path, data_folder: Pa
     trial = load_trial(repository / "examples" / "kvlcc2_hsva.toml")
     assert trial.runs and data_folder.is_dir()
     for run in trial.runs:
-        assert run.file is not None
-        reader, lines = ColumnReader(run.file.layout), TailLines(run.file.path, once=True)
+        (file,) = run.files
+        reader, lines = ColumnReader(file.layout), TailLines(file.path, once=True)
         found: list[Sample] = []
         while not lines.is_over:
             found += reader.samples(lines.read(0.0))
         record = run.raw_record()
-        expected = np.column_stack([record.time, *(record[c.symbol] for c in run.file.layout.columns)])
+        expected = np.column_stack([record.time, *(record[c.symbol] for c in file.layout.columns)])
         np.testing.assert_array_equal(table(found), expected)
 
 

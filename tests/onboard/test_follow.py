@@ -26,9 +26,9 @@ from tests.onboard.streams import (
 
 from seatrial.core.results.online import Sample, SampleCounts, Snapshot
 from seatrial.core.values import InputError
-from seatrial.data.trial import RecordFile, Role, Trial, load_trial
+from seatrial.data.trial import Role, RunFiles, Trial, load_trial
 from seatrial.data.trial.runs import require_stream
-from seatrial.data.trial.trial import TrialRun
+from seatrial.data.trial.trial import Run
 from seatrial.estimation.identify import identify
 from seatrial.onboard.columns import ColumnReader
 from seatrial.onboard.follow import follow
@@ -55,7 +55,7 @@ def in_a_hurry(monkeypatch: pytest.MonkeyPatch) -> None:
 def identified(trial: Trial, file: Path) -> dict:
     """What identify says where the file stands under [[records]] in place of [follow]."""
     stream = require_stream(trial)
-    run = TrialRun(RecordFile(file, stream.layout), waves=stream.waves)
+    run = Run(RunFiles.of_file(file, stream.layout), waves=stream.waves)
     others = tuple(r for r in trial.runs if r.role is not Role.TRAIN)
     return fit_json_without_time(
         identify(replace(trial, stream=None, runs=(*trial.runs_with_role(Role.TRAIN), run, *others)))

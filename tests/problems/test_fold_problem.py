@@ -7,7 +7,7 @@ import pytest
 
 from seatrial.core.values import Ship
 from seatrial.data.example_series import SENSOR_NOISE, simulate_run, true_model, with_sensor_noise
-from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRecord, TrialRun
+from seatrial.data.trial import EstimateSettings, Role, Run, Trial, TrialRecord
 from seatrial.estimation.predict import HoldoutProtocol
 from seatrial.problems import attempt, built_in_methods, fold_draw
 from seatrial.problems.problem import BenchmarkProblem
@@ -25,7 +25,7 @@ def items() -> list[TrialRecord]:
 
 @pytest.fixture(scope="module")
 def trial(items: list[TrialRecord]) -> Trial:
-    runs = tuple(TrialRun(item.record, session=item.session) for item in items)
+    runs = tuple(Run(item.record, session=item.session) for item in items)
     ship = Ship("craft", {"L": 9.8, "d": 0.71, "m": 5540.0})
     return Trial(ship, runs, true_model(), EstimateSettings(segment_s=20.0), dict(SENSOR_NOISE))
 

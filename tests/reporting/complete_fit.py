@@ -96,7 +96,7 @@ def identifiability(fit: Fit) -> Identifiability:
         structural=(
             Symmetry(
                 (*names[:3], fixed[0]),
-                f"all coefficients, thrust and inertias can be scaled together: fix or give a prior for one of "
+                f"all coefficients, thrust and inertias can be scaled together. Fix or give a prior for one of "
                 f"{names[0]}, {fixed[0]}",
                 {names[0]: 1.0, names[1]: 1.0, names[2]: 1.0, fixed[0]: 1.0},
             ),

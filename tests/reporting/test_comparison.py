@@ -32,7 +32,7 @@ def test_tables_have_the_digits_that_intervals_allow() -> None:
     comparison = fabricated_comparison()
     assert cells(difference_table(comparison.coefficients)) == [
         ("K, 1/s", "0.15", "0.19", "0.040", "0.020", "0.060", "differs"),
-        ("T, s", "8.0", "7.6", "−0.40", "−2.4", "1.6", ""),
+        ("T, s", "8.0", "7.6", "−0.4", "−2.4", "1.6", ""),
     ]
     turn, failed = (manoeuvre_section(m) for m in comparison.manoeuvres)
     assert cells(turn.table)[1] == ("steady drift angle, deg", "12.00", "12.50", "0.50", "", "", "")

@@ -68,7 +68,7 @@ def rows(design: Design) -> dict[str, KeyFact]:
 
 def test_the_verdict_compares_with_the_best_that_keeps_the_limits(design: Design) -> None:
     best = 100.0 * design.baselines[1].worst
-    assert f"; the best standard manoeuvre of equal length has {best:.0f} %." in verdict(design)
+    assert f"; the best standard manoeuvre within the limits has {best:.0f} %." in verdict(design)
     facts = rows(design)
     drawn = facts["Ships that differ"].text
     assert drawn.endswith("smaller than with any standard manoeuvre within the limits on 5 of 5.")

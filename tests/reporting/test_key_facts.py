@@ -160,7 +160,7 @@ def test_warnings_name_findings_and_a_search_that_did_not_converge(fit: Fit) -> 
 
 def test_the_picture_is_the_worst_held_out_run_with_its_heading(fit: Fit) -> None:
     screen = first_screen(fit, 9.8)
-    assert "zigzag_25_25" in screen.caption and screen.figure.count('"label"') == 1 and "ψ [deg]" in screen.figure
+    assert "zigzag_25_25" in screen.caption and screen.figure.count('"label"') == 2 and "ψ [deg]" in screen.figure
     assert first_screen(replace(fit, predictions=()), 9.8).figure == ""
 
 

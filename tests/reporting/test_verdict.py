@@ -80,7 +80,7 @@ def test_the_error_as_a_share_of_the_motion_is_graded(fit: Fit, share: float, te
     assert verdict(with_runs(fit, p)) == f"{text}{error_text('psi_deg', p.rms['psi_deg'])} in heading."
 
 
-def test_of_several_runs_those_that_are_missed_are_named(fit: Fit) -> None:
+def test_of_several_runs_the_worst_is_named(fit: Fit) -> None:
     p = held(fit)
     first, second = (replace(with_share(p, share), record=name) for name, share in (("one", 0.8), ("two", 0.2)))
     error = error_text("psi_deg", first.rms["psi_deg"])
@@ -89,7 +89,7 @@ def test_of_several_runs_those_that_are_missed_are_named(fit: Fit) -> None:
     )
     missed = with_share(first, 1.2)
     text = verdict(with_runs(fit, missed, replace(missed, record="two")))
-    assert text.startswith("Does not predict 2 of 2 held-out runs (one and two), one worst: ")
+    assert text.startswith("Does not predict 2 of 2 held-out runs, one worst: ")
     both = verdict(with_runs(fit, second, replace(second, record="one")))
     assert both.startswith("Predicts 2 held-out runs well or better, two worst: ")
 

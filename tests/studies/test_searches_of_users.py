@@ -14,10 +14,10 @@ from seatrial.core.values import Array
 from seatrial.data.trial import (
     EstimateMethod,
     EstimateSettings,
+    Run,
     SearchFitness,
     SearchSettings,
     Trial,
-    TrialRun,
     load_trial,
 )
 from seatrial.estimation.identify import identify
@@ -50,7 +50,7 @@ def user_trial(data: SearchData, method: EstimateMethod, box: Box, fitness: Sear
     bounds = {n: (float(a), float(b)) for n, a, b in zip(names, box.lower, box.upper, strict=True)}
     search = SearchSettings(iterations=ITERATIONS, restarts=RESTARTS, fitness=fitness, bounds=bounds)
     settings = EstimateSettings(method=method, search=search, channels=("z", "theta"))
-    return Trial(SHIP, (TrialRun(sea_record(data)),), data.model, noise=DEGREES, estimate=settings)
+    return Trial(SHIP, (Run(sea_record(data)),), data.model, noise=DEGREES, estimate=settings)
 
 
 def sea_record(data: SearchData):

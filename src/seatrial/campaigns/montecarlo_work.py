@@ -13,7 +13,7 @@ from seatrial.campaigns.work import Row, Work, fit_rows
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Record, Ship, channel_hint, spelling_hint
 from seatrial.data.folder.model_file import read_model_file
-from seatrial.data.trial import EstimateSettings, Trial, TrialRun
+from seatrial.data.trial import EstimateSettings, Run, Trial
 from seatrial.data.trial.model_table import build_trial_model, ship_of
 from seatrial.estimation.identify import IntervalMethod, identify
 from seatrial.estimation.information.covariance import from_information
@@ -61,7 +61,7 @@ class NoisyRepeats:
         streams = np.random.SeedSequence(seed).spawn(len(self.runs))
         noisy = [with_noise(run, self.noise, np.random.default_rng(stream))
                  for run, stream in zip(self.runs, streams, strict=True)]  # fmt: skip
-        trial = Trial(self.craft.ship, tuple(map(TrialRun, noisy)), self.start, estimate=self.estimate,
+        trial = Trial(self.craft.ship, tuple(map(Run, noisy)), self.start, estimate=self.estimate,
                       truth=self.craft.truth)  # fmt: skip
         return fit_rows(identify(trial, seed, intervals=self.intervals), self.bound)
 

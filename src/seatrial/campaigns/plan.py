@@ -17,7 +17,6 @@ from seatrial.data.read.record_file import file_digest
 from seatrial.data.trial import EstimateSettings, Role, Trial, parse_tables, trial_of_tables
 from seatrial.data.trial.amounts import InSi, PositiveDuration, SiAmount, Speed, StrictTable, schema_error
 from seatrial.data.trial.load import read_tables
-from seatrial.data.trial.run_data import RecordFile, RecordSources
 from seatrial.data.trial.runs import expand_variables
 from seatrial.data.trial.schema import ModelTable, ShipTable, Strings
 from seatrial.estimation.identify import IntervalMethod
@@ -227,12 +226,8 @@ def loaded(table: Mapping[str, Any], path: Path) -> Trial:
 
 def _record_files(trial: Trial) -> Iterator[Path]:
     for run in trial.runs:
-        if run.role is Role.LEAVE_OUT:
-            continue
-        if isinstance(run.data, RecordFile):
-            yield run.data.path.resolve()
-        elif isinstance(run.data, RecordSources):
-            yield from (file.path.resolve() for file in run.data.files)
+        if run.role is not Role.LEAVE_OUT:
+            yield from (file.path.resolve() for file in run.files)
 
 
 def _other_files(table: Mapping[str, Any], home: Path) -> Iterator[Path]:

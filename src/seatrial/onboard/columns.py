@@ -70,12 +70,11 @@ class ColumnReader:
             self._start_file()
         rows: list[list[float]] = []
         append_row = rows.append
-        comma = self._layout.decimal == ","
         for line in batch.lines:
             self._line += 1
             getter = self._cell_getter
             if getter is not None and b"_" not in line:
-                cells = self._split_cells(line, self._delimiter) if comma else line.split(self._delimiter)
+                cells = _split_cells(line, self._delimiter)
                 if len(cells) == self._width:
                     try:
                         append_row([*map(float, getter(cells))])
@@ -146,7 +145,7 @@ class ColumnReader:
     def _parse_numbers(self, line: bytes) -> list[float] | None:
         if not self._is_format_known:
             return self._detect_format(line)
-        cells = self._split_cells(line, self._delimiter)
+        cells = _split_cells(line, self._delimiter)
         if len(cells) > self._width and not self._confirm_width(len(cells)):
             return None
         row = [_parse_number(cells, index) for index in self._column_indices]
@@ -165,7 +164,7 @@ class ColumnReader:
         """The row of the first line that can be read, which sets separator, width and column positions."""
         delimiter = self._find_delimiter(line)
         indices, warning = self._locate_columns(delimiter)
-        cells = self._split_cells(line, delimiter)
+        cells = _split_cells(line, delimiter)
         row = [_parse_number(cells, index) for index in indices]
         if not np.isfinite(row[0]):
             if warning and np.isfinite(_parse_number(cells, 0)):
@@ -197,13 +196,8 @@ class ColumnReader:
 
     def _find_delimiter(self, line: bytes) -> bytes | None:
         """The separator of a line; None: white space."""
-        separator = detect_separator(line.decode("latin-1"), self._layout)
+        separator = detect_separator(line.decode("latin-1"), self._layout.separator)
         return None if separator == r"\s+" else separator.encode()
-
-    def _split_cells(self, line: bytes, delimiter: bytes | None) -> list[bytes]:
-        if self._layout.decimal == "," and delimiter != b",":
-            line = line.replace(b",", b".")
-        return line.split(delimiter)
 
     def _header_names(self, line: bytes, delimiter: bytes | None) -> list[str]:
         text = line.decode(self._layout.encoding, errors="replace").strip()
@@ -215,6 +209,11 @@ class ColumnReader:
             return False
         names = self._header_names(line, self._find_delimiter(line))
         return all(column.source in names for column in self._columns if isinstance(column.source, str))
+
+
+def _split_cells(line: bytes, delimiter: bytes | None) -> list[bytes]:
+    """The cells of a line; a comma that separates none is a decimal sign."""
+    return (line if delimiter == b"," else line.replace(b",", b".")).split(delimiter)
 
 
 def _parse_number(cells: list[bytes], index: int | None) -> float:

@@ -68,9 +68,9 @@ def check_required_channels(trial: Trial) -> None:
 def _check_not_a_record(trial: Trial, prefix: str) -> None:
     file = require_stream(trial).file
     for run in trial.runs:
-        if file is None or run.file is None or run.role is Role.LEAVE_OUT:
+        if file is None or run.role is Role.LEAVE_OUT:
             continue
-        if run.file.path.resolve() == file.resolve():
+        if file.resolve() in [source.path.resolve() for source in run.files]:
             raise InputError(
                 f"{prefix}{file.name} is named under both [[records]] and [follow]; leave it out of the records"
             )

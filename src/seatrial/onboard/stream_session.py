@@ -18,7 +18,7 @@ from seatrial.data.read.assemble import record_from_values
 from seatrial.data.trial import Role, Trial
 from seatrial.data.trial.runs import require_stream
 from seatrial.data.trial.settings import Stream
-from seatrial.data.trial.trial import TrialRun
+from seatrial.data.trial.trial import Run
 from seatrial.onboard.journal import Journal, RunEntry
 from seatrial.onboard.proposer import GainProposer
 
@@ -28,6 +28,7 @@ from seatrial.onboard.proposer import GainProposer
 _FIRST_STEPS = 20
 # share of a step within which two times are the same; chosen: above the rounding of a logger that writes four digits
 _SAME_TIME = 1e-3
+_LONGEST_GAP_S, _LONGEST_GAP_STEPS = 30.0, 5.0  # s, and steps of a slow stream, after which a new run begins; chosen
 
 
 @dataclass(frozen=True)
@@ -203,7 +204,7 @@ def with_training_records(trial: Trial, records: tuple[Record, ...], *, has_chan
     has_changed: whether they are of another ship than its own training runs, which are then left out.
     """
     waves = require_stream(trial).waves
-    came = tuple(TrialRun(record, waves=waves) for record in records)
+    came = tuple(Run(record, waves=waves) for record in records)
     others = tuple(run for run in trial.runs if run.role is not Role.TRAIN)
     return replace(trial, runs=(*(() if has_changed else trial.runs_with_role(Role.TRAIN)), *came, *others))
 
@@ -391,4 +392,5 @@ class StreamSession:
 
 
 def _sample_order(stream: Stream) -> SampleOrder:
-    return SampleOrder(1.0 / stream.rate, stream.longest_gap_s)
+    dt = 1.0 / stream.rate
+    return SampleOrder(dt, max(_LONGEST_GAP_S, _LONGEST_GAP_STEPS * dt))

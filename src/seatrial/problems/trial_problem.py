@@ -7,7 +7,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError, Parameter, Record, Ship
-from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRecord, TrialRun
+from seatrial.data.trial import EstimateSettings, Role, Run, Trial, TrialRecord
 from seatrial.estimation.estimate.assemble import Runs, output_error_problem
 from seatrial.estimation.estimate.fit import with_segment_seconds
 from seatrial.estimation.information.covariance import from_information
@@ -126,7 +126,7 @@ def craft_draw(craft: KnownCraft, box: Box, start: Array) -> ProblemDraw:
         return np.array([held.cost(point) for point in points])
 
     trial = Trial(
-        craft.ship, tuple(map(TrialRun, craft.records)), start_within(craft.model, names, start, box),
+        craft.ship, tuple(map(Run, craft.records)), start_within(craft.model, names, start, box),
         craft.settings.with_known_timing(craft.model.input_names), dict(craft.noise),
     )  # fmt: skip
     units = tuple(craft.model.parameters[name].unit for name in names)
@@ -213,7 +213,7 @@ def fold_draw(
     def fitness(points: Array, _: int) -> Array:
         return np.array([fitted.cost(point) for point in points])
 
-    runs = tuple(TrialRun(item.record, Role.TRAIN, item.session) for item in train)
+    runs = tuple(Run(item.record, Role.TRAIN, item.session) for item in train)
     units = tuple(model.parameters[name].unit for name in names)
     yardstick = HoldoutWindows(problem, held, protocol, _baseline(held, protocol))
     return ProblemDraw(

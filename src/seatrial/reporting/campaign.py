@@ -145,13 +145,13 @@ def coefficient_section(rows: Sequence[RepeatedCoefficient]) -> Section:
 
 def _row(c: RepeatedCoefficient) -> tuple[str, ...]:
     name = c.name if c.unit == "1" else f"{c.name}, {c.unit}"
-    numbers = (c.truth, c.mean, c.standard_deviation, c.rmse)
     coverage, interval = (DASH, DASH)
     if c.coverage is not None and c.coverage_interval is not None:
         coverage = fixed(100 * c.coverage, 1)
         interval = " to ".join(fixed(100 * end, 1) for end in c.coverage_interval)
-    texts = (DASH if v is None else significant(v, 4) for v in numbers)
-    return name, str(c.count), *texts, fixed(c.rmse_over_bound, 3), coverage, interval
+    centres, spreads = (c.truth, c.mean), (c.standard_deviation, c.rmse)  # a spread of 200 is uncertain by 5 %
+    texts = (significant(v, 4) for v in centres), (significant(v, 2) for v in spreads)
+    return name, str(c.count), *texts[0], *texts[1], fixed(c.rmse_over_bound, 2), coverage, interval
 
 
 def coverage_chart(rows: Sequence[RepeatedCoefficient]) -> Chart | None:

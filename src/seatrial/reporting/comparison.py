@@ -24,7 +24,7 @@ from seatrial.core.figures.chart import (
 from seatrial.core.figures.panels import row_panel
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Comparison, Difference, ManoeuvreDifferences
-from seatrial.core.text.numbers import DASH, exact, p_value, significant
+from seatrial.core.text.numbers import DASH, SMALLEST, exact, exponent, fixed, p_value, power_of_ten, significant
 from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import Severity
 from seatrial.reporting.document import chapters_page
@@ -62,7 +62,7 @@ def sections(comparison: Comparison) -> tuple[Section, ...]:
         Section("The two fits", "fits", table=fits, level=Level.PAGE),
         Section("What else changed", "changes", points=comparison.changes),
         Section("Coefficients", "coefficients", table=difference_table(comparison.coefficients), note=_NOTE),
-        Section("Manoeuvres", "manoeuvres", parts=tuple(map(manoeuvre_section, comparison.manoeuvres)), note=_NOTE),
+        Section("Manoeuvres", "manoeuvres", parts=tuple(map(manoeuvre_section, comparison.manoeuvres))),
         finding_section(comparison.findings),
         version_section(comparison.versions),
     )
@@ -143,13 +143,23 @@ def _title(m: ManoeuvreDifferences) -> str:
 
 
 def _row(d: Difference, label: tuple[str, str] | None = None) -> tuple[str, ...]:
-    """Values with the digits that the difference's interval allows, the difference with two."""
+    """Values and their difference with the digits that the difference's interval allows."""
     name, unit = label or (d.name, "" if d.unit == "1" else d.unit)
     named = f"{name}, {unit}" if unit else name
-    apart = tuple("" if v is None else significant(v, 2) for v in (d.difference, d.lower, d.upper))
     width = None if d.lower is None or d.upper is None else d.upper - d.lower
     values = (DASH if v is None else _value_text(v, width) for v in (d.first, d.second))
-    return named, *values, *apart, "differs" if d.is_significant else ""
+    return named, *values, *_difference_texts(d, width), "differs" if d.is_significant else ""
+
+
+def _difference_texts(d: Difference, width: float | None) -> tuple[str, ...]:
+    """The difference and its interval, all to two digits of half the interval."""
+    if not width:
+        return tuple("" if v is None else significant(v, 2) for v in (d.difference, d.lower, d.upper))
+    power = exponent(0.5 * width, 2)
+    scale, unit = (1.0, "") if 0.5 * width >= SMALLEST else (10.0**power, power_of_ten(power))
+    decimals = max(0, 1 - power) if scale == 1.0 else 1
+    ends = (d.difference, d.lower, d.upper)
+    return tuple("" if v is None else fixed(v / scale, decimals) + unit for v in ends)
 
 
 def _value_text(value: float, width: float | None) -> str:
@@ -176,7 +186,9 @@ def difference_forest(rows: Sequence[Difference]) -> Chart | None:
     largest = float(np.median([abs(s) for share in shares for s in share])) or 1.0
     ends = span([np.clip(np.array([s for share in shares for s in share] + [0.0]), -_CUT * largest, _CUT * largest)])
     axis = Axis(ends, "difference, per cent of the first", tick_count=7)
-    legend = (LegendEntry("95 % interval", _AGREES), LegendEntry("differs (joint 95 %)", _DIFFERS))
+    legend = (LegendEntry("95 % interval", _AGREES),)
+    if any(d.is_significant for d in usable):
+        legend += (LegendEntry("differs (joint 95 %)", _DIFFERS),)
     return Chart(
         "differences of the coefficients", (row_panel([d.name for d in usable], axis, marks, top=4.0),), legend
     )

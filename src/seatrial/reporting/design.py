@@ -115,8 +115,9 @@ def _comparison(design: Design) -> str:
     if best is None:
         return f"{start}; there is no standard manoeuvre to compare it with."
     theirs = criterion_error(best, criterion)
-    leaving = "" if is_within_limits(best, design.limits) else ", which leaves the limits,"
-    against = f"the best standard manoeuvre of equal length{leaving} has {_percent(theirs)}"
+    where = " within the limits" if _has_limits(design) else ""
+    where = where if is_within_limits(best, design.limits) else ", which leaves the limits,"
+    against = f"the best standard manoeuvre{where} has {_percent(theirs)}"
     return f"{start}, no better: {against}." if error >= theirs else f"{start}; {against}."
 
 
@@ -244,7 +245,7 @@ def html(design: Design) -> str:
 
 def sections(design: Design) -> list[Section]:
     """Return the chapters: orders, standard manoeuvres, precision, drawn ships, simulated trials, findings, method."""
-    baselines = ranked_baselines(design)
+    baselines = best_of_each_kind(ranked_baselines(design))
     method = fact_table({**dict(facts(design)), **dict(settings(design))})
     every = (
         _orders(design),
@@ -256,6 +257,12 @@ def sections(design: Design) -> list[Section]:
         Section("Method and provenance", "method", table=method, level=Level.PAGE),
     )
     return [chapter for chapter in every if chapter]
+
+
+def best_of_each_kind(manoeuvres: Sequence[ManoeuvrePrecision]) -> list[ManoeuvrePrecision]:
+    """Return the first of each kind: of random steps and of consecutive zigzags one would run one."""
+    kinds = {manoeuvre_name(m.name).partition(",")[0]: m for m in reversed(manoeuvres)}
+    return [m for m in manoeuvres if m in kinds.values()]
 
 
 def _orders(design: Design) -> Section:
@@ -292,12 +299,22 @@ def _manoeuvres(design: Design, baselines: Sequence[ManoeuvrePrecision]) -> Sect
         number("drift angle", lambda w: fixed(math.degrees(w.drift), 1) if is_drifting else "", "deg"),
         number("distance", lambda w: significant(w.distance, 3) if is_tracked else "", "m"),
         words("", lambda w: Cell(f"{counted(w.diverged, 'ship')} diverged" if w.diverged else "", tone="bad")),
-        words("", lambda w: "" if is_within_limits(w, design.limits) else Cell("leaves the limits", tone="bad")),
+        words("", lambda w: "" if is_within_limits(w, design.limits) else Cell(_leaving(w, design), tone="bad")),
         is_marked=lambda w: w is design.designed,
     )
     reach = "Drift angle and distance" if is_drifting else "Distance"
     largest = f" {reach} from the start: largest for the ship as assumed." if is_tracked else ""
     return Section("Compared with standard manoeuvres", "manoeuvres", table=table, note=f"{_BOUND_NOTE}{largest}")
+
+
+def _leaving(manoeuvre: ManoeuvrePrecision, design: Design) -> str:
+    """Which ships leave the limits with a manoeuvre."""
+    straying = count_outside_limits(manoeuvre, design.limits)
+    return (
+        f"{straying} of {counted(len(manoeuvre.sampled_drift), 'ship')} leave the limits"
+        if straying
+        else "leaves the limits"
+    )
 
 
 def _coefficients(design: Design, baselines: Sequence[ManoeuvrePrecision]) -> Section:
@@ -372,14 +389,13 @@ def _confirmation_section(design: Design) -> Section:
 def _first_screen(design: Design) -> FirstScreen:
     """How precise the manoeuvre is; its track within the sea room and its orders over time."""
     figure = run_figure(order_view(design), is_wide=True, track=track_chart(design) if has_track(design) else None)
-    room = " Dashed on the track: sea room about the start." if math.isfinite(design.limits.sea_room) else ""
     drift = (
         " Drift is positive when the bow points to starboard of the course."
         if has_track(design) and has_drift(design)
         else ""
     )
     ships = "; ships at equal times, to scale" if has_track(design) else ""
-    caption = f"The ship as assumed{ships}.{room}{drift}"
+    caption = f"The ship as assumed{ships}.{drift}"
     return FirstScreen(verdict(design), key_facts(design), figure, caption)
 
 

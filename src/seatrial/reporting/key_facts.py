@@ -163,7 +163,7 @@ def first_screen(fit: Fit, length: float) -> FirstScreen:
     view = headline_view(p, length, fit.model.input_names)
     which = "The held-out run" if len(fit.validation) == 1 else (
         "The worst held-out run" if fit.validation else "The worst training run")  # fmt: skip
-    band = " Pale: 95 % band." if has_band(p) else ""
+    band = " Pale: 95 % band, sensor noise left out." if has_band(p) else ""
     caption = f"{which}, {p.record}: {p.reference_word} and {p.model_word}.{band}"
     return FirstScreen(verdict(fit), key_facts(fit), run_figure(view, is_first=True), caption, operators_sentence(fit))
 

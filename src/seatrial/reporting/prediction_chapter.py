@@ -369,7 +369,7 @@ def _errors(p: Prediction, noise: Mapping[str, float]) -> TextTable:
 
 
 def _error(name: str, errors: Mapping[str, float]) -> str:
-    return exact(_in_degrees(name, errors[name]), _ERROR_DIGITS) if name in errors else ""
+    return significant(_in_degrees(name, errors[name]), _ERROR_DIGITS) if name in errors else ""
 
 
 def _in_degrees(name: str, value: float) -> float:

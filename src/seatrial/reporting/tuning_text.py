@@ -237,7 +237,7 @@ def _simulation(tuning: Tuning) -> str:
     )
     if math.isfinite(tuning.constraints.stall):
         text += f"; with stall beyond {_limit_text(tuning.actuator, tuning.constraints.stall)}, by {percent(stalled)}"
-    return f"{text}. The limits of angle and rate cost {percent_points(s.saturation_loss)}."
+    return f"{text}."
 
 
 def comparison_sentence(pair: PairedDifference) -> str:

@@ -335,11 +335,11 @@ def _judged_errors(p: Prediction, longest: float | None) -> str:
 
 
 def _worst_errors(held: Sequence[Prediction], longest: float | None) -> str:
-    """The errors of the worst of several runs, with its name: ``, R35 worst: 5.3° in heading``."""
+    """The name of the worst of several runs, or of the only one, and its errors: ``, R35 worst: 5.3° in heading``."""
     worst = worst_run(held, longest)
     errors = _judged_errors(worst, longest)
-    name = f", {worst.record} worst" if len(held) > 1 else ""
-    return f"{name}: {errors}" if errors else ""
+    name = f", {worst.record} worst" if len(held) > 1 else f" ({worst.record})"
+    return f"{name}: {errors}" if errors else name
 
 
 def _several_runs_clauses(
@@ -361,8 +361,7 @@ def _several_runs_clauses(
         verb = "Does not predict" if worst is Grade.NOT else "Predicts poorly"
         graded = _graded([grades.get(p.record) for p in others])
         remainder = f"the other{'s' if len(others) > 1 else ''}{graded}" if graded else ""
-        which = f"{len(names)} of {len(held)} held-out runs ({enumeration(names, MAX_NAMES)})"
-        return f"{verb} {which}{_worst_errors(missed, longest)}", remainder
+        return f"{verb} {len(names)} of {len(held)} held-out runs{_worst_errors(missed, longest)}", remainder
     repeats = sum(bool(repeated_runs(p, predictions)) for p in held)
     repeat = f"{repeats} {'repeats' if repeats == 1 else 'repeat'} a fitted manoeuvre" if repeats else ""
     return f"Predicts {len(held)} held-out runs{_graded(list(grades.values()))}{_worst_errors(held, longest)}", repeat

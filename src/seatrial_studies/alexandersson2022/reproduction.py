@@ -13,7 +13,7 @@ from seatrial.core.results import CandidateModel, Fit, Prediction
 from seatrial.core.values import Array, Finding, InputError, ProgressReporter, Record, Severity
 from seatrial.data.check import examine, sample_noise
 from seatrial.data.read import ColumnSpec, Layout
-from seatrial.data.trial import Role, Trial, TrialRecord, approach_condition, load_records
+from seatrial.data.trial import Role, RunFiles, Trial, TrialRecord, approach_condition, load_records
 from seatrial.estimation.estimate import (
     INITIAL_STATE_SHIP_LENGTHS,
     Estimation,
@@ -450,11 +450,11 @@ def label_errors(trial: Trial) -> dict[str, tuple[Finding, ...]]:
     return {
         run.name: tuple(
             finding
-            for finding in examine(replace(run.file, layout=layout_as_labelled(run.file.layout)).read())
+            for file in run.files
+            for finding in examine(RunFiles.of_file(file.path, layout_as_labelled(file.layout)).read())
             if finding.severity is Severity.ERROR
         )
         for run in trial.runs
-        if run.file is not None
     }
 
 

@@ -130,14 +130,14 @@ def filtering_claim(reproduction: BenchmarkReproduction) -> Claim:
         else "the noise from sample to sample is no small part of what the model leaves"
     )
     tail = (
-        "without any filter the 35/5 zigzag is predicted no worse than with an extended Kalman filter"
+        "Without any filter the 35/5 zigzag is predicted no worse than with an extended Kalman filter"
         if refuted
-        else "without any filter our prediction is no better than the paper's, so its use remains open"
+        else "Without any filter our prediction is no better than the paper's, so its use remains open"
     )
     return Claim(
         "These records must be freed of measurement noise (extended Kalman filter, smoother) before identification",
         Verdict.REFUTED if refuted else Verdict.UNKNOWABLE,
-        f"{about}; {tail}",
+        f"{about}. {tail}",
     )
 
 

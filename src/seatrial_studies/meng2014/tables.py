@@ -154,8 +154,8 @@ def _convergence(evidence: CloudSwarmEvidence) -> Table:
         rows.append((name, *cells, int(np.sum(~np.isfinite(needed))), error))
     header = ("", *(f"{h}\u00b0" for h in HEADINGS), f"runs of {runs} that never do", "mean error %")
     note = (
-        "Iterations until the fitness comes within what the noise explains of the less of the two with which ICPSO and "
-        "PSO end in the same sea and box, median over the runs, a dash where it is never; box \u00b150 % off centre."
+        "Iterations until the fitness comes as near as the noise allows to the better of ICPSO's and PSO's ends in the "
+        "same sea and box. Medians over the runs, a dash where it never does; box \u00b150 % off centre."
     )
     return Table("How fast the swarms converge", header, tuple(rows), note)
 

@@ -56,7 +56,7 @@ def error_range_claim(evidence: CloudSwarmEvidence) -> Claim:
         "Errors are mostly within 5 %, some about 10 % (table 1)",
         Verdict.UNKNOWABLE,
         "table 1 is lost in the text at hand, the search box is not printed. Here, in a box of ±10 % about the truth "
-        f"{100 * narrow[0]:.0f} % of the values are within 5 % and none can be beyond 10; in one of ±50 % off centre "
+        f"{100 * narrow[0]:.0f} % of the values are within 5 % and none can be beyond 10. In one of ±50 % off centre "
         f"{100 * wide[0]:.0f} % are, and {100 * wide[1]:.0f} % are beyond 10 %",
     )
 
@@ -174,7 +174,7 @@ def adaptive_weight_claim(evidence: CloudSwarmEvidence) -> Claim:
         f"{settings.b} the weight goes from {weight.at_ends[0]:.3f} to {weight.at_ends[1]:.3f}, {100.0 * used:.0f} % "
         f"of its range, and 95 % of its draws lie in {weight.central[0]:.2f} to {weight.central[1]:.2f} (mean "
         f"{weight.mean:.3f}). In the searches {below:.0f} % of the particles are below A, {middle:.0f} % in the "
-        f"band, {above:.0f} % above B, where it is {settings.w2}: it is in effect two constants, "
+        f"band, {above:.0f} % above B, where it is {settings.w2}. The weight is in effect two constants, "
         f"{settings.w2} and about {weight.mean:.1f}, so ICPSO is close to a PSO with a constant inertia. Without the "
         "cloud's randomness (He = 0) the median of iterations "
         f"needed is {_median_text(needed[1])} instead of {_median_text(needed[0])}, the mean error "
@@ -373,9 +373,9 @@ def _accuracy(evidence: CloudSwarmEvidence) -> str:
     return (
         "With ship, sea, box and noise assumed: yes, as well as the noise allows, but b53 is poorly determined at 0 "
         f"and 45°: it is {b53} % off at 0/45/90/135/180°. In a box of ±50 % off centre, with 1 cm and 0.02° of noise, "
-        f"the improved cloud particle swarm (ICPSO) ends {error_text(searches)} off in the mean over the coefficients, "
-        f"{significant(evidence.swarm_ratio, 2)} times the Cramér-Rao bound; {stuck.sum()} of {stuck.size} runs end in "
-        "a worse minimum."
+        f"the improved cloud particle swarm (ICPSO) ends {error_text(searches)} off in the mean over the coefficients. "
+        f"That is {significant(evidence.swarm_ratio, 2)} times the Cramér-Rao bound; {stuck.sum()} of {stuck.size} "
+        "runs end in a worse minimum."
     )
 
 
@@ -384,12 +384,12 @@ def _cloud(evidence: CloudSwarmEvidence) -> str:
     unmutated = {h: evidence.reproduction.variants[CloudVariant.NO_MUTATION, h] for h in HEADINGS}
     weight = evidence.cloud_weight
     return (
-        f"The cloud adds little: the inertia weight is in effect two constants, 0.4 and about {weight.mean:.1f}, and "
-        "against particle swarm optimisation (PSO) with a constant inertia ICPSO needs fewer iterations in "
-        f"{int(np.sum(cloud < plain))} of {cloud.size} runs, more in {int(np.sum(cloud > plain))}; with its mutations "
-        f"{np.median(cloud):.0f} (median), without them {np.median(evidence.iterations_needed(unmutated)):.0f}. Its "
-        "parent, cloud adaptive particle swarm optimisation (CPSO), could not be compared: no source at hand prints "
-        "its law."
+        f"The cloud adds little: the inertia weight is in effect two constants, 0.4 and about {weight.mean:.1f}. "
+        "Against particle swarm optimisation (PSO) with a constant inertia ICPSO needs fewer iterations in "
+        f"{int(np.sum(cloud < plain))} of {cloud.size} runs, more in {int(np.sum(cloud > plain))}. The median is "
+        f"{np.median(cloud):.0f} with its mutations, {np.median(evidence.iterations_needed(unmutated)):.0f} without. "
+        "Its parent, cloud adaptive particle swarm optimisation (CPSO), could not be compared: no source at hand "
+        "prints its law."
     )
 
 
@@ -410,9 +410,9 @@ def _cost(evidence: CloudSwarmEvidence) -> str:
     swarms = largest_excess(evidence.controllers, lambda method: "PSO" in method)
     ours = largest_excess(evidence.controllers, lambda method: method.startswith("ours"))
     return (
-        "For the fin controller tried here the differences are small: tuned on the coefficients of any of the swarms "
+        "For the fin controller tried here the differences are small. Tuned on the coefficients of any of the swarms "
         f"it costs at most {significant(100.0 * swarms, 1)} % more on the true ship than tuned on the truth, on ours "
-        f"{significant(100.0 * ours, 1)} %; without control the cost is "
+        f"{significant(100.0 * ours, 1)} %. Without control the cost is "
         f"{uncontrolled_excess_text(evidence.controllers)} more."
     )
 

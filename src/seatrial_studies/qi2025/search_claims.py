@@ -156,7 +156,7 @@ def pso_against_who_claim(evidence: WildHorseEvidence) -> Claim:
         f"the print's values say so in the mean: recomputed, PSO is {printed[SearchAlgorithm.PSO]} off at 90/135/180°, "
         f"WHO {printed[SearchAlgorithm.WHO]}. Here, in the chosen setting, single runs are {percent_text(pso)} off by "
         f"PSO and {percent_text(who)} by WHO ({evidence.run_count(SearchSetting.PAPER)} runs each), PSO worse at "
-        f"{', '.join(worse) or 'no heading'}; but PSO's ω, c1, c2 and box are not printed, ours are assumed, and our "
+        f"{', '.join(worse) or 'no heading'}. PSO's ω, c1, c2 and box are not printed; ours are assumed, and our "
         "clipping to ±10 % allows no error near 60 %. With the whole record and a box off centre they are "
         f"{percent_text(elsewhere[SearchAlgorithm.PSO])} and {percent_text(elsewhere[SearchAlgorithm.WHO])} "
         f"({evidence.run_count(SearchSetting.WHOLE_OFF_CENTRE)} runs each)",
@@ -194,8 +194,8 @@ def same_conditions_claim(evidence: WildHorseEvidence) -> Claim:
         "The three were compared under the same conditions",
         Verdict.REFUTED if beyond and hit > of / 2 else Verdict.UNKNOWABLE,
         f"{hit} of WHO's {of} values at 90 and 135° are clipped at -10 %, while {beyond} of PSO's {total} lie "
-        f"farther out than 10 %, one by {largest:.2f} % as printed: PSO searched, or was free to leave for, a wider "
-        "box",
+        f"farther out than 10 %, one by {largest:.2f} % as printed. PSO searched a wider box, or was free to leave "
+        "for one",
     )
 
 
@@ -318,12 +318,12 @@ def _quick_version(evidence: WildHorseEvidence) -> tuple[str, ...]:
         return ()
     tens = len(next(iter(evidence.reproduction.ten_runs.values())).tens)
     return (
-        "This is the quick version: at each heading "
-        f"{evidence.run_count(SearchSetting.PAPER)} runs in the chosen setting and "
-        f"{evidence.run_count(SearchSetting.OFF_CENTRE)} elsewhere (the whole version: {RUNS}; from the model's own "
-        f"state {evidence.run_count(SearchSetting.MODEL_STATE)} in both), {evidence.ablation_runs} of the search with "
-        "parts "
-        f"left out ({ABLATION_RUNS}), the ten runs made {tens} times ({TEN_RUN_REPEATS}).",
+        "This is the quick version, in brackets the whole one. At each heading there are "
+        f"{evidence.run_count(SearchSetting.PAPER)} runs in the chosen setting ({RUNS}), "
+        f"{evidence.run_count(SearchSetting.OFF_CENTRE)} elsewhere ({RUNS}) and "
+        f"{evidence.run_count(SearchSetting.MODEL_STATE)} from the model's own state (as many). Parts of the search "
+        f"are left out in {evidence.ablation_runs} runs ({ABLATION_RUNS}), the ten runs made {tens} times "
+        f"({TEN_RUN_REPEATS}).",
     )
 
 
@@ -367,10 +367,10 @@ def _print(evidence: WildHorseEvidence) -> str:
     }
     hit, means_count = evidence.audit.saturated_values
     return (
-        "The print fits no single setting. Mean errors at 90/135/180°, recomputed from its values: IWHO's "
-        f"{printed[SearchAlgorithm.IWHO]} are nearest to ours in the chosen setting ({means[SearchAlgorithm.IWHO]}); "
+        "The print fits no single setting, by the mean errors at 90/135/180° recomputed from its values. IWHO's "
+        f"{printed[SearchAlgorithm.IWHO]} are nearest to ours in the chosen setting ({means[SearchAlgorithm.IWHO]}). "
         f"WHO's {printed[SearchAlgorithm.WHO]}, with {hit} of {means_count} values at 90 and 135° at the lower end of "
-        f"±10 %, come from no setting tried; {beyond} of PSO's {total} values ({printed[SearchAlgorithm.PSO]}) lie "
+        f"±10 %, come from no setting tried. {beyond} of PSO's {total} values ({printed[SearchAlgorithm.PSO]}) lie "
         "outside the box that WHO's suggest."
     )
 
@@ -381,13 +381,12 @@ def _least_squares(evidence: WildHorseEvidence) -> str:
     noisy = [100.0 * float(np.mean(np.abs(o.noisy_errors))) for o in fits]
     judged, evaluations = evidence.evaluations(SearchAlgorithm.IWHO), evidence.output_error_evaluations
     return (
-        "It need not be done so: least squares on the motions over the whole record finds all eight coefficients "
-        f"within {significant(worst, 1)} of their values without noise, and {percent_text(noisy)} off with 1 cm and "
-        f"0.02° of noise, {significant(evidence.bound_ratio, 2)} times the Cramér-Rao bound. It takes at most "
-        f"{evaluations} evaluations of the whole record with its slopes, "
-        f"{simulated_steps(evaluations, has_slopes=True)} simulated steps; a run of IWHO judges its "
-        f"{judged} candidates by one step each, or, with the whole record, by "
-        f"{simulated_steps(judged, has_slopes=False)} steps."
+        "It need not be done so. Without noise least squares on the motions over the whole record finds all eight "
+        f"coefficients within {significant(worst, 1)} of their values. With 1 cm and 0.02° of noise they are "
+        f"{percent_text(noisy)} off, {significant(evidence.bound_ratio, 2)} times the Cramér-Rao bound. It takes at "
+        f"most {evaluations} evaluations of the whole record with its slopes, "
+        f"{simulated_steps(evaluations, has_slopes=True)} simulated steps; a run of IWHO judges its {judged} "
+        f"candidates by one step each, or, with the whole record, by {simulated_steps(judged, has_slopes=False)} steps."
     )
 
 
@@ -395,9 +394,8 @@ def _cost(evidence: WildHorseEvidence) -> str:
     printed = largest_excess(evidence.controllers, lambda method: method.endswith("printed") and "b53" not in method)
     ours = largest_excess(evidence.controllers, lambda method: method.startswith("ours"))
     return (
-        "For the fin controller tried here the differences are small: tuned on the printed coefficients of any of the "
+        "For the fin controller tried here the differences are small. Tuned on the printed coefficients of any of the "
         f"three it costs at most {significant(100.0 * printed, 1)} % more on the true ship than tuned on the truth, on "
-        f"ours {significant(100.0 * ours, 1)} %; without control the cost is "
-        f"{uncontrolled_excess_text(evidence.controllers)} "
-        "more."
+        f"ours {significant(100.0 * ours, 1)} %. Without control the cost is "
+        f"{uncontrolled_excess_text(evidence.controllers)} more."
     )

@@ -106,12 +106,11 @@ def search_box_claim(evidence: WildHorseEvidence) -> Claim:
         Verdict.REFUTED if hit > total / 2 else Verdict.UNKNOWABLE,
         f"{hit} of its {total} printed means at 90 and 135° lie between -10 and -9.3 % of the truth, as if clipped at "
         "the lower end of a box of ±10 % about the truth, which is not printed. Here its single runs have "
-        f"{100 * evidence.share_at_lower_bound(SearchSetting.PAPER, SearchAlgorithm.WHO):.0f} % of their "
-        "values on that bound if candidates step "
-        f"from the true state, "
+        f"{100 * evidence.share_at_lower_bound(SearchSetting.PAPER, SearchAlgorithm.WHO):.0f} % of their values on "
+        "that bound if candidates step from the true state, "
         f"{100 * evidence.share_at_lower_bound(SearchSetting.MODEL_STATE, SearchAlgorithm.WHO):.0f} % if from the "
-        f"identified model's own; but of its {total} means of ten only {true} and {own} are as far out (error of the "
-        f"mean from the model's own state, at 90/135/180°, {who}). No setting tried gives WHO's printed column",
+        f"identified model's own. Of its {total} means of ten only {true} and {own} are as far out; from the model's "
+        f"own state the error of the mean at 90/135/180° is {who}. No setting tried gives WHO's printed column",
     )
 
 
@@ -222,11 +221,11 @@ def classical_methods_claim(evidence: WildHorseEvidence) -> Claim:
     return Claim(
         "Classical methods can hardly identify many coefficients at once (abstract, introduction)",
         Verdict.REFUTED if worst <= EXACT_ERROR else Verdict.UNKNOWABLE,
-        "least squares, the first of the classical methods it names, on the output error by Levenberg-Marquardt from a "
-        f"physical start, finds all eight within {significant(worst, 1)} of their values at the three headings without "
-        f"noise, in at most {evidence.output_error_evaluations} evaluations of the whole record. With 1 cm and 0.02° "
-        "of noise it is "
-        f"{percent_text(noisy)} off, {significant(evidence.bound_ratio, 2)} times the Cramér-Rao bound (rms)",
+        "least squares, the first of the classical methods it names, is run on the output error by Levenberg-Marquardt "
+        f"from a physical start. Without noise it finds all eight within {significant(worst, 1)} of their values at "
+        f"the three headings, in at most {evidence.output_error_evaluations} evaluations of the whole record. With 1 "
+        f"cm and 0.02° of noise it is {percent_text(noisy)} off, {significant(evidence.bound_ratio, 2)} times the "
+        "Cramér-Rao bound (rms)",
     )
 
 
@@ -388,13 +387,11 @@ def convergence_claim(evidence: WildHorseEvidence) -> Claim:
     first = errors[0, min(round(50.0 / STEP), errors.shape[1] - 1)]
     text = (
         f"in {len(errors)} runs here (chosen setting; 45°, coefficients of 90° assumed) {100.0 * near[50]:.0f} % of "
-        "the values are "
-        f"within {ABOUT_ONE_PERCENT:g} % of the truth at 50 s and {100.0 * near[100]:.0f} % at 100 s, where the "
-        "largest "
-        f"error is {end.max():.1f} %; in the first run, that of the figures, the largest is {first.max():.1f} % at 50 "
-        "s "
-        f"and {end[0].max():.1f} % at 100 s. {ITERATIONS} iterations of {STEP} s end at {ITERATIONS * STEP:.0f} s, "
-        f"while the figures run for {FIGURE_END_S:.0f} s: what the search does afterwards is not said"
+        f"the values are within {ABOUT_ONE_PERCENT:g} % of the truth at 50 s and {100.0 * near[100]:.0f} % at 100 s, "
+        f"where the largest error is {end.max():.1f} %. In the first run, that of the figures, the largest is "
+        f"{first.max():.1f} % at 50 s and {end[0].max():.1f} % at 100 s. {ITERATIONS} iterations of {STEP} s end at "
+        f"{ITERATIONS * STEP:.0f} s, while the figures run for {FIGURE_END_S:.0f} s: what the search does afterwards "
+        "is not said"
     )
     claim = (
         "Parameters fluctuate less from 50 s, most are near the theoretical values at 100 s, and all coincide with "

@@ -84,7 +84,7 @@ def rig_damping_claim(analysis: SectionAnalysis) -> Claim:
         claim,
         Verdict.REFUTED if not steady else Verdict.CONFIRMED if inside else Verdict.REFUTED,
         f"the holding force in phase with sway velocity is {min(forces):.2f} to {max(forces):.2f} N (median "
-        f"{np.median(forces):.2f}), as linear damping {min(dampings):.1f} to {max(dampings):.0f} N s/m: it goes with "
+        f"{np.median(forces):.2f}), as linear damping {min(dampings):.1f} to {max(dampings):.0f} N s/m. It goes with "
         f"velocity to the power {found.exponent:.2f} ±{half:.2f} (95 %), dry friction (-1) rather than one coefficient "
         f"(0). The documented value is met at about {found.velocity_at_damping(RIG_DAMPING):.3f} m/s",
     )

@@ -159,7 +159,7 @@ def _improvement_claim(evidence: SupportVectorEvidence) -> Claim:
         _statement_text("improved"),
         Verdict.HOLDS_IN_OWN_SETTING if in_own_setting else Verdict.CONFIRMED if nearer else Verdict.REFUTED,
         f"without noise the machine's median error falls from {percent_text(original.median_error)} to "
-        f"{percent_text(improved.median_error)}, as in the paper; for least squares on such rows the median goes from "
+        f"{percent_text(improved.median_error)}, as in the paper. For least squares on such rows the median goes from "
         f"{percent_text(plain.median_error)} to {percent_text(differenced.median_error)}, the largest from "
         f"{percent_text(plain.largest_error)} to {percent_text(differenced.largest_error)} (without centring "
         f"{percent_text(uncentred.median_error)} and {percent_text(uncentred.largest_error)}). "

@@ -235,9 +235,9 @@ def _loss_text(energies: tuple[EnergyComparison, ...]) -> str:
     return (
         f"By the better fit of the GA's column W is {min(works):.0f} to {max(works):.0f} J, turned back some "
         f"{np.mean([part.reversals for part in each]):.0f} times an hour: {min(powers):.1f} to {max(powers):.1f} W if "
-        "all of it is lost at each turn. The main engine's extra loss, which the paper's introduction counts as "
-        f"energy loss: the same fins drag {min(drags):.0f} to {max(drags):.0f} kW by estimate, which the GA's gains "
-        f"change by {min(changes):+.1f} to {max(changes):+.1f} %; the fins turn back more often in {len(more)} of "
+        "all of it is lost at each turn. The paper's introduction counts the main engine's extra loss as energy loss. "
+        f"The same fins drag {min(drags):.0f} to {max(drags):.0f} kW by estimate, which the GA's gains change by "
+        f"{min(changes):+.1f} to {max(changes):+.1f} %; the fins turn back more often in {len(more)} of "
         f"{len(energies)} rows" + (f" ({', '.join(more)})" if more else "")
     )
 
@@ -283,17 +283,16 @@ def _optimality_claim(evidence: FinGainEvidence) -> Claim:
         f"it hangs on the preamplifier. As printed no: {_gain_text(printed.gains)} has all three objectives at most "
         f"{printed.objective_ratios.max():.3f} of the paper's at Ms {printed.Ms:.2f} instead of "
         f"{evidence.audit.roll_responses[PRINTED].Ms:.2f}. As a washout the paper's gains lie on the front of three "
-        "gains at their own Ms "
-        f"(best worst share {washout.objective_ratios.max():.4f}), and five gains leave "
+        f"gains at their own Ms (best worst share {washout.objective_ratios.max():.4f}). Five gains leave "
         f"{evidence.five_gain_design.design_seas[0].roll_ratio:.2f} of the roll variance at no more fin rate in the "
-        f"two seas searched; in the {len(held_out)} held out they leave {min(rolls):.2f} to {max(rolls):.2f} of it at "
+        f"two seas searched. In the {len(held_out)} held out they leave {min(rolls):.2f} to {max(rolls):.2f} of it at "
         f"{min(rates):.2f} to {max(rates):.2f} times the fin-rate variance, above 1 in "
         f"{sum(rate > 1.0 for rate in rates)}",
     )
 
 
 def _search_claim(evidence: FinGainEvidence) -> Claim:
-    scatter = "; ".join(_scatter_text(evidence.searches_with(r)) for r in Preamplifier)
+    scatter = ". ".join(_scatter_text(evidence.searches_with(r)) for r in Preamplifier)
     return _claim(
         "search",
         Verdict.UNKNOWABLE,
@@ -304,11 +303,10 @@ def _search_claim(evidence: FinGainEvidence) -> Claim:
 def _scatter_text(searches: FinGainSearches) -> str:
     spread = ", ".join(f"{100 * v:.0f}" for v in searches.relative_spread)
     return (
-        f"{PREAMPLIFIER_LABELS[searches.setting.preamplifier]}: over {len(searches.Ms)} seeds the answers "
-        f"spread over {spread} % of the ranges of "
-        f"KP, KI, KD, Ms to {searches.Ms.max():.3g}, {searches.is_dominated.sum()} beaten in all "
-        "objectives by what other seeds saw, the "
-        f"nearest to the paper's answer off by {100 * searches.distance_to_published:.0f} % of a range"
+        f"{PREAMPLIFIER_LABELS[searches.setting.preamplifier]}: over {len(searches.Ms)} seeds the answers spread over "
+        f"{spread} % of the ranges of KP, KI, KD, Ms to {searches.Ms.max():.3g}. Other seeds beat "
+        f"{searches.is_dominated.sum()} of them in all objectives; the nearest to the paper's answer is off by "
+        f"{100 * searches.distance_to_published:.0f} % of a range"
     )
 
 

@@ -165,3 +165,20 @@ def test_a_noisy_track_is_drawn_through_local_means() -> None:
     (line,) = [m for m in track_panel([Track(noisy, time, None, STROKE)], 0.0, Region(0.0, 0.0, 90.0, 90.0)).marks
                if isinstance(m, Line)]  # fmt: skip
     assert float(np.std(line.y[1:-1] - line.x[1:-1])) == pytest.approx(5.0 / np.sqrt(len(time) / 240), rel=0.2)
+
+
+@pytest.mark.parametrize(
+    ("label", "largest", "expected", "drawn"),
+    [
+        ("F3 [N], input", 2e6, "F3 [MN], input", 2.0),
+        ("M5 [N m]", 3e4, "M5 [kN m]", 30.0),
+        ("X [N]", 9.0, "X [N]", 9.0),
+        ("t [s]", 1e6, "t [s]", 1e6),
+    ],
+)
+def test_large_forces_are_drawn_in_a_unit_that_suits_them(
+    label: str, largest: float, expected: str, drawn: float
+) -> None:
+    curve = TimeCurve(np.arange(3.0), largest * np.array([np.nan, -1.0, 1.0]), STROKE)
+    channel = RunView("forces", (ChannelPanel(label, (curve,), curve.values, curve.values),)).channels[0]
+    assert (channel.label, channel.curves[0].values[-1], channel.upper[-1]) == (expected, drawn, drawn)

@@ -69,7 +69,7 @@ def test_the_only_channel_of_a_run_has_its_error_below(fit: Fit) -> None:
     p = fit.predictions[0]
     only = [name for name in p.measured.channels if name != "r"]
     alone = replace(p, measured=p.measured.without(*only), half_width={})
-    assert [panel.y.name for panel in prediction_chart(alone, 5.0, ()).panels] == ["r [deg/s]", "error [deg/s]"]
+    assert [panel.y.name for panel in prediction_chart(alone, 5.0, ()).panels] == ["r [deg/s]", "error of r [deg/s]"]
 
 
 def test_plot_draws_coefficients_or_a_run(fit: Fit) -> None:
@@ -88,9 +88,9 @@ def test_a_run_that_is_unknown_is_refused_with_its_neighbour(fit: Fit) -> None:
 def test_the_headline_of_a_run_is_its_heading_or_what_it_has(fit: Fit) -> None:
     p = fit.predictions[0]
     view = headline_view(p, 5.0, fit.model.input_names)
-    assert [c.label for c in view.channels] == ["ψ [deg]"] and view.tracks
+    assert [c.label for c in view.channels] == ["ψ [deg]", "error of ψ [deg]"] and view.tracks
     names = [curve.name for curve in view.channels[0].curves]
     assert names == ["measured", "simulated"]
     alone = replace(p, measured=p.measured.without("psi"), half_width={})
-    assert [c.label for c in headline_view(alone, 5.0, ()).channels] == ["u [m/s]"]
+    assert [c.label for c in headline_view(alone, 5.0, ()).channels] == ["u [m/s]", "error of u [m/s]"]
     assert len(prediction_view(alone, 5.0, ()).channels) > 1

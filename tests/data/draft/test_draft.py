@@ -153,7 +153,7 @@ def test_header_separator_and_encoding_are_recognised(tmp_path: Path) -> None:
     text = "Fähre, Versuch 3\n14.05.2026\nZeit;Kurs;Tiefe\n0,0;12,5;3\n0,2;12,6;3\n0,4;12,7;3\n"
     (tmp_path / "run.csv").write_bytes(text.encode("cp1252"))
     layout = text_layout(tmp_path / "run.csv")
-    assert (layout.header_lines, layout.encoding, layout.decimal) == (3, "cp1252", ",")
+    assert (layout.header_lines, layout.encoding) == (3, "cp1252")
     survey = survey_log(tmp_path / "run.csv")
     (topic,) = survey.topics
     assert [column.name for column in topic.columns] == ["Kurs", "Tiefe"] and topic.rate == pytest.approx(5.0)

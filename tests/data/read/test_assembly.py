@@ -18,8 +18,8 @@ def log(**topics: dict[str, Array]) -> Log:
     return Log("run.log", tuple(topic_table("run.log", topic, columns) for topic, columns in topics.items()))
 
 
-def layout(*columns: ColumnSpec, geometry: Geometry = Geometry(), longest_gap: float | None = None) -> Layout:  # noqa: B008
-    return Layout("text", ColumnSpec("time", "", "s"), columns, geometry=geometry, longest_gap=longest_gap)
+def layout(*columns: ColumnSpec, geometry: Geometry = Geometry()) -> Layout:  # noqa: B008
+    return Layout("text", ColumnSpec("time", "", "s"), columns, geometry=geometry)
 
 
 def derived(columns: dict[str, tuple[Array, str]], geometry: Geometry = Geometry(), frame: str = "") -> Record:  # noqa: B008
@@ -53,8 +53,6 @@ def test_a_gap_stays_a_gap() -> None:
     record = assemble_record(topics, layout(*columns), "")
     inside = (record.time > 4.95) & (record.time < 9.05)
     assert np.isnan(record["u"][inside]).all() and np.isfinite(record["u"][~inside]).all()
-    patient = assemble_record(topics, layout(*columns, longest_gap=10.0), "")
-    np.testing.assert_allclose(patient["u"], patient.time, atol=1e-9)
 
 
 def test_sources_of_several_files_have_their_own_clocks() -> None:

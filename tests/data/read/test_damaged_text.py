@@ -57,8 +57,8 @@ def test_what_is_clear_is_read(content: bytes, tmp_path: Path) -> None:
 
 
 def test_decimal_commas(tmp_path: Path) -> None:
-    layout = Layout("text", TIME, (SPEED,), decimal=",")
-    np.testing.assert_array_equal(read(tmp_path / "run.csv", b"t;speed\n0;1,5\n1;-2,5\n", layout), [1.5, -2.5])
+    for content in (b"t;speed\n0;1\n1;-2,5\n", b"t speed\n0,0 1\n1,0 -2,5\n"):
+        np.testing.assert_array_equal(read(tmp_path / "run.csv", content), [1.0, -2.5])
 
 
 @pytest.mark.parametrize(

@@ -47,7 +47,7 @@ def test_decimal_comma(tmp_path: Path, mark: str) -> None:
     text = "\n".join(mark.join(repr(x).replace(".", ",") for x in row) for row in ROWS)
     path = tmp_path / "run.dat"
     path.write_text(text)
-    expect(read_record(path, Layout("text", NUMBERED.time, NUMBERED.columns, decimal=",")))
+    expect(read_record(path, Layout("text", NUMBERED.time, NUMBERED.columns)))
 
 
 def test_packed_with_a_header_in_a_windows_encoding(tmp_path: Path) -> None:

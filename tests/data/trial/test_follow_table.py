@@ -41,7 +41,7 @@ def test_the_table_becomes_a_stream_with_the_own_defaults(tmp_path: Path) -> Non
     stream = require_stream(load_trial(written(tmp_path, SHIP + STREAM)))
     assert (stream.source, stream.name, stream.file) == (StreamSource.FILE, "log", tmp_path / "log.csv")
     assert (stream.rate, stream.batch_window_s) == (10.0, 3600.0)
-    assert (stream.forgetting_time_s, stream.longest_gap_s) == (None, 30.0)
+    assert stream.forgetting_time_s is None
     assert (stream.host, stream.port, stream.page, stream.journal) == ("127.0.0.1", None, 0, None)
     delta = stream.layout.columns[1]
     assert (delta.source, delta.unit, delta.positive, stream.layout.format) == (3, "deg", "port", "text")
@@ -73,8 +73,11 @@ channels.r = { column = "r", unit = "deg/s" }
         ('source = "file"', 'source = "udp"', "source = 'udp' needs a port"),
         ("rate = 10\n", "", "key 'follow.rate' is missing"),
         ("rate = 10", "rate = 0", "follow.rate"),
-        ("rate = 10", "rate = 10\nlongest_gap = 3", "unknown key 'follow.longest_gap'; did you mean 'longest_gap_s'?"),
-        ("rate = 10", "rate = 10\nlongest_gap_s = 0.01", "longest_gap_s = 0.01 is shorter than a step at 10 Hz"),
+        (
+            "rate = 10",
+            "rate = 10\njournl = 3",
+            "unknown key 'follow.journl'; did you mean 'journal'?",
+        ),
         ("rate = 10", "rate = 10\nport = 70000", "follow.port"),
         ("rate = 10", 'rate = 10\nhost = "no host"', "follow.host = 'no host' is no address"),
         ("rate = 10", 'rate = 10\nfiles = "*.csv"', "unknown key 'follow.files'; did you mean 'file'?"),

@@ -144,7 +144,7 @@ REFUSALS = [
     ("no TOML", "[ship]", "[ship", "no valid TOML"),
     ("no size", "L = 9.8", 'L = { value = 1e308, unit = "km" }', "ship.L.value = 1e.308 is no size"),
     ("a long name", '"*.csv"', f'"{"x" * 300}.csv"', "there is no file"),
-    ("empty window", "[records.channels]", "from_s = 9\nto_s = 3\n[records.channels]", "not before to_s"),
+    ("left key", "[records.channels]", "from_s = 9\n[records.channels]", "no key any more; cut the run: parts = "),
 ]
 
 

@@ -10,7 +10,7 @@ from seatrial.core.values import Finding, InputError, Record, RecordKind, Severi
 from seatrial.data.check.phases import first_execution, is_free_decay
 from seatrial.data.trial import (
     Role,
-    TrialRun,
+    Run,
     Trimming,
     checked_records,
     load_records,
@@ -107,9 +107,8 @@ def test_the_acceleration_run_is_dropped_on_request() -> None:
     assert apply_trimming(_run_up(), Trimming(skip_acceleration=True)).time[0] == pytest.approx(18.0)
 
 
-def test_windows_and_rates() -> None:
-    record = apply_trimming(_run_up(), Trimming(from_s=10.0, to_s=30.0, rate=1.0))
-    assert (record.time[0], record.time[-1], record.dt) == (10.0, 30.0, pytest.approx(1.0))
+def test_a_rate() -> None:
+    assert apply_trimming(_run_up(), Trimming(rate=1.0)).dt == pytest.approx(1.0)
 
 
 @pytest.mark.long(every=2)
@@ -127,11 +126,11 @@ def test_a_long_hole_makes_two_runs_of_one_session() -> None:
     time = np.delete(np.arange(0.0, 600.0), np.arange(200, 300))
     psi = 0.5 * np.sin(2.0 * np.pi * time / 60.0)
     record = Record.from_arrays("log", time, {"psi": psi, "delta": 0.3 * np.cos(2.0 * np.pi * time / 60.0)})
-    parts = load_parts(TrialRun(record, Role.TRAIN, "day"), 0.0)
+    parts = load_parts(Run(record, Role.TRAIN, "day"), 0.0)
     assert [(part.record.name, len(part.record), part.session, part.run) for part in parts] == [
         ("log-1", 200, "day", "log"), ("log-2", 300, "day", "log"),
     ]  # fmt: skip
-    assert load_run(TrialRun(record, Role.TRAIN, "day"), 0.0).record.name == "log"
+    assert load_run(Run(record, Role.TRAIN, "day"), 0.0).record.name == "log"
 
 
 EXECUTE = 5.0  # s, when the rudder is put over

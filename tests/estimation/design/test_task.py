@@ -9,7 +9,7 @@ from tests.estimation.design.conftest import BOTH, NOZZLE_RANGE, with_inputs, wi
 from seatrial.core.results import TrialLimits
 from seatrial.core.values import InputError, Record, Ship
 from seatrial.data.folder.model_file import ModelFile
-from seatrial.data.trial import Role, Trial, TrialRun
+from seatrial.data.trial import Role, Run, Trial
 from seatrial.data.trial.design_request import DesignRequest, InputRange
 from seatrial.estimation.design.design import design
 from seatrial.estimation.design.manoeuvre_information import planned_record, sample_count, simulate_plan
@@ -133,7 +133,7 @@ def _trial(rudder_deg: float) -> Trial:
     delta = np.radians(rudder_deg) * np.clip(4.0 * np.sin(0.1 * TIME), -1.0, 1.0)
     noise = np.radians(0.2) * generator.standard_normal(TIME.size)
     record = Record.from_arrays("run", TIME, {"delta": delta, "psi": 0.3 * np.sin(0.1 * TIME) + noise})
-    return Trial(Ship("craft", {"L": 30.0}), (TrialRun(record, Role.TRAIN),), model_named("nomoto"))
+    return Trial(Ship("craft", {"L": 30.0}), (Run(record, Role.TRAIN),), model_named("nomoto"))
 
 
 def test_orders_go_as_far_as_recorded_and_sensors_are_as_good() -> None:

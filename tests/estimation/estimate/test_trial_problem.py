@@ -5,7 +5,7 @@ import pytest
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Prior, Record, Ship
-from seatrial.data.trial import EstimateSettings, Trial, TrialRun
+from seatrial.data.trial import EstimateSettings, Run, Trial
 from seatrial.estimation.estimate.trial_problem import TrialProblem
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.simulate import replay
@@ -28,7 +28,7 @@ def model() -> Model:
 
 @pytest.fixture(scope="module")
 def problem(model: Model) -> TrialProblem:
-    runs = (TrialRun(steered_record(model, "a")), TrialRun(steered_record(model, "b")))
+    runs = (Run(steered_record(model, "a")), Run(steered_record(model, "b")))
     settings = EstimateSettings(segment_s=10.0, offsets={"delta": 0.05}, delays={"delta": 0.0}, channels=("psi", "r"))
     return Trial(SHIP, runs, model, estimate=settings, noise={"psi": 0.01}).problem()
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.core.values import Record, Ship
-from seatrial.data.trial import Trial, TrialRun, load_records
+from seatrial.data.trial import Run, Trial, load_records
 from seatrial.estimation.estimate import EstimatorOptions
 from seatrial.estimation.estimate.assemble import training_runs
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
@@ -30,7 +30,7 @@ def runs() -> list[Record]:
 
 
 def estimation(records: list[Record]) -> Estimation:
-    trial = Trial(Ship("boat", {"L": 6.0}), tuple(TrialRun(r) for r in records), nomoto())
+    trial = Trial(Ship("boat", {"L": 6.0}), tuple(Run(r) for r in records), nomoto())
     return estimate_model(trial.model, training_runs(trial, load_records(trial)[0]), None, EstimatorOptions())
 
 

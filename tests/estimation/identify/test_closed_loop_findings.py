@@ -53,7 +53,7 @@ def trial() -> st.Trial:
     gains = ControllerGains(gain=GAIN, rate_gain=RATE_GAIN, sample_s=SAMPLE_S)
     declared = Feedback(input="delta", output="psi", reference="psi_ref", controller=gains)
     model = st.models.nomoto().with_values(dict(craft.guess))
-    return st.Trial(st.Ship("craft", {"L": 50.0}), (st.TrialRun(record),), model, feedback=declared)
+    return st.Trial(st.Ship("craft", {"L": 50.0}), (st.Run(record),), model, feedback=declared)
 
 
 def test_a_declared_loop_is_used_and_its_short_record_warned_of(trial: st.Trial) -> None:

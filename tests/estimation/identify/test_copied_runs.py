@@ -6,7 +6,7 @@ import numpy as np
 from tests.estimation.predict.test_open_loop import GENTLE, run
 
 from seatrial.core.values import Ship
-from seatrial.data.trial import Role, Trial, TrialRun
+from seatrial.data.trial import Role, Run, Trial
 from seatrial.estimation.identify import identify
 from seatrial.physics.models.nomoto import nomoto
 
@@ -15,11 +15,11 @@ def test_three_copies_leave_the_standard_errors_as_they_are(rng: np.random.Gener
     runs = [run(name, GENTLE, rng, phase) for name, phase in (("a", 0.0), ("b", 7.0), ("v", 3.0))]
     trial = Trial(
         Ship("craft", {"L": 8.0}),
-        (*(TrialRun(r, Role.TRAIN) for r in runs[:2]), TrialRun(runs[2], Role.VALIDATE)),
+        (*(Run(r, Role.TRAIN) for r in runs[:2]), Run(runs[2], Role.VALIDATE)),
         nomoto(),
     )
-    again = [TrialRun(replace(r, name=f"{r.name} again {k}"), Role.TRAIN) for r in runs[:2] for k in (1, 2)]
-    fitted = TrialRun(replace(runs[0], name="not new"), Role.VALIDATE)
+    again = [Run(replace(r, name=f"{r.name} again {k}"), Role.TRAIN) for r in runs[:2] for k in (1, 2)]
+    fitted = Run(replace(runs[0], name="not new"), Role.VALIDATE)
     once, thrice = identify(trial), identify(replace(trial, runs=(*trial.runs, *again, fitted)))
     assert [c.standard_error for c in thrice.coefficients] == [c.standard_error for c in once.coefficients]
     assert [c.estimate for c in thrice.coefficients] == [c.estimate for c in once.coefficients]

@@ -7,7 +7,7 @@ import pytest
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Record, Ship
-from seatrial.data.trial import EstimateMethod, EstimateSettings, Role, Trial, TrialRun
+from seatrial.data.trial import EstimateMethod, EstimateSettings, Role, Run, Trial
 from seatrial.estimation.estimate import Estimation, Runs, estimate_model
 from seatrial.estimation.identify import identify
 from seatrial.estimation.identify.terms import held_couplings
@@ -70,7 +70,7 @@ def test_freeing_is_advised_where_held_out_runs_gain(is_of_the_craft: bool, rng:
     train, settings = run_of(0.4, rng, "train"), EstimateSettings(method=EstimateMethod.OUTPUT_ERROR)
     held = estimate_model(catamaran(), Runs.one_session_each((train,), 1.0), settings).model
     validate = run_of(0.4, rng, "validate") if is_of_the_craft else simulated(held, rng, "validate")
-    runs = (TrialRun(train), TrialRun(validate, Role.VALIDATE))
+    runs = (Run(train), Run(validate, Role.VALIDATE))
     fit = identify(Trial(Ship("catamaran", {"L": 1.0}), runs, catamaran(), settings))
     named = [f.message.split()[0] for f in fit.findings if f.code == "held-coupling"]
     assert named[:1] == (["N_uv"] if is_of_the_craft else [])

@@ -9,7 +9,7 @@ import pytest
 from seatrial.core.results import Fit
 from seatrial.core.values import Record, Ship
 from seatrial.core.values.arrays import Array
-from seatrial.data.trial import EstimateMethod, EstimateSettings, Trial, TrialRun
+from seatrial.data.trial import EstimateMethod, EstimateSettings, Run, Trial
 from seatrial.estimation.identify import identify
 from seatrial.physics.models import nomoto
 
@@ -31,7 +31,7 @@ def fit_of(rudder: Array, rng: np.random.Generator, *, is_held: bool) -> Fit:
     values |= {s: values[s] + size * rng.normal(size=len(time)) for s, size in NOISE.items()}
     record = Record.from_arrays("run", time, values)
     settings = EstimateSettings(method=EstimateMethod.OUTPUT_ERROR)
-    return identify(Trial(Ship("boat", {"L": 8.0}), (TrialRun(record),), nomoto(), settings))
+    return identify(Trial(Ship("boat", {"L": 8.0}), (Run(record),), nomoto(), settings))
 
 
 def steps(rng: np.random.Generator) -> Array:

@@ -10,7 +10,7 @@ import pytest
 from seatrial.core.results import Fit, Prediction
 from seatrial.core.results.fit import Stability
 from seatrial.core.values import Record, Ship
-from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRun
+from seatrial.data.trial import EstimateSettings, Role, Run, Trial
 from seatrial.estimation.estimate import Estimation
 from seatrial.estimation.identify import assembled_fit, identify
 from seatrial.estimation.identify.terms import needless_term_findings
@@ -38,7 +38,7 @@ def fitted(alpha: float, *free: str) -> Fit:
     model = nomoto()
     model = model.with_parameters(model.parameters.only_free(("K", "T", *free)))
     timing = EstimateSettings(delays={"delta": 0.0})  # simulated: known
-    return identify(Trial(Ship("boat", {"L": 6.0}), tuple(map(TrialRun, runs, roles)), model, estimate=timing))
+    return identify(Trial(Ship("boat", {"L": 6.0}), tuple(map(Run, runs, roles)), model, estimate=timing))
 
 
 @pytest.fixture(scope="module")

@@ -89,7 +89,7 @@ def test_process_noise_is_drawn_with_the_coefficients() -> None:
 @pytest.fixture(scope="module")
 def fit(records: tuple[Record, ...]) -> Fit:
     ship = st.Ship("craft", {"L": 8.0})
-    runs = (st.TrialRun(records[0]), st.TrialRun(records[1], st.Role.VALIDATE))
+    runs = (st.Run(records[0]), st.Run(records[1], st.Role.VALIDATE))
     return identify(st.Trial(ship, runs, nomoto()), intervals=IntervalMethod.SAMPLING)
 
 
@@ -120,14 +120,14 @@ def test_the_draws_are_kept_in_the_folder(fit: Fit, tmp_path: Path) -> None:
 def test_two_days_one_after_the_other_say_what_both_say_together(records: tuple[Record, ...]) -> None:
     """The earlier fit as a prior with its correlations; a hundredth of its variances is added on the way."""
     ship = st.Ship("craft", {"L": 8.0})
-    first = identify(st.Trial(ship, (st.TrialRun(records[0]),), nomoto(), noise=NOISE))
+    first = identify(st.Trial(ship, (st.Run(records[0]),), nomoto(), noise=NOISE))
     earlier = EarlierResult("nomoto", "fit of monday", joint_prior(model_of_fit(first)), frozenset())
     priors = {n: st.Prior(p.mean, p.deviation, p.source) for n, p in earlier.priors.items()}
     model = nomoto().with_parameters(nomoto().parameters.with_priors(priors))
     held = earlier.joint_prior_of(model.parameters)
-    second = identify(st.Trial(ship, (st.TrialRun(records[1]),), model, noise=NOISE, joint_priors=(held,)))
-    both = identify(st.Trial(ship, tuple(st.TrialRun(r) for r in records[:2]), nomoto(), noise=NOISE))
-    alone = identify(st.Trial(ship, (st.TrialRun(records[1]),), model, noise=NOISE))
+    second = identify(st.Trial(ship, (st.Run(records[1]),), model, noise=NOISE, joint_priors=(held,)))
+    both = identify(st.Trial(ship, tuple(st.Run(r) for r in records[:2]), nomoto(), noise=NOISE))
+    alone = identify(st.Trial(ship, (st.Run(records[1]),), model, noise=NOISE))
     names = both.model.parameters.free_names
     errors, of_second = (np.sqrt(np.diag(fit.covariance)) for fit in (both, second))
     for name, error in zip(names, errors, strict=True):

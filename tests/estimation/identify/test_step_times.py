@@ -7,7 +7,7 @@ import numpy as np
 
 from seatrial.core.results import Fit
 from seatrial.core.values import Record, Ship
-from seatrial.data.trial import EstimateSettings, Trial, TrialRun
+from seatrial.data.trial import EstimateSettings, Run, Trial
 from seatrial.estimation.identify import identify
 from seatrial.physics.models import model_named
 
@@ -34,7 +34,7 @@ def steered(shares: np.ndarray, rng: np.random.Generator, late: EstimateSettings
     delta = rudder(rows, np.arange(ROWS))
     noisy = np.array(motion) + np.radians([0.02, 0.04]) * rng.standard_normal((ROWS, 2))
     record = Record.from_arrays("run", DT * np.arange(ROWS), {"delta": delta, "r": noisy[:, 0], "psi": noisy[:, 1]})
-    return identify(Trial(Ship("boat", {"L": 8.0}), (TrialRun(record),), model_named("nomoto"), estimate=late))
+    return identify(Trial(Ship("boat", {"L": 8.0}), (Run(record),), model_named("nomoto"), estimate=late))
 
 
 def errors(fit: Fit) -> dict[str, float]:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import InputError, Record, Ship
-from seatrial.data.trial import EstimateMethod, EstimateSettings, Trial, TrialRun
+from seatrial.data.trial import EstimateMethod, EstimateSettings, Run, Trial
 from seatrial.estimation.estimate.fit import refuse_without_excitation
 from seatrial.estimation.identify import identify
 from seatrial.estimation.information.symmetries import refuse_unidentifiable, structural_symmetries
@@ -50,7 +50,7 @@ def test_thrusters_that_always_work_together_are_refused_with_the_direction() ->
     clean = replay(model.with_values({"X_u": -0.3}), planned, dict.fromkeys(model.states, 0.0) | {"r": 0.3})
     noisy = {c: clean.channel(c).with_values(clean[c] + 0.02 * rng.standard_normal(400)) for c in OUTPUTS}
     trial = Trial(
-        Ship("craft", {"L": 1.0}), (TrialRun(replace(planned, channels=dict(planned.channels) | noisy)),), model,
+        Ship("craft", {"L": 1.0}), (Run(replace(planned, channels=dict(planned.channels) | noisy)),), model,
         estimate=EstimateSettings(method=EstimateMethod.OUTPUT_ERROR),
     )  # fmt: skip
     with pytest.raises(InputError, match=r"do not determine the direction .*k_[fb]_(bow|stern) .*k_[fb]_(bow|stern)"):

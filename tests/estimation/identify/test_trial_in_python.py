@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from seatrial.core.values import Ship
-from seatrial.data.trial import EstimateMethod, EstimateSettings, Role, Trial, TrialRun, load_trial
+from seatrial.data.trial import EstimateMethod, EstimateSettings, Role, Run, Trial, load_trial
 from seatrial.estimation.identify import identify
 from seatrial.physics.models import model_named
 
@@ -17,9 +17,7 @@ def trial_in_python(example: Trial) -> Trial:
     """The waterjet example, its records, ship and model as values."""
     ship = Ship("waterjet craft", {"L": 9.8, "d": 0.71, "m": 5540.0})
     held_out = {run.name for run in example.runs if run.role is Role.VALIDATE}
-    runs = tuple(
-        TrialRun(run.raw_record(), Role.VALIDATE if run.name in held_out else Role.TRAIN) for run in example.runs
-    )
+    runs = tuple(Run(run.raw_record(), Role.VALIDATE if run.name in held_out else Role.TRAIN) for run in example.runs)
     model = model_named("waterjet").with_ship(ship)
     parameters = model.parameters
     for p in example.model.parameters.free:
@@ -31,7 +29,7 @@ def test_a_trial_made_of_records_gives_the_bits_of_its_file(repository: Path) ->
     example = load_trial(repository / "examples" / "waterjet.toml")
     trial = trial_in_python(example)
     assert trial.path is None
-    assert all(run.file is None for run in trial.runs)
+    assert all(run.files == () for run in trial.runs)
     by_file, by_records = identify(replace(example, truth={}, estimate=PLAIN)), identify(trial)
     assert [c.name for c in by_file.coefficients] == [c.name for c in by_records.coefficients]
     assert [c.estimate for c in by_file.coefficients] == [c.estimate for c in by_records.coefficients]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Record, Ship
-from seatrial.data.trial import Role, Trial, TrialRun
+from seatrial.data.trial import Role, Run, Trial
 from seatrial.estimation.identify import identify
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto
@@ -24,7 +24,7 @@ def run(name: str, text: str, seed: int) -> Record:
 def test_a_kind_that_was_never_trained_is_named(trained: str, codes: list[str]) -> None:
     runs = (run("a", trained, 1), run("b", trained, 2), run("held", "zigzag:15/15", 3))
     roles = (Role.TRAIN, Role.TRAIN, Role.VALIDATE)
-    fit = identify(Trial(Ship("craft", {"L": 8.0}), tuple(map(TrialRun, runs, roles)), nomoto()))
+    fit = identify(Trial(Ship("craft", {"L": 8.0}), tuple(map(Run, runs, roles)), nomoto()))
     found = [f for f in fit.findings if f.code == "untrained-manoeuvre"]
     assert [f.code for f in found] == codes
     reached = fit.validation[0].extrapolation

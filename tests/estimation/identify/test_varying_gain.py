@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import Finding, Record, Ship
-from seatrial.data.trial import Trial, TrialRun, load_records
+from seatrial.data.trial import Run, Trial, load_records
 from seatrial.estimation.estimate import EstimatorOptions
 from seatrial.estimation.estimate.assemble import training_runs
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
@@ -34,7 +34,7 @@ def runs(alpha: float) -> list[Record]:
 def fitted(records: list[Record], *free: str) -> Estimation:
     model = nomoto()
     model = model.with_parameters(model.parameters.freed(*free))
-    trial = Trial(Ship("boat", {"L": 6.0}), tuple(TrialRun(r) for r in records), model)
+    trial = Trial(Ship("boat", {"L": 6.0}), tuple(Run(r) for r in records), model)
     return estimate_model(model, training_runs(trial, load_records(trial)[0]), trial.estimate, EstimatorOptions())
 
 

@@ -191,7 +191,7 @@ def test_the_words_for_the_waterjet() -> None:
     first, second = structural_symmetries(waterjet(), ("u", "v", "r", "psi"))
     assert first.text.startswith(
         "X_uu, X_vv, X_rr, Y_v, Y_r, Y_vv, Y_vr, Y_rr, N_v, N_r, N_rr, A_j, m + m_x, m + m_y and I_z + J_z can all be "
-        "scaled together by one common factor without any change of u, v, r or psi: fix or give a prior for one of "
+        "scaled together by one common factor without any change of u, v, r or psi. Fix or give a prior for one of "
         "m_x, m_y, A_j"
     )
     assert second.text.startswith("N_v, N_r, N_rr, x_T and I_z + J_z can all be scaled together")

@@ -106,7 +106,7 @@ def test_a_centre_that_is_another_parameter_is_named() -> None:
     assert rudder.text.startswith(
         "1 - t_R, 1 + a_H and x_R_prime - x_H_prime can be multiplied by any factor if f_alpha is divided by it without"
     )
-    assert "fix or give a prior for x_R_prime; it is fixed here, and its error spreads to all" in rudder.text
+    assert "Fix or give a prior for x_R_prime; it is fixed here, and its error spreads to all" in rudder.text
 
 
 def test_roots_of_negative_states_are_not_asked_for() -> None:

@@ -7,7 +7,7 @@ import pytest
 
 from seatrial.core.results import Fit
 from seatrial.core.values import Record, Ship
-from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRun
+from seatrial.data.trial import EstimateSettings, Role, Run, Trial
 from seatrial.estimation.identify import identify
 from seatrial.estimation.information.discrepancy import NO_DISCREPANCY, HoldoutError
 from seatrial.estimation.predict.draws import PredictionUncertainty
@@ -42,7 +42,7 @@ def run(number: int, wander: float, seconds: float = 240.0) -> Record:
 def fit_of(wander: float, held_out: int = 4) -> Fit:
     """Return the fit of eight runs over segments of 20 s, further ones held out."""
     runs = tuple(
-        TrialRun(run(k, wander), Role.TRAIN if k < 8 else Role.VALIDATE) for k in range(8 + held_out)
+        Run(run(k, wander), Role.TRAIN if k < 8 else Role.VALIDATE) for k in range(8 + held_out)
     )  # fmt: skip
     settings = EstimateSettings(segment_s=20.0, delays={"delta": 0.0})
     trial = Trial(Ship("craft", {"L": 8.0}), runs, nomoto(), estimate=settings)

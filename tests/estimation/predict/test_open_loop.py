@@ -12,7 +12,7 @@ from seatrial.core.equations import Sheet
 from seatrial.core.results import Fit
 from seatrial.core.values import InputError, Record, Ship
 from seatrial.data.folder.result_folder import load_fit, save_result
-from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRun
+from seatrial.data.trial import EstimateSettings, Role, Run, Trial
 from seatrial.estimation.estimate.assemble import Runs
 from seatrial.estimation.estimate.settings import ship_length_seconds
 from seatrial.estimation.identify import estimate_model, identify
@@ -77,9 +77,9 @@ def run(name: str, rudder: float, rng: np.random.Generator, phase: float = 0.0) 
 
 
 def fit_of(held_out: Record, rng: np.random.Generator, values: Mapping[str, float]) -> Fit:
-    runs = [TrialRun(run(name, GENTLE, rng, phase), Role.TRAIN) for name, phase in (("a", 0.0), ("b", 7.0))]
+    runs = [Run(run(name, GENTLE, rng, phase), Role.TRAIN) for name, phase in (("a", 0.0), ("b", 7.0))]
     return identify(
-        Trial(Ship("craft", {"L": 8.0}), (*runs, TrialRun(held_out, Role.VALIDATE)), nomoto().with_values(values))
+        Trial(Ship("craft", {"L": 8.0}), (*runs, Run(held_out, Role.VALIDATE)), nomoto().with_values(values))
     )
 
 
@@ -113,7 +113,7 @@ def test_the_warning_names_the_terms_and_a_cure(diverged: Fit) -> None:
 
 def test_a_fit_is_kept_whose_own_run_diverges(rng: np.random.Generator, tmp_path: Path) -> None:
     # beyond the angle up to which the model has a solution: segments of a second last, the whole run does not
-    runs = [TrialRun(run(name, rudder, rng), Role.TRAIN) for name, rudder in (("a", GENTLE), ("b", HARD))]
+    runs = [Run(run(name, rudder, rng), Role.TRAIN) for name, rudder in (("a", GENTLE), ("b", HARD))]
     quick = nomoto().with_values(UNSTABLE | {"T": 1.5})
     model = quick.with_parameters(quick.parameters.fixed("T").bounded("K", 0.14, 0.16))
     trial = Trial(Ship("craft", {"L": 8.0}), tuple(runs), model)

@@ -10,7 +10,7 @@ from tests.estimation.estimate.test_large_records import steered
 
 from seatrial.core.equations import Model
 from seatrial.core.values import InputError, Record, Ship
-from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRun
+from seatrial.data.trial import EstimateSettings, Role, Run, Trial
 from seatrial.estimation.estimate import Estimation, EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.identify import identify
 from seatrial.estimation.predict.session_offsets import (
@@ -215,7 +215,7 @@ def test_a_fit_has_the_errors_of_its_own_disturbance() -> None:
     record = steered(np.radians(1.2))
     runs = [record.rows(slice(a, a + 1500)).renamed(f"from row {a}") for a in (0, 1500, 3000)]
     roles = (Role.TRAIN, Role.TRAIN, Role.VALIDATE)
-    trial = Trial(Ship("craft", {"L": 50.0}), tuple(map(TrialRun, runs, roles)), nomoto())
+    trial = Trial(Ship("craft", {"L": 50.0}), tuple(map(Run, runs, roles)), nomoto())
     fit = identify(trial, horizons="1,5s,60s")
     held = {e.channel: e for e in fit.k_step_errors if e.role == "validation"}
     assert held["r"].steps == (1, 25, 300)

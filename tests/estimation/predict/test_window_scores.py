@@ -10,7 +10,7 @@ from tests.estimation.predict.test_open_loop import GENTLE, run
 from seatrial.core.equations import Model
 from seatrial.core.results import Fit
 from seatrial.core.values import InputError, Parameters, Prior, Record, Ship
-from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRun
+from seatrial.data.trial import EstimateSettings, Role, Run, Trial
 from seatrial.data.trial.settings import WindowLength, window_lengths
 from seatrial.estimation.identify import identify
 from seatrial.estimation.predict.window_scores import (
@@ -36,9 +36,7 @@ def fit() -> Fit:
     rng = np.random.default_rng(4)
     runs = [run(name, GENTLE, rng, phase) for name, phase in (("a", 0.0), ("b", 7.0), ("v", 3.0))]
     roles = (Role.TRAIN, Role.TRAIN, Role.VALIDATE)
-    trial = Trial(
-        Ship("craft", {"L": 8.0}), tuple(TrialRun(r, role) for r, role in zip(runs, roles, strict=True)), nomoto()
-    )
+    trial = Trial(Ship("craft", {"L": 8.0}), tuple(Run(r, role) for r, role in zip(runs, roles, strict=True)), nomoto())
     return identify(trial, windows="50s,5L")
 
 
@@ -54,7 +52,7 @@ def test_the_trial_states_windows_unless_the_command_does() -> None:
     rng = np.random.default_rng(4)
     runs = [run(name, GENTLE, rng, phase) for name, phase in (("a", 0.0), ("v", 3.0))]
     roles = (Role.TRAIN, Role.VALIDATE)
-    trial = Trial(Ship("craft", {"L": 8.0}), tuple(map(TrialRun, runs, roles)), nomoto(),
+    trial = Trial(Ship("craft", {"L": 8.0}), tuple(map(Run, runs, roles)), nomoto(),
                   estimate=EstimateSettings(windows="40s"))  # fmt: skip
     assert [w.window for w in identify(trial).validation[0].windows] == ["40 s"]
     assert [w.window for w in identify(trial, windows="5L").validation[0].windows] == ["5 L"]
@@ -90,7 +88,7 @@ def test_a_ship_that_rolls_about_its_rest_has_windows_in_seconds_and_a_band_that
         decays.append(Record.from_arrays(name, 0.05 * np.arange(600.0), {"phi": states[:, 0] + noise}))
         truth = states[:, 0]
     roles = (Role.TRAIN, Role.VALIDATE)
-    runs = tuple(TrialRun(d, role) for d, role in zip(decays, roles, strict=True))
+    runs = tuple(Run(d, role) for d, role in zip(decays, roles, strict=True))
     (prediction,) = identify(Trial(Ship("hull", {"L": 5.0}), runs, roll())).validation
     assert [w.window for w in prediction.windows] == ["1 s", "5.1 s"]  # 0.4 periods of 2 pi / sqrt(6) s
     inside = np.abs(prediction.simulated["phi"] - truth) <= prediction.half_width["phi"]
@@ -146,7 +144,7 @@ def test_the_band_of_a_decay_holds_what_gusts_do_to_the_roll() -> None:
         records.append(Record.from_arrays(name, 0.05 * np.arange(float(samples)), {"phi": noisy}))
     roles = (Role.TRAIN, Role.TRAIN, Role.TRAIN, Role.VALIDATE)
     ship = roll().with_parameters(roll().parameters.only_free(("b_1", "b_2", "c_1")))
-    fit = identify(Trial(Ship("boat", {"L": 20.0}), tuple(map(TrialRun, records, roles)), ship), windows="10s")
+    fit = identify(Trial(Ship("boat", {"L": 20.0}), tuple(map(Run, records, roles)), ship), windows="10s")
     (window,) = fit.validation[0].windows
     inside = window.scores["phi_deg"].inside_band
     assert inside is not None

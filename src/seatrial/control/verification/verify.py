@@ -24,7 +24,7 @@ from seatrial.core.results.verification import (
 from seatrial.core.values import Array, Finding, InputError, Parameter, Prior, Record, Severity, Ship, spelling_hint
 from seatrial.core.values.versions import versions
 from seatrial.data.folder.gains_file import channel_display_unit
-from seatrial.data.trial import Feedback, Trial, TrialRun
+from seatrial.data.trial import Feedback, Run, Trial
 from seatrial.data.trial.priors import JointPrior
 from seatrial.estimation.identify import identify
 from seatrial.estimation.sea import PLANT_FACTORS, LegFit
@@ -97,7 +97,7 @@ def _trial(ship: TrimmedShip, model: Model, records: Sequence[Record], length: f
     """Return the trial of the log: the controller was on, the ship is known as of another day."""
     particulars = {"L": length} | {p.name: p.value for p in model.parameters if not p.free and np.isfinite(p.value)}
     names = {name for record in records for name in record.channels if name.endswith("_ref")}
-    runs = tuple(TrialRun(record.without(*(names & set(record.channels)))) for record in records)
+    runs = tuple(Run(record.without(*(names & set(record.channels)))) for record in records)
     feedback = Feedback(input=ship.actuator, output=ship.output)
     return Trial(Ship(model.name, particulars), runs, model, feedback=feedback, joint_priors=(prior,))
 

@@ -1,6 +1,7 @@
 """One run: its track from above, its channels over time, and bands of 95 % about both."""
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -255,6 +256,29 @@ class ChannelPanel:
     ends: tuple[float, float] | None = None
 
 
+_PREFIXES = {"M": 1e6, "k": 1e3}  # of SI units, the larger first
+_PREFIXED_UNIT = re.compile(r"\[(N|N m)\]")
+
+
+def in_suitable_unit(channel: ChannelPanel) -> ChannelPanel:
+    """Return a channel of forces or moments in kilo- or meganewtons where they are large: its ticks stay short."""
+    largest = max(
+        (float(np.max(np.abs(c.values), initial=0.0, where=np.isfinite(c.values))) for c in channel.curves), default=0.0
+    )
+    prefix = next((p for p, factor in _PREFIXES.items() if largest >= factor), "")
+    if not prefix or _PREFIXED_UNIT.search(channel.label) is None:
+        return channel
+    factor = _PREFIXES[prefix]
+    return ChannelPanel(
+        _PREFIXED_UNIT.sub(rf"[{prefix}\1]", channel.label),
+        tuple(replace(c, values=c.values / factor) for c in channel.curves),
+        None if channel.lower is None else channel.lower / factor,
+        None if channel.upper is None else channel.upper / factor,
+        tuple(replace(rule, value=rule.value / factor) for rule in channel.limits),
+        None if channel.ends is None else (channel.ends[0] / factor, channel.ends[1] / factor),
+    )
+
+
 @dataclass(frozen=True, eq=False)
 class RunView:
     """What a figure of one run shows.
@@ -269,6 +293,9 @@ class RunView:
     tracks: tuple[Track, ...] = ()
     length: float = 0.0
     legend: tuple[LegendEntry, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "channels", tuple(map(in_suitable_unit, self.channels)))
 
 
 def run_chart(view: RunView) -> Chart:

@@ -37,7 +37,7 @@ NARROWEST, WIDEST = 1.0, 120.0
 TICKS_OF_WIDTH = 8  # of that axis over the whole width of a page; chosen
 MEASURED, SIMULATED = Stroke(GREY, 3.0), Stroke(ACCENT, 1.4, "5 2.5")  # px, chosen
 MAX_PANELS = 9  # px, chosen
-_ERROR = "error "
+_ERROR = "error of "
 # letters of the channels that say most of a run, the first that it has
 _HEADLINE = ("ψ", "θ", "φ", "z", "u")
 # points of a curve over the whole width of a page
@@ -119,17 +119,22 @@ def prediction_view(prediction: Prediction, length: float, inputs: Sequence[str]
     legend += [LegendEntry("95 % band", BAND)] if has_band(prediction) else []
     channels = [_channel(prediction, name, is_input=name in inputs) for name in names]
     if len(names) == 1 and names[0] not in inputs and not has_track(measured):
-        channels.append(_error_panel(channels[0], measured.channel(names[0]).unit))
+        channels.append(_error_panel(channels[0]))
     title = f"{prediction.record}: {reference} and {model}"
     return RunView(title, tuple(channels), tuple(_tracks(prediction)), length, tuple(legend))
 
 
 def headline_view(prediction: Prediction, length: float, inputs: Sequence[str]) -> RunView:
-    """Return the track and the channel that says most of a run: heading, else pitch, roll, heave, the first one."""
+    """Return the track and the channel that says most of a run, heading, else pitch, roll, heave, the first one.
+
+    Below it stands its error, where a model is compared.
+    """
     view = prediction_view(prediction, length, inputs)
     by_label = {channel.label.partition(" ")[0]: channel for channel in view.channels}
     first = next((by_label[letter] for letter in _HEADLINE if letter in by_label), None)
-    return replace(view, channels=view.channels[:1] if first is None else (first,))
+    headline = view.channels[:1] if first is None else (first,)
+    compared = [channel for channel in headline if len(channel.curves) > 1]
+    return replace(view, channels=(*headline, *map(_error_panel, compared)))
 
 
 def has_band(prediction: Prediction) -> bool:
@@ -181,11 +186,14 @@ def _simulated_curve(measured: Record, simulated: Record, name: str) -> TimeCurv
     return replace(curve, values=curve.values - 360.0 * np.round(first / 360.0))
 
 
-def _error_panel(channel: ChannelPanel, unit: str) -> ChannelPanel:
-    """The difference of the two curves of a channel."""
+def _error_panel(channel: ChannelPanel) -> ChannelPanel:
+    """The record less the model, with the model's band about zero."""
     reference, model = channel.curves
-    error = TimeCurve(reference.time, model.values - reference.values, PLAIN, "error")
-    return ChannelPanel(f"{_ERROR}{channel_label('', unit)}", (error,))
+    error = TimeCurve(reference.time, reference.values - model.values, PLAIN, "record less model")
+    label = f"{_ERROR}{channel.label}"
+    if channel.lower is None or channel.upper is None:
+        return ChannelPanel(label, (error,))
+    return ChannelPanel(label, (error,), channel.lower - model.values, channel.upper - model.values)
 
 
 def _single_channel(view: RunView) -> Chart:

@@ -67,7 +67,7 @@ def front_chart(tuning: Tuning) -> Chart | None:
     columns = min(COLUMNS, len(pairs))
     right = 8.0 if columns > 1 else WIDTH - 584.0  # one panel alone is 520 px wide
     # px, chosen
-    boxes = tiles(len(pairs), columns, 200.0 if columns > 1 else 300.0, left=44.0, right=right, gap=52.0, top=22.0)
+    boxes = tiles(len(pairs), columns, 200.0 if columns > 1 else 300.0, left=44.0, right=right, gap=64.0, top=22.0)
     panels = tuple(
         Panel(box, axes[i], replace(axes[j], name=""), tuple(Points(p[:, i], p[:, j], m) for p, m in styled),
               axes[j].name)

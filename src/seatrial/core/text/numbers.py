@@ -11,8 +11,8 @@ LARGEST, SMALLEST = 1e7, 1e-4
 LARGEST_ROUNDED = 1e4
 # share from which on a percentage says no more than that it is large
 LARGEST_SHARE = 9.99
-# p-value below which only the bound is written
-SMALLEST_P = 0.001
+# p-values below and above which only the bound is written; chosen
+SMALLEST_P, LARGEST_P = 0.001, 0.99
 SUPERSCRIPTS = dict(zip("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹", strict=True))
 
 
@@ -102,7 +102,9 @@ def signed_percent(share: float) -> str:
 
 
 def p_value(p: float) -> str:
-    """Return a p-value with its relation: ``p = 0.012``, ``p < 0.001``."""
+    """Return a p-value with its relation: ``p = 0.012``, ``p < 0.001``, ``p > 0.99``."""
+    if p > LARGEST_P:
+        return f"p > {LARGEST_P:g}"
     return f"p < {SMALLEST_P:g}" if p < SMALLEST_P else f"p = {significant(p, 2)}"
 
 

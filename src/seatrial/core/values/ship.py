@@ -74,7 +74,6 @@ class ForcePoints(PickledByConstructor):
         motion: u, v, r and inputs by symbol, each (n,); signs as in the notation table; at the model's origin.
         forces: X, Y [N], N [N m about the model's origin] or some of them, each (n,); NaN where not measured.
         sd: standard deviation of each force, SI.
-        weight: factor on the squares of all residuals of the table.
         columns: symbol -> name of its column in the file, for messages.
     """
 
@@ -83,7 +82,6 @@ class ForcePoints(PickledByConstructor):
     forces: Mapping[str, Array]
     sd: Mapping[str, float]
     includes: ForceContent = ForceContent.HYDRODYNAMIC
-    weight: float = 1.0
     source: str = ""
     columns: Mapping[str, str] = field(default_factory=dict)
 

@@ -437,8 +437,6 @@ def _layout_lines(survey: LogSurvey) -> list[str]:
         lines.append(f"header_lines = {layout.header_lines}")
     if layout.encoding != "utf-8":
         lines.append(f"encoding = {quoted(layout.encoding)}")
-    if layout.decimal != ".":
-        lines.append(f"decimal = {quoted(layout.decimal)}")
     topic = next((one for one in survey.topics if one.time is not None), None)
     if topic is None or topic.time is None:
         why = "".join(f" ({_comment(one.time_note)})" for one in survey.topics[:1] if one.time_note)

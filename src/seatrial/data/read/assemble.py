@@ -321,7 +321,7 @@ def record_of_sources(name: str, sources: Sequence[LogSource]) -> Record:
     """The record of several logs or topics, each with its own clock and rate, on one even time base.
 
     Commands are held, angles unwrapped, the rest is interpolated linearly; what lies in a gap longer than the layout's
-    `longest_gap` stays NaN. Rate, gaps, geometry and scale are those of the first source.
+    five steps stays NaN. Rate, gaps, geometry and scale are those of the first source.
 
     Raises:
         InputError: as `assemble_record`; a channel is given twice, or the sources do not overlap in time.
@@ -334,9 +334,7 @@ def record_of_sources(name: str, sources: Sequence[LogSource]) -> Record:
             raise InputError(f"run '{name}': channel '{symbol}' is given by two sources; keep one")
     layout = sources[0].layout
     time = common_time(series, layout.rate)
-    measured = {
-        one.column.symbol: Measured(one.column, values_at(one, time, layout.longest_gap), one.label) for one in series
-    }
+    measured = {one.column.symbol: Measured(one.column, values_at(one, time), one.label) for one in series}
     channels = derived_channels(measured, layout.geometry, name)
     files = ", ".join(dict.fromkeys(plain_name(source.log.file) for source in sources))
     topics = len({one.topic for one in series})

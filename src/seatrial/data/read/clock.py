@@ -321,8 +321,8 @@ def common_time(series: Sequence[Series], rate: float | None) -> Array:
     return start + step * np.arange(int((stop - start) / step + _ROUNDING_STEPS) + 1)
 
 
-def values_at(one: Series, time: Array, longest_gap: float | None) -> Array:
-    """Return the series at the times [s], shape (n,); NaN between samples further apart than `longest_gap` [s]."""
+def values_at(one: Series, time: Array) -> Array:
+    """Return the series at the times [s], shape (n,); NaN between samples further apart than five steps."""
     margin = _ROUNDING_STEPS * min(one.step, 1.0)
     before = np.searchsorted(one.time, time + margin, side="right") - 1
     if one.column.is_held:
@@ -334,7 +334,7 @@ def values_at(one: Series, time: Array, longest_gap: float | None) -> Array:
     is_angle = one.column.quantity.unit == "rad"
     smooth = np.unwrap(one.values) if is_angle else one.values
     values = np.interp(time, one.time, smooth, left=np.nan, right=np.nan)
-    limit = _GAP_STEPS * one.step if longest_gap is None else longest_gap
+    limit = _GAP_STEPS * one.step
     rows = len(one.time) - 1
     distance = one.time[np.clip(after, 0, rows)] - one.time[np.clip(before, 0, rows)]
     values[distance > limit] = np.nan

@@ -196,11 +196,9 @@ class Layout:
             columns and 0, the first line holds the names.
         encoding: of a text file.
         separator: between the cells of a text file; ``auto`` looks at the first data line.
-        decimal: decimal sign of a text file.
         scale: length ratio by which the record is Froude-scaled; 1 leaves it as it is.
         geometry: what positions and headings are derived with.
         rate: Hz of the common time base of columns from several topics; None: that of the slowest measured one.
-        longest_gap: s between two samples of a topic over which nothing is interpolated; None: five of its steps.
     """
 
     format: str
@@ -209,19 +207,15 @@ class Layout:
     header_lines: int = 0
     encoding: str = "utf-8"
     separator: Separator = "auto"
-    decimal: str = "."
     scale: float = 1.0
     geometry: Geometry = Geometry()
     rate: float | None = None
-    longest_gap: float | None = None
 
     def __post_init__(self) -> None:
         symbols = [column.symbol for column in self.columns]
         twice = sorted({symbol for symbol in symbols if symbols.count(symbol) > 1})
         if twice:
             raise InputError(f"channel '{twice[0]}' is given twice; keep one column for each channel")
-        if self.decimal not in (".", ","):
-            raise InputError(f"decimal sign must be '.' or ',', not '{self.decimal}'")
         if self.header_lines < 0:
             raise InputError(f"header_lines must be 0 or more, not {self.header_lines}")
 

@@ -309,8 +309,8 @@ class RawTable:
             return angle
         where = f"{self.file}: row {self.first_row + row}, {column.display_name}: '{text[:_LONGEST_CELL]}'"
         if _GROUPED_NUMBER.fullmatch(text):
-            raise InputError(f"{where} has a thousands separator; write the file without, or set decimal")
-        raise InputError(f"{where} is not a number; check header_lines, separator and decimal")
+            raise InputError(f"{where} has a thousands separator; write the file without")
+        raise InputError(f"{where} is not a number; check header_lines and separator")
 
 
 # Units that stand behind each number of a column, as in spreadsheets and transcripts of a bridge.

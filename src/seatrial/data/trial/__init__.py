@@ -11,6 +11,7 @@ from seatrial.data.trial.records import (
     refuse_errors,
     with_input_corners,
 )
+from seatrial.data.trial.run_data import RunFiles
 from seatrial.data.trial.settings import (
     SEARCHES,
     EstimateMethod,
@@ -20,12 +21,33 @@ from seatrial.data.trial.settings import (
     SearchFitness,
     SearchSettings,
 )
-from seatrial.data.trial.trial import RecordFile, Role, Trial, TrialRun, Trimming
+from seatrial.data.trial.trial import Role, Run, Trial, Trimming
 
 __all__ = [
-    "SEARCHES", "CheckedRecords", "ControllerGains", "EstimateMethod", "EstimateSettings", "Feedback", "FitCriterion",
+    "SEARCHES",
+    "CheckedRecords",
+    "ControllerGains",
+    "EstimateMethod",
+    "EstimateSettings",
+    "Feedback",
+    "FitCriterion",
     "ModelFamily",
-    "RecordFile", "Role", "SearchFitness", "SearchSettings", "Trial", "TrialRecord", "TrialRun", "Trimming",
-    "approach_condition", "checked_records", "corrected_trial", "load_records", "load_runs", "load_trial",
-    "parse_tables", "refuse_errors", "trial_of_tables", "with_input_corners",
+    "Role",
+    "Run",
+    "RunFiles",
+    "SearchFitness",
+    "SearchSettings",
+    "Trial",
+    "TrialRecord",
+    "Trimming",
+    "approach_condition",
+    "checked_records",
+    "corrected_trial",
+    "load_records",
+    "load_runs",
+    "load_trial",
+    "parse_tables",
+    "refuse_errors",
+    "trial_of_tables",
+    "with_input_corners",
 ]  # fmt: skip

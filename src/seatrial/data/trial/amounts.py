@@ -141,7 +141,22 @@ _Arguments = ParamSpec("_Arguments")
 _UNKNOWN_KEY = ("extra_forbidden", "unexpected_keyword_argument")
 RENAMED_KEYS = {"criterion": "method"}
 """Key of earlier versions -> its name today, in the tables that have that name."""
+_DECIMAL = "leave it out: the decimal sign is read from the file"
+_FORCE_TABLE = "leave it out: header and format are read from the file; name the columns as its header does"
+_CUT = 'cut the run: parts = [{ name = "turn", from = "10 s", to = "130 s" }], s after its first sample'
 WITHDRAWN_KEYS = {
+    "records.decimal": _DECIMAL,
+    "records.sources.decimal": _DECIMAL,
+    "follow.decimal": _DECIMAL,
+    **dict.fromkeys(
+        (f"forces.{key}" for key in ("decimal", "separator", "encoding", "header_lines", "format")), _FORCE_TABLE
+    ),
+    "forces.weight": "write sd of the measured columns: a table weighs one over its square",
+    "records.longest_gap": "leave it out: nothing is interpolated over five steps of a topic",
+    "records.from_s": _CUT,
+    "records.to_s": _CUT,
+    "follow.longest_gap_s": "leave it out: a new run begins after 30 s without a sample",
+    "compare.svr.candidates": "leave it out: all candidate terms of the model are offered",
     "compare.svr.scaled": "leave it out: columns and target are brought to unit root mean square",
     "compare.svr.max_iterations": "leave it out: the solver takes 100000 steps at most",
     "compare.svr.drop_duplicates": "leave it out: repeated samples go",

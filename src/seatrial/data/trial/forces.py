@@ -1,5 +1,6 @@
 """A `[[forces]]` block to force points in standard axes, SI, at the model's origin."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from seatrial.core.values.files import is_file
 from seatrial.core.values.notation import OPPOSITE
 from seatrial.core.values.record import froude_factor
 from seatrial.data.read import ColumnSpec, Layout, RawTable, format_of, read_log
+from seatrial.data.read.formats.text import text_layout
 from seatrial.data.trial.runs import expand_variables
 from seatrial.data.trial.schema import ForceColumn, ForcesTable, MotionColumn
 
@@ -47,9 +49,7 @@ def read_force_points(
         forces["N"] = _transferred_moment(forces, origin - reference_point, where)
     motion["v"] = motion["v"] + (reference_point - motion_origin) * motion["r"]
     columns = {s: str(c.column) for s, c in (*table.motion.items(), *table.measured.items()) if c.column is not None}
-    return ForcePoints(
-        sheet.file, motion, forces, sd, ForceContent(table.includes), table.weight, table.source, columns
-    )
+    return ForcePoints(sheet.file, motion, forces, sd, ForceContent(table.includes), table.source, columns)
 
 
 def _read_columns(table: ForcesTable, data_folder: Path, where: str) -> RawTable:
@@ -58,9 +58,10 @@ def _read_columns(table: ForcesTable, data_folder: Path, where: str) -> RawTable
         raise InputError(f"{where}.file: there is no file '{path}'; check the name and [data] folder")
     wanted = {s: c for s, c in (*table.motion.items(), *table.measured.items()) if c.column is not None}
     columns = tuple(_column(symbol, column) for symbol, column in wanted.items())
+    kind = format_of(path)
+    layout = text_layout(path) if kind == "text" else Layout(kind, columns[0], ())
     # readers of several variables take those that share the first column's length, as they do with a record's time
-    layout = Layout(table.format or format_of(path), columns[0], columns, table.header_lines, table.encoding,
-                    table.separator, table.decimal)  # fmt: skip
+    layout = replace(layout, time=columns[0], columns=columns)
     return read_log(path, layout).table_of(columns[0])
 
 

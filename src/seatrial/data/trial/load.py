@@ -47,7 +47,7 @@ from seatrial.data.trial.runs import (
     stream_of,
 )
 from seatrial.data.trial.schema import NO_CHANNELS, RecordsTable, TrialFile
-from seatrial.data.trial.trial import Role, Trial, TrialRun
+from seatrial.data.trial.trial import Role, Run, Trial
 from seatrial.physics.sensors.settings import TIMED_CHANNELS
 from seatrial.physics.simulate.states import rest_parameter
 
@@ -227,7 +227,7 @@ def trial_of_tables(
     )
 
 
-def load_runs(path: str | Path) -> tuple[TrialRun, ...]:
+def load_runs(path: str | Path) -> tuple[Run, ...]:
     """Read the runs that a trial file describes, without ship and model: what checking records needs.
 
     Waves are left out, as their forces need the ship.

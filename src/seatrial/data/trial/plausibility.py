@@ -12,9 +12,9 @@ from seatrial.core.values import NOT_MEASURED, Finding, InputError, Severity, Sh
 from seatrial.core.values.files import is_file
 from seatrial.data.read.record_file import file_digest
 from seatrial.data.trial.priors import EarlierResult
-from seatrial.data.trial.run_data import RecordFile
+from seatrial.data.trial.run_data import RunFiles
 from seatrial.data.trial.schema import RecordsTable
-from seatrial.data.trial.trial import Role, Trial, TrialRun
+from seatrial.data.trial.trial import Role, Run, Trial
 from seatrial.physics.hydro.empirical import OOSTERVELD
 from seatrial.physics.hydro.excitation import SEA_WATER
 from seatrial.physics.sensors import Sensors, VelocityReference
@@ -142,18 +142,18 @@ def _estimated_finding(names: list[str]) -> Finding:
 # Records that the priors were estimated from.
 
 
-def refuse_used_records(runs: Iterable[TrialRun], results: Mapping[str, EarlierResult]) -> None:
+def refuse_used_records(runs: Iterable[Run], results: Mapping[str, EarlierResult]) -> None:
     """Refuse training runs from files that a result behind the priors was estimated from: they would count twice.
 
     Raises:
         InputError: which run, and which result.
     """
     for run in runs if results else ():
-        if run.role is not Role.TRAIN or not isinstance(run.data, RecordFile) or run.data.part is not None:
-            continue
-        digest = file_digest(run.data.path) if is_file(run.data.path) else ""
+        is_whole = isinstance(run.data, RunFiles) and not (run.data.start or run.data.stop)
+        files = run.files if is_whole and run.role is Role.TRAIN else ()
+        digests = {file_digest(file.path) for file in files if is_file(file.path)}
         for name, result in results.items():
-            if digest in result.digests:
+            if digests & result.digests:
                 raise InputError(
                     f"run '{run.data.name}' was already used for '{name}', which gives the priors: its samples would "
                     "count twice; leave the run out, or take other priors"

@@ -28,7 +28,7 @@ from seatrial.data.check.phases import (
     swinging_channel,
 )
 from seatrial.data.check.water_speed import speed_through_water
-from seatrial.data.trial.trial import Role, Trial, TrialRun, Trimming
+from seatrial.data.trial.trial import Role, Run, Trial, Trimming
 from seatrial.physics.models.thruster_layout import layout_of
 from seatrial.physics.sea.spectrum import WaveEncounter
 from seatrial.physics.sea.wave_forces import with_wave_forces
@@ -119,7 +119,7 @@ def trim_to_decay_start(record: Record) -> Record:
     if len(record) - first < _MIN_ROWS:
         raise InputError(
             f"record '{record.name}': the largest {motion} stands at {record.time[first]:g} s, so that nothing is "
-            "left of the decay; give a longer record, or trim it by from_s"
+            "left of the decay; give a longer record, or cut it by parts"
         )
     _require_smaller_last_third(record.name, channel, swing[first:])
     step = f"from its release on: the largest {motion} at {record.time[first]:g} s"
@@ -277,7 +277,7 @@ def _answered(finding: Finding, trial: Trial) -> Finding:
     return replace(finding, severity=Severity.INFO, advice=advice)
 
 
-def _load_unless_bad(run: TrialRun, reference_point: float) -> tuple[TrialRecord | Finding, ...]:
+def _load_unless_bad(run: Run, reference_point: float) -> tuple[TrialRecord | Finding, ...]:
     """The parts of the run, or of a validation run that cannot be read the finding that says why."""
     try:
         return load_parts(run, reference_point)
@@ -345,7 +345,7 @@ def _refuse_absurd_noise(channel: str, deviation: float, records: Sequence[Recor
         )
 
 
-def load_run(run: TrialRun, reference_point: float) -> TrialRecord:
+def load_run(run: Run, reference_point: float) -> TrialRecord:
     """Return the longest of `load_parts` under the name of the run, with the findings on all of it.
 
     Raises:
@@ -357,7 +357,7 @@ def load_run(run: TrialRun, reference_point: float) -> TrialRecord:
     return replace(longest, record=longest.record.renamed(longest.run), findings=findings)
 
 
-def load_parts(run: TrialRun, reference_point: float) -> tuple[TrialRecord, ...]:
+def load_parts(run: Run, reference_point: float) -> tuple[TrialRecord, ...]:
     """Return one run repaired and checked, in standard conventions, with wave forces, trimmed and resampled.
 
     Holes longer than the craft's memory cut it into parts that begin anew, called after it and numbered; of a decay
@@ -370,7 +370,7 @@ def load_parts(run: TrialRun, reference_point: float) -> tuple[TrialRecord, ...]
     """
     examined = examined_record(run.raw_record())
     is_one = run.trimming.from_release or run.trimming.skip_acceleration
-    parts = [examined.record] if is_one else _parts_within(examined.parts, run.trimming)
+    parts = [examined.record] if is_one else examined.parts
     records = [_prepared(part, run, reference_point) for part in parts]
     names = [""] if len(records) == 1 else [f"-{k}" for k in range(1, len(records) + 1)]
     return tuple(
@@ -382,14 +382,7 @@ def load_parts(run: TrialRun, reference_point: float) -> tuple[TrialRecord, ...]
     )  # fmt: skip
 
 
-def _parts_within(parts: Sequence[Record], trimming: Trimming) -> Sequence[Record]:
-    """The parts of which trimming leaves something; all where it leaves nothing of any."""
-    start = -np.inf if trimming.from_s is None else trimming.from_s
-    stop = np.inf if trimming.to_s is None else trimming.to_s
-    return [part for part in parts if float(part.time[-2]) > start and float(part.time[1]) < stop] or parts[:1]
-
-
-def _prepared(record: Record, run: TrialRun, reference_point: float) -> Record:
+def _prepared(record: Record, run: Run, reference_point: float) -> Record:
     """A part of a run as the estimate takes it."""
     record = canonical_record(record, reference_point)
     if run.waves is not None and run.waves.spectrum is None:
@@ -403,10 +396,6 @@ def apply_trimming(record: Record, trimming: Trimming) -> Record:
     Raises:
         InputError: nothing is left, or the channels a rule needs are absent.
     """
-    if trimming.from_s is not None or trimming.to_s is not None:
-        start = record.time[0] if trimming.from_s is None else trimming.from_s
-        stop = record.time[-1] if trimming.to_s is None else trimming.to_s
-        record = record.between(float(start), float(stop))
     if trimming.skip_acceleration:
         record = record.rows(slice(_acceleration_end_row(record), None))
     if trimming.from_release:

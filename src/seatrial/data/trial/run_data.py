@@ -38,75 +38,45 @@ class SourceFile:
 
 
 @dataclass(frozen=True)
-class RunPart:
-    """A stretch of a log; `start` and `stop` are times after its first sample (``120 s``, ``2 min``) or events.
+class RunFiles:
+    """The file of a run, or several of one run, each with layout and clock of its own; or a part of their record.
 
-    An empty start is the beginning, an empty stop the end; an event as `stop` is the first of its name after `start`.
+    Attributes:
+        name: of the run, or of the part.
+        files: rate, geometry and scale are those of the first.
+        start, stop: ends of the part, times after the first sample (``120 s``, ``2 min``) or events; empty: those of
+            the record. An event as `stop` is the first of its name after `start`.
     """
 
     name: str
+    files: tuple[SourceFile, ...]
     start: str = ""
     stop: str = ""
 
-
-@dataclass(frozen=True)
-class RecordFile:
-    """A file with the record of a run, and how to parse it; or a part of it."""
-
-    path: Path
-    layout: Layout
-    part: RunPart | None = None
-
-    @property
-    def name(self) -> str:
-        """The part's name, or the file's without its ending."""
-        return self.part.name if self.part else run_name(self.path)
-
-    @property
-    def files(self) -> tuple[SourceFile, ...]:
-        """The file alone."""
-        return (SourceFile(self.path, self.layout),)
+    @classmethod
+    def of_file(cls, path: Path, layout: Layout) -> "RunFiles":
+        """Return a single file, named without its ending."""
+        return cls(run_name(path), (SourceFile(path, layout),))
 
     def read(self) -> Record:
-        """Read the record, named as the run.
+        """Read and join the files, named as the run.
 
         Raises:
-            InputError: the file cannot be read as its layout says, or has no such part.
+            InputError: a file cannot be read as its layout says, several do not overlap, or there is no such part.
         """
-        return _run_record(self.files, self.name, self.part)
-
-    def first_day(self) -> str:
-        """Return the day of the first time stamp, 2026-05-14; empty where the clock does not count from a date.
-
-        Raises:
-            InputError: as `read`.
-        """
-        return _assembled(*_with_states(self.files)).day
-
-
-@dataclass(frozen=True)
-class RecordSources:
-    """Several files of one run, each with layout and clock of its own; or a part of their record.
-
-    Rate, longest gap, geometry and scale are those of the first.
-    """
-
-    run: str
-    files: tuple[SourceFile, ...]
-    part: RunPart | None = None
-
-    @property
-    def name(self) -> str:
-        """The part's name, or the run's."""
-        return self.part.name if self.part else self.run
-
-    def read(self) -> Record:
-        """Read and join the sources, named as the run.
-
-        Raises:
-            InputError: a file cannot be read as its layout says, the sources do not overlap, or there is no such part.
-        """
-        return _run_record(self.files, self.name, self.part)
+        assembled = _assembled(*_with_states(self.files))
+        record, events = assembled.record, assembled.events
+        if self.start or self.stop:
+            first, last = float(record.time[0]), float(record.time[-1])
+            start = _time_of(self.start, self.name, events, first, first) if self.start else first
+            stop = _time_of(self.stop, self.name, events, first, start) if self.stop else last
+            if not start < stop:
+                raise InputError(
+                    f"part '{self.name}' ends {stop - first:g} s after the first sample, but starts "
+                    f"{start - first:g} s after it; give a later 'to'"
+                )
+            record = record.between(start, stop)
+        return record.renamed(self.name)
 
     def first_day(self) -> str:
         """Return the day of the first time stamp, 2026-05-14; empty where the clock does not count from a date.
@@ -133,22 +103,6 @@ def _with_states(files: tuple[SourceFile, ...]) -> tuple[tuple[SourceFile, ...],
     """The files with their times and sizes: a changed file is read again."""
     states = (file.path.stat() for file in files if is_file(file.path))
     return files, tuple((state.st_mtime_ns, state.st_size) for state in states)
-
-
-def _run_record(files: tuple[SourceFile, ...], name: str, part: RunPart | None) -> Record:
-    assembled = _assembled(*_with_states(files))
-    record, events = assembled.record, assembled.events
-    if part is not None:
-        first, last = float(record.time[0]), float(record.time[-1])
-        start = _time_of(part.start, part.name, events, first, first) if part.start else first
-        stop = _time_of(part.stop, part.name, events, first, start) if part.stop else last
-        if not start < stop:
-            raise InputError(
-                f"part '{name}' ends {stop - first:g} s after the first sample, but starts {start - first:g} s after "
-                "it; give a later 'to'"
-            )
-        record = record.between(start, stop)
-    return record.renamed(name)
 
 
 @lru_cache(maxsize=_LOGS_KEPT)

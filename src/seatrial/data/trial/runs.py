@@ -18,7 +18,7 @@ from seatrial.core.values.files import is_file, is_folder, is_present
 from seatrial.core.values.notation import OPPOSITE, Quantity
 from seatrial.data.read import ColumnSpec, Layout, format_of
 from seatrial.data.read.layout import LOG_QUANTITIES, Geometry, TimeSpec, log_quantity
-from seatrial.data.trial.run_data import RecordFile, RecordSources, RunPart, SourceFile, run_name, session_of
+from seatrial.data.trial.run_data import RunFiles, SourceFile, run_name, session_of
 from seatrial.data.trial.schema import (
     ChannelColumn,
     ColumnsTable,
@@ -29,7 +29,7 @@ from seatrial.data.trial.schema import (
     WavesTable,
 )
 from seatrial.data.trial.settings import ProposalSettings, Stream, StreamSettings, StreamSource
-from seatrial.data.trial.trial import Role, Trial, TrialRun, Trimming
+from seatrial.data.trial.trial import Role, Run, Trial, Trimming
 from seatrial.physics.hydro.excitation import BoxHull, Excitation, G
 from seatrial.physics.sea.spectrum import WaveEncounter, speed_factor
 
@@ -147,7 +147,6 @@ def wave_encounter(
 
 # Which files a trial names, what each is for and with which others it shares its offsets.
 
-_RunData = RecordFile | RecordSources
 _VARIABLE = re.compile(r"\$\{(\w+)\}")
 
 
@@ -177,7 +176,7 @@ def runs_of(
     excitation: Excitation | None = None,
     length: float | None = 1.0,
     declared: Declared = NO_DECLARED,
-) -> tuple[TrialRun, ...]:
+) -> tuple[Run, ...]:
     """Every run of every block, each with one role; files in sorted order.
 
     excitation, length [m]: of the ships that met waves; without a length waves are left out. declared: channels of the
@@ -202,7 +201,7 @@ def runs_of(
     return tuple(runs)
 
 
-def require_training_run(runs: Sequence[TrialRun]) -> None:
+def require_training_run(runs: Sequence[Run]) -> None:
     """Raises:
     InputError: none of the runs is one to train on.
     """
@@ -217,44 +216,43 @@ def _block_runs(
     excitation: Excitation | None,
     length: float | None,
     declared: Declared,
-) -> list[TrialRun]:
+) -> list[Run]:
     located = _sources_of if block.sources else _files_of
     files = located(block, data_folder, where, declared)
     _require_files_of_parts(block, [run.name for run in files], where)
-    data = [replace(run, part=part) for run in files for part in _parts(block, run.name, len(files))]
-    trimming = Trimming(block.from_s, block.to_s, block.skip_acceleration, block.rate, block.from_release)
+    data = [part for run in files for part in _parts(block, run, is_alone=len(files) == 1)]
+    trimming = Trimming(block.skip_acceleration, block.rate, block.from_release)
     roles = _roles(block, [run.name for run in data], where)
     encounter = None if length is None else wave_encounter(block.waves, excitation, length, where)
     kind = None if block.kind is None else RecordKind(block.kind)
-    sessions = [session_of(_session_path(run), block.session, run.first_day) for run in data]
+    sessions = [
+        session_of(Path(block.name) if block.sources else run.files[0].path, block.session, run.first_day)
+        for run in data
+    ]
     return [
-        TrialRun(run, role, session, trimming, block.source, encounter, kind)
+        Run(run, role, session, trimming, block.source, encounter, kind)
         for run, role, session in zip(data, roles, sessions, strict=True)
     ]
 
 
-def _files_of(
-    block: RecordsTable, data_folder: Path, where: str, declared: Declared
-) -> list[RecordFile | RecordSources]:
+def _files_of(block: RecordsTable, data_folder: Path, where: str, declared: Declared) -> list[RunFiles]:
     paths = sorted({path for text in block.files for path in _matching_files(text, data_folder, where)})
     layouts = [layout_of(block, block.format or format_of(path), where, declared) for path in paths]
-    return [RecordFile(path, _joined(layout, block)) for path, layout in zip(paths, layouts, strict=True)]
+    return [RunFiles.of_file(path, _joined(layout, block)) for path, layout in zip(paths, layouts, strict=True)]
 
 
-def _sources_of(
-    block: RecordsTable, data_folder: Path, where: str, declared: Declared
-) -> list[RecordFile | RecordSources]:
+def _sources_of(block: RecordsTable, data_folder: Path, where: str, declared: Declared) -> list[RunFiles]:
     files = []
     for i, source in enumerate(block.sources, start=1):
         place = f"{where}.sources[{i}]"
         (path,) = _matching_files(source.file, data_folder, place)[:1]
         layout = layout_of(source, source.format or format_of(path), place, declared)
         files.append(SourceFile(path, _joined(layout, block, source.clock_offset)))
-    return [RecordSources(block.name, tuple(files))]
+    return [RunFiles(block.name, tuple(files))]
 
 
 def _joined(layout: Layout, block: RecordsTable, clock_offset: float = 0.0) -> Layout:
-    """The layout with what the whole block says: scale, geometry, rate, longest gap, offset of the clock [s]."""
+    """The layout with what the whole block says: scale, geometry, rate, offset of the clock [s]."""
     origin = None if block.origin is None else (block.origin.lat, block.origin.lon)
     return replace(
         layout,
@@ -262,15 +260,17 @@ def _joined(layout: Layout, block: RecordsTable, clock_offset: float = 0.0) -> L
         scale=block.scale,
         geometry=Geometry(origin, block.variation, block.antenna.x, block.antenna.y),
         rate=block.rate,
-        longest_gap=block.longest_gap,
     )
 
 
-def _parts(block: RecordsTable, name: str, count: int) -> list[RunPart | None]:
-    """The parts into which a record is cut, called after its file where several are cut alike; None: whole."""
-    parts = [part for part in block.parts if part.file in ("", name)]
-    prefix = f"{name}-" if count > 1 else ""
-    return [RunPart(part.name if part.file else prefix + part.name, part.start, part.stop) for part in parts] or [None]
+def _parts(block: RecordsTable, run: RunFiles, *, is_alone: bool) -> list[RunFiles]:
+    """The parts into which a record is cut, called after its file where several are cut alike; else the whole."""
+    prefix = "" if is_alone else f"{run.name}-"
+    parts = [part for part in block.parts if part.file in ("", run.name)]
+    return [
+        replace(run, name=part.name if part.file else prefix + part.name, start=part.start, stop=part.stop)
+        for part in parts
+    ] or [run]
 
 
 def _require_files_of_parts(block: RecordsTable, names: Sequence[str], where: str) -> None:
@@ -281,11 +281,6 @@ def _require_files_of_parts(block: RecordsTable, names: Sequence[str], where: st
         if part.file and part.file not in names:
             hint = spelling_hint(part.file, list(names))
             raise InputError(f"{where}.parts: '{part.name}' is of file '{part.file}', which is not among files{hint}")
-
-
-def _session_path(data: RecordFile | RecordSources) -> Path:
-    """The name in which a session is sought: of the file, or of the run."""
-    return data.path if isinstance(data, RecordFile) else Path(data.run)
 
 
 def _matching_files(text: str, data_folder: Path, where: str) -> list[Path]:
@@ -339,7 +334,6 @@ def layout_of(block: ColumnsTable, file_format: str, where: str, declared: Decla
         header_lines=block.header_lines,
         encoding=block.encoding,
         separator=block.separator,
-        decimal=block.decimal,
     )
 
 

@@ -202,7 +202,6 @@ class ColumnsTable:
     header_lines: Annotated[int, Field(ge=0)] = 0
     encoding: str = "utf-8"
     separator: Separator = "auto"
-    decimal: Literal[".", ","] = "."
     time: TimeColumn = TimeColumn()
     channels: dict[str, ChannelColumn] = Field(default_factory=dict)
 
@@ -273,7 +272,6 @@ class RecordsTable(ColumnsTable):
     sources: tuple[SourceTable, ...] = ()
     parts: tuple[PartTable, ...] = ()
     clock_offset: float = 0.0
-    longest_gap: Annotated[float, Field(gt=0)] | None = None
     origin: OriginTable | None = None
     variation: Angle | None = None
     antenna: AntennaTable = AntennaTable()
@@ -286,8 +284,6 @@ class RecordsTable(ColumnsTable):
     leave_out: Strings = ()
     session: Annotated[str, BeforeValidator(valid_session)] = "run"
     rate: Annotated[float, Field(gt=0)] | None = None
-    from_s: float | None = None
-    to_s: float | None = None
     skip_acceleration: bool = False
     from_release: bool = False
     waves: WavesTable | None = None
@@ -304,12 +300,6 @@ class RecordsTable(ColumnsTable):
             raise ValueError("channels of a run of several sources belong to each of [[records.sources]]; move them")
         if not any(table.channels for table in self.sources or (self,)):
             raise ValueError(NO_CHANNELS)
-        return self
-
-    @model_validator(mode="after")
-    def _times_in_order(self) -> Self:
-        if self.from_s is not None and self.to_s is not None and self.from_s >= self.to_s:
-            raise ValueError(f"from_s = {self.from_s:g} is not before to_s = {self.to_s:g}")
         return self
 
 
@@ -366,13 +356,7 @@ class ForcesTable(StrictTable):
     origin: float = 0.0
     motion_origin: float | None = None
     sd_percent: Annotated[float, Field(gt=0)] | None = None
-    weight: Annotated[float, Field(gt=0)] = 1.0
     scale: Annotated[float, Field(gt=0)] = 1.0
-    format: Format | None = None
-    header_lines: Annotated[int, Field(ge=0)] = 0
-    encoding: str = "utf-8"
-    separator: Separator = "auto"
-    decimal: Literal[".", ","] = "."
     source: str = ""
 
     @model_validator(mode="after")

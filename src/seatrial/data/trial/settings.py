@@ -185,7 +185,6 @@ class SupportVectorSettings:
         folds: contiguous folds of Lasso's cross-validation.
         lambda_: smallest and largest penalty of Lasso, eq. (12).
         test_share: share of each record, its end, that is kept for testing, eq. (9).
-        candidates: whether Lasso chooses among all candidate terms that the model knows, or among its own alone.
         ablation: whether the pipeline is repeated with each of its steps left out.
     """
 
@@ -196,7 +195,6 @@ class SupportVectorSettings:
     folds: Annotated[int, Field(ge=2)] = 10
     lambda_: Annotated[tuple[Positive, Positive], Field(alias="lambda")] = (1e-6, 1e6)
     test_share: Annotated[float, Field(gt=0, lt=1)] = 0.2
-    candidates: bool = True
     ablation: bool = False
 
     @model_validator(mode="after")
@@ -374,7 +372,6 @@ class StreamSettings:
         host, port: on which UDP is listened to.
         batch_window_s: time over which the batch criterion is kept [s].
         forgetting_time_s: time after which the past counts 1/e [s]; None: it counts for ever.
-        longest_gap_s: time without a sample after which a new run begins [s].
         page: port of the local page; 0: none.
         journal: file in which admitted samples are kept; None: beside the result.
     """
@@ -386,7 +383,6 @@ class StreamSettings:
     port: Annotated[int, Field(ge=1, le=65535)] | None = None
     batch_window_s: Positive = 3600.0
     forgetting_time_s: Positive | None = None
-    longest_gap_s: Positive = 30.0
     page: Annotated[int, Field(ge=0, le=65535)] = 0
     journal: Path | None = None
 
@@ -396,10 +392,6 @@ class StreamSettings:
             raise ValueError(f"source = '{self.source}' needs a file; add it")
         if self.source.endswith("udp") and self.port is None:
             raise ValueError(f"source = '{self.source}' needs a port; add it")
-        if self.longest_gap_s * self.rate < 1.0:
-            raise ValueError(
-                f"longest_gap_s = {self.longest_gap_s:g} is shorter than a step at {self.rate:g} Hz; make it longer"
-            )
         return self
 
 

@@ -11,7 +11,7 @@ from seatrial.core.values import Finding, ForcePoints, Record, RecordKind, Ship
 from seatrial.data.trial.craft_tables import Feedback
 from seatrial.data.trial.design_request import DesignRequest
 from seatrial.data.trial.priors import JointPrior
-from seatrial.data.trial.run_data import RecordFile, RecordSources
+from seatrial.data.trial.run_data import RunFiles, SourceFile
 from seatrial.data.trial.settings import CompareSettings, EstimateSettings, ModelFamily, ProposalSettings, Stream
 from seatrial.physics.sea.spectrum import WaveEncounter
 
@@ -32,21 +32,18 @@ class Trimming:
     """Which part of a record is used, and at what rate.
 
     Attributes:
-        from_s, to_s: s on the record's own clock; None keeps the end.
         skip_acceleration: drop what lies before 90 % of the speed at the first rudder execution.
         from_release: drop what lies before the largest swing of a decay of roll, pitch or heave.
         rate: Hz after resampling; None keeps the record's own.
     """
 
-    from_s: float | None = None
-    to_s: float | None = None
     skip_acceleration: bool = False
     rate: float | None = None
     from_release: bool = False
 
 
 @dataclass(frozen=True)
-class TrialRun:
+class Run:
     """One run of a trial.
 
     Attributes:
@@ -59,7 +56,7 @@ class TrialRun:
         kind: whether the record was measured or simulated; None: as the record itself says.
     """
 
-    data: RecordFile | RecordSources | Record
+    data: RunFiles | Record
     role: Role = Role.TRAIN
     session: str = ""
     trimming: Trimming = Trimming()
@@ -77,9 +74,9 @@ class TrialRun:
         return self.data.name
 
     @property
-    def file(self) -> RecordFile | None:
-        """The file of the record; None where the record is given, or joined of several."""
-        return self.data if isinstance(self.data, RecordFile) else None
+    def files(self) -> tuple[SourceFile, ...]:
+        """The files of the record; empty where the record is given."""
+        return self.data.files if isinstance(self.data, RunFiles) else ()
 
     def raw_record(self) -> Record:
         """Return the record as it was read.
@@ -97,7 +94,7 @@ class Trial:
 
     Made by `load_trial` from a trial file, or in Python:
 
-        runs = (TrialRun(zigzag), TrialRun(turning_circle, Role.VALIDATE))
+        runs = (Run(zigzag), Run(turning_circle, Role.VALIDATE))
         trial = Trial(ship, runs, model.with_ship(ship), estimate=EstimateSettings(robust=True))
 
     Attributes:
@@ -119,7 +116,7 @@ class Trial:
     """
 
     ship: Ship
-    runs: tuple[TrialRun, ...]
+    runs: tuple[Run, ...]
     model: Model
     estimate: EstimateSettings = field(default_factory=EstimateSettings)
     noise: Mapping[str, float] = field(default_factory=dict)
@@ -143,7 +140,7 @@ class Trial:
         file = f" of '{self.path.name}'" if self.path else ""
         return f"<Trial{file}: {self.ship.name}, model {self.model.name}; runs: {roles or 'none'}>"
 
-    def runs_with_role(self, role: Role) -> tuple[TrialRun, ...]:
+    def runs_with_role(self, role: Role) -> tuple[Run, ...]:
         """The runs of one role, in order of their files."""
         return tuple(run for run in self.runs if run.role is role)
 

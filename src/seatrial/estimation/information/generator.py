@@ -156,7 +156,7 @@ def symmetry_text(g: Generator, parameters: Parameters, decisive: Sequence[str],
     """What can change together without any change of the outputs, and which parameters settle it."""
     follow = f", with {join_names(g.hidden_states)}, not measured, changed to fit," if g.hidden_states else ""
     same = f"without any change of {join_names(outputs, 'or')}"
-    return f"{_change_text(g, parameters)}{follow} {same}: {_advice_text(g, parameters, decisive)}"
+    return f"{_change_text(g, parameters)}{follow} {same}. {_advice_text(g, parameters, decisive)}"
 
 
 def _change_text(g: Generator, parameters: Parameters) -> str:
@@ -257,7 +257,7 @@ def _advice_text(g: Generator, parameters: Parameters, decisive: Sequence[str]) 
     offered = [n for n in decisive if n in fixed] or dimensional or list(decisive)
     more = "" if len(offered) <= _MOST_ADVISED else f" or {len(offered) - _MOST_ADVISED} others"
     one = "one of " if len(offered) > 1 else ""
-    text = f"fix or give a prior for {one}{', '.join(offered[:_MOST_ADVISED])}{more}"
+    text = f"Fix or give a prior for {one}{', '.join(offered[:_MOST_ADVISED])}{more}"
     if fixed == offered and len(fixed) == 1:
         text += "; it is fixed here, and its error spreads to all"
     elif fixed:

@@ -93,9 +93,8 @@ class StaticForces:
 
     @cached_property
     def _scale(self) -> Array:
-        """Root of the weight over the standard deviation of each force, (3,); 0 where it is not measured."""
-        sd = np.array([self.points.sd.get(force, np.inf) for force in FORCES])
-        return np.sqrt(self.points.weight) / sd
+        """One over the standard deviation of each force, (3,); 0 where it is not measured."""
+        return 1.0 / np.array([self.points.sd.get(force, np.inf) for force in FORCES])
 
     def _scaled(self, forces: Array) -> Array:
         return np.where(np.isfinite(self._measured), (forces - self._measured) * self._scale, 0.0)
@@ -116,7 +115,7 @@ class StaticForces:
 
     def residuals(self, values: Array) -> dict[str, Array]:
         """Return model minus measured in standard deviations, for each measured force, (n,); NaN where nothing was."""
-        gap = (self._linearised(values)[0] - self._measured) * self._scale / np.sqrt(self.points.weight)
+        gap = (self._linearised(values)[0] - self._measured) * self._scale
         return {force: gap[:, i] for i, force in enumerate(FORCES) if force in self.points.forces}
 
     def cost(self, values: Array) -> float:

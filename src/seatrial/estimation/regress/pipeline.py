@@ -94,7 +94,6 @@ class Pipeline:
     Attributes:
         selection: which coefficients stay; None keeps all.
         operator: rows that the coefficients are found from; the published improvement differences and centres them.
-        has_candidates: whether the selection is among all candidate terms known, not among the model's own alone.
     """
 
     name: str = IMPROVED
@@ -103,7 +102,6 @@ class Pipeline:
     selection: Lasso | None = field(default_factory=Lasso)
     operator: DerivativeOperator = DIFFERENCED_AND_CENTRED
     solver: LinearSolver = field(default_factory=SupportVectors)
-    has_candidates: bool = True
 
     def estimate(self, model: Model, records: Sequence[Record]) -> RegressionEstimate:
         """The coefficients; those that were not selected are zero.
@@ -111,7 +109,7 @@ class Pipeline:
         Raises:
             InputError: cleaning leaves nothing, or a training block is shorter than a manoeuvre.
         """
-        wide = with_candidate_terms(model) if self.has_candidates and self.selection is not None else model
+        wide = with_candidate_terms(model) if self.selection is not None else model
         pieces = [blocks(self.cleaning.clean(wide, record), self.training_share) for record in records]
         train, test = ([RegressionMotion.from_record(wide, p[k]) for p in pieces if len(p[k]) > 2] for k in (0, 1))
         findings: list[Finding] = []
@@ -142,7 +140,6 @@ def pipelines(settings: SupportVectorSettings) -> tuple[Pipeline, ...]:
         training_share=1.0 - settings.test_share,
         selection=Lasso(tuple(penalties.tolist()), folds=settings.folds),
         solver=SupportVectors(settings.C, settings.epsilon),
-        has_candidates=settings.candidates,
     )
     published = replace(improved, name=PUBLISHED, operator=Euler())
     return (published, improved, *(ablations(improved) if settings.ablation else ()))

@@ -23,12 +23,11 @@ def _stream(name: str) -> tuple[Trial, Record]:
     """An example's trial without its runs, following the columns of its training run; and that run."""
     trial = load_trial(EXAMPLES / f"{name}.toml")
     (run,) = [r for r in trial.runs if r.role is Role.TRAIN]
-    assert run.file is not None
     raw = run.raw_record()
     return replace(
         trial,
         runs=(),
-        stream=Stream(source=StreamSource.STDIN, layout=run.file.layout, rate=1.0 / raw.dt, name=run.name),
+        stream=Stream(source=StreamSource.STDIN, layout=run.files[0].layout, rate=1.0 / raw.dt, name=run.name),
     ), raw
 
 

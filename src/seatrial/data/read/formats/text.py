@@ -7,7 +7,7 @@ import io
 import re
 import warnings
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 import numpy as np
 
 from seatrial.core.values import InputError
-from seatrial.data.read.layout import ColumnSpec, Layout
+from seatrial.data.read.layout import ColumnSpec, Layout, Separator
 from seatrial.data.read.log import (
     EMPTY_CELLS,
     Log,
@@ -227,36 +227,42 @@ def _unmarked_encoding(path: Path) -> str:
 
 def _line(text: str, file: str) -> _Line:
     """The cells by `;` or tab where the line has one, else by comma unless that is the decimal sign, else by spaces."""
-    separator = detect_separator(text, Layout("text", ColumnSpec("time", 1, "s"), ()))
-    cells = text.split()
-    if separator == "," and len(cells) > 1 and all(_DECIMAL_COMMA.fullmatch(cell) for cell in cells):
-        separator = _WHITESPACE
-    return _Line(separator, column_names(text, separator, file) if cells else [])
+    separator = detect_separator(text, "auto")
+    return _Line(separator, column_names(text, separator, file) if text.strip() else [])
 
 
 def _layout(lines: list[_Line], first: int, encoding: str) -> Layout:
-    separator, row = lines[first].separator, lines[first].cells
-    decimal = "," if separator != "," and any("," in cell and _DECIMAL_COMMA.fullmatch(cell) for cell in row) else "."
+    row = lines[first].cells
     while first and not lines[first - 1].cells:  # the reader passes over empty lines between header and data
         first -= 1
     header = table_header([line.cells for line in lines[:first]], len(row)).names
     filled = len(row) - next((k for k, cell in enumerate(reversed(row)) if cell), 0)
     named = filled <= len(header) <= len(row) and any(cell and not _CELL.fullmatch(cell) for cell in header)
     source: str | int = next(cell for cell in header if cell) if named else 1
-    return Layout("text", ColumnSpec("time", source, "s"), (), first, encoding, decimal=decimal)
+    return Layout("text", ColumnSpec("time", source, "s"), (), first, encoding)
 
 
 # The table of a text file.
 
 
-def detect_separator(sample_line: str, layout: Layout) -> str:
-    """The separator of the layout, or the one the line shows."""
-    if layout.separator != "auto":
-        return _SEPARATORS[layout.separator]
+def detect_separator(sample_line: str, separator: Separator) -> str:
+    """The separator, or the one the line shows."""
+    if separator != "auto":
+        return _SEPARATORS[separator]
     for candidate in ("\t", ";"):
         if candidate in sample_line.strip(" \r\n"):
             return candidate
-    return "," if "," in sample_line and layout.decimal != "," else r"\s+"
+    cells = sample_line.split()
+    are_decimal = len(cells) > 1 and all(_DECIMAL_COMMA.fullmatch(cell) for cell in cells)
+    return "," if "," in sample_line and not are_decimal else _WHITESPACE
+
+
+def _decimal_sign(lines: Iterable[str], separator: str, file: str) -> str:
+    """The decimal sign of lines of data: a comma where some cell is a number with one."""
+    if separator == ",":
+        return "."
+    cells = (cell for line in lines for cell in column_names(line, separator, file))
+    return "," if any("," in cell and _DECIMAL_COMMA.fullmatch(cell) for cell in cells) else "."
 
 
 def column_names(line: str, separator: str, file: str) -> list[str]:
@@ -294,15 +300,17 @@ def read_text(path: Path, layout: Layout) -> Log:
     if sample_line is None:
         lines = data.count(b"\n") + 1
         raise InputError(f"{path.name} has no data lines: {lines} lines, {first + header_lines} of them header")
-    separator = detect_separator(sample_line, layout)
+    separator = detect_separator(sample_line, layout.separator)
+    lines = data[:_HEAD_BYTES].decode(errors="replace").splitlines()[start : start + _LINES]
+    decimal = _decimal_sign([sample_line, *lines], separator, path.name)
     if b'"' in data:
         _refuse_open_quotes(data, start, path.name)
     source = str(path) if head is not None else _after_lines(data, start)
     del data
     has_spaces = f"{separator} " in sample_line
-    frame = _data_frame(source, start, separator, layout.decimal, path.name, has_spaces=has_spaces)
+    frame = _data_frame(source, start, separator, decimal, path.name, has_spaces=has_spaces)
     above = [column_names(line, separator, path.name) for line in header] if layout.has_named_columns else []
-    cells = with_sides([_column_cells(frame[column], layout.decimal) for column in frame.columns])
+    cells = with_sides([_column_cells(frame[column], decimal) for column in frame.columns])
     width = len(cells)
     columns = table_header(above, width)
     table = RawTable(path.name, columns.names_of(width), cells, start + 1, "", columns.units_of(width))

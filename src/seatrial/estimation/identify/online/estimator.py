@@ -7,7 +7,7 @@ import numpy as np
 from seatrial.core.results.online import CoefficientChange, Sample, Snapshot
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.read.assemble import record_from_values
-from seatrial.data.trial import Role, Trial, TrialRun
+from seatrial.data.trial import Role, Run, Trial
 from seatrial.data.trial.records import load_run
 from seatrial.data.trial.runs import require_stream
 from seatrial.estimation.estimate.online.change_detector import ChangeDetector, GaussianEstimate
@@ -127,7 +127,7 @@ class StreamWindow:
         present = [self._canonical_record(raw) for raw in self._present_record()]
         return [*self._trial_records, *(record for _, record in self._closed), *present]
 
-    def training_runs(self) -> tuple[TrialRun, ...]:
+    def training_runs(self) -> tuple[Run, ...]:
         """Return the stream's runs kept, as received, as training runs of a trial."""
         return tuple(self._training_run(raw) for raw in (*(raw for raw, _ in self._closed), *self._present_record()))
 
@@ -144,8 +144,8 @@ class StreamWindow:
         name = self._stream.name if run.number <= 1 else f"{self._stream.name}_{run.number}"
         return record_from_values(name, self._stream.layout, run.rows.time, run.rows.values)
 
-    def _training_run(self, raw_record: Record) -> TrialRun:
-        return TrialRun(raw_record, waves=self._stream.waves)
+    def _training_run(self, raw_record: Record) -> Run:
+        return Run(raw_record, waves=self._stream.waves)
 
     def _canonical_record(self, raw_record: Record) -> Record:
         record = load_run(self._training_run(raw_record), self._trial.reference_point).record
@@ -234,7 +234,7 @@ class OnlineEstimator:
             self._search_window(self._phase)
         return self._snapshot
 
-    def raw_runs(self) -> tuple[TrialRun, ...]:
+    def raw_runs(self) -> tuple[Run, ...]:
         """Return the stream's runs that are still kept, as training runs of a trial whose files have been read."""
         return self._window.training_runs()
 
