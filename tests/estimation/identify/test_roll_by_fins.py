@@ -67,5 +67,5 @@ def test_steps_of_fins_in_calm_water_give_the_coefficients_and_leave_list_and_ze
 def test_fins_that_follow_the_roll_in_waves_nobody_measured_are_refused(tmp_path: Path) -> None:
     log = tmp_path / "loop.csv"
     write_log(log, 500.0, 0.05, in_loop=True, seed=3)
-    with pytest.raises(InputError, match=r"the ship rolls although no wave is recorded.*record with the fins held"):
+    with pytest.raises(InputError, match=r"the ship rolls although no wave is recorded.*record with held fins"):
         identify(load_trial(drafted(tmp_path, log)))

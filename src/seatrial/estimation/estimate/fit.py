@@ -570,12 +570,12 @@ def refuse_roll_in_unmeasured_waves(estimation: Estimation, records: Sequence[Re
     if np.all(remaining > _LEFT_BY_FINS * moved):
         cause = _unexplained_text(estimation, remaining, moved)
     elif share > 1.0:
-        cause = f"the model would have the fins roll a ship that does not swing, of {share:.2g} times critical damping"
+        cause = f"{share:.2g} times critical damping would explain it"
     else:
         return
     raise InputError(
         f"the ship rolls although no wave is recorded: {cause}; "
-        "give the wave slope alpha_w, or record with the fins held, or in calm water"
+        "give the wave slope alpha_w, or record with held fins or in calm water"
     )
 
 
