@@ -91,7 +91,7 @@ def _print_summary(fit: "Fit") -> None:
     from seatrial.reporting.verdict import verdict
 
     free = sum(not c.fixed for c in fit.coefficients)
-    runs = sum(p.role == "training" for p in fit.predictions)
+    runs = sum(p.role == "training" for p in fit.predictions) or len(fit.records)
     sizes = f"{counted(free, 'coefficient')} from {counted(runs, 'run')}"
     heading = f"{fit.ship.name}: model {fit.model.name}, {sizes}, computed in {duration(fit.elapsed_s)}"
     print_summary(heading, verdict(fit), key_facts(fit))

@@ -179,7 +179,10 @@ def key_facts(fit: Fit) -> tuple[KeyFact, ...]:
 def _score(fit: Fit) -> KeyFact:
     held, name = fit.validation, "Error, held out"
     if not held:
-        return KeyFact(name, "no run was held out: name one under validate in the trial file", "", is_good=False)
+        is_simulated = bool(fit.predictions) or not fit.records
+        why = "no run was held out: name one under validate in the trial file" if is_simulated else (
+            "no run was simulated: its waves are not known")  # fmt: skip
+        return KeyFact(name, why, "", is_good=False)
     diverged = sum(bool(p.divergence) for p in held)
     if diverged:
         text = f"{counted(diverged, 'run')} {'diverges' if diverged == 1 else 'diverge'}"

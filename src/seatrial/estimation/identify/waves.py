@@ -154,21 +154,41 @@ _NEGLIGIBLE, _EVALUATIONS = 1e-6, 100  # promised gain of log-likelihood that en
 _NO_INITIAL_STATES = np.zeros((0, 0))
 
 
+@dataclass(frozen=True, eq=False)
+class _SpectralFit:
+    """The fit of one run by its spectrum: logarithms of b_1 [1/s] and c_1 [1/s^2], (2,), with covariance, (2, 2)."""
+
+    record: Record
+    problem: UnknownWaves
+    optimum: Optimum
+    values: Array
+    covariance: Array
+
+
 def identify_in_unknown_waves(task: Identification) -> Fit:
-    """Return the fit of one run by the likelihood of its roll's spectrum.
+    """Return the fit of runs by the likelihood of their roll's spectra, each in a sea of its own.
+
+    A run that shows no ship of its own is left out, with its reason.
 
     Raises:
-        InputError: more than one training run, gaps, too short a record, or waves that cannot be distinguished from
-            the ship.
+        InputError: of every run gaps, too short a record, or waves that cannot be distinguished from the ship.
     """
-    trial, record = task.trial, _single_record(task.runs.records)
-    problem = spectral_problem(record)
-    optimum = maximum_likelihood(problem)
-    interval = roll_interval(problem, optimum)
-    b_1, c_1 = np.exp(optimum.solution.point[[DAMPING, RESTORING]]).tolist()
-    _refuse_unidentifiable(problem, optimum, interval)
-    model = _linear_model(trial.model, b_1, c_1, float(np.mean(record["phi"])))
-    characteristics = roll_characteristics(model, interval, FREE_COEFFICIENTS, [record], trial.ship)
+    trial, fits, left_out = task.trial, list[_SpectralFit](), list[InputError]()
+    for record in task.runs.records:
+        try:
+            fits.append(_fitted_spectrum(record))
+        except InputError as error:
+            left_out.append(error)
+    if not fits:
+        raise left_out[0]
+    records = [one.record for one in fits]
+    values, covariance = _weighted_mean(fits)
+    b_1, c_1 = np.exp(values).tolist()
+    interval = Interval(covariance * np.outer(np.exp(values), np.exp(values)), np.inf,
+                        "Fisher information of the spectral likelihood")  # fmt: skip
+    model = _linear_model(trial.model, b_1, c_1, float(np.mean([np.mean(record["phi"]) for record in records])))
+    characteristics = roll_characteristics(model, interval, FREE_COEFFICIENTS, records, trial.ship)
+    first = fits[0]
     return Fit(
         question=trial.question or "What are natural period and damping of this ship's roll in waves?",
         ship=trial.ship,
@@ -177,25 +197,46 @@ def identify_in_unknown_waves(task: Identification) -> Fit:
             model.parameters, FREE_COEFFICIENTS, np.array([b_1, c_1]), interval, trial.truth
         ),
         covariance=interval.covariance,
-        solution=optimum.solution,
+        solution=first.optimum.solution,
         method=Method(
             "likelihood of the roll's spectrum (Whittle), the sea's own spectrum estimated with it",
             "the largest roll, waves longer and shorter than it",
             interval.meaning,
-            ("no input was recorded and no initial state explains the motion: waves that nobody measured",),
-            {"frequencies": len(problem.omega)},
+            (
+                "no input was recorded and no initial state explains the motion: waves that nobody measured",
+                *(f"a run is left out: {error}" for error in left_out),
+            ),
+            {"frequencies": sum(len(one.problem.omega) for one in fits)},
         ),
         offsets=(),
         channel_noise=(),
         residuals=(),
         predictions=(),
-        findings=(*task.findings, _linear_equivalent_finding(record), *_unused_prior_findings(trial.model)),
-        records=(record,),
+        findings=(*task.findings, _linear_equivalent_finding(records), *_unused_prior_findings(trial.model)),
+        records=tuple(records),
         seed=task.options.seed,
         elapsed_s=time.perf_counter() - task.began,
         versions=versions(),
-        roll=None if characteristics is None else _with_spectrum(characteristics, problem, optimum.solution.point),
+        roll=None
+        if characteristics is None
+        else _with_spectrum(characteristics, first.problem, first.optimum.solution.point),
     )
+
+
+def _fitted_spectrum(record: Record) -> _SpectralFit:
+    problem = spectral_problem(record)
+    optimum = maximum_likelihood(problem)
+    covariance = log_covariance(problem, optimum)
+    _refuse_unidentifiable(record.name, problem, optimum)
+    _refuse_vague(record.name, covariance)
+    return _SpectralFit(record, problem, optimum, optimum.solution.point[[DAMPING, RESTORING]], covariance)
+
+
+def _weighted_mean(fits: Sequence[_SpectralFit]) -> tuple[Array, Array]:
+    """Return the mean of the runs' logarithms by their information, (2,), and its covariance, (2, 2)."""
+    weights = [inverse(one.covariance) for one in fits]
+    covariance = inverse(np.sum(weights, axis=0))
+    return covariance @ np.sum([w @ one.values for w, one in zip(weights, fits, strict=True)], axis=0), covariance
 
 
 def spectral_problem(record: Record) -> UnknownWaves:
@@ -228,25 +269,18 @@ def maximum_likelihood(problem: UnknownWaves) -> Optimum:
     return min(optima, key=lambda one: one.solution.value)
 
 
-def roll_interval(problem: UnknownWaves, optimum: Optimum) -> Interval:
-    """Of b_1 and c_1; unknowns of the sea that end on a bound count as known."""
+def log_covariance(problem: UnknownWaves, optimum: Optimum) -> Array:
+    """Return that of the logarithms of b_1 and c_1, (2, 2); unknowns of the sea that end on a bound count as known.
+
+    Raises:
+        InputError: b_1 or c_1 ends on a bound.
+    """
     point = optimum.solution.point
     inside = np.flatnonzero((point > problem.lower) & (point < problem.upper))
     places = [int(np.flatnonzero(inside == k)[0]) for k in (DAMPING, RESTORING) if k in inside]
     if len(places) < len(FREE_COEFFICIENTS):
         raise InputError("the roll's spectrum shows no resonance; record a decay in calm water, or the wave slope")
-    covariance = inverse(optimum.normal.hessian[np.ix_(inside, inside)])[np.ix_(places, places)]
-    size = np.exp(point[[DAMPING, RESTORING]])
-    return Interval(covariance * np.outer(size, size), np.inf, "Fisher information of the spectral likelihood")
-
-
-def _single_record(records: Sequence[Record]) -> Record:
-    if len(records) != 1:
-        raise InputError(
-            f"roll in waves that nobody measured is fitted one run at a time; the trial trains on {len(records)}; "
-            f"leave the others out, or record the wave slope {WAVE_SLOPE}"
-        )
-    return records[0]
+    return inverse(optimum.normal.hessian[np.ix_(inside, inside)])[np.ix_(places, places)]
 
 
 def _linear_model(model: Model, b_1: float, c_1: float, rest: float) -> Model:
@@ -256,18 +290,20 @@ def _linear_model(model: Model, b_1: float, c_1: float, rest: float) -> Model:
     return made.with_parameters(parameters.freed(*FREE_COEFFICIENTS))
 
 
-def _refuse_unidentifiable(problem: UnknownWaves, optimum: Optimum, interval: Interval) -> None:
+_ADVICE = "record the wave slope alpha_w, or a decay in calm water"
+
+
+def _refuse_unidentifiable(run: str, problem: UnknownWaves, optimum: Optimum) -> None:
     """Raises:
-    InputError: waves without energy at the natural frequency, a spectrum that is not met, or vague coefficients.
+    InputError: waves without energy at the natural frequency, or a spectrum that is not met.
     """
     point, power = optimum.solution.point, problem.power
-    advice = "record the wave slope alpha_w, or a decay in calm water"
     moment, natural = problem.moment_density(point, problem.omega), np.exp(0.5 * point[[RESTORING]])
     share = float(problem.moment_density(point, natural)[0] / np.max(moment))
     if share < _MIN_WAVE_SHARE:
         raise InputError(
-            f"the waves have next to no energy at the natural frequency ({100 * share:.1f} % of their peak), so that "
-            f"the roll shows their period and not the ship's; {advice}"
+            f"record '{run}': the waves have next to no energy at the natural frequency ({100 * share:.1f} % of their "
+            f"peak), so that the roll shows their period and not the ship's; {_ADVICE}"
         )
     ratio = power / problem.windowed_density(point)
     for piece in np.array_split(np.arange(len(ratio)), _BANDS):
@@ -276,19 +312,26 @@ def _refuse_unidentifiable(problem: UnknownWaves, optimum: Optimum, interval: In
         if abs(mean - 1.0) > max(_MAX_MISFIT, _SIGMAS * np.sqrt(35.0 / 18.0 / len(piece))):
             low, high = problem.omega[piece[[0, -1]]]
             raise InputError(
-                f"no sea of one peak explains the roll between {low:.2g} and {high:.2g} rad/s, which has {mean:.2g} "
-                f"times the power expected there; {advice}"
+                f"record '{run}': no sea of one peak explains the roll between {low:.2g} and {high:.2g} rad/s, which "
+                f"has {mean:.2g} times the power expected there; {_ADVICE}"
             )
-    error = interval.standard_error / np.exp(point[[DAMPING, RESTORING]])
+
+
+def _refuse_vague(run: str, covariance: Array) -> None:
+    """Raises:
+    InputError: standard errors of b_1 and c_1, of whose logarithms the covariance is, (2, 2), that are too large: far
+        from a parabola, such a likelihood would bend the mean over the runs.
+    """
+    error = np.sqrt(np.diag(covariance))
     if error[0] > _MAX_DAMPING_ERROR or error[1] > _MAX_RESTORING_ERROR:
         raise InputError(
-            f"the roll's spectrum cannot distinguish ship and waves (standard errors of b_1 {100 * error[0]:.0f} %, "
-            f"c_1 {100 * error[1]:.0f} %); record longer, {advice}"
+            f"record '{run}': the roll's spectrum cannot distinguish ship and waves (standard errors of b_1 "
+            f"{100 * error[0]:.0f} %, c_1 {100 * error[1]:.0f} %); record longer, or {_ADVICE}"
         )
 
 
-def _linear_equivalent_finding(record: Record) -> Finding:
-    rms = float(np.degrees(np.std(record["phi"])))
+def _linear_equivalent_finding(records: Sequence[Record]) -> Finding:
+    rms = float(np.degrees(np.std(np.concatenate([record["phi"] - np.mean(record["phi"]) for record in records]))))
     what = f"b_1 and c_1 are the linear equivalent of roll in this sea, {rms:.2g} deg rms"
     evidence = "other coefficients held at zero; the sea is taken to have one peak (JONSWAP) and to fall off with depth"
     return Finding(Severity.INFO, "equivalent-linear", what, evidence)
