@@ -1,5 +1,6 @@
 """Constants of the decision table, what one estimate needs that no trial file sets, and the time scale of a ship."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
@@ -115,29 +116,18 @@ def shows_speed(record: Record) -> bool:
 
 
 def yaw_time(records: Sequence[Record]) -> float:
-    """Return the time [s] in which the heading changes: 1/omega at the mean of its spectrum, the median of the records.
+    """Return the time [s] in which the yaw rate changes: 1/omega of its dominant period, the median of the records.
 
-    For steering models of records that show no speed. Waves and noise of the compass, small beside the courses, hardly
-    move the mean.
+    For steering models of records that show no speed.
 
     Raises:
         InputError: no record holds r or psi, or none moves.
     """
     turning = [r for r in records if {"r", "psi"} & set(r.channels)]
-    if not turning:
+    rates = [(r["r"] if "r" in r else np.gradient(r["psi"], r.dt), r.dt) for r in turning]
+    if not rates:
         raise InputError("the records show neither speed nor yaw; give r or psi, or set estimate.segment_s")
-    headings = [(r["psi"] if "psi" in r else np.nancumsum(r["r"]) * r.dt, r.dt) for r in turning]
-    return 1.0 / float(np.median([_mean_frequency(psi, dt) for psi, dt in headings]))
-
-
-def _mean_frequency(values: Array, dt: float) -> float:
-    """Return the mean circular frequency [rad/s] of the power of a motion (n,) about its mean."""
-    seen = np.flatnonzero(np.isfinite(values))
-    whole = np.interp(np.arange(len(values)), seen, values[seen])
-    power = np.abs(np.fft.rfft(whole - whole.mean())) ** 2
-    if not power.any():
-        raise InputError("the motion never swings about its mean; give a longer record, from the release on")
-    return float(2.0 * np.pi * np.fft.rfftfreq(len(values), dt) @ power / power.sum())
+    return float(np.median([_strongest_period(rate, dt, 1) for rate, dt in rates])) / (2.0 * math.pi)
 
 
 _PADDED = 4  # lengths of the record over which its spectrum is taken, so that it has places between; chosen
@@ -149,8 +139,21 @@ def dominant_period(values: Array, dt: float) -> float:
     Raises:
         InputError: it does not move, or never swings.
     """
-    power = np.abs(np.fft.rfft(values - values.mean(), _PADDED * len(values)))
-    peak = int(np.argmax(power))
-    if not power[peak] > 0.0 or peak < _PADDED:
+    period = _strongest_period(values, dt, 0)
+    if period > len(values) * dt:
         raise InputError("the motion never swings about its mean; give a longer record, from the release on")
-    return _PADDED * len(values) * dt / peak
+    return period
+
+
+def _strongest_period(values: Array, dt: float, least_cycles: int) -> float:
+    """Period [s] of most power among those of which the record (n,) holds so many cycles; infinite at zero frequency.
+
+    Raises:
+        InputError: it does not move.
+    """
+    power = np.abs(np.fft.rfft(values - values.mean(), _PADDED * len(values)))
+    first = _PADDED * least_cycles
+    peak = first + int(np.argmax(power[first:]))
+    if not power[peak] > 0.0:
+        raise InputError("the motion never swings about its mean; give a longer record, from the release on")
+    return _PADDED * len(values) * dt / peak if peak else math.inf

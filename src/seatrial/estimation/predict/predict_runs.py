@@ -1,6 +1,6 @@
 """All runs of a trial predicted: training runs to see the fit, the others to see what it is worth, with intervals."""
 
-from collections.abc import Sequence, Set
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -255,8 +255,11 @@ def predict_runs(
         calibration = by_session[item.role is not Role.TRAIN and _is_session_known(problem, item)]
         uncertainty = replace(calibration.uncertainty, offsets=own.covariance)
         if run.divergence is None:
-            start = run.start.values[0]
-            one = replace(one, noise_floor=process_noise_floor(estimation, item.record, start, own.expected))
+            floor = process_noise_floor(
+                problem, estimation.model, item.record, run.start.values[0], own.expected,
+                estimation.noise_model.process,
+            )  # fmt: skip
+            one = replace(one, noise_floor=floor)
         if run.divergence is None and item.role is not Role.TRAIN:
             rng = np.random.default_rng(stream)
             spread = prediction_spread(
@@ -338,18 +341,25 @@ def tied_model_spread(
     return {name: float(np.sqrt(np.mean(np.square(values)))) for name, values in away.items()}
 
 
-def process_noise_floor(estimation: Estimation, record: Record, start: Array, nuisances: Array) -> dict[str, float]:
+def process_noise_floor(
+    template: OutputError,
+    model: Model,
+    record: Record,
+    start: Array,
+    nuisances: Array,
+    intensities: Mapping[str, float],
+) -> dict[str, float]:
     """Return the rms error over time of an open-loop prediction that process noise alone causes, to first order.
 
     Args:
+        template: the problem whose nuisances `own` (k,) are; model: at the estimate.
         record: the run that is predicted, for its inputs; start: its initial state, (nx,).
-        nuisances: of the run, (k,).
+        intensity: of states, SI over the root of a second.
 
     Returns:
-        psi_deg in degrees, position_m in m, u, v in m/s, r in rad/s, as far as the model has them; empty where no
-        intensity is known.
+        psi_deg in degrees, position_m in m, u, v in m/s, r in rad/s, as far as the model has them; empty where nothing
+        is driven.
     """
-    template, model, intensities = estimation.estimate.problem, estimation.model, estimation.noise_model.process
     if not any(intensities.values()):
         return {}
     split, parameters = len(template.session_parameters), model.parameters
