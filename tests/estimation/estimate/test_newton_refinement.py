@@ -57,3 +57,11 @@ def test_where_the_information_overflows_no_step_is_taken_and_the_search_has_not
 
 def test_a_step_that_is_none_teaches_nothing() -> None:
     np.testing.assert_array_equal(with_curvature(BELIEVED, np.zeros(3), np.zeros(3)), BELIEVED)
+
+
+def test_no_step_is_taken_where_the_scaled_information_overflows() -> None:
+    """Beside a part of the samples two unknowns may have no curvature left, and a coupling of rounding."""
+    hollow = np.array([[0.0, 1e10, 0.0], [1e10, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    room = np.full(3, -np.inf), np.full(3, np.inf)
+    step, left = step_within(room, quadratic(hollow))
+    assert not step.any() and left == np.inf

@@ -203,11 +203,12 @@ def step_within(room: tuple[Array, Array], normal: NormalEquations) -> tuple[Arr
     free = (low < high) & ~((low >= 0.0) & (slope > 0)) & ~((high <= 0.0) & (slope < 0))
     gradient, hessian = slope[free], normal.hessian[np.ix_(free, free)]
     step = np.zeros_like(slope)
-    if not (np.all(np.isfinite(gradient)) and np.all(np.isfinite(hessian))):
-        return step, np.inf
     scale = 1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-300))  # above zero, for a division
-    # rounding of a singular matrix; chosen
-    solved = scale * np.linalg.lstsq(hessian * scale[:, None] * scale, scale * gradient, rcond=1e-12)[0]
+    with np.errstate(over="ignore", invalid="ignore"):  # what overflows is looked for below
+        scaled, slopes = hessian * scale[:, None] * scale, scale * gradient
+    if not (np.all(np.isfinite(slopes)) and np.all(np.isfinite(scaled))):
+        return step, np.inf
+    solved = scale * np.linalg.lstsq(scaled, slopes, rcond=1e-12)[0]  # rounding of a singular matrix; chosen
     step[free] = -solved
     if np.all((step >= low) & (step <= high)):
         return step, float(0.5 * gradient @ solved)
