@@ -42,6 +42,16 @@ def test_a_heel_that_wanders_while_it_is_pulled_is_held_to_its_end() -> None:
     assert 25.0 - 0.2 < time[release_row(phi + noise)] < 25.0 + 0.5
 
 
+@pytest.mark.parametrize("period", [5.0, 9.0])
+@pytest.mark.parametrize("seconds", [6.4, 7.9])
+def test_a_coarse_record_begins_behind_the_hold(period: float, seconds: float, rng: np.random.Generator) -> None:
+    """At 1 Hz the release lies between two rows; the last row of the hold knows nothing of it."""
+    time = np.arange(0.0, 12.0 * period)
+    free = np.exp(-0.03 * (time - seconds)) * np.cos(2.0 * np.pi / period * (time - seconds))
+    phi = 0.2 * np.where(time < seconds, 1.0, free) + 1e-3 * rng.standard_normal(len(time))
+    assert seconds <= time[release_row(phi)] < seconds + 1.2
+
+
 def pumped(steady: float) -> np.ndarray:
     """Driven from side to side for 33 s, to the same angle for so many of them, then left alone; rad."""
     size = np.where(TIME < 33.0, np.minimum(1.0, 0.2 + 0.8 * TIME / (33.0 - steady)), np.exp(-0.1 * (TIME - 33.0)))

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from seatrial.core.values import si_unit
-from seatrial.data.read import ColumnSpec, Layout, read_record
+from seatrial.data.read import ColumnSpec, Layout, read_log, read_record
 
 TIME = ColumnSpec("time", "t", "s")
 NAMED = Layout("text", TIME, (ColumnSpec("u", "speed", "kn"), ColumnSpec("psi", "head", "deg")))
@@ -103,3 +103,12 @@ def test_conversion_to_si_and_back(value: float, unit: str) -> None:
     factor, base = si_unit(unit)
     assert si_unit(base) == (1.0, base)
     assert value * factor / factor == pytest.approx(value, rel=1e-14, abs=1e-300)
+
+
+def test_a_comma_beside_decimal_points_is_no_decimal_sign(tmp_path: Path) -> None:
+    """Of thousands, most often: such a number is refused when it is used, not taken a thousand times too small."""
+    (tmp_path / "log.csv").write_text("Time;Heading;Depth\n0;12.5;1,234\n1;12.7;1,235\n")
+    layout = Layout("text", ColumnSpec("time", "Time", "s"), (ColumnSpec("psi", "Heading", "deg"),))
+    heading, depth = read_log(tmp_path / "log.csv", layout).table_of(layout.time).cells[1:]
+    assert list(heading) == [12.5, 12.7]
+    assert list(depth) == ["1,234", "1,235"]

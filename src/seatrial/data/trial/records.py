@@ -83,7 +83,7 @@ _MAX_ANGLE = np.pi / 2.0
 
 
 def trim_to_decay_start(record: Record) -> Record:
-    """The record from its release on: the last time that its motion, about that it ends at, is the largest.
+    """The record from its release on: from the row behind a hold, else from its largest motion about its rest.
 
     The motion is that of roll, pitch and heave which dies out most. People who run from side to side may have driven it
     before.
@@ -118,11 +118,11 @@ def trim_to_decay_start(record: Record) -> Record:
         )
     if len(record) - first < _MIN_ROWS:
         raise InputError(
-            f"record '{record.name}': the largest {motion} stands at {record.time[first]:g} s, so that nothing is "
+            f"record '{record.name}': the {motion} is free from {record.time[first]:g} s on, so that nothing is "
             "left of the decay; give a longer record, or cut it by parts"
         )
     _require_smaller_last_third(record.name, channel, swing[first:])
-    step = f"from its release on: the largest {motion} at {record.time[first]:g} s"
+    step = f"from its release on, at {record.time[first]:g} s"
     kept = record.rows(slice(first, None))
     return kept.with_channel(channel, kept.channel(channel), step)
 

@@ -143,6 +143,7 @@ _CELL = re.compile(
     re.IGNORECASE,
 )
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+(,\d+)?")
+_DECIMAL_POINT = re.compile(r"[+-]?\d*\.\d+")
 _WHITESPACE = r"\s+"
 _MARK_BYTES, _ZERO_SHARE = 2048, 0.9  # bytes looked at for lost marks of UTF-16, share of zeros in its high bytes; ours
 _NUMBER_SHARE = 0.5  # of the cells of a row of data that must be numbers or times; ours
@@ -258,11 +259,12 @@ def detect_separator(sample_line: str, separator: Separator) -> str:
 
 
 def _decimal_sign(lines: Iterable[str], separator: str, file: str) -> str:
-    """The decimal sign of lines of data: a comma where some cell is a number with one."""
+    """The decimal sign of lines of data: a comma where some cell is a number with one, and none with a point."""
     if separator == ",":
         return "."
-    cells = (cell for line in lines for cell in column_names(line, separator, file))
-    return "," if any("," in cell and _DECIMAL_COMMA.fullmatch(cell) for cell in cells) else "."
+    cells = [cell for line in lines for cell in column_names(line, separator, file)]
+    has_points = any(_DECIMAL_POINT.fullmatch(cell) for cell in cells)
+    return "," if not has_points and any("," in cell and _DECIMAL_COMMA.fullmatch(cell) for cell in cells) else "."
 
 
 def column_names(line: str, separator: str, file: str) -> list[str]:
