@@ -47,6 +47,19 @@ def test_an_error_that_two_channels_show_is_estimated_and_named(fault: str, name
     assert name in finding.evidence
 
 
+def test_a_receiver_that_is_late_for_a_craft_that_turns_fast_is_moved() -> None:
+    """0.7 s of a boat whose thrust rises within 0.3 s: a term of first order of the whole lag shows half of it."""
+    craft = CRAFTS["USV with two thrusters"]
+    trial = posed(craft, FAULTS["receiver 0.7 s late"], 3)
+    fit = identify(trial)
+    found = {c.name: c for c in fit.coefficients}
+    assert found["lag_receiver"].estimate == pytest.approx(0.7, abs=0.03)
+    for c, value in craft.truth.items():
+        assert abs(found[c].estimate - value) < 4.0 * (found[c].standard_error or 0.0)
+    (finding,) = (f for f in fit.findings if f.code == "sensor-error")
+    assert "late = {receiver = 0.6" in finding.advice or "late = {receiver = 0.8" in finding.advice
+
+
 def test_instruments_without_an_error_have_none() -> None:
     fit = fit_of("clean")
     assert "sensor-error" not in {f.code for f in fit.findings}

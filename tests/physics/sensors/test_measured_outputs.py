@@ -13,8 +13,8 @@ from seatrial.physics.manoeuvres import measures
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models import model_named
 from seatrial.physics.sensors import Compass, Sensors, VelocityReference, with_sensors
-from seatrial.physics.sensors.measured_outputs import is_late, late_name, without_sensors
-from seatrial.physics.sensors.settings import Antenna, Late
+from seatrial.physics.sensors.measured_outputs import is_late, late_name, with_timed_receiver, without_sensors
+from seatrial.physics.sensors.settings import LAG_START, Antenna, Late
 from seatrial.physics.simulate import manoeuvre
 from seatrial.physics.simulate.replay import replay
 from seatrial.testing import check_model
@@ -86,7 +86,7 @@ def test_a_bias_is_added_to_the_yaw_rate(shown: Record) -> None:
 
 
 LATE = Sensors(
-    velocity=VelocityReference.GROUND, late=tuple(Late), yaw_rate_bias=True, yaw_rate_scale=True,
+    velocity=VelocityReference.GROUND, late=LAG_START, yaw_rate_bias=True, yaw_rate_scale=True,
     antenna=Antenna(0.8, -0.3),
 )  # fmt: skip
 LAGS = {"lag_receiver": 0.4, "lag_heading": 0.3, "lag_yaw_rate": 0.2}
@@ -121,6 +121,44 @@ def test_late_channels_show_what_was_a_lag_before() -> None:
     assert np.max(np.abs(drift - (course - shown["psi_true"]))[settled]) < 0.02 * np.ptp(drift)
     way = 4.0 * LAGS["lag_receiver"]  # m, which the lag amounts to
     assert np.max(np.hypot(shown["x0"] - x, shown["y0"] - y)[settled]) < 0.02 * way
+
+
+@pytest.mark.parametrize("rows", [5, -3])
+def test_readings_of_a_late_receiver_move_to_the_time_that_they_are_of(rows: int) -> None:
+    """A turn whose fixes and velocities over ground are `rows` late, resolved along the heading of now."""
+    time = 0.1 * np.arange(300)
+    psi, speed, drift = 0.002 * time**2, 3.0 + 0.02 * time, 0.1 * np.sin(time)
+    then = np.clip(np.arange(300) - rows, 0, 299)
+    course = (psi + drift)[then] - psi
+    prompt = {"x0": np.cos(time), "y0": time**2, "u": speed * np.cos(drift), "v": speed * np.sin(drift), "psi": psi}
+    late = {c: prompt[c][then] for c in ("x0", "y0")} | {"psi": psi}
+    late |= {"u": speed[then] * np.cos(course), "v": speed[then] * np.sin(course)}
+    stated = Sensors(velocity=VelocityReference.GROUND, late={Late.RECEIVER: 0.1 * rows})
+    moved = with_timed_receiver(Record.from_arrays("turn", time, late), stated, 0.1 * rows)
+    there = slice(0, -rows) if rows > 0 else slice(-rows, None)
+    for channel, values in prompt.items():
+        np.testing.assert_allclose(moved[channel][there], values[there], atol=1e-12)
+        assert np.count_nonzero(np.isnan(moved.measured(channel))) == (0 if channel == "psi" else abs(rows))
+
+
+def test_what_is_left_of_the_lag_of_a_moved_receiver_is_a_term_of_first_order() -> None:
+    moved, prompt = Sensors(late={Late.RECEIVER: 0.4}), Sensors(late={Late.RECEIVER: 0.0})
+    craft, time = model_named("waterjet"), 0.1 * np.arange(100)
+    planned = Record.from_arrays("weave", time, {"delta": 0.3 * np.sin(0.3 * time), "v_j": np.full(100, 10.0)})
+    shown = [
+        replay(m, planned, dict.fromkeys(m.states, 0.0) | {"u": 4.0})
+        for m in (with_sensors(craft, moved).with_values({"lag_receiver": 0.45}),
+                  with_sensors(craft, prompt).with_values({"lag_receiver": 0.05}))
+    ]  # fmt: skip
+    for channel in ("x0", "y0"):
+        np.testing.assert_allclose(shown[0][channel], shown[1][channel], atol=1e-12)
+
+
+def test_settings_of_sensors_are_stated_as_lines_of_a_trial() -> None:
+    stated = Sensors(late={Late.RECEIVER: 0.4, Late.HEADING: 0.5}, yaw_rate_bias=True, antenna=Antenna(sd=0.6))
+    assert stated.line("late") == "late = {receiver = 0.4, heading = 0.5}"
+    assert stated.line("yaw_rate_bias") == "yaw_rate_bias = true"
+    assert stated.line("antenna") == "antenna = {x = 0.0, y = 0.0, sd = 0.6}"
 
 
 def test_late_channels_have_exact_derivatives() -> None:

@@ -32,6 +32,8 @@ from seatrial.data.trial.trial import Role, Run, Trial, Trimming
 from seatrial.physics.models.thruster_layout import layout_of
 from seatrial.physics.sea.spectrum import WaveEncounter
 from seatrial.physics.sea.wave_forces import with_wave_forces
+from seatrial.physics.sensors.measured_outputs import with_timed_receiver
+from seatrial.physics.sensors.settings import Late, Sensors
 
 # The approach condition of a set of records: the steady state from which a simulated manoeuvre starts by default.
 
@@ -197,7 +199,8 @@ def checked_records(trial: Trial) -> CheckedRecords:
     """Load every run that is not left out and refuse errors of training runs that the trial does not accept.
 
     A validation run with such an error is not predicted, which a finding says: the fit does not rest on it. Where
-    nothing says how an input runs between samples, the corners of its ramps keep their area.
+    nothing says how an input runs between samples, the corners of its ramps keep their area. Readings of a receiver
+    that is late are moved by the start value of its lag.
 
     Raises:
         InputError: as `load_records` and `refuse_errors`.
@@ -208,6 +211,9 @@ def checked_records(trial: Trial) -> CheckedRecords:
     records = tuple(replace(r, record=with_input_corners(r.record, trial.model)) for r in records)
     if rate is not None:
         records = tuple(replace(r, record=r.record.resampled(rate)) for r in records)
+    sensors = Sensors.from_text(trial.model.equations.sensors)
+    lag = sensors.late.get(Late.RECEIVER, 0.0)
+    records = tuple(replace(r, record=with_timed_receiver(r.record, sensors, lag)) for r in records)
     return CheckedRecords(records, findings)
 
 

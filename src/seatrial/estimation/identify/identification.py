@@ -42,7 +42,8 @@ from seatrial.estimation.problem.segments import compared_outputs
 from seatrial.estimation.problem.static_forces import StaticForces
 from seatrial.numerics.optimise import levenberg_marquardt
 from seatrial.physics.sensors import Sensors, with_sensors
-from seatrial.physics.sensors.measured_outputs import without_sensors
+from seatrial.physics.sensors.measured_outputs import lag_name, with_timed_receiver, without_sensors
+from seatrial.physics.sensors.settings import Late
 
 # What the records of a trial are: by it `identify` picks its strategy.
 
@@ -322,10 +323,24 @@ def _model_error(estimate: PointEstimate) -> float:
 
 def _with_errors(task: Identification, detected: Sequence[Suspect]) -> Identification:
     """The task whose model has the errors of these instruments."""
-    stated = Sensors.from_text(task.trial.model.equations.sensors)
+    stated = _stated(task)
     for one in detected:
         stated = one.stated(stated)
-    return replace(task, trial=replace(task.trial, model=_with_stated(task.trial.model, stated)))
+    return with_timed_readings(_with_sensors(task, stated))
+
+
+def _stated(task: Identification) -> Sensors:
+    return Sensors.from_text(task.trial.model.equations.sensors)
+
+
+def _with_sensors(task: Identification, stated: Sensors) -> Identification:
+    """The task whose model has these sensors, and whose records have a receiver's readings moved by its lag there."""
+    before, name = _stated(task).late.get(Late.RECEIVER, 0.0), lag_name(Late.RECEIVER)
+    lag, model = stated.late.get(Late.RECEIVER, 0.0), _with_stated(task.trial.model, stated)
+    if lag != before:
+        model = model.with_values({name: lag})
+    records = tuple(replace(r, record=with_timed_receiver(r.record, stated, lag - before)) for r in task.records)
+    return replace(task, trial=replace(task.trial, model=model), records=records)
 
 
 def _with_stated(model: Model, stated: Sensors) -> Model:
@@ -333,6 +348,34 @@ def _with_stated(model: Model, stated: Sensors) -> Model:
     wider = with_sensors(without_sensors(model), stated)
     present = {p.name: p for p in model.parameters}
     return wider.with_parameters(Parameters(tuple(present.get(p.name, p) for p in wider.parameters)))
+
+
+_MOST_MOVES = 4  # of a receiver's readings: a lag that ends within half a sample needs one or two; chosen
+
+
+def with_timed_readings(task: Identification) -> Identification:
+    """Return the task with a receiver's readings moved until what is left of its lag is within half a sample.
+
+    Outputs have what is left as a term of first order, which a longer lag of a craft that turns fast is not.
+    """
+    for _ in range(_MOST_MOVES):
+        stated = _stated(task)
+        if Late.RECEIVER not in stated.late or not task.runs.records:
+            return task
+        name, dt = lag_name(Late.RECEIVER), task.runs.records[0].dt
+        free, lag = task.beginning.shooting.problem.free, task.trial.model.parameters[name].value
+        if name in free:
+            lag = float(task.beginning.shooting.common_parameters[free.index(name)])
+        start = round(lag / dt) * dt
+        if start == stated.late[Late.RECEIVER]:
+            return task
+        task = _with_sensors(task, replace(stated, late={**stated.late, Late.RECEIVER: start}))
+    return task
+
+
+def with_sensors_of(task: Identification, other: Identification) -> Identification:
+    """Return the task with the sensors of another of the same records."""
+    return _with_sensors(task, _stated(other))
 
 
 def _confirmed(estimation: Estimation, detected: Sequence[Suspect]) -> Finding | None:
@@ -346,10 +389,11 @@ def _confirmed(estimation: Estimation, detected: Sequence[Suspect]) -> Finding |
         f"{e.name} {significant(values[e.name], 3)} {e.unit} (standard error {significant(spread[e.name], 2)})"
         for one in detected for e in one.errors
     ]  # fmt: skip
-    lines, names = "; ".join(one.line for one in detected), enumeration([one.text(values) for one in detected])
+    stated, names = Sensors.from_text(problem.model.equations.sensors), [one.text(values) for one in detected]
+    lines = "; ".join(stated.line(key) for key in dict.fromkeys(one.key for one in detected))
     return Finding(
         Severity.WARNING, "sensor-error",
-        f"the records show errors of instruments, which are estimated: {names}",
+        f"the records show errors of instruments, which are estimated: {enumeration(names)}",
         "; ".join(sizes).replace(" 1 (", " ("),
         f"state what is so under [sensors] ({lines}), and correct in the log what is not",
     )  # fmt: skip

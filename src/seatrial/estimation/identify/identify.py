@@ -26,6 +26,8 @@ from seatrial.estimation.identify.identification import (
     situation_of,
     with_detected_sensor_errors,
     with_likelier_courses,
+    with_sensors_of,
+    with_timed_readings,
 )
 from seatrial.estimation.identify.model_selection import selected_model
 from seatrial.estimation.identify.search import (
@@ -184,8 +186,12 @@ def identify(
         return _published(task, situation, report_progress)
     errors: tuple[Finding, ...] = ()
     if situation is Situation.STEERED:
+        task = with_timed_readings(task)
         timed = with_step_times(task)
-        task, errors = with_detected_sensor_errors(with_likelier_courses(task) if timed is task else timed)
+        found, errors = with_detected_sensor_errors(with_likelier_courses(task) if timed is task else timed)
+        if errors and timed is not task:  # times of steps stand on what the instruments show
+            found = with_step_times(with_sensors_of(task, found))
+        task = found
     fit = STRATEGIES[situation](task)
     fit = replace(fit, method=replace(fit.method, name=method.value), findings=(*errors, *fit.findings))
     if not compare or situation is Situation.UNKNOWN_WAVES:  # no input, so that there is nothing to regress on

@@ -28,7 +28,7 @@ from seatrial.estimation.problem.prediction_error import join_segments
 from seatrial.numerics.optimise import levenberg_marquardt
 from seatrial.physics.sensors import Sensors, VelocityReference
 from seatrial.physics.sensors.measured_outputs import lag_name
-from seatrial.physics.sensors.settings import TIMED_CHANNELS, Antenna, Late
+from seatrial.physics.sensors.settings import LAG_START, TIMED_CHANNELS, Antenna, Late
 
 # A warning where the sway velocity is missed in step with the yaw rate, as if it were measured at another place.
 
@@ -220,13 +220,13 @@ def _measured(slopes: Mapping[str, Array]) -> Callable[[OutputError, float], Out
 class Suspect:
     """An instrument with errors that go together, in words and as the setting that has them estimated.
 
-    reverse: in words where its error is negative.
+    key: of the setting; reverse: in words where its error is negative.
     """
 
     description: str
     errors: tuple[SensorError, ...]
     stated: Callable[[Sensors], Sensors]
-    line: str
+    key: str
     reverse: str = ""
 
     def text(self, sizes: Mapping[str, float]) -> str:
@@ -278,11 +278,11 @@ def _of_yaw(motion: _Motion, timing: "_Timing") -> Iterator[Suspect]:
     r, ones = motion.channels["r"], np.ones(len(motion.channels["r"]))
     yield Suspect(
         "the yaw rate has a bias", (SensorError("r_bias", "rad/s", _BIAS, _BIAS, _LEAST_BIAS, _measured({"r": ones})),),
-        lambda s: replace(s, yaw_rate_bias=True), "yaw_rate_bias = true",
+        lambda s: replace(s, yaw_rate_bias=True), "yaw_rate_bias",
     )  # fmt: skip
     yield Suspect(
         "the yaw rate is scaled", (SensorError("r_scale", "1", _SCALE, _SCALE, _LEAST_SCALE, _measured({"r": r})),),
-        lambda s: replace(s, yaw_rate_scale=True), "yaw_rate_scale = true",
+        lambda s: replace(s, yaw_rate_scale=True), "yaw_rate_scale",
     )  # fmt: skip
     for late, channel in ((Late.HEADING, "psi"), (Late.YAW_RATE, "r")):
         yield timing.late(late, {channel: -motion.rates[channel]}, 0.0)
@@ -311,7 +311,7 @@ class _Timing:
         error = SensorError(lag_name(late), "s", deviation, undetected, negligible, _measured(slopes), least)
         instrument = f"the {late.replace('_', ' ')}"
         return Suspect(
-            f"{instrument} is late", (error,), lambda s: replace(s, late=(*s.late, late)), f'late = ["{late}"]',
+            f"{instrument} is late", (error,), lambda s: replace(s, late={**s.late, late: LAG_START[late]}), "late",
             f"{instrument} is early, or all else is late",
         )  # fmt: skip
 
@@ -328,14 +328,14 @@ def _of_receiver(motion: _Motion, timing: _Timing, stated: Sensors, length: floa
         lag |= {"u": r * v - motion.rates["u"], "v": -r * u - motion.rates["v"]}
         x, y = x | {"u": zero, "v": r}, y | {"u": -r, "v": zero}
     yield timing.late(Late.RECEIVER, lag, -np.inf)
-    aboard = length / UNIFORM  # m: an antenna stands anywhere along the ship
+    aboard = float(f"{length / UNIFORM:.2g}")  # m: an antenna stands anywhere along the ship
     yield Suspect(
         "the antenna stands elsewhere",
         tuple(
             SensorError(name, "m", aboard, aboard, _LEAST_LEVER * length, _measured(arm))
             for name, arm in (("x_antenna", x), ("y_antenna", y))
         ),
-        lambda s: replace(s, antenna=Antenna(sd=aboard)), f"antenna = {{ sd = {aboard:.2g} }}",
+        lambda s: replace(s, antenna=Antenna(sd=aboard)), "antenna",
     )  # fmt: skip
 
 

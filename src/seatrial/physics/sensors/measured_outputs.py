@@ -26,8 +26,6 @@ SENSOR_SOURCE = "sensor model"
 _CURRENT = ("current_north", "current_east")
 _DEVIATION, _RATE_BIAS, _RATE_SCALE, _LAG = 0.2, 0.02, 0.05, 1.0
 """Prior standard deviations: of compass coefficients [rad], a yaw rate's bias [rad/s] and scale, a lag [s]; chosen."""
-_FILTER = 0.5
-"""Time constant [s] of a compass or rate gyro at which a search begins; chosen."""
 _MIN_LAG = 0.1
 """Least lag [s] that time constants can hold at 10 Hz; chosen."""
 
@@ -101,10 +99,10 @@ def _parameters(sensors: Sensors) -> tuple[Parameter, ...]:
         place = sensors.antenna
         items.append(one("x_antenna", place.x, "m", "antenna forward of the origin", place.sd))
         items.append(one("y_antenna", place.y, "m", "antenna to starboard", place.sd))
-    for late in sensors.late:
-        start, least = (0.0, float("-inf")) if late is Late.RECEIVER else (_FILTER, _MIN_LAG)
+    for late, start in sensors.late.items():
+        least = float("-inf") if late is Late.RECEIVER else _MIN_LAG
         meaning = f"time by which the {late.replace('_', ' ')} is late"
-        items.append(one(lag_name(late), start, "s", meaning, _LAG, least))
+        items.append(one(lag_name(late), max(start, least), "s", meaning, _LAG, least))
     if sensors.velocity_lag:
         lag = max(sensors.velocity_lag, _MIN_LAG)
         items.append(one("lag_velocity", lag, "s", "time by which u and v are late", lag, _MIN_LAG))
@@ -174,9 +172,13 @@ class _Writer:
         return self._bind("deviation", A + B * sp.sin(heading) + C * sp.cos(heading), "rad")
 
     def _lag(self, late: Late) -> "sp.Expr":
+        """The lag of an instrument; of a receiver what is left of it once its readings are moved."""
         import sympy as sp
 
-        return _symbol(lag_name(late)) if late in self.sensors.late else sp.Integer(0)
+        if late not in self.sensors.late:
+            return sp.Integer(0)
+        moved = self.sensors.late[late] if late is Late.RECEIVER else 0.0
+        return _symbol(lag_name(late)) - moved if moved else _symbol(lag_name(late))
 
     def _rate(self, state: str) -> "sp.Expr":
         return next(b.expression for b in self.model.equations.rates if b.name == state)
@@ -273,6 +275,39 @@ def _symbol(name: str) -> "sp.Symbol":
     import sympy as sp
 
     return sp.Symbol(name, real=True)
+
+
+# A run whose receiver's readings are moved to the time that they are of.
+
+
+def with_timed_receiver(record: Record, sensors: Sensors, lag: float) -> Record:
+    """Return the run whose receiver's readings are moved ahead by a lag [s], in whole samples.
+
+    Positions move as they are. Velocities over ground are turned from the heading at which they were resolved to that
+    of the sample to which they move.
+    """
+    rows = round(lag / record.dt) if lag else 0
+    if not rows:
+        return record
+    read = np.arange(len(record)) + rows
+    source = np.clip(read, 0, len(record) - 1)
+    names = [c for c in ("x0", "y0") if c in record]
+    if sensors.velocity is VelocityReference.GROUND:
+        names += [c for c in ("u", "v") if c in record]
+    was_measured = {c: np.isfinite(record.measured(c)) for c in names}
+    values = {c: to_starboard(record, c)[source] for c in names}
+    if {"u", "v"} <= values.keys() and "psi" in record:
+        psi = to_starboard(record, "psi")
+        turn = psi[source] - psi
+        ahead, across = values["u"], values["v"]
+        values["u"] = ahead * np.cos(turn) - across * np.sin(turn)
+        values["v"] = ahead * np.sin(turn) + across * np.cos(turn)
+    for c in names:
+        channel = record.channel(c)
+        sign = -1.0 if channel.positive == "port" else 1.0
+        moved = channel.with_values(sign * values[c]).with_measured(was_measured[c][source] & (source == read))
+        record = record.with_channel(c, moved)
+    return record.with_step(f"readings of the receiver moved ahead by {rows * record.dt:g} s")
 
 
 # A run corrected for the current: the drift of the water is taken off its track, and off velocities over ground.

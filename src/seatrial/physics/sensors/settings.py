@@ -1,9 +1,10 @@
 """What a craft's instruments do to its motion, as a trial declares it: the table `[sensors]`, and a value in Python."""
 
+from collections.abc import Mapping
 from enum import StrEnum
 from typing import Annotated
 
-from pydantic import ConfigDict, Field, TypeAdapter
+from pydantic import BeforeValidator, ConfigDict, Field, TypeAdapter
 from pydantic.dataclasses import dataclass as validated
 
 
@@ -34,6 +35,19 @@ TIMED_CHANNELS = {Late.RECEIVER: ("x0", "y0"), Late.HEADING: ("psi",), Late.YAW_
 """Channels of an instrument whose timing its lag is."""
 
 
+LAG_START = {Late.RECEIVER: 0.0, Late.HEADING: 0.5, Late.YAW_RATE: 0.5}
+"""Lag [s] at which a search begins where none is given; chosen."""
+
+
+def _as_starts(late: object) -> object:
+    """Names of instruments as a mapping to where the search for their lags begins."""
+    return {n: LAG_START.get(n, 0.0) for n in late} if isinstance(late, list | tuple) else late
+
+
+Starts = Annotated[Mapping[Late, float], BeforeValidator(_as_starts)]
+"""Instrument -> lag [s] at which a search begins; a list of instruments stands for `LAG_START`."""
+
+
 _STRICT = ConfigDict(extra="forbid", allow_inf_nan=False)
 
 
@@ -59,7 +73,8 @@ class Sensors:
             psi - e with e = A + B sin(shown) + C cos(shown).
         velocity: what u and v are: ``water``, or ``ground``: over ground, turned by the compass's heading.
         velocity_lag: start value of the time by which u and v are late [s]; 0: they are not.
-        late: instruments whose delay is estimated: lag_receiver, lag_heading, lag_yaw_rate.
+        late: instruments whose lag is estimated (lag_receiver, lag_heading, lag_yaw_rate) -> its start value [s]. The
+            readings of a receiver are moved ahead by its start value, so that what is left of its lag is short.
         yaw_rate_bias: whether r_bias is added to the yaw rate.
         yaw_rate_scale: whether the yaw rate is shown 1 + r_scale times.
         antenna: place of the receiver's antenna, to which position (and u, v over ground) refer; None: the origin.
@@ -69,7 +84,7 @@ class Sensors:
     compass: Compass = Compass.TRUE
     velocity: VelocityReference = VelocityReference.WATER
     velocity_lag: Annotated[float, Field(ge=0.0)] = 0.0
-    late: tuple[Late, ...] = ()
+    late: Starts = Field(default_factory=dict)
     yaw_rate_bias: bool = False
     yaw_rate_scale: bool = False
     antenna: Antenna | None = None
@@ -88,3 +103,14 @@ class Sensors:
     def from_text(cls, text: str) -> "Sensors":
         """Return the settings that `text` wrote, perfect instruments of an empty one; ValueError where it is none."""
         return TypeAdapter(cls).validate_json(text) if text else cls()
+
+    def line(self, key: str) -> str:
+        """Return the line under [sensors] that states one of its settings."""
+        import tomlkit
+
+        value = TypeAdapter(Sensors).dump_python(self, mode="json")[key]
+        table = tomlkit.inline_table()
+        if isinstance(value, dict):
+            table.update(value)
+            return f"{key} = {table.as_string()}"
+        return f"{key} = {tomlkit.item(value).as_string()}"
