@@ -17,6 +17,7 @@ from seatrial.estimation.identify import nonlinear_intervals
 from seatrial.estimation.identify.assembled_fit import widened_ends
 from seatrial.estimation.identify.nonlinear_intervals import default_profiles, short_record_findings
 from seatrial.estimation.information.covariance import Interval
+from seatrial.numerics.optimise import Status
 from seatrial.problems.disturbed_craft import Disturbance, independent_nomoto
 
 PROFILE = Profile("K", (0.1, 0.2), (0.0, 4.0), None, 0.19)
@@ -53,17 +54,26 @@ def test_without_a_disturbance_there_is_no_profile() -> None:
     assert default_profiles(estimation(16.0)) == ()
 
 
-@pytest.mark.parametrize(("share", "count", "profiles"), [(0.05, 2, ()), (0.2, 2, (PROFILE,)), (0.2, 7, ())])
+@pytest.mark.parametrize(
+    ("share", "count", "status", "profiles"),
+    [
+        (0.05, 2, Status.CONVERGED, ()),
+        (0.2, 2, Status.CONVERGED, (PROFILE,)),
+        (0.2, 7, Status.CONVERGED, ()),
+        (0.2, 2, Status.EXHAUSTED, ()),
+    ],
+)
 def test_vague_coefficients_have_profiles(
-    share: float, count: int, profiles: tuple[Profile, ...], monkeypatch: pytest.MonkeyPatch
+    share: float, count: int, status: Status, profiles: tuple[Profile, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Standard errors of a fifth of the estimates, of a few coefficients."""
+    """Standard errors of a fifth of the estimates, of a few coefficients, where the search converged."""
     monkeypatch.setattr(nonlinear_intervals, "innovation_profiles", lambda *_: (PROFILE,))
     one = estimation(5.0)
     one.process_noise, one.has_process_noise = object(), True
     one.interval = SimpleNamespace(standard_error=share * np.ones(count))
     one.estimate.common_parameters = -np.ones(count)
     one.estimate.problem.free = tuple("abcdefg"[:count])
+    one.estimate.optimum = SimpleNamespace(solution=SimpleNamespace(status=status))
     assert default_profiles(one) == profiles
 
 

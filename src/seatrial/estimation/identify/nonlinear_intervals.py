@@ -426,10 +426,12 @@ def default_profiles(estimation: Estimation, report_progress: ProgressReporter |
     """Return profiles of the coefficients where the information's intervals do not suffice under a disturbance.
 
     That is in short records, and where a standard error exceeds a tenth of its estimate. None where no disturbance was
-    estimated, and where profiles would take long.
+    estimated, where the search did not converge, and where profiles would take long.
     """
     noise, problem, steps = estimation.process_noise, estimation.estimate.problem, _reference_steps(estimation)
     if noise is None or not estimation.has_process_noise:
+        return ()
+    if not estimation.estimate.optimum.solution.status.is_success:
         return ()
     errors, values = estimation.interval.standard_error, estimation.estimate.common_parameters
     is_short = _has_few_memories(estimation) or (steps is not None and steps < FEWEST_REFERENCE_STEPS)
