@@ -80,6 +80,9 @@ def outcome(trial: st.Trial, held: SimulatedRun, draw: int) -> Outcome:
     except Exception as error:  # a failure of the package is a result of this benchmark
         return Outcome(draw, f"{type(error).__name__}: {error}", seconds=time.process_time() - began)
     seconds = time.process_time() - began
+    if not fit.validation:
+        said = "; ".join(f"{f.code}: {f.message}" for f in fit.findings if f.code == "not-predicted")
+        return Outcome(draw, said or "the held-out run was not predicted", seconds=seconds)
     free = [c for c in fit.coefficients if not c.fixed]
     prediction = fit.validation[0]
     scores = prediction.windows[0].scores if prediction.windows else {}

@@ -4,6 +4,7 @@ import math
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -561,16 +562,19 @@ class WaveReading:
 def contradicted_waves(task: Identification) -> Finding | None:
     """Return a warning `sensor-error` with the reading of the waves that explains the motions far better; None: none.
 
-    Each is tried by a short fit of output error; one with a craft that does not come to rest is none.
+    Each is tried by a short fit of output error; one with a craft that does not come to rest is none. None is tried
+    where the residuals of the stated waves are mostly noise, of which no reading leaves less.
     """
     if not any(r.waves is not None and "zeta" in r.record for r in task.train):
+        return None
+    stated = _short_fit(task, WaveReading())
+    if stated is None or _noise(stated) > _MOST_LEFT * _unexplained(stated):
         return None
     places = [WaveReading(forward=side * share * task.runs.length) for share in _SHARES for side in (-1.0, 1.0)]
     readings = [WaveReading(sign=-1.0), *places, *(WaveReading(speed=share) for share in _SPEEDS)]
     fits = {reading: _short_fit(task, reading) for reading in readings}
-    stated = _short_fit(task, WaveReading())
     left = {reading: _unexplained(fit) for reading, fit in fits.items() if fit is not None and _comes_to_rest(fit)}
-    if stated is None or not left:
+    if not left:
         return None
     best, before = min(left, key=lambda reading: left[reading]), _unexplained(stated)
     return _finding(best, left[best], before) if left[best] <= min(_MOST_LEFT * before, _CLOSE) else None
@@ -594,6 +598,17 @@ def _short_fit(task: Identification, reading: WaveReading) -> PointEstimate | No
 def _unexplained(fit: PointEstimate) -> float:
     """Root mean square of the residuals over the motion's spread."""
     return float(np.sqrt(np.nanmean((fit.residuals() / np.nanstd(fit.problem.data.measured, axis=0)) ** 2)))
+
+
+def _noise(fit: PointEstimate) -> float:
+    """Root mean square of the noise over the motion's spread, by differences of neighbouring residuals.
+
+    Half their mean square is the variance of noise beside a slow course (von Neumann et al. 1941, Annals of
+    Mathematical Statistics 12, 153).
+    """
+    residuals, data = fit.residuals(), fit.problem.data
+    steps = np.concatenate([np.diff(residuals[a:b], axis=0) for a, b in pairwise(data.offsets)])
+    return float(np.sqrt(0.5 * np.nanmean((steps / np.nanstd(data.measured, axis=0)) ** 2)))
 
 
 def _comes_to_rest(fit: PointEstimate) -> bool:
