@@ -61,6 +61,7 @@ from seatrial.estimation.estimate.settings import (
 from seatrial.estimation.estimate.start import (
     SearchStart,
     SeveralStarts,
+    continued_start,
     find_start,
     number_of_starts,
     search_from_several,
@@ -316,8 +317,12 @@ def begin_estimate(
     settings: EstimateSettings,
     options: EstimatorOptions,
     report_progress: ProgressReporter | None = None,
+    *,
+    near: Beginning | None = None,
 ) -> Beginning:
     """Return the estimate over segments by multiple shooting with re-estimated noise, begun by the weak form.
+
+    near: of the same runs, of which inputs or instruments were taken otherwise: the search begins at its end.
 
     Raises:
         InputError: no excitation, no free parameter, outputs that cannot be compared, runs too short for a disturbance
@@ -332,17 +337,11 @@ def begin_estimate(
         settings.criterion is FitCriterion.AUTO and runs.feedback is not None
     ):
         refuse_short_runs(runs.records)
-    report = report_progress or (lambda _: None)
     runs = (choice_runs(runs) if _is_free(settings) else None) or runs
-    report("start values: weak form")
     unit = characteristic_time(model, runs.records, runs.length, settings.segment_s)
     problem = output_error_problem(model, runs, segment_seconds(model, settings, unit), settings, options.workers)
-    begun = SeveralStarts(find_start(problem, runs.records, WEAK_FORM_SHIP_LENGTHS * unit), ())
-    if settings.robust:
-        begun = replace(begun, start=replace(begun.start, problem=replace(begun.start.problem, huber=HUBER_LIMIT)))
-    count = number_of_starts(model, settings.starts)
-    if count > 1:
-        begun = search_from_several(begun.start, runs.noise, count, options.seed, report_progress)
+    begun = continued_start(near.starts, problem, near.shooting) if near else None
+    begun = begun or _first_starts(problem, runs, settings, options, unit, report_progress)
     start = begun.start
     shooting = fit_output_error(
         start.problem,
@@ -354,6 +353,20 @@ def begin_estimate(
     )
     refuse_unstarted(shooting)
     return Beginning(runs, settings, unit, begun, shooting)
+
+
+def _first_starts(
+    problem: OutputError, runs: Runs, settings: EstimateSettings, options: EstimatorOptions, unit: float,
+    report_progress: ProgressReporter | None,
+) -> SeveralStarts:  # fmt: skip
+    """Where a search begins that nothing is known of: by the weak form, and by several searches where it takes them."""
+    if report_progress:
+        report_progress("start values: weak form")
+    begun = SeveralStarts(find_start(problem, runs.records, WEAK_FORM_SHIP_LENGTHS * unit), ())
+    if settings.robust:
+        begun = replace(begun, start=replace(begun.start, problem=replace(begun.start.problem, huber=HUBER_LIMIT)))
+    count = number_of_starts(problem.model, settings.starts)
+    return search_from_several(begun.start, runs.noise, count, options.seed, report_progress) if count > 1 else begun
 
 
 def _is_free(settings: EstimateSettings) -> bool:

@@ -10,6 +10,7 @@ from seatrial.core.equations import Model
 from seatrial.core.results import SearchAttempt
 from seatrial.core.values import Array, Parameter, ProgressReporter, Record
 from seatrial.estimation.estimate.point_estimate import (
+    PointEstimate,
     degrees_of_freedom_share,
     effective_inflation,
     residual_correlation,
@@ -254,6 +255,27 @@ class _Attempt:
             self, shared=solution.point, local=optimum.local, loss=solution.value,
             evaluations=self.evaluations + solution.evaluations,
         )  # fmt: skip
+
+
+def continued_start(begun: SeveralStarts, problem: OutputError, before: PointEstimate) -> SeveralStarts | None:
+    """Return the start at the optimum of the same runs, of which inputs or instruments were taken otherwise.
+
+    Coefficients that it does not have begin at their own values. None where unknowns of sessions or segments differ.
+    """
+    count, known = len(problem.free), len(before.problem.free)
+    own, local = before.common_parameters[known:], before.optimum.local
+    if len(own) != problem.size - count or local.shape != problem.measured_initial_states().shape:
+        return None
+    values = dict(zip(before.problem.free, before.common_parameters.tolist(), strict=False))
+    point = problem.start()
+    point[:count] = [values.get(name, value) for name, value in zip(problem.free, point.tolist(), strict=False)]
+    point[count:] = own
+    there = before.problem
+    settled = replace(
+        problem, noise=there.noise, inflation=there.inflation, population=there.population, substeps=there.substeps,
+        huber=there.huber,
+    )  # fmt: skip
+    return replace(begun, start=SearchStart(settled, point, local, begun.start.origin))
 
 
 def number_of_starts(model: Model, required: int | None) -> int:

@@ -128,6 +128,7 @@ class Identification:
         choose: whether the best member of the family takes the place of the trial's model.
         began: reading of the performance counter at the start [s].
         steps: of inputs of the training runs whose times within a sample are estimated.
+        near: the beginning of the same runs, of which inputs or instruments were taken otherwise; None: there is none.
     """
 
     trial: Trial
@@ -138,6 +139,7 @@ class Identification:
     began: float
     report_progress: ProgressReporter | None = None
     steps: tuple[InputStep, ...] = ()
+    near: Beginning | None = None
 
     @cached_property
     def train(self) -> tuple[TrialRecord, ...]:
@@ -192,7 +194,9 @@ class Identification:
             InputError: the outputs do not determine the free coefficients, or what `begin_estimate` raises.
         """
         refuse_unidentifiable(self.trial.model, self.outputs, self._force_names)
-        return begin_estimate(self.trial.model, self.runs, self.settings, self.options, self.report_progress)
+        return begin_estimate(
+            self.trial.model, self.runs, self.settings, self.options, self.report_progress, near=self.near
+        )
 
     @cached_property
     def estimation(self) -> Estimation:
@@ -230,7 +234,7 @@ def with_likelier_courses(task: Identification) -> Identification:
         return task
     records = tuple(replace(r, record=_with_courses(r.record, courses)) for r in task.records)
     others = tuple(f for f in task.findings if f.code != "stepped-input")
-    return replace(task, records=records, findings=(*others, _course_finding(courses)))
+    return replace(task, records=records, findings=(*others, _course_finding(courses)), near=task.beginning)
 
 
 def _with_courses(record: Record, courses: Mapping[str, Between]) -> Record:
@@ -340,7 +344,7 @@ def _with_sensors(task: Identification, stated: Sensors) -> Identification:
     if lag != before:
         model = model.with_values({name: lag})
     records = tuple(replace(r, record=with_timed_receiver(r.record, stated, lag - before)) for r in task.records)
-    return replace(task, trial=replace(task.trial, model=model), records=records)
+    return replace(task, trial=replace(task.trial, model=model), records=records, near=task.beginning)
 
 
 def _with_stated(model: Model, stated: Sensors) -> Model:

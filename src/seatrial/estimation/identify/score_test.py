@@ -1,7 +1,9 @@
 """What records say of parameters that a fit does not have, and of values that it takes for known."""
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import reduce
 from itertools import pairwise
 
 import numpy as np
@@ -92,11 +94,13 @@ class Candidate:
     Attributes:
         problem_with: the problem of output error, over segments or whole runs, with the parameter at a size.
         step: size of differences; small where residuals are not linear in the parameter.
+        run: number of the one run that it changes; None: it may change all.
     """
 
     name: str
     problem_with: Callable[[OutputError, float], OutputError]
     step: float = 1.0
+    run: int | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,6 +151,7 @@ def added_input(name: str, added: Sequence[Array], step: float = 1.0) -> Candida
 
     step: share of them that is simulated, small where the model is not linear in its inputs.
     """
+    changed = [run for run, inputs in enumerate(added) if np.any(inputs)]
 
     def problem_with(problem: OutputError, size: float) -> OutputError:
         data, runs = problem.data, problem.data.run_inputs
@@ -159,7 +164,7 @@ def added_input(name: str, added: Sequence[Array], step: float = 1.0) -> Candida
         inputs = data.inputs + size * np.concatenate(parts)
         return replace(problem, data=replace(data, inputs=inputs, run_inputs=whole))
 
-    return Candidate(name, problem_with, step)
+    return Candidate(name, problem_with, step, changed[0] if len(changed) == 1 else None)
 
 
 def own_criterion(estimation: Estimation) -> PointEstimate | ProcessNoise:
@@ -191,16 +196,49 @@ def score_test(estimate: PointEstimate | ProcessNoise, candidates: Sequence[Cand
     return ScoreTest(tuple(c.name for c in candidates), gradient, 0.5 * (curvature + curvature.T), by_candidates)
 
 
+def _tried_together(candidates: Sequence[Candidate]) -> list[list[int]]:
+    """Places of candidates that one simulation tries: of different runs, or one that may change all."""
+    alone = [[k] for k, one in enumerate(candidates) if one.run is None]
+    together: list[list[int]] = []
+    count = Counter[int]()
+    for k, one in enumerate(candidates):
+        if one.run is not None:
+            if count[one.run] == len(together):
+                together.append([])
+            together[count[one.run]].append(k)
+            count[one.run] += 1
+    return [*alone, *together]
+
+
+def _slopes_by_candidates(
+    problem: OutputError, candidates: Sequence[Candidate], moved: Callable[[OutputError], Array]
+) -> Array:
+    """By how much what is simulated with each candidate moves by a unit of it, (rows, ny, m); 0 where it is not known.
+
+    moved: by how much it moves in a problem with some of them, (rows, ny).
+    """
+    groups, run = _tried_together(candidates), np.repeat(problem.data.run, np.diff(problem.data.offsets))
+    differences = [
+        moved(reduce(lambda p, k: candidates[k].problem_with(p, candidates[k].step), group, problem))
+        for group in groups
+    ]
+    slopes = np.zeros((*differences[0].shape, len(candidates)))
+    for group, difference in zip(groups, differences, strict=True):
+        for k in group:
+            own = slice(None) if candidates[k].run is None else run == candidates[k].run
+            slopes[own, :, k] = np.nan_to_num(difference[own] / candidates[k].step)
+    return slopes
+
+
 def _output_error_normal(estimate: PointEstimate, candidates: Sequence[Candidate]) -> NormalEquations:
     """The normal equations with the candidates behind the shared unknowns."""
     problem, point, local = estimate.problem, estimate.common_parameters, estimate.optimum.local
     simulated, slopes = problem.simulated_outputs(point, local), problem.slopes(point, local)
-    added = []
-    for one in candidates:
-        other = one.problem_with(problem, one.step)
-        moved = other.simulated_outputs(point, local) - simulated - (other.data.measured - problem.data.measured)
-        added.append(np.nan_to_num(moved / one.step))
-    columns = np.stack(added, axis=2)
+
+    def moved(other: OutputError) -> Array:
+        return other.simulated_outputs(point, local) - simulated - (other.data.measured - problem.data.measured)
+
+    columns = _slopes_by_candidates(problem, candidates, moved)
     weighted = columns * inverse_variances(problem)[:, :, None]
     by_shared, by_local = np.zeros((problem.size, len(candidates))), []
     for segment, (a, b) in enumerate(pairwise(problem.data.offsets)):
@@ -223,10 +261,13 @@ def _innovation_normal(noise: ProcessNoise, candidates: Sequence[Candidate]) -> 
         problem = replace(problem, steps=problem.difference_steps(point, normal.hessian))
         normal = problem.normal(point, nothing_local)
     here = problem.innovations(point)
-    ahead = [replace(problem, runs=one.problem_with(problem.runs, one.step)).innovations(point) for one in candidates]
-    steps = np.array([one.step for one in candidates])
-    by_mean = np.nan_to_num((np.stack([k.e for k in ahead], axis=2) - here.e[:, :, None]) / steps)
-    by_variance = np.nan_to_num((np.stack([k.variance for k in ahead], axis=2) - here.variance[:, :, None]) / steps)
+
+    def moved(runs: OutputError) -> Array:
+        ahead = replace(problem, runs=runs).innovations(point)
+        return np.concatenate([ahead.e - here.e, ahead.variance - here.variance], axis=1)
+
+    by_both = _slopes_by_candidates(problem.runs, candidates, moved)
+    by_mean, by_variance = np.split(by_both, 2, axis=1)
     gradient, by_shared, curvature = np.zeros(count), np.zeros((problem.size, count)), np.zeros((count, count))
     for run, (a, b) in enumerate(pairwise(problem.runs.data.offsets)):
         own = problem.columns_of(int(problem.runs.data.session[run]))

@@ -113,7 +113,8 @@ def with_step_times(task: Identification) -> Identification:
         shares = {s.row: s.share for s in steps if s.run == run}
         records.append(replace(one, record=_with_shares(one.record, names, shares, task.outputs)))
     others = tuple(f for f in task.findings if f.code != "stepped-input")
-    return replace(task, records=tuple(records), steps=steps, findings=(*others, _finding(names, steps)))
+    findings = (*others, _finding(names, steps))
+    return replace(task, records=tuple(records), steps=steps, findings=findings, near=task.beginning)
 
 
 def _with_shares(record: Record, names: Sequence[str], shares: Mapping[int, float], outputs: Sequence[str]) -> Record:

@@ -163,21 +163,21 @@ def other_optima(estimation: Estimation) -> list[Finding]:
     """Return findings on ends of the search that explain the records as well with other coefficients.
 
     Ends are compared with the best one: where the criterion is another than that of the search, the estimate went on.
+    Coefficients of instruments that the records showed later were not searched for.
     """
     problem, errors = estimation.estimate.problem, estimation.interval.standard_error
     findings = []
     for attempt in estimation.search_attempts[1:]:
         if attempt.loss > _AS_GOOD:
             continue
-        point = [estimation.search_attempts[0].values[name] for name in problem.free]
-        apart = np.array([attempt.values[name] - point[i] for i, name in enumerate(problem.free)])
-        ratio = np.abs(apart) / np.maximum(errors[: len(apart)], np.finfo(float).tiny)
-        worst = int(np.argmax(ratio))
-        if ratio[worst] > _APART:
-            name = problem.free[worst]
+        best = estimation.search_attempts[0].values
+        searched = [(name, e) for name, e in zip(problem.free, errors.tolist(), strict=False) if name in best]
+        apart = {n: abs(attempt.values[n] - best[n]) / max(e, np.finfo(float).tiny) for n, e in searched}
+        name = max(apart, key=lambda n: apart[n])
+        if apart[name] > _APART:
             findings.append(Finding(
                 Severity.WARNING, "equal-optimum", f"other coefficients explain the records as well: {name} = "
-                f"{attempt.values[name]:.3g} instead of {point[worst]:.3g}",
+                f"{attempt.values[name]:.3g} instead of {best[name]:.3g}",
                 f"search from {attempt.origin}: loss {attempt.loss:.2g} above the lowest",
             ))  # fmt: skip
     return findings
