@@ -1,5 +1,6 @@
 """Manoeuvres planted in long logs: their kind, their ends, and the mode of the autopilot in which they were."""
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -78,6 +79,27 @@ def test_a_rudder_that_stands_at_one_angle_after_the_other_is_a_spiral() -> None
     assert spiral.name == "spiral" and "7 angles from 15 to -15 deg" in spiral.evidence
     assert (spiral.start, spiral.stop) == (pytest.approx(50.0, abs=3.0), pytest.approx(750.0, abs=3.0))
     assert spirals(nomoto(0.3 * np.sign(np.sin(0.05 * TIME)), np.full(TIME.size, 4.0))) == []
+
+
+def courses() -> Record:
+    """An autopilot that changes course by 30 deg, back and forth, and holds each course for 300 s with small angles."""
+    held = np.repeat(np.radians([4.0, 2.5, 1.0, -0.5, -2.0, -3.5]), 100)
+    execute = np.repeat(np.radians([15.0, 0.0, -8.0, 0.0]), 30)
+    delta = np.concatenate([np.concatenate([side * execute, held]) for side in (1.0, -1.0, 1.0, -1.0)])
+    return nomoto(delta, np.full(delta.size, 4.0))
+
+
+def test_an_autopilot_whose_rudder_wanders_about_amidships_makes_no_spiral() -> None:
+    assert spirals(courses()) == []
+    small = nomoto(np.repeat(np.radians([3.5, 2.0, 0.5, -1.0, -2.5, -4.0]), 60), np.full(360, 4.0))
+    assert spirals(small) == [], "on the way the heading stays within a few degrees"
+
+
+def test_no_two_manoeuvres_of_a_log_share_time() -> None:
+    """A run that is held out of the estimation lies in no other."""
+    found = find_stretches((), courses())
+    assert len(found) > 0
+    assert all(before.stop <= after.start for before, after in pairwise(found))
 
 
 @pytest.mark.parametrize(("n", "words"), [(-2.0, "propeller astern"), (0.0, "coasting")])

@@ -193,14 +193,16 @@ def _with_approach(record: Record, manoeuvres: Sequence[LogStretch]) -> list[Log
     """The manoeuvres from some time before their execute, as far as the record and the manoeuvre before allow.
 
     A pull-out gives half of its time amidships to the manoeuvre that follows it; an approach that is not steady is
-    named.
+    named. None shares time with another: what is held out would be fitted, too.
     """
     stretches = list[LogStretch]()
     for manoeuvre in sorted(manoeuvres, key=lambda each: each.start):
         lead = max(_APPROACH_S, _APPROACH_SHARE * (manoeuvre.stop - manoeuvre.start))
         stretches = [_shortened(before, manoeuvre.start, lead) for before in stretches]
         free_from = max((before.stop for before in stretches), default=0.0)
-        start = min(manoeuvre.start, max(manoeuvre.start - lead, free_from))
+        if manoeuvre.stop <= free_from:
+            continue
+        start = max(manoeuvre.start - lead, free_from)
         stretches.append(
             replace(manoeuvre, start=start, evidence=f"{manoeuvre.evidence}{_approach_text(record, manoeuvre, lead)}")
         )

@@ -222,6 +222,9 @@ class ObservedManoeuvre:
     def spirals(self) -> list[list[Hold]]:
         """Chains of angles at which the rudder stands, each a step further to the same side, from one side on to the
         other; looked at twice a second.
+
+        They go on to more than half of the largest angle on both sides, and the ship turns on the way as in a circle:
+        an autopilot's rudder stands at small angles while the heading stays.
         """
         time, chains = self.record.time, list[list[Hold]]()
         step = float(time[-1] - time[0]) / max(len(time) - 1, 1)
@@ -240,7 +243,12 @@ class ObservedManoeuvre:
                     near = chains[-1][-1:] if chains and _is_further(chains[-1][-1:], hold) else []
                     chains.append([*near, hold])
             first = row
-        return [chain for chain in chains if len(chain) >= _SPIRAL_ANGLES and chain[0].angle * chain[-1].angle < 0.0]
+        return [chain for chain in chains if len(chain) >= _SPIRAL_ANGLES and self._is_spiral(chain)]
+
+    def _is_spiral(self, chain: list[Hold]) -> bool:
+        largest, ends = 0.5 * float(np.max(np.abs(self.delta))), (chain[0].angle, chain[-1].angle)
+        turned = float(np.sum(np.abs([self.psi[hold.last - 1] - self.psi[hold.first] for hold in chain])))
+        return min(ends) < -largest and max(ends) > largest and turned >= TURN_HEADING_CHANGE
 
     @cached_property
     def kind(self) -> ManoeuvreKind:
@@ -248,10 +256,7 @@ class ObservedManoeuvre:
         if self.steered_as is not None:
             return self.steered_as.kind
         holds, times = self.holds, self.executes
-        largest = 0.5 * float(np.max(np.abs(self.delta)))
-        if any(
-            min(h.angle for h in chain) < -largest and max(h.angle for h in chain) > largest for chain in self.spirals
-        ):
+        if self.spirals:
             return ManoeuvreKind.SPIRAL
         if not holds:
             return ManoeuvreKind.OTHER
