@@ -26,6 +26,17 @@ def test_a_coarse_sensor_that_stops_is_stuck() -> None:
     assert codes == {"stuck"}
 
 
+def test_a_course_in_whole_degrees_that_goes_on_across_north_is_no_stuck_compass() -> None:
+    """360 deg is 0 deg: the heading moves on by one step where it wraps."""
+    record = zigzag(noise=1.0)
+    heading = np.where(np.arange(len(record)) < 500, 0.0, 359.0)
+    heading[1000:] = 358.0 - np.arange(len(record) - 1000) // 50 % 12
+    (finding,) = [
+        f for f in channel_findings(with_values(record, psi=np.radians(heading))) if "'psi' comes" in f.message
+    ]
+    assert finding.code == "resolution" and "steps of 1 deg" in finding.message
+
+
 def digits(values: Array) -> Array:
     return np.array([float(f"{value:.3g}") for value in values])
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from seatrial.core.values import NOTATION, Array, Finding, InputError, Record, Severity
+from seatrial.core.values import NOTATION, Array, Finding, InputError, Record, Severity, display_unit
 from seatrial.core.values.arrays import mask_intervals
 from seatrial.data.check.consequences import moment
 from seatrial.data.check.consistency import FOLLOWS, heading_rate, shift_text
@@ -103,7 +103,8 @@ def channel_findings(record: Record) -> tuple[Finding, ...]:
 
 
 def _constant_finding(record: Record, symbol: str, value: float) -> Finding:
-    evidence = f"{value:.6g} {record.channel(symbol).unit} throughout"
+    factor, unit = display_unit(record.channel(symbol).unit)
+    evidence = f"{value * factor:.6g} {unit} throughout"
     if symbol in OUTPUT_CHANNELS:
         text = f"record '{record.name}': channel '{symbol}' is dead, it never changes"
         return Finding(Severity.WARNING, "dead-channel", text, evidence)
@@ -116,7 +117,8 @@ def _stuck_findings(record: Record, symbol: str, values: Array) -> list[Finding]
     explain; of one that ends with a step of the resolution how coarse the channel is.
     """
     known = np.flatnonzero(np.isfinite(values))
-    moves, step = np.diff(values[known]), local_resolution(values[known])
+    readings = np.unwrap(values[known]) if record.channel(symbol).unit == "rad" else values[known]
+    moves, step = np.diff(readings), local_resolution(values[known])
     stays = [
         (a, b) for a, b in mask_intervals(moves == 0.0) if b - a >= max(STUCK_SAMPLES, STUCK_FRACTION * len(known))
     ]
@@ -124,13 +126,13 @@ def _stuck_findings(record: Record, symbol: str, values: Array) -> list[Finding]
     if not stays:
         return []
     first, last = max(stuck or stays, key=lambda ends: ends[1] - ends[0])
-    count = last - first + 1
+    count, (factor, unit) = last - first + 1, display_unit(record.channel(symbol).unit)
     if not stuck:
-        size = f"{step[first]:.4g} {record.channel(symbol).unit}"
+        size = f"{step[first] * factor:.4g} {unit}"
         text = f"record '{record.name}': channel '{symbol}' comes in steps of {size}"
         return [Finding(Severity.INFO, "resolution", text, f"a value stays for up to {count} samples")]
     text = f"record '{record.name}': channel '{symbol}' is stuck for {count} samples"
-    evidence = f"{values[known[first]]:.6g} from {moment(*record.time[known[[first, last]]])}"
+    evidence = f"{values[known[first]] * factor:.6g} {unit} from {moment(*record.time[known[[first, last]]])}"
     return [Finding(Severity.WARNING, "stuck", text, evidence)]
 
 
