@@ -1,5 +1,6 @@
 """Roll in irregular waves: with the wave slope recorded, and with waves that nobody measured; the truth is known."""
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,8 @@ from seatrial.data.trial import load_trial
 from seatrial.estimation.estimate import EstimatorOptions, Runs, estimate_model
 from seatrial.estimation.identify import identify
 from seatrial.estimation.identify.identification import is_unforced_roll
-from seatrial.estimation.identify.waves import log_covariance, maximum_likelihood, spectral_problem
+from seatrial.estimation.identify.waves import profiled_logarithm, spectral_optima, spectral_problem
+from seatrial.estimation.problem.spectral_likelihood import DAMPING, RESTORING
 from seatrial.physics.models.roll import roll
 from seatrial.physics.sea.spectrum import Spectrum, bretschneider, jonswap
 
@@ -61,11 +63,26 @@ def test_the_share_of_the_slope_that_it_feels_can_be_stated_too() -> None:
 def test_unmeasured_waves_leave_natural_period_and_damping_in_their_intervals(spectrum: Spectrum, seed: int) -> None:
     """From the roll angle alone, half an hour; damping to a third, the period to some per cent."""
     problem = spectral_problem(simulate_roll_record(spectrum, seed))
-    optimum = maximum_likelihood(problem)
-    b_1, c_1 = np.exp(optimum.solution.point[[5, 6]])
-    half = 1.96 * np.sqrt(np.diag(log_covariance(problem, optimum))) * (b_1, c_1)
-    assert abs(b_1 - SHIP["b_1"]) < half[0] < 0.6 * b_1
-    assert abs(c_1 - SHIP["c_1"]) < half[1] < 0.12 * c_1
+    optima = spectral_optima(problem)
+    damping, restoring = (profiled_logarithm([(problem, optima)], place) for place in (DAMPING, RESTORING))
+    assert damping.low < math.log(SHIP["b_1"]) < damping.high and damping.standard_error < 0.35
+    assert restoring.low < math.log(SHIP["c_1"]) < restoring.high and restoring.standard_error < 0.06
+
+
+def test_several_runs_share_the_ship_and_narrow_its_interval() -> None:
+    runs = []
+    for seed in (1, 2):
+        problem = spectral_problem(simulate_roll_record(bretschneider(2.0, 12.0), seed, dt=0.5))
+        runs.append((problem, spectral_optima(problem)))
+    both, *single = (profiled_logarithm(some, RESTORING) for some in (runs, runs[:1], runs[1:]))
+    assert both.standard_error < min(one.standard_error for one in single)
+    assert both.low < math.log(SHIP["c_1"]) < both.high
+
+
+def test_a_sea_that_peaks_at_the_natural_period_is_refused(tmp_path: Path) -> None:
+    """A sharp sea with a broad resonance explains such roll as well as a broad sea with a sharp one."""
+    with pytest.raises(InputError, match="cannot distinguish ship and waves"):
+        trial_of(tmp_path, simulate_roll_record(jonswap(2.0, PERIOD), 3, dt=0.5))
 
 
 def trial_of(tmp_path: Path, record: Record, more: str = "") -> Fit:

@@ -487,14 +487,14 @@ def _time_base_findings(record: Record, grid: EvenBase) -> tuple[Finding, ...]:
     lost = np.maximum(np.diff(grid.index) - 1, 0) if grid.is_even else np.zeros(len(steps), dtype=np.intp)
     regular = np.delete(steps - lost * grid.step, grid.gaps)  # as without the rows that are lost
     if regular.size and not grid.is_even and not grid.repeated:
-        text = f"record '{record.name}' is sampled unevenly; values are interpolated at even steps of {grid.step:.6g} s"
+        text = f"record '{record.name}' is sampled unevenly; values are interpolated at even steps of {grid.step:.4g} s"
         evidence = f"steps {regular.min():.4g} to {regular.max():.4g} s"
         advice = "nothing to do where the stamps are those of the samples"
         findings.append(Finding(Severity.INFO, "uneven-sampling", text, evidence, advice))
     elif regular.size and np.ptp(regular) > SMALL_UNEVENNESS * grid.step:
         kind = f"{grid.repeated} repeated or rounded time stamps" if grid.repeated else "uneven time stamps"
         is_rough = grid.repeated or np.ptp(regular) > LARGE_UNEVENNESS * grid.step
-        text = f"record '{record.name}' has {kind}; the time base is rebuilt with even steps of {grid.step:.6g} s"
+        text = f"record '{record.name}' has {kind}; the time base is rebuilt with even steps of {grid.step:.4g} s"
         evidence = f"steps {regular.min():.4g} to {regular.max():.4g} s, stamps off by up to {grid.jitter:.3g} s"
         advice = "give more decimals of time if the logger has them"
         severity = Severity.WARNING if is_rough else Severity.INFO

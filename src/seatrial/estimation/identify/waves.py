@@ -23,12 +23,14 @@ from seatrial.estimation.estimate.start import find_start
 from seatrial.estimation.identify.characteristics import roll_characteristics
 from seatrial.estimation.identify.fit_result import coefficient_table
 from seatrial.estimation.identify.identification import WAVE_SLOPE, Identification
+from seatrial.estimation.identify.nonlinear_intervals import CHI_SQUARED_LIMIT
 from seatrial.estimation.information.covariance import Interval, from_information, inverse
 from seatrial.estimation.information.frequency_response import frequency_range, frequency_range_finding
 from seatrial.estimation.problem.segments import compared_outputs
 from seatrial.estimation.problem.spectral_likelihood import (
     DAMPING,
     RESTORING,
+    HeldUnknown,
     SpectralLikelihood,
     UnknownWaves,
     fine_grid,
@@ -157,13 +159,16 @@ _NO_INITIAL_STATES = np.zeros((0, 0))
 
 @dataclass(frozen=True, eq=False)
 class _SpectralFit:
-    """The fit of one run by its spectrum: logarithms of b_1 [1/s] and c_1 [1/s^2], (2,), with covariance, (2, 2)."""
+    """The fit of one run by its spectrum, and where its searches ended."""
 
     record: Record
     problem: UnknownWaves
-    optimum: Optimum
-    values: Array
-    covariance: Array
+    optima: tuple[Optimum, ...]
+
+    @property
+    def optimum(self) -> Optimum:
+        """The best of the ends."""
+        return min(self.optima, key=lambda one: one.solution.value)
 
 
 def identify_in_unknown_waves(task: Identification) -> Fit:
@@ -183,10 +188,14 @@ def identify_in_unknown_waves(task: Identification) -> Fit:
     if not fits:
         raise left_out[0]
     records = [one.record for one in fits]
-    values, covariance = _weighted_mean(fits)
-    b_1, c_1 = np.exp(values).tolist()
-    interval = Interval(covariance * np.outer(np.exp(values), np.exp(values)), np.inf,
-                        "Fisher information of the spectral likelihood")  # fmt: skip
+    profiled = [profiled_logarithm([(one.problem, one.optima) for one in fits], k) for k in (DAMPING, RESTORING)]
+    _refuse_vague(profiled)
+    b_1, c_1 = (math.exp(one.best) for one in profiled)
+    errors = np.array([b_1, c_1]) * [one.standard_error for one in profiled]
+    interval = Interval(
+        np.diag(errors**2), np.inf, "profile of the spectral likelihood, the sea's fitted at each value"
+    )
+    ends = {n: (math.exp(one.low), math.exp(one.high)) for n, one in zip(FREE_COEFFICIENTS, profiled, strict=True)}
     model = _linear_model(trial.model, b_1, c_1, float(np.mean([np.mean(record["phi"]) for record in records])))
     characteristics = roll_characteristics(model, interval, FREE_COEFFICIENTS, records, trial.ship)
     first = fits[0]
@@ -195,7 +204,7 @@ def identify_in_unknown_waves(task: Identification) -> Fit:
         ship=trial.ship,
         model=model,
         coefficients=coefficient_table(
-            model.parameters, FREE_COEFFICIENTS, np.array([b_1, c_1]), interval, trial.truth
+            model.parameters, FREE_COEFFICIENTS, np.array([b_1, c_1]), interval, trial.truth, ends
         ),
         covariance=interval.covariance,
         solution=first.optimum.solution,
@@ -226,18 +235,12 @@ def identify_in_unknown_waves(task: Identification) -> Fit:
 
 def _fitted_spectrum(record: Record) -> _SpectralFit:
     problem = spectral_problem(record)
-    optimum = maximum_likelihood(problem)
-    covariance = log_covariance(problem, optimum)
-    _refuse_unidentifiable(record.name, problem, optimum)
-    _refuse_vague(record.name, covariance)
-    return _SpectralFit(record, problem, optimum, optimum.solution.point[[DAMPING, RESTORING]], covariance)
-
-
-def _weighted_mean(fits: Sequence[_SpectralFit]) -> tuple[Array, Array]:
-    """Return the mean of the runs' logarithms by their information, (2,), and its covariance, (2, 2)."""
-    weights = [inverse(one.covariance) for one in fits]
-    covariance = inverse(np.sum(weights, axis=0))
-    return covariance @ np.sum([w @ one.values for w, one in zip(weights, fits, strict=True)], axis=0), covariance
+    fit = _SpectralFit(record, problem, spectral_optima(problem))
+    point = fit.optimum.solution.point
+    if not all(problem.lower[k] < point[k] < problem.upper[k] for k in (DAMPING, RESTORING)):
+        raise InputError(f"record '{record.name}': the roll's spectrum shows no resonance; {_ADVICE}")
+    _refuse_unidentifiable(record.name, problem, fit.optimum)
+    return fit
 
 
 def spectral_problem(record: Record) -> UnknownWaves:
@@ -261,27 +264,87 @@ def spectral_problem(record: Record) -> UnknownWaves:
     return UnknownWaves(omega, power, centre).band_limited(low, high)
 
 
-def maximum_likelihood(problem: UnknownWaves) -> Optimum:
-    """The best of several beginnings."""
-    optima = [
+def spectral_optima(problem: UnknownWaves) -> tuple[Optimum, ...]:
+    """Return where searches from several points end: a broad sea with a sharp resonance, a sharp one with a broad."""
+    return tuple(
         levenberg_marquardt(problem, begin, _NO_INITIAL_STATES, negligible=_NEGLIGIBLE, evaluations=_EVALUATIONS)
         for begin in problem.start_points()
-    ]
-    return min(optima, key=lambda one: one.solution.value)
+    )
 
 
-def log_covariance(problem: UnknownWaves, optimum: Optimum) -> Array:
-    """Return that of the logarithms of b_1 and c_1, (2, 2); unknowns of the sea that end on a bound count as known.
+# standard errors by the information between refits, and to which they go beyond the outermost end of a search; chosen:
+# unknowns of the sea at a bound make those too small, three times where a sharp sea passes for a broad resonance
+_PROFILE_STEP, _PROFILE_REACH = 0.5, 6.0
 
-    Raises:
-        InputError: b_1 or c_1 ends on a bound.
+
+@dataclass(frozen=True)
+class ProfiledLogarithm:
+    """A logarithm by its profile likelihood: where it is least, and the outermost ends of its 95 % region."""
+
+    best: float
+    low: float
+    high: float
+
+    @property
+    def standard_error(self) -> float:
+        """Of the logarithm, by the width of the region."""
+        return (self.high - self.low) / (2.0 * math.sqrt(CHI_SQUARED_LIMIT))
+
+
+def profiled_logarithm(runs: Sequence[tuple[UnknownWaves, Sequence[Optimum]]], place: int) -> ProfiledLogarithm:
+    """Return a coefficient of the ship, the same in all runs, with the sea of each run fitted again at each value.
+
+    Refits go on from their neighbour, outward from each end of a search: a broad and a sharp sea.
     """
-    point = optimum.solution.point
+    ends = [one.solution.point[place] for _, optima in runs for one in optima]
+    errors = np.array([_deviation(problem, optima, place) for problem, optima in runs])
+    step, reach = _PROFILE_STEP / np.sqrt(np.sum(errors**-2.0)), _PROFILE_REACH * np.max(errors)
+    grid = np.arange(min(ends) - reach, max(ends) + reach + step, step)
+    twice = np.sum([2.0 * _profile(problem, optima, place, grid) for problem, optima in runs], axis=0)
+    least = int(np.clip(np.argmin(twice), 1, len(grid) - 2))
+    left, mid, right = twice[least - 1 : least + 2]
+    shift = 0.5 * (left - right) / (left - 2.0 * mid + right) if left - 2.0 * mid + right > 0.0 else 0.0
+    lowest = mid - 0.25 * (left - right) * shift
+    excess = twice - lowest - CHI_SQUARED_LIMIT
+    inside = np.flatnonzero(excess < 0.0)
+    low, high = _root(grid, excess, inside[0], -1), _root(grid, excess, inside[-1], 1)
+    return ProfiledLogarithm(float(grid[least] + shift * step), low, high)
+
+
+def _deviation(problem: UnknownWaves, optima: Sequence[Optimum], place: int) -> float:
+    """Standard error of an unknown by the information at the best end, with those on a bound known."""
+    best = min(optima, key=lambda one: one.solution.value)
+    point = best.solution.point
     inside = np.flatnonzero((point > problem.lower) & (point < problem.upper))
-    places = [int(np.flatnonzero(inside == k)[0]) for k in (DAMPING, RESTORING) if k in inside]
-    if len(places) < len(FREE_COEFFICIENTS):
-        raise InputError("the roll's spectrum shows no resonance; record a decay in calm water, or the wave slope")
-    return inverse(optimum.normal.hessian[np.ix_(inside, inside)])[np.ix_(places, places)]
+    covariance = inverse(best.normal.hessian[np.ix_(inside, inside)])
+    return float(np.sqrt(np.diag(covariance))[inside == place][0])
+
+
+def _root(grid: Array, excess: Array, last: int, way: int) -> float:
+    """Where the excess rises through 0 behind the last point below, straight between points; the end of the grid."""
+    if not 0 <= last + way < len(grid) or not np.isfinite(excess[last + way]):
+        return float(grid[last])
+    share = excess[last] / (excess[last] - excess[last + way])
+    return float(grid[last] + share * (grid[last + way] - grid[last]))
+
+
+def _profile(problem: UnknownWaves, optima: Sequence[Optimum], place: int, grid: Array) -> Array:
+    """The cost with one unknown held at each value of the grid, all others fitted, (k,)."""
+    costs = np.full(len(grid), np.inf)
+    for optimum in optima:
+        start = int(np.clip(np.searchsorted(grid, optimum.solution.point[place]), 0, len(grid) - 1))
+        for way in (range(start, len(grid)), range(start - 1, -1, -1)):
+            point = np.delete(optimum.solution.point, place)
+            for k in way:
+                again = levenberg_marquardt(
+                    HeldUnknown(problem, place, float(grid[k])), point, _NO_INITIAL_STATES, negligible=_NEGLIGIBLE,
+                    evaluations=_EVALUATIONS,
+                )  # fmt: skip
+                point, cost = again.solution.point, again.solution.value
+                if not cost < costs[k] - _NEGLIGIBLE:
+                    break
+                costs[k] = cost
+    return costs
 
 
 def _linear_model(model: Model, b_1: float, c_1: float, rest: float) -> Model:
@@ -318,16 +381,15 @@ def _refuse_unidentifiable(run: str, problem: UnknownWaves, optimum: Optimum) ->
             )
 
 
-def _refuse_vague(run: str, covariance: Array) -> None:
+def _refuse_vague(profiled: Sequence[ProfiledLogarithm]) -> None:
     """Raises:
-    InputError: standard errors of b_1 and c_1, of whose logarithms the covariance is, (2, 2), that are too large: far
-        from a parabola, such a likelihood would bend the mean over the runs.
+    InputError: standard errors of the logarithms of b_1 and c_1 that are too large to be of use.
     """
-    error = np.sqrt(np.diag(covariance))
-    if error[0] > _MAX_DAMPING_ERROR or error[1] > _MAX_RESTORING_ERROR:
+    damping, restoring = (one.standard_error for one in profiled)
+    if damping > _MAX_DAMPING_ERROR or restoring > _MAX_RESTORING_ERROR:
         raise InputError(
-            f"record '{run}': the roll's spectrum cannot distinguish ship and waves (standard errors of b_1 "
-            f"{100 * error[0]:.0f} %, c_1 {100 * error[1]:.0f} %); record longer, or {_ADVICE}"
+            f"the roll's spectrum cannot distinguish ship and waves (standard errors of b_1 {100 * damping:.0f} %, "
+            f"c_1 {100 * restoring:.0f} %); record longer, or {_ADVICE}"
         )
 
 

@@ -312,5 +312,36 @@ class UnknownWaves:
         return replace(self, omega=self.omega[kept], power=self.power[kept])
 
 
+@dataclass(frozen=True, eq=False)
+class HeldUnknown:
+    """The same with one unknown held at a value: the others are its unknowns."""
+
+    problem: UnknownWaves
+    place: int
+    value: float
+
+    @property
+    def lower(self) -> Array:
+        """Lower bounds."""
+        return np.delete(self.problem.lower, self.place)
+
+    @property
+    def upper(self) -> Array:
+        """Upper bounds."""
+        return np.delete(self.problem.upper, self.place)
+
+    def cost(self, shared: Array, local: Array) -> float:
+        """Return the minus the logarithm of the likelihood, up to a constant."""
+        return self.problem.cost(np.insert(shared, self.place, self.value), local)
+
+    def normal(self, shared: Array, local: Array) -> NormalEquations:
+        """Return cost, gradient and Fisher information at a point."""
+        whole = self.problem.normal(np.insert(shared, self.place, self.value), local)
+        kept = np.delete(np.arange(len(shared) + 1), self.place)
+        return replace(
+            whole, gradient=whole.gradient[kept], hessian=whole.hessian[np.ix_(kept, kept)], cross=whole.cross[:, kept]
+        )
+
+
 def _as_matrix(density: Array) -> Complex:
     return np.asarray(density[:, :, None, None], dtype=np.complex128)
