@@ -124,10 +124,17 @@ def _assembled(files: tuple[SourceFile, ...], states: _States) -> _Assembled:  #
     return _Assembled(record, shifted, f"{moment:%Y-%m-%d}")
 
 
+def seconds_in(text: str) -> float | None:
+    """Return the time [s] that a text such as ``2 min`` means; None: it is no time."""
+    match = _SECONDS.fullmatch(text)
+    return float(match[1]) * _UNIT_S[match[2]] if match else None
+
+
 def _time_of(text: str, part: str, events: tuple[LogEvent, ...], first: float, after: float) -> float:
     """The time [s] of the record's clock that a text means: after the first sample, or of an event after `after`."""
-    if match := _SECONDS.fullmatch(text):
-        return first + float(match[1]) * _UNIT_S[match[2]]
+    seconds = seconds_in(text)
+    if seconds is not None:
+        return first + seconds
     times = [event.time for event in events if event.name == text and event.time >= after]
     if times:
         return times[0]
