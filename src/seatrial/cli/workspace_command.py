@@ -1,12 +1,13 @@
 """The command that opens the workspace in the browser."""
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from seatrial.cli.application import app
-from seatrial.cli.screen import print_file, print_lines
+from seatrial.cli.screen import print_file, print_verbatim
 
 
 @app.command()
@@ -41,7 +42,8 @@ def open(
     def opened(address: str) -> None:
         import webbrowser
 
-        print_lines([f"the workspace is open at {address}", "it ends with this terminal, or with Ctrl-C"])
+        print_verbatim([f"the workspace is open at {address}", "it ends with this terminal, or with Ctrl-C"])
+        sys.stdout.flush()
         if not no_browser:
             webbrowser.open(address)
 

@@ -10,16 +10,42 @@ from seatrial import api
 from seatrial.core.text.words import printable
 from seatrial.core.values import Finding, InputError, TrialEdit, worst_first
 from seatrial.core.values.files import is_file
-from seatrial.data.trial import Role, Run
+from seatrial.data.read import ColumnSpec, Layout, Log, read_log
+from seatrial.data.trial import Role, Run, RunFiles
 from seatrial.data.trial.load import edited_text
 from seatrial.data.trial.records import TrialRecord, load_parts
+from seatrial.numerics.resolution import remembering
 
 _MOST_KEPT = 200  # runs whose checks are kept; chosen: twice the largest trial known
+_LOGS_KEPT = 4  # chosen: those of one afternoon
+_MOST_STEPS = 20_000_000  # numbers of sensors' resolutions that are kept; chosen: twice those of the largest log
 _LONGEST = 1500  # letters of a text of a finding; chosen
 
 
 class _Superseded(Exception):
     """The check is of a text that is no longer the file's."""
+
+
+class KeptLogs:
+    """Reads logs, and keeps the last as they stand in their files: another unit or side needs no second reading."""
+
+    def __init__(self) -> None:
+        self._logs: dict[tuple, Log] = {}
+
+    def read(self, path: Path, layout: Layout) -> Log:
+        """Return a log as `read_log` does.
+
+        Raises:
+            InputError: it cannot be read.
+        """
+        columns = tuple(ColumnSpec(c.symbol, c.source, "1", twin=c.twin) for c in layout.columns)
+        state = path.stat()
+        key = (path, state.st_mtime_ns, state.st_size, replace(layout, columns=columns))
+        if key not in self._logs:
+            self._logs[key] = read_log(path, layout)
+            while len(self._logs) > _LOGS_KEPT:
+                del self._logs[next(iter(self._logs))]
+        return self._logs[key]
 
 
 class LiveCheck:
@@ -32,6 +58,8 @@ class LiveCheck:
         self.path = path
         self._report = report
         self._kept: dict[tuple, tuple[TrialRecord, ...]] = {}
+        self.logs = KeptLogs()
+        self._steps: dict[bytes, Any] = {}
         self._lock = threading.Lock()
         self._wanted = ""
         self._last: dict[str, Any] = {}
@@ -74,7 +102,8 @@ class LiveCheck:
                 return parts
 
             try:
-                findings = api.check(self.path, load)
+                with remembering(self._steps, _MOST_STEPS):
+                    findings = api.check(self.path, load)
             except _Superseded:
                 return
             except InputError as error:
@@ -87,7 +116,8 @@ class LiveCheck:
         states = tuple(file.path.stat().st_mtime_ns for file in run.files if is_file(file.path))
         key = (replace(run, role=Role.TRAIN, session="-"), reference_point, states)
         if key not in self._kept:
-            self._kept[key] = load_parts(run, reference_point)
+            data = run.data.read(self.logs.read) if isinstance(run.data, RunFiles) else run.data
+            self._kept[key] = load_parts(replace(run, data=data), reference_point)
             while len(self._kept) > _MOST_KEPT:
                 del self._kept[next(iter(self._kept))]
         return tuple(replace(part, role=run.role, session=run.session) for part in self._kept[key])
