@@ -248,3 +248,28 @@ def test_a_shortcut_opens_the_folder(tmp_path: Path) -> None:
     assert str(tmp_path) in path.read_text() and "seatrial open" in path.read_text()
     with pytest.raises(seatrial.InputError, match="no desktop"):
         write_shortcut(tmp_path, tmp_path / "none")
+
+
+def test_an_open_column_is_decided_by_hand_and_a_note_is_no_log(tmp_path: Path) -> None:
+    (log, *_) = write_logs(tmp_path)
+    rows = [line.split(",") for line in log.read_text().splitlines()[1:]]
+    text = "".join(f"{t},{psi},{33000.0 + 512.0 * float(delta):.0f}\n" for t, psi, delta in rows)
+    for path in tmp_path.glob("*.csv"):
+        path.unlink()
+    (tmp_path / "run.csv").write_text(f"time [s],heading [deg],rudder.raw\n{text}", encoding="utf-8")
+    (tmp_path / "notes.txt").write_text("Departed at noon.\nSea calm.\n", encoding="utf-8")
+    with opened(tmp_path) as served:
+        edit(served, kind="draft", logs=["notes.txt", "run.csv"], sizes={"length": 8.0})
+        (block,) = served.ask("logs")[1]["blocks"]
+        (row,) = block["open"]
+        assert row["symbol"] == "delta" and row["must_choose"] and "counts" in row["other"]
+        assert any(one["code"] == "model" for one in checked(served)["findings"])
+        table = row["stated"] | {"zero": 33000.0, "span": 512.0}
+        edit(served, kind="channel", block=0, symbol="delta", table=table)
+        edit(served, kind="draft")  # craft and model again, the length as it is stated in the file
+        (block,) = served.ask("logs")[1]["blocks"]
+        delta = next(one for one in block["channels"] if one["symbol"] == "delta")
+        assert delta["by_hand"] and "no degrees" in delta["reason"] and not block["open"]
+        craft = served.ask("craft")[1]
+        assert next(one for one in craft["tables"][0]["rows"] if one["key"] == "L")["value"] == 8.0
+        assert not [one for one in checked(served)["findings"] if one["code"] == "model"]

@@ -8,10 +8,17 @@ from tomlkit.items import AoT, Table
 
 from seatrial import api
 from seatrial.core.values import InputError
+from seatrial.data.draft.draft_text import ASSUMED
+from seatrial.data.trial.plausibility import ESTIMATED
 from seatrial.workspace.trial_document import BY_HAND, parsed_document, with_value
 
-SIZES = ("length", "beam", "draught", "mass", "gear", "rho", "scale", "propeller", "rudder", "gm", "antenna")
+_SHIP_KEYS = {
+    "length": "L", "beam": "B", "draught": "d", "mass": "m", "rho": "rho", "scale": "scale", "propeller": "D_P",
+    "rudder": "A_R", "gm": "GM",
+}  # fmt: skip
+SIZES = (*_SHIP_KEYS, "gear", "antenna")
 """What a person may know of a craft, as options of `init`."""
+_GUESSES = (ESTIMATED, ASSUMED, "MISSING")  # marks of numbers that nobody has stated
 _RECORDS = "\n[[records]]"
 _TABLES = (("ship",), ("model", "fixed"), ("estimate",))
 
@@ -33,11 +40,35 @@ def drafted_text(
         raise InputError(f"there is no size '{unknown[0]}'")
     stated = [*columns, *_columns_by_hand(text)]
     options: dict[str, Any] = dict(sizes)
-    draft = api.draft_trial(*logs, folder=folder, columns=tuple(dict.fromkeys(stated)), name=name, **options).text
+    options |= {"folder": folder, "columns": tuple(dict.fromkeys(stated)), "name": name}
+    try:
+        draft = api.draft_trial(*logs, **options).text
+    except InputError:
+        readable = [path for path in logs if _is_log(path)]
+        if not 0 < len(readable) < len(logs):
+            raise
+        draft = api.draft_trial(*readable, **options).text
     if _RECORDS not in text or _RECORDS not in draft:
         return draft
     drafted_head, own_records = draft[: draft.index(_RECORDS)], text[text.index(_RECORDS) :]
     return _with_values_by_hand(drafted_head + own_records, text)
+
+
+def stated_sizes(text: str) -> dict[str, float]:
+    """Return the sizes of the craft that a trial file states, by the names of `SIZES`, but for those of a rule."""
+    ship: Mapping[str, Any] = parsed_document(text).get("ship", {})
+    numbers = {size: ship[key] for size, key in _SHIP_KEYS.items() if isinstance(ship.get(key), int | float)}
+    comments = {size: value.trivia.comment.lstrip("# ") for size, value in numbers.items() if hasattr(value, "trivia")}
+    return {size: float(value) for size, value in numbers.items() if not comments[size].startswith(_GUESSES)}
+
+
+def _is_log(path: Path) -> bool:
+    """Whether a file of the folder can be read as a log: a note beside it may have the same ending."""
+    try:
+        api.survey_log(path)
+    except InputError:
+        return False
+    return True
 
 
 def _columns_by_hand(text: str) -> list[str]:

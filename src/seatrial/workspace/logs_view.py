@@ -44,7 +44,7 @@ def logs_view(text: str, path: Path) -> dict[str, Any]:
         _block_view(k, block, runs.get(k, ()), path)
         for k, block in enumerate(document.get("records", ()))
     ]  # fmt: skip
-    for place, row in _open_rows(text):
+    for place, row in open_rows(text):
         if place < len(blocks):
             blocks[place]["open"].append(row)
     return {"blocks": blocks, "problem": problem}
@@ -149,8 +149,8 @@ def _run_row(run: Run, block: Mapping[str, Any], path: Path) -> dict[str, Any]:
     }
 
 
-def _open_rows(text: str) -> list[tuple[int, dict[str, Any]]]:
-    """What `init` left to a person, with both readings: the block, and the table that a choice begins from."""
+def open_rows(text: str) -> list[tuple[int, dict[str, Any]]]:
+    """Return what `init` left to a person, with both readings: the block, and the table that a choice begins from."""
     rows, place, opened = [], -1, dict[str, tuple[str, str]]()
     for line in text.splitlines():
         if line.strip() == "[[records]]":

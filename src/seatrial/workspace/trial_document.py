@@ -216,6 +216,16 @@ def with_value(text: str, place: Place, value: Any) -> str:
         raise InputError(f"the trial file has no place '{key}' ({error}); reload the page") from None
 
 
+def with_comment(text: str, place: Place, reason: str) -> str:
+    """Return the text with the mark of a person's hand, and a reason, behind a channel."""
+    document = parsed_document(text)
+    channel: Any = document
+    for key in place:
+        channel = channel[key]
+    set_comment(channel, f"{BY_HAND}; {reason}" if reason else BY_HAND)
+    return toml_text(document, text)
+
+
 def _set(table: Any, key: str | int, value: Any) -> None:
     """Set a value; the comment behind the old one stays, but an estimate is one no longer."""
     comment = table[key].trivia.comment if key in table and hasattr(table[key], "trivia") else ""

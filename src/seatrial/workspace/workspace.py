@@ -12,7 +12,7 @@ from seatrial.workspace import checks, craft_view, drafting, logs_view, run_edit
 from seatrial.workspace.events import EventStream
 from seatrial.workspace.folder import OpenedFolder
 from seatrial.workspace.jobs import JobRunner, free_name
-from seatrial.workspace.trial_document import FileChange, TrialDocument, with_value
+from seatrial.workspace.trial_document import FileChange, TrialDocument, with_comment, with_value
 
 RESULTS = "results"
 """Folder of fits and tunings, beside the trial file."""
@@ -133,9 +133,9 @@ class Workspace:
         place = (*head, "channels", symbol)
 
         def edit(text: str) -> str:
-            text = logs_view.without_open_lines(text, block, symbol)
-            text = with_value(text, place, table)
-            return text if table is None else with_value(text, (*place, "column"), table["column"])
+            rows = [row for where, row in logs_view.open_rows(text) if (where, row["symbol"]) == (block, symbol)]
+            text = with_value(logs_view.without_open_lines(text, block, symbol), place, table)
+            return text if table is None else with_comment(text, place, rows[0]["reason"] if rows else "")
 
         return edit, f"no {symbol}" if table is None else f"{symbol} is column '{table['column']}'"
 
@@ -187,14 +187,16 @@ class Workspace:
         """A first draft of the named logs, or ship and model again with what is known of the craft."""
         names = [str(name) for name in request.get("logs", ())]
         logs = [self.folder.file(name) for name in names] or self.own_logs() or self.folder.logs
-        sizes = {str(key): float(value) for key, value in request.get("sizes", {}).items()}
+        text, is_new = self.document.text, bool(request.get("anew"))
+        stated = request.get("sizes", {} if is_new or not text else drafting.stated_sizes(text))
+        sizes = {str(key): float(value) for key, value in stated.items()}
         columns, name = [str(text) for text in request.get("columns", ())], str(request.get("name", ""))
-        home, is_new = self.folder.root, bool(request.get("anew"))
+        home = self.folder.root
         if not logs:
             raise InputError("there is no log in the folder; drop one on the page")
-        summary = "drafted from the logs" if is_new or not self.document.text else "craft and model drafted again"
+        summary = "drafted from the logs" if is_new or not text else "craft and model drafted again"
         # before the file is locked, as it takes its time; the version says whether it still holds
-        drafted = drafting.drafted_text("" if is_new else self.document.text, home, logs, sizes, columns, name)
+        drafted = drafting.drafted_text("" if is_new else text, home, logs, sizes, columns, name)
         return lambda _: drafted, summary
 
     def own_logs(self) -> list[Path]:

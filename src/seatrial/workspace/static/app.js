@@ -87,7 +87,9 @@ function showFindingCount() {
   const count = kind => findings.filter(one => one.severity === kind).length;
   chip.hidden = !app.state?.exists;
   const parts = [[count("error"), "error"], [count("warning"), "warning"]].filter(([n]) => n).map(([n, word]) => `${n} ${word}${n > 1 ? "s" : ""}`);
-  chip.className = `chip ${count("error") || problem ? "bad" : count("warning") ? "warn" : "good"}`;
+  const isBlocked = findings.some(one => one.code === "model");
+  if (isBlocked) parts.push("not ready to fit");
+  chip.className = `chip ${count("error") || problem ? "bad" : count("warning") || isBlocked ? "warn" : "good"}`;
   chip.textContent = app.check.version !== app.state?.version || !complete ? `checking … ${parts.join(", ")}` : problem ? "to correct" : parts.join(", ") || "checks pass";
   chip.dataset.version = complete ? app.check.version : "";
 }

@@ -1,6 +1,6 @@
 // Fits: started, watched, stopped, side by side, each restorable as its trial file.
 import { ask } from "./api.js";
-import { track, unpacked } from "./charts.js";
+import { LogPicture, track, unpacked } from "./charts.js";
 import { button, digits, duration, field, h, input, section, select } from "./dom.js";
 import { findingList } from "./logs.js";
 
@@ -11,7 +11,8 @@ export async function showFits(node, app) {
   node.append(h("h1", {}, "Fit"));
   if (!app.state.exists) { node.append(h("p", {}, "First draft a trial file from logs, in the view Logs.")); return; }
   const { fits } = await ask("fits");
-  node.append(startForm(app), jobList(app, "fit"));
+  const blocked = (app.check.findings || []).find(one => one.code === "model");
+  node.append(blocked ? h("p", { class: "message warn" }, `${blocked.text}. ${blocked.advice}.`) : "", startForm(app), jobList(app, "fit"));
   if (!fits.length) node.append(h("p", { class: "note" }, "No fit yet. The fit estimates the ticked coefficients from the runs that are fitted and predicts those that are held out."));
   else {
     const done = fits.filter(fit => fit.state === "done");
@@ -31,7 +32,7 @@ export function reportFrame(name, page = "report") {
 }
 
 function startForm(app) {
-  const name = input("text", "", { placeholder: "fit-1" }), seed = input("number", 0, { min: 0, step: 1 });
+  const name = input("text", "", { placeholder: "by number" }), seed = input("number", 0, { min: 0, step: 1 });
   const intervals = select([["", "as it sees fit"], ["jackknife", "by leaving runs out"], ["bootstrap", "bootstrap"], ["profile", "profile"]], "");
   const choose = input("checkbox", "1"), compare = input("checkbox", "1");
   const start = async () => {
@@ -48,6 +49,13 @@ export function jobList(app, kind) {
   const box = h("div", { class: "jobs" });
   const draw = () => box.replaceChildren(...[...app.jobs.values()].filter(job => job.kind === kind && job.state !== "done").map(job => jobCard(app, job)));
   draw();
+  // the time goes on between two reports
+  const clock = setInterval(() => {
+    if (!box.isConnected && box.dataset.shown) { clearInterval(clock); return; }
+    if (box.isConnected) box.dataset.shown = "yes";
+    for (const job of app.jobs.values()) if (job.state === "running" && job.kind === kind) job.seconds += 1;
+    for (const text of box.querySelectorAll(".so-far")) text.textContent = duration(app.jobs.get(text.dataset.job).seconds);
+  }, 1000);
   app.on("job", async job => {
     if (job.kind !== kind) return;
     draw();
@@ -62,13 +70,24 @@ function jobCard(app, job) {
   const left = job.left !== null && job.left > 1 ? `, about ${duration(job.left)} left in this phase` : "";
   const bar = job.total ? h("progress", { max: job.total, value: job.done, "aria-label": `${last} of ${job.name}` }) : isRunning ? h("progress", { "aria-label": `${last} of ${job.name}` }) : null;
   const card = h("div", { class: `card job ${job.state}` }, h("h3", {}, job.name, " ", h("span", { class: "badge" }, job.state)),
-    isRunning && h("p", { role: "status" }, h("b", {}, last), job.detail ? `: ${job.detail}` : "", h("br"), `${duration(job.seconds)} so far${left}`), bar,
+    isRunning && h("p", { role: "status" }, h("b", {}, last), job.detail ? `: ${job.detail}` : "", h("br"), h("span", { class: "so-far", "data-job": job.name }, duration(job.seconds)), ` so far${left}`), bar,
     h("ol", { class: "phases" }, job.phases.slice(-8).map(one => h("li", {}, `${one.name} `, h("span", { class: "u" }, `from ${duration(one.at)}`)))),
     job.message && h("p", { class: "message bad" }, job.message));
   if (isRunning) card.append(button("Stop", async () => { try { await ask("stop", { name: job.name }); } catch (error) { app.note(error.message, "bad"); } }, { "aria-label": `stop ${job.name}` }));
   // when a fit fails, the reason and what the data show stand together
-  if (job.state === "failed" && job.kind === "fit") card.append(h("details", { open: true }, h("summary", {}, "What the records show"), ...findingList(app, app.check), h("p", {}, h("a", { href: "#logs" }, "Look at columns and runs"))));
+  if (job.state === "failed" && job.kind === "fit") card.append(recordPicture(app), h("details", { open: true }, h("summary", {}, "What the records show"), ...findingList(app, app.check), h("p", {}, h("a", { href: "#logs" }, "Look at columns and runs"))));
   return card;
+}
+
+function recordPicture(app) {
+  const box = h("div", { class: "picture" });
+  queueMicrotask(async () => {
+    try {
+      const { blocks } = await ask("logs"), run = blocks[0]?.runs[0];
+      if (run) new LogPicture(box, await ask("series", { block: 0, log: run.log }), () => {});
+    } catch (error) { box.append(h("p", { class: "note" }, error.message)); }
+  });
+  return box;
 }
 
 function fitList(app, fits) {

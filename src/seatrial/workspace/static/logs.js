@@ -93,19 +93,29 @@ async function showColumns(log, node, stated) {
   }
 }
 
+const NUMBERS = [["zero", 0], ["span", 1], ["scale", 1], ["offset", 0], ["reference_point", 0]];
+
 function readingText(stated) {
-  return ["unit", "frame", "positive"].filter(key => stated[key]).map(key => `${key} ${stated[key]}`).join(", ");
+  return ["unit", "frame", "positive", ...NUMBERS.map(pair => pair[0])].filter(key => stated[key]).map(key => `${key} ${stated[key]}`).join(", ");
+}
+
+// the numbers of a channel: (cell − zero) / span × scale + offset, and m forward of midship
+function numberFields(row, change, keys = NUMBERS.map(pair => pair[0])) {
+  return h("div", { class: "fields" }, NUMBERS.filter(([key]) => keys.includes(key)).map(([key, usual]) => field(key.replace("_", " "),
+    h("input", { type: "number", step: "any", value: String(row.stated[key] ?? usual), "aria-label": `${key} of ${row.symbol}`, onchange: event => event.target.value !== "" && change(key, +event.target.value === usual ? null : +event.target.value) }))));
 }
 
 function openCard(app, block, row) {
   const choose = table => app.edit({ kind: "channel", block: block.place, symbol: row.symbol, table });
   const other = { ...row.stated };
   for (const [, key, text, number] of row.other.matchAll(/(\w+) = (?:"([^"]*)"|([-\d.e+]+))/g)) other[key] = text ?? +number;
-  const hasOther = JSON.stringify(other) !== JSON.stringify(row.stated);
+  if (/span = the counts/.test(row.other)) other.span = 1;
+  const hasOther = JSON.stringify(other) !== JSON.stringify(row.stated), numbers = Object.keys(other).filter(key => typeof other[key] === "number");
   return h("div", { class: "card" }, h("h3", {}, `${row.meaning} `, h("code", {}, row.symbol), " ", h("span", { class: "name" }, `column ${row.stated.column}`)),
     h("p", {}, row.reason, row.other && `; or ${row.other}`),
+    numbers.length > 0 && numberFields({ ...row, stated: other }, (key, value) => { if (value === null) delete other[key]; else other[key] = value; }, numbers),
     h("p", { class: "tools-row" }, button(`Take it: ${readingText(row.stated)}`, () => choose(row.stated)),
-      hasOther && button(`The other: ${readingText(other)}`, () => choose(other)),
+      hasOther && button(numbers.length ? "The other, with these numbers" : `The other: ${readingText(other)}`, () => choose(other)),
       button("Do not use it", () => app.edit({ kind: "channel", block: block.place, symbol: row.symbol, table: null }), { class: "quiet" })));
 }
 
@@ -123,13 +133,14 @@ function columnTable(app, block) {
       h("td", { "data-label": "unit" }, choice(row, "unit", row.units.includes(unit) ? row.units : [unit, ...row.units], unit, "unit")),
       h("td", { "data-label": "frame" }, row.frames.length > 0 && choice(row, "frame", row.frames.length ? [["", "usual"], ...row.frames] : [], row.stated.frame || "", "frame")),
       h("td", { "data-label": "positive to" }, choice(row, "positive", row.sides, row.side, "positive side")),
-      h("td", { class: "because", "data-label": "because" }, row.reason || "as stated"),
+      h("td", { class: "because", "data-label": "because" }, row.reason || "as stated", h("details", {}, h("summary", {}, "zero, span, scale"), numberFields(row, keyed(row)))),
       others));
     others.append(button("What else?", () => showCandidates(app, block, row, others), { "aria-label": `what else ${row.symbol} may be` }),
       button("Not used", () => app.edit({ kind: "channel", block: block.place, source: row.source, symbol: row.symbol, table: null }), { class: "quiet", "aria-label": `do not use ${row.symbol}` }));
   }
   const table = h("table", { class: "whole readings" }, h("thead", {}, h("tr", {}, ["Channel", "Column", "Unit", "Frame", "Positive to", "Because", ""].map(text => h("th", { scope: "col" }, text)))), body);
-  return [h("div", { class: "scroll" }, table), addChannel(app, block)];
+  const again = block.channels.some(row => row.by_hand) && h("p", { class: "tools-row" }, button("Draft craft and model again", () => app.edit({ kind: "draft" })), h("span", { class: "note" }, "with the columns as they stand here; what you set by hand stays."));
+  return [h("div", { class: "scroll" }, table), addChannel(app, block), again];
 }
 
 // what the file says of its columns, for headings that say nothing by themselves
@@ -220,8 +231,11 @@ export function findingList(app, { findings = [], complete, problem, version }) 
   const isOld = version !== app.state.version;
   const head = [isOld || !complete ? h("p", { class: "note" }, "Checking …") : null, problem ? h("p", { class: "message bad" }, problem) : null];
   if (complete && !isOld && !problem && !findings.length) head.push(h("p", { class: "good" }, "The records pass all checks."));
-  return [...head, ...findings.map(one => h("div", { class: "finding" }, h("p", {}, h("span", { class: `severity ${one.severity}` }, one.severity), h("code", {}, one.code), " ", one.text),
+  const isNote = one => one.severity === "info" && one.code !== "model";
+  const [notes, others] = [findings.filter(isNote), findings.filter(one => !isNote(one))];
+  const card = one => h("div", { class: "finding" }, h("p", {}, h("span", { class: `severity ${one.severity}` }, one.severity), h("code", {}, one.code), " ", one.text),
     one.consequence && h("p", { class: "note" }, `What follows: ${one.consequence}.`), one.advice && h("p", { class: "note" }, `Advice: ${one.advice}.`),
     !isOld && h("p", { class: "tools-row" }, one.edits.length > 0 && button(`Do it: ${one.edits.join("; ")}`, () => app.edit({ kind: "finding", place: one.place })),
-      one.severity === "error" && button("It is right as it is", () => app.edit({ kind: "finding", place: one.place, accept: true }), { class: "quiet" }))))].filter(Boolean);
+      one.severity === "error" && button("It is right as it is", () => app.edit({ kind: "finding", place: one.place, accept: true }), { class: "quiet" })));
+  return [...head, ...others.map(card), notes.length ? h("details", {}, h("summary", {}, `${notes.length} note${notes.length > 1 ? "s" : ""}`), notes.map(card)) : null].filter(Boolean);
 }
