@@ -30,7 +30,7 @@ SHIP = Path(__file__).parents[1] / "examples" / "ship"
 LENGTH = 62.0  # m, of the ship of the examples, as the README has it
 PAGE = ("", *(f"static/{name}" for name in (
     "style.css", "dark.css", "uPlot.css", "uPlot.js", "workspace.css", "app.js", "api.js", "dom.js", "charts.js",
-    "logs.js", "craft.js", "fits.js", "whatif.js", "gains.js", "file.js",
+    "logs.js", "craft.js", "fits.js", "whatif.js", "gains.js", "onboard.js", "file.js",
 )))  # fmt: skip
 FLAGS = ("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking")
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 TIMEOUT_MS = 60_000  # of a step, a fit in it
 MOST_BYTES = 400_000  # of the page without data
-VIEWS = ("logs", "craft", "fit", "whatif", "gains", "file")
+VIEWS = ("logs", "craft", "fit", "whatif", "gains", "onboard", "file")
 # a refusal (409, 422) is an answer, which browsers list as a failed request; so is what a test holds back
 ANSWERED = re.compile("status of 4|ERR_FAILED")
 SCRIPT = "<script>document.title='owned'</script><img src=x onerror=alert(1)>"

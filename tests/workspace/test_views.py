@@ -2,12 +2,13 @@
 
 import json
 import time
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.workspace.logs import STATED, K, Opened, opened, write_logs
+from tests.workspace.logs import STATED, K, Opened, opened, write_logs, write_trial
 
 import seatrial
 from seatrial.workspace.folder import opened_trial
@@ -273,3 +274,23 @@ def test_an_open_column_is_decided_by_hand_and_a_note_is_no_log(tmp_path: Path) 
         craft = served.ask("craft")[1]
         assert next(one for one in craft["tables"][0]["rows"] if one["key"] == "L")["value"] == 8.0
         assert not [one for one in checked(served)["findings"] if one["code"] == "model"]
+
+
+def test_a_file_is_followed_as_it_grows_and_its_fit_is_one_of_the_fits(tmp_path: Path) -> None:
+    write_trial(tmp_path)
+    (tmp_path / "today.csv").write_bytes((tmp_path / "log_2.csv").read_bytes())
+    with opened(tmp_path) as served:
+        status, answer = served.ask("edit", {"kind": "follow", "block": 0, "file": "log_1.csv",
+                                             "version": served.ask("state")[1]["version"]})  # fmt: skip
+        assert status == 422 and "none of the records" in answer["error"]
+        edit(served, kind="follow", block=0, file="today.csv")
+        assert tomllib.loads(served.ask("state")[1]["text"])["follow"]["rate"] == 2.0
+        assert served.request("GET", "/state.json?since=-1")[0] == 503
+        served.ask("start-follow", {"once": True})
+        _, page, headers = served.request("GET", "/onboard")
+        assert b"on board" in page and "frame-ancestors 'self'" in headers["content-security-policy"]
+        status, state, _ = served.request("GET", "/state.json?since=-1")
+        assert status == 200 and "today.csv" in json.loads(state)["title"]
+        wait_for(served, "results/onboard-1", "done")
+        (view,) = served.ask("fits")[1]["fits"]
+        assert view["name"] == "results/onboard-1" and view["state"] == "done"

@@ -25,7 +25,7 @@ _PREFIX = "seatrial: "  # before the sentence of a command that ends with an err
 _NICENESS = 5  # by which a job gives way to the workspace's own answers; chosen
 _LINES_KEPT = 12  # of a command that failed, as evidence; chosen
 _NAME = re.compile(r"[A-Za-z0-9][\w .-]{0,60}")
-_GRACE_S = 5.0  # s after a job is asked to end until it is made to; chosen
+_GRACE_S = 60.0  # s after a job is asked to end until it is made to; chosen: `follow` writes its last estimate
 
 
 class JobState(StrEnum):
@@ -124,7 +124,10 @@ class JobRunner:
             raise InputError(f"'{name}' is not at work; reload the page")
         job.state = JobState.STOPPED
         job.process.terminate()
-        threading.Timer(_GRACE_S, job.process.kill).start()
+        timer = threading.Timer(_GRACE_S, job.process.kill)
+        timer.daemon = True
+        timer.start()
+        self._report(job)
 
     def stop_all(self) -> None:
         """End every job that is at work."""
@@ -145,7 +148,7 @@ class JobRunner:
         job.seconds = time.time() - job.started
         for path in clean:
             path.unlink(missing_ok=True)
-        if job.state is JobState.RUNNING:
+        if job.state is JobState.RUNNING or code == 0:
             job.state = JobState.DONE if code == 0 else JobState.FAILED
         if job.state is JobState.FAILED and not job.message:
             job.message = job.lines[-1] if job.lines else f"the command ended with code {code}"

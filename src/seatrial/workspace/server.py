@@ -22,7 +22,7 @@ from starlette.routing import Route
 from seatrial.core.pages import shell
 from seatrial.core.values import InputError
 from seatrial.core.values.files import is_file
-from seatrial.workspace import gains_view, logs_view, results_view
+from seatrial.workspace import gains_view, logs_view, onboard_view, results_view
 from seatrial.workspace.folder import opened_trial
 from seatrial.workspace.guard import DeadlineProtocol, Guard
 from seatrial.workspace.trial_document import EditConflictError
@@ -190,8 +190,8 @@ def application(workspace: Workspace) -> Starlette:
     }  # fmt: skip
     acts = {
         "edit": workspace.edit, "undo": workspace.undo, "start-fit": workspace.start_fit,
-        "start-tuning": workspace.start_tuning, "start-poster": workspace.start_poster, "stop": workspace.stop,
-        "autopilot": autopilot,
+        "start-tuning": workspace.start_tuning, "start-poster": workspace.start_poster,
+        "start-follow": workspace.start_follow, "stop": workspace.stop, "autopilot": autopilot,
     }  # fmt: skip
     routes = [
         *(Route(f"/api/{name}", _answering(work), methods=["POST"]) for name, work in (asks | acts).items()),
@@ -200,6 +200,8 @@ def application(workspace: Workspace) -> Starlette:
         Route("/", lambda _: _static("index.html")),
         Route("/static/{name:str}", lambda request: _static(request.path_params["name"])),
         Route("/report/{name:path}", _reporting(workspace)),
+        Route("/onboard", _onboard_page),
+        Route("/state.json", _following(workspace)),
     ]
     return Starlette(routes=routes)
 
@@ -264,6 +266,27 @@ def _static(name: str) -> Response:
             raise HTTPException(HTTPStatus.NOT_FOUND)
         text = place.read_bytes()
     return Response(text, media_type=_KINDS[suffix])
+
+
+def _onboard_page(_: Request) -> Response:
+    text, policy = onboard_view.follower_page()
+    return Response(text, media_type="text/html", headers={"content-security-policy": policy})
+
+
+def _following(workspace: Workspace) -> Callable[[Request], Any]:
+    """What the follower answers to its page, whose address is the workspace's."""
+
+    async def answer(request: Request) -> Response:
+        since = request.query_params.get("since", "-1")
+        try:
+            content = await run_in_threadpool(
+                onboard_view.follower_state, workspace.follow_port, since, workspace.is_following
+            )
+        except InputError as error:
+            return JSONResponse({"error": str(error)}, HTTPStatus.SERVICE_UNAVAILABLE)
+        return Response(content, media_type="application/json")
+
+    return answer
 
 
 def _reporting(workspace: Workspace) -> Callable[[Request], Any]:

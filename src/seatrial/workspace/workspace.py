@@ -8,10 +8,10 @@ from seatrial.core.text.words import printable
 from seatrial.core.values import InputError
 from seatrial.core.values.files import parse_toml, write_atomically
 from seatrial.data.trial import Role, RunFiles
-from seatrial.workspace import checks, craft_view, drafting, logs_view, run_edits
+from seatrial.workspace import checks, craft_view, drafting, logs_view, onboard_view, run_edits
 from seatrial.workspace.events import EventStream
 from seatrial.workspace.folder import OpenedFolder
-from seatrial.workspace.jobs import JobRunner, free_name
+from seatrial.workspace.jobs import JobRunner, JobState, free_name
 from seatrial.workspace.trial_document import FileChange, TrialDocument, with_comment, with_value
 
 RESULTS = "results"
@@ -27,6 +27,7 @@ class Workspace:
 
     Attributes:
         document, folder, events, jobs, check: of the trial file that is open.
+        follow_port: of the page of what is followed; 0: nothing was.
         logs: that were named when it was opened, of which a first draft is made.
     """
 
@@ -37,6 +38,7 @@ class Workspace:
         self.events = EventStream()
         self.jobs = JobRunner(lambda job: self.events.publish("job", job.view()))
         self.check = checks.LiveCheck(trial, lambda content: self.events.publish("check", content))
+        self.follow_port = 0
         self._allowed_paths = _paths_in(self.document.text)
 
     # What a page shows.
@@ -80,7 +82,7 @@ class Workspace:
         edits: dict[str, Callable[[Request], tuple[Callable[[str], str], str]]] = {
             "set": self._set, "channel": self._channel, "cut": self._cut, "remove": self._remove,
             "rename": self._rename, "role": self._role, "text": self._text, "draft": self._draft,
-            "finding": self._finding, "restore": self._restore,
+            "finding": self._finding, "restore": self._restore, "follow": self._follow,
         }  # fmt: skip
         if kind not in edits:
             raise InputError("the page asks for an edit that this version does not know; reload it")
@@ -226,6 +228,16 @@ class Workspace:
         text = self.folder.file(f"{name}/trial.toml").read_text(encoding="utf-8")
         return lambda _: text, f"trial file of {name} restored"
 
+    def _follow(self, request: Request) -> tuple[Callable[[str], str], str]:
+        block = int(request["block"])
+        runs = logs_view.runs_by_block(self.document.text, self.document.path).get(block, ())
+        if not runs:
+            raise InputError("there is no run in that block; reload the page")
+        time = runs[-1].raw_record().time
+        rate = float(f"{(len(time) - 1) / float(time[-1] - time[0]):.4g}")
+        file = str(request.get("file", "")).strip()
+        return lambda text: onboard_view.with_follow_table(text, block, file, rate), f"{file} is followed as it grows"
+
     # Commands that take their time.
 
     def start_fit(self, request: Request) -> dict[str, Any]:
@@ -255,6 +267,20 @@ class Workspace:
         if fit := str(request.get("fit", "")):
             arguments += ["--from", str(self.folder.file(f"{fit}/model.toml"))]
         return self.jobs.start("tuning", f"{RESULTS}/{name}", results / name, arguments).view()
+
+    def start_follow(self, request: Request) -> dict[str, Any]:
+        """Start `follow` of the source that the trial file names; `once`: it ends with the input, with a fit."""
+        results = self.folder.root / RESULTS
+        name = free_name(results, "onboard", str(request.get("name", "")))
+        self.follow_port = onboard_view.free_port()
+        write_atomically(results / name / "trial.toml", self.document.text.encode())
+        arguments = ["follow", str(self.document.path), "--out", str(results / name), "--page", str(self.follow_port)]
+        arguments += ["--once"] if request.get("once") else []
+        return self.jobs.start("follow", f"{RESULTS}/{name}", results / name, arguments).view()
+
+    def is_following(self) -> bool:
+        """Return whether a stream is followed."""
+        return any(job.kind == "follow" and job.state is JobState.RUNNING for job in self.jobs.jobs)
 
     def start_poster(self, request: Request) -> dict[str, Any]:
         """Start `poster` of a fit; its page lies in the fit's folder."""

@@ -6,10 +6,11 @@ import { showFile } from "./file.js";
 import { showFits } from "./fits.js";
 import { showGains } from "./gains.js";
 import { showLogs } from "./logs.js";
+import { showOnBoard } from "./onboard.js";
 import { showWhatIf } from "./whatif.js";
 
 const VIEWS = { logs: ["Logs", showLogs], craft: ["Craft and model", showCraft], fit: ["Fit", showFits],
-  whatif: ["What if", showWhatIf], gains: ["Gains", showGains], file: ["File", showFile] };
+  whatif: ["What if", showWhatIf], gains: ["Gains", showGains], onboard: ["On board", showOnBoard], file: ["File", showFile] };
 const $ = id => document.getElementById(id);
 
 export const app = {
@@ -46,7 +47,7 @@ export const app = {
   async refresh() {
     this.state = await ask("state");
     if (this.state.check?.version) this.check = this.state.check;
-    for (const job of this.state.jobs) this.jobs.set(job.name, job);
+    for (const job of this.state.jobs) this.jobs.set(job.name, { ...job, at: performance.now() });
     $("where").textContent = `${this.state.name} in ${this.state.folder}`;
     document.title = `${this.state.name} – seatrial`;
     showFindingCount();
@@ -129,7 +130,7 @@ listen({
     app.tell("check", content);
   },
   job(content) {
-    app.jobs.set(content.name, content);
+    app.jobs.set(content.name, { ...content, at: performance.now() });
     app.tell("job", content);
   },
   hello() { if (app.state) app.refresh().catch(() => {}); },

@@ -51,18 +51,18 @@ export function jobList(app, kind) {
   draw();
   // the time goes on between two reports
   const clock = setInterval(() => {
-    if (!box.isConnected && box.dataset.shown) { clearInterval(clock); return; }
-    if (box.isConnected) box.dataset.shown = "yes";
-    for (const job of app.jobs.values()) if (job.state === "running" && job.kind === kind) job.seconds += 1;
-    for (const text of box.querySelectorAll(".so-far")) text.textContent = duration(app.jobs.get(text.dataset.job).seconds);
+    if (!box.isConnected) clearInterval(clock);
+    for (const text of box.querySelectorAll(".so-far")) text.textContent = duration(elapsed(app.jobs.get(text.dataset.job)));
   }, 1000);
   app.on("job", async job => {
     if (job.kind !== kind) return;
     draw();
-    if (job.state !== "running") await app.refresh();
+    if (job.state !== "running") setTimeout(() => app.refresh().catch(() => {}), 100);
   });
   return box;
 }
+
+const elapsed = job => job.seconds + (performance.now() - job.at) / 1000;
 
 function jobCard(app, job) {
   const last = job.phases.at(-1)?.name || "starting";
@@ -70,7 +70,7 @@ function jobCard(app, job) {
   const left = job.left !== null && job.left > 1 ? `, about ${duration(job.left)} left in this phase` : "";
   const bar = job.total ? h("progress", { max: job.total, value: job.done, "aria-label": `${last} of ${job.name}` }) : isRunning ? h("progress", { "aria-label": `${last} of ${job.name}` }) : null;
   const card = h("div", { class: `card job ${job.state}` }, h("h3", {}, job.name, " ", h("span", { class: "badge" }, job.state)),
-    isRunning && h("p", { role: "status" }, h("b", {}, last), job.detail ? `: ${job.detail}` : "", h("br"), h("span", { class: "so-far", "data-job": job.name }, duration(job.seconds)), ` so far${left}`), bar,
+    isRunning && h("p", { role: "status" }, h("b", {}, last), job.detail ? `: ${job.detail}` : "", h("br"), h("span", { class: "so-far", "data-job": job.name }, duration(elapsed(job))), ` so far${left}`), bar,
     h("ol", { class: "phases" }, job.phases.slice(-8).map(one => h("li", {}, `${one.name} `, h("span", { class: "u" }, `from ${duration(one.at)}`)))),
     job.message && h("p", { class: "message bad" }, job.message));
   if (isRunning) card.append(button("Stop", async () => { try { await ask("stop", { name: job.name }); } catch (error) { app.note(error.message, "bad"); } }, { "aria-label": `stop ${job.name}` }));
