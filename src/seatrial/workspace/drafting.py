@@ -16,8 +16,6 @@ _SHIP_KEYS = {
     "length": "L", "beam": "B", "draught": "d", "mass": "m", "rho": "rho", "scale": "scale", "propeller": "D_P",
     "rudder": "A_R", "gm": "GM",
 }  # fmt: skip
-SIZES = (*_SHIP_KEYS, "gear", "antenna")
-"""What a person may know of a craft, as options of `init`."""
 _GUESSES = (ESTIMATED, ASSUMED, "MISSING")  # marks of numbers that nobody has stated
 _RECORDS = "\n[[records]]"
 _TABLES = (("ship",), ("model", "fixed"), ("estimate",))
@@ -30,14 +28,11 @@ def drafted_text(
 
     Args:
         text: of the file so far, empty: none. What a person has set there by hand is kept.
-        sizes: by the names of `SIZES`, in their units; columns: as `--column` of `init`.
+        sizes: by the options of `init`, in their units; columns: as `--column` of `init`.
 
     Raises:
         InputError: as `draft_trial`.
     """
-    unknown = [key for key in sizes if key not in SIZES]
-    if unknown:
-        raise InputError(f"there is no size '{unknown[0]}'")
     stated = [*columns, *_columns_by_hand(text)]
     options: dict[str, Any] = dict(sizes)
     options |= {"folder": folder, "columns": tuple(dict.fromkeys(stated)), "name": name}
@@ -55,7 +50,7 @@ def drafted_text(
 
 
 def stated_sizes(text: str) -> dict[str, float]:
-    """Return the sizes of the craft that a trial file states, by the names of `SIZES`, but for those of a rule."""
+    """Return the sizes of the craft that a trial file states, by the options of `init`, but for those of a rule."""
     ship: Mapping[str, Any] = parsed_document(text).get("ship", {})
     numbers = {size: ship[key] for size, key in _SHIP_KEYS.items() if isinstance(ship.get(key), int | float)}
     comments = {size: value.trivia.comment.lstrip("# ") for size, value in numbers.items() if hasattr(value, "trivia")}

@@ -21,15 +21,16 @@ class EventStream:
 
     def publish(self, kind: str, content: dict[str, Any]) -> None:
         """Send an event to every page that listens; from any thread, and without waiting."""
-        text = f"event: {kind}\ndata: {json.dumps(content, allow_nan=False)}\n\n"
-        if self._loop is not None and not self._loop.is_closed():
-            self._loop.call_soon_threadsafe(self._deliver, text)
+        self._send(f"event: {kind}\ndata: {json.dumps(content, allow_nan=False)}\n\n")
 
     def close(self) -> None:
         """End the streams of all pages."""
         self.is_closed = True
+        self._send("")
+
+    def _send(self, text: str) -> None:
         if self._loop is not None and not self._loop.is_closed():
-            self._loop.call_soon_threadsafe(self._deliver, "")
+            self._loop.call_soon_threadsafe(self._deliver, text)
 
     async def listen(self) -> AsyncIterator[str]:
         """Yield the events from now on, as text of the stream."""

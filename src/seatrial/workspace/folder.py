@@ -35,22 +35,22 @@ def opened_trial(path: Path) -> tuple[Path, list[Path]]:
     return (path, []) if path.suffix.lower() == ".toml" else (path.parent / TRIAL, [path])
 
 
+def _tables(path: Path) -> set[str]:
+    """The names of a TOML file's tables; none of one that cannot be read."""
+    try:
+        return set(parse_toml(read_table_text(path)))
+    except (OSError, ValueError):
+        return set()
+
+
 def is_trial(path: Path) -> bool:
     """Return whether a TOML file has runs, a stream or a manoeuvre to design: no loop file, no model file."""
-    try:
-        table = parse_toml(read_table_text(path))
-    except (OSError, ValueError):
-        return False
-    return any(key in table for key in ("records", "follow", "design")) and "plant" not in table
+    return bool(_tables(path) & {"records", "follow", "design"}) and "plant" not in _tables(path)
 
 
 def is_loop(path: Path) -> bool:
     """Return whether a TOML file describes a loop that is tuned."""
-    try:
-        table = parse_toml(read_table_text(path))
-    except (OSError, ValueError):
-        return False
-    return "plant" in table and "controller" in table
+    return {"plant", "controller"} <= _tables(path)
 
 
 class OpenedFolder:

@@ -14,16 +14,15 @@ from seatrial.control.controller import DEMAND, describe_controller, simulate_ma
 from seatrial.control.gain_evaluation import GainEvaluator, gain_evaluator
 from seatrial.control.simulation import UNCONTROLLED, simulate_in_seaway
 from seatrial.control.task import Seaway, SimulationSettings, TuningTask
-from seatrial.core.figures.time_plot import packed
 from seatrial.core.results.tuning import Controller
 from seatrial.core.text.numbers import significant
-from seatrial.core.values import InputError, Record, display_unit
+from seatrial.core.values import InputError, display_unit
 from seatrial.core.values.files import is_file, parse_toml, read_table_text, write_atomically
-from seatrial.core.values.notation import NOTATION, channel_label, display_values
+from seatrial.core.values.notation import NOTATION
+from seatrial.workspace.results_view import sampled_curves
 
 _SEED = 0  # of the sea that is shown: the same for all gains, so that they can be compared
 _SEA_SECONDS = 300.0  # of the sea that is shown; chosen: some thirty waves
-_POINTS = 400  # of a curve on the screen; chosen
 _KEPT_TASKS = 4  # chosen
 AUTOPILOT = """# A heading autopilot, begun from the workspace. Change limits and demand to what your craft has.
 question = "Which gains turn the craft by 20 degrees without overshoot, whatever ship the records allow?"
@@ -63,18 +62,15 @@ def loop_view(root: Path, loop: Path, model: Path | None) -> dict[str, Any]:
     Raises:
         InputError: the loop file or its model cannot be read.
     """
-    task = _task(loop, model)
+    task = _evaluator(loop, model).task
     gains = task.loop.gains
     rows = [
-        {"name": p.name, "meaning": p.meaning, "unit": "" if p.unit == "1" else p.unit, "value": _start(p),
+        {"name": p.name, "meaning": p.meaning, "unit": "" if p.unit == "1" else p.unit,
+         "value": float(p.value if math.isfinite(p.value) else 0.5 * (p.lower + p.upper)),
          "low": float(p.lower), "high": float(p.upper)}
         for p in gains
     ]  # fmt: skip
-    return {
-        "loop": loop.relative_to(root).as_posix(), "name": task.name, "output": task.loop.output,
-        "actuator": task.loop.actuator, "gains": rows, "tuned": _tuned(root, set(gains.names)),
-        "has_demand": task.demand is not None,
-    }  # fmt: skip
+    return {"name": task.name, "gains": rows, "tuned": _tuned(root, set(gains.names))}
 
 
 def gains_view(loop: Path, model: Path | None, gains: Mapping[str, float]) -> dict[str, Any]:
@@ -83,7 +79,7 @@ def gains_view(loop: Path, model: Path | None, gains: Mapping[str, float]) -> di
     Raises:
         InputError: other gains than the loop has, or values beyond their ranges.
     """
-    task = _task(loop, model)
+    task = _evaluator(loop, model).task
     names = task.loop.gains.names
     if set(gains) != set(names):
         raise InputError(f"the loop has the gains {', '.join(names)}; give exactly these")
@@ -123,10 +119,6 @@ def write_autopilot(root: Path, name: str, model: Path, speed: float | None = No
     return path
 
 
-def _task(loop: Path, model: Path | None) -> TuningTask:
-    return _evaluator(loop, model).task
-
-
 def _evaluator(loop: Path, model: Path | None) -> GainEvaluator:
     return _kept_evaluator(loop, model, tuple(p.stat().st_mtime_ns for p in (loop, model) if p is not None))
 
@@ -134,12 +126,6 @@ def _evaluator(loop: Path, model: Path | None) -> GainEvaluator:
 @lru_cache(maxsize=_KEPT_TASKS)
 def _kept_evaluator(loop: Path, model: Path | None, changed: tuple[int, ...]) -> GainEvaluator:  # noqa: ARG001
     return gain_evaluator(api.load_loop(loop, model_file=model))
-
-
-def _start(parameter: Any) -> float:
-    if math.isfinite(parameter.value):
-        return float(parameter.value)
-    return 0.5 * (float(parameter.lower) + float(parameter.upper))
 
 
 def _tuned(root: Path, names: set[str]) -> list[dict[str, Any]]:
@@ -195,7 +181,9 @@ def _step(task: TuningTask, gains: Any, controller: Controller) -> dict[str, Any
         return None
     settling = "does not settle within 5 %" if math.isnan(answer.settling) else f"settles in {answer.settling:.3g} s"
     names = {task.loop.output: task.loop.output, DEMAND: task.loop.output, task.loop.actuator: task.loop.actuator}
-    return _curves(answer.record, names) | {"text": f"overshoots by {100.0 * answer.overshoot:.2g} %, {settling}"}
+    return sampled_curves(answer.record, names) | {
+        "text": f"overshoots by {100.0 * answer.overshoot:.2g} %, {settling}"
+    }
 
 
 def _sea(task: TuningTask, gains: Any, controller: Controller) -> dict[str, Any] | None:
@@ -211,20 +199,6 @@ def _sea(task: TuningTask, gains: Any, controller: Controller) -> dict[str, Any]
         return None
     output = task.loop.output
     names = {output: output, f"{output}_{UNCONTROLLED}": output, task.loop.actuator: task.loop.actuator}
-    return _curves(answer.record, names) | {
+    return sampled_curves(answer.record, names) | {
         "text": f"motion reduced by {100.0 * float(answer.limited[0]):.0f} % in this sea"
     }
-
-
-def _curves(record: Record, names: Mapping[str, str]) -> dict[str, Any]:
-    """Those curves that a record has, on an even grid of its samples; names: channel -> the one whose units it has."""
-    kept = np.unique(np.linspace(0, len(record) - 1, min(_POINTS, len(record))).astype(int))
-    curves = []
-    for name, like in names.items():
-        if name not in record:
-            continue
-        unit = record.channel(name).unit
-        text = channel_label(like, unit) + name.removeprefix(like).replace("_", ", ") if name != like else ""
-        values = display_values(like, record[name], unit)
-        curves.append({"label": text or channel_label(name, unit), "values": packed(np.asarray(values)[kept])})
-    return {"time": [float(record.time[0]), float(record.time[-1])], "count": len(kept), "curves": curves}

@@ -70,7 +70,7 @@ class Job:
             "kind": self.kind, "name": self.name, "state": self.state.value, "detail": self.detail,
             "phases": [{"name": name, "at": round(seconds, 1)} for name, seconds in self.phases],
             "done": self.done, "total": self.total, "left": None if rest is None else round(rest, 1),
-            "seconds": round(now, 1), "message": self.message, "lines": self.lines,
+            "seconds": round(now, 1), "message": self.message,
         }  # fmt: skip
 
 

@@ -1,30 +1,49 @@
 """The view of logs: columns as the trial file reads them with why, what else they may be, runs, and their curves."""
 
+import os
 import re
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from seatrial.core.figures.run import ChannelPanel
 from seatrial.core.figures.time_plot import packed, plot_document
 from seatrial.core.text.words import printable
 from seatrial.core.values import NOTATION, InputError, Record
 from seatrial.core.values.files import parse_toml
-from seatrial.core.values.notation import OPPOSITE, channel_meaning, positive_direction, si_unit, units_like
-from seatrial.core.values.record_chart import has_track
-from seatrial.data.draft import TopicSummary, checked_by_behaviour, guess_columns, stated_columns, survey_log
+from seatrial.core.values.notation import (
+    OPPOSITE,
+    channel_meaning,
+    positive_direction,
+    reading_order,
+    si_unit,
+    units_like,
+)
+from seatrial.core.values.record_chart import channel_panels, has_track, is_constant
+from seatrial.data.check import canonical_record
+from seatrial.data.draft import (
+    ColumnGuess,
+    TopicSummary,
+    checked_by_behaviour,
+    guess_columns,
+    stated_columns,
+    survey_log,
+)
+from seatrial.data.readings.search import ASSUMED_NATS, OPEN_NATS
 from seatrial.data.trial import Run, RunFiles
 from seatrial.data.trial.load import parse_tables
 from seatrial.data.trial.run_data import run_name
 from seatrial.data.trial.runs import declared_channels, runs_of
-from seatrial.reporting.figures.record_charts import log_view
 from seatrial.workspace.run_edits import part_of
 from seatrial.workspace.trial_document import BY_HAND, parsed_document
 
 _OPEN = re.compile(r"^# OPEN (\w+): (.*?)(?:; or (.*))?$")
 _OPEN_TABLE = re.compile(r"^# (channels\.(\w+) = (\{.*?\}))(?:    # (.*?)(?:; or (.*))?)?$")
-_LIKELY_NATS, _POSSIBLE_NATS = 1.5, 5.0  # nats, below which a reading is as likely, or may be: as `init` decides
+_CHANNELS = 12  # of a log that are drawn, the first in the order of reading; chosen
 _TRACK_POINTS = 800  # of a track on the screen; chosen
 _LONGEST_TEXT = 300  # letters of what a log or a comment says; chosen
 
@@ -133,20 +152,13 @@ def _plain(value: Any) -> Any:
 
 
 def _run_row(run: Run, block: Mapping[str, Any], path: Path) -> dict[str, Any]:
-    files = [file.path for file in run.files]
-    name = run.name
-    log = str(block.get("name", "")) if block.get("sources") else run_name(files[0])
-    ends = run.data if isinstance(run.data, RunFiles) else None
-    is_part = ends is not None and bool(ends.start or ends.stop)
+    file = run.files[0].path
+    part = run.data if isinstance(run.data, RunFiles) else None
     return {
-        "name": name,
-        "role": run.role.value,
-        "log": log,
-        "file": files[0].relative_to(path.parent).as_posix() if files[0].is_relative_to(path.parent) else str(files[0]),
-        "is_part": is_part,
-        "start": ends.start if ends is not None else "",
-        "stop": ends.stop if ends is not None else "",
-    }
+        "name": run.name, "role": run.role.value, "file": os.path.relpath(file, path.parent),
+        "log": str(block["name"]) if block.get("sources") else run_name(file),
+        "start": part.start if part else "", "stop": part.stop if part else "",
+    }  # fmt: skip
 
 
 def open_rows(text: str) -> list[tuple[int, dict[str, Any]]]:
@@ -205,17 +217,12 @@ def candidates_view(path: Path, stated: Sequence[str] = ()) -> dict[str, Any]:
         columns += _columns_without_numbers(topic)
         for column in topic.columns:
             name = f"{topic.topic}/{column.name}" if topic.topic else column.name
-            guess = by_source.get(name) or by_source.get(str(column.number))
+            guess = by_source.get(name) or by_source.get(str(column.number)) or ColumnGuess(name, "", "", is_used=False)
             columns.append({
-                "name": name, "unit": column.unit, "low": _finite(column.low), "high": _finite(column.high),
-                "missing": round(column.missing, 4), "rate": _finite(topic.rate),
-                "symbol": guess.symbol if guess is not None and guess.is_used else "",
-                "evidence": [printable(reason, _LONGEST_TEXT) for reason in guess.evidence] if guess else [],
-                "because": printable(guess.unused_because, _LONGEST_TEXT) if guess else "",
-                "candidates": [
-                    {"reading": reading, "nats": round(nats, 1), "standing": _standing(nats)}
-                    for reading, nats in (guess.candidates if guess is not None and guess.is_used else ())
-                ],
+                "name": name, "unit": column.unit, "low": column.low, "high": column.high,
+                "symbol": guess.symbol if guess.is_used else "",
+                "evidence": [printable(reason, _LONGEST_TEXT) for reason in guess.evidence],
+                "candidates": [_candidate(*candidate) for candidate in guess.candidates if guess.is_used],
             })  # fmt: skip
     notes = [printable(note, _LONGEST_TEXT) for note in survey.notes]
     return {"log": path.name, "columns": columns, "notes": notes}
@@ -226,20 +233,15 @@ def _columns_without_numbers(topic: TopicSummary) -> list[dict[str, Any]]:
     time = [] if topic.time is None or not topic.time.source else [(str(topic.time.source), "time", topic.time_note)]
     texts = [(name, "", "text") for name in topic.text_columns if not time or name != time[0][0]]
     return [
-        {"name": name, "unit": "", "low": None, "high": None, "missing": 0.0, "rate": _finite(topic.rate),
-         "symbol": symbol, "evidence": [printable(why, _LONGEST_TEXT)], "because": "", "candidates": []}
+        {"name": name, "unit": "", "low": None, "high": None,
+         "symbol": symbol, "evidence": [printable(why, _LONGEST_TEXT)], "candidates": []}
         for name, symbol, why in (*time, *texts)
     ]  # fmt: skip
 
 
-def _standing(nats: float) -> str:
-    if nats < _LIKELY_NATS:
-        return "as likely"
-    return "possible" if nats < _POSSIBLE_NATS else "contradicted"
-
-
-def _finite(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None
+def _candidate(reading: str, nats: float) -> dict[str, Any]:
+    standing = "as likely" if nats < ASSUMED_NATS else "possible" if nats < OPEN_NATS else "contradicted"
+    return {"reading": reading, "nats": round(nats, 1), "standing": standing}
 
 
 # The curves of a log, whole, with its runs as stretches of time.
@@ -257,15 +259,23 @@ def series_view(text: str, path: Path, block: int, log: str) -> dict[str, Any]:
     if not of_log:
         raise InputError(f"there is no log '{printable(log)}' in that block; reload the page")
     record = RunFiles(log, of_log[0].files).read()
-    view, _ = log_view(record, ())
     duration = float(record.time[-1] - record.time[0])
     rows = [
         {"name": run.name, "role": run.role.value, "ends": part_of(table, run.name, duration)} for run in of_log
     ]  # fmt: skip
     return {
-        **plot_document(view.channels), "log": log, "duration": duration, "samples": len(record),
+        **plot_document(_panels(record)), "log": log, "duration": duration, "samples": len(record),
         "track": _track(record) if has_track(record) else None, "runs": rows,
     }  # fmt: skip
+
+
+def _panels(record: Record) -> tuple[ChannelPanel, ...]:
+    """The channels that change, from the first sample, velocities along the ship where its heading turns them."""
+    record = replace(record, time=record.time - record.time[0])
+    with suppress(InputError):
+        record = canonical_record(record)
+    names = [name for name in reading_order(list(record.channels)) if not is_constant(record, name)]
+    return channel_panels(record, names[:_CHANNELS])
 
 
 def is_of_log(run: Run, log: str) -> bool:

@@ -16,7 +16,7 @@ from seatrial.core.results.coefficients import Coefficient
 from seatrial.core.text.words import printable
 from seatrial.core.values import InputError, Record
 from seatrial.core.values.files import is_file
-from seatrial.core.values.notation import channel_label, display_values, reading_order
+from seatrial.core.values.notation import POSITIONS, channel_label, display_values, reading_order
 from seatrial.core.values.record_chart import has_moving_track, is_constant
 from seatrial.data.folder.model_file import ModelFile
 from seatrial.reporting.key_facts import key_facts
@@ -28,7 +28,6 @@ _LONGEST = 2000  # letters of a sentence that is shown; chosen
 _KEPT_FITS = 8  # that stay in memory; chosen: as many as one compares
 _TRACK_POINTS = 400  # of a track or a curve on the screen; chosen
 _CURVES = 4  # channels of a simulated manoeuvre that are drawn; chosen
-_BEYOND = 3.0  # widths of its interval to which a slider reaches at most; chosen: beyond, no record says anything
 
 
 def fit_folders(root: Path) -> list[Path]:
@@ -57,7 +56,6 @@ def fit_view(root: Path, folder: Path) -> dict[str, Any]:
     return head | {
         "state": "done",
         "model": fit.model.name,
-        "ship": fit.ship.name,
         "verdict": printable(verdict(fit), _LONGEST),
         "facts": [
             {"name": fact.name, "text": printable(str(fact.text), _LONGEST), "good": fact.is_good}
@@ -65,7 +63,6 @@ def fit_view(root: Path, folder: Path) -> dict[str, Any]:
         ],
         "coefficients": [_coefficient(coefficient) for coefficient in fit.coefficients],
         "tracks": [_run(p.record, p.measured, p.simulated) for p in fit.validation],
-        "seconds": round(fit.elapsed_s, 1),
         "manoeuvres": manoeuvres_of(fit.model),
         "speed": _approach(folder),
     }  # fmt: skip
@@ -126,14 +123,6 @@ def manoeuvres_of(model: Any) -> list[str]:
     return ["turning-circle:35", "turning-circle:35:port", "zigzag:10/10", "zigzag:20/20", "pull-out"]
 
 
-def slider_ends(value: float, low: float | None, high: float | None) -> tuple[float, float] | None:
-    """Return how far a coefficient may be moved: its 95 % interval; None where nothing bounds it."""
-    if low is None or high is None or not low < high:
-        return None
-    reach = _BEYOND * max(abs(value), high - low)
-    return max(low, value - reach), min(high, value + reach)
-
-
 def simulated_view(
     folder: Path, manoeuvre: str, values: Mapping[str, float], speed: float | None = None
 ) -> dict[str, Any]:
@@ -158,9 +147,8 @@ def _require_within(fit: Fit, name: str, value: float) -> None:
     coefficient = next((c for c in fit.coefficients if c.name == name and not c.fixed), None)
     if coefficient is None:
         raise InputError(f"'{name}' is no free coefficient of this fit")
-    ends = slider_ends(coefficient.estimate, coefficient.lower, coefficient.upper)
-    slack = 1e-9 * abs(coefficient.estimate)  # rounding of the slider's arithmetic
-    if ends is None or not ends[0] - slack <= value <= ends[1] + slack:
+    low, high, slack = coefficient.lower, coefficient.upper, 1e-9 * abs(coefficient.estimate)  # of a slider's rounding
+    if low is None or high is None or not low - slack <= value <= high + slack:
         raise InputError(f"{name} = {value:.4g} lies beyond its 95 % interval; the records say nothing there")
 
 
@@ -177,17 +165,25 @@ def _manoeuvre(file: ModelFile, manoeuvre: str, speed: float | None) -> dict[str
 
 
 def _curves(record: Record) -> dict[str, Any]:
-    """Track and first channels of a record on an even grid of its samples."""
-    kept = np.unique(np.linspace(0, len(record) - 1, min(_TRACK_POINTS, len(record))).astype(int))
+    """Track and first channels of a record."""
     names = [name for name in reading_order(list(record.channels)) if not is_constant(record, name)]
-    names = [name for name in names if name not in ("x0", "y0")][:_CURVES]
-    curves = [
-        {
-            "label": channel_label(name, record.channel(name).unit),
-            "values": packed(display_values(name, record[name], record.channel(name).unit)[kept]),
-        }
-        for name in names
-    ]
+    first = [name for name in names if name not in POSITIONS][:_CURVES]
+    return sampled_curves(record, {name: name for name in first})
+
+
+def sampled_curves(record: Record, names: Mapping[str, str]) -> dict[str, Any]:
+    """Return channels of a record, and its track where it moves, on an even grid of its samples.
+
+    names: channel -> the one whose unit it is read in, such as ``phi_uncontrolled`` -> ``phi``; absent ones left out.
+    """
+    kept = np.unique(np.linspace(0, len(record) - 1, min(_TRACK_POINTS, len(record))).astype(int))
+    curves = []
+    for name, like in names.items():
+        if name in record:
+            unit = record.channel(name).unit
+            text = "" if name == like else name.removeprefix(like).replace("_", " ")
+            values = display_values(like, record[name], unit)
+            curves.append({"label": channel_label(like, unit), "name": text.strip(), "values": packed(values[kept])})
     track = None
     if has_moving_track(record):
         track = {"north": packed(record["x0"][kept]), "east": packed(record["y0"][kept])}

@@ -22,7 +22,7 @@ from starlette.routing import Route
 from seatrial.core.pages import shell
 from seatrial.core.values import InputError
 from seatrial.core.values.files import is_file
-from seatrial.workspace import gains_view, logs_view, onboard_view, results_view
+from seatrial.workspace import craft_view, gains_view, logs_view, onboard_view, results_view
 from seatrial.workspace.folder import opened_trial
 from seatrial.workspace.guard import DeadlineProtocol, Guard
 from seatrial.workspace.trial_document import EditConflictError
@@ -111,22 +111,23 @@ def _bound_socket(port: int) -> socket.socket:
     """A socket on the loopback address.
 
     Raises:
-        InputError: the port is in use, or outside 0 to 65535.
+        InputError: the port is in use, or none.
     """
-    if not 0 <= port < 65536:  # ports are 16 bits
-        raise InputError(f"there is no port {port}; give one from 1024 to 65535, or 0 for any that is free")
     bound = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     try:
         bound.bind((LOOPBACK, port))
-    except OSError as error:
+    except (OSError, OverflowError) as error:
         bound.close()
-        raise InputError(f"port {port} cannot be opened ({error.strerror}); give another, or 0") from None
+        raise InputError(f"port {port} cannot be opened ({error}); give one from 1024 to 65535, or 0 for any") from None
     return bound
 
 
 def application(workspace: Workspace) -> Starlette:
     """Return the routes of a workspace, to stand behind a `Guard`."""
     root = workspace.folder.root
+
+    def view_of(view: Callable[[str, Path], dict[str, Any]]) -> Callable[[dict[str, Any]], dict[str, Any]]:
+        return lambda _: view(workspace.document.text, workspace.document.path)
 
     def fit_folder(name: str) -> Path:
         return workspace.folder.file(f"{name}/{results_view.RESULT}").parent
@@ -184,8 +185,8 @@ def application(workspace: Workspace) -> Starlette:
         return {"diff": [] if change is None else change.diff}
 
     asks = {
-        "state": lambda _: workspace.state(), "logs": lambda _: workspace.show_logs(), "series": series,
-        "candidates": candidates, "craft": lambda _: workspace.show_craft(), "check": lambda _: workspace.begin_check(),
+        "state": lambda _: workspace.state(), "logs": view_of(logs_view.logs_view), "series": series,
+        "candidates": candidates, "craft": view_of(craft_view.craft_view), "check": lambda _: workspace.begin_check(),
         "fits": fits, "simulate": simulated, "loops": loops, "loop": loop, "gains": gains, "difference": difference,
     }  # fmt: skip
     acts = {

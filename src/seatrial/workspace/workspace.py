@@ -8,7 +8,7 @@ from seatrial.core.text.words import printable
 from seatrial.core.values import InputError
 from seatrial.core.values.files import parse_toml, write_atomically
 from seatrial.data.trial import Role, RunFiles
-from seatrial.workspace import checks, craft_view, drafting, logs_view, onboard_view, run_edits
+from seatrial.workspace import checks, drafting, logs_view, onboard_view, run_edits
 from seatrial.workspace.events import EventStream
 from seatrial.workspace.folder import OpenedFolder
 from seatrial.workspace.jobs import JobRunner, JobState, free_name
@@ -54,14 +54,6 @@ class Workspace:
             "named": [path.relative_to(self.folder.root).as_posix() for path in self.logs],
             "jobs": [job.view() for job in self.jobs.jobs], "check": self.check.last,
         }  # fmt: skip
-
-    def show_logs(self) -> dict[str, Any]:
-        """Return the view of logs."""
-        return logs_view.logs_view(self.document.text, self.document.path)
-
-    def show_craft(self) -> dict[str, Any]:
-        """Return the view of craft and model."""
-        return craft_view.craft_view(self.document.text, self.document.path)
 
     def begin_check(self) -> dict[str, Any]:
         """Check the file as it is now in the background; what is known already is returned."""
@@ -216,8 +208,7 @@ class Workspace:
             return lambda text: _with_accepted(text, finding.code), f"{finding.code} is accepted"
         if not finding.edits:
             raise InputError("this finding has no edit that is certain; correct the file by what it advises")
-        blocks = len(self.show_logs()["blocks"])
-        path = self.document.path
+        path, blocks = self.document.path, len(parse_toml(self.document.text).get("records", ()))
         return (
             lambda text: checks.with_edits(text, path, finding.edits, blocks),
             "; ".join(str(edit) for edit in finding.edits),

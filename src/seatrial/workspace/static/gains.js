@@ -65,9 +65,9 @@ function show(node, { facts, violated, stable, step, sea }, time) {
   const curves = (title, one) => {
     const box = h("div", { class: "plots" });
     const at = evenly(...one.time, one.count);
-    const [output, ...rest] = one.curves, beside = rest.filter(curve => curve.label.startsWith(output.label.split(" ")[0]));
+    const [output, ...rest] = one.curves, beside = rest.filter(curve => curve.label === output.label);
     queueMicrotask(() => {
-      panel(box, output.label, at, [...beside.map(curve => ({ values: unpacked(curve.values), name: curve.label.split(", ").at(-1), colour: "--soft", width: 2 })), { values: unpacked(output.values), colour: "--accent", width: 1.4 }]);
+      panel(box, output.label, at, [...beside.map(curve => ({ values: unpacked(curve.values), name: curve.name, colour: "--soft", width: 2 })), { values: unpacked(output.values), colour: "--accent", width: 1.4 }]);
       for (const curve of rest.filter(curve => !beside.includes(curve))) panel(box, curve.label, at, [{ values: unpacked(curve.values), colour: "--ink" }]);
     });
     return section(title, h("p", { class: "note" }, one.text), box);

@@ -214,13 +214,15 @@ function runView(app, page, block) {
   return [logs.length > 1 && h("div", { class: "fields" }, field("Log", select(logs, chosenLog, log => { chosenLog = log; draw(); }))), picture, form, runTable(app, block)];
 }
 
+const isPart = run => Boolean(run.start || run.stop);
+
 function runTable(app, block) {
   const names = block.runs.map(run => {
     const name = input("text", run.name, { "aria-label": `name of run ${run.name}`, disabled: false });
     name.addEventListener("change", async () => { if (!await app.edit({ kind: "rename", block: block.place, name: run.name, new_name: name.value })) name.value = run.name; });
-    return h("tr", { class: run.role === "validate" ? "held" : "" }, h("td", {}, name), h("td", { class: "name" }, run.file), h("td", {}, run.is_part ? `${run.start || "begin"} to ${run.stop || "end"}` : "whole"),
+    return h("tr", { class: run.role === "validate" ? "held" : "" }, h("td", {}, name), h("td", { class: "name" }, run.file), h("td", {}, isPart(run) ? `${run.start || "begin"} to ${run.stop || "end"}` : "whole"),
       h("td", {}, select(ROLES, run.role, role => app.edit({ kind: "role", block: block.place, name: run.name, role }), { "aria-label": `what ${run.name} is for`, id: `role-${block.place}-${run.name}` })),
-      h("td", {}, run.is_part && button("Remove", () => app.edit({ kind: "remove", block: block.place, name: run.name }), { class: "quiet", "aria-label": `remove ${run.name}` })));
+      h("td", {}, isPart(run) && button("Remove", () => app.edit({ kind: "remove", block: block.place, name: run.name }), { class: "quiet", "aria-label": `remove ${run.name}` })));
   });
   const held = block.runs.filter(run => run.role === "validate").length;
   return [h("div", { class: "scroll" }, h("table", { class: "whole" }, h("thead", {}, h("tr", {}, ["Run", "File", "Part", "Is", ""].map(text => h("th", { scope: "col" }, text)))), h("tbody", {}, names))),
