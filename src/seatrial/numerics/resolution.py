@@ -86,7 +86,7 @@ def local_resolution(values: NDArray[np.float64]) -> NDArray[np.float64]:
     steps = _remembered.get()
     if steps is None:
         return _local_resolution(values)
-    digest = hashlib.blake2b(np.ascontiguousarray(values), digest_size=16).digest()  # bytes; chosen
+    digest = hashlib.blake2b(np.ascontiguousarray(values).data, digest_size=16).digest()  # bytes; chosen
     if digest not in steps:
         steps[digest] = _local_resolution(values)
     return steps[digest].copy()

@@ -39,8 +39,7 @@ class KeptLogs:
             InputError: it cannot be read.
         """
         columns = tuple(ColumnSpec(c.symbol, c.source, "1", twin=c.twin) for c in layout.columns)
-        state = path.stat()
-        key = (path, state.st_mtime_ns, state.st_size, replace(layout, columns=columns))
+        key = (path, path.stat().st_mtime_ns, replace(layout, columns=columns))
         if key not in self._logs:
             self._logs[key] = read_log(path, layout)
             while len(self._logs) > _LOGS_KEPT:

@@ -18,11 +18,12 @@ from seatrial.core.results.tuning import Controller
 from seatrial.core.text.numbers import significant
 from seatrial.core.values import InputError, display_unit
 from seatrial.core.values.files import is_file, parse_toml, read_table_text, write_atomically
-from seatrial.core.values.notation import NOTATION
+from seatrial.core.values.notation import NOTATION, channel_letter
 from seatrial.workspace.results_view import sampled_curves
 
 _SEED = 0  # of the sea that is shown: the same for all gains, so that they can be compared
 _SEA_SECONDS = 300.0  # of the sea that is shown; chosen: some thirty waves
+_LEAST_PERCENT = 0.01  # %, below which a share is said to be small; chosen
 _KEPT_TASKS = 4  # chosen
 AUTOPILOT = """# A heading autopilot, begun from the workspace. Change limits and demand to what your craft has.
 question = "Which gains turn the craft by 20 degrees without overshoot, whatever ship the records allow?"
@@ -147,13 +148,14 @@ def _facts(controller: Controller, task: TuningTask) -> list[dict[str, Any]]:
     """Margins and the actuator's use as people read them, those that a limit is exceeded by marked."""
     limits, unit = task.constraints, NOTATION[task.loop.actuator].unit if task.loop.actuator in NOTATION else "1"
     factor, read_unit = display_unit(unit)
+    actuator = channel_letter(task.loop.actuator)
     rows = [
         ("largest sensitivity Ms", controller.Ms, "", controller.Ms <= limits.Ms),
-        ("gain margin", controller.gain_margin, "", None),
+        ("gain margin", 20.0 * math.log10(max(controller.gain_margin, 1e-300)), "dB", None),  # 1e-300: no log of 0
         ("phase margin", math.degrees(controller.phase_margin), "°", None),
         ("delay margin", controller.delay_margin, "s", controller.delay_margin >= limits.delay),
-        (f"{task.loop.actuator}, rms", factor * controller.rms.get("actuator", math.nan), read_unit, None),
-        (f"{task.loop.actuator} beyond its limit", 100.0 * controller.saturation, "%",
+        (f"{actuator}, rms", factor * controller.rms.get("actuator", math.nan), read_unit, None),
+        (f"{actuator} beyond its limit", 100.0 * controller.saturation, "%",
          controller.saturation <= limits.saturation),
         ("rate beyond its limit", 100.0 * controller.rate_saturation, "%",
          controller.rate_saturation <= limits.rate_saturation),
@@ -168,7 +170,8 @@ def _facts(controller: Controller, task: TuningTask) -> list[dict[str, Any]]:
 
 
 def _text(value: float, unit: str) -> str:
-    return f"{significant(value, 3)} {unit}".rstrip() if math.isfinite(value) else "any"
+    text = f"below {_LEAST_PERCENT:g}" if unit == "%" and value < _LEAST_PERCENT else significant(value, 3)
+    return f"{text} {unit}".rstrip() if math.isfinite(value) else "any"
 
 
 def _step(task: TuningTask, gains: Any, controller: Controller) -> dict[str, Any] | None:

@@ -23,7 +23,6 @@ REPORT_INTERVAL_S = 0.2
 """s between two reports of one phase that pages are sent; chosen: as fast as figures can be read."""
 _PREFIX = "seatrial: "  # before the sentence of a command that ends with an error
 _NICENESS = 5  # by which a job gives way to the workspace's own answers; chosen
-_LINES_KEPT = 12  # of a command that failed, as evidence; chosen
 _NAME = re.compile(r"[A-Za-z0-9][\w .-]{0,60}")
 _GRACE_S = 60.0  # s after a job is asked to end until it is made to; chosen: `follow` writes its last estimate
 
@@ -42,21 +41,20 @@ class Job:
     """One command at work.
 
     Attributes:
-        folder: that the result goes to, below the folder that is open; name: of it, as pages show it.
+        folder: of the result, with a note of what became of it; None: there is none; name: as pages show it.
         phases: name and begin [s] of each phase, in order; detail, done, total: of the present one.
-        message: the sentence of a command that failed; lines: the last that it printed.
+        message: the sentence of a command that failed.
     """
 
     kind: str
     name: str
-    folder: Path
+    folder: Path | None
     state: JobState = JobState.RUNNING
     phases: list[tuple[str, float]] = field(default_factory=list)
     detail: str = ""
     done: int = 0
     total: int = 0
     message: str = ""
-    lines: list[str] = field(default_factory=list)
     started: float = field(default_factory=time.time)
     seconds: float = 0.0
     process: "subprocess.Popen[str] | None" = None
@@ -88,20 +86,27 @@ class JobRunner:
         with self._lock:
             return list(self._jobs.values())
 
-    def start(self, kind: str, name: str, folder: Path, arguments: Sequence[str], clean: Sequence[Path] = ()) -> Job:
+    @property
+    def running(self) -> list[Job]:
+        """Those that are at work."""
+        return [job for job in self.jobs if job.state is JobState.RUNNING]
+
+    def start(
+        self, kind: str, name: str, folder: Path | None, arguments: Sequence[str], snapshot: Path | None = None
+    ) -> Job:
         """Start ``python -m seatrial ARGUMENTS --verbose`` and return the job.
 
-        clean: files that are removed at its end.
+        snapshot: a file that is removed at its end.
 
         Raises:
             InputError: a job of that name is at work.
         """
         with self._lock:
-            running = self._jobs.get(name)
-            if running is not None and running.state is JobState.RUNNING:
+            if name in self._jobs and self._jobs[name].state is JobState.RUNNING:
                 raise InputError(f"'{name}' is being computed already; stop it first, or give another name")
             job = self._jobs[name] = Job(kind, name, folder)
-        folder.mkdir(parents=True, exist_ok=True)
+        if folder is not None:
+            folder.mkdir(parents=True, exist_ok=True)
         environment = os.environ | {"PYTHONUNBUFFERED": "1", "NO_COLOR": "1"}
         job.process = subprocess.Popen(
             [sys.executable, "-m", "seatrial", *arguments, "--verbose"],
@@ -110,7 +115,7 @@ class JobRunner:
         )  # fmt: skip
         if os.name == "posix":
             os.setpriority(os.PRIO_PROCESS, job.process.pid, _NICENESS)
-        threading.Thread(target=self._watch, args=(job, tuple(clean)), daemon=True).start()
+        threading.Thread(target=self._watch, args=(job, snapshot), daemon=True).start()
         return job
 
     def stop(self, name: str) -> None:
@@ -119,7 +124,7 @@ class JobRunner:
         Raises:
             InputError: there is none of that name at work.
         """
-        job = next((j for j in self.jobs if j.name == name and j.state is JobState.RUNNING), None)
+        job = next((job for job in self.running if job.name == name), None)
         if job is None or job.process is None:
             raise InputError(f"'{name}' is not at work; reload the page")
         job.state = JobState.STOPPED
@@ -131,12 +136,12 @@ class JobRunner:
 
     def stop_all(self) -> None:
         """End every job that is at work."""
-        for job in self.jobs:
-            if job.state is JobState.RUNNING and job.process is not None:
+        for job in self.running:
+            if job.process is not None:
                 job.state = JobState.STOPPED
                 job.process.terminate()
 
-    def _watch(self, job: Job, clean: Sequence[Path]) -> None:
+    def _watch(self, job: Job, snapshot: Path | None) -> None:
         assert job.process is not None and job.process.stderr is not None
         last = 0.0
         for line in job.process.stderr:
@@ -146,14 +151,14 @@ class JobRunner:
                 self._report(job)
         code = job.process.wait()
         job.seconds = time.time() - job.started
-        for path in clean:
-            path.unlink(missing_ok=True)
+        if snapshot is not None:
+            snapshot.unlink(missing_ok=True)
         if job.state is JobState.RUNNING or code == 0:
             job.state = JobState.DONE if code == 0 else JobState.FAILED
         if job.state is JobState.FAILED and not job.message:
-            job.message = job.lines[-1] if job.lines else f"the command ended with code {code}"
+            job.message = f"the command ended with code {code}"
         note = {key: job.view()[key] for key in ("kind", "state", "seconds", "message")}
-        if job.folder.is_dir():
+        if job.folder is not None and job.folder.is_dir():
             write_atomically(job.folder / NOTE, (json.dumps(note, indent=2) + "\n").encode())
         self._report(job)
 
@@ -164,7 +169,6 @@ class JobRunner:
             job.message = line.removeprefix(_PREFIX)
             return True
         report = read_report(line)
-        job.lines = [*job.lines, line][-_LINES_KEPT:]
         job.detail, job.done, job.total = report.detail, report.done, report.total
         if job.phases and job.phases[-1][0] == report.phase:
             return False

@@ -45,7 +45,8 @@ def fit_view(root: Path, folder: Path) -> dict[str, Any]:
         InputError: it cannot be read.
     """
     name = folder.relative_to(root).as_posix()
-    head = {"name": name, "has_trial": is_file(folder / TRIAL_COPY), "has_report": is_file(folder / "report.html")}
+    pages = {f"has_{page}": is_file(folder / f"{page}.html") for page in ("report", "poster")}
+    head = {"name": name, "has_trial": is_file(folder / TRIAL_COPY), **pages}
     note = note_of(folder)
     if not is_file(folder / RESULT):
         return head | {

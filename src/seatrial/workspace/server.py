@@ -192,7 +192,7 @@ def application(workspace: Workspace) -> Starlette:
     acts = {
         "edit": workspace.edit, "undo": workspace.undo, "start-fit": workspace.start_fit,
         "start-tuning": workspace.start_tuning, "start-poster": workspace.start_poster,
-        "start-follow": workspace.start_follow, "stop": workspace.stop, "autopilot": autopilot,
+        "start-follow": workspace.start_follow, "stop": lambda request: workspace.jobs.stop(str(request["name"])), "autopilot": autopilot,
     }  # fmt: skip
     routes = [
         *(Route(f"/api/{name}", _answering(work), methods=["POST"]) for name, work in (asks | acts).items()),
@@ -281,7 +281,7 @@ def _following(workspace: Workspace) -> Callable[[Request], Any]:
         since = request.query_params.get("since", "-1")
         try:
             content = await run_in_threadpool(
-                onboard_view.follower_state, workspace.follow_port, since, workspace.is_following
+                onboard_view.follower_state, workspace.follow_port, since, lambda: bool(workspace.jobs.running)
             )
         except InputError as error:
             return JSONResponse({"error": str(error)}, HTTPStatus.SERVICE_UNAVAILABLE)

@@ -11,7 +11,7 @@ from seatrial.data.trial import Role, RunFiles
 from seatrial.workspace import checks, drafting, logs_view, onboard_view, run_edits
 from seatrial.workspace.events import EventStream
 from seatrial.workspace.folder import OpenedFolder
-from seatrial.workspace.jobs import JobRunner, JobState, free_name
+from seatrial.workspace.jobs import JobRunner, free_name
 from seatrial.workspace.trial_document import FileChange, TrialDocument, with_comment, with_value
 
 RESULTS = "results"
@@ -247,7 +247,7 @@ class Workspace:
         if intervals := str(request.get("intervals", "")):
             arguments += ["--intervals", intervals]
         arguments += [f"--{option}" for option in ("choose", "compare") if request.get(option)]
-        return self.jobs.start("fit", f"{RESULTS}/{name}", folder, arguments, [snapshot]).view()
+        return self.jobs.start("fit", f"{RESULTS}/{name}", folder, arguments, snapshot).view()
 
     def start_tuning(self, request: Request) -> dict[str, Any]:
         """Start `tune` of a loop file, on the model of a fit where one is named."""
@@ -269,10 +269,6 @@ class Workspace:
         arguments += ["--once"] if request.get("once") else []
         return self.jobs.start("follow", f"{RESULTS}/{name}", results / name, arguments).view()
 
-    def is_following(self) -> bool:
-        """Return whether a stream is followed."""
-        return any(job.kind == "follow" and job.state is JobState.RUNNING for job in self.jobs.jobs)
-
     def start_poster(self, request: Request) -> dict[str, Any]:
         """Start `poster` of a fit; its page lies in the fit's folder."""
         fit = str(request["fit"])
@@ -280,12 +276,7 @@ class Workspace:
         arguments = ["poster", str(folder), "--out", str(folder / "poster.html")]
         if request.get("speed") is not None:
             arguments += ["--speed", str(float(request["speed"]))]
-        return self.jobs.start("poster", f"poster of {fit}", folder / "poster", arguments).view()
-
-    def stop(self, request: Request) -> dict[str, Any]:
-        """Stop a command at work."""
-        self.jobs.stop(str(request["name"]))
-        return {}
+        return self.jobs.start("poster", f"poster of {fit}", None, arguments).view()
 
     def close(self) -> None:
         """End what is at work."""

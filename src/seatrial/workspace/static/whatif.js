@@ -38,7 +38,7 @@ export async function showWhatIf(node, app) {
   node.append(h("div", { class: "fields" }, field("Fit", select(done.map(one => one.name), fit.name, name => { app.chosenFit = name; app.refresh(); })), field("Manoeuvre", manoeuvre), other, field("Approach speed", speed, "m/s")),
     h("div", { class: "bench" }, h("div", {}, status, picture), h("div", { class: "sliders" }, h("h2", {}, "Coefficients"), rows.length ? [h("p", { class: "note" }, "Each moves within its 95 % interval. Coefficients that depend on one another would move together; single ones show what each does."), rows.map(row => row.node), reset] : h("p", { class: "note" }, "No coefficient has an interval."))),
     section("Poster and report", h("p", { class: "tools-row" }, button("Make the wheelhouse poster", async () => { try { await ask("start-poster", { fit: fit.name }); await app.refresh(); } catch (error) { app.note(error.message, "bad"); } }),
-      h("a", { href: `/report/${fit.name}/report.html`, target: "_blank", rel: "noopener" }, "Report of the fit"), h("a", { href: `/report/${fit.name}/poster.html`, target: "_blank", rel: "noopener" }, "Poster, once it is made")), jobList(app, "poster")));
+      h("a", { href: `/report/${fit.name}/report.html`, target: "_blank", rel: "noopener" }, "Report of the fit"), fit.has_poster && h("a", { href: `/report/${fit.name}/poster.html`, target: "_blank", rel: "noopener" }, "Poster")), jobList(app, "poster")));
   node.addEventListener("shown", draw, { once: true });
 }
 
