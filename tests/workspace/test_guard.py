@@ -1,6 +1,7 @@
 """Only this machine's page reaches the workspace, with small requests completed in time, and files below its folder."""
 
 import asyncio
+import http.client
 import json
 import socket
 import time
@@ -101,6 +102,18 @@ def test_an_upload_replaces_nothing_and_hides_nothing(workspace: Opened, folder:
     before = {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
     assert workspace.request("POST", f"/api/upload/{name}", b"t,a\n")[0] in (404, 422)
     assert before == {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+
+
+def test_an_upload_that_does_not_say_its_length_is_bounded(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(guard, "LARGEST_UPLOAD", 1000)
+    with opened(folder) as served:
+        connection = http.client.HTTPConnection("127.0.0.1", served.port, timeout=30)
+        headers = {"Cookie": served.cookie, "Origin": served.origin}
+        parts = (b"0,1\n" * 100 for _ in range(10))
+        connection.request("POST", "/api/upload/long.csv", parts, headers, encode_chunked=True)
+        assert connection.getresponse().status == 413
+        connection.close()
+    assert not [path for path in folder.iterdir() if "long.csv" in path.name]
 
 
 def test_an_upload_is_written_whole(workspace: Opened, folder: Path) -> None:

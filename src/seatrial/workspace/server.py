@@ -192,7 +192,8 @@ def application(workspace: Workspace) -> Starlette:
     acts = {
         "edit": workspace.edit, "undo": workspace.undo, "start-fit": workspace.start_fit,
         "start-tuning": workspace.start_tuning, "start-poster": workspace.start_poster,
-        "start-follow": workspace.start_follow, "stop": lambda request: workspace.jobs.stop(str(request["name"])), "autopilot": autopilot,
+        "start-follow": workspace.start_follow, "autopilot": autopilot,
+        "stop": lambda request: workspace.jobs.stop(str(request["name"])),
     }  # fmt: skip
     routes = [
         *(Route(f"/api/{name}", _answering(work), methods=["POST"]) for name, work in (asks | acts).items()),
