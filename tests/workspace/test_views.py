@@ -11,6 +11,7 @@ import pytest
 from tests.workspace.logs import STATED, K, Opened, opened, write_logs, write_trial
 
 import seatrial
+from seatrial.workspace.craft_view import craft_view
 from seatrial.workspace.folder import opened_trial
 from seatrial.workspace.gains_view import gains_view, loop_view, write_autopilot
 from seatrial.workspace.jobs import JobRunner, JobState, free_name, note_of
@@ -116,6 +117,14 @@ def test_craft_shows_where_each_number_comes_from(drafted: Opened) -> None:
     rows = {row["key"]: row for row in craft["tables"][0]["rows"]}
     assert rows["L"]["standing"] == "stated" and craft["model"] == "nomoto"
     assert {p["name"] for p in craft["parameters"] if p["free"]} == {"K", "T", "alpha"}
+
+
+def test_craft_shows_what_is_estimated_of_each_thruster(repository: Path) -> None:
+    logs = sorted((repository / "examples" / "usv").glob("*.csv"))
+    text = seatrial.draft_trial(*logs, folder=logs[0].parent, length=1.0).text
+    tables = {tuple(table["place"]): table["rows"] for table in craft_view(text, logs[0].parent / "t.toml")["tables"]}
+    arms = [row for k in (0, 1) for row in tables["thruster", k] if row["key"] == "y"]
+    assert [row["standing"] for row in arms] == ["estimated", "estimated"]
 
 
 def test_two_windows_lose_nothing(drafted: Opened) -> None:

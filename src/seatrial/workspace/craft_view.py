@@ -1,6 +1,6 @@
 """The view of craft and model: every number with where it comes from, what is estimated, and what may be estimated."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,7 @@ from seatrial.data.trial.plausibility import ESTIMATED
 from seatrial.workspace.trial_document import BY_HAND, parsed_document
 
 _LONGEST = 600  # letters of a comment; chosen
-_TABLES = (("ship",), ("model",), ("model", "fixed"), ("estimate",), ("noise",))
+_TABLES = (("ship",), ("model",), ("model", "fixed"), ("sensors",), ("excitation",), ("estimate",), ("noise",))
 
 
 def craft_view(text: str, path: Path) -> dict[str, Any]:
@@ -25,7 +25,9 @@ def craft_view(text: str, path: Path) -> dict[str, Any]:
     A text that names no model has no parameters; `problem` says what is missing.
     """
     document: Mapping[str, Any] = parsed_document(text)
-    tables = [{"place": list(place), "rows": _rows(document, place)} for place in _TABLES]
+    thrusters = [("thruster", k) for k in range(len(document.get("thruster", ())))]
+    waves = [("records", k, "waves") for k in range(len(document.get("records", ())))]
+    tables = [{"place": place, "rows": _rows(document, place)} for place in (*_TABLES, *thrusters, *waves)]
     problem, parameters = "", list[dict[str, Any]]()
     name = str(document.get("model", {}).get("name", ""))
     try:
@@ -44,10 +46,10 @@ def craft_view(text: str, path: Path) -> dict[str, Any]:
     return {"tables": tables, "model": name, "parameters": parameters, "models": models, "problem": problem}
 
 
-def _rows(document: Mapping[str, Any], place: tuple[str, ...]) -> list[dict[str, Any]]:
+def _rows(document: Mapping[str, Any], place: Sequence[str | int]) -> list[dict[str, Any]]:
     table: Any = document
     for key in place:
-        table = table.get(key, {})
+        table = table[key] if isinstance(key, int) else table.get(key, {})
     return [_row(key, value) for key, value in table.items() if not isinstance(value, Table | AoT)]
 
 

@@ -84,10 +84,10 @@ def _with_values_by_hand(text: str, before: str) -> str:
     for key, value in document.items():
         if not isinstance(value, Table | AoT):
             text = with_value(text, (key,), value.unwrap())
-    for place in _TABLES:
+    for place in (*_TABLES, *(("thruster", k) for k in range(len(document.get("thruster", ()))))):
         table: Any = document
         for key in place:
-            table = table.get(key, {})
+            table = table[key] if isinstance(key, int) else table.get(key, {})
         for key, value in table.items():
             if _is_by_hand(value):
                 text = with_value(text, (*place, key), value.unwrap())

@@ -191,9 +191,8 @@ def _step(task: TuningTask, gains: Any, controller: Controller) -> dict[str, Any
 
 def _sea(task: TuningTask, gains: Any, controller: Controller) -> dict[str, Any] | None:
     """The loop in its first sea with the limits of the actuator; None where it has no sea or is unstable."""
-    if not any(isinstance(disturbance, Seaway) for disturbance in task.disturbances) or not math.isfinite(
-        controller.Ms
-    ):
+    seas = [disturbance for disturbance in task.disturbances if isinstance(disturbance, Seaway)]
+    if not seas or not math.isfinite(controller.Ms):
         return None
     settings = replace(task.simulation or SimulationSettings(), seeds=1, duration=_SEA_SECONDS)
     try:
@@ -202,6 +201,5 @@ def _sea(task: TuningTask, gains: Any, controller: Controller) -> dict[str, Any]
         return None
     output = task.loop.output
     names = {output: output, f"{output}_{UNCONTROLLED}": output, task.loop.actuator: task.loop.actuator}
-    return sampled_curves(answer.record, names) | {
-        "text": f"motion reduced by {100.0 * float(answer.limited[0]):.0f} % in this sea"
-    }
+    text = f"motion reduced by {100.0 * float(answer.limited[0]):.0f} % in this sea"
+    return sampled_curves(answer.record, names) | {"text": text}

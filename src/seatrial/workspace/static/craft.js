@@ -5,7 +5,8 @@ import { button, digits, field, h, input, s, section, select } from "./dom.js";
 const SIZES = [["length", "Length between perpendiculars", "m", "L"], ["beam", "Beam at the waterline", "m", "B"], ["draught", "Draught", "m", "d"], ["mass", "Mass, displacement", "kg", "m"],
   ["rho", "Density of the water", "kg/m³", "rho"], ["propeller", "Diameter of the propeller", "m", "D_P"], ["rudder", "Area of the rudder", "m²", "A_R"], ["gm", "Metacentric height", "m", "GM"],
   ["gear", "Turns of the engine for one of the propeller", "", ""], ["scale", "Scale of a model, 40 for 1:40", "", "scale"]];
-const TITLES = { ship: "Ship", model: "Model", "model.fixed": "Values held fixed", estimate: "How it is estimated", noise: "Noise of the sensors" };
+const TITLES = { ship: "Ship", model: "Model", "model.fixed": "Values held fixed", estimate: "How it is estimated", noise: "Noise of the sensors", sensors: "Sensors", excitation: "Forces of waves" };
+const titleOf = place => TITLES[place.join(".")] || (place[0] === "thruster" ? `Thruster ${place[1] + 1}` : `Waves of block ${place[1] + 1}`);
 
 export async function showCraft(node, app) {
   node.append(h("h1", {}, "Craft and model"));
@@ -16,7 +17,7 @@ export async function showCraft(node, app) {
   const estimated = tables.flatMap(table => table.rows).filter(row => ["estimated", "assumed"].includes(row.standing));
   node.append(h("p", {}, estimated.length ? `${estimated.length} numbers are estimated by a rule and marked: ${estimated.map(row => row.key).join(", ")}. Measured ones make the model better.` : "No number is a guess by a rule."));
   node.append(section("What to measure", h("div", { class: "measure" }, drawing(ship), sizeForm(app, ship))));
-  for (const { place, rows } of tables) if (rows.length) node.append(section(TITLES[place.join(".")], valueTable(app, place, rows, models, model)));
+  for (const { place, rows } of tables) if (rows.length) node.append(section(titleOf(place), valueTable(app, place, rows, models, model)));
   if (parameters.length) node.append(section("Coefficients", parameterTable(app, parameters)));
 }
 

@@ -20,7 +20,7 @@ export async function showWhatIf(node, app) {
   const known = [...fit.manoeuvres, "other"];
   const other = input("text", "turning-circle:20", { "aria-label": "manoeuvre as seatrial simulate takes it", hidden: true });
   const manoeuvre = select(known.map(one => [one, one === "other" ? "another …" : one.replaceAll(":", " ")]), fit.manoeuvres[0], value => { other.hidden = value !== "other"; draw(); });
-  const speed = input("number", fit.speed ?? "", { min: 0, step: "any" });
+  const speed = input("number", "", { min: 0, step: "any", placeholder: fit.speed === null ? "" : `${digits(fit.speed, 3)} of the trials` });
   const draw = latest(async () => {
     const chosen = manoeuvre.value === "other" ? other.value : manoeuvre.value;
     try {
