@@ -40,7 +40,7 @@ $(READY): pyproject.toml $(CONSTRAINTS)
 	@$(BIN)/python -c '' 2>/dev/null || $(PYTHON) -m venv $(VENV) || \
 		{ rm -rf $(VENV); echo 'this Python cannot make virtual environments; on Debian: apt-get install python3-venv'; exit 1; }
 	@for attempt in 1 2 3; do \
-		$(PIP) $(addprefix -c ,$(CONSTRAINTS)) -e '.[formats,logs,bounds,fmu,cluster,sampling,dev]' && break; \
+		$(PIP) $(addprefix -c ,$(CONSTRAINTS)) -e '.[app,formats,logs,bounds,fmu,cluster,sampling,dev]' && break; \
 		if [ $$attempt = 3 ]; then echo 'packages could not be installed; check the network and run make again'; exit 1; fi; \
 		echo "attempt $$attempt failed, trying again"; sleep 5; \
 	done

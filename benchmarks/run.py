@@ -58,6 +58,7 @@ import warm_start
 import waterjet_regressions
 import wave_observer
 import waves
+import workspace
 from measure import Line, machine
 
 BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
@@ -71,6 +72,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "interval_coverage": interval_coverage.run,
     "thrusters_truth": thrusters_truth.run,
     "waves": waves.run,
+    "workspace": workspace.run,
     "criteria": criteria.run,
     "timing": timing.run,
     "loggers": loggers.run,

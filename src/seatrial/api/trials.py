@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from seatrial.data.trial import Trial
     from seatrial.data.trial.load import Correction
     from seatrial.data.trial.priors import EarlierResult
+    from seatrial.data.trial.records import RunLoader
     from seatrial.onboard.follow import FollowResult
     from seatrial.onboard.sources import SampleSource
 
@@ -41,12 +42,13 @@ def load_trial(path: str | Path, own_model: "Model | None" = None) -> "Trial":
     return load_trial(path, own_model, read_result)
 
 
-def check(trial: "Trial | str | Path") -> "tuple[Finding, ...]":
+def check(trial: "Trial | str | Path", load: "RunLoader | None" = None) -> "tuple[Finding, ...]":
     """Check the trial's records and return the findings: frames, signs, units, gaps, jumps, lags.
 
     Args:
         trial: a trial, or a trial file; of a file neither ship nor model is needed, and a finding `model` says what
             is not ready to be estimated.
+        load: reads and checks a run; one that keeps runs makes a second check of a changed file as quick as its change.
 
     Raises:
         InputError: a record cannot be read at all.
@@ -57,26 +59,26 @@ def check(trial: "Trial | str | Path") -> "tuple[Finding, ...]":
     from seatrial.data.trial.trial import Role
 
     if isinstance(trial, Trial):
-        return _checked(trial)
+        return _checked(trial, load)
     try:
-        return _checked(load_trial(trial))
+        return _checked(load_trial(trial), load)
     except InputError as error:
         runs = load_runs(trial)
         if not runs:
             raise
         used = (run for run in runs if run.role is not Role.LEAVE_OUT)
-        findings = [finding for run in used for finding in load_run(run, 0.0).findings]
+        findings = [finding for run in used for finding in load_run(run, 0.0, load).findings]
         what, advice = "'seatrial identify' cannot start yet", str(error)
         return (*findings, Finding(Severity.INFO, "model", what, "", advice))
 
 
-def _checked(trial: "Trial") -> "tuple[Finding, ...]":
+def _checked(trial: "Trial", load: "RunLoader | None" = None) -> "tuple[Finding, ...]":
     """The findings of the records, and one where they lack an input of the model, or a state that nothing implies."""
     from seatrial.core.values import Finding, InputError, Severity
     from seatrial.data.trial import Role, load_records
     from seatrial.physics.simulate.replay import require_inputs
 
-    records, findings = load_records(trial)
+    records, findings = load_records(trial, load)
     try:
         for record in records:
             require_inputs(trial.model, record.record)

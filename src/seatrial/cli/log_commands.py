@@ -27,9 +27,7 @@ TOPICS_SHOWN = 15  # topics, the same way
 def init(
     logs: Annotated[list[Path], typer.Argument(metavar="LOG...", help="Logs of any format, or folders with logs.")],
     out: Annotated[Path, typer.Option("--out", metavar="TRIAL.toml", help="The trial file to write.")] = DRAFT,
-    overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Replace the trial file and its drawing where they exist.")
-    ] = False,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the trial file where it exists.")] = False,
     length: Annotated[
         float, typer.Option("--length", metavar="METRES", help="Length of the craft; without it the file asks for it.")
     ] = 0.0,
@@ -67,12 +65,9 @@ def init(
     from seatrial.core.values import InputError
     from seatrial.core.values.files import write_atomically
     from seatrial.data.draft import not_needed_text
-    from seatrial.reporting.draft import html as draft_page
 
-    page = out.with_suffix(".html")
-    for path in (out, page):
-        if path.exists() and not overwrite:
-            raise InputError(f"'{path}' exists; add --overwrite to replace it, or name another file with --out")
+    if out.exists() and not overwrite:
+        raise InputError(f"'{out}' exists; add --overwrite to replace it, or name another file with --out")
     draft = api.draft_trial(
         *logs,
         folder=out.resolve().parent,
@@ -91,7 +86,6 @@ def init(
         columns=column or (),
     )
     write_atomically(out, draft.text.encode())
-    write_atomically(page, draft_page(draft, out.name).encode())
     _print_guesses([g for part in draft.guesses for g in part if g.is_used])
     print_lines(f"NOTE {survey.path.name}: {note}" for survey in draft.surveys for note in survey.notes)
     ignored = draft.unrecognised
@@ -129,7 +123,7 @@ def init(
     if draft.lacks_antenna:
         print_lines(["the GNSS antenna is taken to be at midship: state it with --antenna, metres forward of it"])
     print_file("trial file", out)
-    print_file("drawing", page)
+    print_lines([f"columns and runs in the browser: seatrial open {in_shell(out)}"])
     print_next(_after_draft(draft, out))
 
 

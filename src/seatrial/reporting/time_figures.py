@@ -9,7 +9,7 @@ from markupsafe import Markup
 from seatrial.core.figures.chart import Chart, LegendEntry, text_width, thinned
 from seatrial.core.figures.run import NARROW, ChannelPanel, RunView, is_slender, track_chart
 from seatrial.core.figures.svg_text import svg
-from seatrial.core.figures.time_plot import BAND_POINTS, TimeSpan, packed, plot_document
+from seatrial.core.figures.time_plot import BAND_POINTS, packed, plot_document
 from seatrial.core.text.numbers import duration, significant
 
 # px that an entry of a legend is wider than estimated; chosen
@@ -17,7 +17,7 @@ SPARE = 8.0
 NO_SCRIPT = "Time series are drawn by this page’s own script; allow it for this file to see them."
 
 
-def run_figure(view: RunView, spans: Sequence[TimeSpan] = (), *, x_label: str = "t [s]", is_wide: bool = False,
+def run_figure(view: RunView, *, x_label: str = "t [s]", is_wide: bool = False,
                track: Chart | None = None, is_first: bool = False) -> Markup:  # fmt: skip
     """Return the figure of one run: legend, track with its band, and linked plots of its channels.
 
@@ -27,7 +27,7 @@ def run_figure(view: RunView, spans: Sequence[TimeSpan] = (), *, x_label: str = 
         is_first: whether a strip is drawn for narrow screens, too, on which others are moved sideways.
     """
     track = track or track_chart(view)
-    document = plot_document(view.channels, spans=spans, x_label=x_label) if view.channels else None
+    document = plot_document(view.channels, x_label=x_label) if view.channels else None
     shape = "" if track is None else (" strip" if is_slender(view.tracks) else " square")
     shape += " wide" if is_wide else ""
     parts = [_legend(view.legend), f'<div class="run{shape}">']

@@ -9,7 +9,7 @@ import pytest
 
 from seatrial.core.figures.chart import Array, Rule, Stroke
 from seatrial.core.figures.run import ChannelPanel, TimeCurve
-from seatrial.core.figures.time_plot import GAP_CODE, LARGEST_CODE, POINTS, TimeSpan, grid_values, packed, plot_document
+from seatrial.core.figures.time_plot import GAP_CODE, LARGEST_CODE, POINTS, grid_values, packed, plot_document
 
 LINE = Stroke("#1b4f72", 1.4, "5 2.5")
 
@@ -40,12 +40,12 @@ def test_thinning_keeps_the_extremes_of_every_stretch(rng: np.random.Generator) 
     assert np.array_equal(grid_values(time[:90], values[:90]), values[:90])
 
 
-def test_a_document_has_curves_band_levels_and_spans_over_one_time_axis() -> None:
+def test_a_document_has_curves_a_band_and_levels_over_one_time_axis() -> None:
     time = np.linspace(10.0, 70.0, 61)
     measured, model = TimeCurve(time, np.sin(time), LINE, "measured"), TimeCurve(time[::2], time[::2], LINE, "model")
     limit = Rule(35.0, Stroke("#a33022", 1.0))
     panel = ChannelPanel("ψ [deg]", (measured, model), time - 1.0, time + 1.0, (limit,))
-    document = plot_document([panel], spans=[TimeSpan(5.0, 9.0, "#d5e8f3", "1")])
+    document = plot_document([panel])
     assert (document["start"], document["stop"], document["count"]) == (10.0, 70.0, 61)
     one = document["panels"][0]
     assert unpacked(one["curves"][1]) == pytest.approx(time, abs=1e-3)
@@ -53,5 +53,4 @@ def test_a_document_has_curves_band_levels_and_spans_over_one_time_axis() -> Non
     assert unpacked(one["band"][0]).max() <= unpacked(one["band"][1]).max()
     assert one["levels"] == [{"value": 35.0, "stroke": ["#a33022", 1.0, []]}]
     assert one["ends"][0] < 0.0 and one["ends"][1] > 70.0
-    assert document["spans"] == [[15.0, 19.0, "#d5e8f3", "1"]]
     assert json.loads(json.dumps(document, allow_nan=False)) == document

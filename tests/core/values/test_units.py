@@ -5,7 +5,7 @@ import math
 import pytest
 
 from seatrial.core.values import NOTATION, Finding, InputError, Severity, Ship, display_unit, quantity, si_unit
-from seatrial.core.values.notation import _UNITS, is_unit
+from seatrial.core.values.notation import _UNITS, is_unit, units_like
 
 
 @pytest.mark.parametrize(
@@ -71,3 +71,8 @@ def test_a_ship_cannot_be_changed() -> None:
     assert ship.length == 7.0
     with pytest.raises(TypeError):
         ship.particulars["L"] = 8.0  # type: ignore[index]
+
+
+def test_the_units_of_a_quantity_convert_to_its_own() -> None:
+    assert units_like("rad/s") == ["rad/s", "deg/s", "deg/min"]
+    assert all(si_unit(unit)[1] == "m/s" for unit in units_like("m/s"))

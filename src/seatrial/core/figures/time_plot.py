@@ -5,7 +5,6 @@ The page's script (`seatrial/reporting/templates/plots.js`) reads what `plot_doc
 import base64
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
@@ -24,19 +23,7 @@ TIME_ROUNDING = 1e-9
 RANGE_DIGITS = 7
 
 
-@dataclass(frozen=True)
-class TimeSpan:
-    """A stretch of time [s after the first sample] that is marked behind the curves, with its colour and text."""
-
-    start: float
-    stop: float
-    fill: str
-    words: str = ""
-
-
-def plot_document(
-    channels: Sequence[ChannelPanel], *, spans: Sequence[TimeSpan] = (), x_label: str = "t [s]"
-) -> dict[str, Any]:
+def plot_document(channels: Sequence[ChannelPanel], *, x_label: str = "t [s]") -> dict[str, Any]:
     """Return the panels of a figure over one time axis, ready for JSON.
 
     Curves on another time base than the first one are interpolated to its samples; outside of them is a gap.
@@ -50,7 +37,6 @@ def plot_document(
         "stop": _short(last if last > first else first + 1.0),
         "count": count,
         "panels": [_panel(channel, base) for channel in channels],
-        "spans": [[_short(s.start + first), _short(s.stop + first), s.fill, s.words] for s in spans],
     }
 
 

@@ -104,6 +104,11 @@ def si_unit(unit: str) -> tuple[float, str]:
     return _UNITS[unit]
 
 
+def units_like(unit: str) -> list[str]:
+    """Return the units of one quantity, given its SI unit; one spelling of each."""
+    return [name for name, (_, si) in _UNITS.items() if si == unit and name.isascii() and name != "kt"]
+
+
 def is_unit(text: str) -> bool:
     """Return whether a text is a unit or one of its usual spellings."""
     return text in _UNITS or text.lower() in UNIT_WORDS

@@ -33,6 +33,7 @@ class ColumnGuess:
         is_assumed: whether nothing that is measured shows its side or zero, and the usual one is taken.
         is_documented: whether the documentation of its logger says what it is.
         is_commented: whether its line is a comment, as the model does not take it.
+        candidates: other readings as keys of a trial file, each with the nats by which the records speak against it.
     """
 
     source: str | int
@@ -56,6 +57,7 @@ class ColumnGuess:
     is_assumed: bool = False
     offset: float = 0.0
     twin: str | int = ""
+    candidates: tuple[tuple[str, float], ...] = ()
 
     @property
     def topic(self) -> str:

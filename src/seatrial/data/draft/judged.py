@@ -117,9 +117,11 @@ def _grouped(places: Sequence[_Place]) -> list[list[_Place]]:
 def _decided(guess: ColumnGuess, place: _Place, verdict: ReadingVerdict, k: int) -> ColumnGuess:
     """The guess as it is read, with the reason; open where another reading is near."""
     best, rival = verdict.best.readings[k], verdict.rival.readings[k] if verdict.rival is not None else None
+    candidates = {_differences(best, reading.readings[k]): nats for reading, nats in reversed(verdict.alternatives)}
     read = replace(
-        guess, unit=best.unit, frame=best.frame, positive=best.positive, offset=best.offset, scale=best.factor
-    )
+        guess, unit=best.unit, frame=best.frame, positive=best.positive, offset=best.offset, scale=best.factor,
+        candidates=tuple(sorted(((t, n) for t, n in candidates.items() if t), key=lambda pair: pair[1])),
+    )  # fmt: skip
     text = f"from {place.column.low:.4g} to {place.column.high:.4g}"
     if is_impossible(best, place.named.samples):
         none = f"{text}: no {_WORDS.get(best.unit, best.unit)}"

@@ -37,6 +37,7 @@ class ReadingVerdict:
         gap: nats between them, everything else read as goes best with each.
         measured: nats of them that records show, beyond names, units and sides that are usual.
         reasons: unit, frame or positive -> the relation by which readings that differ in nothing else are worse.
+        alternatives: every other candidate that was tried and the nats by which it is worse, the nearest first.
     """
 
     columns: tuple[NamedColumn, ...]
@@ -45,6 +46,7 @@ class ReadingVerdict:
     gap: float
     measured: float
     reasons: Mapping[str, str]
+    alternatives: tuple[tuple[JointReading, float], ...] = ()
 
     @property
     def is_open(self) -> bool:
@@ -274,7 +276,10 @@ class _Search:
         ordered = sorted(rivals, key=lambda rival: -rival[0])
         verdicts = [self._against(best, place, choice, reasons) for _, choice in ordered]
         alone = ReadingVerdict(entry.columns, entry.candidates[best[place]], None, 0.0, 0.0, reasons)
-        return next((v for v in verdicts if v.is_open), next(iter(verdicts), alone))
+        nearest = next((v for v in verdicts if v.is_open), next(iter(verdicts), alone))
+        score = self.total(best)
+        alternatives = tuple((entry.candidates[choice[place]], score - total) for total, choice in ordered)
+        return replace(nearest, alternatives=alternatives)
 
     def _against(
         self, best: Sequence[int], place: int, other: Sequence[int], reasons: Mapping[str, str]

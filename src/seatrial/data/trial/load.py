@@ -330,7 +330,7 @@ def _corrected_block(text: str, path: Path, index: int) -> tuple[str, list[Chang
         tried.add(finding.edits)
         refusal = ""
         try:
-            edited = _edited(text, path, index, finding.edits)
+            edited = edited_text(text, path, index, finding.edits)
             after = _findings(edited, path, index)
             if len(_errors(after)) < len(_errors(findings)):
                 text, findings = edited, after
@@ -369,8 +369,8 @@ def _tables(text: str, path: Path) -> TrialFile:
     return parse_tables(table, path)
 
 
-def _edited(text: str, path: Path, index: int, edits: tuple[TrialEdit, ...]) -> str:
-    """The text with the edits in one block.
+def edited_text(text: str, path: Path, index: int, edits: tuple[TrialEdit, ...]) -> str:
+    """Return the text with the edits in one block, from 0.
 
     Raises:
         InputError: the block has no such key.

@@ -1,6 +1,6 @@
 """From the runs of a trial to checked records in standard frames, signs and units."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -253,10 +253,12 @@ def _failed_validation_finding(run: TrialRecord, errors: Sequence[Finding]) -> F
     )  # fmt: skip
 
 
-def load_records(trial: Trial) -> tuple[tuple[TrialRecord, ...], tuple[Finding, ...]]:
+def load_records(trial: Trial, load: "RunLoader | None" = None) -> tuple[tuple[TrialRecord, ...], tuple[Finding, ...]]:
     """Read, repair and check every run that is not left out; the trial's own findings come first.
 
     A validation run that cannot be read is left out, which an error finding says.
+
+    load: takes the place of `load_parts`, such as one that keeps runs which have not changed.
 
     Raises:
         InputError: the trial has no records; a training run's file cannot be parsed, or trimming leaves nothing of it.
@@ -265,7 +267,7 @@ def load_records(trial: Trial) -> tuple[tuple[TrialRecord, ...], tuple[Finding, 
         where = f"{trial.path}: " if trial.path else ""
         raise InputError(f"{where}there are no [[records]] to read; add them, or plan a trial with 'seatrial design'")
     used = (run for run in trial.runs if run.role is not Role.LEAVE_OUT)
-    read = [part for run in used for part in _load_unless_bad(run, trial.reference_point)]
+    read = [part for run in used for part in _load_unless_bad(run, trial.reference_point, load or load_parts)]
     records = tuple(r for r in read if isinstance(r, TrialRecord))
     unread = tuple(r for r in read if isinstance(r, Finding))
     for channel, deviation in trial.noise.items():
@@ -283,10 +285,10 @@ def _answered(finding: Finding, trial: Trial) -> Finding:
     return replace(finding, severity=Severity.INFO, advice=advice)
 
 
-def _load_unless_bad(run: Run, reference_point: float) -> tuple[TrialRecord | Finding, ...]:
+def _load_unless_bad(run: Run, reference_point: float, load: "RunLoader") -> tuple[TrialRecord | Finding, ...]:
     """The parts of the run, or of a validation run that cannot be read the finding that says why."""
     try:
-        return load_parts(run, reference_point)
+        return load(run, reference_point)
     except InputError as error:
         if run.role is not Role.VALIDATE:
             raise
@@ -351,13 +353,17 @@ def _refuse_absurd_noise(channel: str, deviation: float, records: Sequence[Recor
         )
 
 
-def load_run(run: Run, reference_point: float) -> TrialRecord:
+RunLoader = Callable[[Run, float], tuple[TrialRecord, ...]]
+"""Reads and checks a run, as `load_parts`."""
+
+
+def load_run(run: Run, reference_point: float, load: RunLoader | None = None) -> TrialRecord:
     """Return the longest of `load_parts` under the name of the run, with the findings on all of it.
 
     Raises:
         InputError: as `load_parts`.
     """
-    parts = load_parts(run, reference_point)
+    parts = (load or load_parts)(run, reference_point)
     longest = max(parts, key=lambda part: len(part.record))
     findings = tuple(finding for part in parts for finding in part.findings)
     return replace(longest, record=longest.record.renamed(longest.run), findings=findings)

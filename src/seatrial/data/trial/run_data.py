@@ -12,7 +12,7 @@ import numpy as np
 
 from seatrial.core.values import InputError, Record, spelling_hint
 from seatrial.core.values.files import is_file
-from seatrial.data.read import Layout, LogEvent, read_log
+from seatrial.data.read import Layout, Log, LogEvent, read_log
 from seatrial.data.read.assemble import LogSource, assemble_record, record_name, record_of_sources
 from seatrial.data.read.record_file import file_digest
 
@@ -58,13 +58,15 @@ class RunFiles:
         """Return a single file, named without its ending."""
         return cls(run_name(path), (SourceFile(path, layout),))
 
-    def read(self) -> Record:
+    def read(self, read: "LogReader | None" = None) -> Record:
         """Read and join the files, named as the run.
+
+        read: takes the place of `read_log`, such as one that keeps logs.
 
         Raises:
             InputError: a file cannot be read as its layout says, several do not overlap, or there is no such part.
         """
-        assembled = _assembled(*_with_states(self.files))
+        assembled = _assembled(*_with_states(self.files), read or read_log)
         record, events = assembled.record, assembled.events
         if self.start or self.stop:
             first, last = float(record.time[0]), float(record.time[-1])
@@ -84,7 +86,7 @@ class RunFiles:
         Raises:
             InputError: as `read`.
         """
-        return _assembled(*_with_states(self.files)).day
+        return _assembled(*_with_states(self.files), read_log).day
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,6 +99,8 @@ class _Assembled:
 
 
 _States = tuple[tuple[int, int], ...]
+LogReader = Callable[[Path, Layout], Log]
+"""Reads a log, as `read_log`."""
 
 
 def _with_states(files: tuple[SourceFile, ...]) -> tuple[tuple[SourceFile, ...], _States]:
@@ -106,8 +110,8 @@ def _with_states(files: tuple[SourceFile, ...]) -> tuple[tuple[SourceFile, ...],
 
 
 @lru_cache(maxsize=_LOGS_KEPT)
-def _assembled(files: tuple[SourceFile, ...], states: _States) -> _Assembled:  # noqa: ARG001  states: a part of the key
-    sources = [LogSource(read_log(file.path, file.layout), file.layout, file_digest(file.path)) for file in files]
+def _assembled(files: tuple[SourceFile, ...], states: _States, read: LogReader) -> _Assembled:  # noqa: ARG001  states: of the key
+    sources = [LogSource(read(file.path, file.layout), file.layout, file_digest(file.path)) for file in files]
     if len(sources) == 1:
         record = assemble_record(sources[0].log, sources[0].layout, sources[0].sha256)
     else:
@@ -124,10 +128,17 @@ def _assembled(files: tuple[SourceFile, ...], states: _States) -> _Assembled:  #
     return _Assembled(record, shifted, f"{moment:%Y-%m-%d}")
 
 
+def seconds_in(text: str) -> float | None:
+    """Return the time [s] that a text such as ``2 min`` means; None: it is no time."""
+    match = _SECONDS.fullmatch(text)
+    return float(match[1]) * _UNIT_S[match[2]] if match else None
+
+
 def _time_of(text: str, part: str, events: tuple[LogEvent, ...], first: float, after: float) -> float:
     """The time [s] of the record's clock that a text means: after the first sample, or of an event after `after`."""
-    if match := _SECONDS.fullmatch(text):
-        return first + float(match[1]) * _UNIT_S[match[2]]
+    seconds = seconds_in(text)
+    if seconds is not None:
+        return first + seconds
     times = [event.time for event in events if event.name == text and event.time >= after]
     if times:
         return times[0]

@@ -33,25 +33,6 @@
   }
   const line = ([name, width, dash]) => ({ stroke: () => colour(name), width, dash: dash.length ? dash : undefined, points: { show: false } });
 
-  function drawSpans(spans) {
-    return u => {
-      const { ctx, bbox } = u;
-      ctx.save();
-      ctx.beginPath();
-      ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
-      ctx.clip();
-      for (const [start, stop, fill, words] of spans) {
-        const left = u.valToPos(start, "x", true), right = u.valToPos(stop, "x", true);
-        ctx.fillStyle = colour(fill);
-        ctx.fillRect(left, bbox.top, right - left, bbox.height);
-        ctx.fillStyle = colour(INK);
-        if (ctx.measureText(words).width + 3 < right - left)  // else it would stand over its neighbour's
-          ctx.fillText(words, left + 3, bbox.top + 11 * devicePixelRatio);
-      }
-      ctx.restore();
-    };
-  }
-
   class Panel {
     constructor(figure, k) {
       this.figure = figure;
@@ -76,7 +57,7 @@
       return [this.figure.time, ...(this.data.band || []).map(edge => spread(unpacked(edge), count)), ...this.curves, ...rest];
     }
     options() {
-      const { data, figure } = this, { document: { spans }, time } = figure, full = [time[0], time.at(-1)];
+      const { data, figure } = this, { time } = figure, full = [time[0], time.at(-1)];
       const edges = data.band ? [0, 1].map(() => ({ stroke: "transparent", points: { show: false } })) : [];
       const grid = { stroke: () => colour(GRID), width: 1 }, ticks = { show: false };
       const values = (u, ticks) => ticks.map(value => String(+value.toPrecision(6)).replace("-", "−"));
@@ -90,7 +71,7 @@
           { ...axis, size: 46, gap: 4, space: 24 }],
         series: [{}, ...edges, ...data.curves.map(curve => line(curve.stroke)), ...data.levels.map(level => line(level.stroke))],
         bands: data.band ? [{ series: [2, 1], fill: () => colour(BAND) }] : [],
-        hooks: { drawClear: spans.length ? [drawSpans(spans)] : [], setCursor: [u => figure.moved(u.cursor.idx)] },
+        hooks: { setCursor: [u => figure.moved(u.cursor.idx)] },
       };
     }
     isWhole(u, [first, last]) { return u.scales.x.min <= first && u.scales.x.max >= last; }

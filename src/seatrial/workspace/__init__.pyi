@@ -1,0 +1,4 @@
+"""Names of this package, imported when first used."""
+
+from seatrial.workspace.server import serve_workspace as serve_workspace
+from seatrial.workspace.shortcut import write_shortcut as write_shortcut
