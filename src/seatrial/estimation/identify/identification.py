@@ -393,8 +393,8 @@ def _confirmed(estimation: Estimation, detected: Sequence[Suspect]) -> Finding |
         f"{e.name} {significant(values[e.name], 3)} {e.unit} (standard error {significant(spread[e.name], 2)})"
         for one in detected for e in one.errors
     ]  # fmt: skip
-    stated, names = Sensors.from_text(problem.model.equations.sensors), [one.text(values) for one in detected]
-    lines = "; ".join(stated.line(key) for key in dict.fromkeys(one.key for one in detected))
+    stated, names = Sensors.from_text(problem.model.equations.sensors), [suspect.text(values) for suspect in detected]
+    lines = "; ".join(stated.line(key) for key in dict.fromkeys(suspect.key for suspect in detected))
     return Finding(
         Severity.WARNING, "sensor-error",
         f"the records show errors of instruments, which are estimated: {enumeration(names)}",

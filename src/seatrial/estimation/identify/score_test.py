@@ -198,15 +198,15 @@ def score_test(estimate: PointEstimate | ProcessNoise, candidates: Sequence[Cand
 
 def _tried_together(candidates: Sequence[Candidate]) -> list[list[int]]:
     """Places of candidates that one simulation tries: of different runs, or one that may change all."""
-    alone = [[k] for k, one in enumerate(candidates) if one.run is None]
+    alone = [[k] for k, candidate in enumerate(candidates) if candidate.run is None]
     together: list[list[int]] = []
     count = Counter[int]()
-    for k, one in enumerate(candidates):
-        if one.run is not None:
-            if count[one.run] == len(together):
+    for k, candidate in enumerate(candidates):
+        if candidate.run is not None:
+            if count[candidate.run] == len(together):
                 together.append([])
-            together[count[one.run]].append(k)
-            count[one.run] += 1
+            together[count[candidate.run]].append(k)
+            count[candidate.run] += 1
     return [*alone, *together]
 
 

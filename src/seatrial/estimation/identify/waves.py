@@ -168,7 +168,7 @@ class _SpectralFit:
     @property
     def optimum(self) -> Optimum:
         """The best of the ends."""
-        return min(self.optima, key=lambda one: one.solution.value)
+        return min(self.optima, key=lambda optimum: optimum.solution.value)
 
 
 def identify_in_unknown_waves(task: Identification) -> Fit:
@@ -187,15 +187,15 @@ def identify_in_unknown_waves(task: Identification) -> Fit:
             left_out.append(error)
     if not fits:
         raise left_out[0]
-    records = [one.record for one in fits]
-    profiled = [profiled_logarithm([(one.problem, one.optima) for one in fits], k) for k in (DAMPING, RESTORING)]
+    records = [fit.record for fit in fits]
+    profiled = [profiled_logarithm([(fit.problem, fit.optima) for fit in fits], k) for k in (DAMPING, RESTORING)]
     _refuse_vague(profiled)
-    b_1, c_1 = (math.exp(one.best) for one in profiled)
-    errors = np.array([b_1, c_1]) * [one.standard_error for one in profiled]
+    b_1, c_1 = (math.exp(p.best) for p in profiled)
+    errors = np.array([b_1, c_1]) * [p.standard_error for p in profiled]
     interval = Interval(
         np.diag(errors**2), np.inf, "profile of the spectral likelihood, the sea's fitted at each value"
     )
-    ends = {n: (math.exp(one.low), math.exp(one.high)) for n, one in zip(FREE_COEFFICIENTS, profiled, strict=True)}
+    ends = {n: (math.exp(p.low), math.exp(p.high)) for n, p in zip(FREE_COEFFICIENTS, profiled, strict=True)}
     model = _linear_model(trial.model, b_1, c_1, float(np.mean([np.mean(record["phi"]) for record in records])))
     characteristics = roll_characteristics(model, interval, FREE_COEFFICIENTS, records, trial.ship)
     first = fits[0]
@@ -216,7 +216,7 @@ def identify_in_unknown_waves(task: Identification) -> Fit:
                 "no input was recorded and no initial state explains the motion: waves that nobody measured",
                 *(f"a run is left out: {error}" for error in left_out),
             ),
-            {"frequencies": sum(len(one.problem.omega) for one in fits)},
+            {"frequencies": sum(len(fit.problem.omega) for fit in fits)},
         ),
         offsets=(),
         channel_noise=(),
@@ -296,7 +296,7 @@ def profiled_logarithm(runs: Sequence[tuple[UnknownWaves, Sequence[Optimum]]], p
 
     Refits go on from their neighbour, outward from each end of a search: a broad and a sharp sea.
     """
-    ends = [one.solution.point[place] for _, optima in runs for one in optima]
+    ends = [optimum.solution.point[place] for _, optima in runs for optimum in optima]
     errors = np.array([_deviation(problem, optima, place) for problem, optima in runs])
     step, reach = _PROFILE_STEP / np.sqrt(np.sum(errors**-2.0)), _PROFILE_REACH * np.max(errors)
     grid = np.arange(min(ends) - reach, max(ends) + reach + step, step)
@@ -313,7 +313,7 @@ def profiled_logarithm(runs: Sequence[tuple[UnknownWaves, Sequence[Optimum]]], p
 
 def _deviation(problem: UnknownWaves, optima: Sequence[Optimum], place: int) -> float:
     """Standard error of an unknown by the information at the best end, with those on a bound known."""
-    best = min(optima, key=lambda one: one.solution.value)
+    best = min(optima, key=lambda optimum: optimum.solution.value)
     point = best.solution.point
     inside = np.flatnonzero((point > problem.lower) & (point < problem.upper))
     covariance = inverse(best.normal.hessian[np.ix_(inside, inside)])
@@ -385,7 +385,7 @@ def _refuse_vague(profiled: Sequence[ProfiledLogarithm]) -> None:
     """Raises:
     InputError: standard errors of the logarithms of b_1 and c_1 that are too large to be of use.
     """
-    damping, restoring = (one.standard_error for one in profiled)
+    damping, restoring = (p.standard_error for p in profiled)
     if damping > _MAX_DAMPING_ERROR or restoring > _MAX_RESTORING_ERROR:
         raise InputError(
             f"the roll's spectrum cannot distinguish ship and waves (standard errors of b_1 {100 * damping:.0f} %, "
