@@ -169,9 +169,9 @@ def adaptive_weight_claim(evidence: CloudSwarmEvidence) -> Claim:
     return Claim(
         "The normal cloud adjusts the inertia weight adaptively between 0.9 and 0.4 (eq. 6)",
         Verdict.REFUTED if used < ADAPTIVE_SHARE else Verdict.CONFIRMED,
-        f"with the printed Ex = 5 w1 - w2 = {5 * settings.w1 - settings.w2:.1f} and En = {settings.entropy:g} the "
-        f"ratio r, at most 1, lies far from Ex on the flank of a wide cloud: from A = {settings.a} to B = "
-        f"{settings.b} the weight goes from {weight.at_ends[0]:.3f} to {weight.at_ends[1]:.3f}, {100.0 * used:.0f} % "
+        f"with the printed Ex = 5 w1 - w2 = {5 * settings.w1 - settings.w2:.1f} and En = {settings.En:g} the "
+        f"ratio r, at most 1, lies far from Ex on the flank of a wide cloud: from A = {settings.A} to B = "
+        f"{settings.B} the weight goes from {weight.at_ends[0]:.3f} to {weight.at_ends[1]:.3f}, {100.0 * used:.0f} % "
         f"of its range, and 95 % of its draws lie in {weight.central[0]:.2f} to {weight.central[1]:.2f} (mean "
         f"{weight.mean:.3f}). In the searches {below:.0f} % of the particles are below A, {middle:.0f} % in the "
         f"band, {above:.0f} % above B, where it is {settings.w2}. The weight is in effect two constants, "

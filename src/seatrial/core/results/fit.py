@@ -294,7 +294,7 @@ class Fit(Summarised):
     ] = ()
     reference: Annotated[
         ReferenceEstimate | None,
-        Field(description="the package's own estimate, which a published method is compared with; null: this is it"),
+        Field(description="the package's own estimate beside a published method; null: this is it, or it was left out"),
     ] = None
 
     posterior: Annotated[

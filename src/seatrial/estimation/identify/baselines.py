@@ -15,7 +15,7 @@ from seatrial.core.results.prediction import NO_COMPARISON
 from seatrial.core.values import Finding, InputError, ProgressReporter, Record, Severity
 from seatrial.data.trial import SEARCHES, SearchFitness, SearchSettings, Trial
 from seatrial.data.trial.settings import SupportVectorSettings
-from seatrial.estimation.identify.search import estimate_by_search
+from seatrial.estimation.identify.search import estimate_by_search, simulated_starts, training_predictions
 from seatrial.estimation.predict.open_loop import rms_errors
 from seatrial.estimation.regress.estimators import RegressionEstimator
 from seatrial.estimation.regress.operators import RegressionMotion, features
@@ -54,11 +54,13 @@ def with_search_baselines(fit: Fit, trial: Trial, seed: int, report_progress: Pr
     """
     settings = replace(trial.estimate.search or SearchSettings(), restarts=1, fitness=SearchFitness.RECORD)
     baselines = list(fit.baselines) or [*_fit_as_baselines(fit), *_failed_regressions(fit)]
+    runs = training_predictions(fit)
+    records, starts = [run.measured for run in runs], simulated_starts(fit.model, runs)
     for method in SEARCHES:
         named = replace(trial, estimate=replace(trial.estimate, method=method, search=settings))
         title = f"{SEARCH_METHODS[method].title} ({method})"
         try:
-            found = estimate_by_search(named, fit, seed, report_progress)
+            found = estimate_by_search(named, records, starts, seed, report_progress)
         except InputError as error:
             baselines.append(Baseline(title, note=str(error)))
             continue
