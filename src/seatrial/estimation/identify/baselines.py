@@ -18,8 +18,9 @@ from seatrial.data.trial.settings import SupportVectorSettings
 from seatrial.estimation.identify.search import estimate_by_search, simulated_starts, training_predictions
 from seatrial.estimation.predict.open_loop import rms_errors
 from seatrial.estimation.regress.estimators import RegressionEstimator
-from seatrial.estimation.regress.operators import RegressionMotion, features
+from seatrial.estimation.regress.operators import RegressionMotion, Weak, features
 from seatrial.estimation.regress.pipeline import available_estimators
+from seatrial.estimation.regress.term_selection import select_terms
 from seatrial.numerics.optimise import SEARCH_METHODS
 from seatrial.physics.simulate.replay import replay
 
@@ -41,6 +42,15 @@ def with_baselines(
     except InputError as error:
         said = Finding(Severity.INFO, NO_COMPARISON, f"{_NO_COMPARISON_TEXT}{error}")
         return replace(fit, findings=(*fit.findings, said))
+
+
+def with_term_selection(fit: Fit, train: Sequence[Record], seconds: float) -> Fit:
+    """The fit with Lasso's choice of terms beside its own, or with a finding that says why there is none."""
+    try:
+        return replace(fit, term_selection=select_terms(fit.model, train, Weak(seconds)))
+    except InputError as error:
+        reason = Finding(Severity.INFO, NO_COMPARISON, f"no terms to select: {error}")
+        return replace(fit, findings=(*fit.findings, reason))
 
 
 def with_search_baselines(fit: Fit, trial: Trial, seed: int, report_progress: ProgressReporter | None = None) -> Fit:

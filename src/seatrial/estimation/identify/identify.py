@@ -20,7 +20,7 @@ from seatrial.estimation.estimate.plausibility import OutsidePhysicsError
 from seatrial.estimation.estimate.point_estimate import force_consistency
 from seatrial.estimation.estimate.settings import WEAK_FORM_SHIP_LENGTHS
 from seatrial.estimation.identify.assembled_fit import assembled_fit
-from seatrial.estimation.identify.baselines import with_baselines, with_search_baselines
+from seatrial.estimation.identify.baselines import with_baselines, with_search_baselines, with_term_selection
 from seatrial.estimation.identify.identification import (
     Identification,
     Situation,
@@ -162,7 +162,7 @@ def identify(
             sampling brings the draws with it, and is refused where the waves were not recorded.
         choose: whether the best member of the family takes the place of the trial's model.
         compare: whether regressions on the same training runs, for a linear model searches as well, are compared with
-            the fit.
+            the fit, and the terms that Lasso selects with its own.
         windows: in which validation runs are predicted as well, as ``10s,5L``; empty: as the trial has them, else by
             the length of the run.
         horizons: of the k-step errors, samples or seconds, as ``1,10,5s``; empty: by the length of the runs.
@@ -199,8 +199,9 @@ def identify(
         return fit
     window = WEAK_FORM_SHIP_LENGTHS * task.characteristic_time
     fit = with_baselines(fit, task.runs.records, window, report_progress, trial.compare.svr)
-    has_searches = trial.model.is_affine and situation is Situation.RECORDED_WAVES
-    return with_search_baselines(fit, trial, seed, report_progress) if has_searches else fit
+    if trial.model.is_affine and situation is Situation.RECORDED_WAVES:
+        fit = with_search_baselines(fit, trial, seed, report_progress)
+    return with_term_selection(fit, task.runs.records, window)
 
 
 def _refuse_sampling(intervals: IntervalMethod, situation: Situation, method: EstimateMethod) -> None:
