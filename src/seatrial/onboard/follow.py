@@ -25,7 +25,7 @@ from seatrial.estimation.identify.online import OnlineEstimator, SearchFollower,
 from seatrial.estimation.identify.search import own_estimate_progress, published_fit
 from seatrial.onboard.advice import ManoeuvreAdviser
 from seatrial.onboard.journal import Journal, journal_identity
-from seatrial.onboard.proposer import GainProposer, check_required_channels
+from seatrial.onboard.proposer import check_required_channels, gain_proposer
 from seatrial.onboard.sources import SampleSource, open_source
 from seatrial.onboard.stream_session import (
     RunBuffer,
@@ -101,7 +101,9 @@ def follow(
         # opened before the journal is read, so that samples that arrive meanwhile wait in the socket
         current = source or _open_stream(stack, stream, once=once)
         estimator = estimator or _estimator(trial, seed)
-        proposer = None if trial.proposal is None else GainProposer(trial, trial.proposal, proposal_file, seed)
+        proposer = (
+            None if trial.proposal is None else gain_proposer(trial, trial.proposal, estimator, proposal_file, seed)
+        )
         session = StreamSession(stream, estimator, log, buffer, proposer)
         adviser = ManoeuvreAdviser(trial, estimator)
         display = _Display(session, adviser, show, stop)

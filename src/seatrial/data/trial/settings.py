@@ -346,11 +346,11 @@ class ModelFamily:
 @raises_input_error
 @pydantic_dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
 class ProposalSettings:
-    """`[proposal]`: gains proposed for the sea and the craft that the latest stretch of the stream shows.
+    """`[proposal]`: gains proposed for what the stream shows: the sea and roll, or the coefficients of the moment.
 
     Attributes:
         loop: the loop file that was tuned.
-        gains: the ``gains.toml`` of its tuning, with a schedule.
+        gains: the ``gains.toml`` of its tuning; of a roll stabiliser with a schedule.
         stretch_s: length of the stretch at one speed and heading that a proposal rests on [s].
         every_s: s of the stream between two proposals.
     """

@@ -239,6 +239,11 @@ class OnlineEstimator:
         return self._window.training_runs()
 
     @property
+    def snapshot(self) -> Snapshot:
+        """The estimate by now."""
+        return self._snapshot
+
+    @property
     def change(self) -> CoefficientChange | None:
         """The last change of the coefficients; None: there was none."""
         return self._change_detector.detected
