@@ -68,7 +68,7 @@ class SwarmAlgorithm(StrEnum):
 
 
 class BoxPlacement(Enum):
-    """Where is searched; the paper's box is not printed."""
+    """Where is searched; the paper's box is not in our copy."""
 
     OFF_CENTRE = "±50 %, truth off centre"
     CENTRED = "±10 % about the truth"
@@ -463,7 +463,7 @@ def controllers(
         swarms = {a: reproduction.searches[BoxPlacement.OFF_CENTRE, heading, a] for a in SwarmAlgorithm}
         columns[heading] = {
             **{f"{a}, one run": found.points[0] for a, found in swarms.items()},
-            "PSO by eq. (4) as printed, one run": reproduction.unweighted_searches[heading].points[0],
+            "PSO by eq. (4), the base method, one run": reproduction.unweighted_searches[heading].points[0],
             "ours, one run": truths[heading] * (1.0 + output_error[heading].noisy_errors[0]),
         }
     return pitch_controller_costs(columns, truths, SEA_STATE_3, seed)
