@@ -411,7 +411,8 @@ def _hardest_text(hardest: HardestSea) -> str:
     return (
         f"in this sea the waves are met from astern: 90 % of the roll's energy lies between {hardest.band[0]:.2f} and "
         f"{hardest.band[1]:.2f} rad/s, the roll's own frequency is {hardest.natural:.2f} rad/s. The gains were "
-        f"searched in a sea met at {hardest.design_band[0]:.2f} to {hardest.design_band[1]:.2f} rad/s. Five gains tuned here "
+        f"searched in a sea met at {hardest.design_band[0]:.2f} to {hardest.design_band[1]:.2f} rad/s. Five gains "
+        "tuned here "
         f"alone leave {hardest.least_ratio:.2f} at no more fin rate"
     )
 
