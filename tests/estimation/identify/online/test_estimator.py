@@ -1,5 +1,6 @@
 """Fed sample by sample: the numbers of the batch fit on the same samples, and what is carried on beyond the window."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -8,11 +9,13 @@ import pytest
 from tests.estimation.identify.online.streams import feed, samples, sea_stream
 
 from seatrial.core.results.online import EstimatorPhase
-from seatrial.core.values import InputError
-from seatrial.data.trial import load_trial
+from seatrial.core.values import Array, InputError, Record
+from seatrial.data.trial import Trial, load_trial
 from seatrial.data.trial.runs import require_stream
+from seatrial.estimation.estimate.assemble import Runs, output_error_problem
 from seatrial.estimation.identify.identify import identify
 from seatrial.estimation.identify.online import OnlineEstimator
+from seatrial.numerics.optimise import levenberg_marquardt
 from seatrial.onboard.sources import open_source
 from seatrial_studies.seaway import SeawayScenario, ship, simulate_seaway_run
 
@@ -34,6 +37,32 @@ def test_the_numbers_are_those_of_the_batch_fit_on_the_same_samples(heading):
     ]
     assert np.max(np.abs(off)) < 0.01
     np.testing.assert_allclose(snapshot.standard_error, [batch[n].standard_error for n in snapshot.names], rtol=0.01)
+
+
+def converged_batch(trial: Trial, records: Sequence[Record], start: Array) -> tuple[Array, Array]:
+    """The coefficients of least cost over whole runs and their standard errors, (k,) each, searched to rounding."""
+    runs = replace(Runs.one_session_each(list(records), trial.ship.length), noise=trial.noise)
+    settings = trial.estimate.with_known_timing(trial.model.input_names)
+    problem = output_error_problem(trial.model, runs, np.inf, settings)
+    problem = replace(problem, noise=np.array([trial.noise[o] for o in problem.data.outputs]))
+    found = levenberg_marquardt(problem, start, problem.measured_initial_states(), negligible=1e-12, evaluations=60)
+    return found.solution.point, np.sqrt(np.diag(np.linalg.inv(found.normal.without_local()[1])))
+
+
+@pytest.mark.long(every=3)
+@pytest.mark.parametrize(("heading", "seed"), [(135, 1), (90, 2), (180, 3)])
+def test_at_every_sample_the_numbers_are_those_of_the_converged_batch(heading, seed):
+    """From the first sample at which every relative standard error is below 30 % on: 0.01 standard errors."""
+    stream = sea_stream(heading, 24.0, seed)
+    estimator, compared = OnlineEstimator(stream.trial), 0
+    for sample in samples(stream.record, stream.trial):
+        snapshot = estimator.update(sample)
+        if not compared and not np.all(snapshot.standard_error < 0.3 * np.abs(snapshot.value)):
+            continue
+        value, error = converged_batch(stream.trial, estimator.records(), snapshot.value.copy())
+        assert np.all(np.abs(snapshot.value - value) < 0.01 * error), sample.time
+        compared += 1
+    assert compared > 100
 
 
 def test_one_per_cent_is_reached_within_the_first_minute():

@@ -31,6 +31,7 @@ from seatrial.estimation.identify.online.phases import (
     first_snapshot,
     is_window_full,
     recursive_snapshot,
+    snapshot_of_now,
     suits_whole_runs,
     window_snapshot,
 )
@@ -157,6 +158,8 @@ class StreamWindow:
 
 # samples before the first search: fewer leave more unknowns than a fit of a dozen coefficients and its start can bear
 _MIN_SAMPLES = 30
+_OFF = 0.001  # standard errors by which a filter's estimate may be off the search's; chosen
+_STRAIGHT = 1e-3  # bend below which a model counts as having this one, so that searches go on; chosen
 _NOTHING_FREE = "every coefficient of the model is fixed: none is estimated"
 _NO_MODEL_YET = "the samples so far lead to no model that can be simulated"
 
@@ -178,7 +181,8 @@ class OnlineEstimator:
         self._search: WindowSearch = ContinuedSearch(trial, self._schedule) if is_continued else RepeatedSearch(trial)
         self._window = StreamWindow(trial)
         self._change_detector = ChangeDetector(trial.model.parameters.free_names)
-        self._watch: RecursivePhase | None = None
+        self._watch: RecursivePhase | None = None  # since the first search, so that all that it knows is of one filter
+        self._between: RecursivePhase | None = None  # since the last search, for what is shown until the next
         self._phase: KeptPhase | RecursivePhase = WarmUp()
         self._progress = StreamProgress()
         self._snapshot = first_snapshot(trial.model)
@@ -196,7 +200,7 @@ class OnlineEstimator:
             self.relinearise()
         if isinstance(self._phase, RecursivePhase):
             self._leave_filter(self._phase)
-        self._watch = None
+        self._watch = self._between = None
         self._change_detector.restart()
         if isinstance(self._phase, Window | Carried):  # what the next run is compared with
             self._compare_search(self._phase.estimate)
@@ -215,13 +219,25 @@ class OnlineEstimator:
             self._filter(self._phase, sample)
         else:
             self._window.add(sample)
-            is_due = self._window.seconds >= self._schedule.next_search
+            if self._between is not None:
+                self._show_sample(self._between, sample)
             if self._watch is not None and self._compare_sample(self._watch, sample):
                 self._begin_anew()
-            elif is_due and self._window.open_samples >= MIN_RUN_SAMPLES:
+            elif self._is_search_due() and self._window.open_samples >= MIN_RUN_SAMPLES:
                 self.relinearise()
         self._snapshot = at_progress(self._snapshot, self._progress)
         return self._snapshot
+
+    def _is_search_due(self) -> bool:
+        """Whether the window is to be searched: the filter beside it has moved too far, or where there is none, now."""
+        phase = self._phase
+        if self._between is None or not isinstance(phase, Window | Carried):
+            return self._window.seconds >= self._schedule.next_search
+        if is_window_full(phase, self._window.seconds, self._stream, self._schedule.intervals):
+            return True
+        moved = np.abs(self._snapshot.value - phase.estimate.value)
+        most = np.sqrt(2.0 * _OFF / max(self._between.bend, _STRAIGHT))
+        return bool(np.any(moved > most * self._snapshot.standard_error))
 
     def relinearise(self) -> Snapshot:
         """Search now over everything in the window; a filter takes in the samples that wait for later ones."""
@@ -270,20 +286,28 @@ class OnlineEstimator:
         if self._window.samples >= _MIN_SAMPLES:
             try:
                 with np.errstate(all="ignore"):  # a trial step may overflow; the search then takes another
-                    estimate = self._search.estimate(phase, self._window.records())
+                    near = None if self._between is None else self._snapshot.value
+                    estimate = self._search.estimate(phase, self._window.records(), near)
                 if self._watch is None and self._compare_search(estimate):
                     self._begin_anew()
                     return
                 self._phase = phase = phase.with_estimate(estimate)
                 self._snapshot = window_snapshot(self._snapshot, self._trial.model, phase, estimate)
-                if self._watch is None and self._search.is_efficient and not estimate.is_coloured:
-                    self._watch = filter_phase(estimate, self._stream, self._trial.reference_point)
+                self._between = self._filter_behind(estimate)
+                if self._watch is None:
+                    self._watch = self._filter_behind(estimate)
             except (InputError, np.linalg.LinAlgError) as error:
                 if isinstance(phase, WarmUp):
                     reason = str(error) if isinstance(error, InputError) else _NO_MODEL_YET
                     self._snapshot = replace(self._snapshot, advice=reason)
         if not isinstance(phase, WarmUp) and is_window_full(phase, seconds, self._stream, self._schedule.intervals):
             self._leave_window(phase)
+
+    def _filter_behind(self, estimate: WindowEstimate) -> RecursivePhase | None:
+        """A filter behind a search, where one can take over."""
+        if not self._search.is_efficient or estimate.is_coloured:
+            return None
+        return filter_phase(estimate, self._stream, self._trial.reference_point, self._between)
 
     def _leave_window(self, phase: Window | Carried) -> None:
         """Go on with a filter where one can take over, else with the window's information."""
@@ -294,21 +318,20 @@ class OnlineEstimator:
             is_efficient = self._search.is_efficient
             following = carried_phase(phase, self._window.seconds, self._stream, is_efficient=is_efficient)
             self._schedule.note_search(0.0, is_carried=True)
-        self._watch = None
+        self._watch = self._between = None
         self._change_detector.restart()
         self._phase = following
         self._window.clear()
 
     def _filter(self, phase: RecursivePhase, sample: Sample) -> None:
         """Take a sample into the filter; one that has diverged is left."""
-        if not phase.add(sample.time, sample.values):
-            return
-        if phase.is_sound and self._compare_filter(phase):
-            self._begin_anew()
-        elif phase.is_sound:
-            self._snapshot = recursive_snapshot(self._snapshot, self._trial.model, phase)
-        else:
+        is_look_due = phase.add(sample.time, sample.values)
+        if is_look_due and not phase.is_sound:
             self._leave_filter(phase)
+        elif is_look_due and self._compare_filter(phase):
+            self._begin_anew()
+        else:
+            self._snapshot = recursive_snapshot(self._snapshot, self._trial.model, phase)
 
     def _leave_filter(self, phase: RecursivePhase) -> None:
         """Go on with a window: with the filter's information, or from nowhere where it has diverged."""
@@ -319,7 +342,7 @@ class OnlineEstimator:
 
     def _begin_anew(self) -> None:
         """Forget all that was before a change: what follows comes from later samples alone."""
-        self._phase, self._watch = WarmUp(), None
+        self._phase, self._watch, self._between = WarmUp(), None, None
         self._window.clear()
         self._schedule.restart()
         self._snapshot = first_snapshot(self._trial.model, self._change_detector.detected)
@@ -332,6 +355,15 @@ class OnlineEstimator:
             return self._compare_filter(watch)
         self._watch = None  # the next search is compared with what it saw
         return False
+
+    def _show_sample(self, between: RecursivePhase, sample: Sample) -> None:
+        """Take a sample into the filter behind the last search, and show its estimate."""
+        if between.add(sample.time, sample.values) and not between.is_sound:
+            self._between = None
+            return
+        estimate = between.estimate_by_now()
+        if estimate is not None:
+            self._snapshot = snapshot_of_now(self._snapshot, self._trial.model, estimate)
 
     def _compare_filter(self, phase: RecursivePhase) -> bool:
         """Compare a filter's estimate with earlier ones, and return whether it shows a change."""
