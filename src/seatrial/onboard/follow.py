@@ -34,7 +34,7 @@ from seatrial.onboard.stream_session import (
     StreamSession,
     with_training_records,
 )
-from seatrial.onboard.table import change_sentence, change_text
+from seatrial.onboard.table import change_text, watch_sentence
 
 # s: longest wait for samples, longest computation between two polls, shortest time between two displays; chosen: no
 # user sees a delay, and they cost nothing
@@ -155,8 +155,8 @@ def _final_fit(
     change = estimator.change if isinstance(estimator, OnlineEstimator) else None
     if change is None or not change.is_believed:
         whole_trial = with_training_records(trial, buffer.records())
-        doubts = () if change is None else (change_sentence(change),)
-        return identify(whole_trial, seed=seed, report_progress=report_progress), doubts
+        doubt = watch_sentence(estimator.snapshot) if isinstance(estimator, OnlineEstimator) else ""
+        return identify(whole_trial, seed=seed, report_progress=report_progress), (doubt,) if doubt else ()
     final_trial = with_training_records(trial, buffer.records(change.reported_at), has_changed=True)
     try:
         fit = identify(final_trial, seed=seed, report_progress=report_progress)

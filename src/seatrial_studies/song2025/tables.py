@@ -320,7 +320,7 @@ def _coefficients(evidence: SupportVectorEvidence) -> Table:
               "output error, sensor noise")  # fmt: skip
     columns: list[list[str | float]] = [
         [f"{value:.{PRINTED_DECIMALS[Table2Column.CFD]}f}" for value in true_coefficients()],
-        *(printed_texts(column) for column in (Table2Column.ORIGINAL, Table2Column.IMPROVED)),
+        *(list[str | float](printed_texts(column)) for column in (Table2Column.ORIGINAL, Table2Column.IMPROVED)),
         *(row.values.tolist() for row in (*made.published[:2], made.output_error_noisy)),
     ]
     rows: list[tuple[str | float, ...]] = [(name, *(c[i] for c in columns)) for i, name in enumerate(COEFFICIENTS)]

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from seatrial.core.equations import Model
 from seatrial.core.results.term_selection import SelectedTerms, TermSelection
@@ -108,7 +109,7 @@ def selected_terms(parts: Sequence[RegressionSystem]) -> SelectedTerms:
     )
 
 
-def _without(parts: Sequence[RegressionSystem], k: int, acts: Array, scale: Array) -> tuple[Array, Array]:
+def _without(parts: Sequence[RegressionSystem], k: int, acts: NDArray[np.bool_], scale: Array) -> tuple[Array, Array]:
     """Rows of all parts but one, columns scaled."""
     rest = [part for i, part in enumerate(parts) if i != k]
     matrix = np.concatenate([part.matrix for part in rest])[:, acts] / scale[acts]

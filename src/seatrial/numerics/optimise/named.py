@@ -73,7 +73,7 @@ class SearchMethod:
 
     def constant_values(self, budget: SearchBudget) -> dict[str, float]:
         """Return every constant of the method, as the budget or else its source has it."""
-        defaults = {field.name: field.default for field in fields(self.settings)}
+        defaults: dict[str, Any] = {field.name: field.default for field in fields(self.settings)}
         return {name: float(budget.constants.get(name, defaults[name])) for name in self.constants}
 
 

@@ -231,3 +231,25 @@ def test_a_run_too_short_for_its_waves_is_dropped_and_the_next_one_begins():
     assert snapshot.runs == 2
     (record,) = estimator.records()
     assert record.time[0] >= rows[300].time
+
+
+def test_where_residuals_are_not_white_it_says_that_changes_are_not_watched() -> None:
+    """The moment of the waves is recorded 5 % too high, and then as it is."""
+    stream = sea_stream(135, 120.0)
+    moment = stream.record.channel("M5")
+    wrong = {**stream.record.channels, "M5": moment.with_values(1.05 * moment.values)}
+    off = feed(OnlineEstimator(stream.trial), Record("sea", stream.record.time, wrong), stream.trial)
+    assert off.change is None
+    assert "not watched: the residuals are not white" in off.unwatched
+    assert feed(OnlineEstimator(stream.trial), stream.record, stream.trial).unwatched == ""
+
+
+def test_sensors_noisier_than_declared_are_no_change_of_the_ship() -> None:
+    """Twice as noisy from the first sample on; by the declared noise every drift counts four times."""
+    stream, rng = sea_stream(135, 150.0, 3000), np.random.default_rng(7)
+    own = stream.record.channels
+    more = {s: own[s].with_values(own[s].values + sd * np.sqrt(3.0) * rng.standard_normal(len(stream.record)))
+            for s, sd in (stream.trial.noise or {}).items()}  # fmt: skip
+    shown = feed(OnlineEstimator(stream.trial), Record("sea", stream.record.time, {**own, **more}), stream.trial)
+    assert shown.change is None
+    assert shown.unwatched == ""

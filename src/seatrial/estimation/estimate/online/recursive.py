@@ -447,9 +447,9 @@ class RecursiveFilter:
         """
         w, k = self._buffer, len(self.names)
         at, stepper = self._filter_state.copy(), self._stepper.as_it_is()
-        rows = (np.concatenate(pair) for pair in ((w.inputs, inputs), (w.measured, measured)))
         if not w.failed:
-            stepper.run(at, *rows, w.processed, w.is_run_start)
+            all_inputs, all_measured = np.concatenate([w.inputs, inputs]), np.concatenate([w.measured, measured])
+            stepper.run(at, all_inputs, all_measured, w.processed, w.is_run_start)
         own = at.root[:k]
         return at.z[:k], own @ own.T
 

@@ -187,6 +187,7 @@ _NEGLIGIBLE = 1e-5
 # of the residuals, from a cold start and from the last estimate; chosen
 _FIRST_EVALUATIONS, _LATER_EVALUATIONS = 40, 12
 _WHITENESS_LEVEL = 0.01  # significance of the whiteness test; chosen
+_CLEAR_EXCESS = 1.3  # of a variance: two standard deviations of that of a hundred samples, where a watch begins; chosen
 _TIE_TOLERANCE = 1e-3  # relative difference of misfits that counts as equal; chosen
 
 
@@ -219,6 +220,15 @@ class WindowEstimate:
         spread = np.nanstd(self.estimate.problem.data.measured, axis=0)
         # where a channel never moves; chosen
         return float(np.sqrt(np.nanmean((self.residuals / np.maximum(spread, 1e-12)) ** 2)))
+
+    @property
+    def noise_excess(self) -> float:
+        """Variance of the residuals over that of the noise as declared, of the channel where it is largest; 1 if near.
+
+        A change of a ship is judged by how clear the data are, not by how clear they are said to be.
+        """
+        excess = float(np.max(np.nanmean((self.residuals / self.estimate.problem.noise) ** 2, axis=0)))
+        return excess if excess > _CLEAR_EXCESS else 1.0
 
     @property
     def is_coloured(self) -> bool:

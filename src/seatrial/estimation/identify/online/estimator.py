@@ -161,6 +161,8 @@ _MIN_SAMPLES = 30
 _OFF = 0.001  # standard errors by which a filter's estimate may be off the search's; chosen
 _STRAIGHT = 1e-3  # bend below which a model counts as having this one, so that searches go on; chosen
 _NOTHING_FREE = "every coefficient of the model is fixed: none is estimated"
+_UNWATCHED = "Changes are not watched: the residuals are not white, so that the model or its inputs are off."
+_UNEXPLAINED = 20.0  # s of coloured residuals before which a change that explains them is seen; chosen
 _NO_MODEL_YET = "the samples so far lead to no model that can be simulated"
 
 
@@ -183,6 +185,8 @@ class OnlineEstimator:
         self._change_detector = ChangeDetector(trial.model.parameters.free_names)
         self._watch: RecursivePhase | None = None  # since the first search, so that all that it knows is of one filter
         self._between: RecursivePhase | None = None  # since the last search, for what is shown until the next
+        self._noise_excess = 1.0  # of the residuals' variance over the declared, where the watch began
+        self._coloured_since = np.inf  # s, the first of the searches in a row whose residuals are coloured
         self._phase: KeptPhase | RecursivePhase = WarmUp()
         self._progress = StreamProgress()
         self._snapshot = first_snapshot(trial.model)
@@ -295,13 +299,25 @@ class OnlineEstimator:
                 self._snapshot = window_snapshot(self._snapshot, self._trial.model, phase, estimate)
                 self._between = self._filter_behind(estimate)
                 if self._watch is None:
-                    self._watch = self._filter_behind(estimate)
+                    self._watch, self._noise_excess = self._filter_behind(estimate), estimate.noise_excess
+                self._note_colour(is_coloured=estimate.is_coloured and self._search.is_efficient)
             except (InputError, np.linalg.LinAlgError) as error:
                 if isinstance(phase, WarmUp):
                     reason = str(error) if isinstance(error, InputError) else _NO_MODEL_YET
                     self._snapshot = replace(self._snapshot, advice=reason)
         if not isinstance(phase, WarmUp) and is_window_full(phase, seconds, self._stream, self._schedule.intervals):
             self._leave_window(phase)
+
+    def _note_colour(self, *, is_coloured: bool) -> None:
+        """Watch no longer, and say so, where residuals stay coloured without a change that would explain it."""
+        now = self._progress.last_time
+        self._coloured_since = min(self._coloured_since, now) if is_coloured else np.inf
+        is_unwatched = is_coloured and (self._watch is None or now - self._coloured_since >= _UNEXPLAINED)
+        if is_unwatched:
+            self._watch = None
+            self._change_detector.doubt(self._coloured_since)
+        unwatched = _UNWATCHED if is_unwatched else ""
+        self._snapshot = replace(self._snapshot, change=self._change_detector.detected, unwatched=unwatched)
 
     def _filter_behind(self, estimate: WindowEstimate) -> RecursivePhase | None:
         """A filter behind a search, where one can take over."""
@@ -342,7 +358,7 @@ class OnlineEstimator:
 
     def _begin_anew(self) -> None:
         """Forget all that was before a change: what follows comes from later samples alone."""
-        self._phase, self._watch, self._between = WarmUp(), None, None
+        self._phase, self._watch, self._between, self._coloured_since = WarmUp(), None, None, np.inf
         self._window.clear()
         self._schedule.restart()
         self._snapshot = first_snapshot(self._trial.model, self._change_detector.detected)
@@ -367,7 +383,9 @@ class OnlineEstimator:
 
     def _compare_filter(self, phase: RecursivePhase) -> bool:
         """Compare a filter's estimate with earlier ones, and return whether it shows a change."""
-        return self._change_detector.update(self._progress.last_time, phase.of_all_samples)
+        known = phase.of_all_samples
+        now = GaussianEstimate(known.value, self._noise_excess * known.covariance)
+        return self._change_detector.update(self._progress.last_time, now)
 
     def _compare_search(self, estimate: WindowEstimate) -> bool:
         """Compare a search with earlier estimates where successive ones are nested; return whether it shows a change.
@@ -376,7 +394,7 @@ class OnlineEstimator:
         forces of the same waves change as more of their elevation is known.
         """
         is_nested = self._search.is_efficient and self._stream.waves is None and self._stream.forgetting_time_s is None
-        now = GaussianEstimate(estimate.value, estimate.covariance)
+        now = GaussianEstimate(estimate.value, estimate.noise_excess * estimate.covariance)
         return is_nested and self._change_detector.update(
             self._progress.last_time, now, is_white=not estimate.is_coloured, is_searched=True
         )
