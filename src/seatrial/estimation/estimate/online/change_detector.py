@@ -151,8 +151,9 @@ class ChangeDetector:
 
     def doubt(self, since: float) -> None:
         """Forget all instants; a change closely before `since` [s], from where residuals are coloured, is withdrawn."""
-        if self.detected is not None and since - self.detected.reported_at < _SOON:
-            self.detected = replace(self.detected, is_believed=False)
+        change = self.detected
+        if change is not None and change.is_believed and since - change.reported_at < _SOON:
+            self.detected = replace(change, is_believed=False)
         self.restart()
 
     def restart(self) -> None:

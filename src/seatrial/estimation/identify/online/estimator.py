@@ -163,6 +163,7 @@ _STRAIGHT = 1e-3  # bend below which a model counts as having this one, so that 
 _NOTHING_FREE = "every coefficient of the model is fixed: none is estimated"
 _UNWATCHED = "Changes are not watched: the residuals are not white, so that the model or its inputs are off."
 _UNEXPLAINED = 20.0  # s of coloured residuals before which a change that explains them is seen; chosen
+_SHOWN, _YOUNG = 0.3, 20.0  # relative standard errors below which numbers say something; s of a window; chosen
 _NO_MODEL_YET = "the samples so far lead to no model that can be simulated"
 
 
@@ -185,6 +186,7 @@ class OnlineEstimator:
         self._change_detector = ChangeDetector(trial.model.parameters.free_names)
         self._watch: RecursivePhase | None = None  # since the first search, so that all that it knows is of one filter
         self._between: RecursivePhase | None = None  # since the last search, for what is shown until the next
+        self._is_curved = False  # the model, within the standard errors of the last search
         self._noise_excess = 1.0  # of the residuals' variance over the declared, where the watch began
         self._coloured_since = np.inf  # s, the first of the searches in a row whose residuals are coloured
         self._phase: KeptPhase | RecursivePhase = WarmUp()
@@ -236,11 +238,12 @@ class OnlineEstimator:
         """Whether the window is to be searched: the filter beside it has moved too far, or where there is none, now."""
         phase = self._phase
         if self._between is None or not isinstance(phase, Window | Carried):
-            return self._window.seconds >= self._schedule.next_search
+            return self._is_curved or self._window.seconds >= self._schedule.next_search
         if is_window_full(phase, self._window.seconds, self._stream, self._schedule.intervals):
             return True
         moved = np.abs(self._snapshot.value - phase.estimate.value)
-        most = np.sqrt(2.0 * _OFF / max(self._between.bend, _STRAIGHT))
+        off = 0.5 * _OFF if self._window.seconds < _YOUNG else _OFF  # its bend is known less well while it is young
+        most = np.sqrt(2.0 * off / max(self._between.bend, _STRAIGHT))
         return bool(np.any(moved > most * self._snapshot.standard_error))
 
     def relinearise(self) -> Snapshot:
@@ -298,6 +301,7 @@ class OnlineEstimator:
                 self._phase = phase = phase.with_estimate(estimate)
                 self._snapshot = window_snapshot(self._snapshot, self._trial.model, phase, estimate)
                 self._between = self._filter_behind(estimate)
+                self._is_curved = self._between is None and self._is_young(estimate)
                 if self._watch is None:
                     self._watch, self._noise_excess = self._filter_behind(estimate), estimate.noise_excess
                 self._note_colour(is_coloured=estimate.is_coloured and self._search.is_efficient)
@@ -312,12 +316,19 @@ class OnlineEstimator:
         """Watch no longer, and say so, where residuals stay coloured without a change that would explain it."""
         now = self._progress.last_time
         self._coloured_since = min(self._coloured_since, now) if is_coloured else np.inf
-        is_unwatched = is_coloured and (self._watch is None or now - self._coloured_since >= _UNEXPLAINED)
-        if is_unwatched:
+        is_unexplained = now - self._coloured_since >= _UNEXPLAINED
+        is_unwatched = is_coloured and (self._watch is None or is_unexplained)
+        if is_unexplained:
             self._watch = None
             self._change_detector.doubt(self._coloured_since)
         unwatched = _UNWATCHED if is_unwatched else ""
         self._snapshot = replace(self._snapshot, change=self._change_detector.detected, unwatched=unwatched)
+
+    def _is_young(self, estimate: WindowEstimate) -> bool:
+        """Whether numbers can be shown but a model may still be too curved for a filter: every sample is searched."""
+        error = np.sqrt(np.diagonal(estimate.covariance))
+        is_shown = bool(np.all(error < _SHOWN * np.abs(estimate.value)))
+        return is_shown and self._search.is_efficient and self._window.seconds < _YOUNG
 
     def _filter_behind(self, estimate: WindowEstimate) -> RecursivePhase | None:
         """A filter behind a search, where one can take over."""
@@ -358,7 +369,8 @@ class OnlineEstimator:
 
     def _begin_anew(self) -> None:
         """Forget all that was before a change: what follows comes from later samples alone."""
-        self._phase, self._watch, self._between, self._coloured_since = WarmUp(), None, None, np.inf
+        self._phase, self._watch, self._between = WarmUp(), None, None
+        self._coloured_since, self._is_curved = np.inf, False
         self._window.clear()
         self._schedule.restart()
         self._snapshot = first_snapshot(self._trial.model, self._change_detector.detected)
