@@ -5,7 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-MOST_KEYS = 242  # of a trial file, a key of two tables counted twice; chosen
+MOST_KEYS = 244  # of a trial file, a key of two tables counted twice; two are of published methods; chosen
 
 
 def test_command_line_and_keys_are_current(repository: Path) -> None:

@@ -20,7 +20,7 @@ from seatrial.data.trial.runs import resolved_proposal
 from seatrial.onboard.follow import follow
 from seatrial.onboard.live import log_line
 from seatrial.onboard.page import snapshot_json
-from seatrial.onboard.proposer import GainProposer
+from seatrial.onboard.proposer import SeaGainProposer
 from seatrial.onboard.table import gains_text, proposal_lines
 
 STRETCH = fin_stretch(7, QUARTERING)
@@ -70,11 +70,11 @@ def samples(values: Array = STRETCH.values, U: float = STRETCH.U, turn: float = 
     return [Sample(k * STRETCH.dt, row) for k, row in enumerate(rows)]
 
 
-def proposer(folder: Path, text: str = TRIAL) -> GainProposer:
+def proposer(folder: Path, text: str = TRIAL) -> SeaGainProposer:
     """One that writes into the folder."""
     trial = fin_trial(folder, text)
     assert trial.proposal is not None
-    return GainProposer(trial, trial.proposal, folder / "proposal.toml")
+    return SeaGainProposer(trial, trial.proposal, folder / "proposal.toml")
 
 
 def test_a_followed_stream_ends_with_a_proposal(tmp_path: Path) -> None:
@@ -129,7 +129,7 @@ def test_a_file_that_cannot_be_written_ends_nothing(tmp_path: Path) -> None:
     trial = fin_trial(tmp_path)
     assert trial.proposal is not None
     (tmp_path / "blocked").write_text("", encoding="utf-8")
-    assert "blocked" in GainProposer(trial, trial.proposal, tmp_path / "blocked" / "proposal.toml").write_error
+    assert "blocked" in SeaGainProposer(trial, trial.proposal, tmp_path / "blocked" / "proposal.toml").write_error
 
 
 @pytest.mark.parametrize(

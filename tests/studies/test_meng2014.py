@@ -58,9 +58,8 @@ def test_speed_is_judged_by_a_sign_test() -> None:
 
 
 def test_more_iterations_are_judged_with_the_noise_and_without() -> None:
-    assert iterations_verdict(0.9, 1.0) is Verdict.CONFIRMED
-    assert iterations_verdict(0.99, 0.5) is Verdict.UNKNOWABLE
-    assert iterations_verdict(0.99, 0.99) is Verdict.REFUTED
+    assert iterations_verdict(0.9) is Verdict.CONFIRMED
+    assert iterations_verdict(0.99) is Verdict.UNKNOWABLE  # what may be is not refuted
 
 
 def test_wrong_coefficients_follow_the_record_within_the_noise() -> None:
@@ -98,13 +97,15 @@ def test_every_figure_of_the_paper_has_its_counterpart(study: Study) -> None:
 
 
 def test_claims_are_judged_in_the_papers_own_setting_too(study: Study) -> None:
-    claims = {c.claim: c for c in study.claims}
-    assert claims["Twelve parameters are to be identified"].verdict is Verdict.HOLDS_IN_OWN_SETTING
+    claims = {c.claim.rpartition(" (")[0]: c for c in study.claims}
+    twelve = "Of the twelve unknown parameters eight need identification; the four stiffnesses follow from theory"
+    assert claims[twelve].verdict is Verdict.HOLDS_IN_OWN_SETTING
     speed = claims["The cloud makes the swarm converge faster"]
     assert speed.verdict is Verdict.UNKNOWABLE and "ICPSO without its mutations" in speed.evidence
     assert claims["More iterations may reduce the error further"].verdict is Verdict.UNKNOWABLE
     (weight,) = [c for c in study.claims if "inertia weight adaptively" in c.claim]
-    assert weight.verdict is Verdict.REFUTED and "0.534 to 0.491" in weight.evidence
+    assert weight.verdict is Verdict.UNKNOWABLE and "0.534 to 0.491" in weight.evidence
+    assert "lost in our copy" in weight.evidence
 
 
 def test_what_wrong_coefficients_cost_ends_the_page(study: Study) -> None:
@@ -117,9 +118,11 @@ def test_no_check_in_force_rests_on_time(study: Study) -> None:
     assert [c.status for c in study.checks if "time" in c.name] == [CheckStatus.WITHDRAWN]
 
 
-def test_the_law_without_an_inertia_weight_does_not_converge(study: Study) -> None:
-    (law,) = [c for c in study.claims if "velocity law" in c.claim]
-    assert law.verdict is Verdict.REFUTED
+def test_what_our_copy_lacks_refutes_nothing(study: Study) -> None:
+    (law,) = [c for c in study.claims if "eqs. (4) and (5)" in c.claim]
+    assert law.verdict is Verdict.UNKNOWABLE and "base method" in law.evidence
+    assert Verdict.REFUTED not in {c.verdict for c in study.claims}
+    assert not any("not printed" in text for text in (*study.answer, *(c.evidence for c in study.claims)))
 
 
 def test_our_fit_reaches_its_bound(study: Study) -> None:
@@ -131,7 +134,7 @@ def test_our_fit_reaches_its_bound(study: Study) -> None:
 
 
 def test_accuracy_and_mutation_are_judged(study: Study) -> None:
-    claims = {c.claim: c for c in study.claims}
-    assert "plain PSO" in claims["The cloud improves the accuracy of convergence (abstract)"].evidence
+    claims = {c.claim.rpartition(" (")[0]: c for c in study.claims}
+    assert "plain PSO" in claims["The cloud improves the accuracy of convergence"].evidence
     mutation = claims["Mutation by the cloud keeps the swarm diverse, out of local minima"]
     assert mutation.verdict is Verdict.UNKNOWABLE and "without" in mutation.evidence

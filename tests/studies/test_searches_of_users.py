@@ -107,10 +107,11 @@ def test_on_the_shipped_example_the_loop_of_the_studies_gives_the_users_bits(
     trial = load_trial(repository / "examples" / "heave_pitch.toml")
     search = SearchSettings(iterations=ITERATIONS, restarts=RESTARTS)
     trial, own = replace(trial, estimate=EstimateSettings(method=method, search=search)), example_fit("heave_pitch")
-    user = estimate_by_search(trial, own, SEED).search
-    assert user is not None
     runs = [p for p in own.predictions if p.role == "training"]
-    candidates = search_candidates(trial, trial.model, [p.measured for p in runs], simulated_starts(trial.model, runs))
+    records, starts = [p.measured for p in runs], simulated_starts(trial.model, runs)
+    user = estimate_by_search(trial, records, starts, SEED).search
+    assert user is not None
+    candidates = search_candidates(trial, trial.model, records, starts)
     box = Box(*np.array(list(user.bounds.values())).T)
     if method is EstimateMethod.IWHO:
         create = qi.optimisers(ITERATIONS, FitnessMemory.KEEP)[SearchAlgorithm.IWHO]

@@ -32,9 +32,12 @@ from seatrial_studies.yu2014.searches import (
     FIVE_FREE,
     HELD_OUT_SEAS,
     MS_LIMIT,
+    SEEDS,
     GeneticSearchSetting,
+    compare_weights,
     compare_with_published,
     five_gain_Ms,
+    hardest_sea,
     minimise_roll,
     search_over_seeds,
 )
@@ -234,6 +237,25 @@ def test_claims_are_judged_in_the_context_they_were_made_in(study: Study) -> Non
     settings = {c.claim: c.setting for c in study.claims if c.verdict is Verdict.HOLDS_IN_OWN_SETTING}
     assert sorted(settings.values()) == [*["18 kn, 90°, 3.3 m, where the PID was set"] * 2, "one speed"]
     (search,) = [c for c in study.claims if "random weights" in c.claim.lower()]
-    assert search.verdict is Verdict.UNKNOWABLE and "Fixed weights" in search.evidence
+    assert search.verdict is Verdict.UNKNOWABLE and "against fixed, equal weights" in search.evidence
     (joint,) = [c for c in study.claims if "global" in c.claim]
     assert joint.verdict is Verdict.UNKNOWABLE and "all six conditions" in joint.evidence
+
+
+def test_random_and_fixed_weights_are_compared_from_the_same_first_generations() -> None:
+    compared = compare_weights(WASHOUT, 0)
+    assert compared.J.shape == compared.volume.shape == (2, SEEDS)
+    assert np.all(compared.J[0] != compared.J[1]) and np.all((compared.volume > 0.0) & (compared.volume < 1.0))
+    assert not (compared.is_better and compared.is_worse)
+
+
+def test_why_five_gains_leave_the_roll_of_quartering_long_crested_seas_is_said(study: Study) -> None:
+    found = hardest_sea(WASHOUT, HELD_OUT_SEAS[-1], np.random.default_rng(0))
+    assert found.band[1] < 0.5 * found.natural < found.design_band[0]
+    assert found.least_ratio < 0.4
+    failing = [c for c in study.checks if c.status is CheckStatus.FAILS]
+    assert failing and not any("not known" in c.remark for c in failing)
+
+
+def test_the_page_answers_its_question(study: Study) -> None:
+    assert "cannot be decided" in study.answer[0] and "fixed ones in" in study.answer[1]

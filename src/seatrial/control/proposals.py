@@ -129,7 +129,7 @@ _FRAILEST = 0.95  # share of the draws that must keep the largest Ms: one in twe
 # largest Ms of those draws over that which the loop file allows of its model: 2.0, the upper end of the usual range
 # (Astrom & Hagglund 2006, Advanced PID Control, section 4.6), over the default of 1.6
 _MS_RATIO = 1.25
-_WORTHWHILE = 0.03  # of the mean cost, less than which gains that hold are left as they are; chosen
+WORTHWHILE = 0.03  # of the mean cost, less than which gains that hold are left as they are; chosen
 _MIDDLE_95 = (0.025, 0.5, 0.975)  # quantiles: the ends of a 95 % interval about the median
 _ABEAM = 1e-2  # rad from the bow and from astern within which no roll is computed; chosen
 
@@ -152,7 +152,7 @@ class Refusal:
 
 
 @dataclass(frozen=True, eq=False)
-class _Judged:
+class JudgedGains:
     """Candidates on every draw, each (draws, n): cost, rms over that without control; Ms; saturation, a share."""
 
     cost: Array
@@ -198,18 +198,20 @@ def propose_gains(
     if current is not None:
         candidates = np.vstack([current, candidates])
     evaluators = [_evaluator(task, draws, k, U) for k in _spread(len(draws.headings), JUDGED).tolist()]
-    judged = _judged(evaluators, candidates)
+    judged = judged_gains(evaluators, candidates)
     short = [judged.shortfall(k, task) for k in range(len(candidates))]
     cost = judged.mean_cost
     if all(short):
         least = int(np.argmin(np.where(np.isfinite(cost), cost, np.inf)))
         return Refusal((f"no gains of the schedule hold: the best of them has {short[least]}",))
     best = int(np.argmin(np.where([not one for one in short], cost, np.inf)))
-    stays = current is not None and not short[0] and cost[0] <= (1.0 + _WORTHWHILE) * cost[best]
+    stays = current is not None and not short[0] and cost[0] <= (1.0 + WORTHWHILE) * cost[best]
     chosen = 0 if stays else best
     reasons = (*_reasons(judged, chosen, current is not None, short), *_coverage_text(schedule, conditions, holds))
     is_new = current is None or not np.array_equal(candidates[chosen], current)
-    return ChosenGains(candidates[chosen], is_new, _margins(evaluators, judged, chosen, candidates[chosen]), reasons)
+    return ChosenGains(
+        candidates[chosen], is_new, margins_over(evaluators, judged, chosen, candidates[chosen]), reasons
+    )
 
 
 def _spread(count: int, wanted: int) -> Index:
@@ -230,17 +232,20 @@ def _evaluator(task: TuningTask, draws: ShipInSea, k: int, U: float) -> GainEval
     return GainEvaluator(there, loop, (task.motion,))
 
 
-def _judged(evaluators: list[GainEvaluator], candidates: Array) -> _Judged:
+def judged_gains(evaluators: list[GainEvaluator], candidates: Array) -> JudgedGains:
+    """Return what candidates (n, g) do on every draw of craft and sea: an evaluator each, the motion first."""
     rows = [(one, one.evaluate(candidates)) for one in evaluators]
     limit = evaluators[0].task.constraints.limit
-    return _Judged(
-        np.array([np.sqrt(row.objectives[:, 0] / one.uncontrolled_variance) for one, row in rows]),
+    return JudgedGains(
+        np.array([np.sqrt(np.mean(row.variances[:, :, 3], axis=1) / one.uncontrolled_variance) for one, row in rows]),
         np.array([row.Ms for _, row in rows]),
-        np.array([[exceedance_share(limit, v) for v in row.variances[:, 0, 1].tolist()] for _, row in rows]),
+        np.array(
+            [[exceedance_share(limit, v) for v in row.variances[:, :, 1].max(axis=1).tolist()] for _, row in rows]
+        ),
     )
 
 
-def _margins(evaluators: list[GainEvaluator], judged: _Judged, k: int, gains: Array) -> GainMargins:
+def margins_over(evaluators: list[GainEvaluator], judged: JudgedGains, k: int, gains: Array) -> GainMargins:
     every = [margins(one.loop.with_gains(gains)) for one in evaluators]
 
     def over_draws(value: Callable[[int], float]) -> IntervalEstimate:
@@ -264,7 +269,7 @@ def estimated(values: Array) -> IntervalEstimate:
     return IntervalEstimate(middle, low, high)
 
 
-def _reasons(judged: _Judged, chosen: int, had_gains: bool, short: list[str]) -> tuple[str, ...]:
+def _reasons(judged: JudgedGains, chosen: int, had_gains: bool, short: list[str]) -> tuple[str, ...]:
     """Return why these, compared with the others and with those proposed before."""
     cost, left = judged.mean_cost, estimated(judged.cost[:, chosen])
     kept = sum(not one for one in short)
@@ -274,7 +279,7 @@ def _reasons(judged: _Judged, chosen: int, had_gains: bool, short: list[str]) ->
         "draws of sea and craft that the stretch allows."
     ]
     if had_gains and chosen == 0:
-        reasons.append(f"They were proposed before; no other set leaves {100.0 * _WORTHWHILE:.0f} % less.")
+        reasons.append(f"They were proposed before; no other set leaves {100.0 * WORTHWHILE:.0f} % less.")
     elif had_gains and short[0]:
         reasons.append(f"Those proposed before no longer hold: {short[0]}.")
     elif had_gains:

@@ -25,7 +25,7 @@ from seatrial.estimation.identify.online import OnlineEstimator, SearchFollower,
 from seatrial.estimation.identify.search import own_estimate_progress, published_fit
 from seatrial.onboard.advice import ManoeuvreAdviser
 from seatrial.onboard.journal import Journal, journal_identity
-from seatrial.onboard.proposer import GainProposer, check_required_channels
+from seatrial.onboard.proposer import check_required_channels, gain_proposer
 from seatrial.onboard.sources import SampleSource, open_source
 from seatrial.onboard.stream_session import (
     RunBuffer,
@@ -34,7 +34,7 @@ from seatrial.onboard.stream_session import (
     StreamSession,
     with_training_records,
 )
-from seatrial.onboard.table import change_sentence, change_text
+from seatrial.onboard.table import change_text, watch_sentence
 
 # s: longest wait for samples, longest computation between two polls, shortest time between two displays; chosen: no
 # user sees a delay, and they cost nothing
@@ -101,7 +101,9 @@ def follow(
         # opened before the journal is read, so that samples that arrive meanwhile wait in the socket
         current = source or _open_stream(stack, stream, once=once)
         estimator = estimator or _estimator(trial, seed)
-        proposer = None if trial.proposal is None else GainProposer(trial, trial.proposal, proposal_file, seed)
+        proposer = (
+            None if trial.proposal is None else gain_proposer(trial, trial.proposal, estimator, proposal_file, seed)
+        )
         session = StreamSession(stream, estimator, log, buffer, proposer)
         adviser = ManoeuvreAdviser(trial, estimator)
         display = _Display(session, adviser, show, stop)
@@ -153,8 +155,8 @@ def _final_fit(
     change = estimator.change if isinstance(estimator, OnlineEstimator) else None
     if change is None or not change.is_believed:
         whole_trial = with_training_records(trial, buffer.records())
-        doubts = () if change is None else (change_sentence(change),)
-        return identify(whole_trial, seed=seed, report_progress=report_progress), doubts
+        doubt = watch_sentence(estimator.snapshot) if isinstance(estimator, OnlineEstimator) else ""
+        return identify(whole_trial, seed=seed, report_progress=report_progress), (doubt,) if doubt else ()
     final_trial = with_training_records(trial, buffer.records(change.reported_at), has_changed=True)
     try:
         fit = identify(final_trial, seed=seed, report_progress=report_progress)

@@ -15,12 +15,12 @@ from seatrial.onboard.table import (
     History,
     RecentHistory,
     TableContent,
-    change_sentence,
     estimate_rows,
     faults_text,
     gains_text,
     render_table,
     time_text,
+    watch_sentence,
 )
 
 if TYPE_CHECKING:
@@ -154,7 +154,7 @@ def log_line(snapshot: Snapshot, counts: SampleCounts) -> str:
         ", ".join(rows),
         f"not identified: {enumeration(names, MAX_NAMES)}" if names else "",
         faults_text(counts),
-        change_sentence(snapshot.change),
+        watch_sentence(snapshot),
         "" if snapshot.proposal is None else f"proposed gains: {gains_text(snapshot.proposal)}",
     ]
     return ascii_text(" | ".join(part for part in parts if part))

@@ -28,13 +28,13 @@ from seatrial.onboard.table import (
     NORMAL_95,
     History,
     HistoryPoint,
-    change_sentence,
     estimate_rows,
     fault_counts,
     phase_meaning,
     proposal_lines,
     residual_rms,
     time_text,
+    watch_sentence,
 )
 
 # Answers a browser on the same machine: two fixed paths, the loopback address only, no files.
@@ -199,7 +199,7 @@ def snapshot_json(snapshot: Snapshot, counts: SampleCounts) -> dict[str, Any]:
         "unidentified": [printable(name) for name in snapshot.unidentified],
         "advice": printable(snapshot.advice),
         "proposal": [] if snapshot.proposal is None else proposal_lines(snapshot.proposal),
-        "change": change_sentence(snapshot.change),
+        "change": watch_sentence(snapshot),
         "accepted": counts.accepted,
         "faults": fault_counts(counts),
         "last": printable(counts.last_problem),

@@ -3,10 +3,12 @@
 import math
 from collections import deque
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 
-from seatrial.control.loopfile.load import tuning_task
+from seatrial.control.craft_proposals import CraftNow, propose_for_craft
+from seatrial.control.loopfile.load import parse_loop, tuning_task
 from seatrial.control.proposals import (
     RATE,
     SHORTEST_PERIODS,
@@ -18,15 +20,17 @@ from seatrial.control.proposals import (
 )
 from seatrial.control.task import Seaway, TuningTask
 from seatrial.control.verification.stabiliser import natural_period
-from seatrial.core.results.online import Proposal, Sample
+from seatrial.core.results.online import Proposal, Sample, Snapshot
 from seatrial.core.values import Array, Channel, InputError, Record
 from seatrial.core.values.files import write_atomically
 from seatrial.data.check.conventions import canonical_record
-from seatrial.data.folder.gains_file import proposal_toml, read_schedule
+from seatrial.data.folder.gains_file import proposal_toml, read_gains, read_schedule
+from seatrial.data.folder.model_file import ModelFile, read_model_file
 from seatrial.data.read.assemble import record_from_values
 from seatrial.data.trial import Role, Trial
-from seatrial.data.trial.runs import require_stream
+from seatrial.data.trial.runs import expand_variables, require_stream
 from seatrial.data.trial.settings import ProposalSettings
+from seatrial.estimation.identify.online import OnlineEstimator
 from seatrial.physics.simulate.replay import ZERO_BY_DEFAULT
 from seatrial.physics.simulate.states import hidden_states, unobserved_states
 
@@ -95,8 +99,142 @@ _STEADY_SPEED = 0.1  # of the mean: rms of the speed up to which it is one speed
 _STEADY_HEADING = math.radians(10.0)  # rms of the heading up to which it is one heading: waves yaw a craft less; chosen
 
 
-class GainProposer:
+class GainProposer(Protocol):
     """Takes samples in and holds the newest proposal; it has no thread and no clock of its own.
+
+    Attributes:
+        proposal: the newest; without gains before the first look.
+        write_error: why the newest could not be written, in words; empty if it was.
+    """
+
+    proposal: Proposal
+    write_error: str
+
+    def start_run(self) -> None:
+        """Begin a run with the next sample."""
+        ...
+
+    def add(self, sample: Sample) -> None:
+        """Take in a sample, and look where it is time to."""
+        ...
+
+
+class Estimating(Protocol):
+    """What is estimated by now: the coefficients of a snapshot, and their covariance (k, k)."""
+
+    @property
+    def covariance(self) -> Array: ...
+
+    @property
+    def snapshot(self) -> Snapshot: ...
+
+
+def gain_proposer(
+    trial: Trial, settings: ProposalSettings, estimator: object, file: Path | None = None, seed: int = 0
+) -> GainProposer:
+    """Return what proposes gains of a loop: by the coefficients of the moment where its plant is the model followed.
+
+    Raises:
+        InputError: loop file or gains cannot be read, or are of another craft than the stream's.
+    """
+    plant = parse_loop(settings.loop).plant
+    if plant.model is None or trial.model.is_roll or not trial.model.parameters.free_names:
+        return SeaGainProposer(trial, settings, file, seed)
+    base = read_model_file(settings.loop.resolve().parent / expand_variables(plant.model))
+    if base.model.name != trial.model.name:
+        return SeaGainProposer(trial, settings, file, seed)
+    if not isinstance(estimator, OnlineEstimator):
+        raise InputError(
+            f"method '{trial.estimate.method}' gives no intervals, on which gains could rest; leave out [proposal], or "
+            "the method"
+        )
+    return CraftGainProposer(base, settings, estimator, file, seed)
+
+
+class CraftGainProposer:
+    """Proposes gains for the craft as its coefficients are by now, every so often; of any loop on an identified model.
+
+    Attributes:
+        proposal: the newest; without gains before the first look.
+        write_error: why the newest could not be written, in words; empty if it was.
+    """
+
+    def __init__(
+        self,
+        base: ModelFile,
+        settings: ProposalSettings,
+        estimator: Estimating,
+        file: Path | None = None,
+        seed: int = 0,
+    ) -> None:
+        """Take the model file of the loop, and read loop file and gains; `file`: where each proposal is written.
+
+        Raises:
+            InputError: they cannot be read, or the gains are of another loop.
+        """
+        self._base, self._settings, self._estimator, self._seed = base, settings, estimator, seed
+        self._output = _ProposalFile(file)
+        task = tuning_task(settings.loop, model_file=base)
+        gains = read_gains(settings.gains)
+        names = task.loop.gains.names
+        if set(gains) != set(names):
+            raise InputError(
+                f"'{settings.gains}' has gains {', '.join(gains)}, the loop has {', '.join(names)}: they are of two "
+                "loops; run 'seatrial tune' on this loop file again"
+            )
+        self._current = np.array([gains[name] for name in names])
+        self._name, self._names, self._looked_at = task.name, names, -math.inf
+        self.proposal = no_proposal(task, math.nan, math.nan, "no coefficients have been looked at yet")
+        self.write_error = self._output.write(self.proposal)
+
+    def start_run(self) -> None:
+        """Begin a run with the next sample: the coefficients stay those of all runs."""
+        self._looked_at = -math.inf
+
+    def add(self, sample: Sample) -> None:
+        """Take in a sample, and look at the coefficients where it is time to."""
+        if math.isinf(self._looked_at):
+            self._looked_at = sample.time
+        if sample.time - self._looked_at < self._settings.every_s:
+            return
+        self._looked_at = sample.time
+        self.proposal = self._proposed(sample.time)
+        if self.proposal.has_gains:
+            self._current = np.array([self.proposal.gains[name] for name in self._names])
+        self.write_error = self._output.write(self.proposal)
+
+    def _proposed(self, time: float) -> Proposal:
+        snapshot = self._estimator.snapshot
+        since = 0.0 if snapshot.change is None else snapshot.change.reported_at
+        craft = CraftNow(snapshot.names, snapshot.value, self._estimator.covariance, time, since)
+        try:
+            return propose_for_craft(self._task, self._base, craft, self._current, self._seed)
+        except (InputError, np.linalg.LinAlgError, ArithmeticError) as error:
+            return Proposal(self._name, since, time, {}, (str(error),))
+
+    def _task(self, file: ModelFile) -> TuningTask:
+        return tuning_task(self._settings.loop, model_file=file)
+
+
+class _ProposalFile:
+    """Where each proposal is written, if anywhere."""
+
+    def __init__(self, path: Path | None) -> None:
+        self._path = path
+
+    def write(self, proposal: Proposal) -> str:
+        """Write it, and return why it could not be written; empty if it was."""
+        if self._path is None:
+            return ""
+        try:
+            write_atomically(self._path, proposal_toml(proposal).encode())
+        except InputError as error:
+            return str(error)
+        return ""
+
+
+class SeaGainProposer:
+    """Proposes the gains of a schedule for the sea and the craft that the latest stretch of roll shows.
 
     Attributes:
         proposal: the newest; without gains before the first look.
@@ -109,8 +247,8 @@ class GainProposer:
         Raises:
             InputError: they cannot be read, are of two crafts, or the stream lacks the loop's channels.
         """
-        self.write_error = ""
-        self._trial, self._settings, self._file, self._seed = trial, settings, file, seed
+        self._trial, self._settings, self._seed = trial, settings, seed
+        self._output = _ProposalFile(file)
         self._task = tuning_task(settings.loop)
         points = read_schedule(settings.gains)
         refuse_other_craft(self._task, points, f"'{settings.gains}'")
@@ -120,7 +258,7 @@ class GainProposer:
         self._current: Array | None = None
         self.start_run()
         self.proposal = no_proposal(self._task, math.nan, math.nan, "no stretch of the stream has been looked at yet")
-        self._write(self.proposal)
+        self.write_error = self._output.write(self.proposal)
 
     def start_run(self) -> None:
         """Begin a run with the next sample: a stretch does not reach over a break."""
@@ -145,16 +283,7 @@ class GainProposer:
             self.proposal = no_proposal(self._task, start, stop, str(error))
         if self.proposal.has_gains:
             self._current = np.array([self.proposal.gains[name] for name in self._schedule.names])
-        self._write(self.proposal)
-
-    def _write(self, proposal: Proposal) -> None:
-        if self._file is None:
-            return
-        try:
-            write_atomically(self._file, proposal_toml(proposal).encode())
-            self.write_error = ""
-        except InputError as error:
-            self.write_error = str(error)
+        self.write_error = self._output.write(self.proposal)
 
     def _stretch(self) -> Stretch:
         """Return the stretch that is kept, evenly sampled.
@@ -214,8 +343,8 @@ def _refuse_unsuitable(task: TuningTask, settings: ProposalSettings, rate: float
     sea = next((met for met in task.disturbances if isinstance(met, Seaway)), None)
     if task.demand is not None or sea is None or sea.path is not None:
         raise InputError(
-            f"proposal.loop: gains are proposed for a roll stabiliser in a sea, not for the loop on "
-            f"'{task.loop.output}'; name the loop file of the fins"
+            f"proposal.loop: the loop on '{task.loop.output}' is no roll stabiliser in a sea, and its plant is not the "
+            "model that is followed; name the loop file of the fins, or one whose [plant] model is the stream's"
         )
     period = natural_period(task.loop)
     if settings.stretch_s < SHORTEST_PERIODS * period:

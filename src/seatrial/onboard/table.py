@@ -101,13 +101,18 @@ def change_sentence(change: CoefficientChange | None) -> str:
         return ""
     if not change.is_believed:
         return (
-            f"The {change_text(change)} again, within a minute: the model or its inputs are off. "
-            "Changes are not watched any longer."
+            f"The {change_text(change)}, so it seemed; others, or residuals that are not white, followed within a "
+            "minute: the model or its inputs are off. Changes are not watched any longer."
         )
     return (
         f"The {change_text(change)}, {printable(change.most_changed)} most clearly. "
         "What is shown comes from later samples alone."
     )
+
+
+def watch_sentence(snapshot: Snapshot) -> str:
+    """Return a change in sentences, else why none is watched; empty where there is nothing to say."""
+    return change_sentence(snapshot.change) or snapshot.unwatched
 
 
 def change_text(change: CoefficientChange) -> str:
@@ -485,7 +490,7 @@ def _foot_lines(snapshot: Snapshot, counts: SampleCounts) -> list[tuple[str, str
         ("not identified", enumeration([printable(name) for name in snapshot.unidentified], MAX_NAMES), "yellow"),
         ("would help" if snapshot.unidentified else "why not yet", printable(snapshot.advice), ""),
         *((label, text, "") for label, text in _proposal_lines(snapshot)),
-        ("change", change_sentence(snapshot.change), "bold red"),
+        ("change", watch_sentence(snapshot), "bold red"),
         ("samples", faults_text(counts), "yellow"),
         ("last", printable(counts.last_problem), "dim"),
         *((f.severity.value, printable(f.text), "red" if f.severity is Severity.ERROR else "")

@@ -1,13 +1,17 @@
 """The chapter on other estimators: their coefficients compared with the fit's, and how they predict the runs."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Sequence, Set
 from functools import partial
 from statistics import median
 
+import numpy as np
+
+from seatrial.core.figures.panels import NamedCurve, curves_chart
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Baseline, Coefficient, Fit, OpenLoopScores
 from seatrial.core.results.prediction import NO_COMPARISON
+from seatrial.core.results.term_selection import SelectedTerms
 from seatrial.core.text.numbers import exact, fixed, significant
 from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import display_unit
@@ -20,6 +24,13 @@ NEAR, OFF = 2.0, 10.0
 # correlation of simulated and measured channels from which on a trajectory counts as good
 HIGH_CORRELATION = 0.9
 _TITLE = "Other estimators on the same records"
+_TERMS_TITLE = "Terms that Lasso selects"
+_TERMS_NOTE = (
+    "Lasso’s path (Song et al. 2025, eq. (11)) over the candidates that the model declares, on the weak form of the "
+    "training runs. Least squares on the terms that a penalty keeps predicts what was left out. The largest penalty "
+    "within one standard error of the least error is chosen (Breiman et al. 1984)."
+)
+_TINY = 1e-300  # above zero, for a logarithm
 _RUN_NOTE = (
     "Root mean square of simulated minus measured over all runs of that kind, open loop from the recorded inputs and "
     "from the initial state that the fit gave each run. CC: Pearson’s correlation of measured and simulated, mean over "
@@ -38,6 +49,68 @@ _COLUMNS = {
     "z": ("heave, m", 1.0),
     "theta_deg": ("pitch, deg", 1.0),
 }
+
+
+def term_section(fit: Fit) -> Section:
+    """Return the chapter on the terms that Lasso selects; empty where they were not compared."""
+    selection = fit.term_selection
+    if selection is None:
+        return Section("")
+    free = set(fit.model.parameters.free_names)
+    kept = set(selection.kept)
+    both = [name for terms in selection.equations for name in terms.candidates if name in free]
+    sentences = [
+        f"Of {counted(sum(len(terms.candidates) for terms in selection.equations), 'candidate term')} Lasso keeps "
+        f"{len(kept)}; the fit has {len(both)} of the candidates.",
+        *_difference_sentences(both, kept),
+        f"Left out one after the other: {selection.left_out}. The fit’s own choice is judged by the runs it predicts.",
+    ]
+    unpredicted = [terms.equations for terms in selection.equations if terms.errors[terms.chosen] >= 1.0]
+    if unpredicted:
+        sentences.append(f"No choice of terms predicts the rate of {enumeration(unpredicted)} in what was left out.")
+    if selection.held:
+        sentences.append(
+            f"Held at the fit’s values, as the rates are not linear in them: {enumeration(selection.held)}."
+        )
+    table = table_of(
+        selection.equations,
+        words("rate of", lambda terms: terms.equations),
+        words(
+            "kept, as they enter", lambda terms: ", ".join(name for name in terms.order if name in terms.kept) or "none"
+        ),
+        words("dropped", lambda terms: ", ".join(terms.dropped)),
+        number("error, all terms", lambda terms: significant(100.0 * terms.errors[0], 3), "%"),
+        number("error, terms kept", lambda terms: significant(100.0 * terms.errors[terms.chosen], 3), "%"),
+        number("least error", lambda terms: significant(100.0 * terms.errors[terms.best], 3), "%"),
+    )
+    pictures = tuple(_path_picture(terms) for terms in selection.equations)
+    return Section(
+        _TERMS_TITLE, "terms", tuple(sentences), table=table, note=_TERMS_NOTE,
+        parts=(Section("Errors along the path", pictures=pictures, level=Level.PAGE),), is_folded=True,
+    )  # fmt: skip
+
+
+def _difference_sentences(free: Sequence[str], kept: Set[str]) -> list[str]:
+    """In which terms the fit and Lasso differ."""
+    without, beyond = [name for name in free if name not in kept], sorted(kept - set(free))
+    text = []
+    if without:
+        text.append(f"In the fit and not kept: {enumeration(without)}.")
+    if beyond:
+        text.append(f"Kept and not in the fit: {enumeration(beyond)}; --choose tries such terms in the fit itself.")
+    return text or ["Both have the same terms."]
+
+
+def _path_picture(terms: SelectedTerms) -> Picture:
+    penalties = np.log10(np.maximum(np.array(terms.penalties), _TINY))
+    curves = [NamedCurve("error, % of the rate’s rms", penalties, 100.0 * np.array(terms.errors))]
+    chart = curves_chart(f"path of {terms.equations}", curves, "log10 of the penalty", "error, %")
+    count = terms.counts[terms.chosen]
+    return Picture(
+        partial(svg, chart),
+        f"Rate of {terms.equations}: error on what was left out, by the penalty; {counted(count, 'term')} at log10 "
+        f"{fixed(float(penalties[terms.chosen]), 2)}.",
+    )
 
 
 def baseline_section(fit: Fit) -> Section:

@@ -58,6 +58,7 @@ def _chapters(fit: Fit, citations: Citations) -> Iterator[tuple[str, Callable[[]
     yield "course", lambda: course.course_section(fit)
     yield "models", lambda: identifiability_chapter.model_section(fit.candidate_models)
     yield "baselines", lambda: baselines.baseline_section(fit)
+    yield "terms", lambda: baselines.term_section(fit)
     yield "training", lambda: prediction_chapter.training_section(fit)
     yield "records", lambda: records_chapter.record_section(fit)
     yield "offsets", lambda: records_chapter.offset_section(fit)

@@ -10,6 +10,7 @@ from seatrial.core.figures.panels import NamedCurve, curves_chart
 from seatrial.core.figures.svg_text import svg
 from seatrial.core.results import Fit, ReferenceEstimate, Search, SearchTrack
 from seatrial.core.results.comparison import (
+    ESTIMATE_DIGITS,
     ComparisonTable,
     coefficient_comparison,
     cost_comparison,
@@ -33,11 +34,14 @@ _EFFORT = (
 )
 
 
+_CONVERGENCE = "Best fitness after each iteration of each restart (logarithm to base 10)."
+
+
 def published_section(fit: Fit) -> Section:
     """Return the chapter on a published method; empty where the fit is the package's own estimate."""
     reference = fit.reference
     if reference is None:
-        return Section("")
+        return _section_alone(fit)
     scatter = " Scatter: standard deviation over the restarts." if fit.search and fit.search.scatter else ""
     pictures = _search_pictures(fit.search, reference) if fit.search else ()
     if fit.search and fit.search.track:
@@ -60,9 +64,51 @@ def published_section(fit: Fit) -> Section:
     )
 
 
+def _section_alone(fit: Fit) -> Section:
+    """The chapter of a published method beside which nothing else was estimated."""
+    if not fit.coefficients or not fit.method.intervals.startswith("none: the method"):
+        return Section("")
+    rows = [
+        (c.name, exact(c.estimate, ESTIMATE_DIGITS), c.unit if c.unit != "1" else "")
+        for c in fit.coefficients
+        if not c.fixed
+    ]
+    pictures = _pictures([(_convergence_chart(fit.search), _CONVERGENCE)]) if fit.search else ()
+    return Section(
+        "The published method",
+        "published",
+        (
+            *_method_sentences(fit), "The package’s own estimate was not made, as own_estimate says: nothing shows "
+            "how far these values can be trusted.", *_search_sentences(fit),
+        ),
+        parts=(
+            Section("", table=plain_table(("coefficient", fit.method.name, "unit"), rows, flush_left=[0, 2])),
+            Section("", pictures=pictures),
+        ),
+    )  # fmt: skip
+
+
+def _method_sentences(fit: Fit) -> list[str]:
+    return [f"{fit.method.criterion[:1].upper()}{fit.method.criterion[1:]}. The method gives no intervals."]
+
+
+def _search_sentences(fit: Fit) -> list[str]:
+    """Where the search ended, and whether it did."""
+    search = fit.search
+    if search is None:
+        return []
+    text = []
+    ends = [name for name, value in search.restarts[search.used].values.items() if value in search.bounds[name]]
+    if ends:
+        text.append(f"On an end of the range searched: {enumeration(ends)}.")
+    if search.is_interrupted:
+        text.append(f"The search was interrupted; {counted(len(search.restarts), 'restart')} are shown.")
+    return text
+
+
 def _sentences(fit: Fit, reference: ReferenceEstimate) -> list[str]:
     text = [
-        f"{fit.method.criterion[:1].upper()}{fit.method.criterion[1:]}. The method gives no intervals.",
+        *_method_sentences(fit),
         f"{inside_own_intervals(fit, reference)}, the package’s own estimate.",
     ]
     search = fit.search
@@ -74,12 +120,7 @@ def _sentences(fit: Fit, reference: ReferenceEstimate) -> list[str]:
             f"Over the whole record it leaves a weighted rms of {exact(level, 5)}, the package’s own estimate "
             f"{exact(reference.record_rms, 5)}, after {search.evaluations} and {reference.evaluations} evaluations."
         )
-    ends = [name for name, value in search.restarts[search.used].values.items() if value in search.bounds[name]]
-    if ends:
-        text.append(f"On an end of the range searched: {enumeration(ends)}.")
-    if search.is_interrupted:
-        text.append(f"The search was interrupted; {counted(len(search.restarts), 'restart')} are shown.")
-    return text
+    return [*text, *_search_sentences(fit)]
 
 
 def _table(table: ComparisonTable) -> TextTable:
@@ -89,7 +130,7 @@ def _table(table: ComparisonTable) -> TextTable:
 
 def _search_pictures(search: Search, reference: ReferenceEstimate) -> tuple[Picture, ...]:
     by_samples = search.fitness == "sample"
-    convergence = "Best fitness after each iteration of each restart (logarithm to base 10)."
+    convergence = _CONVERGENCE
     if by_samples:
         convergence += " Each iteration judges by a sample of its own, so that the best may rise."
     drawn: list[tuple[Chart | None, str]] = [(_convergence_chart(search), convergence)]

@@ -36,6 +36,7 @@ INPUT_CHANNELS = ("delta", "n", "v_j", "wind_speed", "wind_direction")
 _CHECK_DIGITS = 3
 # how a check is coloured
 _TONES = {CheckStatus.HOLDS: "good", CheckStatus.FAILS: "bad"}
+_QUICK = "Quick version, of fewer cases: the whole one may decide what is unknowable here"
 _VERDICT_TONES = {Verdict.REFUTED: "bad"}
 
 
@@ -115,6 +116,8 @@ def first_screen(study: Study) -> FirstScreen:
             )
         )
     facts.append(KeyFact("Warnings", enumeration(warned) or "none", "findings" if study.findings else "", not warned))
+    if study.quick:
+        facts.append(KeyFact("Version", _QUICK))
     again = f"seatrial reproduce {study.name}{' --quick' if study.quick else ''} --seed {study.seed}"
     facts += [KeyFact("Source", study.source), KeyFact("Again with", again)]
     figure = Markup(svg(study_chart(study.figures[0]))) if study.figures else Markup()
@@ -125,6 +128,8 @@ def first_screen(study: Study) -> FirstScreen:
 def outcome(study: Study) -> list[str]:
     """Return the answer to the question, then how many claims have which verdict, and how many checks hold or fail."""
     sentences = list(study.answer)
+    if study.quick:
+        sentences.append(f"Verdicts are those of the {_QUICK[0].lower()}{_QUICK[1:]}.")
     if study.claims:
         sentences.append(f"{counted(len(study.claims), 'claim').capitalize()} judged: {study.claim_counts}.")
     if study.checks:

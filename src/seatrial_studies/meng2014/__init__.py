@@ -1,4 +1,4 @@
-"""Meng et al. 2014: cloud particle swarm for heave and pitch with a fin, repeated with what is not printed assumed."""
+"""Meng et al. 2014: cloud particle swarm for heave and pitch with a fin, repeated with what our copy lacks assumed."""
 
 import time
 

@@ -68,7 +68,7 @@ class SwarmAlgorithm(StrEnum):
 
 
 class BoxPlacement(Enum):
-    """Where is searched; the paper's box is not printed."""
+    """Where is searched; the paper's box is not in our copy."""
 
     OFF_CENTRE = "±50 %, truth off centre"
     CENTRED = "±10 % about the truth"
@@ -171,8 +171,8 @@ def _unweighted_swarm(iterations: int) -> SwarmFactory:
 def _variant(variant: CloudVariant, iterations: int) -> SwarmFactory:
     whole = CloudSettings(iterations=iterations)
     settings = {
-        CloudVariant.STEADY_WEIGHT: replace(whole, hyper_entropy=0.0),
-        CloudVariant.NO_MUTATION: replace(whole, mutation=0.0),
+        CloudVariant.STEADY_WEIGHT: replace(whole, He=0.0),
+        CloudVariant.NO_MUTATION: replace(whole, p_m=0.0),
     }[variant]
     return partial(CloudParticleSwarm, settings=settings)
 
@@ -221,12 +221,12 @@ def cloud_weight(searches: list[tuple[SearchData, Box]], iterations: int, seed: 
     """Return the weight by formula, and the bands in which the particles of ICPSO's searches are."""
     settings = CloudSettings(iterations=iterations)
     rng = np.random.default_rng([seed, 37])
-    ratio = rng.uniform(settings.a, settings.b, _DRAWS)
-    weight = inertia_weight(ratio, rng.normal(settings.entropy, settings.hyper_entropy, _DRAWS), settings)
+    ratio = rng.uniform(settings.A, settings.B, _DRAWS)
+    weight = inertia_weight(ratio, rng.normal(settings.En, settings.He, _DRAWS), settings)
     low, high = np.quantile(weight, _CENTRAL_95)
-    ends = inertia_weight(np.array([settings.a, settings.b]), np.full(2, settings.entropy), settings)
+    ends = inertia_weight(np.array([settings.A, settings.B]), np.full(2, settings.En), settings)
     ratios = np.concatenate([_fitness_ratios(data, box, settings, [seed, k]) for k, (data, box) in enumerate(searches)])
-    below, above = float(np.mean(ratios < settings.a)), float(np.mean(ratios > settings.b))
+    below, above = float(np.mean(ratios < settings.A)), float(np.mean(ratios > settings.B))
     return CloudWeight(
         (float(ends[0]), float(ends[1])),
         (float(low), float(high)),
@@ -463,7 +463,7 @@ def controllers(
         swarms = {a: reproduction.searches[BoxPlacement.OFF_CENTRE, heading, a] for a in SwarmAlgorithm}
         columns[heading] = {
             **{f"{a}, one run": found.points[0] for a, found in swarms.items()},
-            "PSO by eq. (4) as printed, one run": reproduction.unweighted_searches[heading].points[0],
+            "PSO by eq. (4), the base method, one run": reproduction.unweighted_searches[heading].points[0],
             "ours, one run": truths[heading] * (1.0 + output_error[heading].noisy_errors[0]),
         }
     return pitch_controller_costs(columns, truths, SEA_STATE_3, seed)

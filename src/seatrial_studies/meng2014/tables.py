@@ -25,8 +25,8 @@ from seatrial_studies.meng2014.reproduction import (
 _SYMBOLS = (
     Symbol("z, θ", "heave and pitch", "m, rad", "figures 2 and 3 in cm and degrees; drawn z up, θ bow down"),
     Symbol("m, I5", "mass and pitch moment of inertia, eqs. (1) and (3)", "kg, kg m²", "lost with the equations"),
-    Symbol("F_R, X_R", "lift of the horizontal fin and its lever", "N, m", "not printed"),
-    Symbol("F3, M5", "force and moment of the waves", "N, N m", "not printed"),
+    Symbol("F_R, X_R", "lift of the horizontal fin and its lever", "N, m", "not in our copy"),
+    Symbol("F3, M5", "force and moment of the waves", "N, N m", "not in our copy"),
     Symbol("a33, a35, a53, a55", "added masses", "kg, kg m, kg m, kg m²", "searched"),
     Symbol("b33, b35, b53, b55", "damping", "kg/s, kg m/s, kg m/s, kg m²/s", "searched"),
     Symbol(
@@ -60,35 +60,41 @@ _SYMBOLS = (
     ),
     Symbol("RANDN(a, b)", "normal random number of mean a and deviation b", "as a", "for En′ and x_i"),
     Symbol("rand, p_m", "random number in (0, 1), probability of mutation", "1", "p_m = 0.2"),
-    Symbol("Y_i, dataNum", "observed motions, i = 1 to dataNum their number, eq. (7)", "m, deg", "dataNum not printed"),
+    Symbol(
+        "Y_i, dataNum", "observed motions, i = 1 to dataNum their number, eq. (7)", "m, deg", "dataNum not in our copy"
+    ),
 )
 _ASSUMPTIONS = (
     Assumption("table 1: coefficients and errors", "lost", "nothing; errors of our own searches"),
-    Assumption("ship and coefficients", "not printed", "Qi et al. 2025; at 0 and 45° those of 90°; b53 negative"),
+    Assumption("ship and coefficients", "not in our copy", "Qi et al. 2025; at 0 and 45° those of 90°; b53 negative"),
     Assumption(
         "eqs. (1) to (3)",
-        "lost but for their symbols",
+        "lost in our copy but for their symbols",
         "heave and pitch as Qi et al. 2025 have them, eqs. (1) to (5), the fin's force and moment added",
     ),
-    Assumption("heading of figures 2, 3", "not printed", "135°"),
-    Assumption("box of the searches", "not printed", "±50 % with the truth off centre; compared with ±10 % about it"),
-    Assumption("sea state 3", "no height printed", "0.88 m, ITTC spectrum, 30 equal intervals, random phases"),
-    Assumption("forces of the waves", "not printed", "box-shaped hull in closed form, Jensen, Mansour & Olsen 2004"),
+    Assumption("heading of figures 2, 3", "not in our copy", "135°"),
+    Assumption(
+        "box of the searches", "not in our copy", "±50 % with the truth off centre; compared with ±10 % about it"
+    ),
+    Assumption("sea state 3", "no height given", "0.88 m, ITTC spectrum, 30 equal intervals, random phases"),
+    Assumption(
+        "forces of the waves", "not in our copy", "box-shaped hull in closed form, Jensen, Mansour & Olsen 2004"
+    ),
     Assumption("fin", "±10, no unit, pseudo-random", "±10° held for 1 s; 6 m², lift slope 3/rad, 25 m aft"),
     Assumption("measurement noise", "white, Gaussian, mean 0, no deviation", "the same; 1 cm and 0.02°"),
-    Assumption("record", "number of samples not printed", "200 s, a sample every 0.5 s, from rest, force held"),
+    Assumption("record", "number of samples not in our copy", "200 s, a sample every 0.5 s, from rest, force held"),
     Assumption("fitness, eq. (7)", "lost", "root mean square of heave in m and pitch in degrees"),
     Assumption(
         "law of the weight, eq. (6)",
-        "lost but for its constants",
+        "lost in our copy but for its constants",
         "our form, a normal cloud of the kind ascribed to Wei et al. 2009; unverified",
     ),
     Assumption("mutation", "probability 0.2; law lost", "particles with ratio below B become drops round the best"),
     Assumption("its spread", "lost", "En from 0.1 of the range to 0, He = En / 10"),
-    Assumption("velocity limit", "not printed", "0.2 of the range"),
+    Assumption("velocity limit", "not in our copy", "0.2 of the range"),
     Assumption(
         "PSO compared with",
-        "inertia not printed",
+        "inertia not in our copy",
         "Clerc and Kennedy's constriction values 0.7298, 1.49618, 1.49618; compared with eq. (4) as printed",
     ),
     Assumption(
@@ -96,7 +102,7 @@ _ASSUMPTIONS = (
     ),
 )
 _DEVIATIONS = (
-    Deviation("eq. (4)", "no inertia weight", "w multiplies the velocity", "eq. (6) adjusts one; see the claim"),
+    Deviation("eq. (4)", "the base method, no inertia weight", "w multiplies the velocity", "eq. (6) adjusts one"),
     Deviation("parameters", "twelve listed", "eight searched", "as the paper itself: stiffnesses come from theory"),
     Deviation("truth", "full-scale trials in eq. (7), theory in the text", "theory", "the simulation has no trials"),
     Deviation("waves", "harmonics at ω", "at the frequency of encounter", "the ship makes 18 kn"),
@@ -143,7 +149,7 @@ def _convergence(evidence: CloudSwarmEvidence) -> Table:
     columns: dict[str, dict[int, RepeatedSearches]] = {
         **{str(a): evidence.off_centre(a) for a in SwarmAlgorithm},
         **{str(v): {h: made.variants[v, h] for h in HEADINGS} for v in CloudVariant},
-        "PSO by eq. (4) as printed": made.unweighted_searches,
+        "PSO by eq. (4), the base method": made.unweighted_searches,
     }
     rows, runs = [], len(HEADINGS) * len(next(iter(made.seas.values())))
     for name, searches in columns.items():
@@ -279,7 +285,7 @@ def _curves(evidence: CloudSwarmEvidence) -> list[Figure]:
 def _convergence_figure(evidence: CloudSwarmEvidence) -> Figure:
     made = evidence.reproduction
     swarms = {str(a): evidence.off_centre(a) for a in SwarmAlgorithm}
-    swarms["PSO by eq. (4) as printed"] = made.unweighted_searches
+    swarms["PSO by eq. (4), the base method"] = made.unweighted_searches
     curves = []
     for name, searches in swarms.items():
         excess = _median_excess(evidence, searches)[:_DRAWN_ITERATIONS]

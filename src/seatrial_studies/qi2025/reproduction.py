@@ -315,5 +315,5 @@ def herd_settings(variant: HerdVariant) -> ImprovedHerdSettings:
         HerdVariant.NO_INERTIA: unweighted,
         HerdVariant.NO_COMPETITION: replace(whole, has_competition=False),
         HerdVariant.NO_ADDITION: replace(unweighted, scatter=0.0, has_competition=False),
-        HerdVariant.NO_MATING: replace(whole, crossover=0.0),
+        HerdVariant.NO_MATING: replace(whole, P_C=0.0),
     }[variant]

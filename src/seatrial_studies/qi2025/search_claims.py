@@ -19,6 +19,8 @@ ABOUT_ONE_PERCENT, FAR_BETTER_FACTOR = 1.5, 3.0
 ALLOWED_ERROR = 0.1 + 1e-9
 # relative errors: met exactly up to rounding, and missed; our choice
 EXACT_ERROR, MISSED_ERROR = 1e-9, 1e-3
+INFERENCE = "Not said in words, but implied: "
+"""Before what we read out of the paper's numbers and formulas, and the paper does not claim."""
 OWN_SETTING = (
     f"{SearchSetting.PAPER.value}, each candidate from the true state: not printed, but chosen so that IWHO comes "
     "nearest to the print, and the verdict rests on this choice"
@@ -63,7 +65,7 @@ def one_percent_claim(evidence: WildHorseEvidence) -> Claim:
     tens = [100.0 * float(np.median(runs.tens)) for runs in evidence.reproduction.ten_runs.values()]
     carried = evidence.single_run_errors(SearchSetting.MODEL_STATE, SearchAlgorithm.IWHO)
     return judged_in_settings(
-        "IWHO identifies with errors of about 1 %",
+        "IWHO identifies with errors of about 1 % (abstract, section 4.2)",
         f"a single run is {percent_text(narrow)} off at 90/135/180° in the chosen setting ({evidence.run_count(own)} "
         f"runs each). {degrees} The tables print the "
         f"error of the mean of ten runs, {percent_text(printed_mean_errors())}, "
@@ -93,7 +95,7 @@ def ten_percent_claim(evidence: WildHorseEvidence) -> Claim:
     printed = np.concatenate([printed_error(h, SearchAlgorithm.WHO) for h in HEADINGS])
     largest, beyond = float(printed.max()), int(np.sum(printed > 100.0 * ALLOWED_ERROR))
     return judged_in_settings(
-        "WHO's errors are basically below 10 %, which engineering allows",
+        "WHO's errors are basically below 10 %, which engineering allows (section 4.2)",
         f"printed are up to {largest:.2f} %, and {beyond} of {printed.size} above 10 %. A box of ±10 % about the truth "
         "allows no others: in the chosen setting the largest error of its means of ten is "
         f"{100.0 * worst[SearchSetting.PAPER]:.1f} %. In a box of ±50 % off centre it is "
@@ -112,7 +114,7 @@ def iwho_against_who_claim(evidence: WildHorseEvidence) -> Claim:
     is_kept = _is_far_better(in_degrees[SearchAlgorithm.IWHO], in_degrees[SearchAlgorithm.WHO])
     keeps = _keeps_text(is_kept=is_kept)
     return judged_in_settings(
-        "IWHO is far more accurate than WHO",
+        "IWHO is far more accurate than WHO (section 4.2)",
         f"in the chosen setting single runs are {percent_text(own[SearchAlgorithm.WHO])} off by WHO, "
         f"{percent_text(own[SearchAlgorithm.IWHO])} by IWHO ({evidence.run_count(SearchSetting.PAPER)} runs each at "
         f"90/135/180°). With pitch in degrees it is {percent_text(in_degrees[SearchAlgorithm.WHO])} and "
@@ -131,7 +133,7 @@ def pso_against_iwho_claim(evidence: WildHorseEvidence) -> Claim:
     """Single runs of IWHO three times better than PSO's at every heading."""
     own, elsewhere = (_single_runs(evidence, s) for s in (SearchSetting.PAPER, SearchSetting.WHOLE_OFF_CENTRE))
     return judged_in_settings(
-        "PSO is far less accurate than IWHO",
+        "PSO is far less accurate than IWHO (abstract, section 4.2)",
         f"in the chosen setting single runs are {percent_text(own[SearchAlgorithm.PSO])} off by PSO, "
         f"{percent_text(own[SearchAlgorithm.IWHO])} by IWHO ({evidence.run_count(SearchSetting.PAPER)} runs each). "
         f"{_own_state_text(evidence)} With the whole record and a "
@@ -151,7 +153,7 @@ def pso_against_who_claim(evidence: WildHorseEvidence) -> Claim:
     worse = [f"{h}°" for h, p, w in zip(HEADINGS, pso, who, strict=True) if p > w]
     printed = {a: percent_text([mean_recomputed_error(h, a) for h in HEADINGS]) for a in SearchAlgorithm}
     return Claim(
-        "PSO is less accurate than WHO, some of its errors near 60 %",
+        "PSO is less accurate than WHO, some of its errors near 60 % (section 4.2)",
         Verdict.UNKNOWABLE,
         f"the print's values say so in the mean: recomputed, PSO is {printed[SearchAlgorithm.PSO]} off at 90/135/180°, "
         f"WHO {printed[SearchAlgorithm.WHO]}. Here, in the chosen setting, single runs are {percent_text(pso)} off by "
@@ -191,7 +193,7 @@ def same_conditions_claim(evidence: WildHorseEvidence) -> Claim:
     largest = max(float(np.max(printed_error(h, SearchAlgorithm.PSO))) for h in HEADINGS)
     hit, of = evidence.audit.saturated_values
     return Claim(
-        "The three were compared under the same conditions",
+        f"{INFERENCE}the three were compared in the same box (tables 2 to 4)",
         Verdict.REFUTED if beyond and hit > of / 2 else Verdict.UNKNOWABLE,
         f"{hit} of WHO's {of} values at 90 and 135° are clipped at -10 %, while {beyond} of PSO's {total} lie "
         f"farther out than 10 %, one by {largest:.2f} % as printed. PSO searched a wider box, or was free to leave "
@@ -220,7 +222,7 @@ def global_optimum_claim(evidence: WildHorseEvidence) -> Claim:
     is_drawn = zero[SearchAlgorithm.IWHO] <= EXACT_ERROR and aside[SearchAlgorithm.IWHO] >= MISSED_ERROR
     found_anyway = max(zero[SearchAlgorithm.IWHO], aside[SearchAlgorithm.IWHO]) <= MISSED_ERROR
     return Claim(
-        "IWHO gets out of local optima and finds the global one",
+        "IWHO gets out of local optima and finds the global one (sections 0, 2.2, 2.3)",
         Verdict.REFUTED if is_drawn else Verdict.CONFIRMED if found_anyway else Verdict.UNKNOWABLE,
         "it is exact only where the truth is zero, the middle of the box. Unknowns written as x in [-1, 1], fitness "
         "and box "
@@ -255,6 +257,8 @@ def addition_claim(evidence: WildHorseEvidence, variant: HerdVariant) -> Claim:
         "whole record (eq. 27) and a box off centre "
         f"{texts[elsewhere]}"
     )
+    if evidence.ablation_runs < ABLATION_RUNS:
+        text += f". The whole version has {ABLATION_RUNS} runs and may decide what these do not"
     claim = _ADDITIONS[variant]
     if is_smaller(complete, without):
         if is_smaller(*(evidence.ablation.run_errors(elsewhere, v) for v in (None, variant))):
@@ -276,7 +280,7 @@ def stability_claim(evidence: WildHorseEvidence) -> Claim:
     """Held where the values scatter least over the runs of IWHO at every heading."""
     own, elsewhere = SearchSetting.PAPER, SearchSetting.WHOLE_OFF_CENTRE
     return judged_in_settings(
-        "IWHO identifies more stably than the other two",
+        "IWHO identifies more stably than the other two (section 0)",
         "standard deviation of the values over the runs, relative to the truth, mean over the coefficients, at "
         f"90/135/180°: in the chosen setting {_scatter_text(evidence, own)} ({evidence.run_count(own)} runs each); "
         f"with the whole record and a box off centre {_scatter_text(evidence, elsewhere)} "

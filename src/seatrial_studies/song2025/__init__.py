@@ -20,7 +20,7 @@ from seatrial_studies.song2025.generalisation import (
 from seatrial_studies.song2025.published import CORRECTED, SOURCE, TRUTH, PublishedManoeuvre, reference_record
 from seatrial_studies.song2025.reproduction import cleaning_ablation, reproduce_regressions
 from seatrial_studies.song2025.tables import tables
-from seatrial_studies.song2025.verdicts import SupportVectorEvidence, checks, claims
+from seatrial_studies.song2025.verdicts import SupportVectorEvidence, answer, checks, claims
 
 QUESTION = "Do support vectors identify the coefficients of a waterjet craft from zigzags, and what does better?"
 RUNS = (
@@ -78,6 +78,7 @@ def study(*, quick: bool, seed: int, report_progress: ProgressReporter | None) -
         source=SOURCE,
         title="Support vectors and the coefficients of a waterjet craft: a published pipeline repeated",
         question=QUESTION,
+        answer=answer(evidence),
         claims=claims(evidence),
         checks=checks(evidence),
         tables=tables(evidence),

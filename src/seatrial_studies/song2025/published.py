@@ -174,6 +174,15 @@ def printed_coefficients(column: Table2Column) -> dict[str, float]:
     return dict(zip(COEFFICIENTS, _TABLE_2[column], strict=True))
 
 
+PRINTED_DECIMALS = {Table2Column.CFD: 5, Table2Column.ORIGINAL: 4, Table2Column.IMPROVED: 4}
+"""Decimals with which the columns of table 2 are printed."""
+
+
+def printed_texts(column: Table2Column) -> list[str]:
+    """Return a column of table 2 with the digits of the print."""
+    return [f"{value:.{PRINTED_DECIMALS[column]}f}" for value in _TABLE_2[column]]
+
+
 def printed_differences(column: Table2Column) -> dict[str, float]:
     """Relative differences of a column's printed values from the CFD column's, per cent, with their sign."""
     true = printed_coefficients(Table2Column.CFD)

@@ -13,12 +13,14 @@ from seatrial_studies.song2025.audit import SupportVectorAudit
 from seatrial_studies.song2025.generalisation import CHANNELS, heading_controller_table
 from seatrial_studies.song2025.published import (
     DROPPED_COEFFICIENTS,
+    PRINTED_DECIMALS,
     TABLE_3,
     TABLE_4,
     MotionEquation,
     PublishedManoeuvre,
     Table2Column,
     printed_coefficients,
+    printed_texts,
 )
 from seatrial_studies.song2025.reproduction import BAD_SHARE, SPIKE, EstimatorResult, true_coefficients
 from seatrial_studies.song2025.verdicts import SupportVectorEvidence, percent_text
@@ -316,11 +318,12 @@ def _coefficients(evidence: SupportVectorEvidence) -> Table:
     made = evidence.reproduction
     header = ("coefficient", "CFD, N_v corrected", "paper original", "paper improved", "our original", "our improved",
               "output error, sensor noise")  # fmt: skip
-    columns = [true_coefficients(), *(_printed(c) for c in (Table2Column.ORIGINAL, Table2Column.IMPROVED))]
-    columns += [row.values for row in (*made.published[:2], made.output_error_noisy)]
-    rows: list[tuple[str | float, ...]] = [
-        (name, *(float(c[i]) for c in columns)) for i, name in enumerate(COEFFICIENTS)
+    columns: list[list[str | float]] = [
+        [f"{value:.{PRINTED_DECIMALS[Table2Column.CFD]}f}" for value in true_coefficients()],
+        *(list[str | float](printed_texts(column)) for column in (Table2Column.ORIGINAL, Table2Column.IMPROVED)),
+        *(row.values.tolist() for row in (*made.published[:2], made.output_error_noisy)),
     ]
+    rows: list[tuple[str | float, ...]] = [(name, *(c[i] for c in columns)) for i, name in enumerate(COEFFICIENTS)]
     biases = (_bias(made.published[0]), _bias(made.published[1]))
     rows.append(("bias b, u / v / r", "-", "not printed", "not printed", *biases, "-"))
     return Table(
@@ -389,23 +392,29 @@ def _estimators(evidence: SupportVectorEvidence) -> Table:
 
 
 def _tube_and_penalty(evidence: SupportVectorEvidence) -> Table:
-    rows = [
-        (
-            r.name,
-            100.0 * r.median_error,
-            100.0 * r.largest_error,
-            _wrong_signs(r),
-            "; ".join(f.code for f in r.findings),
-        )
-        for r in (evidence.reproduction.unscaled, *evidence.reproduction.tube_results)
-    ]
+    reproduction = evidence.reproduction
+    rows = [_setting_cells("original, unscaled", reproduction.unscaled)]
+    for setting in reproduction.settings:
+        off = np.abs(setting.distances)
+        is_nearest = " (nearest)" if setting is reproduction.nearest(setting.column) else ""
+        name = f"{setting.column}, {setting.result.name}{is_nearest}"
+        rows.append(_setting_cells(name, setting.result, 100.0 * float(np.median(off)), 100.0 * float(off.max())))
     return Table(
-        "Tube and penalty: support vectors on differenced and centred rows, noise-free",
-        ("setting", "median error %", "largest %", "wrong signs", "findings"),
+        "Tube and penalty: support vectors beside the columns of table 2, noise-free",
+        ("setting", "median error %", "largest %", "wrong signs", "from the print, median %", "largest %", "findings"),
         tuple(rows),
+        "From the print: magnitudes of ours less those of the column, over the truth; the nearest by their root mean "
+        "square. Neither C nor the tube is printed. "
         "A tube of 0.1 standard deviations is an error of that size nobody sees; a smaller one comes near least "
         "squares on the same rows and does not pass it, because Euler's derivative remains. First row: Euler, unscaled",
     )
+
+
+def _setting_cells(name: str, result: EstimatorResult, *from_print: float) -> tuple[str | float, ...]:
+    """Cells of one setting of the support vectors."""
+    codes = "; ".join(f.code for f in result.findings)
+    distances = from_print or ("", "")
+    return name, 100.0 * result.median_error, 100.0 * result.largest_error, _wrong_signs(result), *distances, codes
 
 
 def _wrong_signs(row: EstimatorResult) -> float:
@@ -474,7 +483,7 @@ def _sensitivity(evidence: SupportVectorEvidence) -> Table:
 def _conditions(evidence: SupportVectorEvidence) -> Table:
     known = evidence.audit.table_3_conditions
     rows = [
-        (_EQUATION_NAMES[e], TABLE_3[e], known.labels_exchanged[e], known.plain[e], known.improved[e])
+        (_EQUATION_NAMES[e], f"{TABLE_3[e]}", f"{known.labels_exchanged[e]}", known.plain[e], known.improved[e])
         for e in MotionEquation
     ]
     return Table(
@@ -494,7 +503,7 @@ def _accuracy(evidence: SupportVectorEvidence) -> Table:
         for c in CHANNELS:
             rmse = (a.rmse[c] if a else None for a in (column, own))
             cc = (a.cc[c] if a else None for a in (column, own))
-            rows.append((f"{run}, {c}", said.rmse[c], *rmse, said.cc[c], *cc))
+            rows.append((f"{run}, {c}", f"{said.rmse[c]:.4f}", *rmse, f"{said.cc[c]:.4f}", *cc))
     return Table(
         "Table 4: predictions on the truth's nozzle history",
         ("run", "RMSE: printed", "paper's column", "ours", "CC: printed", "paper's column", "ours"),

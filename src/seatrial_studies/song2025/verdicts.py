@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.results import Check, Claim, Verdict
+from seatrial.data.example_series import SENSOR_NOISE
 from seatrial.physics.models import WATERJET_COEFFICIENTS as COEFFICIENTS
 from seatrial_studies.controller_cost import ControllerCost
 from seatrial_studies.song2025.audit import SupportVectorAudit
@@ -79,8 +80,9 @@ def percent_text(value: float) -> str:
     return f"{share:.0f} %" if share >= 1000.0 else f"{share:.3g} %"
 
 
-# limits of our own verdicts and checks: relative errors, a correlation that is good, a loss of it that goes unnoticed
-CENTRAL_LIMIT, EXACT_LIMIT, NEAR_LIMIT, GOOD_CC, UNNOTICED_CC_LOSS = 1e-3, 1e-8, 0.05, 0.98, 1e-4
+# limits of our own verdicts and checks: relative errors, the last two near and far; a correlation that is good, a
+# loss of it that goes unnoticed
+CENTRAL_LIMIT, EXACT_LIMIT, NEAR_LIMIT, FAR_LIMIT, GOOD_CC, UNNOTICED_CC_LOSS = 1e-3, 1e-8, 0.05, 0.1, 0.98, 1e-4
 # a condition number that is severe (Belsley, Kuh & Welsch 1980: 30 squared), a sensitivity that is slight
 SEVERE_CONDITION, SLIGHT_SENSITIVITY = 900.0, 0.05
 # factor by which errors may grow from half to twice the speed and still count as alike; our choice
@@ -109,9 +111,17 @@ def _statement_text(key: str) -> str:
     return f"{said.text} ({said.source})"
 
 
+SENSORS_TEXT = (
+    f"white noise of {SENSOR_NOISE['u']:g} m/s in u and v and {np.degrees(SENSOR_NOISE['r']):g}°/s in r at 10 Hz"
+)
+"""The sensors that are assumed, in words."""
+
+
 def _accuracy_claim(evidence: SupportVectorEvidence) -> Claim:
     original, improved, *_ = evidence.reproduction.published
     printed = np.abs([abs(v) / abs(t) - 1.0 for v, t in _improved_and_true()])
+    off = [name for name, error in zip(COEFFICIENTS, printed, strict=True) if error > FAR_LIMIT]
+    is_accurate, is_accurate_throughout = np.median(printed) <= NEAR_LIMIT, printed.max() <= NEAR_LIMIT
     euler, differenced, central, machine = (
         percent_text(_result_named(evidence.reproduction.noise_free_results, name).largest_error)
         for name in (
@@ -123,14 +133,36 @@ def _accuracy_claim(evidence: SupportVectorEvidence) -> Claim:
     )
     return Claim(
         _statement_text("accurate"),
-        Verdict.REFUTED if improved.largest_error > NEAR_LIMIT and printed.max() > NEAR_LIMIT else Verdict.CONFIRMED,
-        f"the paper's own improved column misses by up to {percent_text(printed.max())} in magnitude, on "
-        "simulated data "
-        f"without noise; ours, with scikit-learn's C and tube, by {percent_text(improved.largest_error)} (original "
-        f"{percent_text(original.largest_error)}, {_wrong_signs(original)} wrong signs). Least squares misses "
+        Verdict.CONFIRMED
+        if is_accurate_throughout
+        else Verdict.HOLDS_IN_OWN_SETTING
+        if is_accurate
+        else Verdict.REFUTED,
+        f"the paper's own improved column is {percent_text(float(np.median(printed)))} off in the median and "
+        f"{percent_text(printed.max())} at worst, in magnitude, on simulated data without noise. Ours, with "
+        f"scikit-learn's C and tube, is {percent_text(improved.median_error)} off in the median and "
+        f"{percent_text(improved.largest_error)} at worst (original {percent_text(original.median_error)} and "
+        f"{percent_text(original.largest_error)}, {_wrong_signs(original)} wrong signs). {_nearest_text(evidence)} "
+        "Least squares misses at worst "
         f"by {euler} on Euler rows of the same series, {differenced} differenced and centred, {central} on central "
         f"differences, where support vectors miss by {machine}: derivative, tube and penalty all cost",
+        f"in the median, without noise; not {', '.join(off)}, of which section 3.1 says that errors remain"
+        if is_accurate and not is_accurate_throughout
+        else "",
     )
+
+
+def _nearest_text(evidence: SupportVectorEvidence) -> str:
+    """Return which penalty and tube come nearest to the printed columns, and how near."""
+    reproduction, parts = evidence.reproduction, list[str]()
+    for column in (Table2Column.IMPROVED, Table2Column.ORIGINAL):
+        near = reproduction.nearest(column)
+        off = np.abs(near.distances)
+        parts.append(
+            f"{column} C = {near.C:g}, tube {near.tube:g}, {percent_text(float(np.median(off)))} of the truth from it "
+            f"in the median and {percent_text(float(off.max()))} at worst"
+        )
+    return f"Of {len(reproduction.settings) // 2} settings the nearest to the print: {'; '.join(parts)}."
 
 
 def _improved_and_true() -> list[tuple[float, float]]:
@@ -228,11 +260,18 @@ def _prediction_claim(evidence: SupportVectorEvidence) -> Claim:
     sees = max(evidence.discrimination.cc_loss.values()) > UNNOTICED_CC_LOSS
     return Claim(
         _statement_text("predicts"),
-        Verdict.CONFIRMED if min(least.values()) > GOOD_CC and sees else Verdict.UNKNOWABLE,
+        Verdict.UNKNOWABLE
+        if min(least.values()) <= GOOD_CC
+        else Verdict.CONFIRMED
+        if sees
+        else Verdict.HOLDS_IN_OWN_SETTING,
         "with both signs corrected the improved column's least CC on the truth's nozzle history is "
         + ", ".join(f"{cc:.4f} ({run})" for run, cc in least.items())
         + "; as printed no column finishes a zigzag. But CC and RMSE do not see coefficients that are 100 % off, "
         "and prediction was judged on the craft and model that made the data",
+        "the craft and model that made the data, both signs of table 2 corrected"
+        if min(least.values()) > GOOD_CC and not sees
+        else "",
     )
 
 
@@ -240,9 +279,9 @@ def _robustness_claim(evidence: SupportVectorEvidence) -> Claim:
     noisy = evidence.reproduction.published[3]
     return Claim(
         _statement_text("robust"),
-        Verdict.REFUTED if noisy.median_error > 1.0 else Verdict.CONFIRMED,
-        f"the paper tests no noise; with a craft's sensors the pipeline's median error is "
-        f"{percent_text(noisy.median_error)}, "
+        Verdict.UNKNOWABLE,
+        "against what is not said, and the paper tests no noise. Assumed here are sensors with "
+        f"{SENSORS_TEXT}. With these the pipeline's median error is {percent_text(noisy.median_error)}, "
         f"the best regression's in this series {percent_text(evidence.best_regression().median_error)} "
         f"({evidence.best_regression().name}), "
         f"output error's {percent_text(evidence.reproduction.output_error_noisy.median_error)}",
@@ -329,4 +368,29 @@ def checks(evidence: SupportVectorEvidence) -> tuple[Check, ...]:
             f"{len(evidence.audit.sign_checks)}",
             all(h.confirms_misprints for h in evidence.audit.sign_checks),
         ),
+    )
+
+
+# What the page answers to its question, from the numbers of the verdicts.
+
+
+def answer(evidence: SupportVectorEvidence) -> tuple[str, ...]:
+    """Return the sentences, the most important first."""
+    reproduction = evidence.reproduction
+    printed = np.abs([abs(v) / abs(t) - 1.0 for v, t in _improved_and_true()])
+    worst = COEFFICIENTS[int(np.argmax(printed))]
+    near = reproduction.nearest(Table2Column.IMPROVED)
+    central = _result_named(reproduction.noise_free_results, "central differences, least squares")
+    return (
+        "On simulated data without noise most of them: the paper's improved column is "
+        f"{percent_text(float(np.median(printed)))} off in the median and {percent_text(float(printed.max()))} in "
+        f"{worst}. Nearest to that column comes C = {near.C:g} with a tube of {near.tube:g} standard deviations, where "
+        f"the pipeline is {percent_text(near.result.median_error)} off in the median and "
+        f"{percent_text(near.result.largest_error)} at worst.",
+        f"Least squares on central differences of the same series misses by {percent_text(central.largest_error)} at "
+        "worst.",
+        f"The paper tests no noise. Assumed here are sensors with {SENSORS_TEXT}. With these the pipeline is "
+        f"{percent_text(reproduction.published[3].median_error)} off in the median, the best regression "
+        f"{percent_text(evidence.best_regression().median_error)}, output error "
+        f"{percent_text(reproduction.output_error_noisy.median_error)}.",
     )

@@ -22,6 +22,7 @@ from seatrial_studies.yu2014.searches import (
     QUICK_SEEDS,
     SEEDS,
     SETTINGS,
+    compare_weights,
     design_five_gains,
     joint_optimum,
     least_ratio_in_row,
@@ -31,7 +32,7 @@ from seatrial_studies.yu2014.searches import (
     time_domain_seconds,
 )
 from seatrial_studies.yu2014.tables import figures, tables
-from seatrial_studies.yu2014.verdicts import FinGainEvidence, checks, claims, responses_at_table_1
+from seatrial_studies.yu2014.verdicts import FinGainEvidence, answer, checks, claims, responses_at_table_1
 
 QUESTION = "Does a genetic algorithm find the gains of a fin stabiliser that save most energy, and what beats them?"
 # fin-rate variance allowed, over the paper's; our choice
@@ -54,6 +55,7 @@ def study(*, quick: bool, seed: int, report_progress: ProgressReporter | None) -
         source=SOURCE,
         title="Three gains of a fin stabiliser: a published genetic algorithm repeated",
         question=QUESTION,
+        answer=answer(evidence),
         claims=claims(evidence),
         checks=checks(evidence),
         tables=tables(evidence),
@@ -75,6 +77,8 @@ def _evidence(*, quick: bool, seed: int, report: ProgressReporter) -> FinGainEvi
     regulators = {r: regulator_settings(r) for r in Preamplifier}
     report("the published search")
     searched = tuple(search_over_seeds(setting, QUICK_SEEDS if quick else SEEDS, seed) for setting in SETTINGS)
+    report("the published search with fixed weights")
+    weights = {r: compare_weights(r, seed) for r in Preamplifier}
     report("one search for all six conditions")
     joint = {r: joint_optimum(r, QUICK_SEEDS, seed) for r in Preamplifier}
     if not quick:
@@ -99,6 +103,7 @@ def _evidence(*, quick: bool, seed: int, report: ProgressReporter) -> FinGainEvi
         histories=simulate_histories(best, seed),
         rms_variation=rms_variation(best.preamplifier),
         searches=searched,
+        weights=weights,
         time_domain_seconds=time_domain_seconds(seed),
         energy=energies[fits.index(best)],
         fitted_energies=energies,

@@ -16,17 +16,20 @@ from seatrial.numerics.optimise import (
     EvolutionSettings,
     GeneticSettings,
     Normaliser,
+    hypervolume,
     non_dominated,
     search,
 )
 from seatrial.physics.loops import Performance, Preamplifier, five_gain_loop, state_space
 from seatrial.physics.sea import Spacing, bretschneider, ittc, jonswap, realise
 from seatrial.physics.simulate import loop_record
+from seatrial_studies.heave_pitch_search import is_smaller
 from seatrial_studies.yu2014.published import (
     DESIGN_SEA,
     HEIGHT,
     KNOT,
     LOWER,
+    PUBLISHED_LOOP,
     PUBLISHED_VALUES,
     RECORD_SECONDS,
     STEP,
@@ -141,6 +144,62 @@ def _search(loop_performance: Performance, setting: GeneticSearchSetting, genera
     return genetic_run(objectives, BOX, GeneticSettings(bits=BITS, normaliser=setting.normaliser), generator)
 
 
+@dataclass(frozen=True, eq=False)
+class WeightComparison:
+    """The published search with random weights and with fixed, equal ones, from the same first generations.
+
+    Attributes:
+        J: mean of the normalised objectives of the answer, random and fixed, (2, n).
+        volume: what the points evaluated dominate of the box from zero to twice the objectives of the paper's gains, as
+            a share of it, (2, n).
+    """
+
+    preamplifier: Preamplifier
+    J: Array
+    volume: Array
+
+    def count_better(self) -> tuple[int, int]:
+        """Return in how many pairs random weights have the smaller J, and in how many the larger volume."""
+        return int(np.sum(self.J[0] < self.J[1])), int(np.sum(self.volume[0] > self.volume[1]))
+
+    @property
+    def is_better(self) -> bool:
+        """Whether random weights are better in both by a sign test."""
+        return is_smaller(*self.J) and is_smaller(*-self.volume)
+
+    @property
+    def is_worse(self) -> bool:
+        """Whether fixed weights are better in both by a sign test."""
+        return is_smaller(*self.J[::-1]) and is_smaller(*-self.volume[::-1])
+
+
+def compare_weights(preamplifier: Preamplifier, seed: int) -> WeightComparison:
+    """Run the search of each seed twice: weights drawn anew every generation, eq. (6), and equal ones throughout."""
+    loop = performance(preamplifier)
+
+    def objectives(gains: Array) -> Array:
+        return objective_values(loop.evaluate(gains, with_Ms=False).variances, FinObjective.PRINTED)
+
+    corner = _CORNER * objectives(PUBLISHED_VALUES[None])[0]
+    runs = [
+        [
+            genetic_run(
+                objectives, BOX, GeneticSettings(bits=BITS, largest_weight=most), np.random.default_rng([seed, k])
+            )
+            for k in range(SEEDS)
+        ]
+        for most in (GeneticSettings.largest_weight, 1)  # integers from 1 to 1: equal weights
+    ]
+    volumes = [[_dominated_share(run.front.objectives, corner) for run in pair] for pair in runs]
+    return WeightComparison(preamplifier, np.array([[run.J for run in pair] for pair in runs]), np.array(volumes))
+
+
+def _dominated_share(objectives: Array, corner: Array) -> float:
+    """What points (n, m) dominate of the box from zero to a corner (m,), as a share of it."""
+    inside = objectives[np.all(objectives < corner, axis=1)] / corner
+    return hypervolume(inside, np.ones(len(corner))) if len(inside) else 0.0
+
+
 def time_domain_seconds(seed: int) -> tuple[float, float]:
     """CPU time [s] one search takes with a record of 1000 s at 0.1 s for each gain set, exact zero-order hold.
 
@@ -168,6 +227,9 @@ HELD_OUT_SEAS = (
     SeaCondition(heading=45.0, name="ITTC 3.3 m, long-crested, 45°"),
 )
 _INFEASIBLE_COST = 10.0
+_MOST_RATE = 1e6  # rad^2/s^2, in the place of infinity
+_CORNER = 2.0  # of a box of objectives, over those of the paper's gains, which may lie on the front; chosen
+_BAND = (0.05, 0.95)  # shares of the energy: ends of a band that holds 90 % of it; chosen
 FIVE_FREE, THREE_FREE = np.ones(5), np.array([1.0, 1.0, 1.0, 0.0, 0.0])
 
 
@@ -199,6 +261,24 @@ class FiveGainComparison:
     reduction: float
 
 
+@dataclass(frozen=True)
+class HardestSea:
+    """Why five gains leave most of the roll in one sea.
+
+    Attributes:
+        band, design_band: rad/s, between which 90 % of the roll's energy is met there and in the sea of the search.
+        natural: rad/s, of the roll.
+        least_ratio: roll variance over the paper's that five gains tuned in that sea alone leave, at Ms <= 2 and no
+            more fin rate than the paper's.
+    """
+
+    sea: SeaCondition
+    band: tuple[float, float]
+    design_band: tuple[float, float]
+    natural: float
+    least_ratio: float
+
+
 @dataclass(frozen=True, eq=False)
 class FiveGainDesign:
     """The controller with five gains, washout.
@@ -206,7 +286,7 @@ class FiveGainDesign:
     Attributes:
         gains: (5,).
         design_seas: results in the two seas of the search.
-        held_out_seas: results in others.
+        held_out_seas: results in others; hardest: of that with the largest roll variance over the paper's.
         three_gains: what three gains reach, in the same two seas and under the same limits.
         rate_ratios: fin-rate variance allowed, over the paper's, (k,).
         roll_ratios: by number of gains, worst roll variance over the paper's in both seas at these rates, (k,).
@@ -217,6 +297,7 @@ class FiveGainDesign:
     design_seas: tuple[FiveGainComparison, ...]
     held_out_seas: tuple[FiveGainComparison, ...]
     three_gains: tuple[FiveGainComparison, ...]
+    hardest: "HardestSea"
     rate_ratios: Array
     roll_ratios: dict[int, Array]
 
@@ -245,9 +326,38 @@ def design_five_gains(seed: int, rates: Array) -> FiveGainDesign:
         compare_in_design_seas(gains),
         held_out,
         compare_in_design_seas(plain),
+        hardest_sea(
+            reading, max(held_out, key=lambda compared: compared.roll_ratio).sea, np.random.default_rng([seed, 6])
+        ),
         rates,
         roll,
     )
+
+
+def hardest_sea(preamplifier: Preamplifier, sea: SeaCondition, generator: np.random.Generator) -> HardestSea:
+    """Return where the waves of a sea are met, and what five gains can do in it."""
+    roll, loop = PUBLISHED_LOOP.disturbance, _five_gain_performance(preamplifier, sea)
+    paper = performance(preamplifier, sea).evaluate(PUBLISHED_VALUES).variances[0]
+
+    def cost(points: Array) -> Array:
+        evaluated = loop.evaluate(points)
+        rate = np.minimum(evaluated.variances[:, 2], _MOST_RATE) / paper[2] - 1.0
+        over = np.maximum(rate, evaluated.Ms - MS_LIMIT)
+        return np.where(over > 0.0, _INFEASIBLE_COST + over, evaluated.variances[:, 0] / paper[0])
+
+    least = float(cost(_minimise(five_gain_box(preamplifier), cost, generator)[None])[0])
+    natural = float(np.sqrt(roll.den[-1] / roll.den[0]))
+    return HardestSea(sea, _roll_band(preamplifier, sea), _roll_band(preamplifier, DESIGN_SEA), natural, least)
+
+
+def _roll_band(preamplifier: Preamplifier, sea: SeaCondition) -> tuple[float, float]:
+    """Frequencies of encounter [rad/s] between which 90 % of the energy of the roll lies, with the paper's gains."""
+    slope, loop = effective_slope(sea), performance(preamplifier, sea).loop
+    response = loop.disturbance.frequency_response(slope.omega_e) / (1.0 + loop.open_loop(slope.omega_e))
+    order = np.argsort(slope.omega_e)
+    share = np.cumsum((np.abs(response) ** 2 * slope.energy)[order])
+    ends = [order[int(np.searchsorted(share, q * share[-1]))] for q in _BAND]
+    return float(slope.omega_e[ends[0]]), float(slope.omega_e[ends[1]])
 
 
 def least_ratio_in_row(preamplifier: Preamplifier, row: Table1Row, generator: np.random.Generator) -> float:

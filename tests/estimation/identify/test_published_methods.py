@@ -19,6 +19,7 @@ from seatrial.data.trial import (
     SEARCHES,
     EstimateMethod,
     EstimateSettings,
+    OwnEstimate,
     SearchFitness,
     SearchSettings,
     Trial,
@@ -28,7 +29,9 @@ from seatrial.estimation.identify import baselines, identify
 from seatrial.estimation.identify import search as search_problem
 from seatrial.estimation.identify import search as search_strategy
 from seatrial.estimation.identify.identification import Situation
+from seatrial.estimation.identify.search import search_findings
 from seatrial.estimation.regress import estimator_named
+from seatrial.reporting.page import html
 
 FEW = SearchSettings(population=12, iterations=6, restarts=2)
 
@@ -143,7 +146,7 @@ def test_a_search_of_a_nonlinear_model_minimises_the_rms_over_the_record(reposit
 def test_a_regression_gives_the_values_of_its_estimator_and_names_those_beyond_bounds(repository: Path) -> None:
     fit = identify(example(repository, "waterjet", EstimateMethod.OLS, None))
     beyond = {p.name for p in fit.model.parameters.free if not p.lower <= p.value <= p.upper}
-    assert beyond == {f.message.split()[4] for f in fit.findings if f.code == "outside-bounds"}
+    assert beyond == {f.message.split()[3] for f in fit.findings if f.code == "outside-bounds"}
     training = [p.measured for p in fit.predictions if p.role == "training"]
     named = estimator_named("central differences, least squares", 1.0).estimate(fit.model, training)
     np.testing.assert_allclose(list(fit.params.values()), named.values, rtol=1e-9)
@@ -260,3 +263,56 @@ def test_channels_count_by_their_noise_where_all_are_stated(repository: Path) ->
     assert search_problem.channel_weights(noisy, ("z", "theta"), measured) == {"z": 0.01, "theta": 0.002}
     half = replace(trial, noise={"z": 0.01})
     assert search_problem.channel_weights(half, ("z", "theta"), measured) == spread
+
+
+def test_without_the_own_estimate_a_method_stands_alone(repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(identify.__globals__, "STRATEGIES", {})  # no estimate of the package's own can be made
+    trial = example(repository, "heave_pitch", EstimateMethod.IWHO)
+    alone = identify(replace(trial, estimate=replace(trial.estimate, own_estimate=OwnEstimate.NONE)), seed=3)
+    assert alone.reference is None and alone.search is not None
+    assert alone.params == dict(zip(trial.model.parameters.free_names, alone.solution.point.tolist(), strict=True))
+    assert {p.role for p in alone.predictions} == {"training", "validation"}
+    training = [p for p in alone.predictions if p.role == "training"]
+    weights = alone.search.weights
+    squares = [((p.simulated[n] - p.measured[n]) / weights[n]) ** 2 for p in training for n in weights]
+    assert np.sqrt(np.nanmean(np.concatenate(squares))) == pytest.approx(alone.search.history[-1], rel=1e-6)
+    assert "The package’s own estimate was not made" in html(alone)
+
+
+@pytest.mark.usefixtures("kept_own")
+def test_a_method_may_run_before_the_own_estimate_and_its_findings_say_whose_they_are(
+    repository: Path, own: Fit
+) -> None:
+    trial, lines = example(repository, "heave_pitch", EstimateMethod.IWHO), list[str]()
+    first_method = replace(trial, estimate=replace(trial.estimate, own_estimate=OwnEstimate.AFTER))
+    fit = identify(first_method, seed=3, report_progress=lines.append)
+    alone = identify(replace(trial, estimate=replace(trial.estimate, own_estimate=OwnEstimate.NONE)), seed=3)
+    assert fit.params == alone.params
+    assert fit.reference is not None and fit.reference.coefficients == own.coefficients
+    assert any(line.startswith("iwho: a33 ") for line in lines)
+    owners = {f.message.split(":")[0] for f in fit.findings if f.code in {one.code for one in own.findings}}
+    assert owners <= {"own estimate", "method iwho"} | {f.message.split(":")[0] for f in own.findings}
+    assert {f.message.split(":")[0] for f in fit.findings if f.code == "bound-hit"} <= {"method iwho"}
+
+
+def test_a_method_takes_the_constants_that_its_source_names(repository: Path) -> None:
+    trial = example(
+        repository, "heave_pitch", EstimateMethod.IWHO, replace(FEW, constants={"P_S": 0.4, "omega_max": 0.7})
+    )
+    alone = identify(replace(trial, estimate=replace(trial.estimate, own_estimate=OwnEstimate.NONE)))
+    assert alone.method.settings | {"P_S": 0.4, "P_C": 0.13, "omega_min": 0.1, "omega_max": 0.7, "scatter": 0.05} == (
+        alone.method.settings
+    )
+    with pytest.raises(
+        InputError, match=r"\[estimate.search\]: the improved wild horse optimiser has no constant 'A'; "
+    ):
+        identify(example(repository, "heave_pitch", EstimateMethod.IWHO, replace(FEW, constants={"A": 0.4})))
+
+
+def test_one_sample_an_iteration_advises_no_wider_bounds(horses: Fit) -> None:
+    assert horses.search is not None
+    bounds = {name: (value, value + 1.0) for name, value in horses.params.items()}
+    on_ends, point = replace(horses.search, bounds=bounds), horses.solution.point
+    assert {f.advice for f in search_findings(on_ends, point, 2)} == {"widen its range under [estimate.search.bounds]"}
+    for finding in search_findings(replace(on_ends, fitness="sample"), point, 2):
+        assert "widen" not in finding.advice and 'fitness = "record"' in finding.advice

@@ -153,7 +153,7 @@ def test_too_small_a_search_is_refused(kind: str, population: int, iterations: i
     [
         (lambda: SwarmSettings(omega=np.nan), "Setting omega is nan"),
         (lambda: SwarmSettings(c2=np.inf), "Setting c2 is inf"),
-        (lambda: HerdSettings(stallions=np.nan), "Setting stallions is nan"),
+        (lambda: HerdSettings(P_S=np.nan), "Setting P_S is nan"),
         (lambda: ImprovedHerdSettings(omega_max=np.inf), "Setting omega_max is inf"),
         (lambda: CloudSettings(w1=np.nan), "Setting w1 is nan"),
         (lambda: CloudSettings(spread=-0.1), "Setting spread is the width of a normal law, not -0.1"),

@@ -1,5 +1,7 @@
 """Optimisers by name: every one keeps its box and its budget, with the settings of its source."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -54,3 +56,24 @@ def test_a_built_in_name_makes_an_optimiser_in_its_box(name: str, rng: np.random
 def test_an_unknown_name_lists_those_that_are_known() -> None:
     with pytest.raises(SearchError, match=f"no optimiser 'simplex'; known are .*{min(OPTIMISERS)}"):
         optimiser_named("simplex")
+
+
+@pytest.mark.parametrize("method", sorted(SEARCH_METHODS))
+def test_constants_of_a_source_are_settings_of_its_search(method: str) -> None:
+    row = SEARCH_METHODS[method]
+    defaults = row.constant_values(SearchBudget(12, 5))
+    assert set(defaults) == set(row.constants) and all(row.constants.values())
+    for name, value in defaults.items():
+        factory = row.within(SearchBudget(12, 5, constants={name: 0.9 * value}))
+        assert getattr(factory.keywords["settings"], name) == 0.9 * value  # type: ignore[attr-defined]
+    with pytest.raises(SearchError, match="has no constant 'P_Z'; it has "):
+        row.within(SearchBudget(12, 5, constants={"P_Z": 0.1}))
+
+
+@pytest.mark.parametrize("method", sorted(SEARCH_METHODS))
+def test_the_page_on_methods_has_each_constant_with_its_default(repository: Path, method: str) -> None:
+    page = (repository / "docs" / "published-methods.md").read_text(encoding="utf-8")
+    table = page.split("| method | constants and defaults |")[1].split("\n\n")[0]
+    row = next(line for line in table.splitlines() if line.startswith(f"| `{method}` |"))
+    for name, value in SEARCH_METHODS[method].constant_values(SearchBudget(12, 5)).items():
+        assert f"`{name}` {value:.6g}" in row

@@ -42,7 +42,7 @@ class Shown(CloudParticleSwarm):
 
 
 def test_weights_by_the_ratio_of_fitness() -> None:
-    swarm = Shown(BOX, np.random.default_rng(1), CloudSettings(population=6, hyper_entropy=0.0))
+    swarm = Shown(BOX, np.random.default_rng(1), CloudSettings(population=6, He=0.0))
     swarm.ask()
     swarm.tell(np.array([1.0, 1.05, 1.1, 2.0, 6.0, np.inf]))
     ratio = 1 / np.array([1.1, 2.0, 6.0])
@@ -59,7 +59,7 @@ def test_a_perfect_particle_is_good_and_the_others_are_bad() -> None:
 
 def test_only_particles_that_are_not_good_become_drops_round_the_best() -> None:
     still = {"population": 40, "c1": 0.0, "c2": 0.0, "w1": 0.0, "w2": 0.0}
-    swarm = CloudParticleSwarm(BOX, np.random.default_rng(2), CloudSettings(**still, mutation=1.0, spread=1e-6))
+    swarm = CloudParticleSwarm(BOX, np.random.default_rng(2), CloudSettings(**still, p_m=1.0, spread=1e-6))
     before = swarm.ask().copy()
     fitness = np.where(np.arange(40) % 2 == 0, 1.0, 2.0)
     swarm.tell(fitness)

@@ -171,7 +171,7 @@ def test_strides_of_the_reference_follow_from_z() -> None:
 
 
 def test_scattering_draws_one_horse_in_twenty_from_the_whole_box() -> None:
-    settings = ImprovedHerdSettings(4000, 200, crossover=0.0)
+    settings = ImprovedHerdSettings(4000, 200, P_C=0.0)
     horses = ImprovedWildHorse(BOX, np.random.default_rng(0), settings)
     point = (BOX.lower + 0.25 * BOX.width).copy()
     for _ in range(2):
@@ -188,7 +188,7 @@ def test_a_herd_without_enough_groups_or_foals_is_refused(population: int, share
 
 
 def test_a_foal_mates_with_two_other_groups() -> None:
-    horses = WildHorse(BOX, np.random.default_rng(0), HerdSettings(13, 200, crossover=1.0))
+    horses = WildHorse(BOX, np.random.default_rng(0), HerdSettings(13, 200, P_C=1.0))
     horses.ask()
     horses.tell(Landscape(rastrigin, LEAST)(horses.ask()))
     worst = {}

@@ -51,6 +51,7 @@ from seatrial.core.equations import Model
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import InputError, spelling_hint
 from seatrial.core.values.files import parse_toml, read_table_text, refuse_absurd_numbers
+from seatrial.data.folder.model_file import ModelFile
 from seatrial.data.trial.amounts import schema_error
 from seatrial.physics.loops import ActuatorDrive, Block, Objective, Sampling, TransferLoop
 from seatrial.physics.loops.discrete import default_sample_time, ringing_blocks, round_sample_time
@@ -80,12 +81,12 @@ def parse_loop(path: Path) -> LoopFile:
         raise schema_error(error, LoopFile, str(path)) from None
 
 
-def tuning_task(path: Path, own_model: Model | None = None, model_file: Path | None = None) -> TuningTask:
+def tuning_task(path: Path, own_model: Model | None = None, model_file: Path | ModelFile | None = None) -> TuningTask:
     """Return the tuning that a loop file asks for.
 
     Args:
         own_model: equations of a model file that are not built in.
-        model_file: takes the place of the one that `[plant] model` names.
+        model_file: takes the place of the one that `[plant] model` names: its path, or what it holds.
     """
     file = parse_loop(path)
     try:

@@ -118,7 +118,7 @@ class LoopPlant:
 
 
 def plant_from_table(
-    table: PlantTable, home: Path, own_model: Model | None = None, model_file: Path | None = None
+    table: PlantTable, home: Path, own_model: Model | None = None, model_file: Path | ModelFile | None = None
 ) -> LoopPlant:
     """Return the plant that the table describes.
 
@@ -142,7 +142,12 @@ def plant_from_table(
 
 
 def plant_at_speed(
-    table: PlantTable, plant: LoopPlant, U: float, home: Path, own_model: Model | None, model_file: Path | None
+    table: PlantTable,
+    plant: LoopPlant,
+    U: float,
+    home: Path,
+    own_model: Model | None,
+    model_file: Path | ModelFile | None,
 ) -> LoopPlant:
     """Return the plant of the table at another speed [m/s]: trimmed there with surge in the model, else by similarity.
 
@@ -239,8 +244,9 @@ def _fin_effect(table: FinTable, known_K_alpha: float, U: float) -> tuple[float,
     return K_alpha, law, f"fins worth {K_alpha:.4g} rad of wave slope for each radian at {U * _KNOTS:.3g} kn, {how}"
 
 
-def _plant_of_model(table: PlantTable, path: Path, own_model: Model | None) -> LoopPlant:
-    file = read_model_file(path, own_model)
+def _plant_of_model(table: PlantTable, source: Path | ModelFile, own_model: Model | None) -> LoopPlant:
+    file = source if isinstance(source, ModelFile) else read_model_file(source, own_model)
+    path = Path("model.toml") if isinstance(source, ModelFile) else source  # as messages name it
     if table.scale is not None:
         file = model_at_scale(file, table.scale)
     craft = file if file.model.has_thrusters else None

@@ -105,7 +105,7 @@ def _text(value: float | None) -> str:
 OWN_NAME = "seatrial"
 """What the tables call the package's own estimate."""
 # significant digits of estimates, of other numbers
-_DIGITS, _FEW_DIGITS = 5, 3
+ESTIMATE_DIGITS, _FEW_DIGITS = 5, 3
 
 
 @dataclass(frozen=True)
@@ -127,9 +127,10 @@ def coefficient_comparison(fit: Fit, reference: ReferenceEstimate) -> Comparison
     header = ("coefficient", fit.method.name, *(["scatter"] if scatter else []), OWN_NAME, *interval_header,
               *(["known"] if has_truth else []), "unit")  # fmt: skip
     rows = [
-        (c.name, exact(c.estimate, _DIGITS), *([significant(scatter[c.name], 2)] if scatter else []),
-         exact(compared[c.name].estimate, _DIGITS), *(_interval_cells(c, compared[c.name]) if has_intervals else ()),
-         *([exact(c.truth, _DIGITS)] if has_truth else []), c.unit if c.unit != "1" else "")
+        (c.name, exact(c.estimate, ESTIMATE_DIGITS), *([significant(scatter[c.name], 2)] if scatter else []),
+         exact(compared[c.name].estimate, ESTIMATE_DIGITS),
+         *(_interval_cells(c, compared[c.name]) if has_intervals else ()),
+         *([exact(c.truth, ESTIMATE_DIGITS)] if has_truth else []), c.unit if c.unit != "1" else "")
         for c in free
     ]  # fmt: skip
     return ComparisonTable(header, tuple(rows))
@@ -149,7 +150,7 @@ def cost_comparison(fit: Fit, reference: ReferenceEstimate) -> ComparisonTable:
     first = (fit.method.name, evaluations, cpu_s, *([level] if fit.search else []),
              *(exact(rms.get(key), _FEW_DIGITS) for key in keys))  # fmt: skip
     second = (OWN_NAME, str(reference.evaluations), significant(reference.cpu_s, 2),
-              *([exact(reference.record_rms, _DIGITS)] if fit.search else []),
+              *([exact(reference.record_rms, ESTIMATE_DIGITS)] if fit.search else []),
               *(exact(own_rms[key], _FEW_DIGITS) for key in keys))  # fmt: skip
     return ComparisonTable(header, (first, second))
 
@@ -178,7 +179,7 @@ def pooled_rms(errors: Mapping[str, Mapping[str, float]], runs: Sequence[str]) -
 
 def _interval_cells(c: Coefficient, reference: Coefficient) -> tuple[str, str, str, str]:
     """Standard error and interval of the package's own estimate, and the method's difference from it."""
-    lower, upper = (exact(end, _DIGITS) for end in (reference.lower, reference.upper))
+    lower, upper = (exact(end, ESTIMATE_DIGITS) for end in (reference.lower, reference.upper))
     return significant(reference.standard_error, 2), lower, upper, _difference(c, reference)
 
 
@@ -194,4 +195,4 @@ def _method_cost(fit: Fit) -> tuple[str, str, str]:
         seconds = fit.method.settings.get("processor time, s")
         return str(fit.solution.evaluations), significant(seconds, 2) if isinstance(seconds, float) else "", ""
     level = search.restarts[search.used].record_rms
-    return str(search.evaluations), significant(search.cpu_s, 2), exact(level, _DIGITS)
+    return str(search.evaluations), significant(search.cpu_s, 2), exact(level, ESTIMATE_DIGITS)

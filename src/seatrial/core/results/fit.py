@@ -30,6 +30,7 @@ from seatrial.core.results.fields import (
 from seatrial.core.results.prediction import Baseline, IntervalBasis, KStepErrors, Prediction, sensor_errors
 from seatrial.core.results.published_method import ReferenceEstimate, Search
 from seatrial.core.results.ship_motions import FrequencyResponse, RollCharacteristics, Seakeeping, ThrusterCraft
+from seatrial.core.results.term_selection import TermSelection
 from seatrial.core.text.numbers import exact
 from seatrial.core.values import InputError, Record, Ship, spelling_hint
 
@@ -294,7 +295,7 @@ class Fit(Summarised):
     ] = ()
     reference: Annotated[
         ReferenceEstimate | None,
-        Field(description="the package's own estimate, which a published method is compared with; null: this is it"),
+        Field(description="the package's own estimate beside a published method; null: this is it, or it was left out"),
     ] = None
 
     posterior: Annotated[
@@ -309,6 +310,10 @@ class Fit(Summarised):
         Field(description="of outputs to inputs, records and model; empty: no input moves, or runs too short"),
     ] = ()
 
+    term_selection: Annotated[
+        TermSelection | None,
+        Field(description="Lasso's choice of terms beside the package's own; null: not compared, or no state shown"),
+    ] = None
     offset_populations: Annotated[
         tuple[OffsetPopulation, ...], Field(description="each kind of offset over sessions; empty: no offsets")
     ] = ()

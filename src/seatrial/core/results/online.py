@@ -123,7 +123,11 @@ class CoefficientChange:
     before: Annotated[dict[str, Number], Field(description="coefficient -> value before the change, SI")]
     error_before: Annotated[dict[str, Number], Field(description="coefficient -> standard error of that value, SI")]
     is_believed: Annotated[
-        bool, Field(description="false: changes followed one another so closely that the model is off, not the ship")
+        bool,
+        Field(
+            description="false: others, or residuals that are not white, followed so closely that the model is off, "
+            "not the ship"
+        ),
     ] = True
 
 
@@ -182,6 +186,7 @@ class Snapshot:
         str, Field(description="which manoeuvre would help, in a sentence; empty if every coefficient is identified")
     ] = ""
     change: Annotated[CoefficientChange | None, Field(description="the last one; null: none was seen")] = None
+    unwatched: Annotated[str, Field(description="why changes are not watched, in a sentence; empty if they are")] = ""
     findings: tuple[ReportedFinding, ...] = ()
     counts: SampleCounts = SampleCounts()
     recent: Annotated[tuple[StoredRecord, ...], Field(exclude=True)] = ()

@@ -18,6 +18,7 @@ from seatrial.data.trial.settings import (
     EstimateSettings,
     FitCriterion,
     ModelFamily,
+    OwnEstimate,
     SearchFitness,
     SearchSettings,
 )
@@ -32,6 +33,7 @@ __all__ = [
     "Feedback",
     "FitCriterion",
     "ModelFamily",
+    "OwnEstimate",
     "Role",
     "Run",
     "RunFiles",

@@ -124,6 +124,19 @@ def method_named(name: object) -> object:
     return EstimateMethod(name)
 
 
+class OwnEstimate(StrEnum):
+    """When the package's own estimate is made of records that a published method estimates from.
+
+    FIRST: before the method, which takes the initial states of the runs from it.
+    AFTER: behind the method, which takes them from the records.
+    NONE: not at all; the method alone stands in the result.
+    """
+
+    FIRST = "first"
+    AFTER = "after"
+    NONE = "none"
+
+
 # Settings of a search by a population: a table of a trial file, a value in Python.
 
 
@@ -145,6 +158,7 @@ class SearchSettings:
         fitness: the whole record, or one sample in each iteration (Qi et al. 2025, eq. (28)).
         restarts: searches with random numbers of their own, at least 1.
         bounds: coefficient -> ends of its range, SI; those of `[model.bounds]` where it is not named.
+        constants: of the method, in the notation of its source, as ``P_S``; those of the source where not named.
     """
 
     population: Annotated[int, Field(ge=1)] | None = None
@@ -152,6 +166,7 @@ class SearchSettings:
     fitness: SearchFitness = SearchFitness.RECORD
     restarts: Annotated[int, Field(ge=1)] = 3
     bounds: Mapping[str, tuple[float, float]] = Field(default_factory=dict)
+    constants: Mapping[str, float] = Field(default_factory=dict)
 
     @model_validator(mode="after")
     def _ends_in_order(self) -> Self:
@@ -243,6 +258,7 @@ class EstimateSettings:
     Attributes:
         method: the package's own criteria, or a published method, which is compared with the package's own estimate.
         search: settings of a search by a population; None: those of the method's source.
+        own_estimate: when the package's own estimate is made beside a published method.
         channels: observables that are fitted; empty: all that the records measure.
         segment_s: length of a multiple-shooting segment [s].
         segment_lengths: the same in ship lengths travelled at the median speed of the runs.
@@ -264,6 +280,7 @@ class EstimateSettings:
 
     method: Method = EstimateMethod.AUTO
     search: SearchSettings | None = None
+    own_estimate: OwnEstimate = OwnEstimate.FIRST
     channels: tuple[str, ...] = ()
     segment_s: Positive | None = None
     segment_lengths: Positive | None = None
@@ -329,11 +346,11 @@ class ModelFamily:
 @raises_input_error
 @pydantic_dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
 class ProposalSettings:
-    """`[proposal]`: gains proposed for the sea and the craft that the latest stretch of the stream shows.
+    """`[proposal]`: gains proposed for what the stream shows: the sea and roll, or the coefficients of the moment.
 
     Attributes:
         loop: the loop file that was tuned.
-        gains: the ``gains.toml`` of its tuning, with a schedule.
+        gains: the ``gains.toml`` of its tuning; of a roll stabiliser with a schedule.
         stretch_s: length of the stretch at one speed and heading that a proposal rests on [s].
         every_s: s of the stream between two proposals.
     """

@@ -15,11 +15,12 @@ from seatrial.core.results.prediction import NO_COMPARISON
 from seatrial.core.values import Finding, InputError, ProgressReporter, Record, Severity
 from seatrial.data.trial import SEARCHES, SearchFitness, SearchSettings, Trial
 from seatrial.data.trial.settings import SupportVectorSettings
-from seatrial.estimation.identify.search import estimate_by_search
+from seatrial.estimation.identify.search import estimate_by_search, simulated_starts, training_predictions
 from seatrial.estimation.predict.open_loop import rms_errors
 from seatrial.estimation.regress.estimators import RegressionEstimator
-from seatrial.estimation.regress.operators import RegressionMotion, features
+from seatrial.estimation.regress.operators import RegressionMotion, Weak, features
 from seatrial.estimation.regress.pipeline import available_estimators
+from seatrial.estimation.regress.term_selection import select_terms
 from seatrial.numerics.optimise import SEARCH_METHODS
 from seatrial.physics.simulate.replay import replay
 
@@ -43,6 +44,15 @@ def with_baselines(
         return replace(fit, findings=(*fit.findings, said))
 
 
+def with_term_selection(fit: Fit, train: Sequence[Record], seconds: float) -> Fit:
+    """The fit with Lasso's choice of terms beside its own, or with a finding that says why there is none."""
+    try:
+        return replace(fit, term_selection=select_terms(fit.model, train, Weak(seconds)))
+    except InputError as error:
+        reason = Finding(Severity.INFO, NO_COMPARISON, f"no terms to select: {error}")
+        return replace(fit, findings=(*fit.findings, reason))
+
+
 def with_search_baselines(fit: Fit, trial: Trial, seed: int, report_progress: ProgressReporter | None = None) -> Fit:
     """The fit with one search of each published kind over its training runs, behind the regressions if there are any.
 
@@ -54,11 +64,13 @@ def with_search_baselines(fit: Fit, trial: Trial, seed: int, report_progress: Pr
     """
     settings = replace(trial.estimate.search or SearchSettings(), restarts=1, fitness=SearchFitness.RECORD)
     baselines = list(fit.baselines) or [*_fit_as_baselines(fit), *_failed_regressions(fit)]
+    runs = training_predictions(fit)
+    records, starts = [run.measured for run in runs], simulated_starts(fit.model, runs)
     for method in SEARCHES:
         named = replace(trial, estimate=replace(trial.estimate, method=method, search=settings))
         title = f"{SEARCH_METHODS[method].title} ({method})"
         try:
-            found = estimate_by_search(named, fit, seed, report_progress)
+            found = estimate_by_search(named, records, starts, seed, report_progress)
         except InputError as error:
             baselines.append(Baseline(title, note=str(error)))
             continue

@@ -6,10 +6,11 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from seatrial.core.results import Fit
+from seatrial.core.results.fields import MissingParts
 from seatrial.core.text.words import enumeration
-from seatrial.core.values import Finding, InputError, ProgressReporter
+from seatrial.core.values import Array, Finding, InputError, ProgressReporter, Record
 from seatrial.data.check.phases import begins_before_release
-from seatrial.data.trial import EstimateMethod, FitCriterion, Role, Trial, checked_records
+from seatrial.data.trial import EstimateMethod, FitCriterion, OwnEstimate, Role, Trial, checked_records
 from seatrial.data.trial.records import require_decay
 from seatrial.data.trial.settings import window_lengths
 from seatrial.estimation.estimate import EstimatorOptions, IntervalMethod
@@ -19,7 +20,7 @@ from seatrial.estimation.estimate.plausibility import OutsidePhysicsError
 from seatrial.estimation.estimate.point_estimate import force_consistency
 from seatrial.estimation.estimate.settings import WEAK_FORM_SHIP_LENGTHS
 from seatrial.estimation.identify.assembled_fit import assembled_fit
-from seatrial.estimation.identify.baselines import with_baselines, with_search_baselines
+from seatrial.estimation.identify.baselines import with_baselines, with_search_baselines, with_term_selection
 from seatrial.estimation.identify.identification import (
     Identification,
     Situation,
@@ -31,12 +32,18 @@ from seatrial.estimation.identify.identification import (
 )
 from seatrial.estimation.identify.model_selection import selected_model
 from seatrial.estimation.identify.search import (
+    PublishedEstimate,
     check_search_settings,
     estimate_by_regression,
     estimate_by_search,
     own_estimate_progress,
+    published_alone,
     published_fit,
+    record_rms,
+    recorded_starts,
     refuse_options,
+    simulated_starts,
+    training_predictions,
 )
 from seatrial.estimation.identify.step_times import with_step_times
 from seatrial.estimation.identify.warnings import single_order_findings, with_unexcited_thrust_held
@@ -157,7 +164,7 @@ def identify(
             sampling brings the draws with it, and is refused where the waves were not recorded.
         choose: whether the best member of the family takes the place of the trial's model.
         compare: whether regressions on the same training runs, for a linear model searches as well, are compared with
-            the fit.
+            the fit, and the terms that Lasso selects with its own.
         windows: in which validation runs are predicted as well, as ``10s,5L``; empty: as the trial has them, else by
             the length of the run.
         horizons: of the k-step errors, samples or seconds, as ``1,10,5s``; empty: by the length of the runs.
@@ -198,8 +205,9 @@ def identify(
         return fit
     window = WEAK_FORM_SHIP_LENGTHS * task.characteristic_time
     fit = with_baselines(fit, task.runs.records, window, report_progress, trial.compare.svr)
-    has_searches = trial.model.is_affine and situation is Situation.RECORDED_WAVES
-    return with_search_baselines(fit, trial, seed, report_progress) if has_searches else fit
+    if trial.model.is_affine and situation is Situation.RECORDED_WAVES:
+        fit = with_search_baselines(fit, trial, seed, report_progress)
+    return with_term_selection(fit, task.runs.records, window)
 
 
 def _refuse_sampling(intervals: IntervalMethod, situation: Situation, method: EstimateMethod) -> None:
@@ -229,17 +237,61 @@ def _published(task: Identification, situation: Situation, report_progress: Prog
             f"method '{method}' needs what moves the ship in every sample, and here the waves were not recorded; "
             'record them, or write method = "auto"'
         )
+    order = trial.estimate.own_estimate
+    if order is OwnEstimate.FIRST:
+        reference, cpu_s = _own_estimate(task, situation)
+        estimate = _published_estimate(task, reference, report_progress)
+        fit = published_fit(reference, _beside(task, estimate, reference), cpu_s, task.findings)
+        return replace(fit, elapsed_s=time.perf_counter() - task.began)
+    estimate = _published_estimate(task, None, report_progress)
+    if order is OwnEstimate.NONE:
+        return published_alone(task, estimate)
+    if report_progress:
+        found = zip(trial.model.parameters.free_names, estimate.solution.point, strict=True)
+        report_progress(f"{method}: {', '.join(f'{name} {value:.4g}' for name, value in found)}")
+    parts = MissingParts()
+    own = parts.computed("the package's own estimate", lambda: _own_estimate(task, situation), None)
+    if own is None:
+        alone = published_alone(task, estimate)
+        return replace(alone, findings=(*alone.findings, *parts.findings))
+    reference, cpu_s = own
+    fit = published_fit(reference, _beside(task, estimate, reference), cpu_s, task.findings)
+    return replace(fit, elapsed_s=time.perf_counter() - task.began)
+
+
+def _own_estimate(task: Identification, situation: Situation) -> tuple[Fit, float]:
+    """The package's own fit, and the processor time of its estimate [s]."""
     began = time.process_time()
     _ = task.estimation
     cpu_s = time.process_time() - began
-    reference = STRATEGIES[situation](task)
+    return STRATEGIES[situation](task), cpu_s
+
+
+def _starts(task: Identification, reference: Fit | None) -> tuple[list[Record], list[Array]]:
+    """The training runs, and the state in which each begins: of the package's own fit, else of its record."""
+    if reference is not None:
+        runs = training_predictions(reference)
+        return [run.measured for run in runs], simulated_starts(reference.model, runs)
+    records = [r.record for r in task.train]
+    return records, recorded_starts(task.trial.model, records)
+
+
+def _published_estimate(
+    task: Identification, reference: Fit | None, report_progress: ProgressReporter | None
+) -> PublishedEstimate:
+    """What the method that the trial names gives."""
+    trial, method = task.trial, task.trial.estimate.method
     if method.is_search:
-        estimate = estimate_by_search(trial, reference, task.options.seed, report_progress)
-    else:
-        window = WEAK_FORM_SHIP_LENGTHS * task.characteristic_time
-        estimate = estimate_by_regression(trial.model, task.runs.records, method, window, trial.compare.svr)
-    fit = published_fit(reference, estimate, cpu_s)
-    return replace(fit, elapsed_s=time.perf_counter() - task.began)
+        return estimate_by_search(trial, *_starts(task, reference), task.options.seed, report_progress)
+    window = WEAK_FORM_SHIP_LENGTHS * task.characteristic_time
+    return estimate_by_regression(trial.model, task.runs.records, method, window, trial.compare.svr)
+
+
+def _beside(task: Identification, estimate: PublishedEstimate, reference: Fit) -> PublishedEstimate:
+    """With the weighted rms of the package's own values, as a search judges it."""
+    if estimate.search is None:
+        return estimate
+    return replace(estimate, own_record_rms=record_rms(task.trial, reference.model, *_starts(task, reference)))
 
 
 def identification_situation(task: Identification) -> Situation:

@@ -30,8 +30,12 @@ from seatrial.core.values import (
     Severity,
     spelling_hint,
 )
-from seatrial.data.trial import EstimateMethod, SearchFitness, SearchSettings, Trial
+from seatrial.core.values.versions import versions
+from seatrial.data.trial import EstimateMethod, Role, SearchFitness, SearchSettings, Trial
 from seatrial.data.trial.settings import SupportVectorSettings
+from seatrial.estimation.identify.fit_result import coefficient_table
+from seatrial.estimation.identify.identification import Identification
+from seatrial.estimation.information.covariance import Interval
 from seatrial.estimation.predict.open_loop import compare_measures, is_steered, rms_errors
 from seatrial.estimation.problem.segments import compared_outputs
 from seatrial.estimation.regress import RegressionEstimate, estimator_of_method
@@ -47,7 +51,7 @@ from seatrial.estimation.search import (
     whole_record_fitness,
 )
 from seatrial.numerics.optimise import SEARCH_METHODS, Box, FitnessMemory, Optimiser, SearchBudget, SearchError
-from seatrial.physics.simulate import Forcing, LinearBatch, inputs_of
+from seatrial.physics.simulate import Forcing, LinearBatch, initial_state, inputs_of
 from seatrial.physics.simulate.replay import replay
 
 # From a trial's runs to what a search needs: candidates, the box of their coefficients, the budget.
@@ -89,6 +93,21 @@ def simulated_starts(model: Model, runs: Sequence[Prediction]) -> list[Array]:
     return [np.array([run.simulated[state][0] for state in model.states]) for run in runs]
 
 
+def recorded_starts(model: Model, records: Sequence[Record]) -> list[Array]:
+    """Return the state in which each run begins as its record shows it, (states,).
+
+    Raises:
+        InputError: a record shows neither a state nor that of which it is the rate.
+    """
+    try:
+        return [initial_state(model, record, {}) for record in records]
+    except InputError as error:
+        raise InputError(
+            f'{error}; or write own_estimate = "first" under [estimate]: the states at the start of each run are then '
+            "those of the package's own estimate"
+        ) from None
+
+
 def channel_weights(trial: Trial, outputs: Sequence[str], measured: Sequence[Array]) -> dict[str, float]:
     """Return the deviation of each channel that counts as 1: its noise where all are stated, else its spread, SI."""
     stated = {name: trial.noise.get(name) for name in outputs}
@@ -125,13 +144,13 @@ def search_budget(method: EstimateMethod, settings: SearchSettings, unknowns: in
     """Return population and iterations as set, else as the method's source has them.
 
     Raises:
-        InputError: the population is too small for the method.
+        InputError: the population is too small for the method, or it has no such constant.
     """
     published = SEARCH_METHODS[method]
     population, iterations = settings.population or published.population(unknowns), settings.iterations
     changes = settings.fitness is SearchFitness.SAMPLE
     memory = FitnessMemory.RE_EVALUATE if changes else FitnessMemory.KEEP
-    budget = SearchBudget(population, iterations or published.iterations, memory)
+    budget = SearchBudget(population, iterations or published.iterations, memory, settings.constants)
     try:
         published.within(budget)
     except SearchError as error:
@@ -201,14 +220,24 @@ class PublishedEstimate:
     Attributes:
         solution: its point holds the free coefficients in the model's order.
         method: its name, what it minimises, where it starts, its settings.
-        search: what it did, where it is a search; record_rms: of the package's own values, as of its restarts.
+        search: what it did, where it is a search.
+        own_record_rms: of the package's own values beside it, as of a restart of the search.
     """
 
     solution: Solution
     method: Method
     findings: tuple[Finding, ...] = ()
     search: Search | None = None
-    record_rms: float | None = None
+    own_record_rms: float | None = None
+
+    def named_findings(self, further: Sequence[Finding] = ()) -> tuple[Finding, ...]:
+        """Return its findings and further ones, each with the name of the method."""
+        return _named_findings(f"method {self.method.name}", (*self.findings, *further))
+
+
+def _named_findings(estimate: str, findings: Sequence[Finding]) -> tuple[Finding, ...]:
+    """Findings that say of which estimate they are."""
+    return tuple(replace(one, message=f"{estimate}: {one.message}") for one in findings)
 
 
 def own_estimate_progress(report_progress: ProgressReporter | None) -> ProgressReporter | None:
@@ -216,19 +245,63 @@ def own_estimate_progress(report_progress: ProgressReporter | None) -> ProgressR
     return None if report_progress is None else lambda text: report_progress(f"own estimate: {text}")
 
 
-def published_fit(reference: Fit, estimate: PublishedEstimate, cpu_s: float) -> Fit:
+def published_alone(task: Identification, estimate: PublishedEstimate) -> Fit:
+    """Return the fit of a published method without an estimate of the package's own.
+
+    Every run is simulated from the state that its record shows at its start, without offsets.
+
+    Raises:
+        InputError: a record does not show the state at its start.
+    """
+    trial, records = task.trial, [r.record for r in task.records]
+    names, point = trial.model.parameters.free_names, estimate.solution.point
+    values = dict(zip(names, map(float, point), strict=True))
+    model = trial.model.with_values(values)
+    recorded_starts(model, records)  # refused before it is simulated
+    roles = ["training" if r.role is Role.TRAIN else "validation" for r in task.records]
+    runs = [Prediction(r.name, role, r, r, {}, {}, 0.0) for r, role in zip(records, roles, strict=True)]
+    predictions, findings = _predictions(runs, model, trial.ship.particulars.get("L", 0.0))
+    unknown = Interval(np.zeros((len(names), len(names))), np.inf, NO_INTERVALS)
+    table = coefficient_table(model.parameters, names, point, unknown, trial.truth)
+    return Fit(
+        question=trial.question
+        or f"Which {model.name} model does method {estimate.method.name} find in these records?",
+        ship=trial.ship,
+        model=model,
+        coefficients=tuple(_without_interval(c, values) for c in table),
+        covariance=np.empty((0, 0)),
+        solution=estimate.solution,
+        method=estimate.method,
+        offsets=(),
+        channel_noise=(),
+        residuals=(),
+        predictions=predictions,
+        findings=(*task.findings, *estimate.named_findings((*_outside_bounds(model), *findings))),
+        records=tuple(records),
+        seed=task.options.seed,
+        elapsed_s=time.perf_counter() - task.began,
+        versions=versions(),
+        search=estimate.search,
+    )
+
+
+def published_fit(reference: Fit, estimate: PublishedEstimate, cpu_s: float, of_records: Sequence[Finding] = ()) -> Fit:
     """Return the fit of a published method; the package's own stands in it as its reference.
 
-    Every run is simulated from the initial state that the package's own fit has for it, without offsets.
+    Every run is simulated from the initial state that the package's own fit has for it, without offsets. Findings say
+    of which of the two estimates they are.
 
     Args:
         reference: the package's own fit of the same records.
         cpu_s: processor time of the package's own estimate [s].
+        of_records: findings that hold whatever is estimated.
     """
     names = reference.model.parameters.free_names
     values = dict(zip(names, map(float, estimate.solution.point), strict=True))
     model = reference.model.with_values(values)
-    predictions, findings = _predictions(reference, model)
+    length = reference.ship.particulars.get("L", 0.0)
+    predictions, findings = _predictions(reference.predictions, model, length)
+    own = [one for one in reference.findings if one not in of_records]
     return replace(
         reference,
         model=model,
@@ -240,7 +313,10 @@ def published_fit(reference: Fit, estimate: PublishedEstimate, cpu_s: float) -> 
         channel_noise=(),
         residuals=(),
         predictions=predictions,
-        findings=(*reference.findings, *estimate.findings, *_outside_bounds(model), *findings),
+        findings=(
+            *of_records, *_named_findings("own estimate", own),
+            *estimate.named_findings((*_outside_bounds(model), *findings)),
+        ),
         identifiability=None,
         noise_model=None,
         candidate_models=(),
@@ -250,8 +326,8 @@ def published_fit(reference: Fit, estimate: PublishedEstimate, cpu_s: float) -> 
         seakeeping=None,
         roll=None,
         search=estimate.search,
-        reference=_reference(reference, cpu_s, estimate.record_rms),
-    )
+        reference=_reference(reference, cpu_s, estimate.own_record_rms),
+    )  # fmt: skip
 
 
 def _without_interval(c: Coefficient, values: dict[str, float]) -> Coefficient:
@@ -265,7 +341,7 @@ def _outside_bounds(model: Model) -> list[Finding]:
     """A warning for every coefficient that a method which knows no bounds puts beyond them."""
     return [
         Finding(
-            Severity.WARNING, "outside-bounds", f"the method puts coefficient {p.name} outside its bounds",
+            Severity.WARNING, "outside-bounds", f"coefficient {p.name} lies outside its bounds",
             f"{p.value:g}, bounds {p.lower:g} to {p.upper:g}",
         )
         for p in model.parameters.free
@@ -273,15 +349,16 @@ def _outside_bounds(model: Model) -> list[Finding]:
     ]  # fmt: skip
 
 
-def _predictions(reference: Fit, model: Model) -> tuple[tuple[Prediction, ...], list[Finding]]:
-    """All runs simulated with the method's values, and a warning for each that diverges."""
+def _predictions(
+    runs: Sequence[Prediction], model: Model, length: float
+) -> tuple[tuple[Prediction, ...], list[Finding]]:
+    """All runs simulated with the method's values from their starts, and a warning for each that diverges."""
     predictions, findings = [], []
-    length = reference.ship.particulars.get("L", 0.0)
-    for p in reference.predictions:
+    for p in runs:
         try:
             simulated = replay(model, p.simulated)
         except DivergedError as error:
-            text = f"with the coefficients of the method run '{p.record}' cannot be simulated"
+            text = f"run '{p.record}' cannot be simulated with its coefficients"
             findings.append(Finding(Severity.WARNING, "diverged", text, str(error), "do not use them"))
             continue
         measures = compare_measures(p.measured, simulated, length) if is_steered(p.measured, model) else {}
@@ -318,35 +395,43 @@ _PROGRESS_LINES = 10
 
 
 def estimate_by_search(
-    trial: Trial, reference: Fit, seed: int, report_progress: ProgressReporter | None = None
+    trial: Trial,
+    records: Sequence[Record],
+    starts: Sequence[Array],
+    seed: int,
+    report_progress: ProgressReporter | None = None,
 ) -> PublishedEstimate:
     """Return what the search that the trial names finds for the free coefficients of its model.
 
     Interrupted (Ctrl-C), it returns the restarts that are finished; the interrupt is passed on where there is none.
 
     Args:
-        reference: the package's own fit, which gives the initial states of the runs.
+        records, starts: of the training runs, and the state in which each begins, (states,).
         seed: of everything drawn at random, with the number of the restart.
 
     Raises:
         InputError: bounds are missing, the population is too small, or the runs cannot be compared with the model.
     """
     method, settings = trial.estimate.method, trial.estimate.search or SearchSettings()
-    model, runs = trial.model, training_predictions(reference)
+    model = trial.model
     box = search_box(model, method, settings)
     budget = search_budget(method, settings, box.size)
-    candidates = search_candidates(trial, model, [run.measured for run in runs], simulated_starts(model, runs))
+    candidates = search_candidates(trial, model, records, starts)
     finished = _restarts(method, settings, box, budget, candidates, seed, report_progress)
     result = _search_result(trial, settings, box, budget, candidates, finished)
     used = finished[result.used].solution
-    own = np.array([[reference.model.parameters[name].value for name in model.parameters.free_names]])
     return PublishedEstimate(
         Solution(used.point, used.value, used.status, result.evaluations, used.history, seed),
         search_method_text(method, settings, result),
         search_findings(result, used.point, settings.restarts),
         result,
-        float(candidates.record_rms(own)[0]),
     )
+
+
+def record_rms(trial: Trial, model: Model, records: Sequence[Record], starts: Sequence[Array]) -> float:
+    """Return the weighted rms that a model leaves over the whole record, as a search judges it."""
+    values = np.array([[model.parameters[name].value for name in trial.model.parameters.free_names]])
+    return float(search_candidates(trial, trial.model, records, starts).record_rms(values)[0])
 
 
 def training_predictions(fit: Fit) -> tuple[Prediction, ...]:
@@ -445,24 +530,34 @@ def _named(names: Sequence[str], values: Array) -> dict[str, float]:
 def search_method_text(method: EstimateMethod, settings: SearchSettings, search: Search) -> Method:
     published = SEARCH_METHODS[method]
     judged = "one sample an iteration" if settings.fitness is SearchFitness.SAMPLE else "rms over the whole record"
+    budget = SearchBudget(search.population, search.iterations, constants=settings.constants)
     return Method(
         f"{published.title} ({published.source}), {judged}",
         "points drawn uniformly within the bounds",
         NO_INTERVALS,
         ("the method is named by the trial",),
-        {"population": search.population, "iterations": search.iterations, "restarts": len(search.restarts)},
+        {
+            "population": search.population, "iterations": search.iterations, "restarts": len(search.restarts),
+            **published.constant_values(budget),
+        },
         method.value,
-    )
+    )  # fmt: skip
 
 
 def search_findings(search: Search, point: Array, required: int) -> tuple[Finding, ...]:
-    """A warning for each coefficient that ends on an end of its range, and one for a search that was interrupted."""
+    """A warning for each coefficient that ends on an end of its range, and one for a search that was interrupted.
+
+    Where each iteration saw one sample, a wider range helps nothing: one sample does not determine the coefficients.
+    """
+    advice = {
+        SearchFitness.RECORD.value: "widen its range under [estimate.search.bounds]",
+        SearchFitness.SAMPLE.value: 'judge by the whole record: write fitness = "record" under [estimate.search]',
+    }[search.fitness]
     findings = [
-        Finding(Severity.WARNING, "bound-hit", f"coefficient {name} ends on an end of its range", f"{value:g}",
-                "widen its range under [estimate.search.bounds]")
+        Finding(Severity.WARNING, "bound-hit", f"coefficient {name} ends on an end of its range", f"{value:g}", advice)
         for (name, ends), value in zip(search.bounds.items(), point, strict=True)
         if float(value) in ends
-    ]  # fmt: skip
+    ]
     if search.is_interrupted:
         text = f"the search was interrupted after {len(search.restarts)} of {required} restarts"
         findings.append(Finding(Severity.WARNING, "interrupted", text))

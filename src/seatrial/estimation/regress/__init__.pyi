@@ -55,6 +55,7 @@ from seatrial.estimation.regress.samples import (
 )
 from seatrial.estimation.regress.pipeline import standard_estimators as standard_estimators
 from seatrial.estimation.regress.estimators import SupportVectors as SupportVectors
+from seatrial.estimation.regress.term_selection import select_terms as select_terms
 from seatrial.estimation.regress.estimators import (
     RegressionSystem as RegressionSystem,
     assemble_systems as assemble_systems,

@@ -285,9 +285,9 @@ class Lasso:
         """Coefficients that the best penalty leaves; 0 for those it drops."""
         scaled = scale_system(system) if self.is_scaled else _as_it_comes(system)
         penalties = np.sort(self.penalties)
-        missed = _holdout_errors(scaled, lambda matrix, target: _lasso_path(matrix, target, penalties), self.folds)
+        missed = _holdout_errors(scaled, lambda matrix, target: lasso_path(matrix, target, penalties), self.folds)
         best = int(np.argmin(missed))
-        found = _lasso_path(scaled.matrix, scaled.target, penalties[best : best + 1])[0]
+        found = lasso_path(scaled.matrix, scaled.target, penalties[best : best + 1])[0]
         kept = found != 0.0
         if self.refit and kept.any():
             found[kept] = _least_squares(scaled.matrix[:, kept], scaled.target)
@@ -319,8 +319,8 @@ def _dropped_findings(system: RegressionSystem, is_kept: Array) -> tuple[Finding
     )  # fmt: skip
 
 
-def _lasso_path(matrix: Array, target: Array, penalties: Array) -> Array:
-    """Coefficients for each penalty, ascending, shape (penalties, k): exact, along the path (Efron et al. 2004)."""
+def lasso_path(matrix: Array, target: Array, penalties: Array) -> Array:
+    """Return coefficients for each penalty, ascending, (penalties, k): exact, along the path (Efron et al. 2004)."""
     from sklearn.linear_model import lars_path_gram
 
     count = len(target)

@@ -7,6 +7,7 @@ from itertools import pairwise
 from typing import Protocol, Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError, Record
@@ -19,6 +20,7 @@ from seatrial.physics.simulate.states import hidden_states, measured_states
 # The equations along a record: each rate as known terms plus features times coefficients, from the model itself.
 
 _PROBE_FACTOR = 1.37  # no round number, so that no term vanishes at the probe; chosen
+_ROUNDED = 1e-9  # of a feature, below which a change is rounding; chosen
 _TIME_TOLERANCE = 1e-3  # of a sampling step, beyond which it is a gap
 
 
@@ -97,10 +99,8 @@ def features(model: Model, motion: RegressionMotion) -> Features:
     values = model.parameters.values
     free = [model.parameters.index(n) for n in model.parameters.free_names]
     rates, slope = _tangent(model, motion, values)
-    probe = values.copy()
-    probe[free] = _PROBE_FACTOR * values[free] + np.where(values[free] == 0.0, 1.0, 0.0)
-    moved = np.abs(_tangent(model, motion, probe)[1] - slope).max(axis=(0, 1))
-    curved = np.flatnonzero(moved > 1e-9 * np.abs(slope).max(axis=(0, 1)))  # rounding; chosen
+    moved = np.abs(_tangent(model, motion, _probed(values, free))[1] - slope).max(axis=(0, 1))
+    curved = np.flatnonzero(moved > _ROUNDED * np.abs(slope).max(axis=(0, 1)))
     if curved.size:
         named = ", ".join(model.parameters.free_names[i] for i in curved)
         raise InputError(
@@ -108,6 +108,27 @@ def features(model: Model, motion: RegressionMotion) -> Features:
             "divides the others, or use output error"
         )
     return Features(rates - slope @ values[free], slope)
+
+
+def feature_interactions(model: Model, motion: RegressionMotion) -> NDArray[np.bool_]:
+    """Return whether the feature of coefficient j changes with coefficient i, (k, k): none of a linear model."""
+    places = [model.parameters.index(n) for n in model.parameters.free_names]
+    meets = np.zeros((len(places), len(places)), dtype=np.bool_)
+    values = model.parameters.values
+    for base in (values, _probed(values, places)):  # a product shows where neither factor is zero
+        slope = _tangent(model, motion, base)[1]
+        scale = np.abs(slope).max(axis=(0, 1))
+        for row, place in enumerate(places):
+            moved = np.abs(_tangent(model, motion, _probed(base, [place]))[1] - slope).max(axis=(0, 1))
+            meets[row] |= moved > _ROUNDED * scale
+    return meets
+
+
+def _probed(values: Array, places: Sequence[int]) -> Array:
+    """Parameters with some of them moved, those that are zero too."""
+    probe = values.copy()
+    probe[places] = _PROBE_FACTOR * values[places] + np.where(values[places] == 0.0, 1.0, 0.0)
+    return probe
 
 
 def _tangent(model: Model, motion: RegressionMotion, values: Array) -> tuple[Array, Array]:

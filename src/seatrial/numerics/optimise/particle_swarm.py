@@ -109,9 +109,9 @@ class CloudSettings(SwarmSettings):
         c1, c2: pull towards the own best and the best of all (Meng et al. 2014).
         velocity_limit: largest velocity, as a share of the box's width; ours.
         w1, w2: largest and smallest inertia weight.
-        a, b: thresholds on the best fitness over a particle's own, between bad and middling, middling and good.
-        entropy, hyper_entropy: En and He of the weight's cloud; its expectation is Ex = 5 w1 - w2.
-        mutation: probability that a particle which is not good becomes a drop of the cloud round the best.
+        A, B: thresholds on the best fitness over a particle's own, between bad and middling, middling and good.
+        En, He: entropy and hyper-entropy of the weight's cloud; its expectation is Ex = 5 w1 - w2.
+        p_m: probability that a particle which is not good becomes a drop of the cloud round the best.
         spread: En of that cloud as a share of the box's width, at the start; it shrinks linearly to zero.
     """
 
@@ -122,20 +122,20 @@ class CloudSettings(SwarmSettings):
     velocity_limit: float = 0.2
     w1: float = 0.9
     w2: float = 0.4
-    a: float = 0.15
-    b: float = 0.93
-    entropy: float = 5.0
-    hyper_entropy: float = 0.5
-    mutation: float = 0.2
+    A: float = 0.15
+    B: float = 0.93
+    En: float = 5.0
+    He: float = 0.5
+    p_m: float = 0.2
     spread: float = 0.1
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not 0 <= self.mutation <= 1:
-            raise SearchError(f"The mutation probability lies between 0 and 1, not at {self.mutation}.")
-        if not self.a <= self.b:
-            raise SearchError(f"Threshold a = {self.a} must not exceed threshold b = {self.b}.")
-        for name, value in (("hyper_entropy", self.hyper_entropy), ("spread", self.spread)):
+        if not 0 <= self.p_m <= 1:
+            raise SearchError(f"The mutation probability p_m lies between 0 and 1, not at {self.p_m}.")
+        if not self.A <= self.B:
+            raise SearchError(f"Threshold A = {self.A} must not exceed threshold B = {self.B}.")
+        for name, value in (("He", self.He), ("spread", self.spread)):
             if value < 0:
                 raise SearchError(f"Setting {name} is the width of a normal law, not {value}; give 0 or more.")
 
@@ -145,7 +145,7 @@ class CloudParticleSwarm(ParticleSwarm):
 
     Eq. 4 prints no inertia weight though eq. 6 sets it: it multiplies the velocity. Of eq. 6 only the constants are
     left; its form is that of the normal cloud in their reference to Wei et al. 2009. Which particles mutate, and with
-    which cloud, is lost: ours are those whose ratio does not exceed b, spread as in the settings with He = En / 10.
+    which cloud, is lost: ours are those whose ratio does not exceed B, spread as in the settings with He = En / 10.
     Ratios of fitness need a fitness that is nowhere negative.
     """
 
@@ -166,21 +166,21 @@ class CloudParticleSwarm(ParticleSwarm):
         c = self.cloud_settings
         ratio = self._fitness_ratio()
         # En' ~ N(En, He), then eq. 6 with Ex = 5 w1 - w2
-        entropy = self._generator.normal(c.entropy, c.hyper_entropy, len(ratio))
+        entropy = self._generator.normal(c.En, c.He, len(ratio))
         # Meng et al. 2014, in the weight of the middle group
         away = (ratio - (5 * c.w1 - c.w2)) / np.where(entropy == 0.0, np.finfo(float).tiny, entropy)
         cloud = c.w1 - (c.w1 - c.w2) * np.exp(-0.5 * away**2)
-        return np.where(ratio > c.b, c.w2, np.where(ratio < c.a, c.w1, cloud))[:, None]
+        return np.where(ratio > c.B, c.w2, np.where(ratio < c.A, c.w1, cloud))[:, None]
 
     def _move(self) -> None:
-        good = self._fitness_ratio() > self.cloud_settings.b
+        good = self._fitness_ratio() > self.cloud_settings.B
         super()._move()
         count = len(self._x)
         entropy = self.cloud_settings.spread * (1 - self.iteration / self.iterations) * self.box.width
         # cloud drops round the best: En' ~ N(En, He), x ~ N(best, En')
         width = entropy * (1 + 0.1 * self._generator.standard_normal((count, 1)))
         drops = self.best[0] + width * self._generator.standard_normal(self._x.shape)
-        mutating = (self._generator.random(count) < self.cloud_settings.mutation) & ~good
+        mutating = (self._generator.random(count) < self.cloud_settings.p_m) & ~good
         self._x = np.where(mutating[:, None], np.clip(drops, self.box.lower, self.box.upper), self._x)
 
     def _fitness_ratio(self) -> Array:

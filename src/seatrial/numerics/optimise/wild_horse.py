@@ -28,16 +28,16 @@ class HerdSettings:
     Attributes:
         population: horses, N.
         iterations: populations evaluated, the first included, T_max.
-        stallions: share of leaders, P_S.
-        crossover: probability of mating instead of grazing, P_C.
+        P_S: share of leaders.
+        P_C: probability of mating instead of grazing.
         variant: how a stride turns.
         memory: what becomes of the leaders' fitness.
     """
 
     population: int = 40
     iterations: int = 200
-    stallions: float = 0.25
-    crossover: float = 0.13
+    P_S: float = 0.25
+    P_C: float = 0.13
     variant: StrideVariant = StrideVariant.PAPER
     memory: FitnessMemory = FitnessMemory.KEEP
 
@@ -48,15 +48,15 @@ class HerdSettings:
             raise SearchError(
                 f"The wild horse optimiser needs 3 groups or more with a foal each, but has {groups} groups and "
                 f"{self.population - groups} foals (population {self.population}, share of leaders "
-                f"{self.stallions:g}); raise the population, or take a share between 0.1 and 0.5."
+                f"{self.P_S:g}); raise the population, or take a share between 0.1 and 0.5."
             )
-        if not 0 <= self.crossover <= 1:
-            raise SearchError(f"The crossover probability lies between 0 and 1, not at {self.crossover}.")
+        if not 0 <= self.P_C <= 1:
+            raise SearchError(f"The crossover probability P_C lies between 0 and 1, not at {self.P_C}.")
 
     @property
     def groups(self) -> int:
         """Number of groups, G = ceil(N P_S)."""
-        return int(np.ceil(round(self.population * self.stallions, 9)))  # digits, against rounding; chosen
+        return int(np.ceil(round(self.population * self.P_S, 9)))  # digits, against rounding; chosen
 
 
 class WildHorse(Population):
@@ -93,7 +93,7 @@ class WildHorse(Population):
         if self.iteration == 0:
             return np.concatenate([self._foals, self._leaders])
         z, stride = self._strides(len(self._foals))
-        mating = self._generator.random((len(self._foals), 1)) < self.settings.crossover
+        mating = self._generator.random((len(self._foals), 1)) < self.settings.P_C
         leaders = self._leaders[self._group_of_foal]
         grazed = stride * (leaders - self._foals) + leaders  # eq. 15
         foals = np.where(mating, self._mating_foals(), grazed)

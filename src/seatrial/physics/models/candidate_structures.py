@@ -57,6 +57,16 @@ def structural_terms(model_name: str) -> frozenset[str]:
     return frozenset(SURGE_TERMS).union(*(names for family in families for names in family.values()))
 
 
+def candidate_terms(model: Model) -> tuple[str, ...]:
+    """Return the terms that a choice of terms may keep or drop: free ones, and those of its family that are held at 0.
+
+    Of a model without a family these are all parameters that it holds at 0: each model declares its candidates so.
+    """
+    has_family = model.name in FREED_PARAMETERS or model.name in OMITTED_PARAMETERS
+    declared = structural_terms(model.name) if has_family else frozenset(model.parameters.names)
+    return tuple(p.name for p in model.parameters if p.free or (p.name in declared and p.value == 0.0))
+
+
 PHYSICAL_SIGNS: Mapping[str, Mapping[str, int]] = MappingProxyType(
     {
         "mmg": {"m_x_prime": 1, "m_y_prime": 1, "J_z_prime": 1, "R_0": 1, "Y_v": -1, "N_r": -1},

@@ -83,9 +83,13 @@ def test_a_linear_problem_ends_where_the_batch_does(
             made.begin_run(np.zeros(2), spread)
         for row in range(run * rows, (run + 1) * rows, 7):
             until = min(row + 7, (run + 1) * rows)
+            ahead = made.estimate_with(measured[row:until], inputs[row:until])
             made.update(measured[row:until], inputs[row:until])
     made.flush()
     np.testing.assert_allclose(made.value - at, moved[:3], **tolerance)
+    # the last block before it was taken in
+    np.testing.assert_allclose(ahead[0], made.value, rtol=1e-4)
+    np.testing.assert_allclose(ahead[1], made.covariance, rtol=1e-3, atol=1e-9)
     np.testing.assert_allclose(made.covariance, covariance[:3, :3], **tolerance)
 
 

@@ -1,5 +1,6 @@
 """Fed sample by sample: the numbers of the batch fit on the same samples, and what is carried on beyond the window."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -8,11 +9,13 @@ import pytest
 from tests.estimation.identify.online.streams import feed, samples, sea_stream
 
 from seatrial.core.results.online import EstimatorPhase
-from seatrial.core.values import InputError
-from seatrial.data.trial import load_trial
+from seatrial.core.values import Array, InputError, Record
+from seatrial.data.trial import Trial, load_trial
 from seatrial.data.trial.runs import require_stream
+from seatrial.estimation.estimate.assemble import Runs, output_error_problem
 from seatrial.estimation.identify.identify import identify
 from seatrial.estimation.identify.online import OnlineEstimator
+from seatrial.numerics.optimise import levenberg_marquardt
 from seatrial.onboard.sources import open_source
 from seatrial_studies.seaway import SeawayScenario, ship, simulate_seaway_run
 
@@ -34,6 +37,32 @@ def test_the_numbers_are_those_of_the_batch_fit_on_the_same_samples(heading):
     ]
     assert np.max(np.abs(off)) < 0.01
     np.testing.assert_allclose(snapshot.standard_error, [batch[n].standard_error for n in snapshot.names], rtol=0.01)
+
+
+def converged_batch(trial: Trial, records: Sequence[Record], start: Array) -> tuple[Array, Array]:
+    """The coefficients of least cost over whole runs and their standard errors, (k,) each, searched to rounding."""
+    runs = replace(Runs.one_session_each(list(records), trial.ship.length), noise=trial.noise)
+    settings = trial.estimate.with_known_timing(trial.model.input_names)
+    problem = output_error_problem(trial.model, runs, np.inf, settings)
+    problem = replace(problem, noise=np.array([trial.noise[o] for o in problem.data.outputs]))
+    found = levenberg_marquardt(problem, start, problem.measured_initial_states(), negligible=1e-12, evaluations=60)
+    return found.solution.point, np.sqrt(np.diag(np.linalg.inv(found.normal.without_local()[1])))
+
+
+@pytest.mark.long(every=3)
+@pytest.mark.parametrize(("heading", "seed"), [(135, 1), (90, 2), (180, 3)])
+def test_at_every_sample_the_numbers_are_those_of_the_converged_batch(heading, seed):
+    """From the first sample at which every relative standard error is below 30 % on: 0.01 standard errors."""
+    stream = sea_stream(heading, 24.0, seed)
+    estimator, compared = OnlineEstimator(stream.trial), 0
+    for sample in samples(stream.record, stream.trial):
+        snapshot = estimator.update(sample)
+        if not compared and not np.all(snapshot.standard_error < 0.3 * np.abs(snapshot.value)):
+            continue
+        value, error = converged_batch(stream.trial, estimator.records(), snapshot.value.copy())
+        assert np.all(np.abs(snapshot.value - value) < 0.01 * error), sample.time
+        compared += 1
+    assert compared > 100
 
 
 def test_one_per_cent_is_reached_within_the_first_minute():
@@ -202,3 +231,25 @@ def test_a_run_too_short_for_its_waves_is_dropped_and_the_next_one_begins():
     assert snapshot.runs == 2
     (record,) = estimator.records()
     assert record.time[0] >= rows[300].time
+
+
+def test_where_residuals_are_not_white_it_says_that_changes_are_not_watched() -> None:
+    """The moment of the waves is recorded 5 % too high, and then as it is."""
+    stream = sea_stream(135, 120.0)
+    moment = stream.record.channel("M5")
+    wrong = {**stream.record.channels, "M5": moment.with_values(1.05 * moment.values)}
+    off = feed(OnlineEstimator(stream.trial), Record("sea", stream.record.time, wrong), stream.trial)
+    assert off.change is None
+    assert "not watched: the residuals are not white" in off.unwatched
+    assert feed(OnlineEstimator(stream.trial), stream.record, stream.trial).unwatched == ""
+
+
+def test_sensors_noisier_than_declared_are_no_change_of_the_ship() -> None:
+    """Twice as noisy from the first sample on; by the declared noise every drift counts four times."""
+    stream, rng = sea_stream(135, 150.0, 3000), np.random.default_rng(7)
+    own = stream.record.channels
+    more = {s: own[s].with_values(own[s].values + sd * np.sqrt(3.0) * rng.standard_normal(len(stream.record)))
+            for s, sd in (stream.trial.noise or {}).items()}  # fmt: skip
+    shown = feed(OnlineEstimator(stream.trial), Record("sea", stream.record.time, {**own, **more}), stream.trial)
+    assert shown.change is None
+    assert shown.unwatched == ""

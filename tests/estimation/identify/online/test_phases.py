@@ -16,6 +16,7 @@ from seatrial.estimation.identify.online.phases import (
     ContinuedSearch,
     RecursivePhase,
     RepeatedSearch,
+    SampleMap,
     SearchSchedule,
     StreamProgress,
     WarmUp,
@@ -224,3 +225,14 @@ def test_inflation_widens_what_data_give_and_leaves_priors(window_phase):
     weight = np.array([3.0, 0.0])
     hessian = np.diag([4.0 + 3.0, 8.0])
     np.testing.assert_allclose(carried.inflated_covariance(hessian, weight), np.diag([1 / 4.0, 1 / 2.0]))
+
+
+def test_rows_that_convert_linearly_are_mapped_and_others_not() -> None:
+    matrix = np.array([[0.0, -1.0, 0.0], [2.0, 0.0, 0.5]])
+    mapped = SampleMap.of_stream(lambda rows: rows @ matrix.T + [0.0, 3.0], 3)
+    assert mapped is not None
+    np.testing.assert_allclose(mapped.apply(np.array([1.0, 2.0, 4.0])), [-2.0, 7.0])
+    missing = mapped.apply(np.array([1.0, np.nan, 4.0]))
+    assert np.isnan(missing[0]) and missing[1] == 7.0
+    assert SampleMap.of_stream(lambda rows: rows @ matrix.T + rows[:, :1] ** 2, 3) is None
+    assert SampleMap.of_stream(lambda rows: np.cumsum(rows, axis=0) @ matrix.T, 3) is None

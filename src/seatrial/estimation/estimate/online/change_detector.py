@@ -149,6 +149,13 @@ class ChangeDetector:
         self._looks += 1
         return False
 
+    def doubt(self, since: float) -> None:
+        """Forget all instants; a change closely before `since` [s], from where residuals are coloured, is withdrawn."""
+        change = self.detected
+        if change is not None and change.is_believed and since - change.reported_at < _SOON:
+            self.detected = replace(change, is_believed=False)
+        self.restart()
+
     def restart(self) -> None:
         """Forget all instants: the estimate begins anew, or counts data anew."""
         self._bank = ()
@@ -162,7 +169,7 @@ class ChangeDetector:
         nats = moves.evidence
         best = int(np.argmax(nats))
         near = [one.time for one, each in zip(compared, nats, strict=True) if each >= nats[best] - _SPAN]
-        errors = np.sqrt(np.diagonal(np.linalg.inv(moves.precision[best])))
+        errors = np.sqrt(np.abs(np.diagonal(np.linalg.inv(moves.precision[best]))))
         instant, clearest = compared[best], int(np.argmax(np.abs(moves.sizes[best]) / errors))
         earlier = (instant.estimate.value, np.sqrt(np.diagonal(instant.estimate.covariance)))
         before, error_before = (dict(zip(self.names, values.tolist(), strict=True)) for values in earlier)

@@ -1,6 +1,7 @@
 """The recursive filter: the information of a fit carried on, sample by sample, in bounded memory."""
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Protocol, Self
@@ -112,6 +113,14 @@ class FilterState:
     forgetting_interval: int
     since_forgetting: Index
 
+    def copy(self) -> "FilterState":
+        """Return the same, to be carried on by itself."""
+        return FilterState(
+            self.z.copy(), self.root.copy(), self.variance, self.huber_limit, self.averaging_samples,
+            self.running_means.copy(), self.counts.copy(), self.widest_precision, self.retained_share,
+            self.forgetting_interval, self.since_forgetting.copy(),
+        )  # fmt: skip
+
 
 class Stepper(Protocol):
     """One way from sample to sample."""
@@ -119,6 +128,10 @@ class Stepper(Protocol):
     @property
     def look_ahead(self) -> int:
         """Samples that must be known beyond the one that is taken in."""
+        ...
+
+    def as_it_is(self) -> "Stepper":
+        """Return the same with its present linearisation, whatever the coefficients become."""
         ...
 
     def run(self, filter_state: FilterState, inputs: Array, measured: Array, first: int, is_run_start: int) -> int:
@@ -153,6 +166,10 @@ class RungeKuttaStepper:
             np.empty((4, nu)), np.zeros((3, 3 * nu)), jac, jac.reshape(-1), np.zeros((ng, width)), np.empty(ng),
         )  # fmt: skip
 
+    def as_it_is(self) -> "RungeKuttaStepper":
+        """As `Stepper.as_it_is`: it is linear about each sample."""
+        return self
+
     def run(self, filter_state: FilterState, inputs: Array, measured: Array, first: int, is_run_start: int) -> int:
         """As `Stepping.run`."""
         return filter_runge_kutta(
@@ -186,12 +203,18 @@ class ExactStepper:
         self._scratch_arrays = (*_scratch(nx, k, len(outputs)), np.empty(4 * len(model.inputs) + 1), np.empty(nx))
         self._linearisation: _Linearisation | None = None
         self._linearised_at = np.full(k, np.nan)
-        self._rows_since_check = 0
+        self._rows_since_check, self._is_fixed = 0, False
 
     @property
     def look_ahead(self) -> int:
         """As `Stepping.ahead`: none where every input is held."""
         return LOOK_AHEAD if np.any(self._smooth) else 0
+
+    def as_it_is(self) -> "ExactStepper":
+        """As `Stepper.as_it_is`."""
+        same = copy(self)
+        same._is_fixed = self._linearisation is not None
+        return same
 
     def run(self, filter_state: FilterState, inputs: Array, measured: Array, first: int, is_run_start: int) -> int:
         """As `Stepping.run`."""
@@ -216,7 +239,7 @@ class ExactStepper:
         return -1
 
     def _linearise(self, filter_state: FilterState) -> _Linearisation:
-        if self._linearisation is not None and self._rows_since_check:
+        if self._linearisation is not None and (self._is_fixed or self._rows_since_check):
             return self._linearisation
         k = len(self._linearised_at)
         now = filter_state.z[:k]
@@ -416,6 +439,19 @@ class RecursiveFilter:
         w.inputs = np.concatenate([w.inputs, inputs])
         w.measured = np.concatenate([w.measured, measured])
         self._process(len(w.inputs) - self._stepper.look_ahead)
+
+    def estimate_with(self, measured: Array, inputs: Array) -> tuple[Array, Array]:
+        """Return coefficients (k,) and covariance (k, k) as they would be with the samples that wait and these.
+
+        Nothing is taken in. Arguments as of `update`, no more than will come next; the inputs are finite.
+        """
+        w, k = self._buffer, len(self.names)
+        at, stepper = self._filter_state.copy(), self._stepper.as_it_is()
+        if not w.failed:
+            all_inputs, all_measured = np.concatenate([w.inputs, inputs]), np.concatenate([w.measured, measured])
+            stepper.run(at, all_inputs, all_measured, w.processed, w.is_run_start)
+        own = at.root[:k]
+        return at.z[:k], own @ own.T
 
     def flush(self) -> None:
         """Take in what still waits for samples ahead: before the end of a run, or to be up to date."""

@@ -182,11 +182,12 @@ def filter_from_fit(
 
 # The batch criterion over everything seen, started where the last search ended: output error over whole runs.
 
-# predicted decrease of half the sum of squares: some hundredths of a standard error
-_NEGLIGIBLE = 1e-3
+# predicted decrease of half the sum of squares: some thousandths of a standard error
+_NEGLIGIBLE = 1e-5
 # of the residuals, from a cold start and from the last estimate; chosen
 _FIRST_EVALUATIONS, _LATER_EVALUATIONS = 40, 12
 _WHITENESS_LEVEL = 0.01  # significance of the whiteness test; chosen
+_CLEAR_EXCESS = 1.3  # of a variance: two standard deviations of that of a hundred samples, where a watch begins; chosen
 _TIE_TOLERANCE = 1e-3  # relative difference of misfits that counts as equal; chosen
 
 
@@ -221,6 +222,15 @@ class WindowEstimate:
         return float(np.sqrt(np.nanmean((self.residuals / np.maximum(spread, 1e-12)) ** 2)))
 
     @property
+    def noise_excess(self) -> float:
+        """Variance of the residuals over that of the noise as declared, of the channel where it is largest; 1 if near.
+
+        A change of a ship is judged by how clear the data are, not by how clear they are said to be.
+        """
+        excess = float(np.max(np.nanmean((self.residuals / self.estimate.problem.noise) ** 2, axis=0)))
+        return excess if excess > _CLEAR_EXCESS else 1.0
+
+    @property
     def is_coloured(self) -> bool:
         """Whether residuals are correlated in time."""
         return bool(np.any(self.inflation > WHITE_INFLATION))
@@ -252,8 +262,12 @@ def cold_start(model: Model, runs: Runs, settings: EstimateSettings) -> WindowEs
     return replace(again, record_starts=_record_starts(runs.records))
 
 
-def warm_start(previous: WindowEstimate, model: Model, runs: Runs, settings: EstimateSettings) -> WindowEstimate:
+def warm_start(
+    previous: WindowEstimate, model: Model, runs: Runs, settings: EstimateSettings, near: Array | None = None
+) -> WindowEstimate:
     """The search continued on longer records, weights as the last residuals have them.
+
+    near: coefficients (k,) closer to the optimum than the previous ones, as a filter has them by now.
 
     Raises:
         InputError: the records cannot be fitted at all.
@@ -266,7 +280,7 @@ def warm_start(previous: WindowEstimate, model: Model, runs: Runs, settings: Est
         substeps=last.substeps,
     )
     shared = problem.start()
-    shared[: len(problem.free)] = previous.value
+    shared[: len(problem.free)] = previous.value if near is None else near
     local = problem.measured_initial_states()
     begins = _record_starts(runs.records)
     for row, (now, was) in enumerate(zip(begins, previous.record_starts, strict=False)):

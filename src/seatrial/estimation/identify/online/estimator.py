@@ -31,6 +31,7 @@ from seatrial.estimation.identify.online.phases import (
     first_snapshot,
     is_window_full,
     recursive_snapshot,
+    snapshot_of_now,
     suits_whole_runs,
     window_snapshot,
 )
@@ -157,7 +158,12 @@ class StreamWindow:
 
 # samples before the first search: fewer leave more unknowns than a fit of a dozen coefficients and its start can bear
 _MIN_SAMPLES = 30
+_OFF = 0.001  # standard errors by which a filter's estimate may be off the search's; chosen
+_STRAIGHT = 1e-3  # bend below which a model counts as having this one, so that searches go on; chosen
 _NOTHING_FREE = "every coefficient of the model is fixed: none is estimated"
+_UNWATCHED = "Changes are not watched: the residuals are not white, so that the model or its inputs are off."
+_UNEXPLAINED = 20.0  # s of coloured residuals before which a change that explains them is seen; chosen
+_SHOWN, _YOUNG = 0.3, 20.0  # relative standard errors below which numbers say something; s of a window; chosen
 _NO_MODEL_YET = "the samples so far lead to no model that can be simulated"
 
 
@@ -178,7 +184,11 @@ class OnlineEstimator:
         self._search: WindowSearch = ContinuedSearch(trial, self._schedule) if is_continued else RepeatedSearch(trial)
         self._window = StreamWindow(trial)
         self._change_detector = ChangeDetector(trial.model.parameters.free_names)
-        self._watch: RecursivePhase | None = None
+        self._watch: RecursivePhase | None = None  # since the first search, so that all that it knows is of one filter
+        self._between: RecursivePhase | None = None  # since the last search, for what is shown until the next
+        self._is_curved = False  # the model, within the standard errors of the last search
+        self._noise_excess = 1.0  # of the residuals' variance over the declared, where the watch began
+        self._coloured_since = np.inf  # s, the first of the searches in a row whose residuals are coloured
         self._phase: KeptPhase | RecursivePhase = WarmUp()
         self._progress = StreamProgress()
         self._snapshot = first_snapshot(trial.model)
@@ -196,7 +206,7 @@ class OnlineEstimator:
             self.relinearise()
         if isinstance(self._phase, RecursivePhase):
             self._leave_filter(self._phase)
-        self._watch = None
+        self._watch = self._between = None
         self._change_detector.restart()
         if isinstance(self._phase, Window | Carried):  # what the next run is compared with
             self._compare_search(self._phase.estimate)
@@ -215,13 +225,26 @@ class OnlineEstimator:
             self._filter(self._phase, sample)
         else:
             self._window.add(sample)
-            is_due = self._window.seconds >= self._schedule.next_search
+            if self._between is not None:
+                self._show_sample(self._between, sample)
             if self._watch is not None and self._compare_sample(self._watch, sample):
                 self._begin_anew()
-            elif is_due and self._window.open_samples >= MIN_RUN_SAMPLES:
+            elif self._is_search_due() and self._window.open_samples >= MIN_RUN_SAMPLES:
                 self.relinearise()
         self._snapshot = at_progress(self._snapshot, self._progress)
         return self._snapshot
+
+    def _is_search_due(self) -> bool:
+        """Whether the window is to be searched: the filter beside it has moved too far, or where there is none, now."""
+        phase = self._phase
+        if self._between is None or not isinstance(phase, Window | Carried):
+            return self._is_curved or self._window.seconds >= self._schedule.next_search
+        if is_window_full(phase, self._window.seconds, self._stream, self._schedule.intervals):
+            return True
+        moved = np.abs(self._snapshot.value - phase.estimate.value)
+        off = 0.5 * _OFF if self._window.seconds < _YOUNG else _OFF  # its bend is known less well while it is young
+        most = np.sqrt(2.0 * off / max(self._between.bend, _STRAIGHT))
+        return bool(np.any(moved > most * self._snapshot.standard_error))
 
     def relinearise(self) -> Snapshot:
         """Search now over everything in the window; a filter takes in the samples that wait for later ones."""
@@ -237,6 +260,11 @@ class OnlineEstimator:
     def raw_runs(self) -> tuple[Run, ...]:
         """Return the stream's runs that are still kept, as training runs of a trial whose files have been read."""
         return self._window.training_runs()
+
+    @property
+    def snapshot(self) -> Snapshot:
+        """The estimate by now."""
+        return self._snapshot
 
     @property
     def change(self) -> CoefficientChange | None:
@@ -265,20 +293,48 @@ class OnlineEstimator:
         if self._window.samples >= _MIN_SAMPLES:
             try:
                 with np.errstate(all="ignore"):  # a trial step may overflow; the search then takes another
-                    estimate = self._search.estimate(phase, self._window.records())
+                    near = None if self._between is None else self._snapshot.value
+                    estimate = self._search.estimate(phase, self._window.records(), near)
                 if self._watch is None and self._compare_search(estimate):
                     self._begin_anew()
                     return
                 self._phase = phase = phase.with_estimate(estimate)
                 self._snapshot = window_snapshot(self._snapshot, self._trial.model, phase, estimate)
-                if self._watch is None and self._search.is_efficient and not estimate.is_coloured:
-                    self._watch = filter_phase(estimate, self._stream, self._trial.reference_point)
+                self._between = self._filter_behind(estimate)
+                self._is_curved = self._between is None and self._is_young(estimate)
+                if self._watch is None:
+                    self._watch, self._noise_excess = self._filter_behind(estimate), estimate.noise_excess
+                self._note_colour(is_coloured=estimate.is_coloured and self._search.is_efficient)
             except (InputError, np.linalg.LinAlgError) as error:
                 if isinstance(phase, WarmUp):
                     reason = str(error) if isinstance(error, InputError) else _NO_MODEL_YET
                     self._snapshot = replace(self._snapshot, advice=reason)
         if not isinstance(phase, WarmUp) and is_window_full(phase, seconds, self._stream, self._schedule.intervals):
             self._leave_window(phase)
+
+    def _note_colour(self, *, is_coloured: bool) -> None:
+        """Watch no longer, and say so, where residuals stay coloured without a change that would explain it."""
+        now = self._progress.last_time
+        self._coloured_since = min(self._coloured_since, now) if is_coloured else np.inf
+        is_unexplained = now - self._coloured_since >= _UNEXPLAINED
+        is_unwatched = is_coloured and (self._watch is None or is_unexplained)
+        if is_unexplained:
+            self._watch = None
+            self._change_detector.doubt(self._coloured_since)
+        unwatched = _UNWATCHED if is_unwatched else ""
+        self._snapshot = replace(self._snapshot, change=self._change_detector.detected, unwatched=unwatched)
+
+    def _is_young(self, estimate: WindowEstimate) -> bool:
+        """Whether numbers can be shown but a model may still be too curved for a filter: every sample is searched."""
+        error = np.sqrt(np.diagonal(estimate.covariance))
+        is_shown = bool(np.all(error < _SHOWN * np.abs(estimate.value)))
+        return is_shown and self._search.is_efficient and self._window.seconds < _YOUNG
+
+    def _filter_behind(self, estimate: WindowEstimate) -> RecursivePhase | None:
+        """A filter behind a search, where one can take over."""
+        if not self._search.is_efficient or estimate.is_coloured:
+            return None
+        return filter_phase(estimate, self._stream, self._trial.reference_point, self._between)
 
     def _leave_window(self, phase: Window | Carried) -> None:
         """Go on with a filter where one can take over, else with the window's information."""
@@ -289,21 +345,20 @@ class OnlineEstimator:
             is_efficient = self._search.is_efficient
             following = carried_phase(phase, self._window.seconds, self._stream, is_efficient=is_efficient)
             self._schedule.note_search(0.0, is_carried=True)
-        self._watch = None
+        self._watch = self._between = None
         self._change_detector.restart()
         self._phase = following
         self._window.clear()
 
     def _filter(self, phase: RecursivePhase, sample: Sample) -> None:
         """Take a sample into the filter; one that has diverged is left."""
-        if not phase.add(sample.time, sample.values):
-            return
-        if phase.is_sound and self._compare_filter(phase):
-            self._begin_anew()
-        elif phase.is_sound:
-            self._snapshot = recursive_snapshot(self._snapshot, self._trial.model, phase)
-        else:
+        is_look_due = phase.add(sample.time, sample.values)
+        if is_look_due and not phase.is_sound:
             self._leave_filter(phase)
+        elif is_look_due and self._compare_filter(phase):
+            self._begin_anew()
+        else:
+            self._snapshot = recursive_snapshot(self._snapshot, self._trial.model, phase)
 
     def _leave_filter(self, phase: RecursivePhase) -> None:
         """Go on with a window: with the filter's information, or from nowhere where it has diverged."""
@@ -314,7 +369,8 @@ class OnlineEstimator:
 
     def _begin_anew(self) -> None:
         """Forget all that was before a change: what follows comes from later samples alone."""
-        self._phase, self._watch = WarmUp(), None
+        self._phase, self._watch, self._between = WarmUp(), None, None
+        self._coloured_since, self._is_curved = np.inf, False
         self._window.clear()
         self._schedule.restart()
         self._snapshot = first_snapshot(self._trial.model, self._change_detector.detected)
@@ -328,9 +384,20 @@ class OnlineEstimator:
         self._watch = None  # the next search is compared with what it saw
         return False
 
+    def _show_sample(self, between: RecursivePhase, sample: Sample) -> None:
+        """Take a sample into the filter behind the last search, and show its estimate."""
+        if between.add(sample.time, sample.values) and not between.is_sound:
+            self._between = None
+            return
+        estimate = between.estimate_by_now()
+        if estimate is not None:
+            self._snapshot = snapshot_of_now(self._snapshot, self._trial.model, estimate)
+
     def _compare_filter(self, phase: RecursivePhase) -> bool:
         """Compare a filter's estimate with earlier ones, and return whether it shows a change."""
-        return self._change_detector.update(self._progress.last_time, phase.of_all_samples)
+        known = phase.of_all_samples
+        now = GaussianEstimate(known.value, self._noise_excess * known.covariance)
+        return self._change_detector.update(self._progress.last_time, now)
 
     def _compare_search(self, estimate: WindowEstimate) -> bool:
         """Compare a search with earlier estimates where successive ones are nested; return whether it shows a change.
@@ -339,7 +406,7 @@ class OnlineEstimator:
         forces of the same waves change as more of their elevation is known.
         """
         is_nested = self._search.is_efficient and self._stream.waves is None and self._stream.forgetting_time_s is None
-        now = GaussianEstimate(estimate.value, estimate.covariance)
+        now = GaussianEstimate(estimate.value, estimate.noise_excess * estimate.covariance)
         return is_nested and self._change_detector.update(
             self._progress.last_time, now, is_white=not estimate.is_coloured, is_searched=True
         )

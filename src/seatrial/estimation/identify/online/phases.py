@@ -1,10 +1,12 @@
 """Phases of an online estimate: samples that are kept, information that is carried on, and what is shown of both."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Protocol, Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from seatrial.core.equations import Model
 from seatrial.core.results.online import CoefficientChange, EstimatorPhase, Snapshot
@@ -206,8 +208,8 @@ class WindowSearch(Protocol):
         """
         ...
 
-    def estimate(self, phase: KeptPhase, records: Sequence[Record]) -> WindowEstimate:
-        """Return the estimate from the records and from what the phase carries.
+    def estimate(self, phase: KeptPhase, records: Sequence[Record], near: Array | None = None) -> WindowEstimate:
+        """Return the estimate from the records and from what the phase carries; near: coefficients (k,) close to it.
 
         Raises:
             InputError: the records cannot be fitted.
@@ -226,7 +228,7 @@ class ContinuedSearch:
     schedule: SearchSchedule
     is_efficient: bool = True
 
-    def estimate(self, phase: KeptPhase, records: Sequence[Record]) -> WindowEstimate:
+    def estimate(self, phase: KeptPhase, records: Sequence[Record], near: Array | None = None) -> WindowEstimate:
         """As `WindowSearch.estimate`."""
         model, runs = self.trial.model, _runs(self.trial, phase, records)
         # a delay that is estimated has no place in the filter that takes over between searches
@@ -234,7 +236,7 @@ class ContinuedSearch:
         settings = with_segment_seconds(known, model, runs)
         warm = None
         if not isinstance(phase, WarmUp):
-            warm = warm_start(phase.estimate, model, runs, settings)
+            warm = warm_start(phase.estimate, model, runs, settings, near)
             if isinstance(phase, Carried) or not self._needs_cold_check(warm, phase.estimate):
                 return warm
         self.schedule.note_cold_start()
@@ -255,7 +257,12 @@ class RepeatedSearch:
     trial: Trial
     is_efficient: bool = False
 
-    def estimate(self, phase: KeptPhase, records: Sequence[Record]) -> WindowEstimate:
+    def estimate(  # every search begins from nowhere
+        self,
+        phase: KeptPhase,
+        records: Sequence[Record],
+        near: Array | None = None,  # noqa: ARG002
+    ) -> WindowEstimate:
         """As `WindowSearch.estimate`; also refuses an estimate at which whole runs diverge."""
         model, runs = self.trial.model, _runs(self.trial, phase, records)
         settings = with_segment_seconds(self.trial.estimate, model, runs)
@@ -288,8 +295,47 @@ def _runs(trial: Trial, phase: KeptPhase, records: Sequence[Record]) -> Runs:
 
 # Beyond the window: the fit's information carried on by a recursive filter, a block of samples at a time.
 
-# samples taken in at once: enough to spread the cost of a block, few enough that numbers move within a second at 10 Hz
+# samples taken in at once where a sample needs its neighbours, and samples between two looks for a change: enough to
+# spread the cost, few enough that numbers move within a second at 10 Hz
 BLOCK_SAMPLES = 10
+
+
+@dataclass(frozen=True, eq=False)
+class SampleMap:
+    """A stream's columns to a model's inputs and measured outputs where each sample does so by itself and linearly.
+
+    Attributes:
+        matrix: (nu + ny, columns); constant: (nu + ny,); uses: which columns a row needs, (nu + ny, columns).
+    """
+
+    matrix: Array
+    constant: Array
+    uses: NDArray[np.bool_]
+
+    @classmethod
+    def of_stream(cls, convert: Callable[[Array], Array], columns: int) -> "SampleMap | None":
+        """Return the map of a conversion (n, columns) -> (n, nu + ny) of rows; None where it is not linear, row by row.
+
+        The conversion is that of the files' readers; it is tried on units and on random rows.
+        """
+        rng = np.random.default_rng(0)
+        units = convert(np.concatenate([np.zeros((1, columns)), np.eye(columns)]))
+        constant, matrix = units[0], (units[1:] - units[0]).T
+        rows = rng.uniform(-1.0, 1.0, (BLOCK_SAMPLES, columns))
+        is_linear = np.allclose(convert(rows), rows @ matrix.T + constant, rtol=_EXACT, atol=_EXACT, equal_nan=True)
+        return cls(np.nan_to_num(matrix), constant, np.nan_to_num(matrix) != 0.0) if is_linear else None
+
+    def apply(self, values: Array) -> Array:
+        """Return inputs and outputs of one sample (columns,), NaN where a value that they need is missing."""
+        missing = np.isnan(values)
+        if not missing.any():
+            return self.matrix @ values + self.constant
+        mapped = self.matrix @ np.where(missing, 0.0, values) + self.constant
+        mapped[self.uses @ missing] = np.nan
+        return mapped
+
+
+_EXACT = 1e-12  # rounding of a conversion
 
 
 class RecursivePhase:
@@ -297,17 +343,26 @@ class RecursivePhase:
 
     Where samples are forgotten, a second filter that forgets nothing says what all of them do.
 
+    Attributes:
+        bend: of the model within one standard error of the fit, see `curvature`.
+
     Raises:
         InputError: the fit is too curved or does not identify every coefficient, waves come from an elevation, or
             inputs are corrected for each run; a window goes on instead.
     """
 
-    def __init__(self, estimate: WindowEstimate, stream: Stream, reference_point: float) -> None:
+    def __init__(
+        self, estimate: WindowEstimate, stream: Stream, reference_point: float, before: Self | None = None
+    ) -> None:
         fit = estimate.estimate
         optimum = (fit.problem, fit.common_parameters, fit.optimum.local, fit.optimum.normal)
         if stream.waves is not None:
             raise InputError("a filter cannot turn an elevation into forces sample by sample")
-        if curvature(*optimum) > LINEAR_ENOUGH:
+        # a model bends less within errors that are smaller
+        self._error = np.sqrt(np.diag(estimate.covariance))
+        shrunk = 1.0 if before is None else float(np.max(self._error / before._error))
+        self.bend = curvature(*optimum) if before is None else shrunk * before.bend
+        if self.bend > LINEAR_ENOUGH:
             raise InputError("the fit is too curved within its own errors for a filter to take over")
         self._estimate, self._stream, self._reference_point = estimate, stream, reference_point
         widest = tuple(float(v) for v in np.maximum(np.abs(estimate.value), _scales(estimate)))
@@ -315,20 +370,26 @@ class RecursivePhase:
         self._filter = filter_from_fit(*optimum, forgetting=forgetting)
         self._unforgetting_filter = self._filter if forgetting is None else filter_from_fit(*optimum)
         self._model, self._outputs = fit.problem.model, fit.problem.data.outputs
-        self._block = SampleRows(len(stream.layout.columns))
-        self._last_inputs = np.full(len(self._model.inputs), np.nan)
+        columns = len(stream.layout.columns)
+        self._block, self._rows = SampleRows(columns), list[Array]()
+        self._last_inputs = np.zeros(len(self._model.inputs))
+        # a heading turns on and on, so that a sample of it needs those before
+        self._map = None if self._model.has_heading else SampleMap.of_stream(self._converted, columns)
 
     def add(self, time: float, values: Array) -> bool:
-        """Take in one sample, and return whether the estimate has changed."""
-        self._block.add(time, values)
-        if len(self._block) < BLOCK_SAMPLES:
+        """Take in one sample, and return whether a block of them has been processed."""
+        if self._map is None:
+            self._block.add(time, values)
+        else:
+            self._rows.append(self._filled(self._map.apply(values)))
+        if len(self._block) + len(self._rows) < BLOCK_SAMPLES:
             return False
         self._process_block()
         return True
 
     def finish(self) -> None:
         """Take in the samples that wait: the run or the stream ends."""
-        if len(self._block) > 1:
+        if len(self._block) > 1 or self._rows:
             self._process_block()
         self._filter.flush()
         if self._unforgetting_filter is not self._filter:
@@ -359,6 +420,13 @@ class RecursivePhase:
         """Of the coefficients, (k, k)."""
         return self._filter.covariance
 
+    def estimate_by_now(self) -> GaussianEstimate | None:
+        """Return the estimate with the samples that still wait, as if none came; None where they wait for a block."""
+        if self._map is None:
+            return None
+        rows = np.array(self._rows).reshape(len(self._rows), len(self._map.constant))
+        return GaussianEstimate(*self._filter.estimate_with(*self._split(rows)))
+
     @property
     def noise(self) -> dict[str, float]:
         """Rms of the innovations over the last half minute, SI, by channel."""
@@ -370,29 +438,44 @@ class RecursivePhase:
         return GaussianEstimate(self._unforgetting_filter.value, self._unforgetting_filter.covariance)
 
     def _process_block(self) -> None:
-        rows, self._block = self._block, SampleRows(self._block.values.shape[1])
-        raw_record = record_from_values("", self._stream.layout, rows.time, rows.values)
-        record = canonical_record(raw_record, self._reference_point)
-        inputs = self._fill_inputs(record)
-        measured = np.stack([record[o] if o in record else np.full(len(record), np.nan) for o in self._outputs], axis=1)
+        if self._map is None:
+            block, self._block = self._block, SampleRows(self._block.values.shape[1])
+            rows = [self._filled(row) for row in self._converted(block.values, block.time)]
+        else:
+            rows, self._rows = self._rows, []
+        measured, inputs = self._split(np.array(rows))
         self._filter.update(measured, inputs)
         if self._unforgetting_filter is not self._filter:
             self._unforgetting_filter.update(measured, inputs)
 
-    def _fill_inputs(self, record: Record) -> Array:
-        """Inputs of a block, (n, nu); a missing value is replaced by the last one received, at first by zero."""
-        filled = {}
-        for index, item in enumerate(self._model.inputs):
-            if item.name in record and not np.all(np.isfinite(record[item.name])):
-                values = record[item.name].copy()
-                before = 0.0 if np.isnan(self._last_inputs[index]) else self._last_inputs[index]
-                for i in np.flatnonzero(~np.isfinite(values)):
-                    values[i] = values[i - 1] if i else before
-                filled[item.name] = record.channel(item.name).with_values(values)
-        complete = Record(record.name, record.time, {**record.channels, **filled}, record.kind, record.provenance)
-        for index, item in enumerate(self._model.inputs):
-            self._last_inputs[index] = complete[item.name][-1] if item.name in complete else 0.0
-        return inputs_of(self._model, complete)
+    def _split(self, rows: Array) -> tuple[Array, Array]:
+        """Outputs and inputs of rows (n, nu + ny)."""
+        count = len(self._last_inputs)
+        return rows[:, count:], rows[:, :count]
+
+    def _filled(self, row: Array) -> Array:
+        """Inputs and outputs of a sample, a missing input being the last one received, at first zero."""
+        inputs = row[: len(self._last_inputs)]
+        missing = np.isnan(inputs)
+        if missing.any():
+            inputs[missing] = self._last_inputs[missing]
+        self._last_inputs = inputs
+        return row
+
+    def _converted(self, values: Array, time: Array | None = None) -> Array:
+        """Inputs and outputs of rows (n, columns) as the readers of files have them, (n, nu + ny), NaN if missing."""
+        when = np.arange(len(values)) / self._stream.rate if time is None else time
+        record = canonical_record(record_from_values("", self._stream.layout, when, values), self._reference_point)
+        absent = np.full(len(record), np.nan)
+        names = [i.name for i in self._model.inputs]
+        whole = {n: record.channel(n).with_values(np.nan_to_num(record[n])) for n in names if n in record}
+        complete = Record(record.name, record.time, {**record.channels, **whole}, record.kind, record.provenance)
+        inputs = inputs_of(self._model, complete)
+        for index, name in enumerate(names):
+            if name in record:
+                inputs[~np.isfinite(record[name]), index] = np.nan
+        outputs = (record[o] if o in record.channels else absent for o in self._outputs)
+        return np.column_stack([inputs, *outputs])
 
 
 def _scales(estimate: WindowEstimate) -> Array:
@@ -416,10 +499,15 @@ def is_window_full(phase: KeptPhase, seconds: float, stream: Stream, intervals: 
             return seconds >= min(intervals.stretch(window), window)
 
 
-def filter_phase(estimate: WindowEstimate, stream: Stream, reference_point: float) -> RecursivePhase | None:
-    """Return the filter that goes on behind the estimate; None where it cannot take over."""
+def filter_phase(
+    estimate: WindowEstimate, stream: Stream, reference_point: float, before: RecursivePhase | None = None
+) -> RecursivePhase | None:
+    """Return the filter that goes on behind the estimate; None where it cannot take over.
+
+    before: the filter behind the last search of the same samples.
+    """
     try:
-        return RecursivePhase(estimate, stream, reference_point)
+        return RecursivePhase(estimate, stream, reference_point, before)
     except InputError:
         return None
 
@@ -491,9 +579,14 @@ def window_snapshot(snapshot: Snapshot, model: Model, phase: KeptPhase, estimate
 
 
 def recursive_snapshot(snapshot: Snapshot, model: Model, phase: RecursivePhase) -> Snapshot:
-    """Return the snapshot with the filter's estimate."""
+    """Return the snapshot with the filter's estimate behind the window."""
     snapshot = replace(snapshot, phase=EstimatorPhase.RECURSIVE, noise=phase.noise)
-    return _with_values(snapshot, model, phase.value, phase.covariance)
+    return snapshot_of_now(snapshot, model, phase.estimate_by_now() or GaussianEstimate(phase.value, phase.covariance))
+
+
+def snapshot_of_now(snapshot: Snapshot, model: Model, estimate: GaussianEstimate) -> Snapshot:
+    """Return the snapshot with the estimate of all samples so far, between two searches."""
+    return _with_values(snapshot, model, estimate.value, estimate.covariance)
 
 
 def at_progress(snapshot: Snapshot, progress: StreamProgress) -> Snapshot:
@@ -501,9 +594,15 @@ def at_progress(snapshot: Snapshot, progress: StreamProgress) -> Snapshot:
     return replace(snapshot, time=progress.last_time, samples=progress.samples, runs=progress.runs)
 
 
+@lru_cache(maxsize=4)
+def _free_scales(model: Model) -> Array:
+    """The scale of each free coefficient, (k,)."""
+    return np.array([p.scale for p in model.parameters.free])
+
+
 def _with_values(snapshot: Snapshot, model: Model, value: Array, covariance: Array) -> Snapshot:
     """A coefficient is identified where its standard error is below its value or its scale."""
-    error = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-    free = zip(model.parameters.free, value, error, strict=True)
-    unidentified = tuple(p.name for p, v, s in free if s > max(abs(v), p.scale))
+    error = np.sqrt(np.maximum(covariance.diagonal(), 0.0))
+    is_open = error > np.maximum(np.abs(value), _free_scales(model))
+    unidentified = tuple(snapshot.names[k] for k in np.flatnonzero(is_open))
     return replace(snapshot, value=value, standard_error=error, unidentified=unidentified, advice="")
