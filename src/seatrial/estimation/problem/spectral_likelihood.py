@@ -336,10 +336,13 @@ class HeldUnknown:
 
     def normal(self, shared: Array, local: Array) -> NormalEquations:
         """Return cost, gradient and Fisher information at a point."""
-        whole = self.problem.normal(np.insert(shared, self.place, self.value), local)
+        unheld = self.problem.normal(np.insert(shared, self.place, self.value), local)
         kept = np.delete(np.arange(len(shared) + 1), self.place)
         return replace(
-            whole, gradient=whole.gradient[kept], hessian=whole.hessian[np.ix_(kept, kept)], cross=whole.cross[:, kept]
+            unheld,
+            gradient=unheld.gradient[kept],
+            hessian=unheld.hessian[np.ix_(kept, kept)],
+            cross=unheld.cross[:, kept],
         )
 
 
