@@ -13,6 +13,7 @@ from seatrial import api
 from seatrial.core.figures.time_plot import packed
 from seatrial.core.results import Fit
 from seatrial.core.results.coefficients import Coefficient
+from seatrial.core.text.numbers import estimate_text
 from seatrial.core.text.words import printable
 from seatrial.core.values import InputError, Record
 from seatrial.core.values.files import is_file
@@ -71,7 +72,9 @@ def fit_view(root: Path, folder: Path) -> dict[str, Any]:
 
 def _coefficient(c: Coefficient) -> dict[str, Any]:
     ends = {"low": c.lower, "high": c.upper}
+    shown = estimate_text(c.estimate, c.standard_error, c.lower, c.upper)
     return {
+        "shown": f"{shown.value}{shown.power}", "interval": f"{shown.lower} to {shown.upper}{shown.power}",
         "name": c.name, "meaning": c.meaning, "unit": "" if c.unit == "1" else c.unit, "value": c.estimate,
         "fixed": c.fixed, "guessed": c.is_unmeasured, "sign_open": c.is_sign_open, "source": c.source,
         **{key: None if value is None or not math.isfinite(value) else float(value) for key, value in ends.items()},

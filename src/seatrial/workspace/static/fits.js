@@ -1,7 +1,7 @@
 // Fits: started, watched, stopped, side by side, each restorable as its trial file.
 import { ask } from "./api.js";
 import { LogPicture, track, unpacked } from "./charts.js";
-import { button, digits, duration, field, h, input, section, select } from "./dom.js";
+import { button, duration, field, h, input, section, select } from "./dom.js";
 import { findingList } from "./logs.js";
 
 const chosen = new Set();
@@ -105,8 +105,8 @@ function sideBySide(fits) {
   const free = [...new Set(fits.flatMap(fit => fit.coefficients.filter(one => !one.fixed).map(one => one.name)))];
   const fact = (fit, name) => fit.facts.find(one => one.name === name);
   const coefficient = (fit, name) => fit.coefficients.find(one => one.name === name);
-  const cell = one => !one ? h("td", {}, "–") : h("td", { class: "num" }, digits(one.value), " ", h("span", { class: "u" }, one.unit),
-    h("span", { class: `under ${one.sign_open ? "bad" : ""}` }, one.fixed ? "held" : one.low === null && one.high === null ? "no interval" : `${digits(one.low, 3)} to ${digits(one.high, 3)}${one.sign_open ? ", sign open" : ""}`));
+  const cell = one => !one ? h("td", {}, "–") : h("td", { class: "num" }, one.shown, " ", h("span", { class: "u" }, one.unit),
+    h("span", { class: `under ${one.sign_open ? "bad" : ""}` }, one.fixed ? "held" : one.low === null && one.high === null ? "no interval" : `${one.interval}${one.sign_open ? ", sign open" : ""}`));
   const meaning = name => fits.map(fit => coefficient(fit, name)?.meaning).find(Boolean) || "";
   return h("div", { class: "scroll" }, h("table", { class: "whole beside" }, h("thead", {}, h("tr", {}, h("th", {}), fits.map(fit => h("th", { scope: "col" }, fit.name)))),
     h("tbody", {}, h("tr", {}, h("th", { scope: "row" }, "Verdict"), fits.map(fit => h("td", {}, h("b", {}, fit.verdict)))),

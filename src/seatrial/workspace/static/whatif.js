@@ -57,7 +57,7 @@ function slider(one, values, draw) {
   node.classList.add("slider");
   control.setAttribute("value", place(one.value));
   reset();
-  node.append(output, h("span", { class: "u" }, `95 %: ${digits(one.low, 3)} to ${digits(one.high, 3)}`));
+  node.append(output, h("span", { class: "u" }, `95 %: ${one.interval}`));
   return { node, reset };
 }
 
