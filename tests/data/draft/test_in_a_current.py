@@ -53,6 +53,17 @@ def test_a_tide_is_drafted_with_the_speed_through_the_water(tmp_path: Path) -> N
     assert 'session = "all"    # of one place' in text
 
 
+@pytest.mark.parametrize(("third", "is_shared"), [((0.4, 1.2), True), ((0.4, 0.9), False)])
+def test_runs_share_a_session_where_no_two_of_them_show_different_currents(
+    tmp_path: Path, third: tuple[float, float], *, is_shared: bool
+) -> None:
+    """The first two agree; the third differs from both or from none."""
+    currents = ((0.4, 1.2), (0.4, 1.2), third)
+    logs = [_log(tmp_path / f"run{k}.csv", 0.5 + k, np.radians(15.0), current) for k, current in enumerate(currents)]
+    text = draft_trial(*logs, folder=tmp_path, size=StatedSize(length=8.0, antenna=0.0)).text
+    assert ('session = "all"' in text) == is_shared
+
+
 def test_one_course_leaves_it_open(tmp_path: Path) -> None:
     draft = _draft(tmp_path, 0.0, (0.4, 1.2))
     assert draft.lacks_speed and "\nU_n" not in draft.text

@@ -11,6 +11,7 @@ from seatrial.estimation.estimate import EstimatorOptions, Runs, begin_estimate,
 from seatrial.estimation.estimate.assemble import output_error_problem
 from seatrial.estimation.estimate.start import find_start, number_of_starts, search_from_several
 from seatrial.physics.models import model_named
+from seatrial.physics.sensors import Sensors, with_sensors
 from seatrial.physics.simulate.replay import replay
 
 TRUTH = {"K": 0.2, "T": 5.0}
@@ -64,6 +65,20 @@ def test_an_estimate_that_is_begun_already_ends_the_same(run: Record) -> None:
     alone, again = (estimate_model(model, runs, settings, options, beginning=b) for b in (None, begun))
     np.testing.assert_array_equal(alone.estimate.common_parameters, again.estimate.common_parameters)
     assert again.shooting is begun.shooting and alone.reasons == again.reasons
+
+
+def test_a_search_with_other_instruments_begins_where_the_one_before_ended(run: Record) -> None:
+    """Coefficients that the other has begin at its end, those of instruments at their own values."""
+    runs, options = Runs.one_session_each([run], 10.0), EstimatorOptions()
+    settings = EstimateSettings(method=FitCriterion.OUTPUT_ERROR, starts=3)
+    sensed = with_sensors(model_named("nomoto"), Sensors(yaw_rate_bias=True))
+    before = begin_estimate(model_named("nomoto"), runs, settings, options)
+    near = begin_estimate(sensed, runs, settings, options, near=before)
+    assert near.starts.attempts == before.starts.attempts
+    anew = begin_estimate(sensed, runs, settings, options)
+    np.testing.assert_allclose(near.shooting.common_parameters, anew.shooting.common_parameters, rtol=1e-4, atol=1e-6)
+    spent = [begun.shooting.optimum.solution.evaluations for begun in (near, anew)]
+    assert near.starts.start.common_parameters[0] == before.shooting.common_parameters[0] and spent[0] <= spent[1]
 
 
 def test_one_start_suffices_unless_thrusters_drive_the_craft_or_the_trial_says_otherwise() -> None:
