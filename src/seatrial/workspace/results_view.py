@@ -72,9 +72,9 @@ def fit_view(root: Path, folder: Path) -> dict[str, Any]:
 
 def _coefficient(c: Coefficient) -> dict[str, Any]:
     ends = {"low": c.lower, "high": c.upper}
-    shown = estimate_text(c.estimate, c.standard_error, c.lower, c.upper)
+    texts = estimate_text(c.estimate, c.standard_error, c.lower, c.upper)
     return {
-        "shown": f"{shown.value}{shown.power}", "interval": f"{shown.lower} to {shown.upper}{shown.power}",
+        "shown": f"{texts.value}{texts.power}", "interval": f"{texts.lower} to {texts.upper}{texts.power}",
         "name": c.name, "meaning": c.meaning, "unit": "" if c.unit == "1" else c.unit, "value": c.estimate,
         "fixed": c.fixed, "guessed": c.is_unmeasured, "sign_open": c.is_sign_open, "source": c.source,
         **{key: None if value is None or not math.isfinite(value) else float(value) for key, value in ends.items()},
