@@ -43,6 +43,18 @@ def test_nothing_else_asks_which_system_it_runs_on() -> None:
     assert len(_platform_uses(ast.parse(Path(platform.__file__).read_text("utf-8")))) > 5
 
 
+def test_a_command_in_the_background_says_what_it_writes_and_a_file_can_be_made_to_run(tmp_path: Path) -> None:
+    process = platform.start_in_background(
+        [sys.executable, "-c", "import sys; print('done', file=sys.stderr)"], os.environ, 5
+    )
+    assert process.stderr is not None and process.stderr.read().strip() == "done" and process.wait() == 0
+    process.stderr.close()
+    script = tmp_path / f"open{platform.click_suffix()}"
+    script.write_text("", encoding="utf-8")
+    platform.make_executable(script)
+    assert os.access(script, os.X_OK) and script.suffix in (".bat", ".command", ".desktop")
+
+
 def test_all_cores_are_used_where_there_are_no_affinities(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delattr(os, "sched_getaffinity", raising=False)
     monkeypatch.setattr(os, "cpu_count", lambda: 7)

@@ -4,7 +4,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from benchmarks.changed_ships import changed_record, follower
+from benchmarks.changed_ships import Cell, Change, follower, voyage
 from benchmarks.follow import samples
 from tests.control.loop_files import RIDE_CONTROL, heave_pitch_file, write_loop_file
 
@@ -26,7 +26,7 @@ def ride_files(folder: Path) -> ProposalSettings:
 def test_a_followed_ship_in_waves_has_gains_once_its_coefficients_are_known(tmp_path: Path) -> None:
     settings = ride_files(tmp_path)
     _, trial, stream = follower()
-    record, _ = changed_record({}, 200.0, 3)
+    record = voyage(Cell(Change({})), 200.0, 3).record
     estimator = OnlineEstimator(trial)
     proposer = gain_proposer(trial, settings, estimator, tmp_path / "proposal.toml")
     assert isinstance(proposer, CraftGainProposer)

@@ -9,15 +9,17 @@ import os
 import select
 import signal
 import stat
+import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from io import RawIOBase
 from pathlib import Path
 
 _SYSTEM = os.name
 _RETRIES_REPLACING = _SYSTEM == "nt"
+_RUN_BY_ALL = stat.S_IRWXU | stat.S_IRGRP | stat.S_IXGRP | stat.S_IROTH | stat.S_IXOTH
 # Windows refuses to replace a file that a virus scanner or an indexer has open for a moment; s between attempts, and
 # how many: half a second in all, as long as such programs hold a small file
 _REPLACE_PAUSE_S, _REPLACE_ATTEMPTS = 0.05, 10
@@ -41,6 +43,32 @@ def system_name() -> str:
 def library_suffix() -> str:
     """Return how names of shared libraries end."""
     return {"darwin": ".dylib", "win32": ".dll"}.get(sys.platform, ".so")
+
+
+def click_suffix() -> str:
+    """Return how files end that the desktop runs when they are clicked."""
+    return {"darwin": ".command", "win32": ".bat"}.get(sys.platform, ".desktop")
+
+
+def make_executable(path: Path) -> None:
+    """Let all run a file and its owner change it, where the system asks for it."""
+    if os.name == "posix":
+        path.chmod(_RUN_BY_ALL)
+
+
+def start_in_background(command: Sequence[str], environment: Mapping[str, str], niceness: int) -> subprocess.Popen[str]:
+    """Start a command whose error output is read, in a session of its own and at a lower priority where there are any.
+
+    niceness: of the process, 19 at most (POSIX).
+    """
+    is_posix = os.name == "posix"
+    process = subprocess.Popen(
+        list(command), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+        errors="replace", env=dict(environment), start_new_session=is_posix,
+    )  # fmt: skip
+    if is_posix:
+        os.setpriority(os.PRIO_PROCESS, process.pid, niceness)
+    return process
 
 
 def usable_cores() -> int:

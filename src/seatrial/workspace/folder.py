@@ -8,6 +8,7 @@ from pathlib import Path
 from seatrial.core.values import InputError
 from seatrial.core.values.files import is_file, is_folder, is_present, parse_toml, read_table_text
 from seatrial.data.read.registry import FORMATS
+from seatrial.numerics.platform import replace_file
 
 TRIAL = "trial.toml"
 """The trial file of a folder of logs; that of `seatrial init`."""
@@ -125,7 +126,7 @@ class OpenedFolder:
             with draft.open("xb") as file:
                 async for part in parts:
                     file.write(part)
-            draft.rename(target)
+            replace_file(draft, target)
         except FileExistsError:
             raise InputError(f"'{name}' is being received already; wait for it") from None
         except OSError as error:

@@ -16,6 +16,7 @@ from typing import Any
 from seatrial.core.text.progress import read_report
 from seatrial.core.values import InputError
 from seatrial.core.values.files import is_file, write_atomically
+from seatrial.numerics.platform import start_in_background
 
 NOTE = "job.json"
 """What became of a job, in its folder beside the result."""
@@ -108,13 +109,8 @@ class JobRunner:
         if folder is not None:
             folder.mkdir(parents=True, exist_ok=True)
         environment = os.environ | {"PYTHONUNBUFFERED": "1", "NO_COLOR": "1"}
-        job.process = subprocess.Popen(
-            [sys.executable, "-m", "seatrial", *arguments, "--verbose"],
-            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace",
-            env=environment, start_new_session=os.name == "posix",
-        )  # fmt: skip
-        if os.name == "posix":
-            os.setpriority(os.PRIO_PROCESS, job.process.pid, _NICENESS)
+        command = [sys.executable, "-m", "seatrial", *arguments, "--verbose"]
+        job.process = start_in_background(command, environment, _NICENESS)
         threading.Thread(target=self._watch, args=(job, snapshot), daemon=True).start()
         return job
 

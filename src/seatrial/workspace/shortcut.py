@@ -1,11 +1,11 @@
 """A shortcut on the desktop that opens a folder in the workspace."""
 
-import os
 import sys
 from pathlib import Path
 
 from seatrial.core.values import InputError
 from seatrial.core.values.files import is_folder, write_atomically
+from seatrial.numerics.platform import click_suffix, make_executable
 
 _LINUX = """[Desktop Entry]
 Type=Application
@@ -15,6 +15,8 @@ Terminal=true
 """
 _MAC = '#!/bin/sh\nexec "{python}" -m seatrial open "{folder}"\n'
 _WINDOWS = '@"{python}" -m seatrial open "{folder}"\r\n'
+_UNFIT = '"\n\r%$`\\'
+"""Letters of a path, with slashes, that a line of these files would take for its own."""
 
 
 def write_shortcut(folder: Path, desktop: Path | None = None) -> Path:
@@ -29,13 +31,12 @@ def write_shortcut(folder: Path, desktop: Path | None = None) -> Path:
     if not is_folder(place):
         raise InputError(f"there is no desktop '{place}'; start with 'seatrial open {folder}'")
     folder = folder.resolve()
-    if any(letter in str(folder) for letter in '"\n\r%$`\\' if os.name == "posix"):
+    suffix = click_suffix()
+    if any(letter in folder.as_posix() for letter in _UNFIT):
         raise InputError(f"'{folder}' has letters that a shortcut cannot hold; rename the folder")
-    kinds = {"win32": (_WINDOWS, ".bat"), "darwin": (_MAC, ".command")}
-    template, suffix = kinds.get(sys.platform, (_LINUX, ".desktop"))
+    template = {".bat": _WINDOWS, ".command": _MAC}.get(suffix, _LINUX)
     path = place / f"seatrial {folder.name}{suffix}"
     text = template.format(name=folder.name, python=sys.executable, folder=folder)
     write_atomically(path, text.encode())
-    if os.name == "posix":
-        path.chmod(0o755)  # the user may change it, all may run it
+    make_executable(path)
     return path
