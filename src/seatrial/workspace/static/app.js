@@ -18,6 +18,8 @@ export const app = {
   jobs: new Map(),
   check: {},
   chosenFit: "",
+  asked: 0,
+  answered: 0,
   listeners: new Set(),
 
   // an edit of the trial file; a conflict is shown, and nothing is lost
@@ -45,13 +47,21 @@ export const app = {
     showEdit(change);
   },
   async refresh() {
-    this.state = await ask("state");
-    if (this.state.check?.version) this.check = this.state.check;
+    const turn = ++this.asked, state = await ask("state");
+    if (turn < this.answered) return; // a later request was answered before
+    this.answered = turn;
+    this.state = state;
+    if (this.state.check?.version) this.learn(this.state.check);
     for (const job of this.state.jobs) this.jobs.set(job.name, { ...job, at: performance.now() });
     $("where").textContent = `${this.state.name} in ${this.state.folder}`;
     document.title = `${this.state.name} – seatrial`;
     showFindingCount();
     await show();
+  },
+  // an answer that left before an event may arrive behind it: a check of this text that has ended stays
+  learn(check) {
+    const hasEnded = one => one.complete && one.version === this.state?.version;
+    if (!hasEnded(this.check) || hasEnded(check)) this.check = check;
   },
   async conflict(content, error) {
     const { diff } = await ask("difference", { since: this.state.version });
@@ -120,12 +130,12 @@ $("steps").append(...Object.entries(VIEWS).map(([key, [title]]) => h("a", { href
 $("findings").addEventListener("click", () => { app.go("logs"); setTimeout(() => document.getElementById("finding-list")?.scrollIntoView(), 300); });
 addEventListener("hashchange", () => show());
 addEventListener("error", event => app.note(event.message, "bad"));
-listen({
+const heard = {
   async changed({ version }) {
     if (app.state && version !== app.state.version) await app.refresh().catch(error => app.note(error.message, "bad"));
   },
   check(content) {
-    app.check = content;
+    app.learn(content);
     showFindingCount();
     app.tell("check", content);
   },
@@ -133,7 +143,14 @@ listen({
     app.jobs.set(content.name, { ...content, at: performance.now() });
     app.tell("job", content);
   },
-  hello() { if (app.state) app.refresh().catch(() => {}); },
-});
+  // the stream is open: a page that shows this text already is not drawn anew under the hand of its user
+  async hello() {
+    const state = await ask("state").catch(() => null);
+    if (!state || !app.state) return;
+    if (state.version !== app.state.version) await app.refresh().catch(() => {});
+    else if (state.check?.version) heard.check(state.check);
+  },
+};
+listen(heard);
 await app.refresh().catch(error => { document.getElementById("view").replaceChildren(h("p", { class: "bad" }, error.message)); });
-if (app.state?.exists) { app.check = await ask("check"); showFindingCount(); app.tell("check", app.check); }
+if (app.state?.exists) { app.learn(await ask("check")); showFindingCount(); app.tell("check", app.check); }
