@@ -68,7 +68,8 @@ def _type(value: JsonSchema, schema: JsonSchema) -> str:
         return f"list of {_type(value['items'], schema)}" if isinstance(value.get("items"), dict) else "list"
     if value.get("type") == "object":
         values = value.get("additionalProperties")
-        return f"name → {_type(values, schema)}" if isinstance(values, dict) else "table"
+        names = _type(value["propertyNames"], schema) if "propertyNames" in value else "name"
+        return f"{names} → {_type(values, schema)}" if isinstance(values, dict) else "table"
     return kind_of(value)
 
 

@@ -57,7 +57,8 @@ def test_a_receiver_that_is_late_for_a_craft_that_turns_fast_is_moved() -> None:
     for c, value in craft.truth.items():
         assert abs(found[c].estimate - value) < 4.0 * (found[c].standard_error or 0.0)
     (finding,) = (f for f in fit.findings if f.code == "sensor-error")
-    assert "late = {receiver = 0.6" in finding.advice or "late = {receiver = 0.8" in finding.advice
+    assert "late = {receiver = 0.6}" in finding.advice or "late = {receiver = 0.8}" in finding.advice
+    assert f"lag_receiver {found['lag_receiver'].estimate:.3f} s" in finding.evidence, "that of the coefficient"
 
 
 def test_instruments_without_an_error_have_none() -> None:

@@ -296,8 +296,8 @@ def _are_likelier(estimate: PointEstimate | ProcessNoise, courses: Mapping[str, 
 # A task whose model has the errors of instruments that its records show, which the estimate with them confirms.
 
 
-def with_detected_sensor_errors(task: Identification) -> tuple[Identification, tuple[Finding, ...]]:
-    """Return the task with errors of instruments that its records show as coefficients of its model, and their finding.
+def with_detected_sensor_errors(task: Identification) -> tuple[Identification, tuple[Suspect, ...]]:
+    """Return the task with errors of instruments that its records show as coefficients of its model, and which.
 
     The task itself and nothing where they show none, or none that the estimate with it confirms. They are sought beside
     the estimate over segments, and judged by what model error adds to the standard errors of the estimate with them.
@@ -307,10 +307,10 @@ def with_detected_sensor_errors(task: Identification) -> tuple[Identification, t
         detected = detected_errors(information, _model_error(task.beginning.shooting)) if information else []
         while information and detected:
             tried = _with_errors(task, detected)
-            finding = _confirmed(tried.estimation, detected)
+            is_confirmed = _are_confirmed(tried.estimation, detected)
             certain = detected_errors(information, standard_error_ratio(tried.estimation))
-            if finding is not None and len(certain) == len(detected):
-                return tried, (finding,)
+            if is_confirmed and len(certain) == len(detected):
+                return tried, tuple(detected)
             detected = certain if len(certain) < len(detected) else []
     except (ArithmeticError, np.linalg.LinAlgError, InputError):  # with them nothing is determined: without them
         return task, ()
@@ -354,6 +354,7 @@ def _with_stated(model: Model, stated: Sensors) -> Model:
     return wider.with_parameters(Parameters(tuple(present.get(p.name, p) for p in wider.parameters)))
 
 
+_LAG_DIGITS = 9  # of a start value as a trial states it: beyond, it is rounding
 _MOST_MOVES = 4  # of a receiver's readings: a lag that ends within half a sample needs one or two; chosen
 
 
@@ -370,7 +371,7 @@ def with_timed_readings(task: Identification) -> Identification:
         free, lag = task.beginning.shooting.problem.free, task.trial.model.parameters[name].value
         if name in free:
             lag = float(task.beginning.shooting.common_parameters[free.index(name)])
-        start = round(lag / dt) * dt
+        start = float(f"{round(lag / dt) * dt:.{_LAG_DIGITS}g}")
         if start == stated.late[Late.RECEIVER]:
             return task
         task = _with_sensors(task, replace(stated, late={**stated.late, Late.RECEIVER: start}))
@@ -382,18 +383,27 @@ def with_sensors_of(task: Identification, other: Identification) -> Identificati
     return _with_sensors(task, _stated(other))
 
 
-def _confirmed(estimation: Estimation, detected: Sequence[Suspect]) -> Finding | None:
-    """The finding on these errors; None where that of one instrument may be negligible."""
-    problem = estimation.estimate.problem
-    values = dict(zip(problem.free, estimation.estimate.common_parameters.tolist(), strict=False))
-    spread = dict(zip(problem.free, estimation.interval.standard_error.tolist(), strict=False))
-    if not all(one.matters(values, spread) for one in detected):
-        return None
+def _sizes(estimation: Estimation) -> tuple[dict[str, float], dict[str, float]]:
+    """Coefficients and their standard errors by name."""
+    free, values = estimation.estimate.problem.free, estimation.estimate.common_parameters.tolist()
+    errors = estimation.interval.standard_error.tolist()
+    return dict(zip(free, values, strict=False)), dict(zip(free, errors, strict=False))
+
+
+def _are_confirmed(estimation: Estimation, detected: Sequence[Suspect]) -> bool:
+    """Whether no error of one of these instruments may be negligible."""
+    values, spread = _sizes(estimation)
+    return all(suspect.matters(values, spread) for suspect in detected)
+
+
+def sensor_error_finding(estimation: Estimation, detected: Sequence[Suspect]) -> Finding:
+    """Return the warning `sensor-error` on errors of instruments that the estimate's model has."""
+    values, spread = _sizes(estimation)
     sizes = [
         f"{e.name} {significant(values[e.name], 3)} {e.unit} (standard error {significant(spread[e.name], 2)})"
         for one in detected for e in one.errors
     ]  # fmt: skip
-    stated, names = Sensors.from_text(problem.model.equations.sensors), [suspect.text(values) for suspect in detected]
+    stated, names = Sensors.from_text(estimation.model.equations.sensors), [s.text(values) for s in detected]
     lines = "; ".join(stated.line(key) for key in dict.fromkeys(suspect.key for suspect in detected))
     return Finding(
         Severity.WARNING, "sensor-error",

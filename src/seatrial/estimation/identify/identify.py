@@ -24,6 +24,7 @@ from seatrial.estimation.identify.baselines import with_baselines, with_search_b
 from seatrial.estimation.identify.identification import (
     Identification,
     Situation,
+    sensor_error_finding,
     situation_of,
     with_detected_sensor_errors,
     with_likelier_courses,
@@ -193,12 +194,7 @@ def identify(
         return _published(task, situation, report_progress)
     errors: tuple[Finding, ...] = ()
     if situation is Situation.STEERED:
-        task = with_timed_readings(task)
-        timed = with_step_times(task)
-        found, errors = with_detected_sensor_errors(with_likelier_courses(task) if timed is task else timed)
-        if errors and timed is not task:  # times of steps stand on what the instruments show
-            found = with_step_times(with_sensors_of(task, found))
-        task = found
+        task, errors = _with_inputs_and_instruments(task)
     fit = STRATEGIES[situation](task)
     fit = replace(fit, method=replace(fit.method, name=method.value), findings=(*errors, *fit.findings))
     if not compare or situation is Situation.UNKNOWN_WAVES:  # no input, so that there is nothing to regress on
@@ -208,6 +204,18 @@ def identify(
     if trial.model.is_affine and situation is Situation.RECORDED_WAVES:
         fit = with_search_baselines(fit, trial, seed, report_progress)
     return with_term_selection(fit, task.runs.records, window)
+
+
+def _with_inputs_and_instruments(task: Identification) -> tuple[Identification, tuple[Finding, ...]]:
+    """The task with inputs as they ran between samples, and with the errors of instruments that its records show."""
+    task = with_timed_readings(task)
+    timed = with_step_times(task)
+    sensed, detected = with_detected_sensor_errors(with_likelier_courses(task) if timed is task else timed)
+    if not detected:
+        return sensed, ()
+    if timed is not task:  # times of steps stand on what the instruments show
+        sensed = with_step_times(with_sensors_of(task, sensed))
+    return sensed, (sensor_error_finding(sensed.estimation, detected),)
 
 
 def _refuse_sampling(intervals: IntervalMethod, situation: Situation, method: EstimateMethod) -> None:
