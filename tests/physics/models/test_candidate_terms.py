@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from seatrial.physics.models import waterjet, with_candidate_terms, with_terms
-from seatrial.physics.models.candidate_structures import structural_terms
+from seatrial.physics.models.candidate_structures import structural_terms, with_second_order
 from seatrial.physics.models.heave_pitch import heave_pitch
+from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.waterjet import CANDIDATE_TERMS, waterjet_candidates
 
 
@@ -36,3 +37,11 @@ def test_terms_that_the_model_lacks_come_held_at_zero() -> None:
 def test_terms_of_a_family_are_those_of_its_structures_and_of_surge() -> None:
     assert {*CANDIDATE_TERMS, "m_x", "X_vr"} <= structural_terms("waterjet")
     assert {"b_3", "c_5"} <= structural_terms("roll")
+
+
+def test_the_model_of_second_order_keeps_what_is_stated_of_the_first() -> None:
+    first = nomoto().with_values({"U": 5.0, "T": 30.0})
+    second = with_second_order(first.with_parameters(first.parameters.freed("alpha")))
+    assert second.parameters["U"].value == 5.0 and second.parameters["T_1"].value == 30.0
+    assert second.parameters.free_names == ("K", "T_1", "T_2", "T_3", "alpha")
+    assert with_second_order(second) is second

@@ -40,6 +40,7 @@ from seatrial.estimation.identify.instruments import (
     instrument_errors,
     with_undetected_sensor_errors,
 )
+from seatrial.estimation.identify.model_order import second_order_finding
 from seatrial.estimation.identify.model_selection import HOLDOUT_WINDOW_SHIP_LENGTHS, SelectedModel, with_model_spread
 from seatrial.estimation.identify.nonlinear_intervals import (
     default_profiles,
@@ -129,6 +130,9 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         "the prediction some samples ahead",
         lambda: k_step_errors(selected.estimation, scored, horizon_list(task.options.horizons)), (),
     )  # fmt: skip
+    order = parts.computed(
+        "the order of the model", lambda: second_order_finding(task, selected.estimation, predicted.predictions), ()
+    )
     return Fit(
         question=trial.question
         or f"Which {trial.model.name} model explains these records, and how well does it predict?",
@@ -150,13 +154,13 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
             *fit_result.bounds_hit(estimation), *fit_result.unconverged(estimation), *other_optima(estimation),
             *refuted_prior_findings(estimation),
             *abandoned_criterion_finding(estimation, runs.records),
-            *parts.computed(
+            *(order or parts.computed(
                 "the couplings held at zero",
                 lambda: held_couplings(
                     selected.estimation, predicted.predictions, runs.records,
                     HOLDOUT_WINDOW_SHIP_LENGTHS * task.characteristic_time,
                 ), (),
-            ),
+            )),
             *parts.computed(
                 "the thrust over the runs", lambda: drifting_thrust_finding(estimation, runs.records), ()
             ),
@@ -175,7 +179,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
             *narrow_band_findings(predicted.predictions),
             *untrained_manoeuvre_findings(predicted.predictions),
             *short_time_constant_findings(estimation),
-            *delay_findings(estimation),
+            *(() if order else delay_findings(estimation)),
             *one_speed_finding(roll, runs.records),
             *gyradius_findings(trial.ship, roll.gyradius if roll else None),
             *parts.findings,

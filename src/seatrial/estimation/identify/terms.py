@@ -35,7 +35,7 @@ from seatrial.physics.simulate.replay import inputs_of
 
 # Terms of a fitted model without which the runs that were held out would be predicted better.
 
-_ERRORS = {"psi_deg": ("heading", " deg"), "position_m": ("position", " m")}
+COMPARED_ERRORS = {"psi_deg": ("heading", " deg"), "position_m": ("position", " m")}
 """Errors that are compared -> their name and unit; where a run has neither, nothing is."""
 LEAST_GAIN = 0.7
 """Mean error without a term over that with it, from which on it is named: 30 % are beyond what one run scatters by
@@ -71,7 +71,7 @@ def needless_term_findings(
     texts = [
         f"{label} {significant(max(p.rms[key] for p in held if key in p.rms), 2)}{unit} with it, "
         f"{significant(max(errors[key] for errors in without if key in errors), 2)}{unit} without"
-        for key, (label, unit) in _ERRORS.items()
+        for key, (label, unit) in COMPARED_ERRORS.items()
         if any(key in p.rms for p in held) and any(key in errors for errors in without)
     ]
     runs = enumeration([p.record for p in held], 3)  # names that a message holds, chosen
@@ -84,7 +84,9 @@ def needless_term_findings(
 
 def judged_runs(predictions: Sequence[Prediction]) -> list[Prediction]:
     """Return the held-out runs by which models are compared: those that the fit follows, heading or position known."""
-    return [p for p in predictions if p.role == "validation" and p.divergence is None and set(_ERRORS) & set(p.rms)]
+    return [
+        p for p in predictions if p.role == "validation" and p.divergence is None and set(COMPARED_ERRORS) & set(p.rms)
+    ]
 
 
 def in_windows(estimation: Estimation, held: Sequence[Prediction]) -> list[Prediction]:
@@ -149,7 +151,7 @@ def error_ratio(estimation: Estimation, model: Model, held: Sequence[Prediction]
     ratios = [
         errors.get(key, np.inf) / p.rms[key]
         for p, errors in zip(held, _errors(estimation, model, held), strict=True)
-        for key in _ERRORS
+        for key in COMPARED_ERRORS
         if p.rms.get(key, 0.0) > 0.0
     ]
     return float(np.exp(np.mean(np.log(ratios)))) if ratios else np.inf
@@ -297,7 +299,9 @@ def _coefficient(parameter: Parameter, couplings: tuple[str, ...]) -> Candidate:
 
 # Thrust that falls or rises over a run at one order, as by a battery: a score test of one slope for all runs.
 
-_STANDARD_ERRORS = 3.0  # of the slope, from which on it is named; of a normal error one in 370 by chance; chosen
+_STANDARDCOMPARED_ERRORS = (
+    3.0  # of the slope, from which on it is named; of a normal error one in 370 by chance; chosen
+)
 _LEAST = 0.03  # change of the order over a run that matters, as of a battery's voltage over some minutes; chosen
 _ORDER_STEP = 0.02  # share of the order by which it is changed for the slope, small against its curve; chosen
 
@@ -317,7 +321,7 @@ def drifting_thrust_finding(estimation: Estimation, records: Sequence[Record]) -
     slopes, free = [_slope_of_orders(inputs_of(model, r), zeros) for r in records], estimate.problem.free
     test = score_test(estimate, [added_input("order", slopes, _ORDER_STEP)])
     (slope,), (score,) = test.sizes, test.scores / standard_error_ratio(estimation)
-    if abs(score) < _STANDARD_ERRORS or abs(slope) < _LEAST:
+    if abs(score) < _STANDARDCOMPARED_ERRORS or abs(slope) < _LEAST:
         return ()
     errors = np.maximum(estimation.interval.standard_error[: len(free)], 1e-300)  # above zero, for a division
     moved = np.abs(test.by_candidates[: len(free), 0] * slope) / errors

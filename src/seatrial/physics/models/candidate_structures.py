@@ -104,6 +104,22 @@ def with_terms(model: Model, names: Iterable[str]) -> Model:
     return wide.with_parameters(wide.parameters.fixed(*(n for n in wide.parameters.names if n not in model.parameters)))
 
 
+# The steering model of the next order: a second pole and a zero of the rudder's transfer function.
+
+POLES, ZERO = ("T_1", "T_2"), "T_3"
+SECOND_ORDER_TERMS = ("T_2", ZERO)
+
+
+def with_second_order(model: Model) -> Model:
+    """Return a model of first order with a second pole and a zero, free; another model is returned itself."""
+    if model.name != "nomoto":
+        return model
+    wide, given = model_named("nomoto2").with_held(model.held), {p.name: p for p in model.parameters.items}
+    slow = replace(given.pop("T"), name="T_1", meaning=wide.parameters["T_1"].meaning)
+    items = (slow if p.name == slow.name else given.get(p.name, p) for p in wide.parameters.items)
+    return replace(wide, parameters=Parameters(tuple(items)))
+
+
 # The twin of a steering model that does not hold its course: where a search for such a ship begins.
 
 _SLOW_TIME_CONSTANTS = ("T", "T_1")
