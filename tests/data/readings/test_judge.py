@@ -59,6 +59,17 @@ def test_a_rudder_turns_the_craft_to_the_side_it_is_positive_to(is_port: bool) -
     assert (reading.unit, reading.positive, verdict.is_open) == ("deg", "port" if is_port else "", False)
 
 
+@pytest.mark.parametrize("is_port", [False, True])
+def test_a_turn_that_slows_under_the_same_rudder_shows_its_side(is_port: bool) -> None:
+    """In a circle drift and the loss of speed halve the first yaw rate."""
+    over = TIME > 30.0
+    since = np.where(over, TIME - 30.0, 0.0)
+    r = DEGREE * np.where(over, 0.6 + 0.8 * np.exp(-since / 40.0), 0.0) * (1.0 - np.exp(-since / 10.0))
+    psi, delta = np.cumsum(r) * STEP / DEGREE % 360.0, (-35.0 if is_port else 35.0) * over
+    verdict = judged([column("psi", psi)], [column("delta", delta)])[1]
+    assert (verdict.best.readings[0].positive, verdict.is_open) == ("port" if is_port else "", False)
+
+
 def test_a_rudder_alone_leaves_its_side_open() -> None:
     (verdict,) = judged([column("delta", TRUTH["delta"] / DEGREE)])
     assert verdict.is_open and verdict.rival is not None and verdict.rival.readings[0].positive == "port"

@@ -216,15 +216,17 @@ class Relations:
         return results[0] if results else 0.0
 
     def _rudder(self, slots: Slots) -> float:
-        """The yaw acceleration, and the turn that follows, against the rudder (Nomoto 1957, eq. 1)."""
+        """The yaw acceleration, the turn that follows and its changes against the rudder (Nomoto 1957, eq. 1)."""
         signed = [0.0]
         for k, step in enumerate(self.steps):
-            delta = slots["delta"][k]
+            delta = slots["delta"][k] - np.nanmin(slots["delta"][k])  # a rudder that stays is exactly zero
             rate = slots["r"][k] if "r" in slots else np.gradient(slots["psi"][k], step)
             for lag in (*_LAGS, 3 * _LAGS[-1]):
                 mean_rate, mean_delta = _integral(rate, lag) / lag, _integral(delta, lag) / lag
                 signed.append(_signed_nats(_rates(rate, lag), mean_delta, mean_rate, lag))
                 signed.append(_signed_nats(rate[lag:], delta[:-lag], None, lag))
+                # a turn that falls again under the same rudder follows it by its changes alone
+                signed.append(_signed_nats(_rates(rate, lag), mean_delta - delta[:-lag], None, lag))
         for_it, against = max(signed), -min(signed)
         nats = for_it - 0.5 * against if for_it >= against else -(against - 0.5 * for_it)
         return math.copysign(min(abs(nats), _TURNING_CAP), nats)
