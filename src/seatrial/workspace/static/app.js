@@ -143,12 +143,15 @@ const heard = {
     app.jobs.set(content.name, { ...content, at: performance.now() });
     app.tell("job", content);
   },
+  onboard(content) { app.tell("onboard", content); },
+  gone(isOther) { app.tell("gone", isOther); },
   // the stream is open: a page that shows this text already is not drawn anew under the hand of its user
   async hello() {
     const state = await ask("state").catch(() => null);
     if (!state || !app.state) return;
     if (state.version !== app.state.version) await app.refresh().catch(() => {});
     else if (state.check?.version) heard.check(state.check);
+    app.tell("hello");
   },
 };
 listen(heard);
