@@ -180,9 +180,7 @@ def test_a_changed_ship_and_a_gap_are_said(browser: "Browser", served: tuple[Fol
         window.locator(".change").wait_for(state="hidden")
 
 
-def test_what_was_missed_while_the_line_was_down_is_fetched(
-    browser: "Browser", served: tuple[Follower, str]
-) -> None:
+def test_what_was_missed_while_the_line_was_down_is_fetched(browser: "Browser", served: tuple[Follower, str]) -> None:
     follower, address = served
     snapshots = list(heave_pitch(30.0))
     for snapshot in snapshots[:20]:

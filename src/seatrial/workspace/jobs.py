@@ -143,11 +143,12 @@ class JobRunner:
     def _watch(self, job: Job, snapshot: Path | None, reader: threading.Thread) -> None:
         assert job.process is not None and job.process.stderr is not None
         last = 0.0
-        for line in job.process.stderr:
-            is_new = self._read(job, line.rstrip("\n"))
-            if is_new or time.monotonic() - last > REPORT_INTERVAL_S:
-                last = time.monotonic()
-                self._report(job)
+        with job.process.stderr as lines:
+            for line in lines:
+                is_new = self._read(job, line.rstrip("\n"))
+                if is_new or time.monotonic() - last > REPORT_INTERVAL_S:
+                    last = time.monotonic()
+                    self._report(job)
         code = job.process.wait()
         reader.join()
         job.seconds = time.time() - job.started
@@ -179,8 +180,9 @@ class JobRunner:
 def _read_lines(process: "subprocess.Popen[str]", take_line: Callable[[str], None]) -> None:
     """Give each line of a process's standard output to a function, until it ends."""
     assert process.stdout is not None
-    for line in process.stdout:
-        take_line(line)
+    with process.stdout as lines:
+        for line in lines:
+            take_line(line)
 
 
 def free_name(folder: Path, stem: str, wanted: str = "") -> str:

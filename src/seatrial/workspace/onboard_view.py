@@ -78,5 +78,5 @@ class FollowedStream:
             return {**self._report, "points": self._points, "age": round(age, 1), **self._state()}
 
     def _state(self) -> dict[str, Any]:
-        """What every answer has: of which follower, when it left by this machine's clock [s], and whether it is over."""
+        """What every answer has: of which follower, when it left [s, of this machine], and whether it is over."""
         return {"name": self.name, "at": time.monotonic(), **self._end}

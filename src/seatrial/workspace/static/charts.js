@@ -103,7 +103,7 @@ export function track(lines, { onSelect, title = "track", hasCraft = false } = {
   node.append(...lines.map(one => s("path", { d: path(one), class: `line ${one.kind || ""}` })));
   const picked = s("path", { class: "line picked" });
   node.append(picked, s("path", { class: "scale", d: `M10 ${TRACK - 10}h${(scale / view * TRACK).toFixed(1)}` }),
-    s("text", { x: 10, y: TRACK - 15, class: "scale-text" }, `${digits(scale, 2)} m`), s("text", { x: TRACK - 16, y: 14, class: "scale-text" }, "N ↑"));
+    s("text", { x: 10, y: TRACK - 15, class: "scale-text" }, `${digits(scale, 2)} m`), s("text", { x: TRACK - 24, y: 14, class: "scale-text" }, "N ↑"));
   if (hasCraft) {
     const [x, y] = place(...points.at(-1));
     node.append(s("circle", { class: "craft", cx: x.toFixed(1), cy: y.toFixed(1), r: 4 }));
