@@ -15,6 +15,9 @@ from pathlib import Path
 import pytest
 from tests.workspace.logs import at_address, write_trial
 
+from seatrial.core.values import InputError
+from seatrial.workspace import serve_workspace
+
 
 def test_it_serves_until_it_is_interrupted_and_leaves_no_command_behind(tmp_path: Path) -> None:
     write_trial(tmp_path)
@@ -61,6 +64,8 @@ def test_a_killed_workspace_leaves_the_trial_file_as_of_the_last_edit(tmp_path: 
 def test_what_is_not_there_is_refused(run_command: Callable[..., int], capsys: pytest.CaptureFixture[str]) -> None:
     assert run_command("open", "no such folder", "--no-browser") == 2
     assert "there is no" in capsys.readouterr().err
+    with pytest.raises(InputError, match="there is no"):
+        serve_workspace(Path("no such folder"))
     assert run_command("open", ".", "--no-browser", "--port", "70000") == 2
     assert "port 70000 cannot be opened" in capsys.readouterr().err
 

@@ -48,10 +48,12 @@ class StreamReporter:
     def report(self, snapshot: Snapshot, counts: SampleCounts) -> dict[str, Any] | None:
         """Return the report of a snapshot; None of the same one with the same counts again."""
         last = self._latest
-        is_same = last is not None and last[0] is snapshot
-        if is_same and last[1] == counts:
+        if last is None or last[0] is not snapshot:
+            point = self._history.add(snapshot)
+        elif last[1] != counts:
+            point = last[2]
+        else:
             return None
-        point = last[2] if is_same else self._history.add(snapshot)
         self._latest = snapshot, counts, point
         return {
             "title": self._title,

@@ -127,19 +127,19 @@ class LiveCheck:
             "version": version,
             "complete": is_complete,
             "problem": printable(problem, _LONGEST) if problem else "",
-            "findings": [_finding_row(k, finding) for k, finding in enumerate(self.findings)],
+            "findings": [_finding_row(k, finding, self.path) for k, finding in enumerate(self.findings)],
         }
         self._report(self._last)
 
 
-def _finding_row(place: int, finding: Finding) -> dict[str, Any]:
+def _finding_row(place: int, finding: Finding, path: Path) -> dict[str, Any]:
     return {
         "place": place,
         "severity": finding.severity.value,
         "code": finding.code,
         "text": printable(finding.text, _LONGEST),
         "consequence": finding.consequence,
-        "advice": printable(finding.advice, _LONGEST),
+        "advice": printable(finding.advice.removeprefix(f"{path}: "), _LONGEST),  # the page has one file
         "edits": [str(edit) for edit in finding.edits],
     }
 

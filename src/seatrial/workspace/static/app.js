@@ -86,7 +86,11 @@ export const app = {
 
 function showEdit({ summary, diff }) {
   const box = $("edit");
-  if (!diff?.length) { box.hidden = true; return; }
+  if (!diff?.length) {
+    box.hidden = true;
+    app.note("Nothing to change: the trial file stands so already.");
+    return;
+  }
   const details = h("details", {}, h("summary", {}, h("b", {}, "Edited: "), summary), diffView(diff));
   const undo = summary.startsWith("undo:") ? null : button("Undo", () => app.undo());
   box.replaceChildren(details, h("span", { class: "tools-row" }, undo, button("Hide", () => { box.hidden = true; }, { class: "quiet" })));

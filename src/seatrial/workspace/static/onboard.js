@@ -9,7 +9,7 @@ const QUIET = 5, DRAWN = 400, LABELS = 16, LABEL_PX = 12, Z95 = 1.96, SHARES_PX 
 export async function showOnBoard(node, app) {
   node.append(h("h1", {}, "On board"));
   if (!app.state.exists) { node.append(h("p", {}, "First draft a trial file from logs, in the view Logs.")); return; }
-  if (!/^\[follow\]/m.test(app.state.text)) { node.append(sourceForm(app)); return; }
+  if (!/^\[follow\]/m.test(app.state.text)) { node.append(...sourceForm(app)); return; }
   const early = [];
   let view = null;
   app.on("onboard", content => view ? view.take(content) : early.push(content));
