@@ -1,16 +1,19 @@
 """What is fuzzed: for each kind of input, well-formed samples and what the program does with one."""
 
+import asyncio
 import contextlib
 import hashlib
 import io
 import json
 import re
-import socket
-from collections.abc import Callable
+from collections.abc import Callable, MutableMapping
 from dataclasses import dataclass, replace
 from functools import cache
+from http import HTTPStatus
 from pathlib import Path
+from urllib.parse import unquote
 
+import h11
 import numpy as np
 from fuzz_streams import (
     bus_lines,
@@ -32,14 +35,17 @@ from seatrial.data.folder.model_file import parse_model
 from seatrial.data.folder.result_folder import KINDS, load_result
 from seatrial.data.read.record_file import read_record_csv
 from seatrial.onboard.journal import Journal
-from seatrial.onboard.page import Server
 from seatrial.onboard.sources import open_source
 from seatrial.physics.hydro.tabulated import read_transfer
 from seatrial.physics.manoeuvres import programme
 from seatrial.reporting.pages import report_page
+from seatrial.workspace.guard import Guard
+from seatrial.workspace.server import application
+from seatrial.workspace.workspace import Workspace
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 _SHORT = 1000  # bytes of a sample log: chosen, enough for every branch of a parser
+_PORT, _TOKEN = 8000, "token"  # of a workspace that no socket reaches
 _TINY_ROWS = 60  # of a record that is identified whole: chosen, some tenths of a second each
 
 
@@ -293,29 +299,54 @@ def _journals() -> list[bytes]:
         return [(Path(place) / "journal").read_bytes()]
 
 
-@cache
-def _server() -> Server:
-    return Server(0, lambda since: {"since": since})
-
-
-def _request(data: bytes, place: Path) -> object:  # noqa: ARG001
-    """What the page answers to the bytes of one connection."""
-    server = _server()
-    ours, theirs = socket.socketpair()
-    with ours, theirs, contextlib.suppress(ConnectionResetError):  # of bytes that the server did not want to read
-        ours.sendall(data[:60_000])
-        ours.shutdown(socket.SHUT_WR)
-        server.RequestHandlerClass(theirs, ("127.0.0.1", 1), server)
-        theirs.close()
-        if re.match(rb"HTTP/1.. 5(?!01)", answer := ours.recv(1 << 20)):  # 501: an unknown method
-            raise RuntimeError(f"answer {answer[:60]!r}")
+def _request(data: bytes, place: Path) -> object:
+    """Statuses of what the workspace of an empty folder answers to the request in these bytes."""
+    connection = h11.Connection(h11.SERVER)
+    with contextlib.suppress(h11.RemoteProtocolError):
+        connection.receive_data(data)
+        request = connection.next_event()
+        body = connection.next_event()
+        if isinstance(request, h11.Request):
+            content = bytes(body.data) if isinstance(body, h11.Data) else b""
+            guarded = Guard(application(Workspace(place / "trial.toml", [])), _PORT, _TOKEN)
+            statuses = asyncio.run(_answered(guarded, request, content))
+            if any(status >= HTTPStatus.INTERNAL_SERVER_ERROR for status in statuses):
+                raise RuntimeError(f"answers {statuses}")
+            return statuses
     return None
 
 
+async def _answered(guarded: Guard, request: h11.Request, content: bytes) -> list[int]:
+    path, _, query = request.target.partition(b"?")
+    scope = {
+        "type": "http", "method": request.method.decode(), "path": unquote(path.decode()), "query_string": query,
+        "headers": list(request.headers), "http_version": "1.1", "root_path": "", "scheme": "http",
+    }  # fmt: skip
+    parts, statuses = [{"type": "http.request", "body": content}], []
+
+    async def receive() -> dict[str, object]:
+        return parts.pop() if parts else {"type": "http.disconnect"}
+
+    async def send(message: MutableMapping[str, object]) -> None:
+        if message["type"] == "http.response.start":
+            statuses.append(message["status"])
+
+    await guarded(scope, receive, send)
+    return statuses
+
+
 def _requests() -> list[bytes]:
-    host = f"Host: 127.0.0.1:{_server().server_port}\r\n\r\n"
-    paths = ("/", "/state.json", "/state.json?since=3", "/x")
-    return [f"{verb} {path} HTTP/1.1\r\n{host}".encode() for verb in ("GET", "POST", "HEAD") for path in paths]
+    own = f"Host: 127.0.0.1:{_PORT}\r\nOrigin: http://127.0.0.1:{_PORT}\r\nCookie: seatrial-{_PORT}={_TOKEN}\r\n"
+    edits = (
+        {"kind": "set", "place": ["ship", "L"], "value": 9.8, "version": ""},
+        {"kind": "cut", "block": 0, "log": "a", "name": "b", "start": 0, "stop": 1},
+        {"kind": "text", "text": "[records]", "version": ""},
+        {"kind": "follow", "block": 0, "file": "today.csv"},
+    )
+    bodies = [("state", {}), ("onboard", {}), ("difference", {"since": ""}), *(("edit", edit) for edit in edits)]
+    asked = [(f"POST /api/{name}", json.dumps(content)) for name, content in bodies]
+    asked += [(f"{verb} {path}", "") for verb in ("GET", "HEAD") for path in ("/", f"/?token={_TOKEN}", "/static/x.js")]
+    return [f"{line} HTTP/1.1\r\n{own}Content-Length: {len(body)}\r\n\r\n{body}".encode() for line, body in asked]
 
 
 def _followed(data: bytes, place: Path) -> object:

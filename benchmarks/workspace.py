@@ -9,7 +9,6 @@ import json
 import shutil
 import sys
 import tempfile
-import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -21,7 +20,7 @@ import numpy as np
 from measure import Line, at_most, machine
 
 from seatrial import api
-from seatrial.workspace import serve_workspace
+from seatrial.workspace import workspace_beside
 
 SAMPLES = {100_000: 1.0, 1_000_000: 3.0}  # samples of a log -> s from an edit to its check: required
 CLICK_LIMIT_S, PICTURE_LIMIT_S, PAGE_LIMIT_KB = 0.15, 2.0, 400.0  # required
@@ -65,20 +64,8 @@ class Client:
 @contextmanager
 def opened(path: Path) -> Iterator[Client]:
     """Serve a folder in a thread of this process."""
-    ready, ending, address = threading.Event(), threading.Event(), []
-
-    def note(text: str) -> None:
-        address.append(text)
-        ready.set()
-
-    server = threading.Thread(target=serve_workspace, args=(path, 0, note), kwargs={"ending": ending}, daemon=True)
-    server.start()
-    ready.wait()
-    try:
-        yield Client(address[0])
-    finally:
-        ending.set()
-        server.join()
+    with workspace_beside(path) as (_, address):
+        yield Client(address)
 
 
 def check_times(client: Client) -> list[float]:

@@ -80,7 +80,7 @@ def test_what_was_amiss_is_counted_and_said(tmp_path: Path, run_command: Callabl
         ([('file = "voyage_1.csv"', 'file = "voyage_9.csv"')], [], "voyage_9.csv does not exist"),
         ([], ["--source", "udp"], "source 'udp' needs a port; add port to [follow]"),
         ([], ["--source", "nmea-udp"], "has other columns"),
-        ([], ["--page", "99999"], "there is no port 99999 for the page"),
+        ([], ["--page", "99999"], "port 99999 cannot be opened"),
         ([], ["--journal", "."], "journal '.' is a folder, pipe or device"),
         ([], ["--journal", str(EXAMPLES / "waterjet.toml")], "is not a journal of 'seatrial follow'"),
     ],
@@ -116,7 +116,7 @@ def test_ctrl_c_ends_it_with_what_is_known_and_the_journal_goes_on(tmp_path: Pat
         last_resort = threading.Timer(40.0, child.kill)
         last_resort.start()
         heading = child.stdout.readline()
-        assert re.search(r"page http://127\.0\.0\.1:\d+/", heading)
+        assert re.search(r"page http://127\.0\.0\.1:\d+/\?token=\S+#onboard", heading)
         time.sleep(0.7)
         with (tmp_path / "voyage_1.csv").open("a") as log:
             log.write("".join(LINES[1001:1201]))

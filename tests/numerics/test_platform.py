@@ -45,9 +45,11 @@ def test_nothing_else_asks_which_system_it_runs_on() -> None:
 
 def test_a_command_in_the_background_says_what_it_writes_and_a_file_can_be_made_to_run(tmp_path: Path) -> None:
     process = platform.start_in_background(
-        [sys.executable, "-c", "import sys; print('done', file=sys.stderr)"], os.environ, 5
+        [sys.executable, "-c", "import sys; print('found'); print('done', file=sys.stderr)"], os.environ, 5
     )
     assert process.stderr is not None and process.stderr.read().strip() == "done" and process.wait() == 0
+    assert process.stdout is not None and process.stdout.read().strip() == "found"
+    process.stdout.close()
     process.stderr.close()
     script = tmp_path / f"open{platform.click_suffix()}"
     script.write_text("", encoding="utf-8")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seatrial.numerics.resolution import local_resolution, remembering, resolution
+from seatrial.numerics.resolution import local_resolution, resolution
 
 
 @pytest.mark.parametrize("step", [1.0, 0.25, 0.1, 1e-3, np.radians(0.1), 1.0 / 3600.0])
@@ -45,14 +45,3 @@ def test_the_step_of_numbers_of_three_digits_grows_with_them(rng: np.random.Gene
     noise = rng.normal(size=3000)
     assert np.median(local_resolution(noise)) < 1e-3 * np.median(np.abs(np.diff(noise)))
     assert np.isnan(local_resolution(np.array([np.nan, 1.0]))[0]) and not local_resolution(np.full(3, 2.0)).any()
-
-
-def test_what_is_remembered_is_what_is_computed(rng: np.random.Generator) -> None:
-    series = [np.round(rng.normal(size=500), digits) for digits in (1, 3, 12)]
-    plain, steps = [local_resolution(values) for values in series], {}
-    for _ in range(2):
-        with remembering(steps, 1000):
-            for values, expected in zip(series, plain, strict=True):
-                np.testing.assert_array_equal(local_resolution(values), expected)
-                local_resolution(values)[:] = 0.0  # a caller's own copy
-    assert len(steps) == 2

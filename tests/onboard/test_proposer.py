@@ -19,8 +19,8 @@ from seatrial.data.trial import Trial, load_trial
 from seatrial.data.trial.runs import resolved_proposal
 from seatrial.onboard.follow import follow
 from seatrial.onboard.live import log_line
-from seatrial.onboard.page import snapshot_json
 from seatrial.onboard.proposer import SeaGainProposer
+from seatrial.onboard.stream_report import snapshot_json
 from seatrial.onboard.table import gains_text, proposal_lines
 
 STRETCH = fin_stretch(7, QUARTERING)

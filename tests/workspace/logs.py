@@ -2,7 +2,6 @@
 
 import http.client
 import json
-import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -13,7 +12,7 @@ import numpy as np
 
 import seatrial
 from seatrial.physics.models import model_named
-from seatrial.workspace.server import serve_workspace
+from seatrial.workspace import workspace_beside
 
 K, T = 0.06, 12.0  # 1/s, s: of the simulated craft
 NOISE_DEG = 0.1
@@ -80,19 +79,11 @@ class Opened:
 @contextmanager
 def opened(path: Path) -> Iterator[Opened]:
     """Serve a folder in a thread of this process until the body ends."""
-    ready, ending, address = threading.Event(), threading.Event(), []
+    with workspace_beside(path) as (_, address):
+        yield at_address(address)
 
-    def note(text: str) -> None:
-        address.append(text)
-        ready.set()
 
-    server = threading.Thread(target=serve_workspace, args=(path, 0, note), kwargs={"ending": ending}, daemon=True)
-    server.start()
-    assert ready.wait(30.0)
-    token = address[0].rpartition("=")[2]
-    port = int(address[0].split(":")[2].partition("/")[0])
-    try:
-        yield Opened(address[0], port, f"seatrial-{port}={token}")
-    finally:
-        ending.set()
-        server.join(20.0)
+def at_address(address: str) -> Opened:
+    """What a page at that address, with its token, holds."""
+    port, token = int(address.split(":")[2].partition("/")[0]), address.rpartition("=")[2]
+    return Opened(address, port, f"seatrial-{port}={token}")

@@ -147,6 +147,7 @@ def test_every_view_fits_and_names_what_takes_a_hand(
             window.wait_for_timeout(300)
             assert window.evaluate("document.documentElement.scrollWidth") <= width, view
             assert window.evaluate(UNNAMED) == [], view
+            assert "[object" not in window.locator(".content").inner_text(), view
 
 
 def test_two_windows_lose_nothing(browser: "Browser", served: Opened, folder: Path) -> None:

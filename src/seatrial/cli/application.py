@@ -2,7 +2,8 @@
 
 import functools
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -109,6 +110,23 @@ def result_document(result: object) -> dict[str, Any]:
     from seatrial.data.folder.document import document
 
     return document(result)
+
+
+@contextmanager
+def requiring_app() -> Iterator[None]:
+    """Import from `seatrial.workspace` in the body.
+
+    Raises:
+        InputError: the packages of the extra `app` are not installed.
+    """
+    from seatrial.core.values import InputError
+
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        if (error.name or "").partition(".")[0] not in ("starlette", "uvicorn", "h11", "anyio"):
+            raise
+        raise InputError("the workspace needs two more packages; pip install 'seatrial[app]'") from None
 
 
 def write_json(path: Path | None, table: Callable[[], Mapping[str, Any]]) -> None:

@@ -1,5 +1,6 @@
 """What follow shows while it runs and prints at its end, and how it is stopped."""
 
+import json
 import signal
 import sys
 from collections.abc import Callable, Iterator
@@ -8,6 +9,7 @@ from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING
 
+from seatrial.cli.application import requiring_app
 from seatrial.cli.finding_output import print_findings
 from seatrial.cli.screen import print_lines
 from seatrial.numerics.platform import stop_signals
@@ -15,7 +17,7 @@ from seatrial.numerics.platform import stop_signals
 if TYPE_CHECKING:
     from seatrial.core.results.online import SampleCounts, Snapshot
     from seatrial.data.trial import Trial
-    from seatrial.onboard.follow import FollowResult
+    from seatrial.onboard.follow import FollowResult, Show
 
 
 @contextmanager
@@ -37,27 +39,66 @@ def stop_on_signal() -> Iterator[Callable[[], bool]]:
 
 
 @contextmanager
-def live_display(heading: str, port: int | None) -> "Iterator[Callable[[Snapshot, SampleCounts], None]]":
-    """Yield a function that shows a snapshot as table or lines, and on a page at `port` (None: none, 0: any free)."""
+def live_display(trial: "Trial", port: int | None) -> "Iterator[Show]":
+    """Yield a function that shows a snapshot as table or lines, and in the workspace.
+
+    port: of the workspace that is served meanwhile (None: none, 0: any that is free).
+
+    Raises:
+        InputError: the port cannot be opened, or the workspace's packages are missing.
+    """
     from seatrial.onboard.live import LiveDisplay
 
+    heading = stream_heading(trial)
     with ExitStack() as held:
-        page = None
-        if port is not None:
-            from seatrial.onboard.page import Page
-
-            page = held.enter_context(Page(port, title=heading))
-            heading = f"{heading}; page {page.address}"
+        show_on_page = None
+        if port is not None and trial.path is not None:
+            address, show_on_page = held.enter_context(_shown_in_workspace(trial.path, port, heading))
+            heading = f"{heading}; page {address}"
         live = held.enter_context(LiveDisplay(heading=heading))
 
         def show(snapshot: "Snapshot", counts: "SampleCounts") -> None:
             live.show(snapshot, counts)
-            if page is not None:
-                page.show(snapshot, counts)
+            if show_on_page is not None:
+                show_on_page(snapshot, counts)
 
         yield show
-        if page is not None:
-            page.end()
+
+
+@contextmanager
+def _shown_in_workspace(path: Path, port: int, heading: str) -> "Iterator[tuple[str, Show]]":
+    """Serve the workspace of a trial file; yield the address of its view 'On board', and what shows a snapshot there.
+
+    It waits at its end until pages have been given the last one.
+    """
+    from seatrial.onboard.stream_report import StreamReporter
+
+    with requiring_app():
+        from seatrial.workspace import workspace_beside
+
+    with workspace_beside(path, port) as (workspace, address):
+        followed, reporter = workspace.follow(), StreamReporter(heading)
+
+        def show(snapshot: "Snapshot", counts: "SampleCounts") -> None:
+            if (report := reporter.report(snapshot, counts)) is not None:
+                followed.take(report)
+
+        yield f"{address}#onboard", show
+        followed.end()
+
+
+@contextmanager
+def reports_as_lines(trial: "Trial") -> "Iterator[Show]":
+    """Yield a function that prints a report of each snapshot as a line of JSON: what a workspace reads."""
+    from seatrial.onboard.stream_report import StreamReporter
+
+    reporter = StreamReporter(stream_heading(trial))
+
+    def show(snapshot: "Snapshot", counts: "SampleCounts") -> None:
+        if (report := reporter.report(snapshot, counts)) is not None:
+            print(json.dumps(report, allow_nan=False), flush=True)
+
+    yield show
 
 
 def stream_heading(trial: "Trial") -> str:

@@ -7,7 +7,7 @@ import typer
 
 from seatrial.cli.application import Json, OwnModelPath, Seed, TrialPath, app, own_model, result_document, write_json
 from seatrial.cli.finding_output import exit_if_errors, print_findings, write_correction
-from seatrial.cli.follow_output import journal_path, live_display, print_outcome, stop_on_signal, stream_heading
+from seatrial.cli.follow_output import journal_path, live_display, print_outcome, reports_as_lines, stop_on_signal
 from seatrial.cli.next_steps import after_check, after_fit
 from seatrial.cli.progress import progress_reporter
 from seatrial.cli.result_output import print_design, print_fit
@@ -126,7 +126,8 @@ def follow(
     once: Annotated[bool, typer.Option("--once", help="End with the input, with the fit of identify.")] = False,
     out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Where journal and result go.")] = None,
     page: Annotated[
-        int | None, typer.Option("--page", metavar="PORT", help="Port of the page on this machine; 0: any.")
+        int | None,
+        typer.Option("--page", metavar="PORT", help="Show it in the workspace at this port of this machine; 0: any."),
     ] = None,
     journal: Annotated[
         Path | None,
@@ -140,6 +141,9 @@ def follow(
             help="file, stdin, udp, nmea-file, nmea2000-udp, mavlink-udp, ...",
         ),
     ] = None,
+    reports: Annotated[
+        bool, typer.Option("--reports", hidden=True, help="Print reports for a workspace, a line of JSON each.")
+    ] = False,
     method: Method = None,
     model: OwnModelPath = None,
     json: Json = None,
@@ -151,7 +155,7 @@ def follow(
 
     A published search, sample by sample, compared with the package's own follower: --method iwho --once
 
-    On board, with a page of moving plots and a journal: --page 8000 --out results/today
+    On board, in the workspace in the browser and with a journal: --page 8000 --out results/today
     """
     from seatrial import api
     from seatrial.core.values.files import writable_folder
@@ -164,7 +168,7 @@ def follow(
     port = page if page is not None else require_stream(stream).page or None
     with (
         stop_on_signal() as stop,
-        live_display(stream_heading(stream), port) as show,
+        reports_as_lines(stream) if reports else live_display(stream, port) as show,
         progress_reporter(has_live_table=True) as report_progress,
     ):
         outcome = api.follow(

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from seatrial.cli.application import app
+from seatrial.cli.application import app, requiring_app
 from seatrial.cli.screen import print_file, print_verbatim
 
 
@@ -27,14 +27,8 @@ def open(
 
     It ends with the terminal, or with Ctrl-C. Only this machine's browser reaches it.
     """
-    from seatrial.core.values import InputError
-
-    try:
+    with requiring_app():
         from seatrial.workspace import serve_workspace, write_shortcut
-    except ModuleNotFoundError as error:
-        if (error.name or "").partition(".")[0] not in ("starlette", "uvicorn", "h11", "anyio"):
-            raise
-        raise InputError("the workspace needs two more packages; pip install 'seatrial[app]'") from None
     if shortcut:
         print_file("shortcut", write_shortcut(path))
         return

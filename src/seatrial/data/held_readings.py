@@ -97,10 +97,13 @@ def _renewals(columns: Sequence[Array], time: Array) -> Mask | None:
     if len(steps) < _FEWEST:
         return None
     stays = np.diff(steps)
-    jumps = np.any([np.abs(_step_sizes(values[read_rows], steps)) > _JUMP for values in columns], axis=0)[1:-1]
-    if np.sum(jumps) < max(_FEWEST, _JUMPS_SHARE * len(jumps)):
-        return None
     is_between_stays = (stays[:-1] > 1) & (stays[1:] > 1)
+    fewest_jumps = max(_FEWEST, _JUMPS_SHARE * len(is_between_stays))
+    if np.sum(is_between_stays) < _HELD_SHARE * fewest_jumps:  # whichever steps are jumps: their sizes take a sort
+        return None
+    jumps = np.any([np.abs(_step_sizes(values[read_rows], steps)) > _JUMP for values in columns], axis=0)[1:-1]
+    if np.sum(jumps) < fewest_jumps:
+        return None
     if np.mean(is_between_stays[jumps]) < _HELD_SHARE:
         return None
     moments = time[read_rows]
@@ -119,9 +122,11 @@ def _unfrozen(columns: Sequence[Array]) -> Mask | None:
     if len(steps) < _FEWEST:
         return None
     stays = np.diff(steps, prepend=0)
+    longest = max(_FROZEN_ROWS, 2.0 * float(np.quantile(stays, _USUAL)))
+    if np.max(stays) < longest:
+        return None
     moving = [values[read_rows] for values in columns if np.ptp(values[read_rows]) > 0.0]
     sizes = np.max([np.abs(np.diff(values))[steps - 1] / _usual_step(values) for values in moving], axis=0)
-    longest = max(_FROZEN_ROWS, 2.0 * float(np.quantile(stays, _USUAL)))
     caught_up = np.flatnonzero((sizes > _CATCHES_UP) & (stays >= longest))
     if not caught_up.size:
         return None

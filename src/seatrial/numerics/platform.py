@@ -57,13 +57,13 @@ def make_executable(path: Path) -> None:
 
 
 def start_in_background(command: Sequence[str], environment: Mapping[str, str], niceness: int) -> subprocess.Popen[str]:
-    """Start a command whose error output is read, in a session of its own and at a lower priority where there are any.
+    """Start a command whose outputs are read, in a session of its own and at a lower priority where there are any.
 
     niceness: of the process, 19 at most (POSIX).
     """
     is_posix = os.name == "posix"
     process = subprocess.Popen(
-        list(command), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+        list(command), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
         errors="replace", env=dict(environment), start_new_session=is_posix,
     )  # fmt: skip
     if is_posix:

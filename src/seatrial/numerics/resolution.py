@@ -1,10 +1,5 @@
 """The step in which numbers were written: the resolution of a clock's stamps or of a sensor's values."""
 
-import hashlib
-from collections.abc import Iterator
-from contextlib import contextmanager
-from contextvars import ContextVar
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -54,26 +49,6 @@ def _gaps(ordered: NDArray[np.float64], rounding: float) -> NDArray[np.float64]:
     return gaps[gaps > rounding]
 
 
-_remembered: ContextVar[dict[bytes, NDArray[np.float64]] | None] = ContextVar("remembered", default=None)
-
-
-@contextmanager
-def remembering(steps: dict[bytes, NDArray[np.float64]], limit: int) -> Iterator[None]:
-    """Look up what `local_resolution` returned for equal values, and keep what it returns, while the body runs.
-
-    Sorting a million values takes twenty times as long as their digest, and a check of a record asks thrice.
-
-    steps: digest of values -> their steps; limit: numbers that are kept, the oldest go first.
-    """
-    token = _remembered.set(steps)
-    try:
-        yield
-    finally:
-        _remembered.reset(token)
-        while sum(map(len, steps.values())) > limit:
-            del steps[next(iter(steps))]
-
-
 def local_resolution(values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the step in which numbers as large as each value were written, in their unit, (n,); NaN for a NaN.
 
@@ -83,16 +58,6 @@ def local_resolution(values: NDArray[np.float64]) -> NDArray[np.float64]:
     Args:
         values: (n,).
     """
-    steps = _remembered.get()
-    if steps is None:
-        return _local_resolution(values)
-    digest = hashlib.blake2b(np.ascontiguousarray(values).data, digest_size=16).digest()  # bytes; chosen
-    if digest not in steps:
-        steps[digest] = _local_resolution(values)
-    return steps[digest].copy()
-
-
-def _local_resolution(values: NDArray[np.float64]) -> NDArray[np.float64]:
     result = np.full(len(values), np.nan)
     is_finite = np.isfinite(values)
     distinct, place = np.unique(values[is_finite], return_inverse=True)

@@ -14,11 +14,9 @@ from seatrial.data.read import ColumnSpec, Layout, Log, read_log
 from seatrial.data.trial import Role, Run, RunFiles
 from seatrial.data.trial.load import edited_text
 from seatrial.data.trial.records import TrialRecord, load_parts
-from seatrial.numerics.resolution import remembering
 
 _MOST_KEPT = 200  # runs whose checks are kept; chosen: twice the largest trial known
 _LOGS_KEPT = 4  # chosen: those of one afternoon
-_MOST_STEPS = 20_000_000  # numbers of sensors' resolutions that are kept; chosen: twice those of the largest log
 _LONGEST = 1500  # letters of a text of a finding; chosen
 
 
@@ -58,7 +56,6 @@ class LiveCheck:
         self._report = report
         self._kept: dict[tuple, tuple[TrialRecord, ...]] = {}
         self.logs = KeptLogs()
-        self._steps: dict[bytes, Any] = {}
         self._lock = threading.Lock()
         self._wanted = ""
         self._last: dict[str, Any] = {}
@@ -101,8 +98,7 @@ class LiveCheck:
                 return parts
 
             try:
-                with remembering(self._steps, _MOST_STEPS):
-                    findings = api.check(self.path, load)
+                findings = api.check(self.path, load)
             except _Superseded:
                 return
             except InputError as error:
@@ -131,19 +127,19 @@ class LiveCheck:
             "version": version,
             "complete": is_complete,
             "problem": printable(problem, _LONGEST) if problem else "",
-            "findings": [_finding_row(k, finding) for k, finding in enumerate(self.findings)],
+            "findings": [_finding_row(k, finding, self.path) for k, finding in enumerate(self.findings)],
         }
         self._report(self._last)
 
 
-def _finding_row(place: int, finding: Finding) -> dict[str, Any]:
+def _finding_row(place: int, finding: Finding, path: Path) -> dict[str, Any]:
     return {
         "place": place,
         "severity": finding.severity.value,
         "code": finding.code,
         "text": printable(finding.text, _LONGEST),
         "consequence": finding.consequence,
-        "advice": printable(finding.advice, _LONGEST),
+        "advice": printable(finding.advice.removeprefix(f"{path}: "), _LONGEST),  # the page has one file
         "edits": [str(edit) for edit in finding.edits],
     }
 

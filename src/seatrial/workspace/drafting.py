@@ -1,5 +1,6 @@
 """A trial file drafted from the folder's logs, and again with what a person knows of the craft; corrections stay."""
 
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -18,6 +19,8 @@ _SHIP_KEYS = {
 }  # fmt: skip
 _GUESSES = (ESTIMATED, ASSUMED, "MISSING")  # marks of numbers that nobody has stated
 _RECORDS = "\n[[records]]"
+_WAVES = re.compile(r"^\[records\.waves\]\n(?:[^\[\n].*\n?)*", re.MULTILINE)
+_OTHER_TABLE = re.compile(r"^\[\[?(?!records\b)", re.MULTILINE)
 _TABLES = (("ship",), ("model", "fixed"), ("estimate",))
 
 
@@ -35,6 +38,7 @@ def drafted_text(
     """
     stated = [*columns, *_columns_by_hand(text)]
     options: dict[str, Any] = dict(sizes)
+    name = name or str(parsed_document(text).get("ship", {}).get("name", ""))
     options |= {"folder": folder, "columns": tuple(dict.fromkeys(stated)), "name": name}
     try:
         draft = api.draft_trial(*logs, **options).text
@@ -46,7 +50,21 @@ def drafted_text(
     if _RECORDS not in text or _RECORDS not in draft:
         return draft
     drafted_head, own_records = draft[: draft.index(_RECORDS)], text[text.index(_RECORDS) :]
+    own_records = _with_waves(own_records, draft[draft.index(_RECORDS) :])
     return _with_values_by_hand(drafted_head + own_records, text)
+
+
+def _with_waves(records: str, drafted: str) -> str:
+    """Return records with the tables of waves that a draft of the same blocks has and they lack."""
+    blocks, drafted_blocks = records.split(_RECORDS), drafted.split(_RECORDS)
+    if len(blocks) == len(drafted_blocks):
+        for k, (block, other) in enumerate(zip(blocks, drafted_blocks, strict=True)):
+            waves = _WAVES.search(other)
+            if waves and not _WAVES.search(block):
+                end = _OTHER_TABLE.search(block)
+                place = end.start() if end else len(block)
+                blocks[k] = f"{block[:place].rstrip()}\n\n{waves[0].strip()}\n{block[place:]}"
+    return _RECORDS.join(blocks)
 
 
 def stated_sizes(text: str) -> dict[str, float]:

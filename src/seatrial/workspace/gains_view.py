@@ -101,13 +101,11 @@ def write_autopilot(root: Path, name: str, model: Path, speed: float | None = No
     speed: m/s, of a model that has none.
 
     Raises:
-        InputError: there is a file of that name, the craft has no rudder, or its speed is not known.
+        InputError: there is a file of that name, the craft has no rudder, or its speed is not known or another one.
     """
     file = api.load_model(model)
     if not file.model.has_rudder or file.model.is_roll:
         raise InputError("an autopilot needs a craft that is steered by a rudder; write a loop file for other loops")
-    if speed is None and "u" not in file.approach:
-        raise InputError("the model has no speed; state that of the runs, in m/s")
     path = root / f"{name}.toml"
     if is_file(path):
         raise InputError(f"there is a file '{path.name}' already")
@@ -117,6 +115,11 @@ def write_autopilot(root: Path, name: str, model: Path, speed: float | None = No
         speed="" if speed is None else f"speed = {speed:g}    # m/s, as stated\n",
     )  # fmt: skip
     write_atomically(path, text.encode())
+    try:
+        gain_evaluator(api.load_loop(path))
+    except InputError as error:
+        path.unlink()
+        raise InputError(str(error).removeprefix(f"{path}: ")) from None
     return path
 
 

@@ -93,11 +93,12 @@ class JobRunner:
         return [job for job in self.jobs if job.state is JobState.RUNNING]
 
     def start(
-        self, kind: str, name: str, folder: Path | None, arguments: Sequence[str], snapshot: Path | None = None
-    ) -> Job:
+        self, kind: str, name: str, folder: Path | None, arguments: Sequence[str], snapshot: Path | None = None,
+        take_line: Callable[[str], None] = lambda _: None,
+    ) -> Job:  # fmt: skip
         """Start ``python -m seatrial ARGUMENTS --verbose`` and return the job.
 
-        snapshot: a file that is removed at its end.
+        snapshot: a file that is removed at its end; take_line: takes each line of its standard output.
 
         Raises:
             InputError: a job of that name is at work.
@@ -111,7 +112,9 @@ class JobRunner:
         environment = os.environ | {"PYTHONUNBUFFERED": "1", "NO_COLOR": "1"}
         command = [sys.executable, "-m", "seatrial", *arguments, "--verbose"]
         job.process = start_in_background(command, environment, _NICENESS)
-        threading.Thread(target=self._watch, args=(job, snapshot), daemon=True).start()
+        reader = threading.Thread(target=_read_lines, args=(job.process, take_line), daemon=True)
+        reader.start()
+        threading.Thread(target=self._watch, args=(job, snapshot, reader), daemon=True).start()
         return job
 
     def stop(self, name: str) -> None:
@@ -137,15 +140,17 @@ class JobRunner:
                 job.state = JobState.STOPPED
                 job.process.terminate()
 
-    def _watch(self, job: Job, snapshot: Path | None) -> None:
+    def _watch(self, job: Job, snapshot: Path | None, reader: threading.Thread) -> None:
         assert job.process is not None and job.process.stderr is not None
         last = 0.0
-        for line in job.process.stderr:
-            is_new = self._read(job, line.rstrip("\n"))
-            if is_new or time.monotonic() - last > REPORT_INTERVAL_S:
-                last = time.monotonic()
-                self._report(job)
+        with job.process.stderr as lines:
+            for line in lines:
+                is_new = self._read(job, line.rstrip("\n"))
+                if is_new or time.monotonic() - last > REPORT_INTERVAL_S:
+                    last = time.monotonic()
+                    self._report(job)
         code = job.process.wait()
+        reader.join()
         job.seconds = time.time() - job.started
         if snapshot is not None:
             snapshot.unlink(missing_ok=True)
@@ -170,6 +175,14 @@ class JobRunner:
             return False
         job.phases.append((report.phase, time.time() - job.started))
         return True
+
+
+def _read_lines(process: "subprocess.Popen[str]", take_line: Callable[[str], None]) -> None:
+    """Give each line of a process's standard output to a function, until it ends."""
+    assert process.stdout is not None
+    with process.stdout as lines:
+        for line in lines:
+            take_line(line)
 
 
 def free_name(folder: Path, stem: str, wanted: str = "") -> str:

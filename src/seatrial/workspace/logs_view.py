@@ -32,6 +32,7 @@ from seatrial.data.draft import (
     guess_columns,
     stated_columns,
     survey_log,
+    unit_in_heading,
 )
 from seatrial.data.readings.search import ASSUMED_NATS, OPEN_NATS
 from seatrial.data.trial import Run, RunFiles
@@ -219,7 +220,8 @@ def candidates_view(path: Path, stated: Sequence[str] = ()) -> dict[str, Any]:
             name = f"{topic.topic}/{column.name}" if topic.topic else column.name
             guess = by_source.get(name) or by_source.get(str(column.number)) or ColumnGuess(name, "", "", is_used=False)
             columns.append({
-                "name": name, "unit": column.unit, "low": column.low, "high": column.high,
+                "name": name, "unit": column.unit or unit_in_heading(column.name),
+                "low": column.low, "high": column.high,
                 "symbol": guess.symbol if guess.is_used else "",
                 "evidence": [printable(reason, _LONGEST_TEXT) for reason in guess.evidence],
                 "candidates": [_candidate(*candidate) for candidate in guess.candidates if guess.is_used],

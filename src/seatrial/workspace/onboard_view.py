@@ -1,7 +1,6 @@
-"""On board: a growing source followed by `seatrial follow` in a process of its own, its page inside the workspace."""
+"""On board: a growing source that is followed, by the command in the terminal or by a job of the workspace."""
 
-import http.client
-import socket
+import threading
 import time
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -10,10 +9,7 @@ import tomli_w
 
 from seatrial.core.values import InputError
 from seatrial.core.values.files import parse_toml
-from seatrial.onboard.page import LOOPBACK, content_security_policy, html
 
-_WAIT_S = 5.0  # s for an answer of the follower; chosen: it answers within milliseconds
-_PAUSE_S = 0.2  # s between two attempts to reach a follower that begins; chosen
 _COPIED = ("header_lines", "encoding", "separator", "time", "channels", "waves")
 """Keys that the table `[follow]` and a block of records have in common."""
 
@@ -40,39 +36,47 @@ def with_follow_table(text: str, block: int, file: str, rate: float) -> str:
     return f"{text.rstrip()}\n\n{tomli_w.dumps({'follow': table})}"
 
 
-def free_port() -> int:
-    """Return a port of this machine that is free now."""
-    with socket.socket() as probe:
-        probe.bind((LOOPBACK, 0))
-        return int(probe.getsockname()[1])
+class FollowedStream:
+    """What has been reported of a stream: the newest report, and the points of its plots that the follower keeps.
 
-
-def follower_page() -> tuple[str, str]:
-    """Return the page of a stream and its policy: it is shown in a frame of the workspace."""
-    return html(), content_security_policy().replace("frame-ancestors 'none'", "frame-ancestors 'self'")
-
-
-def follower_state(port: int, since: str, is_running: Callable[[], bool]) -> bytes:
-    """Return what the follower at a port answers to its page, once it has begun.
-
-    is_running: whether it is still worth waiting for.
-
-    Raises:
-        InputError: it does not answer: it has not begun yet, or has ended.
+    Args:
+        publish: takes each report (`StreamReporter`) as it comes.
+        name: of the job that follows; empty: the command in the terminal, which ends it.
     """
-    while True:
-        connection = http.client.HTTPConnection(LOOPBACK, port, timeout=_WAIT_S)
-        try:
-            connection.request("GET", f"/state.json?since={since}")
-            answer = connection.getresponse()
-            content = answer.read()
-        except OSError:
-            if not is_running():
-                raise InputError("nothing is followed yet, or it has ended") from None
-            time.sleep(_PAUSE_S)
-            continue
-        finally:
-            connection.close()
-        if answer.status != http.HTTPStatus.OK:
-            raise InputError("the follower does not understand its page; start it again")
-        return content
+
+    def __init__(self, publish: Callable[[dict[str, Any]], None], name: str) -> None:
+        self._publish, self.name = publish, name
+        self._lock = threading.Lock()
+        self._report: dict[str, Any] = {}
+        self._points: list[list[Any]] = []
+        self._taken_at = time.monotonic()
+        self._end: dict[str, Any] = {"is_over": False, "reason": ""}
+
+    @property
+    def is_over(self) -> bool:
+        """Whether nothing will be reported any more."""
+        return bool(self._end["is_over"])
+
+    def take(self, report: Mapping[str, Any]) -> None:
+        """Take a report and pass it on."""
+        with self._lock:
+            point, stride = report["point"], report["stride"]
+            earlier = self._points if report["epoch"] == self._report.get("epoch") else []
+            self._points = [p for p in earlier if p[0] % stride == 0 and p[0] < point[0]] + [point]
+            self._report, self._taken_at = dict(report), time.monotonic()
+        self._publish({**report, "age": 0.0, **self._state()})
+
+    def end(self, reason: str = "") -> None:
+        """Note that the stream has ended, and why."""
+        self._end = {"is_over": True, "reason": reason}
+        self._publish(self._state())
+
+    def view(self) -> dict[str, Any]:
+        """Return the newest report with all points, and how old it is [s]."""
+        with self._lock:
+            age = time.monotonic() - self._taken_at
+            return {**self._report, "points": self._points, "age": round(age, 1), **self._state()}
+
+    def _state(self) -> dict[str, Any]:
+        """What every answer has: of which follower, when it left [s, of this machine], and whether it is over."""
+        return {"name": self.name, "at": time.monotonic(), **self._end}

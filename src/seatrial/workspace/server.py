@@ -5,7 +5,8 @@ import json
 import secrets
 import socket
 import threading
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Iterator
+from contextlib import contextmanager
 from http import HTTPStatus
 from importlib.resources import files
 from pathlib import Path
@@ -22,7 +23,8 @@ from starlette.routing import Route
 from seatrial.core.pages import shell
 from seatrial.core.values import InputError
 from seatrial.core.values.files import is_file
-from seatrial.workspace import craft_view, gains_view, logs_view, onboard_view, results_view
+from seatrial.numerics.platform import reuses_addresses_safely
+from seatrial.workspace import craft_view, gains_view, logs_view, results_view
 from seatrial.workspace.folder import opened_trial
 from seatrial.workspace.guard import DeadlineProtocol, Guard
 from seatrial.workspace.trial_document import EditConflictError
@@ -44,52 +46,76 @@ _SHARED = {
 Answer = Callable[[Request], Any]
 
 
-def serve_workspace(
-    path: Path, port: int = 0, opened: Callable[[str], None] = lambda _: None, *, ending: threading.Event | None = None
-) -> None:
+def serve_workspace(path: Path, port: int = 0, opened: Callable[[str], None] = lambda _: None) -> None:
     """Serve the workspace of a trial file, a log or a folder until the process is interrupted.
 
     Args:
         path: what is opened; port: 0 takes a free one.
         opened: takes the address, with its token, once the page can be loaded.
-        ending: ends it where it is served in a thread; None: an interrupt does.
 
     Raises:
         InputError: there is nothing of that name, or the port cannot be opened.
     """
-    trial, named = opened_trial(path)
-    workspace = Workspace(trial, named)
-    bound = _bound_socket(port)
-    token = secrets.token_urlsafe(_TOKEN_BYTES)
-    address = f"http://{LOOPBACK}:{bound.getsockname()[1]}"
-    guarded = Guard(application(workspace), bound.getsockname()[1], token)
-    config = uvicorn.Config(
-        guarded, http=DeadlineProtocol, ws="none", lifespan="off", log_level="critical", access_log=False,
-        timeout_graceful_shutdown=_GRACE_S, server_header=False, date_header=False,
-    )  # fmt: skip
+    server = _Server(path, port)
+    server.run(lambda: opened(server.address))
+
+
+@contextmanager
+def workspace_beside(path: Path, port: int = 0) -> Iterator[tuple[Workspace, str]]:
+    """Serve the workspace in a thread while the body runs; yield it and its address, with its token.
+
+    Arguments and errors as those of `serve_workspace`.
+    """
+    server, is_ready = _Server(path, port), threading.Event()
+    thread = threading.Thread(target=server.run, args=(is_ready.set,), name="workspace", daemon=True)
+    thread.start()
+    is_ready.wait()
     try:
-        asyncio.run(
-            _serve(uvicorn.Server(config), bound, lambda: opened(f"{address}/?token={token}"), workspace, ending)
-        )
+        yield server.workspace, server.address
     finally:
-        workspace.close()
+        server.stop()
+        thread.join()
 
 
-async def _serve(
-    server: uvicorn.Server, bound: socket.socket, opened: Callable[[], None], workspace: Workspace,
-    ending: threading.Event | None,
-) -> None:  # fmt: skip
-    task = asyncio.create_task(server.serve([bound]))
-    while not server.started and not task.done():
-        await asyncio.sleep(0.01)  # s; a start takes some ten of them
-    opened()
-    watch = asyncio.create_task(_watch_file(workspace))
-    while not server.should_exit and not task.done():
-        await asyncio.sleep(0.1)  # s; an end is noticed as soon
-        server.should_exit = server.should_exit or (ending is not None and ending.is_set())
-    watch.cancel()
-    workspace.events.close()
-    await task
+class _Server:
+    """A workspace on a port of this machine, which is bound from the start on."""
+
+    def __init__(self, path: Path, port: int) -> None:
+        trial, named = opened_trial(path)
+        self.workspace = Workspace(trial, named)
+        self._bound = _bound_socket(port)
+        port, token = self._bound.getsockname()[1], secrets.token_urlsafe(_TOKEN_BYTES)
+        self.address = f"http://{LOOPBACK}:{port}/?token={token}"
+        guarded = Guard(application(self.workspace), port, token)
+        config = uvicorn.Config(
+            guarded, http=DeadlineProtocol, ws="none", lifespan="off", log_level="critical", access_log=False,
+            timeout_graceful_shutdown=_GRACE_S, server_header=False, date_header=False,
+        )  # fmt: skip
+        self._server = uvicorn.Server(config)
+
+    def run(self, started: Callable[[], None]) -> None:
+        """Answer until it is stopped, or the process is interrupted; `started` is called once a page can be loaded."""
+        try:
+            asyncio.run(self._serve(started))
+        finally:
+            self.workspace.close()
+
+    def stop(self) -> None:
+        """End it, from any thread."""
+        self._server.should_exit = True
+
+    async def _serve(self, started: Callable[[], None]) -> None:
+        server = self._server
+        task = asyncio.create_task(server.serve([self._bound]))
+        while not server.started and not task.done():
+            await asyncio.sleep(0.01)  # s; a start takes some ten of them
+        started()
+        watch = asyncio.create_task(_watch_file(self.workspace))
+        while not server.should_exit and not task.done():
+            await asyncio.sleep(0.1)  # s; an end is noticed as soon
+        watch.cancel()
+        self.workspace.events.close()
+        await task
 
 
 async def _watch_file(workspace: Workspace) -> None:
@@ -114,6 +140,8 @@ def _bound_socket(port: int) -> socket.socket:
         InputError: the port is in use, or none.
     """
     bound = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    if reuses_addresses_safely():
+        bound.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
         bound.bind((LOOPBACK, port))
     except (OSError, OverflowError) as error:
@@ -188,6 +216,7 @@ def application(workspace: Workspace) -> Starlette:
         "state": lambda _: workspace.state(), "logs": view_of(logs_view.logs_view), "series": series,
         "candidates": candidates, "craft": view_of(craft_view.craft_view), "check": lambda _: workspace.begin_check(),
         "fits": fits, "simulate": simulated, "loops": loops, "loop": loop, "gains": gains, "difference": difference,
+        "onboard": lambda _: {} if workspace.followed is None else workspace.followed.view(),
     }  # fmt: skip
     acts = {
         "edit": workspace.edit, "undo": workspace.undo, "start-fit": workspace.start_fit,
@@ -202,8 +231,6 @@ def application(workspace: Workspace) -> Starlette:
         Route("/", lambda _: _static("index.html")),
         Route("/static/{name:str}", lambda request: _static(request.path_params["name"])),
         Route("/report/{name:path}", _reporting(workspace)),
-        Route("/onboard", _onboard_page),
-        Route("/state.json", _following(workspace)),
     ]
     return Starlette(routes=routes)
 
@@ -268,27 +295,6 @@ def _static(name: str) -> Response:
             raise HTTPException(HTTPStatus.NOT_FOUND)
         text = place.read_bytes()
     return Response(text, media_type=_KINDS[suffix])
-
-
-def _onboard_page(_: Request) -> Response:
-    text, policy = onboard_view.follower_page()
-    return Response(text, media_type="text/html", headers={"content-security-policy": policy})
-
-
-def _following(workspace: Workspace) -> Callable[[Request], Any]:
-    """What the follower answers to its page, whose address is the workspace's."""
-
-    async def answer(request: Request) -> Response:
-        since = request.query_params.get("since", "-1")
-        try:
-            content = await run_in_threadpool(
-                onboard_view.follower_state, workspace.follow_port, since, lambda: bool(workspace.jobs.running)
-            )
-        except InputError as error:
-            return JSONResponse({"error": str(error)}, HTTPStatus.SERVICE_UNAVAILABLE)
-        return Response(content, media_type="application/json")
-
-    return answer
 
 
 def _reporting(workspace: Workspace) -> Callable[[Request], Any]:

@@ -1,5 +1,6 @@
 """What a page asks of the workspace, as functions of values: each act an edit of the trial file, or a command begun."""
 
+import json
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -8,10 +9,11 @@ from seatrial.core.text.words import printable
 from seatrial.core.values import InputError
 from seatrial.core.values.files import parse_toml, write_atomically
 from seatrial.data.trial import Role, RunFiles
-from seatrial.workspace import checks, drafting, logs_view, onboard_view, run_edits
+from seatrial.workspace import checks, drafting, logs_view, run_edits
 from seatrial.workspace.events import EventStream
 from seatrial.workspace.folder import OpenedFolder
-from seatrial.workspace.jobs import JobRunner, free_name
+from seatrial.workspace.jobs import Job, JobRunner, JobState, free_name
+from seatrial.workspace.onboard_view import FollowedStream, with_follow_table
 from seatrial.workspace.trial_document import FileChange, TrialDocument, with_comment, with_value
 
 RESULTS = "results"
@@ -27,7 +29,7 @@ class Workspace:
 
     Attributes:
         document, folder, events, jobs, check: of the trial file that is open.
-        follow_port: of the page of what is followed; 0: nothing was.
+        followed: what is or was followed; None: nothing.
         logs: that were named when it was opened, of which a first draft is made.
     """
 
@@ -36,9 +38,9 @@ class Workspace:
         self.folder = OpenedFolder(trial.parent)
         self.logs = logs
         self.events = EventStream()
-        self.jobs = JobRunner(lambda job: self.events.publish("job", job.view()))
+        self.jobs = JobRunner(self._note_job)
         self.check = checks.LiveCheck(trial, lambda content: self.events.publish("check", content))
-        self.follow_port = 0
+        self.followed: FollowedStream | None = None
         self._allowed_paths = _paths_in(self.document.text)
 
     # What a page shows.
@@ -227,7 +229,7 @@ class Workspace:
         time = runs[-1].raw_record().time
         rate = float(f"{(len(time) - 1) / float(time[-1] - time[0]):.4g}")
         file = str(request.get("file", "")).strip()
-        return lambda text: onboard_view.with_follow_table(text, block, file, rate), f"{file} is followed as it grows"
+        return lambda text: with_follow_table(text, block, file, rate), f"{file} is followed as it grows"
 
     # Commands that take their time.
 
@@ -260,14 +262,32 @@ class Workspace:
         return self.jobs.start("tuning", f"{RESULTS}/{name}", results / name, arguments).view()
 
     def start_follow(self, request: Request) -> dict[str, Any]:
-        """Start `follow` of the source that the trial file names; `once`: it ends with the input, with a fit."""
+        """Start `follow` of the source that the trial file names; `once`: it ends with the input, with a fit.
+
+        Raises:
+            InputError: it is followed already, or a name that is taken.
+        """
+        if self.followed is not None and not self.followed.is_over:
+            raise InputError("the stream is followed already; stop that first")
         results = self.folder.root / RESULTS
         name = free_name(results, "onboard", str(request.get("name", "")))
-        self.follow_port = onboard_view.free_port()
         write_atomically(results / name / "trial.toml", self.document.text.encode())
-        arguments = ["follow", str(self.document.path), "--out", str(results / name), "--page", str(self.follow_port)]
+        arguments = ["follow", str(self.document.path), "--out", str(results / name), "--reports"]
         arguments += ["--once"] if request.get("once") else []
-        return self.jobs.start("follow", f"{RESULTS}/{name}", results / name, arguments).view()
+        followed = self.follow(f"{RESULTS}/{name}")
+        return self.jobs.start(
+            "follow", followed.name, results / name, arguments, take_line=lambda line: _take_report(followed, line)
+        ).view()
+
+    def follow(self, name: str = "") -> FollowedStream:
+        """Return what takes the reports of a follower from now on; name: of its job, empty: it has none."""
+        self.followed = FollowedStream(lambda content: self.events.publish("onboard", content), name)
+        return self.followed
+
+    def _note_job(self, job: Job) -> None:
+        if self.followed is not None and job.name == self.followed.name and job.state is not JobState.RUNNING:
+            self.followed.end(job.message)
+        self.events.publish("job", job.view())
 
     def start_poster(self, request: Request) -> dict[str, Any]:
         """Start `poster` of a fit; its page lies in the fit's folder."""
@@ -282,6 +302,12 @@ class Workspace:
         """End what is at work."""
         self.jobs.stop_all()
         self.events.close()
+
+
+def _take_report(followed: FollowedStream, line: str) -> None:
+    """Take a line of a follower's output that is a report; others are for people."""
+    if line.startswith("{"):
+        followed.take(json.loads(line))
 
 
 def _with_accepted(text: str, code: str) -> str:

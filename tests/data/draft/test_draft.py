@@ -11,7 +11,7 @@ from tests.data.draft.craft import two_thrusters
 from tests.data.read.samples import SAMPLES
 
 from seatrial.api import check, draft_trial, survey_log
-from seatrial.core.values import Array, InputError
+from seatrial.core.values import Array, InputError, Severity
 from seatrial.data.draft import ColumnGuess, find_stretches, guess_columns
 from seatrial.data.draft.guess import recognised_columns
 from seatrial.data.draft.naming import guess_by_name
@@ -103,6 +103,22 @@ def test_what_the_numbers_do_not_show_stays_open_with_both_readings(tmp_path: Pa
     assert {guess.symbol for guess in draft.open_questions} == {"psi", "n"}
     assert '# channels.psi = { column = "heading", unit = "rad" }' in draft.text and 'or unit = "deg"' in draft.text
     assert "# not used, names not recognised: depth" in draft.text
+
+
+def test_a_unit_behind_a_stroke_is_that_of_a_stated_column(tmp_path: Path) -> None:
+    columns = {"time/s": TRUTH["t"], "LVDT/mm": 1e3 * TRUTH["u"], "a/(m/s)": TRUTH["u"], "b": TRUTH["u"]}
+    path = write(tmp_path / "run.csv", columns)
+    draft = draft_trial(path, folder=tmp_path, columns=("LVDT/mm=z", "a/(m/s)=u"))
+    assert '{ column = "LVDT/mm", unit = "mm"' in draft.text and '{ column = "a/(m/s)", unit = "m/s"' in draft.text
+
+
+def test_what_is_stated_of_a_craft_stands_in_a_draft_without_a_model(tmp_path: Path) -> None:
+    path = write(tmp_path / "run.csv", {"time": TRUTH["t"], "heading [deg]": TRUTH["psi"] / DEGREE})
+    assert "[ship]" not in draft_trial(path, folder=tmp_path).text
+    text = draft_trial(path, folder=tmp_path, length=9.5, name="launch").text
+    assert 'name = "launch"\nL = 9.5' in text and "[model]" not in text
+    (tmp_path / "trial.toml").write_text(text, encoding="utf-8")
+    assert not [finding for finding in check(tmp_path / "trial.toml") if finding.severity is Severity.ERROR]
 
 
 def test_the_drafted_file_is_read_and_checked_without_model_and_ship(tmp_path: Path) -> None:

@@ -37,22 +37,18 @@ def environment(package: str) -> "Environment":
     )
 
 
-def with_policy(text: str, connect: str = "'none'") -> str:
-    """Return a rendered page with the colours of its figures for dark screens and its policy.
-
-    Args:
-        connect: where its scripts may fetch from, as in a Content-Security-Policy.
-    """
+def with_policy(text: str) -> str:
+    """Return a rendered page with the colours of its figures for dark screens and its policy."""
     text = text.replace(_NIGHT_RULES, night_rules(_COLOUR.findall(text)), 1)
-    return text.replace(_POLICY, policy(text, connect), 1)
+    return text.replace(_POLICY, policy(text), 1)
 
 
-def policy(text: str, connect: str = "'none'") -> str:
+def policy(text: str) -> str:
     """Return the policy of a page: nothing but its own styles and scripts may take effect."""
     styles, scripts = (" ".join(map(_digest, pattern.findall(text))) for pattern in (_STYLE, _SCRIPT))
     script = scripts or "'none'"
     return (
-        f"default-src 'none'; img-src data:; style-src {styles}; script-src {script}; connect-src {connect}; "
+        f"default-src 'none'; img-src data:; style-src {styles}; script-src {script}; connect-src 'none'; "
         "base-uri 'none'; form-action 'none'"
     )
 

@@ -118,13 +118,14 @@ def _stuck_findings(record: Record, symbol: str, values: Array) -> list[Finding]
     """
     known = np.flatnonzero(np.isfinite(values))
     readings = np.unwrap(values[known]) if record.channel(symbol).unit == "rad" else values[known]
-    moves, step = np.diff(readings), local_resolution(values[known])
+    moves = np.diff(readings)
     stays = [
         (a, b) for a, b in mask_intervals(moves == 0.0) if b - a >= max(STUCK_SAMPLES, STUCK_FRACTION * len(known))
     ]
-    stuck = [(a, b) for a, b in stays if abs(moves[b if b < len(moves) else a - 1]) > _STEPS * max(step[a], step[b])]
     if not stays:
         return []
+    step = local_resolution(values[known])
+    stuck = [(a, b) for a, b in stays if abs(moves[b if b < len(moves) else a - 1]) > _STEPS * max(step[a], step[b])]
     first, last = max(stuck or stays, key=lambda ends: ends[1] - ends[0])
     count, (factor, unit) = last - first + 1, display_unit(record.channel(symbol).unit)
     if not stuck:

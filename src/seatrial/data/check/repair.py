@@ -61,13 +61,15 @@ def track_jumps(x: Array, y: Array) -> Jumps:
     x, y: shape (n,), no NaN. A receiver that holds its last position and then catches up shows small steps first.
     """
     steps = np.hypot(np.diff(x), np.diff(y))
-    coarse = _STEPS * np.hypot(*(np.maximum(step[1:], step[:-1]) for step in map(local_resolution, (x, y))))
     rows = np.arange(len(steps))
     first, last = np.maximum(rows - HALF_WINDOW, 0), np.minimum(rows + 1 + HALF_WINDOW, len(x) - 1)
     mean = np.hypot(x[last] - x[first], y[last] - y[first]) / np.maximum(last - first, 1)
     moving = steps[steps > 0]
     typical = float(np.median(moving)) if moving.size else 0.0
-    jumped = np.flatnonzero((steps > STEP_RATIO * mean) & (steps > np.maximum(MEDIAN_STEP_RATIO * typical, coarse)))
+    jumped = np.flatnonzero((steps > STEP_RATIO * mean) & (steps > MEDIAN_STEP_RATIO * typical))
+    if jumped.size:  # the resolution takes a sort
+        coarse = np.hypot(*(np.maximum(step[1:], step[:-1]) for step in map(local_resolution, (x, y))))
+        jumped = jumped[steps[jumped] > _STEPS * coarse[jumped]]
     held = [_held_before(j, steps, mean) for j in jumped.tolist()]
     return Jumps(jumped + 1, steps[jumped], np.unique(np.concatenate([*held, _NO_ROWS])))
 
@@ -94,9 +96,12 @@ def spike_rows(values: Array) -> RowIndices:
     moving = sizes[sizes > 0]
     if moving.size == 0 or len(values) < 2 * NEIGHBOURS:
         return _NO_ROWS
-    floor = np.maximum(OVER_QUANTILE * float(np.quantile(sizes, STEP_QUANTILE)), OVER_STEP * local_resolution(values))
     both = np.minimum(sizes[:-1], sizes[1:])
-    candidates = np.flatnonzero((steps[:-1] * steps[1:] < 0) & (both > floor[1:-1]))
+    large = both > OVER_QUANTILE * float(np.quantile(sizes, STEP_QUANTILE))
+    candidates = np.flatnonzero((steps[:-1] * steps[1:] < 0) & large)
+    if not candidates.size:  # the resolution takes a sort
+        return _NO_ROWS
+    candidates = candidates[both[candidates] > OVER_STEP * local_resolution(values)[candidates + 1]]
     spikes = []
     for c in candidates.tolist():
         before, after = sizes[max(0, c - NEIGHBOURS) : c], sizes[c + 2 : c + 2 + NEIGHBOURS]

@@ -4,7 +4,7 @@ from seatrial.data.draft.draft import DraftTrial, draft_trial
 from seatrial.data.draft.draft_text import run_text
 from seatrial.data.draft.guess import guess_columns
 from seatrial.data.draft.manoeuvres import find_stretches
-from seatrial.data.draft.naming import not_needed_text, stated_columns
+from seatrial.data.draft.naming import not_needed_text, stated_columns, unit_in_heading
 from seatrial.data.draft.runs_of_logs import LogRun, runs_of_logs
 from seatrial.data.draft.ship_estimates import StatedSize
 from seatrial.data.draft.stretches import LogStretch, name_contradiction
@@ -31,4 +31,5 @@ __all__ = [
     "stated_columns",
     "survey_log",
     "survey_logs",
+    "unit_in_heading",
 ]

@@ -119,18 +119,17 @@ def tables_text(
     guesses: of all sources of the longest run; rate: at which residuals are taken [Hz]; None: that of the records.
     heels: least and largest about which roll decays swing [rad]; None: one serves all.
     """
+    ship = ["[ship]", f"name = {quoted(size.name or _UNNAMED)}", *_ship_lines(model, size), ""]
     if not model.name:
         return [
+            *(ship if size.length else []),
             "# 'seatrial check' needs neither ship nor model, 'seatrial identify' both: 'seatrial models' lists them.",
             "# OPEN: no input (rudder, propeller, thruster) was found, and a model needs one: name its column below.",
             "",
         ]
     names = ", ".join(f'"{name}"' for name in model.free)
     return [
-        "[ship]",
-        f"name = {quoted(size.name or _UNNAMED)}",
-        *_ship_lines(model, size),
-        "",
+        *ship,
         "[model]",
         f'name = "{model.name}"    # {model.why}',
         *(_prior_lines(model) if model.has_propeller else []),

@@ -14,7 +14,7 @@ from seatrial.data.check import canonical_record
 from seatrial.data.check.inputs import SURE_EFFECT, ThrusterEffect, thruster_effects
 from seatrial.data.check.motion import jackknife_least_squares, smoothed, smoothed_derivative, window_length
 from seatrial.data.draft.column_guess import Changes, ColumnGuess
-from seatrial.data.draft.naming import NameGuess, bracketed_unit, guess_by_name, named_side
+from seatrial.data.draft.naming import NameGuess, guess_by_name, named_side, unit_in_heading
 from seatrial.data.draft.stored_parameters import OutputSetting, is_disabled, output_setting
 from seatrial.data.draft.stretches import smooth_speed, track_velocity
 from seatrial.data.draft.survey import ColumnSummary, LogSurvey, TopicSummary, column_values
@@ -369,7 +369,7 @@ def _named(survey: LogSurvey, topic: TopicSummary, column: ColumnSummary) -> Nam
     """What a column is as stated, else by its name."""
     if column.name not in survey.stated:
         return guess_by_name(_topic_name(survey, topic), column.name, column.unit, survey.layout.format)
-    stated = guess_by_name("", survey.stated[column.name], column.unit or bracketed_unit(column.name))
+    stated = guess_by_name("", survey.stated[column.name], column.unit or unit_in_heading(column.name))
     return None if stated is None else replace(
         stated, evidence="what was stated of it", side=stated.side or named_side(column.name)
     )  # fmt: skip

@@ -212,6 +212,13 @@ def bracketed_unit(name: str) -> str:
     return next((known for text in _BRACKETS.findall(name) if (known := _known_unit(text))), "")
 
 
+def unit_in_heading(name: str) -> str:
+    """Return the unit that a heading states in brackets or as a quotient, heave/mm (ISO 80000-1, 7.1.4)."""
+    parts = name.split("/")
+    quotients = (_known_unit("/".join(parts[k:])) for k in range(1, len(parts)))
+    return bracketed_unit(name) or next(filter(None, quotients), "")
+
+
 def _readings(plain: str) -> list[tuple[str, str]]:
     """A name with the unit behind it: as it is, then without what only says from where it comes."""
     heads = [plain]

@@ -29,6 +29,7 @@ export async function upload(file) {
 export function listen(handlers) {
   const source = new EventSource("/api/events");
   for (const [kind, handle] of Object.entries(handlers)) source.addEventListener(kind, event => handle(JSON.parse(event.data)));
+  source.addEventListener("error", () => handlers.gone?.(source.readyState === EventSource.CLOSED));
   return source;
 }
 

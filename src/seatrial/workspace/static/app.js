@@ -86,7 +86,11 @@ export const app = {
 
 function showEdit({ summary, diff }) {
   const box = $("edit");
-  if (!diff?.length) { box.hidden = true; return; }
+  if (!diff?.length) {
+    box.hidden = true;
+    app.note("Nothing to change: the trial file stands so already.");
+    return;
+  }
   const details = h("details", {}, h("summary", {}, h("b", {}, "Edited: "), summary), diffView(diff));
   const undo = summary.startsWith("undo:") ? null : button("Undo", () => app.undo());
   box.replaceChildren(details, h("span", { class: "tools-row" }, undo, button("Hide", () => { box.hidden = true; }, { class: "quiet" })));
@@ -143,12 +147,15 @@ const heard = {
     app.jobs.set(content.name, { ...content, at: performance.now() });
     app.tell("job", content);
   },
+  onboard(content) { app.tell("onboard", content); },
+  gone(isOther) { app.tell("gone", isOther); },
   // the stream is open: a page that shows this text already is not drawn anew under the hand of its user
   async hello() {
     const state = await ask("state").catch(() => null);
     if (!state || !app.state) return;
     if (state.version !== app.state.version) await app.refresh().catch(() => {});
     else if (state.check?.version) heard.check(state.check);
+    app.tell("hello");
   },
 };
 listen(heard);

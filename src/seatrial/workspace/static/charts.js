@@ -19,24 +19,27 @@ export function unpacked({ range: [low, high], codes }) {
 
 export const evenly = (start, stop, count) => Array.from({ length: count }, (_, k) => start + (stop - start) * k / Math.max(1, count - 1));
 
-// one panel: series = [{ label, values, colour, dash }]
-export function panel(node, label, time, series, { sync, spans = () => [], onSelect, height = HEIGHT } = {}) {
+// one panel: series = [{ name, values, colour, dash, isEdge }]; edges bound a band and are not read out
+export function panel(node, label, time, series, { sync, spans = () => [], onSelect, height = HEIGHT, range, bands = [], padding = [6, 14, 0, 0], yAxis = {}, drawn: draw } = {}) {
   const readout = h("p", { class: "readout" }, h("b", {}, label), " ", h("span"));
   const box = h("div", { class: "plot", role: "img", "aria-label": `${label} from ${digits(time[0])} to ${digits(time.at(-1))} s` }, readout);
   node.append(box);
-  const values = k => series.map(one => `${one.name ? `${one.name} ` : ""}${digits(one.values[k])}`).join(" · ");
+  const values = (u, k) => series.flatMap((one, place) => one.isEdge ? [] : `${one.name ? `${one.name} ` : ""}${digits(u.data[place + 1][k])}`).join(" · ");
+  const colour = one => style((typeof one.colour === "function" ? one.colour() : one.colour) || "--ink");
   const grid = { stroke: () => style("--grid"), width: 1 };
   const axis = { stroke: () => style("--soft"), font: "10px Arial, sans-serif", grid, ticks: { show: false } };
   const plot = new uPlot({
-    width: Math.max(200, box.clientWidth), height, legend: { show: false }, pxAlign: 0, padding: [6, 14, 0, 0],
+    width: Math.max(200, box.clientWidth), height, legend: { show: false }, pxAlign: 0, padding,
     cursor: { sync: sync ? { key: sync, scales: ["x", null] } : undefined, drag: { x: true, y: false, setScale: !onSelect }, y: false, points: { size: 5 } },
     select: { show: true },
-    scales: { x: { time: false } },
-    axes: [{ ...axis, size: 18, gap: 3 }, { ...axis, size: 46, gap: 4, space: 24 }],
-    series: [{}, ...series.map(one => ({ stroke: () => style(one.colour || "--ink"), width: one.width || 1.2, dash: one.dash, points: { show: false } }))],
+    scales: { x: { time: false }, y: range ? { range } : {} },
+    axes: [{ ...axis, size: 18, gap: 3, values: (u, splits) => (u.named || plainly)(u, splits) }, { ...axis, size: 46, gap: 4, space: 24, ...yAxis }],
+    bands: bands.map(pair => ({ series: pair, fill: () => style("--band") })),
+    series: [{}, ...series.map(one => ({ stroke: () => one.isEdge && !one.colour ? "transparent" : colour(one), width: one.width || 1.2, dash: one.dash, points: { show: u => !one.isEdge && u.data[0].length < 3 } }))],
     hooks: {
       drawClear: [u => drawSpans(u, spans())],
-      setCursor: [u => { readout.lastChild.textContent = u.cursor.idx == null ? "" : values(u.cursor.idx); }],
+      draw: draw ? [draw] : [],
+      setCursor: [u => { readout.lastChild.textContent = u.cursor.idx == null ? u.now || "" : values(u, u.cursor.idx); }],
       setSelect: onSelect ? [u => u.select.width > 2 && onSelect(u.posToVal(u.select.left, "x"), u.posToVal(u.select.left + u.select.width, "x"))] : [],
     },
   }, [time, ...series.map(one => one.values)], box);
@@ -44,6 +47,18 @@ export function panel(node, label, time, series, { sync, spans = () => [], onSel
   new ResizeObserver(() => box.clientWidth && plot.setSize({ width: Math.max(200, box.clientWidth), height })).observe(box);
   drawn.add(plot);
   return plot;
+}
+
+const plainly = (_, splits) => splits.map(value => String(+value.toPrecision(12)));
+
+// other numbers in a panel: columns = [time, ...values]; now: what is read out where no cursor is
+export function setPanel(plot, { label, now, columns, xAxis }) {
+  const [readout] = plot.root.parentNode.children, [title, text] = readout.children;
+  Object.assign(plot, { now, named: xAxis });
+  title.textContent = label;
+  if (plot.cursor.idx == null) text.textContent = now;
+  plot.root.parentNode.setAttribute("aria-label", now ? `${label}: ${now}` : label);
+  plot.setData(columns);
 }
 
 function drawSpans(u, spans) {
@@ -65,7 +80,7 @@ function drawSpans(u, spans) {
 }
 
 // tracks to scale, north up: lines = [{ north, east, colour, dash, width }]
-export function track(lines, { onSelect, title = "track" } = {}) {
+export function track(lines, { onSelect, title = "track", hasCraft = false } = {}) {
   const points = lines.flatMap(one => one.east.map((x, k) => [x, one.north[k]])).filter(([x, y]) => x !== null && y !== null);
   if (!points.length) return h("p", { class: "note" }, "no track");
   const xs = points.map(p => p[0]), ys = points.map(p => p[1]);
@@ -88,7 +103,11 @@ export function track(lines, { onSelect, title = "track" } = {}) {
   node.append(...lines.map(one => s("path", { d: path(one), class: `line ${one.kind || ""}` })));
   const picked = s("path", { class: "line picked" });
   node.append(picked, s("path", { class: "scale", d: `M10 ${TRACK - 10}h${(scale / view * TRACK).toFixed(1)}` }),
-    s("text", { x: 10, y: TRACK - 15, class: "scale-text" }, `${digits(scale, 2)} m`), s("text", { x: TRACK - 16, y: 14, class: "scale-text" }, "N ↑"));
+    s("text", { x: 10, y: TRACK - 15, class: "scale-text" }, `${digits(scale, 2)} m`), s("text", { x: TRACK - 24, y: 14, class: "scale-text" }, "N ↑"));
+  if (hasCraft) {
+    const [x, y] = place(...points.at(-1));
+    node.append(s("circle", { class: "craft", cx: x.toFixed(1), cy: y.toFixed(1), r: 4 }));
+  }
   node.pick = (from, to) => picked.setAttribute("d", to > from ? path(lines[0], from, to + 1) : "");
   if (onSelect) dragOver(node, lines[0], place, onSelect);
   return node;

@@ -14,8 +14,8 @@ export async function showCraft(node, app) {
   const { tables, model, parameters, models, problem } = await ask("craft");
   if (problem) node.append(h("p", { class: "message bad" }, problem));
   const ship = Object.fromEntries(tables[0].rows.map(row => [row.key, row]));
-  const estimated = tables.flatMap(table => table.rows).filter(row => ["estimated", "assumed"].includes(row.standing));
-  node.append(h("p", {}, estimated.length ? `${estimated.length} numbers are estimated by a rule and marked: ${estimated.map(row => row.key).join(", ")}. Measured ones make the model better.` : "No number is a guess by a rule."));
+  const estimated = tables.flatMap(({ place, rows }) => rows.filter(row => ["estimated", "assumed"].includes(row.standing)).map(row => place[0] === "ship" ? row.key : `${row.key} of ${titleOf(place).toLowerCase()}`));
+  node.append(h("p", {}, estimated.length ? `${estimated.length} numbers are estimated by a rule and marked: ${estimated.join(", ")}. Measured ones make the model better.` : "No number is a guess by a rule."));
   node.append(section("What to measure", h("div", { class: "measure" }, drawing(ship), sizeForm(app, ship))));
   for (const { place, rows } of tables) if (rows.length) node.append(section(titleOf(place), valueTable(app, place, rows, models, model)));
   if (parameters.length) node.append(section("Coefficients", parameterTable(app, parameters)));
@@ -58,6 +58,11 @@ function valueTable(app, place, rows, models, model) {
       h("td", {}, h("span", { class: `badge ${row.standing.replace(" ", "-")}` }, row.standing === "estimated" ? "ESTIMATED" : row.standing === "assumed" ? "ASSUMED" : row.standing)), h("td", { class: "because" }, row.reason))))));
 }
 
+function inWords(value) {
+  if (Array.isArray(value)) return value.map(inWords).join("; ");
+  return typeof value === "object" ? Object.entries(value).map(([key, one]) => `${key} ${inWords(one)}`).join(", ") : String(value);
+}
+
 function valueControl(app, place, row, models, model) {
   const { value } = row, name = place.join(".");
   const change = next => app.edit({ kind: "set", place, value: next });
@@ -65,7 +70,10 @@ function valueControl(app, place, row, models, model) {
   if (typeof value === "number") return h("input", { type: "number", step: "any", value: String(value), "aria-label": name, id: `value-${name}`, onchange: event => event.target.value !== "" && change(+event.target.value) });
   if (typeof value === "boolean") return h("input", { type: "checkbox", checked: value, "aria-label": name, onchange: event => change(event.target.checked) });
   if (typeof value === "string") return h("input", { type: "text", value, "aria-label": name, onchange: event => change(event.target.value) });
-  return h("span", {}, Array.isArray(value) ? value.map(one => typeof one === "object" ? JSON.stringify(one) : one).join(", ") : JSON.stringify(value));
+  if (typeof value?.value === "number" && Object.keys(value).every(key => ["value", "unit"].includes(key))) {
+    return [h("input", { type: "number", step: "any", value: String(value.value), "aria-label": name, id: `value-${name}`, onchange: event => event.target.value !== "" && change({ ...value, value: +event.target.value }) }), " ", h("span", { class: "u" }, value.unit)];
+  }
+  return h("span", {}, inWords(value));
 }
 
 function parameterTable(app, parameters) {

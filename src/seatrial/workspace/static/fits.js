@@ -4,7 +4,7 @@ import { LogPicture, track, unpacked } from "./charts.js";
 import { button, duration, field, h, input, section, select } from "./dom.js";
 import { findingList } from "./logs.js";
 
-const chosen = new Set();
+const chosen = new Set(), seen = new Set();
 let openReport = "";
 
 export async function showFits(node, app) {
@@ -16,6 +16,10 @@ export async function showFits(node, app) {
   if (!fits.length) node.append(h("p", { class: "note" }, "No fit yet. The fit estimates the ticked coefficients from the runs that are fitted and predicts those that are held out."));
   else {
     const done = fits.filter(fit => fit.state === "done");
+    for (const { name } of done) {
+      if (seen.size && !seen.has(name)) chosen.add(name); // a fit that has just ended is shown
+      seen.add(name);
+    }
     if (![...chosen].some(name => done.some(fit => fit.name === name))) for (const fit of done.slice(-2)) chosen.add(fit.name);
     node.append(section("Fits", fitList(app, fits)));
     const compared = done.filter(fit => chosen.has(fit.name));

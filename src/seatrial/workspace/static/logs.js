@@ -10,7 +10,7 @@ const CHANNELS = [["", "not used"], ["time", "time"], ["lat", "latitude"], ["lon
 const UNITS = { lat: "deg", lon: "deg", x0: "m", y0: "m", psi: "deg", r: "deg/s", u: "m/s", v: "m/s", sog: "kn", cog: "deg", delta: "deg", n: "rpm", phi: "deg",
   theta: "deg", z: "m", zeta: "m", wind_speed: "m/s", wind_direction: "deg", command_1: "1", command_2: "1" };
 const ROLES = [["train", "fitted"], ["validate", "held out"], ["leave_out", "left out"]];
-let chosenLog = "";
+let chosenLog = "", isAdding = false;
 
 export async function showLogs(node, app) {
   const { state } = app;
@@ -139,7 +139,7 @@ function columnTable(app, block) {
       button("Not used", () => app.edit({ kind: "channel", block: block.place, source: row.source, symbol: row.symbol, table: null }), { class: "quiet", "aria-label": `do not use ${row.symbol}` }));
   }
   const table = h("table", { class: "whole readings" }, h("thead", {}, h("tr", {}, ["Channel", "Column", "Unit", "Frame", "Positive to", "Because", ""].map(text => h("th", { scope: "col" }, text)))), body);
-  const again = block.channels.some(row => row.by_hand) && h("p", { class: "tools-row" }, button("Draft craft and model again", () => app.edit({ kind: "draft" })), h("span", { class: "note" }, "with the columns as they stand here; what you set by hand stays."));
+  const again = block.channels.some(row => row.by_hand) && !block.open.length && h("p", { class: "tools-row" }, button("Draft craft and model again", () => app.edit({ kind: "draft" })), h("span", { class: "note" }, "with the columns as they stand here; what you set by hand stays."));
   return [h("div", { class: "scroll" }, table), addChannel(app, block), again];
 }
 
@@ -163,24 +163,33 @@ async function showCandidates(app, block, row, cell) {
   }
 }
 
+// names that nothing explains, as the draft noted them, but for those that are used by now
+function unexplained(app, block, used) {
+  const [, names = ""] = app.state.text.split(/^\[\[records\]\]/m)[block.place + 1]?.match(/^# not used, names not recognised: (.*)$/m) || [];
+  return names.split(", ").filter(name => name && !used.has(name));
+}
+
 function addChannel(app, block) {
-  const box = h("details", { ontoggle: async () => {
+  const used = new Set(block.channels.map(row => row.column)), left = unexplained(app, block, used);
+  const box = h("details", { open: isAdding, ontoggle: async () => {
+    isAdding = box.open;
     if (!box.open || box.dataset.filled) return;
     box.dataset.filled = "yes";
     try {
       const { columns } = await ask("candidates", { log: block.files[0] });
-      const used = new Set(block.channels.map(row => row.column));
       const unused = columns.filter(one => !used.has(one.name) && one.low !== null);
       const column = select(unused.map(one => [one.name, `${one.name} (${digits(one.low, 3)} to ${digits(one.high, 3)} ${one.unit})`]), "");
       const symbol = select(CHANNELS.slice(2).filter(([key]) => !block.channels.some(row => row.symbol === key)), "");
-      const unit = input("text", "deg", { size: 8 });
-      symbol.addEventListener("change", () => { unit.value = UNITS[symbol.value] || "1"; });
+      const unit = input("text", "", { size: 8 });
+      const propose = () => { unit.value = unused.find(one => one.name === column.value)?.unit || UNITS[symbol.value] || "1"; };
+      for (const one of [column, symbol]) one.addEventListener("change", propose);
+      propose();
       box.append(h("div", { class: "fields" }, field("Column", column), field("is", symbol), field("in", unit)),
         button("Use it", () => app.edit({ kind: "channel", block: block.place, symbol: symbol.value, table: { column: column.value, unit: unit.value } })));
     } catch (error) {
       box.append(h("p", { class: "bad" }, error.message));
     }
-  } }, h("summary", {}, "Use another column"));
+  } }, h("summary", {}, "Use another column", left.length > 0 && h("span", { class: "note" }, `not used, as their names say nothing: ${left.join(", ")}`)));
   return box;
 }
 
@@ -237,6 +246,7 @@ export function findingList(app, { findings = [], complete, problem, version }) 
   const [notes, others] = [findings.filter(isNote), findings.filter(one => !isNote(one))];
   const card = one => h("div", { class: "finding" }, h("p", {}, h("span", { class: `severity ${one.severity}` }, one.severity), h("code", {}, one.code), " ", one.text),
     one.consequence && h("p", { class: "note" }, `What follows: ${one.consequence}.`), one.advice && h("p", { class: "note" }, `Advice: ${one.advice}.`),
+    one.code === "model" && h("p", { class: "note" }, "On this page: name the columns that are missing above, then draft craft and model again; numbers of the craft stand in the view ", h("a", { href: "#craft" }, "Craft and model"), "."),
     !isOld && h("p", { class: "tools-row" }, one.edits.length > 0 && button(`Do it: ${one.edits.join("; ")}`, () => app.edit({ kind: "finding", place: one.place })),
       one.severity === "error" && button("It is right as it is", () => app.edit({ kind: "finding", place: one.place, accept: true }), { class: "quiet" })));
   return [...head, ...others.map(card), notes.length ? h("details", {}, h("summary", {}, `${notes.length} note${notes.length > 1 ? "s" : ""}`), notes.map(card)) : null].filter(Boolean);
