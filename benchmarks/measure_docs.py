@@ -24,7 +24,7 @@ CONSOLE = re.compile(r"^```console\n.*?^```", re.MULTILINE | re.DOTALL)
 PRINTED = re.compile(r"^(?!\$ |```).*\n", re.MULTILINE)
 FIGURE = re.compile(r"!\[[^\]]*\]\([^)]+\)|^(?:```|:::+)\{(?:figure|image)\}", re.MULTILINE)
 NO_PROSE = re.compile(
-    r"^(?:```|~~~).*?^(?:```|~~~)|^---\n.*?^---\n|^:::.*?$|^:[\w-]+:.*?$|^ {4,}\S.*?$|^#.*?$|\$\$.*?\$\$|<!--.*?-->|^\(\S+\)=$",
+    r"^(?:```|~~~).*?^(?:```|~~~)|^---\n.*?^---\n|^:::.*?$|^:[\w-]+:.*?$|^ {4,}\S.*?$|^#.*?$|\$\$.*?\$\$|<!--.*?-->",
     re.MULTILINE | re.DOTALL,
 )
 ONE_WORD = re.compile(r"`[^`]*`|\$[^$]+\$")

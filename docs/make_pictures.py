@@ -28,6 +28,7 @@ from seatrial.core.results import Fit, Prediction
 from seatrial.core.values import Array, Record
 from seatrial.physics.simulate import replay
 
+mpl.rcParams["figure.constrained_layout.use"] = True  # recipes lay out theirs themselves
 REPOSITORY = Path(__file__).parents[1]
 PICTURES = REPOSITORY / "docs" / "pictures"
 BLUE, ORANGE, GREEN, YELLOW, VIOLET, GREY = (
