@@ -54,7 +54,7 @@ def test_version_citation_and_recipe_agree(repository: Path) -> None:
     assert seatrial.__version__ == version
     for name, line in (
         ("CITATION.cff", f"version: {version}"),
-        ("packaging/conda/recipe.yaml", f'version: "{version}"'),
+        ("distribution/conda/recipe.yaml", f'version: "{version}"'),
     ):
         assert line in (repository / name).read_text(encoding="utf-8"), name
     assert f"## {version}" in (repository / "CHANGELOG.md").read_text(encoding="utf-8")
@@ -62,14 +62,14 @@ def test_version_citation_and_recipe_agree(repository: Path) -> None:
 
 def test_the_recipe_needs_what_the_wheel_needs(repository: Path) -> None:
     project = tomllib.loads((repository / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    run = (repository / "packaging" / "conda" / "recipe.yaml").read_text(encoding="utf-8").partition("  run:\n")[2]
+    run = (repository / "distribution" / "conda" / "recipe.yaml").read_text(encoding="utf-8").partition("  run:\n")[2]
     for requirement in map(Requirement, project["dependencies"]):
         name = {"matplotlib": "matplotlib-base"}.get(requirement.name, requirement.name)
         assert f"    - {name} {requirement.specifier}\n" in run
 
 
 def test_the_script_takes_the_steps_of_the_dockerfile(repository: Path) -> None:
-    folder = repository / "packaging"
+    folder = repository / "distribution"
     steps = [(folder / name).read_text(encoding="utf-8") for name in ("Dockerfile", "container.sh")]
     for words in ("pip", "--no-deps", "[app,formats,logs]", "constraints.txt", "700", "SEATRIAL_CACHE", "doctor"):
         assert all(words in step for step in steps), words

@@ -1,6 +1,6 @@
 #!/bin/bash
-# The steps of packaging/Dockerfile in a throw-away folder, where no docker is: a wheel, an environment of its own, a cache
-# that only its owner reads, and a check. `bash packaging/container.sh [FOLDER]` leaves FOLDER/env/bin/seatrial to use.
+# The steps of distribution/Dockerfile in a throw-away folder, where no docker is: a wheel, an environment of its own, a cache
+# that only its owner reads, and a check. `bash distribution/container.sh [FOLDER]` leaves FOLDER/env/bin/seatrial to use.
 set -euo pipefail
 source=$(cd "$(dirname "$0")/.." && pwd)
 folder=${1:-$(mktemp -d)}
