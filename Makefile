@@ -2,7 +2,7 @@
 # Works with GNU make on Linux and macOS, and on Windows from Git Bash with `choco install make`; there, without make,
 # run the lines of a target by hand with .venv\Scripts in place of .venv/bin.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-long lint style types imports bench golden docs clean
+.PHONY: help setup demo test test-long lint style types imports bench golden pictures docs clean
 MAKEFLAGS += --no-print-directory
 
 VENV := .venv
@@ -73,8 +73,12 @@ bench: $(READY)
 golden: $(READY)
 	@$(BIN)/python benchmarks/golden.py
 
-docs: $(READY)
+pictures: $(READY)
+	@$(BIN)/python docs/make_pictures.py
+
+docs: pictures
 	@$(BIN)/python -m sphinx -W --keep-going -q docs site
+	@$(BIN)/python docs/contact_sheet.py site
 	@echo 'the documentation lies in site/index.html'
 
 clean:

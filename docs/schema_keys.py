@@ -1,4 +1,4 @@
-"""The part of a page that lists every key of a file: type, unit and default, from the schema of the file."""
+"""The page that lists every key of a file: type, unit and default, from the schema of the file."""
 
 import json
 from collections.abc import Iterator, Mapping
@@ -46,7 +46,7 @@ def _table(path: str, entry: JsonSchema, schema: JsonSchema) -> str:
         f"| `{key}` | {_type(value, schema)} | {REQUIRED if key in required else _default(value)} |"
         for key, value in entry.get("properties", {}).items()
     ]
-    heading = f"### Keys of `{path}`" if path else "### Keys outside any table"
+    heading = f"## Keys of `{path}`" if path else "## Keys outside any table"
     return "\n".join([heading, "", "| key | type | default |", "|---|---|---|", *rows, ""])
 
 

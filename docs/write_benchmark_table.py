@@ -25,7 +25,13 @@ DEAR = ("thrusters-*", "*-folds")
 """Patterns of the problems whose runs take long."""
 CLAIM_RUNS = 30
 """Draws on which claims are tested: a two-sided sign test sees 24 : 6 of them after a correction for thirty claims."""
-HEAD = """# All built-in methods on all problems
+HEAD = """---
+orphan: true
+---
+
+<!-- written by write_benchmark_table.py -->
+
+# All built-in methods on all problems
 
 Written by `{command}`; [what is measured](benchmark.md#what-is-measured).
 {outcome}

@@ -95,7 +95,8 @@ def headline_table(recorded: Recorded) -> str:
 def page(recorded: Recorded) -> str:
     """Return the page: a table for each benchmark."""
     head = (
-        "# Numbers\n\nEach table is what its command printed on the machine and at the commit named below it; "
+        "---\norphan: true\n---\n\n<!-- written by write_numbers.py -->\n\n# Numbers\n\n"
+        "Each table is what its command printed on the machine and at the commit named below it; "
         "`make bench` prints all of\nthem. Times depend on the machine, ratios hardly do.\n"
     )
     return head + "".join(_section(name, entry) for name, entry in recorded.items())

@@ -1,4 +1,4 @@
-"""Write docs/command-line.md from the commands, and the keys at the end of trial-file.md and loop-file.md from schemas.
+"""Write docs/command-line.md from the commands, docs/trial-keys.md and docs/loop-keys.md from the schemas of the files.
 
 `python docs/write_reference.py --check` writes nothing and names each page that differs.
 """
@@ -17,7 +17,20 @@ from seatrial.control.loopfile.schema import loop_schema
 from seatrial.data.trial.schema import trial_schema
 
 DOCS = Path(__file__).parent
-MARK = "<!-- written by write_reference.py -->\n"
+GENERATED = """---
+orphan: true
+---
+
+<!-- written by write_reference.py -->
+
+"""
+KEYS = """# {title}
+
+From the schema of the file; [what the keys mean]({page}) stands on a page of its own. An *amount* is a number in the
+SI unit shown, or a table with a unit of its own: `{{ value = 22, unit = "deg" }}`. {unit}Where no default is shown
+nothing is assumed, or it follows from what else is given.
+
+"""
 HEAD = """# Command line
 
 Each command is also a function of the same name in Python ([Names in Python](api.md)). Exit codes: 0 done, 2 bad
@@ -32,7 +45,7 @@ COMMAND = re.compile(r"seatrial [a-z].+|--[a-z-]+(?: [^\s,]+)?")
 def page() -> str:
     """Return the page: a section for each command."""
     root = typer.main.get_command(app)
-    return HEAD + "".join(_sections(root.commands, "seatrial"))  # type: ignore[attr-defined]  # typer's own group
+    return GENERATED + HEAD + "".join(_sections(root.commands, "seatrial"))  # type: ignore[attr-defined]  # typer's own group
 
 
 def _sections(commands: dict[str, Any], prefix: str) -> Iterator[str]:
@@ -87,9 +100,10 @@ def _default(parameter: Any) -> str:
 def pages() -> Iterator[tuple[Path, str]]:
     """Yield path and text of each page."""
     yield DOCS / "command-line.md", page()
-    for name, schema in (("trial-file.md", trial_schema()), ("loop-file.md", loop_schema())):
-        by_hand, mark, _ = (DOCS / name).read_text(encoding="utf-8").partition(MARK)
-        yield DOCS / name, f"{by_hand}{mark}\n{schema_keys(schema)}"
+    loop_unit = "Where no unit is shown it is that of the output or the actuator. "
+    for kind, schema, unit in (("trial", trial_schema(), ""), ("loop", loop_schema(), loop_unit)):
+        head = KEYS.format(title=f"Keys of the {kind} file", page=f"{kind}-file.md", unit=unit)
+        yield DOCS / f"{kind}-keys.md", f"{GENERATED}{head}{schema_keys(schema)}"
 
 
 def main(*, check: bool) -> int:

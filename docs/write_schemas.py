@@ -1,4 +1,4 @@
-"""Write the JSON Schemas of trial files and results, and the tables of docs/result-folder.md, from the code.
+"""Write the JSON Schemas of trial files and results, and docs/result-keys.md, from the code.
 
 `python docs/write_schemas.py --check` writes nothing and names each file that differs.
 """
@@ -32,7 +32,19 @@ RESULTS = {
     "campaign_summary": CampaignSummary,
     "benchmark": Benchmark,
 }
-PAGE = DOCS / "result-folder.md"
+PAGE = DOCS / "result-keys.md"
+HEAD = """---
+orphan: true
+---
+
+<!-- written by write_schemas.py -->
+
+# Keys of the documents
+
+Of every document that a [result folder](result-folder.md) may hold. Values marked "derived" follow from others and
+are not read back.
+
+"""
 JsonSchema = Mapping[str, Any]
 
 
@@ -44,21 +56,20 @@ def schema_texts() -> Iterator[tuple[Path, str]]:
         yield DOCS / f"{name}.schema.json", json.dumps(schema, indent=1, ensure_ascii=False) + "\n"
 
 
-def page_text(page: str) -> str:
-    """Return the page with its generated part, between two comments, written anew."""
+def page_text() -> str:
+    """Return the page: a table for each document and for each table in it."""
     tables: dict[str, str] = {}
     words: dict[str, str] = {}
     for name, kind in RESULTS.items():
         schema = document_schema(kind)
-        tables.setdefault(kind.__name__, f"### {name}.json\n\n{_table(schema)}")
+        tables.setdefault(kind.__name__, f"## {name}.json\n\n{_table(schema)}")
         for title, entry in schema.get("$defs", {}).items():
             if entry.get("properties"):
-                tables.setdefault(title, f"### {title}\n\n{_table(entry)}")
+                tables.setdefault(title, f"## {title}\n\n{_table(entry)}")
             else:
                 words[title] = kind_of(entry)
     text = re.sub(r"\[(\w+)\]\(#\w+\)", lambda link: words.get(link[1], link[0]), "\n".join(tables.values()))
-    parts = re.split(r"(<!-- (?:written|end of what is written) by write_schemas\.py -->\n)", page)
-    return "".join([parts[0], parts[1], "\n" + text, *parts[3:]])
+    return HEAD + text
 
 
 def _table(schema: JsonSchema) -> str:
@@ -98,7 +109,7 @@ def kind_of(entry: JsonSchema) -> str:
 def main(*, check: bool) -> int:
     """Write every file, or name those that differ; return their number."""
     differing = 0
-    for path, text in [*schema_texts(), (PAGE, page_text(PAGE.read_text(encoding="utf-8")))]:
+    for path, text in [*schema_texts(), (PAGE, page_text())]:
         if path.is_file() and path.read_text(encoding="utf-8") == text:
             continue
         differing += 1

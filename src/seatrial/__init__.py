@@ -53,6 +53,6 @@ Names are imported when they are used first; ``__init__.pyi`` lists where each c
 
 from seatrial._lazy import export_lazily
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 export_lazily(__name__)

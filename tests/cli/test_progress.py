@@ -5,8 +5,9 @@ import time
 
 import pytest
 
-from seatrial.cli.progress import progress_reporter
+from seatrial.cli.progress import notices, progress_reporter
 from seatrial.cli.screen import Detail, printing
+from seatrial.numerics.kernels.kernel import _announce_compiling
 
 REPORTS = (
     *(f"search, 12 segments: evaluation {count}, cost {1e3 / count:.6g}" for count in range(1, 40)),
@@ -65,3 +66,12 @@ def test_a_terminal_keeps_a_line_of_a_long_phase_and_shows_what_is_left(
     shown = capsys.readouterr().err
     assert "about 2 s left" in shown or "about 3 s left" in shown
     assert "  prediction  0." in shown
+
+
+def test_what_compiles_is_said_once_and_not_with_quiet(capsys: pytest.CaptureFixture[str]) -> None:
+    for detail, said in ((Detail.VERBOSE, 1), (Detail.QUIET, 0), (Detail.NORMAL, 0)):
+        _announce_compiling.cache_clear()
+        with printing(detail), notices():
+            _announce_compiling()
+            _announce_compiling()
+        assert capsys.readouterr().err.count("compiling for this machine") == said

@@ -52,7 +52,7 @@ def test_findings_stand_by_severity_with_their_count(capsys: pytest.CaptureFixtu
     assert lines[2].strip() == "advice: seatrial check --fix"
     assert lines[4].strip() == "... and 1 more of this kind; --all shows them"
     assert count_sentence(FINDINGS) == "1 error, 2 warnings, 1 note"
-    assert lines[-1] == f"{count_sentence(FINDINGS)}; codes in brackets: docs/bad-fit.md"
+    assert lines[-1] == f"{count_sentence(FINDINGS)}; codes in brackets: docs/findings.md"
 
 
 def test_quiet_leaves_errors_and_verbose_shows_all(capsys: pytest.CaptureFixture[str]) -> None:

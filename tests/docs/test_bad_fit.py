@@ -1,4 +1,4 @@
-"""The table of findings, and the page on bad fits, hold every code that the package gives, and no other."""
+"""The table of findings, and the page made from it, hold every code that the package gives, and no other."""
 
 import ast
 import re

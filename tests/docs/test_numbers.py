@@ -25,3 +25,8 @@ def test_every_recorded_table_belongs_to_a_benchmark(repository: Path) -> None:
     recorded = json.loads((repository / "docs" / "numbers.json").read_text(encoding="utf-8"))
     assert set(recorded) <= set(BENCHMARKS)
     assert all(entry["commit"] and entry["lines"] for entry in recorded.values())
+
+
+def test_the_page_of_longer_runs_is_current(repository: Path) -> None:
+    command = [sys.executable, "docs/write_measured.py", "--check"]
+    assert subprocess.run(command, cwd=repository, check=False).returncode == 0

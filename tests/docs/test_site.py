@@ -4,6 +4,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from types import ModuleType
 from typing import TYPE_CHECKING
 
 import pytest
@@ -52,10 +53,17 @@ def test_the_notebook_shows_its_results(site: Path) -> None:
     assert len(set(re.findall(r'<img [^>]*src="(\.\./_images/[^"]+)"', page))) == 3
 
 
-def test_every_public_name_is_described(site: Path) -> None:
-    page = (site / "api.html").read_text(encoding="utf-8")
-    described = set(re.findall(r'id="seatrial\.(\w+)"', page)) | set(re.findall(r">st\.(\w+)<", page))
-    assert set(seatrial.__all__) <= described
+def test_every_public_name_has_a_page_with_an_example(site: Path) -> None:
+    pages = {name: getattr(seatrial, name) for name in seatrial.__all__}
+    for name, value in pages.items():
+        address = value.__name__ if isinstance(value, ModuleType) else f"seatrial.{name}"
+        page = (site / "api" / f"{address}.html").read_text(encoding="utf-8")
+        assert "Example" in page and "&gt;&gt;&gt;" in page, name
+
+
+def test_the_home_page_leads_to_a_report_with_sliders(site: Path) -> None:
+    home, report = ((site / name).read_text(encoding="utf-8") for name in ("index.html", "demo/report.html"))
+    assert "demo/report.html#slide-1" in home and 'id="slide-1"' in report
 
 
 @pytest.fixture(scope="module")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from seatrial.cli.progress import notices
 from seatrial.cli.screen import Detail, printing
 
 if TYPE_CHECKING:
@@ -36,7 +37,7 @@ def _with_detail(function: Callable[..., None]) -> Callable[..., None]:
 
         if quiet and verbose:
             raise InputError("--quiet and --verbose exclude one another; give one of them")
-        with printing(Detail.QUIET if quiet else Detail.VERBOSE if verbose else Detail.NORMAL):
+        with printing(Detail.QUIET if quiet else Detail.VERBOSE if verbose else Detail.NORMAL), notices():
             function(**arguments)
 
     signature, options = inspect.signature(function), {"quiet": Quiet, "verbose": Verbose}

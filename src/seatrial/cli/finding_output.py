@@ -60,7 +60,7 @@ def print_findings(
         if alike[0].advice:
             print_lines([f"advice: {alike[0].advice}"], _INDENT)
     hidden = "; --verbose shows notes" if is_brief and any(severity == "info" for severity, _ in kinds) else ""
-    where = "; codes in brackets: docs/bad-fit.md" if any(f.severity.value != "info" for f in findings) else ""
+    where = "; codes in brackets: docs/findings.md" if any(f.severity.value != "info" for f in findings) else ""
     print_lines([f"{count_sentence(findings)}{hidden}{where}"])
 
 

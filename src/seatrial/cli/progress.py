@@ -1,5 +1,6 @@
 """Progress on standard error: a line for each phase, and how far a long one is."""
 
+import logging
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -35,6 +36,31 @@ def progress_reporter(*, has_live_table: bool = False) -> Iterator[Callable[[str
             phases = _Phases(bar)
             yield phases.report
             phases.end()
+
+
+@contextmanager
+def notices() -> Iterator[None]:
+    """Print what the package logs of its own work, such as compiling: on a terminal, or with --verbose."""
+    log, handler = logging.getLogger("seatrial"), _Notices()
+    if is_quiet() or not (is_verbose() or sys.stderr.isatty()):
+        yield
+        return
+    level = log.level
+    log.addHandler(handler)
+    log.setLevel(logging.INFO)
+    try:
+        yield
+    finally:
+        log.setLevel(level)
+        log.removeHandler(handler)
+
+
+class _Notices(logging.Handler):
+    """Prints a message as a line of progress."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Print the message on standard error as it is now."""
+        _print(record.getMessage())
 
 
 def _print(line: str) -> None:

@@ -4,6 +4,7 @@
 # pyright: reportIncompatibleMethodOverride=false, reportAttributeAccessIssue=false
 
 import hashlib
+import logging
 import pickle
 import sys
 from collections.abc import Callable, Mapping
@@ -80,6 +81,13 @@ class TangentPointer(numba_types.WrapperAddressProtocol):
 # Compiled functions with one fixed signature, whose machine code is loaded from the compile cache at their first use.
 
 _PACKAGE = Path(__file__).parents[2]
+_log = logging.getLogger("seatrial")
+
+
+@cache
+def _announce_compiling() -> None:
+    """Log, once in a process, why a first run takes longer."""
+    _log.info("compiling for this machine, some 15 s; the machine code is kept, and later runs begin at once")
 
 
 def _source_digest(function: FunctionType) -> bytes:
@@ -122,6 +130,7 @@ class _Machine(_Cache):
         name = self._name(sig, target_context.codegen())
         content = read_entry(name)
         if content is None:
+            _announce_compiling()
             return None
         rtsys.initialize(target_context)  # the code may call Numba's runtime, whose symbols have to be there
         try:
