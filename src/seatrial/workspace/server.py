@@ -91,7 +91,7 @@ class _Server:
             guarded, http=DeadlineProtocol, ws="none", lifespan="off", log_level="critical", access_log=False,
             timeout_graceful_shutdown=_GRACE_S, server_header=False, date_header=False,
         )  # fmt: skip
-        self._server = uvicorn.Server(config)
+        self._server = _Uvicorn(config)
 
     def run(self, started: Callable[[], None]) -> None:
         """Answer until it is stopped, or the process is interrupted; `started` is called once a page can be loaded."""
@@ -106,16 +106,26 @@ class _Server:
 
     async def _serve(self, started: Callable[[], None]) -> None:
         server = self._server
-        task = asyncio.create_task(server.serve([self._bound]))
-        while not server.started and not task.done():
-            await asyncio.sleep(0.01)  # s; a start takes some ten of them
-        started()
-        watch = asyncio.create_task(_watch_file(self.workspace))
-        while not server.should_exit and not task.done():
-            await asyncio.sleep(0.1)  # s; an end is noticed as soon
-        watch.cancel()
-        self.workspace.events.close()
-        await task
+        task, watch = asyncio.create_task(server.serve([self._bound])), asyncio.create_task(_watch_file(self.workspace))
+        try:
+            while not server.started and not task.done():
+                await asyncio.sleep(0.01)  # s; a start takes some ten of them
+            started()
+            while not server.should_exit and not task.done():
+                await asyncio.sleep(0.1)  # s; an end is noticed as soon
+        finally:
+            server.should_exit = True
+            watch.cancel()
+            self.workspace.events.close()
+            await task
+
+
+class _Uvicorn(uvicorn.Server):
+    """A server that leaves signals alone: an interrupt reaches the task that serves, and ends it by an exception."""
+
+    @contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        yield
 
 
 async def _watch_file(workspace: Workspace) -> None:

@@ -219,7 +219,8 @@ class Relations:
         """The yaw acceleration, the turn that follows and its changes against the rudder (Nomoto 1957, eq. 1)."""
         signed = [0.0]
         for k, step in enumerate(self.steps):
-            delta = slots["delta"][k] - np.nanmin(slots["delta"][k])  # a rudder that stays is exactly zero
+            delta = slots["delta"][k]
+            delta = delta - delta[np.isfinite(delta)][:1].sum()  # a rudder that stays is exactly zero
             rate = slots["r"][k] if "r" in slots else np.gradient(slots["psi"][k], step)
             for lag in (*_LAGS, 3 * _LAGS[-1]):
                 mean_rate, mean_delta = _integral(rate, lag) / lag, _integral(delta, lag) / lag
