@@ -23,7 +23,10 @@ def test_it_serves_until_it_is_interrupted_and_leaves_no_command_behind(tmp_path
     write_trial(tmp_path)
     before = (tmp_path / "trial.toml").read_bytes()
     command = [sys.executable, "-m", "seatrial", "open", str(tmp_path), "--no-browser"]
+    # a suite in the background of a shell ignores interrupts, which a command that it starts would, too
+    handler = signal.signal(signal.SIGINT, signal.default_int_handler)
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    signal.signal(signal.SIGINT, handler)
     assert process.stdout is not None and process.stderr is not None
     address = re.search(r"http://127\.0\.0\.1:\d+/\?token=\S{20,}", process.stdout.readline())
     assert address is not None
