@@ -246,8 +246,8 @@ def test_silence_is_said(browser: "Browser", served: tuple[Follower, str]) -> No
 
 
 def test_the_workspace_keeps_the_points_that_the_follower_keeps() -> None:
-    told: list[dict[str, Any]] = []
-    stream, reporter = FollowedStream(told.append, ""), StreamReporter()
+    published: list[dict[str, Any]] = []
+    stream, reporter = FollowedStream(published.append, ""), StreamReporter()
     snapshots = list(heave_pitch(2600.0))
     for snapshot in snapshots:
         report = reporter.report(snapshot, SampleCounts())
@@ -255,7 +255,7 @@ def test_the_workspace_keeps_the_points_that_the_follower_keeps() -> None:
         stream.take(report)
     kept = [point[0] for point in stream.view()["points"]]
     assert kept == [*range(0, len(snapshots) - 1, 4), len(snapshots) - 1]
-    assert kept == [point.sequence for point in reporter._history.since(-1)] and len(told) == len(snapshots)
+    assert kept == [point.sequence for point in reporter._history.since(-1)] and len(published) == len(snapshots)
 
 
 def test_without_the_workspaces_packages_a_page_is_refused_before_anything_is_computed(

@@ -44,4 +44,5 @@ def test_the_model_of_second_order_keeps_what_is_stated_of_the_first() -> None:
     second = with_second_order(first.with_parameters(first.parameters.freed("alpha")))
     assert second.parameters["U"].value == 5.0 and second.parameters["T_1"].value == 30.0
     assert second.parameters.free_names == ("K", "T_1", "T_2", "T_3", "alpha")
-    assert with_second_order(second) is second
+    held = first.with_parameters(first.parameters.fixed("T"))
+    assert with_second_order(second) is second and with_second_order(held) is held

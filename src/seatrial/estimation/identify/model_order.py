@@ -51,7 +51,7 @@ def second_order_finding(
     return (Finding(
         Severity.WARNING, "held-coupling",
         f"{enumeration(SECOND_ORDER_TERMS)} are no terms of the model and the training runs speak against it",
-        f"tried here: with them {significant(left, 2)} of the residuals{error} is left, with {enumeration(values)}",
+        f"tried here: with them {significant(left, 2)} of the residuals{error} are left, with {enumeration(values)}",
         f'under [model] write name = "{wide.name}", free = [{names}]',
     ),)  # fmt: skip
 

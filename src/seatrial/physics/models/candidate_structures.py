@@ -111,8 +111,11 @@ SECOND_ORDER_TERMS = ("T_2", ZERO)
 
 
 def with_second_order(model: Model) -> Model:
-    """Return a model of first order with a second pole and a zero, free; another model is returned itself."""
-    if model.name != "nomoto":
+    """Return a model of first order with a second pole and a zero, free.
+
+    Another model is returned itself, and one whose time constant is fixed or has a prior: it is that of no pole.
+    """
+    if model.name != "nomoto" or not model.parameters["T"].free or model.parameters["T"].prior is not None:
         return model
     wide, given = model_named("nomoto2").with_held(model.held), {p.name: p for p in model.parameters.items}
     slow = replace(given.pop("T"), name="T_1", meaning=wide.parameters["T_1"].meaning)
