@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from seatrial.data.draft.runs_of_logs import LogRun, session_line
+from seatrial.data.draft.guess import guess_columns
+from seatrial.data.draft.runs_of_logs import LogRun, is_one_place, session_line
 from seatrial.data.draft.survey import survey_log
 
 
@@ -49,3 +50,16 @@ def test_runs_of_one_place_without_dates_are_of_one_outing(tmp_path: Path) -> No
     runs = [_run(tmp_path, k, "07:30:") for k in "ab"]
     assert session_line(runs, is_one_place=True).startswith('session = "all"    # of one place by their fixes')
     assert session_line([_run(tmp_path, k, f"2026-08-1{k}T07:30:") for k in "45"], is_one_place=True) == ""
+
+
+@pytest.mark.parametrize(("third", "is_one"), [(54.12, True), (54.40, False)])
+def test_a_place_is_one_by_the_gaps_between_runs_however_far_they_reach(
+    tmp_path: Path, third: float, *, is_one: bool
+) -> None:
+    """Each run covers 9 km of latitude, as a ship does in twenty minutes."""
+    runs = list[LogRun]()
+    for k, south in enumerate((54.0, 54.05, third)):
+        rows = "".join(f"{t},{south + 0.004 * t:.4f},10.5\n" for t in range(20))
+        (tmp_path / f"{k}.csv").write_text(f"time [s],lat [deg],lon [deg]\n{rows}")
+        runs.append(LogRun("", (survey_log(tmp_path / f"{k}.csv"),)))
+    assert is_one_place(runs, [[guess_columns(run.sources[0])] for run in runs]) is is_one

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from datetime import UTC, datetime
-from itertools import pairwise, takewhile
+from itertools import accumulate, pairwise, takewhile
 from pathlib import Path
 
 from seatrial.data.check.time_base import INPUT_CHANNELS
@@ -210,7 +210,7 @@ _ONE_OUTING = (
     "of one place by their fixes, without dates, and no two show different currents: of one outing, they share its "
     'current and zeros; write "run" where days lie between them'
 )
-_LARGEST_AREA = 0.05  # deg of latitude, and of longitude, in which the fixes of one outing lie; chosen: some 5 km
+_LARGEST_GAP = 0.05  # deg of latitude, and of longitude, between runs of one outing; chosen: some 5 km
 _DAY_S = 86400.0  # s of a day
 
 
@@ -238,27 +238,32 @@ def session_line(runs: Sequence[LogRun], *, is_in_basin: bool = False, is_one_pl
 
 
 def is_one_place(runs: Sequence[LogRun], guesses: Sequence[Sequence[Sequence[ColumnGuess]]]) -> bool:
-    """Return whether the fixes of all runs lie within some kilometres.
+    """Return whether no run lies more than some kilometres from the others by the fixes, however far they reach.
 
     guesses: of the columns of each source of each run.
     """
     for symbol in ("lat", "lon"):
-        ranges = list[tuple[float, float]]()
-        for run, parts in zip(runs, guesses, strict=True):
-            used = [g for part in parts for g in part if g.is_used and g.symbol == symbol and g.unit == "deg"]
-            columns = [
-                column
-                for source in run.sources
-                for topic in source.topics
-                for column in topic.columns
-                if used and column.name == str(used[0].source).removeprefix(f"{topic.topic}/")
-            ]
-            if not columns:
-                return False
-            ranges.append((columns[0].low, columns[0].high))
-        if max(high for _, high in ranges) - min(low for low, _ in ranges) > _LARGEST_AREA:
+        ranges = [_range_of(run, parts, symbol) for run, parts in zip(runs, guesses, strict=True)]
+        known = sorted(r for r in ranges if r is not None)
+        reach = accumulate((high for _, high in known), max)
+        if len(known) < len(ranges) or any(
+            low - end > _LARGEST_GAP for (low, _), end in zip(known[1:], reach, strict=False)
+        ):
             return False
     return True
+
+
+def _range_of(run: LogRun, guesses: Sequence[Sequence[ColumnGuess]], symbol: str) -> tuple[float, float] | None:
+    """Least and greatest value [deg] of a run's latitude or longitude; None where it has none in degrees."""
+    used = [g for part in guesses for g in part if g.is_used and g.symbol == symbol and g.unit == "deg"]
+    columns = [
+        column
+        for source in run.sources
+        for topic in source.topics
+        for column in topic.columns
+        if used and column.name == str(used[0].source).removeprefix(f"{topic.topic}/")
+    ]
+    return (columns[0].low, columns[0].high) if columns else None
 
 
 def _is_one_clock(runs: Sequence[LogRun]) -> bool:
