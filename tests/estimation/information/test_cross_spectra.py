@@ -5,7 +5,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy import signal
 
-from seatrial.estimation.information.frequency_response import CrossSpectra, cross_spectra
+from seatrial.estimation.information.frequency_response import CrossSpectra, cross_spectra, power_density
 
 Array = NDArray[np.float64]
 DT, LENGTH, POLE = 0.1, 256, 0.7
@@ -74,3 +74,12 @@ def test_bands_keep_power_and_every_frequency() -> None:
     assert banded.averages[-1] > 5.0 * one.averages[-1]
     first = one.omega <= one.omega[0] * (one.omega[-1] / one.omega[0]) ** 0.1
     np.testing.assert_allclose(banded.input[0], np.mean(one.input[first]))
+
+
+@pytest.mark.parametrize("length", [256, 101])
+def test_the_density_of_one_channel_is_that_of_scipy_at_every_frequency(length: int) -> None:
+    _, y = filtered(2, 0.5, 1000)
+    omega, density = power_density(y[:, None], length, DT)
+    hertz, expected = signal.welch(y, 1.0 / DT, nperseg=length, detrend="linear")
+    np.testing.assert_allclose(omega, 2.0 * np.pi * hertz)
+    np.testing.assert_allclose(density[:, 0], expected / (2.0 * np.pi), rtol=1e-12, atol=1e-12 * expected.max())

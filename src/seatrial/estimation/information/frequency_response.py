@@ -1,6 +1,6 @@
 """Spectra of inputs and outputs, frequency responses of records and model, and peaks of residuals."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -104,23 +104,20 @@ def cross_spectra(pieces: Sequence[tuple[Array, Array]], length: int, dt: float)
         pieces: input (rows,) and outputs (rows, ny) of each run; segments with NaN are left out.
         length: of a segment, samples; dt: s.
     """
-    window = np.hanning(length + 1)[:-1]  # periodic, as scipy.signal's
     inner = slice(2, (length + 1) // 2)
     outputs = pieces[0][1].shape[1]
     power = np.zeros((length // 2 + 1, 1 + outputs))
     cross = np.zeros((length // 2 + 1, outputs), np.complex128)
     segments = []
     for u, y in pieces:
-        values = np.column_stack([u, y])
-        usable = [w for w in _half_overlapping(values, length) if np.isfinite(w).all()]
-        segments.append(len(usable))
-        for w in usable:
-            f = np.fft.rfft(window[:, None] * _without_line(w), axis=0)
+        transforms = _transforms(np.column_stack([u, y]), length)
+        segments.append(len(transforms))
+        for f in transforms:
             power += np.abs(f) ** 2
             cross += np.conj(f[:, :1]) * f[:, 1:]
     if not any(segments):
         return None
-    scale = dt / (np.pi * float(np.sum(window**2)) * sum(segments))
+    scale = dt / (np.pi * sum(segments))
     omega = (2.0 * np.pi / (length * dt) * np.arange(length // 2 + 1)).astype(np.float64)
     averages = np.full(len(omega), sum(_independent(n) for n in segments if n))
     return CrossSpectra(
@@ -128,8 +125,26 @@ def cross_spectra(pieces: Sequence[tuple[Array, Array]], length: int, dt: float)
     )
 
 
-def _half_overlapping(values: Array, length: int) -> Iterator[Array]:
-    return (values[a : a + length] for a in range(0, len(values) - length + 1, length // 2))
+def _transforms(values: Array, length: int) -> list[ComplexValues]:
+    """Fourier transforms (frequencies, n) of segments that overlap by half, those with NaN left out.
+
+    Each without its straight line, under Hann's window of mean square 1 / length (Welch 1967).
+    """
+    window = np.hanning(length + 1)[:-1]  # periodic
+    window /= np.sqrt(np.sum(window**2))
+    segments = (values[a : a + length] for a in range(0, len(values) - length + 1, length - length // 2))
+    return [np.fft.rfft(window[:, None] * _without_line(w), axis=0) for w in segments if np.isfinite(w).all()]
+
+
+def power_density(values: Array, length: int, dt: float) -> tuple[Array, Array]:
+    """Return frequencies [rad/s] and one-sided densities per rad/s, (frequencies, n), of columns without NaN.
+
+    length: samples of a segment, at most those of the columns; dt: s. Source: Welch 1967, IEEE Trans. AU-15, 70-73.
+    """
+    power = np.mean([np.abs(f) ** 2 for f in _transforms(values, length)], axis=0)
+    omega = 2.0 * np.pi * np.fft.rfftfreq(length, dt)
+    is_twice = (omega > 0.0) & (np.arange(len(omega)) < (length + 1) // 2)  # neither the mean nor Nyquist's frequency
+    return omega, np.where(is_twice, 2.0, 1.0)[:, None] * dt / (2.0 * np.pi) * power
 
 
 def _independent(segments: int) -> float:
@@ -245,11 +260,9 @@ def _measured_samples(record: Record, channel: str) -> tuple[Array, float]:
 
 
 def _power_spectrum(values: Array, dt: float) -> tuple[Array, Array]:
-    from scipy.signal import welch
-
     length = max(16, 2 * len(values) // (_WELCH_SEGMENTS + 1))  # samples of the shortest spectrum; chosen
-    frequency, power = welch(values - np.mean(values), 1.0 / dt, nperseg=min(length, len(values)))
-    return 2.0 * np.pi * frequency, power * len(values) * dt
+    omega, density = power_density(values[:, None], min(length, len(values)), dt)
+    return omega, density[:, 0] * len(values) * dt
 
 
 def _central_band(powers: Sequence[tuple[Array, Array]]) -> tuple[float, float]:
@@ -329,28 +342,15 @@ def spectral_peaks(pieces: Sequence[Array], dt: float, most: int) -> list[Spectr
 
 def _density(pieces: Sequence[Array], dt: float) -> tuple[Array, Array]:
     """Frequencies [rad/s] and densities per rad/s, (frequencies, ny), averaged over overlapping stretches (Welch)."""
-    from scipy.signal import welch
-
     rows = sum(len(p) for p in pieces)
     longest = max(len(p) for p in pieces)
     shortest, most = _SEGMENT_LENGTHS
     length = int(np.clip(2 ** int(np.log2(max(rows // _AVERAGES, 1))), shortest, most))
     length = min(length, longest)
     long_enough = [p for p in pieces if len(p) >= length]
-    spectra = [
-        np.asarray(welch(np.nan_to_num(p), 1.0 / dt, nperseg=length, detrend=_without_trend, axis=0)[1])
-        for p in long_enough
-    ]
-    density = np.average(spectra, axis=0, weights=[len(p) for p in long_enough])
-    omega = np.asarray(2.0 * np.pi * np.fft.rfftfreq(length, dt), dtype=np.float64)
-    return omega[1:], density[1:] / (2.0 * np.pi)
-
-
-def _without_trend(values: Array) -> Array:
-    """Return values without the straight line through them, along the last axis."""
-    from scipy.signal import detrend
-
-    return np.asarray(detrend(values))
+    spectra = [power_density(np.nan_to_num(p), length, dt) for p in long_enough]
+    density = np.average([d for _, d in spectra], axis=0, weights=[len(p) for p in long_enough])
+    return spectra[0][0][1:], density[1:]
 
 
 def _excess(omega: Array, density: Array) -> Array:
