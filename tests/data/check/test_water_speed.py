@@ -43,3 +43,14 @@ def test_currents_of_two_outings_disagree(rng: np.random.Generator) -> None:
     ebb, flood = (speed_through_water([craft(0.5, 0.06, (one, 0.0), rng)]) for one in (-0.8, 0.8))
     assert ebb is not None and flood is not None
     assert not ebb.agrees_with(flood) and ebb.agrees_with(ebb)
+
+
+def test_circles_show_a_current_whatever_the_craft_does_to_its_speed(rng: np.random.Generator) -> None:
+    """A boat with thrusters, whose speed changes from order to order: its own speed is none, the current is one."""
+    time = DT * np.arange(600)
+    u = np.repeat(rng.uniform(0.5, 2.5, 30), 20)
+    psi = DT * np.cumsum(np.repeat(rng.uniform(-0.3, 0.3, 30), 20))
+    ways = (("x0", u * np.cos(psi) + 0.3), ("y0", u * np.sin(psi) - 0.2))
+    track = {name: DT * np.cumsum(way) + 0.05 * rng.standard_normal(len(time)) for name, way in ways}
+    shown = speed_through_water([Record.from_arrays("boat", time, {"psi": psi, **track})])
+    assert shown is not None and shown.shows_current and not shown.is_separate

@@ -18,6 +18,7 @@ from seatrial.data.readings import name_table
     [("Kurs (gyro) [°]", "psi", "deg"), ("Rorvinkel [°]", "delta", "deg"), ("Rørvinkel (°)", "delta", "deg"),
      ("Svinghastighet [°/s]", "r", "deg/s"), ("Fart over grunn [kn]", "sog", "kn"), ("Breedte [deg]", "lat", "deg"),
      ("Geschwindigkeit über Grund [kn]", "sog", "kn"), ("Kurs über Grund [°]", "cog", "deg"),
+     ("track_deg", "cog", "deg"),
      ("Drehgeschwindigkeit [°/min]", "r", "deg/min"), ("Vitesse fond (kn)", "sog", "kn"),
      ("Angle de barre [deg]", "delta", "deg"), ("Ángulo de timón [deg]", "delta", "deg"),
      ("Giri elica [rpm]", "n", "rpm"),

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import InputError, Record
-from seatrial.estimation.estimate.settings import characteristic_time, yaw_time
+from seatrial.estimation.estimate.settings import SAMPLES_OF_CHANGE, characteristic_time, resolved_time, yaw_time
 from seatrial.physics.models.nomoto import nomoto
 
 TIME = np.arange(0.0, 600.0, 0.5)
@@ -21,6 +21,13 @@ def test_a_steering_model_needs_rudder_and_yaw_rate_only() -> None:
 def test_a_speed_counts_where_there_is_one() -> None:
     record = Record.from_arrays("run", TIME, {"r": RATE, "u": np.full(TIME.size, 4.0)})
     assert characteristic_time(nomoto(), [record], 100.0) == pytest.approx(25.0)
+
+
+@pytest.mark.parametrize(("every", "expected"), [(1, 25.0), (20, SAMPLES_OF_CHANGE * 10.0)])
+def test_records_show_no_change_that_is_quicker_than_their_slowest_channel(every: int, expected: float) -> None:
+    fixes = np.where(np.arange(TIME.size) % every == 0, np.cumsum(RATE), np.nan)
+    record = Record.from_arrays("run", TIME, {"u": np.full(TIME.size, 4.0), "psi": fixes, "delta": np.sign(RATE)})
+    assert resolved_time(nomoto(), [record], 100.0) == pytest.approx(expected, rel=0.01)
 
 
 def test_records_without_speed_and_yaw_are_refused() -> None:

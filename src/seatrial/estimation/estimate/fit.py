@@ -57,6 +57,7 @@ from seatrial.estimation.estimate.settings import (
     EstimatorOptions,
     IntervalMethod,
     characteristic_time,
+    resolved_time,
 )
 from seatrial.estimation.estimate.start import (
     SearchStart,
@@ -338,7 +339,7 @@ def begin_estimate(
     ):
         refuse_short_runs(runs.records)
     runs = (choice_runs(runs) if _is_free(settings) else None) or runs
-    unit = characteristic_time(model, runs.records, runs.length, settings.segment_s)
+    unit = resolved_time(model, runs.records, runs.length, settings.segment_s)
     problem = output_error_problem(model, runs, segment_seconds(model, settings, unit), settings, options.workers)
     begun = continued_start(near.starts, problem, near.shooting) if near else None
     begun = begun or _first_starts(problem, runs, settings, options, unit, report_progress)

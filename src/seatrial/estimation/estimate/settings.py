@@ -64,6 +64,10 @@ class EstimatorOptions:
 
 # The time in which a ship changes its motion, by which segments, windows and search intervals are measured.
 
+SAMPLES_OF_CHANGE = 5
+"""Readings of the slowest channel in the time in which records show a change, at least; chosen: a segment then holds
+seven, from which its states at the start are known."""
+
 PERIOD_SHARE = 0.4
 """Time scale of a rolling ship as a share of its period; windows of the start are then 0.6 periods wide each side."""
 
@@ -108,6 +112,28 @@ def characteristic_time(
     if not model.has_speed and segment_seconds is None and not any(shows_speed(r) for r in records):
         return yaw_time(records)
     return ship_length_seconds(records, length, segment_seconds)
+
+
+def resolved_time(
+    model: Model, records: Sequence[Record], length: float, segment_seconds: float | None = None
+) -> float:
+    """Return the time [s] in which records show how the ship changes its motion: its own, of a steered ship no less
+    than a few samples of the slowest channel.
+
+    Raises:
+        InputError: as `characteristic_time`.
+    """
+    own = characteristic_time(model, records, length, segment_seconds)
+    return max(own, SAMPLES_OF_CHANGE * _slowest_step(model, records)) if model.has_course else own
+
+
+def _slowest_step(model: Model, records: Sequence[Record]) -> float:
+    """Time [s] between readings of the motion that is read most seldom, the median over the records."""
+    steps = []
+    for record in records:
+        counts = [int(np.isfinite(record.measured(c)).sum()) for c in record.channels if c in model.observables]
+        steps += [record.dt * len(record) / min(filter(None, counts))] if any(counts) else []
+    return float(np.median(steps)) if steps else 0.0
 
 
 def shows_speed(record: Record) -> bool:

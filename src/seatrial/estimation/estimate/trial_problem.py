@@ -10,7 +10,7 @@ from seatrial.core.values import Array
 from seatrial.data.trial import Trial, checked_records
 from seatrial.estimation.estimate.assemble import output_error_problem, training_runs
 from seatrial.estimation.estimate.fit import refuse_without_excitation, segment_seconds, with_segment_seconds
-from seatrial.estimation.estimate.settings import characteristic_time
+from seatrial.estimation.estimate.settings import resolved_time
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.static_forces import StaticForces
 
@@ -126,7 +126,7 @@ def trial_problem(trial: Trial) -> TrialProblem:
     runs, model = training_runs(trial, checked_records(trial).records), trial.model
     refuse_without_excitation(model, runs.records)
     settings = with_segment_seconds(trial.estimate, model, runs)
-    unit = characteristic_time(model, runs.records, runs.length, settings.segment_s)
+    unit = resolved_time(model, runs.records, runs.length, settings.segment_s)
     problem = output_error_problem(model, runs, segment_seconds(model, settings, unit), settings)
     noise = [runs.noise.get(output, level) for output, level in zip(problem.data.outputs, problem.noise, strict=True)]
     problem = replace(problem, noise=np.array(noise))

@@ -158,7 +158,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
                 "the couplings held at zero",
                 lambda: held_couplings(
                     selected.estimation, predicted.predictions, runs.records,
-                    HOLDOUT_WINDOW_SHIP_LENGTHS * task.characteristic_time,
+                    HOLDOUT_WINDOW_SHIP_LENGTHS * task.resolved_time,
                 ), (),
             )),
             *parts.computed(

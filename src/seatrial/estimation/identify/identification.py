@@ -30,7 +30,7 @@ from seatrial.estimation.estimate.intervals import estimate_uncertainty
 from seatrial.estimation.estimate.newton_refinement import approach_by_gradient
 from seatrial.estimation.estimate.point_estimate import PointEstimate, residual_correlation
 from seatrial.estimation.estimate.process_noise import ProcessNoise
-from seatrial.estimation.estimate.settings import INITIAL_STATE_SHIP_LENGTHS, characteristic_time
+from seatrial.estimation.estimate.settings import INITIAL_STATE_SHIP_LENGTHS, resolved_time
 from seatrial.estimation.identify.identifiability import box_scale, stands_on_box
 from seatrial.estimation.identify.instruments import ErrorInformation, Suspect, detected_errors, instrument_errors
 from seatrial.estimation.identify.score_test import own_criterion
@@ -157,15 +157,15 @@ class Identification:
         return with_segment_seconds(self.trial.estimate, self.trial.model, self.runs)
 
     @cached_property
-    def characteristic_time(self) -> float:
-        """Time in which the ship changes its motion [s]."""
+    def resolved_time(self) -> float:
+        """Time in which the records show how the ship changes its motion [s]."""
         runs = self.runs
-        return characteristic_time(self.trial.model, runs.records, runs.length, self.trial.estimate.segment_s)
+        return resolved_time(self.trial.model, runs.records, runs.length, self.trial.estimate.segment_s)
 
     @property
     def initial_seconds(self) -> float:
         """Length of a run's beginning from which its initial state is estimated [s]."""
-        return self.trial.estimate.initial_s or INITIAL_STATE_SHIP_LENGTHS * self.characteristic_time
+        return self.trial.estimate.initial_s or INITIAL_STATE_SHIP_LENGTHS * self.resolved_time
 
     @cached_property
     def outputs(self) -> tuple[str, ...]:

@@ -199,7 +199,7 @@ def identify(
     fit = replace(fit, method=replace(fit.method, name=method.value), findings=(*errors, *fit.findings))
     if not compare or situation is Situation.UNKNOWN_WAVES:  # no input, so that there is nothing to regress on
         return fit
-    window = WEAK_FORM_SHIP_LENGTHS * task.characteristic_time
+    window = WEAK_FORM_SHIP_LENGTHS * task.resolved_time
     fit = with_baselines(fit, task.runs.records, window, report_progress, trial.compare.svr)
     if trial.model.is_affine and situation is Situation.RECORDED_WAVES:
         fit = with_search_baselines(fit, trial, seed, report_progress)
@@ -291,7 +291,7 @@ def _published_estimate(
     trial, method = task.trial, task.trial.estimate.method
     if method.is_search:
         return estimate_by_search(trial, *_starts(task, reference), task.options.seed, report_progress)
-    window = WEAK_FORM_SHIP_LENGTHS * task.characteristic_time
+    window = WEAK_FORM_SHIP_LENGTHS * task.resolved_time
     return estimate_by_regression(trial.model, task.runs.records, method, window, trial.compare.svr)
 
 

@@ -579,7 +579,7 @@ def selected_model(task: Identification) -> SelectedModel:
             task.report_progress,
         )  # fmt: skip
     if task.choose or task.options.intervals is IntervalMethod.JACKKNIFE:
-        window = HOLDOUT_WINDOW_SHIP_LENGTHS * task.characteristic_time
+        window = HOLDOUT_WINDOW_SHIP_LENGTHS * task.resolved_time
         return select_model(
             estimation, model, task.runs, window, task.settings, task.options, family,
             choose=task.choose, report_progress=task.report_progress,

@@ -650,7 +650,7 @@ def _short_fit(task: Identification, reading: WaveReading) -> PointEstimate | No
     except InputError:
         return None
     with np.errstate(all="ignore"):  # a search may pass craft that run away
-        start = find_start(problem, runs.records, WEAK_FORM_SHIP_LENGTHS * task.characteristic_time)
+        start = find_start(problem, runs.records, WEAK_FORM_SHIP_LENGTHS * task.resolved_time)
         return fit_output_error(
             start.problem, start.common_parameters, start.initial_states, runs.noise,
             rounds=_ROUNDS, evaluations=_SHORT_EVALUATIONS, further_searches=0,

@@ -18,7 +18,7 @@ from seatrial.estimation.estimate.criterion_choice import is_coarsely_sampled
 from seatrial.estimation.estimate.fit import Estimation, choice_runs
 from seatrial.estimation.estimate.point_estimate import PointEstimate, with_steps_of_start
 from seatrial.estimation.estimate.process_noise import initial_problem, third_difference_noise
-from seatrial.estimation.estimate.settings import INITIAL_STATE_SHIP_LENGTHS, characteristic_time
+from seatrial.estimation.estimate.settings import INITIAL_STATE_SHIP_LENGTHS, resolved_time
 from seatrial.estimation.information.covariance import inverse
 from seatrial.estimation.predict.open_loop import simulate_open_loop
 from seatrial.estimation.predict.windows import EVALUATIONS, Windows
@@ -166,7 +166,7 @@ def _template(model: Model, record: Record, offsets: Sequence[SessionOffset]) ->
 
 def _start_seconds(model: Model, record: Record, length: float) -> float:
     try:
-        seconds = INITIAL_STATE_SHIP_LENGTHS * characteristic_time(model, [record], length)
+        seconds = INITIAL_STATE_SHIP_LENGTHS * resolved_time(model, [record], length)
     except InputError:  # neither speed nor positions were recorded
         seconds = 0.0
     return seconds or _START_SHARE * record.duration
