@@ -12,6 +12,7 @@ from seatrial.control.gain_evaluation import (
     ACTUATOR_RATE,
     ON_BOUND,
     GainChoice,
+    GainEvaluation,
     GainEvaluator,
     NamedGains,
     exceedance_share,
@@ -25,6 +26,7 @@ from seatrial.control.task import Demand, TuningTask
 from seatrial.core.results.tuning import ParetoFront
 from seatrial.core.values import Array
 from seatrial.physics.loops import delay_margin
+from seatrial.physics.loops.objective import ENERGY
 
 # The choice of a stabiliser: candidates along the fronts and with more margin, all through the same seas.
 
@@ -47,7 +49,7 @@ class _Candidate:
 
     Attributes:
         reductions: in each sea, with the actuator's limits, mean of with and without stall, (seeds,).
-        saturation_loss: reduction lost to the limits; rate: variance of the actuator's rate.
+        saturation_loss: reduction lost to the limits; effort: energy if an objective, else variance of the rate.
         is_on_bound: whether a gain lies on a bound of the search that is not zero.
         is_delay_kept: whether the delay margin is long enough.
     """
@@ -57,7 +59,7 @@ class _Candidate:
     front_name: str
     reductions: Array
     saturation_loss: float
-    rate: float
+    effort: float
     Ms: float
     is_on_bound: bool
     is_delay_kept: bool
@@ -85,7 +87,7 @@ def choose_by_simulation(
         delays = [delay_margin(task.loop_at(U, loop).with_gains(gains)) for U in speeds]
         return _Candidate(
             judge, gains, front.name, 0.5 * (limited + stalled), float(np.mean(linear - limited)),
-            float(judged.variances[0, :, 2].mean()), float(judged.Ms[0]), bool(gains_on_bound(loop, gains)),
+            _effort(judge, judged), float(judged.Ms[0]), bool(gains_on_bound(loop, gains)),
             min(delays) >= task.constraints.delay,
         )  # fmt: skip
 
@@ -113,6 +115,14 @@ def choose_by_simulation(
     return GainChoice(best.evaluator, best.gains, best.front_name, reasons, _designs(tried, best))
 
 
+def _effort(evaluator: GainEvaluator, evaluated: GainEvaluation) -> float:
+    """Return the energy of one set of gains where the task makes that small, else the variance of the rate."""
+    names = [objective.name for objective in evaluator.objectives]
+    if ENERGY in names:
+        return float(evaluated.objectives[0, names.index(ENERGY)])
+    return float(evaluated.variances[0, :, 2].mean())
+
+
 def _gains_with_margin(judge: GainEvaluator, tried: list[_Candidate], like: _Candidate, Ms: float, seed: int) -> Array:
     """Return gains (g,) that leave least of the output within that Ms, with no more actuator than another uses.
 
@@ -138,7 +148,7 @@ def _best_candidate(candidates: list[_Candidate]) -> _Candidate:
     some = _keeping(candidates)
     most = max(some, key=lambda one: one.reduction)
     equal = [one for one in some if _benefit(most, one) <= _EQUAL_REDUCTION]
-    return min(equal, key=lambda one: (one.is_on_bound, round(one.Ms / _EQUAL_MS), one.rate))
+    return min(equal, key=lambda one: (one.is_on_bound, round(one.Ms / _EQUAL_MS), one.effort))
 
 
 def _keeping(candidates: list[_Candidate]) -> list[_Candidate]:

@@ -10,7 +10,7 @@ from seatrial.core.figures.svg_text import svg
 from seatrial.core.results.front_chart import front_chart
 from seatrial.core.results.loop_charts import bode_chart, nyquist_chart, sensitivity_chart, styled_controllers
 from seatrial.core.results.tuning import ManoeuvreResponse, Tuning
-from seatrial.core.text.numbers import fixed
+from seatrial.core.text.numbers import fixed, significant
 from seatrial.core.values.notation import channel_meaning
 from seatrial.reporting import station_part, tuning_rows, tuning_text
 from seatrial.reporting import station_part as track_part
@@ -77,6 +77,12 @@ _TRACK_NOTE = (
 _SCHEDULE_NOTE = (
     "Cost: rms over that without control; behind it those of other gains in the same condition. Saturation: share of "
     "amplitudes beyond the limit."
+)
+_ENERGIES = {"drive": "drive_energy", "drag": "drag_energy"}
+_ENERGY_NOTE = (
+    " Energy with all limits: the drive’s from the rate of the actuator (Yu et al. 2014, eq. (3)), the drag of its "
+    "surfaces at the hull (Whicker & Fehlner 1958), without losses of the propulsion. What rolling costs the main "
+    "engine is left out: no source gives it."
 )
 _STAGES = {"without limits": "linear", "with limits of angle and rate": "limited", "with stall, too": "stalled"}
 """How a seaway was simulated, and the attribute that has its reductions."""
@@ -203,9 +209,14 @@ def _simulation(tuning: Tuning) -> Section:
     runs = tuning.seaway_simulations
     if not runs:
         return Section("")
+    energies = {f"{part}, MJ/h": key for part, key in _ENERGIES.items() if len(getattr(runs[0], key))}
     rows = [
-        (s.name, *(fixed(100.0 * float(np.mean(getattr(s, stage))), 1) for stage in _STAGES.values())) for s in runs
-    ]
+        (
+            s.name, *(fixed(100.0 * float(np.mean(getattr(s, stage))), 1) for stage in _STAGES.values()),
+            *(significant(1e-6 * float(np.mean(getattr(s, key))), 3) for key in energies.values()),
+        )
+        for s in runs
+    ]  # fmt: skip
     seeds = len(runs[0].linear)
     seas = f"{tuning_text.realisations(tuning, seeds)}{'' if seeds == 1 else ', the same for every controller'}"
     pictures = [
@@ -216,8 +227,8 @@ def _simulation(tuning: Tuning) -> Section:
     return Section(
         "Simulation with limits and stall",
         "simulation",
-        table=plain_table(("reduction of the rms, %", *_STAGES), rows),
-        note=f"Mean over {seas}.",
+        table=plain_table(("reduction of the rms, %", *_STAGES, *energies), rows),
+        note=f"Mean over {seas}.{_ENERGY_NOTE if energies else ''}",
         pictures=tuple(pictures),
     )
 

@@ -47,6 +47,7 @@ def key_facts(tuning: Tuning) -> tuple[KeyFact, ...]:
         KeyFact("Simulated", _simulation(tuning), "simulation"),
         KeyFact("Compared", " ".join(map(comparison_sentence, pairs)), "simulation",
                 _is_better(pairs)),
+        KeyFact("Energy", _energy(tuning), "simulation"),
         KeyFact("Demands", " ".join(demands), "manoeuvres"),
         KeyFact("Track", guidance_sentence(tuning.track) if tuning.track else "", "track",
                 _holds_draws(tuning.track.corner) if tuning.track else None),
@@ -238,6 +239,31 @@ def _simulation(tuning: Tuning) -> str:
     if math.isfinite(tuning.constraints.stall):
         text += f"; with stall beyond {_limit_text(tuning.actuator, tuning.constraints.stall)}, by {percent(stalled)}"
     return f"{text}."
+
+
+def _energy(tuning: Tuning) -> str:
+    """Return what the actuator takes in an hour, and what that saves against given gains."""
+    s = _simulated(tuning)
+    if s is None:
+        return ""
+    parts = [(name, values) for name, values in (("drive", s.drive_energy), ("drag", s.drag_energy)) if len(values)]
+    if not parts:
+        return ""
+    needs = enumeration([f"{significant(1e-6 * float(np.mean(values)), 3)} MJ by {name}" for name, values in parts])
+    savings = " ".join(energy_sentence(pair) for pair in tuning.energy_savings)
+    return f"With all limits the actuator takes {needs} in an hour. {savings}".rstrip()
+
+
+def energy_sentence(pair: PairedDifference) -> str:
+    """Return what the chosen gains save against others; not significant where the interval contains zero."""
+    mean, lower, upper = (1e-6 * value for value in (pair.mean, pair.lower, pair.upper))
+    if mean < 0.0:
+        mean, lower, upper = -mean, -upper, -lower
+    ends = f"95 % interval {significant(lower, 3)} to {significant(upper, 3)}, {counted(pair.seeds, 'realisation')}"
+    word = "less" if pair.mean > 0.0 else "more"
+    if pair.lower <= 0.0 <= pair.upper:
+        return f"The difference to ‘{pair.baseline}’ is not significant: {significant(mean, 3)} MJ {word} ({ends})."
+    return f"That is {significant(mean, 3)} MJ {word} than by ‘{pair.baseline}’ ({ends})."
 
 
 def comparison_sentence(pair: PairedDifference) -> str:

@@ -53,8 +53,9 @@ from seatrial.core.values import InputError, spelling_hint
 from seatrial.core.values.files import parse_toml, read_table_text, refuse_absurd_numbers
 from seatrial.data.folder.model_file import ModelFile
 from seatrial.data.trial.amounts import schema_error
-from seatrial.physics.loops import ActuatorDrive, Block, Objective, Sampling, TransferLoop
+from seatrial.physics.loops import ActuatorDrive, Block, LiftingSurface, Objective, Sampling, TransferLoop
 from seatrial.physics.loops.discrete import default_sample_time, ringing_blocks, round_sample_time
+from seatrial.physics.loops.objective import hourly_energy
 from seatrial.physics.models.thruster_layout import layout_of
 from seatrial.physics.simulate.closed_loop import simulation_step
 
@@ -128,7 +129,13 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant, home: Path) -> TuningTas
     refuse_calm(met, loop, plan)
     if demand is None:
         refuse_wild_motion(met, loop, plant)
-    objectives = tuple(objective(aim, plant, restriction, f"minimise[{i}]") for i, aim in enumerate(file.minimise, 1))
+    drive, surface = _drive(file.actuator), _surface(file.actuator)
+    objectives = tuple(
+        _energy_objective(drive, surface, met, where)
+        if aim.name == "energy"
+        else objective(aim, plant, restriction, where)
+        for where, aim in ((f"minimise[{i}]", aim) for i, aim in enumerate(file.minimise, 1))
+    )
     _refuse_duplicates(file.minimise, objectives)
     task = TuningTask(
         question=file.question,
@@ -150,7 +157,8 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant, home: Path) -> TuningTas
         trimmed_ship=plant.trimmed_ship,
         demand=demand,
         genetic=file.genetic,
-        drive=_drive(file.actuator),
+        drive=drive,
+        surface=surface,
         uncertainty=_uncertainty(file),
         track=None if file.track is None else _track(file.track, plant, demand),
         station=None if file.station is None else _station(file.station, file, plant),
@@ -228,6 +236,33 @@ def _drive(table: ActuatorTable) -> ActuatorDrive | None:
     if table.inertia is None:
         return None
     return ActuatorDrive(positive_value(table.inertia, "kg m^2", "actuator.inertia"), table.efficiency)
+
+
+def _surface(table: ActuatorTable) -> LiftingSurface | None:
+    """Return what the actuator turns in the water; None where no area is declared."""
+    if (table.area is None) is not (table.aspect_ratio is None):
+        raise InputError("actuator: the drag of fins or rudders needs both area and aspect_ratio; add the other")
+    if table.area is None or table.aspect_ratio is None:
+        return None
+    return LiftingSurface(positive_value(table.area, "m^2", "actuator.area"), table.aspect_ratio)
+
+
+def _energy_objective(
+    drive: ActuatorDrive | None,
+    surface: LiftingSurface | None,
+    disturbances: Sequence[Seaway | SlowDisturbance],
+    where: str,
+) -> Objective:
+    """Return the energy of the actuator at the one speed of all disturbances."""
+    if drive is None and surface is None:
+        raise InputError(f"{where}: 'energy' needs [actuator] inertia, or area and aspect_ratio; add them")
+    speeds = sorted({disturbance.U for disturbance in disturbances})
+    if surface is not None and len(speeds) > 1:
+        raise InputError(
+            f"{where}: the drag of 'energy' belongs to one speed, and the disturbances have {len(speeds)}; give all "
+            "the same speed"
+        )
+    return hourly_energy(drive, surface, speeds[0])
 
 
 def _baselines(baselines: Mapping[str, Mapping[str, float]], loop: TransferLoop) -> dict[str, Mapping[str, float]]:

@@ -302,6 +302,16 @@ class SeawaySimulation:
             "without control, its name with _uncontrolled"
         ),
     ]
+    drive_energy: Annotated[
+        ListedArray, Field(description="J in an hour by the drive, all limits on; empty: no inertia was declared")
+    ] = field(default_factory=lambda: np.empty(0))
+    drag_energy: Annotated[
+        ListedArray,
+        Field(
+            description="J in an hour by the drag of fins or rudders, all limits on, without losses of the propulsion; "
+            "empty: no area was declared"
+        ),
+    ] = field(default_factory=lambda: np.empty(0))
 
     @computed_field(description="reduction lost to limits of angle and rate, mean over the seeds")
     @property
@@ -472,6 +482,10 @@ class Tuning(Summarised):
     ] = ""
     robustness: Annotated[
         tuple[Robustness, ...], Field(description="of the stable controllers compared, the chosen one first")
+    ] = ()
+    energy_savings: Annotated[
+        tuple[PairedDifference, ...],
+        Field(description="J in an hour that the chosen gains need less than others in the same seas, all limits on"),
     ] = ()
     track: Annotated[TrackKeeping | None, Field(description="guidance along a track; null: none")] = None
     station: Annotated[StationKeeping | None, Field(description="a place kept by thrusters; null: none")] = None
