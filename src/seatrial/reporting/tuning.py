@@ -10,7 +10,7 @@ from seatrial.core.figures.svg_text import svg
 from seatrial.core.results.front_chart import front_chart
 from seatrial.core.results.loop_charts import bode_chart, nyquist_chart, sensitivity_chart, styled_controllers
 from seatrial.core.results.tuning import ManoeuvreResponse, Tuning
-from seatrial.core.text.numbers import fixed, significant
+from seatrial.core.text.numbers import fixed
 from seatrial.core.values.notation import channel_meaning
 from seatrial.reporting import station_part, tuning_rows, tuning_text
 from seatrial.reporting import station_part as track_part
@@ -212,10 +212,12 @@ def _simulation(tuning: Tuning) -> Section:
     energies = {f"{part}, MJ/h": key for part, key in _ENERGIES.items() if len(getattr(runs[0], key))}
     rows = [
         (
-            s.name, *(fixed(100.0 * float(np.mean(getattr(s, stage))), 1) for stage in _STAGES.values()),
-            *(significant(1e-6 * float(np.mean(getattr(s, key))), 3) for key in energies.values()),
+            tuning.shared_names[s.name],
+            *(fixed(100.0 * float(np.mean(getattr(s, stage))), 1) for stage in _STAGES.values()),
+            *(tuning_text.megajoules(float(np.mean(getattr(s, key)))) for key in energies.values()),
         )
         for s in runs
+        if s.name in tuning.shared_names
     ]  # fmt: skip
     seeds = len(runs[0].linear)
     seas = f"{tuning_text.realisations(tuning, seeds)}{'' if seeds == 1 else ', the same for every controller'}"

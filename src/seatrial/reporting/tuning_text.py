@@ -23,6 +23,7 @@ from seatrial.data.folder.gains_file import channel_display_unit
 from seatrial.reporting.section import KeyFact
 from seatrial.reporting.station_part import precision_sentence
 
+MEGAJOULE = 1e6  # J
 _SIMULATION_LABELS = {"limited": "with angle and rate limits", "stalled": "with stall, too", "linear": "without limits"}
 
 
@@ -249,14 +250,16 @@ def _energy(tuning: Tuning) -> str:
     parts = [(name, values) for name, values in (("drive", s.drive_energy), ("drag", s.drag_energy)) if len(values)]
     if not parts:
         return ""
-    needs = enumeration([f"{significant(1e-6 * float(np.mean(values)), 3)} MJ by {name}" for name, values in parts])
+    needs = enumeration(
+        [f"{significant(float(np.mean(values)) / MEGAJOULE, 3)} MJ by {name}" for name, values in parts]
+    )
     savings = " ".join(energy_sentence(pair) for pair in tuning.energy_savings)
     return f"With all limits the actuator takes {needs} in an hour. {savings}".rstrip()
 
 
 def energy_sentence(pair: PairedDifference) -> str:
     """Return what the chosen gains save against others; not significant where the interval contains zero."""
-    mean, lower, upper = (1e-6 * value for value in (pair.mean, pair.lower, pair.upper))
+    mean, lower, upper = (value / MEGAJOULE for value in (pair.mean, pair.lower, pair.upper))
     if mean < 0.0:
         mean, lower, upper = -mean, -upper, -lower
     ends = f"95 % interval {significant(lower, 3)} to {significant(upper, 3)}, {counted(pair.seeds, 'realisation')}"
