@@ -23,7 +23,7 @@ from seatrial.data.folder.gains_file import channel_display_unit
 from seatrial.reporting.section import KeyFact
 from seatrial.reporting.station_part import precision_sentence
 
-MEGAJOULE = 1e6  # J
+_MEGAJOULE = 1e6  # J in 1 MJ, by definition
 _SIMULATION_LABELS = {"limited": "with angle and rate limits", "stalled": "with stall, too", "linear": "without limits"}
 
 
@@ -250,23 +250,25 @@ def _energy(tuning: Tuning) -> str:
     parts = [(name, values) for name, values in (("drive", s.drive_energy), ("drag", s.drag_energy)) if len(values)]
     if not parts:
         return ""
-    needs = enumeration(
-        [f"{significant(float(np.mean(values)) / MEGAJOULE, 3)} MJ by {name}" for name, values in parts]
-    )
+    needs = enumeration([f"{megajoules(float(np.mean(values)))} MJ by {name}" for name, values in parts])
     savings = " ".join(energy_sentence(pair) for pair in tuning.energy_savings)
     return f"With all limits the actuator takes {needs} in an hour. {savings}".rstrip()
 
 
+def megajoules(energy: float) -> str:
+    """Return an energy [J] in MJ, without its unit."""
+    return significant(energy / _MEGAJOULE, 3)
+
+
 def energy_sentence(pair: PairedDifference) -> str:
     """Return what the chosen gains save against others; not significant where the interval contains zero."""
-    mean, lower, upper = (value / MEGAJOULE for value in (pair.mean, pair.lower, pair.upper))
-    if mean < 0.0:
-        mean, lower, upper = -mean, -upper, -lower
-    ends = f"95 % interval {significant(lower, 3)} to {significant(upper, 3)}, {counted(pair.seeds, 'realisation')}"
-    word = "less" if pair.mean > 0.0 else "more"
+    sign, word = (1.0, "less") if pair.mean > 0.0 else (-1.0, "more")
+    lower, upper = sorted((sign * pair.lower, sign * pair.upper))
+    mean = megajoules(sign * pair.mean)
+    ends = f"95 % interval {megajoules(lower)} to {megajoules(upper)}, {counted(pair.seeds, 'realisation')}"
     if pair.lower <= 0.0 <= pair.upper:
-        return f"The difference to ‘{pair.baseline}’ is not significant: {significant(mean, 3)} MJ {word} ({ends})."
-    return f"That is {significant(mean, 3)} MJ {word} than by ‘{pair.baseline}’ ({ends})."
+        return f"The difference to ‘{pair.baseline}’ is not significant: {mean} MJ {word} ({ends})."
+    return f"That is {mean} MJ {word} than by ‘{pair.baseline}’ ({ends})."
 
 
 def comparison_sentence(pair: PairedDifference) -> str:
