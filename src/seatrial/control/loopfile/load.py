@@ -8,6 +8,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
+from seatrial.control.actuator_log import actuator_response, logged_records
 from seatrial.control.loopfile.disturbances import loop_disturbances, point_motions, refuse_calm, schedule_grid
 from seatrial.control.loopfile.loop import extended_structure, loop_from_tables, objective, objective_places
 from seatrial.control.loopfile.plant import (
@@ -21,6 +22,7 @@ from seatrial.control.loopfile.plant import (
 )
 from seatrial.control.loopfile.schema import (
     ActuatorTable,
+    BlockTable,
     DemandTable,
     LoopFile,
     ObjectiveTable,
@@ -52,7 +54,7 @@ from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import InputError, spelling_hint
 from seatrial.core.values.files import parse_toml, read_table_text, refuse_absurd_numbers
 from seatrial.data.folder.model_file import ModelFile
-from seatrial.data.trial.amounts import schema_error
+from seatrial.data.trial.amounts import Amount, schema_error
 from seatrial.physics.loops import ActuatorDrive, Block, LiftingSurface, Objective, Sampling, TransferLoop
 from seatrial.physics.loops.discrete import default_sample_time, ringing_blocks, round_sample_time
 from seatrial.physics.loops.objective import hourly_energy
@@ -93,6 +95,7 @@ def tuning_task(path: Path, own_model: Model | None = None, model_file: Path | M
     try:
         home = path.resolve().parent
         plant = plant_from_table(file.plant, home, own_model, model_file)
+        file, plant = _with_logged_actuator(file, plant, home)
         task = _task_from_tables(file, plant, home)
         if task.schedule_grid is None or task.demand is None:
             return task
@@ -107,6 +110,37 @@ def tuning_task(path: Path, own_model: Model | None = None, model_file: Path | M
         return replace(task, at_speed=lru_cache(at_speed))
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
+
+
+def _with_logged_actuator(file: LoopFile, plant: LoopPlant, home: Path) -> tuple[LoopFile, LoopPlant]:
+    """Return the tables with rate, dead time and lag of the actuator's log where they stand in none, and what it shows.
+
+    The lag is the servo of controllers that bring none.
+    """
+    table = file.actuator
+    if not table.log:
+        return file, plant
+    path = home / table.log
+    try:
+        response = actuator_response(logged_records(path), plant.actuator)
+    except InputError as error:
+        raise InputError(f"actuator.log: {error}") from None
+    fitted: dict[str, object] = {}
+    if table.rate is None and math.isfinite(response.rate):
+        fitted["rate"] = Amount(value=response.rate)
+    if table.dead_time is None and response.dead_time > 0.0:
+        fitted["dead_time"] = Amount(value=response.dead_time)
+    if not table.servo and file.controller.kind != "yu2014":
+        fitted["servo"] = (BlockTable(lag=Amount(value=response.lag), name="lag of the actuator", source=table.log),)
+    uncertainty = file.uncertainty
+    if uncertainty.dead_time is None and "dead_time" in fitted:
+        latest = Amount(value=response.dead_time + response.dead_time_error)
+        uncertainty = uncertainty.model_copy(update={"dead_time": latest})
+    described = f"{plant.description}; {response.sentence(plant.actuator)}"
+    return (
+        file.model_copy(update={"actuator": table.model_copy(update=fitted), "uncertainty": uncertainty}),
+        replace(plant, description=described),
+    )
 
 
 def _task_from_tables(file: LoopFile, plant: LoopPlant, home: Path) -> TuningTask:

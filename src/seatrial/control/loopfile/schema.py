@@ -277,13 +277,15 @@ class ActuatorTable(StrictTable):
     """`[actuator]`: largest excursion from the steady value, largest rate, angle of stall, and the servo's blocks.
 
     `dead_time` in s; `inertia` about the stocks in kg m^2 and `efficiency` of the drive, `area` and effective
-    `aspect_ratio` of fins or rudders, for the energy.
+    `aspect_ratio` of fins or rudders, for the energy. `log`: a file with ordered and actual angles, from which
+    rate, dead time and lag are taken that do not stand here.
     """
 
     limit: SiAmount | None = None
     rate: SiAmount | None = None
     stall: Radians | None = None
     dead_time: Seconds | None = None
+    log: str = ""
     inertia: Annotated[SiAmount, Field(json_schema_extra={"x-unit": "kg m^2"})] | None = None
     efficiency: Annotated[float, Field(gt=0, le=1)] = 1.0
     area: Annotated[SiAmount, Field(json_schema_extra={"x-unit": "m^2"})] | None = None
