@@ -93,9 +93,13 @@ def _seaway_trials(task: TuningTask, loop: TransferLoop, gains: Array, seed: int
 
 
 def _hourly_energies(task: TuningTask, run: ClosedLoop, angles: Array, U: float) -> tuple[float, float]:
-    """Return J in an hour by the drive and by the drag of the actuator's angles (n,) after the run-in, at U [m/s]."""
-    step = run.dt if run.loop.sampling is None else run.loop.sampling.sample_s
-    drive = math.nan if task.drive is None else task.drive.hourly_energy(actuator_rate(run, angles), step)
+    """Return J in an hour by the drive and by the drag of the actuator's angles (n,) after the run-in, at U [m/s].
+
+    Rates are those from sample to sample of the controller, as everywhere.
+    """
+    every = 1 if run.loop.sampling is None else steps_a_sample(run.loop.sampling, run.dt)
+    step, rates = every * run.dt, actuator_rate(run, angles)[::every]
+    drive = math.nan if task.drive is None else task.drive.hourly_energy(rates, step)
     return drive, math.nan if task.surface is None else task.surface.hourly_energy(float(np.mean(angles**2)), U)
 
 

@@ -175,7 +175,7 @@ def test_a_reversal_costs_the_kinetic_energy_of_its_peak_over_the_efficiency() -
 
 def test_the_energy_of_a_swinging_drive_is_that_of_its_reversals() -> None:
     drive, dt, omega, amplitude = ActuatorDrive(800.0, 0.8), 0.01, 2.0 * math.pi / 8.0, 0.2
-    rates = amplitude * omega * np.cos(omega * dt * np.arange(1 + round(3600.0 / dt)))
+    rates = amplitude * omega * np.sin(omega * dt * np.arange(1 + round(3600.0 / dt)))
     reversals = 2.0 * 3600.0 * omega / (2.0 * math.pi)
     peak = amplitude * omega
     assert drive.hourly_energy(rates, dt) == pytest.approx(reversals * 0.5 * 800.0 * peak**2 / 0.8, rel=1e-3)

@@ -34,12 +34,13 @@ class ActuatorDrive:
         return self.inertia * rate_variance / self.efficiency
 
     def hourly_energy(self, rates: Array, dt: float) -> float:
-        """Return the energy [J] in an hour of rates (n,) [rad/s] every dt [s]: what the kinetic energy rises by.
+        """Return the energy [J] in an hour of rates (n,) [rad/s] every dt [s]: I peak^2 / 2 between two reversals.
 
-        It is I rate^2 / 2; what brakes the actuator is not given back.
+        The peak is that of the rate; steps of the order within a swing take no energy of their own.
         """
-        rises = np.maximum(np.diff(rates**2), 0.0).sum()
-        return float(0.5 * self.inertia * rises / self.efficiency * SECONDS_PER_HOUR / (dt * (len(rates) - 1)))
+        turns = 1 + np.flatnonzero(np.diff(np.signbit(rates)))
+        peaks = np.maximum.reduceat(rates**2, np.concatenate([[0], turns]))
+        return float(0.5 * self.inertia * peaks.sum() / self.efficiency * SECONDS_PER_HOUR / (dt * len(rates)))
 
 
 @dataclass(frozen=True)
